@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Time spent in each module of the odometry, in the columns of the paper's Table III.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <string_view>
+
+namespace stillpoint {
+
+/// The first seven are the columns of Table III; the others split them further.
+enum class Module : std::uint8_t {
+  kFeatureTracking,     ///< prediction, KLT, compaction; per frame
+  kFeatureDetection,    ///< cell bookkeeping, FAST, selection; per detecting frame
+  kTrackingThread,      ///< everything the tracker does with one frame
+  kDynamicRecognition,  ///< semantic mask, missed detection compensation, moving consistency check
+  kStateOptimization,   ///< from IMU integration's end to the slide: PnP, triangulation, solve,
+                        ///< marginalisation
+  kOptimizationThread,  ///< everything the estimator does with one frame
+  kObjectDetection,     ///< one detector call
+  kOutlierRejection,    ///< epipolar RANSAC of the tracker
+  kFeatureMask,         ///< circular masks
+  kWindowSolve,         ///< the nonlinear solve alone
+  kMarginalization,     ///< marginalisation alone
+  kImageDecoding,       ///< reading and decoding pictures: input, in no thread of the paper
+};
+inline constexpr std::size_t kModuleCount = 12;
+
+/// Stable name of a module in result files: snake_case, e.g. "feature_tracking".
+[[nodiscard]] std::string_view module_name(Module module);
+
+/// Sum and count of one module's calls. Table III averages modules per call and threads per frame: keep both.
+struct ModuleTime {
+  std::int64_t ns = 0;
+  std::int64_t calls = 0;
+};
+
+/// What one frame spent, module by module; carried in the messages, so no locks and no globals.
+class ModuleTimings {
+ public:
+  void add(Module module, std::chrono::nanoseconds elapsed) {
+    ModuleTime& entry = times_[static_cast<std::size_t>(module)];
+    entry.ns += elapsed.count();
+    ++entry.calls;
+  }
+  void add(const ModuleTimings& other) {
+    for (std::size_t i = 0; i < kModuleCount; ++i) {
+      times_[i].ns += other.times_[i].ns;
+      times_[i].calls += other.times_[i].calls;
+    }
+  }
+  [[nodiscard]] const ModuleTime& operator[](Module module) const {
+    return times_[static_cast<std::size_t>(module)];
+  }
+
+ private:
+  std::array<ModuleTime, kModuleCount> times_{};
+};
+
+/// Adds the time from its construction to its destruction to one module.
+class ScopedTimer {
+ public:
+  ScopedTimer(ModuleTimings& timings, Module module)
+      : timings_(timings), module_(module), start_(std::chrono::steady_clock::now()) {}
+  ~ScopedTimer() { timings_.add(module_, std::chrono::steady_clock::now() - start_); }
+  ScopedTimer(const ScopedTimer&) = delete;
+  ScopedTimer& operator=(const ScopedTimer&) = delete;
+
+ private:
+  ModuleTimings& timings_;
+  Module module_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace stillpoint

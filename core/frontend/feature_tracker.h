@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Follows points from picture to picture and finds new ones where they are missing. Paper Sec. III-A.
+#pragma once
+
+#include <memory>
+
+#include "core/frontend/frontend_config.h"
+#include "core/types/frame.h"
+#include "core/types/motion_prior.h"
+#include "core/types/rig.h"
+#include "core/types/tracked_frame.h"
+
+namespace stillpoint {
+
+class FeatureTracker {
+ public:
+  FeatureTracker(const FrontendConfig& config, const Camera& camera);
+  ~FeatureTracker();
+
+  /// Tracks all features into `frame`; with `detect` also rejects outliers, masks and finds new ones.
+  /// @param frame gray of the camera's size; depth may be empty
+  /// @param prior motion of the camera since the last call; ignored as far as it is not valid
+  [[nodiscard]] TrackedFrame track(const Frame& frame, const MotionPrior& prior, bool detect);
+
+  /// Forgets all features; ids go on rising.
+  void reset();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Settings of the tracker and the feature detectors. Paper Sec. III-A, III-B; defaults are Dynamic-VINS'.
+#pragma once
+
+#include <type_traits>
+
+#include "core/base/fields.h"
+
+namespace stillpoint {
+
+enum class TrackerPrediction { kNone, kRotation, kFull };
+constexpr auto enum_names(TrackerPrediction) {
+  return EnumNames<TrackerPrediction, 3>{{{TrackerPrediction::kNone, "none"},
+                                          {TrackerPrediction::kRotation, "rotation"},
+                                          {TrackerPrediction::kFull, "full"}}};
+}
+
+enum class FeatureDetectorKind { kGridFast, kShiTomasi };
+constexpr auto enum_names(FeatureDetectorKind) {
+  return EnumNames<FeatureDetectorKind, 2>{
+      {{FeatureDetectorKind::kGridFast, "grid_fast"}, {FeatureDetectorKind::kShiTomasi, "shi_tomasi"}}};
+}
+
+/// Settings of the grid detector. Paper Sec. III-B; 7x8 from Sec. IV-C, the rest as published code has it.
+struct GridDetectorConfig {
+  int rows = 7;
+  int cols = 8;
+  int padding_px = 3;        ///< overlap between cells; FAST needs 3
+  int fast_threshold = 10;   ///< brightness step [grey levels]
+  bool skip_empty = true;    ///< a cell that gave nothing is skipped at the next detection
+  int spare_candidates = 2;  ///< candidates kept per cell beyond its quota
+  int threads = 1;           ///< workers of the cell pool; the result does not depend on it
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, GridDetectorConfig>
+void visit_fields(Visitor&& field, Config& config) {
+  field("rows", config.rows, 1, 64);
+  field("cols", config.cols, 1, 64);
+  field("padding_px", config.padding_px, 3, 32);
+  field("fast_threshold", config.fast_threshold, 1, 255);
+  field("skip_empty", config.skip_empty);
+  field("spare_candidates", config.spare_candidates, 0, 64);
+  field("threads", config.threads, 1, 64);
+}
+
+struct FrontendConfig {
+  int max_features = 130;
+  int min_distance_px = 30;     ///< radius of the circles around stable features
+  int unstable_radius_px = 30;  ///< radius of the circles around lost features
+  bool circular_mask = true;    ///< both circles. Paper Sec. III-A
+  FeatureDetectorKind detector = FeatureDetectorKind::kGridFast;
+  TrackerPrediction prediction = TrackerPrediction::kRotation;
+  int window_px = 21;      ///< side of the KLT window
+  int pyramid_levels = 2;  ///< pictures in the pyramid, the full one included
+  int max_iterations = 30;
+  bool forward_backward = false;  ///< track back and compare
+  double forward_backward_px = 0.5;
+  double ransac_threshold_px = 1.0;  ///< epipolar distance, px of the camera's focal length
+  double ransac_confidence = 0.99;
+  int border_px = 1;
+  bool equalize = false;  ///< CLAHE(3, 8x8) before tracking
+  double shi_tomasi_quality = 0.01;
+  GridDetectorConfig grid;
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, FrontendConfig>
+void visit_fields(Visitor&& field, Config& config) {
+  field("max_features", config.max_features, 8, 2000);
+  field("min_distance_px", config.min_distance_px, 1, 200);
+  field("unstable_radius_px", config.unstable_radius_px, 1, 200);
+  field("circular_mask", config.circular_mask);
+  field("detector", config.detector);
+  field("prediction", config.prediction);
+  field("window_px", config.window_px, 5, 63);
+  field("pyramid_levels", config.pyramid_levels, 1, 8);
+  field("max_iterations", config.max_iterations, 1, 100);
+  field("forward_backward", config.forward_backward);
+  field("forward_backward_px", config.forward_backward_px, 0.01, 10.0);
+  field("ransac_threshold_px", config.ransac_threshold_px, 0.1, 20.0);
+  field("ransac_confidence", config.ransac_confidence, 0.5, 0.99999);
+  field("border_px", config.border_px, 0, 100);
+  field("equalize", config.equalize);
+  field("shi_tomasi_quality", config.shi_tomasi_quality, 1e-4, 0.5);
+  field("grid", config.grid);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Rigid transforms. A `Pose T_a_b` takes coordinates in frame b to frame a; adjacent letters must match.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace stillpoint {
+
+/// Rotation and translation [m]; `q` is kept of unit length by whoever writes it.
+struct Pose {
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] Pose inverse() const {
+    const Eigen::Quaterniond conjugate = q.conjugate();
+    return Pose{conjugate, -(conjugate * p)};
+  }
+  [[nodiscard]] Eigen::Matrix3d R() const { return q.toRotationMatrix(); }
+
+  [[nodiscard]] static Pose from_matrix(const Eigen::Matrix4d& matrix) {
+    return Pose{Eigen::Quaterniond(Eigen::Matrix3d(matrix.topLeftCorner<3, 3>())).normalized(),
+                matrix.topRightCorner<3, 1>()};
+  }
+  [[nodiscard]] Eigen::Matrix4d matrix() const {
+    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+    m.topLeftCorner<3, 3>() = R();
+    m.topRightCorner<3, 1>() = p;
+    return m;
+  }
+};
+
+/// T_a_c from T_a_b and T_b_c.
+[[nodiscard]] inline Pose operator*(const Pose& T_a_b, const Pose& T_b_c) {
+  return Pose{(T_a_b.q * T_b_c.q).normalized(), T_a_b.q * T_b_c.p + T_a_b.p};
+}
+
+/// A point's coordinates in a from those in b.
+[[nodiscard]] inline Eigen::Vector3d operator*(const Pose& T_a_b, const Eigen::Vector3d& p_b) {
+  return T_a_b.q * p_b + T_a_b.p;
+}
+
+/// The pose a share `s` in [0, 1] of the way from `a` to `b`: slerp of the rotation, straight line of the
+/// position.
+[[nodiscard]] inline Pose interpolate(const Pose& a, const Pose& b, double s) {
+  return Pose{a.q.slerp(s, b.q), (1.0 - s) * a.p + s * b.p};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// One moment of the RGB-D camera.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+
+#include "core/base/timestamp.h"
+
+namespace stillpoint {
+
+/// Pictures share their pixels when copied: nobody writes into them after the reader made them.
+struct Frame {
+  std::int64_t id = 0;  ///< position in the sequence, from 0
+  Timestamp t;          ///< stamp of the colour picture
+  cv::Mat gray;         ///< CV_8UC1
+  cv::Mat color;        ///< CV_8UC3, RGB; may be empty
+  cv::Mat depth;        ///< CV_16UC1 of the size of gray, registered to it; 0 = not measured; may be empty
+  double depth_units_per_m = 1000.0;
+};
+
+/// Depth at a pixel (rounded to the nearest) [m]; 0 when not measured or outside the picture.
+[[nodiscard]] inline double depth_at(const cv::Mat& depth, double depth_units_per_m, double u_px,
+                                     double v_px) {
+  const int column = cvRound(u_px);
+  const int row = cvRound(v_px);
+  if (column < 0 || row < 0 || column >= depth.cols || row >= depth.rows) return 0.0;
+  return depth.at<std::uint16_t>(row, column) / depth_units_per_m;
+}
+
+}  // namespace stillpoint

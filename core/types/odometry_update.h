@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What the estimator says after each picture.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/module_timings.h"
+#include "core/types/nav_state.h"
+
+namespace stillpoint {
+
+enum class OdometryStatus { kInitialising, kTracking, kLost };
+
+struct OdometryCounters {
+  int tracked_features = 0;  ///< came from the tracker
+  int window_landmarks = 0;  ///< took part in the solve
+  int depth_landmarks = 0;   ///< of those, with measured depth
+  int dynamic_features = 0;  ///< kept out as moving
+  int solver_iterations = 0;
+  bool keyframe = false;
+  bool reset = false;  ///< a failure was detected at this picture and the estimator begins anew
+};
+
+/// `state` is valid only while `status == kTracking`.
+struct OdometryUpdate {
+  std::int64_t frame_id = 0;
+  NavState state;
+  Pose T_w_c;  ///< of the camera, with the extrinsics of that moment
+  OdometryStatus status = OdometryStatus::kInitialising;
+  double time_offset_s = 0.0;  ///< present estimate
+  OdometryCounters counters;
+  ModuleTimings timings;
+};
+
+}  // namespace stillpoint

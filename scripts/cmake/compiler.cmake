@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Compiler settings shared by every target: warnings, the instruction set, sanitizers.
+
+# The default instruction set is x86-64-v3 (AVX2, FMA) where the building machine runs it: half the time of the
+# window solve is fixed-size Eigen. "native" is left to the user because valgrind knows no AVX-512.
+set(STILLPOINT_MARCH "auto" CACHE STRING "value of -march; \"auto\" = x86-64-v3 where it runs, \"\" = the compiler's default")
+set(STILLPOINT_SANITIZE "" CACHE STRING "value of -fsanitize, e.g. address,undefined")
+
+if(STILLPOINT_MARCH STREQUAL "auto")
+  include(CheckCXXSourceRuns)
+  set(CMAKE_REQUIRED_FLAGS "-march=x86-64-v3")
+  check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1; }"
+                        STILLPOINT_RUNS_X86_64_V3)
+  unset(CMAKE_REQUIRED_FLAGS)
+  if(STILLPOINT_RUNS_X86_64_V3)
+    set(stillpoint_march "x86-64-v3")
+  endif()
+else()
+  set(stillpoint_march "${STILLPOINT_MARCH}")
+endif()
+
+add_library(stillpoint_warnings INTERFACE)
+target_compile_options(stillpoint_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Werror)
+
+add_library(stillpoint_options INTERFACE)
+target_include_directories(stillpoint_options INTERFACE ${PROJECT_SOURCE_DIR})
+if(stillpoint_march)
+  target_compile_options(stillpoint_options INTERFACE -march=${stillpoint_march})
+endif()
+# Debian's Ceres is built for baseline x86-64: its Eigen aligns to 16 bytes, so must ours. One thread per stage.
+target_compile_definitions(stillpoint_options INTERFACE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_DONT_PARALLELIZE)
+target_compile_options(stillpoint_options INTERFACE -fno-math-errno -fno-trapping-math)
+if(STILLPOINT_SANITIZE)
+  target_compile_options(stillpoint_options INTERFACE -fsanitize=${STILLPOINT_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(stillpoint_options INTERFACE -fsanitize=${STILLPOINT_SANITIZE})
+  if(STILLPOINT_SANITIZE MATCHES "undefined")
+    target_compile_options(stillpoint_options INTERFACE -fno-sanitize-recover=undefined)
+  endif()
+endif()
+
+# stillpoint_library(NAME SOURCES a.cpp ... [PUBLIC libs...] [PRIVATE libs...]): one module of the house.
+function(stillpoint_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC stillpoint_options ${ARG_PUBLIC} PRIVATE stillpoint_warnings ${ARG_PRIVATE})
+endfunction()

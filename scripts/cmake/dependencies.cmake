@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Every library from outside, with the version that the project was tested with; scripts/setup.sh installs them.
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Ceres 2.1 REQUIRED)
+if(NOT Ceres_FOUND OR NOT "SuiteSparse" IN_LIST CERES_COMPILED_COMPONENTS)
+  message(FATAL_ERROR "Ceres was built without SuiteSparse; install libceres-dev and libsuitesparse-dev (scripts/setup.sh)")
+endif()
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc video features2d calib3d dnn videoio)
+find_package(fmt 9 REQUIRED)
+find_package(spdlog 1.10 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(tomlplusplus 3.3 REQUIRED)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(SQLite3 3.40 REQUIRED)
+find_package(embree 3.13 REQUIRED)
+find_package(TBB 2021 REQUIRED)
+find_package(GTest 1.12 REQUIRED)
+find_package(benchmark 1.7 REQUIRED)
+# Not find_package: Debian's OpenImageIO config file fails without openimageio-tools.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd>=1.5)
