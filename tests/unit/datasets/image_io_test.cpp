@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/image_io.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+cv::Mat ramp(int type) {
+  cv::Mat picture(48, 64, type);
+  std::uint32_t state = 1;  // incompressible, so that a cut file lacks pixels
+  for (std::size_t i = 0; i < picture.total() * picture.elemSize(); ++i) {
+    state = state * 1664525U + 1013904223U;
+    picture.data[i] = static_cast<std::uint8_t>(state >> 24);
+  }
+  return picture;
+}
+
+bool equal(const cv::Mat& a, const cv::Mat& b) {
+  return a.type() == b.type() && a.size() == b.size() && a.isContinuous() && b.isContinuous() &&
+         std::equal(a.data, a.data + a.total() * a.elemSize(), b.data);
+}
+
+void cut_in_half(const std::filesystem::path& file) {
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+}
+
+TEST(ImageIo, PngRoundTripKeepsEveryBit) {
+  const TemporaryFolder folder;
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    write_png(folder.path() / "picture.png", ramp(type));
+    EXPECT_TRUE(equal(read_picture(folder.path() / "picture.png"), ramp(type)));
+  }
+  write_png(folder.path() / "depth.png", ramp(CV_16UC1));
+  EXPECT_TRUE(equal(read_depth(folder.path() / "depth.png"), ramp(CV_16UC1)));
+}
+
+TEST(ImageIo, WritesAViewWithGapsBetweenItsRows) {
+  const TemporaryFolder folder;
+  const cv::Mat view = ramp(CV_16UC1)(cv::Rect(3, 5, 20, 10));
+  write_png(folder.path() / "view.png", view);
+  EXPECT_TRUE(equal(read_depth(folder.path() / "view.png"), view.clone()));
+}
+
+TEST(ImageIo, GrayIsTheRoundedLuma) {
+  cv::Mat rgb(1, 3, CV_8UC3);
+  rgb.at<cv::Vec3b>(0, 0) = {255, 0, 0};
+  rgb.at<cv::Vec3b>(0, 1) = {10, 200, 30};
+  rgb.at<cv::Vec3b>(0, 2) = {255, 255, 255};
+  const cv::Mat gray = to_gray(rgb);
+  EXPECT_EQ(gray.at<std::uint8_t>(0, 0), 76);   // 0.299 * 255 = 76.2
+  EXPECT_EQ(gray.at<std::uint8_t>(0, 1), 124);  // 2.99 + 117.4 + 3.42 = 123.8
+  EXPECT_EQ(gray.at<std::uint8_t>(0, 2), 255);
+}
+
+TEST(ImageIo, MissingPictureIsAnError) {
+  const TemporaryFolder folder;
+  expect_input_error([&] { static_cast<void>(read_picture(folder.path() / "no.png")); },
+                     {"no.png", "no such picture"});
+}
+
+TEST(ImageIo, TruncatedPicturesAreErrors) {
+  const TemporaryFolder folder;
+  write_png(folder.path() / "a.png", ramp(CV_8UC3));
+  write_png(folder.path() / "b.png", ramp(CV_16UC1));
+  cut_in_half(folder.path() / "a.png");
+  cut_in_half(folder.path() / "b.png");
+  expect_input_error([&] { static_cast<void>(read_picture(folder.path() / "a.png")); },
+                     {"a.png", "truncated"});
+  expect_input_error([&] { static_cast<void>(read_depth(folder.path() / "b.png")); }, {"b.png", "truncated"});
+}
+
+TEST(ImageIo, TextAndEmptyFilesAreErrors) {
+  const TemporaryFolder folder;
+  const auto text = folder.write("text.png", "this is no picture");
+  const auto empty = folder.write("empty.jpg", "");
+  expect_input_error([&] { static_cast<void>(read_picture(text)); }, {"text.png", "cannot be decoded"});
+  expect_input_error([&] { static_cast<void>(read_picture(empty)); }, {"empty.jpg", "cannot be decoded"});
+}
+
+TEST(ImageIo, ColourAndDepthAreNotMistakenForEachOther) {
+  const TemporaryFolder folder;
+  write_png(folder.path() / "color.png", ramp(CV_8UC3));
+  write_png(folder.path() / "depth.png", ramp(CV_16UC1));
+  expect_input_error([&] { static_cast<void>(read_depth(folder.path() / "color.png")); },
+                     {"3 channel(s) of 8 bits"});
+  expect_input_error([&] { static_cast<void>(read_picture(folder.path() / "depth.png")); },
+                     {"16 bits per channel"});
+}
+
+TEST(ImageIo, AFullDiskIsAnErrorAndLeavesNothing) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const TemporaryFolder folder;
+  // What write_png writes first is the name with ".part": a link there makes the disk full.
+  std::filesystem::create_symlink("/dev/full", folder.path() / "a.png.part");
+  expect_input_error([&] { write_png(folder.path() / "a.png", ramp(CV_8UC3)); }, {"a.png", "disk not full"});
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(ImageIo, AFileThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "absent" / "a.png";
+  expect_input_error([&] { write_png(file, ramp(CV_8UC1)); }, {"a.png", "cannot be written"});
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+}  // namespace
+}  // namespace stillpoint
