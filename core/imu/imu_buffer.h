@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <limits>
 #include <vector>
 
 #include "core/types/imu_sample.h"
@@ -12,7 +13,7 @@ namespace stillpoint {
 /// What adding and cutting met that is not as it should be; reported with the run, never hidden.
 struct ImuHealth {
   int rejected_samples = 0;  ///< not finite, out of order or repeated
-  int gaps = 0;              ///< holes longer than `max_gap_s` met while cutting
+  int gaps = 0;              ///< holes longer than `max_gap_s` met while cutting; each counts once
 };
 
 class ImuBuffer {
@@ -29,7 +30,7 @@ class ImuBuffer {
   [[nodiscard]] std::vector<ImuSample> samples_between(Timestamp begin, Timestamp end);
 
   /// Like `samples_between`, but the newest sample is held up to `end` when the buffer ends at most
-  /// `max_gap_s` before.
+  /// `max_gap_s` before. Ends found this way are a guess: use them for predictions, not for factors.
   [[nodiscard]] std::vector<ImuSample> samples_up_to(Timestamp begin, Timestamp end);
 
   [[nodiscard]] bool empty() const { return samples_.empty(); }
@@ -37,8 +38,11 @@ class ImuBuffer {
   [[nodiscard]] const ImuHealth& health() const { return health_; }
 
  private:
+  void count_gaps(std::size_t first, std::size_t last);
+
   double max_gap_s_;
   std::deque<ImuSample> samples_;
+  Timestamp gaps_counted_until_{std::numeric_limits<std::int64_t>::min()};
   ImuHealth health_;
 };
 

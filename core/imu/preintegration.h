@@ -32,7 +32,8 @@ class Preintegration {
   Preintegration(const ImuNoise& noise, const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias);
 
   /// Adds samples of one interval: they must start at i and end at j (see `samples_between`), rising in time.
-  /// A second call continues where the first ended: its first sample is at the time of the last one before.
+  /// A second call continues where the first ended: its first sample is at the time of the last one before
+  /// (and is not kept: it is that one). Fewer than two samples add nothing to the motion.
   void integrate(const std::vector<ImuSample>& samples);
 
   /// Integrates all samples again with other biases; for changes too large for the first-order correction.
@@ -43,9 +44,9 @@ class Preintegration {
   [[nodiscard]] const Eigen::Vector3d& gyro_bias() const { return gyro_bias_; }    ///< linearisation point
   [[nodiscard]] const Eigen::Vector3d& accel_bias() const { return accel_bias_; }  ///< linearisation point
   [[nodiscard]] const Matrix15& covariance() const { return covariance_; }  ///< of (p, theta, v, bg, ba)
-  [[nodiscard]] const Matrix15& jacobian() const {
-    return jacobian_;
-  }  ///< d (p, theta, v, bg, ba) / d the same at i
+  /// d (p, theta, v, bg, ba) at j / d the same at i, first order; columns 9..14 correct the deltas for
+  /// biases.
+  [[nodiscard]] const Matrix15& jacobian() const { return jacobian_; }
 
   /// Deltas corrected to first order for other biases.
   [[nodiscard]] Eigen::Vector3d delta_p(const Eigen::Vector3d& gyro_bias,
@@ -60,6 +61,7 @@ class Preintegration {
  private:
   void reset(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias);
   void step(const ImuSample& from, const ImuSample& to);
+  void complete_jacobian();
 
   ImuNoise noise_;
   std::vector<ImuSample> samples_;

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/imu/preintegration.h"
+
+#include "core/base/error.h"
+#include "core/geometry/so3.h"
+#include "core/imu/midpoint.h"
+
+namespace stillpoint {
+namespace {
+
+using Index = ImuErrorIndex;
+using Matrix9x6 = Eigen::Matrix<double, 9, 6>;
+
+/// The 3x3 blocks of one step's transition matrix F that are neither zero nor identity. Rows of position
+/// follow from those of velocity: p' = p + dt v + dt/2 (v' - v).
+struct StepBlocks {
+  double dt;
+  Eigen::Matrix3d rotation_rotation;
+  Eigen::Matrix3d rotation_gyro_bias;
+  Eigen::Matrix3d velocity_rotation;
+  Eigen::Matrix3d velocity_gyro_bias;
+  Eigen::Matrix3d velocity_accel_bias;
+};
+
+/// First order of the midpoint step for the error states; right perturbation, R <- R Exp(theta).
+StepBlocks linearize(const Eigen::Matrix3d& R_from, const Eigen::Vector3d& force_from,
+                     const MidpointStep& step, double dt) {
+  const Eigen::Matrix3d R_to = step.q_r_b.toRotationMatrix();
+  const Eigen::Matrix3d force_by_rotation_to = -0.5 * dt * R_to * skew(step.force_to);
+  StepBlocks blocks;
+  blocks.dt = dt;
+  blocks.rotation_rotation = R_to.transpose() * R_from;
+  blocks.rotation_gyro_bias = -dt * right_jacobian(step.theta);
+  blocks.velocity_rotation =
+      -0.5 * dt * R_from * skew(force_from) + force_by_rotation_to * blocks.rotation_rotation;
+  blocks.velocity_gyro_bias = force_by_rotation_to * blocks.rotation_gyro_bias;
+  blocks.velocity_accel_bias = -0.5 * dt * (R_from + R_to);
+  return blocks;
+}
+
+/// The upper 9 rows of F * M. F is sparse: five 3x3 products instead of a 15x15 one.
+template <int Columns>
+Eigen::Matrix<double, 9, Columns> transport(const StepBlocks& blocks,
+                                            const Eigen::Matrix<double, 15, Columns>& M) {
+  using Block = Eigen::Matrix<double, 3, Columns>;
+  const Block rotation = M.template middleRows<3>(Index::kRotation);
+  const Block velocity = M.template middleRows<3>(Index::kVelocity);
+  const Block gyro_bias = M.template middleRows<3>(Index::kGyroBias);
+  const Block accel_bias = M.template middleRows<3>(Index::kAccelBias);
+  const Block change = blocks.velocity_rotation.lazyProduct(rotation) +
+                       blocks.velocity_gyro_bias.lazyProduct(gyro_bias) +
+                       blocks.velocity_accel_bias.lazyProduct(accel_bias);
+  Eigen::Matrix<double, 9, Columns> result;
+  result.template middleRows<3>(Index::kPosition) =
+      M.template middleRows<3>(Index::kPosition) + blocks.dt * velocity + 0.5 * blocks.dt * change;
+  result.template middleRows<3>(Index::kRotation) =
+      blocks.rotation_rotation.lazyProduct(rotation) + blocks.rotation_gyro_bias.lazyProduct(gyro_bias);
+  result.template middleRows<3>(Index::kVelocity) = velocity + change;
+  return result;
+}
+
+/// F times the variance of the mean of the step's samples, which acts like a bias during this step.
+/// Neighbouring steps share a sample, so the whole density belongs to each step: sigma^2 / dt for the mean,
+/// not half of it.
+Matrix9x6 noise_response(const StepBlocks& blocks, const ImuNoise& noise) {
+  const double gyro_variance = noise.gyro_noise * noise.gyro_noise / blocks.dt;
+  const double accel_variance = noise.accel_noise * noise.accel_noise / blocks.dt;
+  Matrix9x6 response = Matrix9x6::Zero();
+  response.block<3, 3>(Index::kRotation, 0) = gyro_variance * blocks.rotation_gyro_bias;
+  response.block<3, 3>(Index::kVelocity, 0) = gyro_variance * blocks.velocity_gyro_bias;
+  response.block<3, 3>(Index::kVelocity, 3) = accel_variance * blocks.velocity_accel_bias;
+  response.middleRows<3>(Index::kPosition) = 0.5 * blocks.dt * response.middleRows<3>(Index::kVelocity);
+  return response;
+}
+
+/// P <- F P F^T + noise; biases walk by density^2 * dt.
+void propagate_covariance(const StepBlocks& blocks, const ImuNoise& noise, Matrix15& covariance) {
+  Eigen::Matrix<double, 9, 15> half = transport<15>(blocks, covariance);
+  const Matrix9x6 cross = half.rightCols<6>();
+  half.rightCols<6>() += noise_response(blocks, noise);
+  covariance.topLeftCorner<9, 9>() = transport<9>(blocks, half.transpose());
+  covariance.topRightCorner<9, 6>() = cross;
+  covariance.bottomLeftCorner<6, 9>() = cross.transpose();
+  covariance.diagonal().segment<3>(Index::kGyroBias).array() += noise.gyro_walk * noise.gyro_walk * blocks.dt;
+  covariance.diagonal().segment<3>(Index::kAccelBias).array() +=
+      noise.accel_walk * noise.accel_walk * blocks.dt;
+}
+
+}  // namespace
+
+Preintegration::Preintegration(const ImuNoise& noise, const Eigen::Vector3d& gyro_bias,
+                               const Eigen::Vector3d& accel_bias)
+    : noise_(noise), gyro_bias_(gyro_bias), accel_bias_(accel_bias) {}
+
+void Preintegration::integrate(const std::vector<ImuSample>& samples) {
+  if (samples.empty()) return;
+  if (samples_.empty()) {
+    samples_.push_back(samples.front());
+  } else {
+    STILLPOINT_CHECK(samples.front().t == samples_.back().t);
+  }
+  samples_.reserve(samples_.size() + samples.size() - 1);
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    step(samples_.back(), samples[i]);
+    samples_.push_back(samples[i]);
+  }
+  complete_jacobian();
+}
+
+void Preintegration::repropagate(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {
+  reset(gyro_bias, accel_bias);
+  for (std::size_t i = 1; i < samples_.size(); ++i) step(samples_[i - 1], samples_[i]);
+  complete_jacobian();
+}
+
+void Preintegration::reset(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {
+  gyro_bias_ = gyro_bias;
+  accel_bias_ = accel_bias;
+  duration_s_ = 0.0;
+  delta_p_.setZero();
+  delta_v_.setZero();
+  delta_q_.setIdentity();
+  covariance_.setZero();
+  jacobian_.setIdentity();
+}
+
+void Preintegration::step(const ImuSample& from, const ImuSample& to) {
+  STILLPOINT_CHECK(from.t < to.t);
+  const double dt = seconds_between(from.t, to.t);
+  const MidpointStep step = midpoint_step(delta_q_, from, to, {.gyro = gyro_bias_, .accel = accel_bias_});
+  const StepBlocks blocks = linearize(delta_q_.toRotationMatrix(), from.accel_b - accel_bias_, step, dt);
+
+  propagate_covariance(blocks, noise_, covariance_);
+  const Eigen::Matrix<double, 15, 6> bias_columns = jacobian_.rightCols<6>();
+  jacobian_.topRightCorner<9, 6>() = transport<6>(blocks, bias_columns);
+
+  delta_p_ += delta_v_ * dt + 0.5 * dt * dt * step.force_r;
+  delta_v_ += step.force_r * dt;
+  delta_q_ = step.q_r_b;
+  duration_s_ += dt;
+}
+
+/// The columns of p, theta and v need no accumulation: an error at i moves or turns the deltas as a whole,
+/// delta_p -> Exp(theta) delta_p + p + v T.
+void Preintegration::complete_jacobian() {
+  jacobian_.block<3, 3>(Index::kPosition, Index::kRotation) = -skew(delta_p_);
+  jacobian_.block<3, 3>(Index::kVelocity, Index::kRotation) = -skew(delta_v_);
+  jacobian_.block<3, 3>(Index::kRotation, Index::kRotation) = delta_q_.conjugate().toRotationMatrix();
+  jacobian_.block<3, 3>(Index::kPosition, Index::kVelocity) = duration_s_ * Eigen::Matrix3d::Identity();
+}
+
+Eigen::Vector3d Preintegration::delta_p(const Eigen::Vector3d& gyro_bias,
+                                        const Eigen::Vector3d& accel_bias) const {
+  return delta_p_ + jacobian_.block<3, 3>(Index::kPosition, Index::kGyroBias) * (gyro_bias - gyro_bias_) +
+         jacobian_.block<3, 3>(Index::kPosition, Index::kAccelBias) * (accel_bias - accel_bias_);
+}
+
+Eigen::Vector3d Preintegration::delta_v(const Eigen::Vector3d& gyro_bias,
+                                        const Eigen::Vector3d& accel_bias) const {
+  return delta_v_ + jacobian_.block<3, 3>(Index::kVelocity, Index::kGyroBias) * (gyro_bias - gyro_bias_) +
+         jacobian_.block<3, 3>(Index::kVelocity, Index::kAccelBias) * (accel_bias - accel_bias_);
+}
+
+Eigen::Quaterniond Preintegration::delta_q(const Eigen::Vector3d& gyro_bias) const {
+  const Eigen::Vector3d theta =
+      jacobian_.block<3, 3>(Index::kRotation, Index::kGyroBias) * (gyro_bias - gyro_bias_);
+  return (delta_q_ * exp_so3(theta)).normalized();
+}
+
+NavState Preintegration::predict(const NavState& state_i, const Eigen::Vector3d& gravity_w) const {
+  const double T = duration_s_;
+  const Eigen::Quaterniond& q_w_bi = state_i.T_w_b.q;
+  NavState state_j = state_i;
+  state_j.t = after(state_i.t, T);
+  state_j.T_w_b.q = (q_w_bi * delta_q(state_i.gyro_bias)).normalized();
+  state_j.T_w_b.p = state_i.T_w_b.p + state_i.v_w * T + 0.5 * T * T * gravity_w +
+                    q_w_bi * delta_p(state_i.gyro_bias, state_i.accel_bias);
+  state_j.v_w = state_i.v_w + T * gravity_w + q_w_bi * delta_v(state_i.gyro_bias, state_i.accel_bias);
+  return state_j;
+}
+
+}  // namespace stillpoint

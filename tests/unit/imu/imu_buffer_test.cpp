@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/imu/imu_buffer.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// gyro x = milliseconds, accel y = -milliseconds: linear, so that interpolated values are known.
+ImuSample ramp(double ms) {
+  return {.t = from_seconds(ms * 1e-3), .gyro_b = {ms, 0.0, 0.0}, .accel_b = {0.0, -ms, 0.0}};
+}
+ImuBuffer filled(std::initializer_list<double> stamps_ms) {
+  ImuBuffer buffer(0.05);
+  for (const double ms : stamps_ms) buffer.add(ramp(ms));
+  return buffer;
+}
+Timestamp at_ms(double ms) { return from_seconds(ms * 1e-3); }
+std::vector<double> milliseconds(const std::vector<ImuSample>& samples) {
+  std::vector<double> values;
+  for (const ImuSample& sample : samples) {
+    EXPECT_NEAR(sample.gyro_b.x(), static_cast<double>(sample.t.ns) / kMs, 1e-9);
+    EXPECT_NEAR(sample.accel_b.y(), -static_cast<double>(sample.t.ns) / kMs, 1e-9);
+    values.push_back(static_cast<double>(sample.t.ns) / kMs);
+  }
+  return values;
+}
+using Stamps = std::vector<double>;
+
+TEST(ImuBuffer, InterpolatesBothEndsOfACut) {
+  ImuBuffer buffer = filled({0, 10, 20, 30, 40});
+  EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(5), at_ms(32))), (Stamps{5, 10, 20, 30, 32}));
+}
+
+TEST(ImuBuffer, TakesSamplesThatLieOnTheEnds) {
+  ImuBuffer buffer = filled({0, 10, 20, 30, 40});
+  EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(10), at_ms(30))), (Stamps{10, 20, 30}));
+  EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(0), at_ms(40))), (Stamps{0, 10, 20, 30, 40}));
+}
+
+TEST(ImuBuffer, CutsInsideOneInterval) {
+  ImuBuffer buffer = filled({0, 10});
+  EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(2), at_ms(7))), (Stamps{2, 7}));
+}
+
+TEST(ImuBuffer, GivesNothingWhenItDoesNotReachOverBothEnds) {
+  ImuBuffer buffer = filled({10, 20, 30});
+  EXPECT_TRUE(buffer.samples_between(at_ms(5), at_ms(20)).empty());
+  EXPECT_TRUE(buffer.samples_between(at_ms(15), at_ms(31)).empty());
+  EXPECT_TRUE(buffer.samples_between(at_ms(20), at_ms(20)).empty());
+  EXPECT_TRUE(ImuBuffer().samples_between(at_ms(0), at_ms(1)).empty());
+}
+
+TEST(ImuBuffer, DropsAndCountsBadSamples) {
+  ImuBuffer buffer = filled({0, 10});
+  ImuSample not_a_number = ramp(15);
+  not_a_number.accel_b.z() = std::numeric_limits<double>::quiet_NaN();
+  buffer.add(not_a_number);
+  buffer.add(ramp(10));  // repeated
+  buffer.add(ramp(5));   // out of order
+  buffer.add(ramp(20));
+  EXPECT_EQ(buffer.health().rejected_samples, 3);
+  EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(0), at_ms(20))), (Stamps{0, 10, 20}));
+}
+
+TEST(ImuBuffer, CountsAGapOnceHoweverOftenItIsCut) {
+  ImuBuffer buffer = filled({0, 10, 110, 120, 190});  // holes of 100 and 70 ms, allowed 50
+  EXPECT_EQ(buffer.samples_between(at_ms(0), at_ms(50)).size(), 3u);
+  EXPECT_EQ(buffer.samples_between(at_ms(50), at_ms(115)).size(), 3u);
+  EXPECT_EQ(buffer.health().gaps, 1);
+  EXPECT_EQ(buffer.samples_between(at_ms(115), at_ms(190)).size(), 3u);
+  EXPECT_EQ(buffer.health().gaps, 2);
+}
+
+TEST(ImuBuffer, HoldsTheNewestSampleUpToTheEnd) {
+  ImuBuffer buffer = filled({0, 10, 20});
+  const std::vector<ImuSample> cut = buffer.samples_up_to(at_ms(5), at_ms(60));
+  ASSERT_EQ(cut.size(), 4u);  // 5, 10, 20, and 20 held to 60
+  EXPECT_EQ(cut.back().t, at_ms(60));
+  EXPECT_EQ(cut.back().gyro_b.x(), 20.0);
+  EXPECT_EQ(cut.front().gyro_b.x(), 5.0);
+}
+
+TEST(ImuBuffer, HoldsTheNewestSampleForACutThatBeginsBehindIt) {
+  ImuBuffer buffer = filled({0, 10, 20});
+  const std::vector<ImuSample> cut = buffer.samples_up_to(at_ms(25), at_ms(30));
+  ASSERT_EQ(cut.size(), 2u);
+  EXPECT_EQ(cut.front().t, at_ms(25));
+  EXPECT_EQ(cut.front().gyro_b.x(), 20.0);
+}
+
+TEST(ImuBuffer, HoldsNoLongerThanTheAllowedGap) {
+  ImuBuffer buffer = filled({0, 10, 20});
+  EXPECT_TRUE(buffer.samples_up_to(at_ms(5), at_ms(71)).empty());  // 51 ms behind the newest, allowed 50
+}
+
+TEST(ImuBuffer, UpToEqualsBetweenWhereSamplesReach) {
+  ImuBuffer buffer = filled({0, 10, 20});
+  EXPECT_EQ(milliseconds(buffer.samples_up_to(at_ms(5), at_ms(20))), (Stamps{5, 10, 20}));
+}
+
+TEST(ImuBuffer, ForgetsOnlyWhatNoLaterCutNeeds) {
+  ImuBuffer buffer = filled({0, 10, 20, 30});
+  buffer.forget_before(at_ms(15));
+  EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(15), at_ms(30))), (Stamps{15, 20, 30}));
+  EXPECT_TRUE(buffer.samples_between(at_ms(5), at_ms(30)).empty());  // 0 ms is gone
+}
+
+}  // namespace
+}  // namespace stillpoint
