@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/io/text_reader.h"
+
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <system_error>
+
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::string_view kSeparators = " \t,\r";
+constexpr int kDecimalsOfStamp = 9;
+constexpr int kMaxExponent = 64;
+
+/// A decimal number as its digits and the place of the point after digit `point`.
+struct Decimal {
+  bool negative = false;
+  std::string digits;
+  int point = 0;
+};
+
+std::string_view without_plus(std::string_view field) {
+  return field.size() > 1 && field[0] == '+' && field[1] != '-' ? field.substr(1) : field;
+}
+
+std::optional<int> parse_exponent(std::string_view text) {
+  text = without_plus(text);
+  int exponent = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (exponent < -kMaxExponent || exponent > kMaxExponent) return std::nullopt;
+  return exponent;
+}
+
+std::optional<Decimal> parse_decimal(std::string_view field) {
+  Decimal decimal;
+  field = without_plus(field);
+  if (!field.empty() && field.front() == '-') {
+    decimal.negative = true;
+    field.remove_prefix(1);
+  }
+  bool point_seen = false;
+  std::size_t i = 0;
+  for (; i < field.size(); ++i) {
+    if (field[i] == '.' && !point_seen) {
+      point_seen = true;
+    } else if (field[i] >= '0' && field[i] <= '9') {
+      decimal.digits.push_back(field[i]);
+      if (!point_seen) ++decimal.point;
+    } else {
+      break;
+    }
+  }
+  if (decimal.digits.empty()) return std::nullopt;
+  if (i == field.size()) return decimal;
+  if (field[i] != 'e' && field[i] != 'E') return std::nullopt;
+  const std::optional<int> exponent = parse_exponent(field.substr(i + 1));
+  if (!exponent) return std::nullopt;
+  decimal.point += *exponent;
+  return decimal;
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    throw InputError(file.string(), "is a folder; name a trajectory file");
+  }
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  if (!stream) throw InputError(file.string(), "cannot be opened; check the name and the permissions");
+  std::string text(static_cast<std::size_t>(stream.tellg()), '\0');
+  stream.seekg(0);
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream) throw InputError(file.string(), "cannot be read to its end; the disk or the file is damaged");
+  return text;
+}
+
+void write_text_file(const std::filesystem::path& file, std::string_view text) {
+  const std::filesystem::path partial = file.string() + ".partial";
+  std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
+  if (!stream) throw InputError(file.string(), "cannot be created; check the folder and its permissions");
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(partial, file, error);
+  if (!stream || error) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw InputError(file.string(), "cannot be written; is the disk full or the folder read-only?");
+  }
+}
+
+std::optional<std::string_view> LineReader::next() {
+  if (rest_.empty()) return std::nullopt;
+  const std::size_t end = rest_.find('\n');
+  std::string_view line = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  ++line_number_;
+  return line;
+}
+
+void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  std::size_t begin = line.find_first_not_of(kSeparators);
+  while (begin != std::string_view::npos) {
+    const std::size_t end = line.find_first_of(kSeparators, begin);
+    fields.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kSeparators, end);
+  }
+}
+
+std::optional<double> parse_number(std::string_view field) {
+  field = without_plus(field);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<Timestamp> parse_stamp(std::string_view field) {
+  std::optional<Decimal> decimal = parse_decimal(field);
+  if (!decimal) return std::nullopt;
+  constexpr std::int64_t kLimit = std::numeric_limits<std::int64_t>::max() / 10 - 1;
+  const int wanted = decimal->point + kDecimalsOfStamp;  // digits before the nanosecond's end
+  std::int64_t ns = 0;
+  for (int i = 0; i < wanted; ++i) {
+    const bool beyond = static_cast<std::size_t>(i) >= decimal->digits.size();
+    if (ns > kLimit) return std::nullopt;
+    ns = 10 * ns + (beyond ? 0 : decimal->digits[static_cast<std::size_t>(i)] - '0');
+  }
+  if (wanted >= 0 && static_cast<std::size_t>(wanted) < decimal->digits.size() &&
+      decimal->digits[static_cast<std::size_t>(wanted)] >= '5') {
+    ++ns;
+  }
+  return Timestamp{decimal->negative ? -ns : ns};
+}
+
+std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
+  field = without_plus(field);
+  std::int64_t ns = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), ns);
+  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
+  return Timestamp{ns};
+}
+
+std::string format_stamp(Timestamp t) {
+  constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+  const bool negative = t.ns < 0;
+  const std::int64_t seconds = t.ns / kNsPerSecond;
+  const std::int64_t rest = t.ns % kNsPerSecond;
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%s%lld.%09lld", negative ? "-" : "",
+                static_cast<long long>(negative ? -seconds : seconds),
+                static_cast<long long>(negative ? -rest : rest));
+  return buffer;
+}
+
+}  // namespace stillpoint

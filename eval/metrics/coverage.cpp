@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/metrics/coverage.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "eval/metrics/ate.h"
+
+namespace stillpoint {
+
+std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp> expected,
+                               double tolerance_s) {
+  if (expected.empty()) return std::nullopt;
+  std::size_t covered = 0;
+  std::size_t e = 0;
+  for (const Timestamp t : expected) {
+    while (e < est.poses.size() && seconds_between(est.poses[e].t, t) > tolerance_s) ++e;
+    if (e == est.poses.size()) break;
+    if (seconds_between(t, est.poses[e].t) > tolerance_s) continue;
+    ++covered;
+    ++e;
+  }
+  return static_cast<double>(covered) / static_cast<double>(expected.size());
+}
+
+std::optional<double> first_pose_seconds(const Trajectory& est, Timestamp start) {
+  if (est.poses.empty()) return std::nullopt;
+  return seconds_between(start, est.poses.front().t);
+}
+
+double correct_seconds(std::span<const MatchedPose> matches, std::span<const double> errors_m,
+                       std::span<const double> errors_deg, Timestamp end, const CorrectRateOptions& options) {
+  STILLPOINT_CHECK(errors_m.size() == matches.size() && errors_deg.size() == matches.size());
+  double seconds = 0.0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const bool correct =
+        errors_m[i] <= options.max_translation_m && errors_deg[i] <= options.max_rotation_deg;
+    const Timestamp until = i + 1 < matches.size() ? matches[i + 1].t : end;
+    if (correct) seconds += std::clamp(seconds_between(matches[i].t, until), 0.0, options.max_hold_s);
+  }
+  return seconds;
+}
+
+std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
+                                   const CorrectRateOptions& options, double offset_s) {
+  constexpr double kMaxGap = 0.5;  // [s], to either neighbour; the OpenLORIS tools' value
+  if (gt.poses.size() < 2) return std::nullopt;
+  std::vector<MatchedPose> matches =
+      matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
+  if (matches.empty()) return 0.0;
+  for (MatchedPose& match : matches) match.t = after(match.t, offset_s);
+  const AteErrors errors = ate_errors(matches, align_se3(matches).S_w_v);
+  const double correct =
+      correct_seconds(matches, errors.translation_m, errors.rotation_deg, gt.poses.back().t, options);
+  return correct / seconds_between(gt.poses.front().t, gt.poses.back().t);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/trajectory/association.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// A pose of either trajectory on the common time axis; free ones form a doubly linked list.
+struct Event {
+  std::size_t index;
+  bool is_gt;
+  std::size_t previous;
+  std::size_t next;
+  bool taken = false;
+};
+
+/// Neighbours on the time axis, one of each trajectory.
+struct Candidate {
+  double difference_s;
+  std::size_t left;  ///< event indices
+  std::size_t right;
+};
+
+/// Greedy matching by difference. The closest free pair of all is always two neighbours on the time axis:
+/// anything between them would be closer to one of the two. So a heap of neighbours suffices, and taking a
+/// pair makes at most one new neighbourhood.
+class GreedyMatcher {
+ public:
+  GreedyMatcher(const Trajectory& gt, const Trajectory& est, const AssociationOptions& options)
+      : gt_(gt), est_(est), options_(options) {
+    merge();
+    for (std::size_t i = 0; i + 1 < events_.size(); ++i) offer(i, i + 1);
+  }
+
+  [[nodiscard]] std::vector<IndexPair> run() {
+    std::vector<IndexPair> pairs;
+    while (!heap_.empty()) {
+      const Candidate best = heap_.top();
+      heap_.pop();
+      if (events_[best.left].taken || events_[best.right].taken) continue;
+      pairs.push_back(pair_of(best.left, best.right));
+      take(best);
+    }
+    std::sort(pairs.begin(), pairs.end(),
+              [](const IndexPair& a, const IndexPair& b) { return a.est < b.est; });
+    return pairs;
+  }
+
+ private:
+  [[nodiscard]] double difference(std::size_t gt, std::size_t est) const {
+    return std::abs(
+        stamp_difference(gt_.poses[gt].t, est_.poses[est].t, options_.offset_s, options_.arithmetic));
+  }
+
+  void merge() {
+    events_.reserve(gt_.poses.size() + est_.poses.size());
+    std::size_t g = 0;
+    std::size_t e = 0;
+    while (g < gt_.poses.size() || e < est_.poses.size()) {
+      const bool gt_first =
+          e == est_.poses.size() ||
+          (g < gt_.poses.size() && gt_.poses[g].t <= after(est_.poses[e].t, options_.offset_s));
+      const std::size_t here = events_.size();
+      events_.push_back({gt_first ? g++ : e++, gt_first, here == 0 ? kNone : here - 1, here + 1});
+    }
+    if (!events_.empty()) events_.back().next = kNone;
+  }
+
+  [[nodiscard]] IndexPair pair_of(std::size_t left, std::size_t right) const {
+    return events_[left].is_gt ? IndexPair{events_[left].index, events_[right].index}
+                               : IndexPair{events_[right].index, events_[left].index};
+  }
+
+  void offer(std::size_t left, std::size_t right) {
+    if (events_[left].is_gt == events_[right].is_gt) return;
+    const IndexPair pair = pair_of(left, right);
+    const double difference_s = difference(pair.gt, pair.est);
+    if (difference_s < options_.max_difference_s) heap_.push({difference_s, left, right});
+  }
+
+  void take(const Candidate& pair) {
+    events_[pair.left].taken = events_[pair.right].taken = true;
+    const std::size_t before = events_[pair.left].previous;
+    const std::size_t behind = events_[pair.right].next;
+    if (before != kNone) events_[before].next = behind;
+    if (behind != kNone) events_[behind].previous = before;
+    if (before != kNone && behind != kNone) offer(before, behind);
+  }
+
+  /// Orders the heap so that the smallest difference, then the earliest pair, is on top.
+  struct Later {
+    bool operator()(const Candidate& a, const Candidate& b) const {
+      if (a.difference_s != b.difference_s) return a.difference_s > b.difference_s;
+      return a.left > b.left;
+    }
+  };
+
+  const Trajectory& gt_;
+  const Trajectory& est_;
+  const AssociationOptions& options_;
+  std::vector<Event> events_;
+  std::priority_queue<Candidate, std::vector<Candidate>, Later> heap_;
+};
+
+}  // namespace
+
+std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
+                                     const AssociationOptions& options) {
+  return GreedyMatcher(gt, est, options).run();
+}
+
+std::vector<InterpolatedPair> associate_interpolated(const Trajectory& gt, const Trajectory& est,
+                                                     double max_gap_s, double offset_s) {
+  std::vector<InterpolatedPair> pairs;
+  std::size_t g = 0;
+  for (std::size_t e = 0; e < est.poses.size(); ++e) {
+    const Timestamp t = after(est.poses[e].t, offset_s);
+    while (g + 1 < gt.poses.size() && gt.poses[g + 1].t <= t) ++g;
+    if (g >= gt.poses.size() || t < gt.poses[g].t) continue;
+    if (t == gt.poses[g].t) {
+      pairs.push_back({g, e, 0.0});
+      continue;
+    }
+    if (g + 1 == gt.poses.size()) break;
+    const double before = seconds_between(gt.poses[g].t, t);
+    const double behind = seconds_between(t, gt.poses[g + 1].t);
+    if (std::max(before, behind) < max_gap_s) pairs.push_back({g, e, before / (before + behind)});
+  }
+  return pairs;
+}
+
+std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,
+                                       std::span<const IndexPair> pairs) {
+  std::vector<MatchedPose> matches;
+  matches.reserve(pairs.size());
+  for (const IndexPair& pair : pairs) {
+    matches.push_back({est.poses[pair.est].t, gt.poses[pair.gt].T_w_f, est.poses[pair.est].T_w_f});
+  }
+  return matches;
+}
+
+std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,
+                                       std::span<const InterpolatedPair> pairs) {
+  std::vector<MatchedPose> matches;
+  matches.reserve(pairs.size());
+  for (const InterpolatedPair& pair : pairs) {
+    const Pose& from = gt.poses[pair.gt].T_w_f;
+    const Pose at = pair.share > 0.0 ? interpolate(from, gt.poses[pair.gt + 1].T_w_f, pair.share) : from;
+    matches.push_back({est.poses[pair.est].t, at, est.poses[pair.est].T_w_f});
+  }
+  return matches;
+}
+
+double stamp_as_double(Timestamp t) {
+  // An 80-bit quotient, so that the second rounding meets the double nearest to the decimal text.
+  return static_cast<double>(static_cast<long double>(t.ns) / 1e9L);
+}
+
+double stamp_difference(Timestamp a, Timestamp b, double b_offset_s, StampArithmetic arithmetic) {
+  if (arithmetic == StampArithmetic::kDouble) {
+    return stamp_as_double(a) - (stamp_as_double(b) + b_offset_s);
+  }
+  return static_cast<double>(a.ns - after(b, b_offset_s).ns) / 1e9;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/score.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "eval/metrics/ate.h"
+#include "eval/metrics/rpe.h"
+#include "eval/trajectory/frames.h"
+
+namespace stillpoint {
+namespace {
+
+/// 10 s of a bent and turning path at 10 Hz.
+Trajectory turning_path() {
+  Trajectory path;
+  for (int i = 0; i <= 100; ++i) {
+    const double t = 0.1 * i;
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(0.3 * t, Eigen::Vector3d(1, 2, 3).normalized()));
+    path.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{q, {t, std::sin(t), 0.2 * std::cos(2 * t)}}});
+  }
+  return path;
+}
+
+TEST(AlignSe3, FindsAKnownRigidMotion) {
+  const Trajectory gt = turning_path();
+  const Pose T_v_w{Eigen::Quaterniond(Eigen::AngleAxisd(2.0, Eigen::Vector3d(3, -1, 2).normalized())),
+                   {5, -6, 7}};
+  Trajectory est = gt;
+  for (StampedPose& pose : est.poses) pose.T_w_f = T_v_w * pose.T_w_f;
+  const std::optional<AteResult> result = ate(gt, est);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->pairs, 101u);
+  EXPECT_LT(result->translation_m.max, 1e-12);
+  EXPECT_LT(result->rotation_deg.max, 1e-6);
+  EXPECT_TRUE(result->alignment.determined);
+}
+
+TEST(AlignSe3, SaysThatALineLeavesTheRotationOpen) {
+  Trajectory line;
+  for (int i = 0; i < 10; ++i)
+    line.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{.p = {1.0 * i, 0, 0}}});
+  const std::optional<AteResult> result = ate(line, line);
+  ASSERT_TRUE(result);
+  EXPECT_LT(result->translation_m.max, 1e-12);
+  EXPECT_FALSE(result->alignment.determined);
+}
+
+TEST(AteStatistics, AreThoseOfAHandWorkedCase) {
+  // Ground truth on the corners of a square around 0, the estimate the same square grown by half: aligned by
+  // the identity, every corner is 0.5 * sqrt(2) m off.
+  Trajectory gt;
+  Trajectory est;
+  const double corners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  for (int i = 0; i < 4; ++i) {
+    gt.poses.push_back({Timestamp{i * 1'000'000'000LL}, Pose{.p = {corners[i][0], corners[i][1], 0}}});
+    est.poses.push_back(
+        {Timestamp{i * 1'000'000'000LL}, Pose{.p = {1.5 * corners[i][0], 1.5 * corners[i][1], 0}}});
+  }
+  const std::optional<AteResult> result = ate(gt, est);
+  ASSERT_TRUE(result);
+  EXPECT_NEAR(result->translation_m.rmse, 0.5 * std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(result->translation_m.std, 0.0, 1e-12);
+}
+
+TEST(Rpe, MeasuresAConstantSlipPerSecond) {
+  // The estimate slips 0.02 m and turns 0.01 rad too much per second, both along and about x, on a straight
+  // path without turn: every 1 s span is off by exactly that.
+  Trajectory gt;
+  Trajectory est;
+  for (int i = 0; i <= 100; ++i) {
+    const double t = 0.1 * i;
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.01 * t, Eigen::Vector3d::UnitX()));
+    gt.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{.p = {t, 0, 0}}});
+    est.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{turn, {1.02 * t, 0, 0}}});
+  }
+  const std::optional<RpeResult> result = rpe(gt, est);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->pairs, 90u);  // starts 0 .. 8.9 s; the partner of 9.0 s is the last pose, which drops it
+  EXPECT_NEAR(result->translation_m.rmse, 0.02, 1e-9);
+  EXPECT_NEAR(result->rotation_deg.rmse, 0.01 * 180.0 / std::numbers::pi, 1e-9);
+}
+
+TEST(Score, IsNotAvailableWithoutPosesButTheCorrectRateIsZero) {
+  const Score lost = score(turning_path(), {}, {.expected_times = {Timestamp{0}, Timestamp{1}}});
+  EXPECT_FALSE(lost.ate_rmse_m);
+  EXPECT_FALSE(lost.rpe_trans_rmse_m_per_s);
+  EXPECT_FALSE(lost.first_pose_s);
+  EXPECT_EQ(lost.correct_rate, 0.0);
+  EXPECT_EQ(lost.coverage, 0.0);
+}
+
+TEST(Score, IsNotAvailableWithoutGroundTruthButCoverageIs) {
+  const Score blind = score({}, turning_path(), {.expected_times = {Timestamp{0}}});
+  EXPECT_FALSE(blind.ate_rmse_m);
+  EXPECT_FALSE(blind.correct_rate);
+  EXPECT_EQ(blind.coverage, 1.0);
+  EXPECT_EQ(blind.first_pose_s, 0.0);
+}
+
+TEST(Score, IsPerfectForTheTruthItself) {
+  const Score perfect = score(turning_path(), turning_path());
+  EXPECT_NEAR(*perfect.ate_rmse_m, 0.0, 1e-12);
+  EXPECT_NEAR(*perfect.rpe_trans_rmse_m_per_s, 0.0, 1e-12);
+  EXPECT_NEAR(*perfect.correct_rate, 1.0, 1e-12);
+  EXPECT_FALSE(perfect.coverage);
+}
+
+TEST(MoveToFrame, AppliesTheExtrinsicOnTheRight) {
+  const Pose T_f_g{Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ())),
+                   {1, 0, 0}};
+  Trajectory body{.frame = "imu", .poses = {{Timestamp{0}, Pose{T_f_g.q, {0, 0, 0}}}}};
+  const Trajectory camera = move_to_frame(body, T_f_g, "camera");
+  // The body is turned by 90 degrees about z, so 1 m along its x is 1 m along y of the world.
+  EXPECT_TRUE(camera.poses[0].T_w_f.p.isApprox(Eigen::Vector3d(0, 1, 0)));
+  EXPECT_EQ(camera.frame, "camera");
+}
+
+}  // namespace
+}  // namespace stillpoint

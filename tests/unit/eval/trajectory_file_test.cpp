@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/io/trajectory_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "eval/io/text_reader.h"
+
+namespace stillpoint {
+namespace {
+
+std::string message_of(std::string_view text) {
+  try {
+    static_cast<void>(parse_tum(text, "a.txt"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ParseStamp, IsExactToTheNanosecond) {
+  EXPECT_EQ(parse_stamp("1305031098.6659")->ns, 1305031098665900000);
+  EXPECT_EQ(parse_stamp("0.000000001")->ns, 1);
+  EXPECT_EQ(parse_stamp("-1.5")->ns, -1500000000);
+  EXPECT_EQ(parse_stamp("1.3050310986659e+09")->ns, 1305031098665900000);
+  EXPECT_EQ(parse_stamp("5")->ns, 5000000000);
+}
+
+TEST(ParseStamp, RoundsBeyondNineDecimals) {
+  EXPECT_EQ(parse_stamp("1.0000000014999")->ns, 1000000001);
+  EXPECT_EQ(parse_stamp("1.0000000015")->ns, 1000000002);
+  EXPECT_EQ(parse_stamp("5e-10")->ns, 1);
+  EXPECT_EQ(parse_stamp("4e-10")->ns, 0);
+}
+
+TEST(ParseStamp, RefusesWhatIsNoStamp) {
+  for (const char* text :
+       {"", "-", ".", "nan", "inf", "1.2.3", "1e", "1e999", "12a", "1305031098665900000"}) {
+    EXPECT_FALSE(parse_stamp(text)) << text;
+  }
+}
+
+TEST(FormatStamp, IsTheInverseOfParsing) {
+  for (const char* text : {"1305031098.665900000", "-1.500000000", "-0.000000001", "0.000000000"}) {
+    EXPECT_EQ(format_stamp(*parse_stamp(text)), text);
+  }
+}
+
+TEST(ParseTum, ReadsRowsAndSkipsComments) {
+  const auto loaded = parse_tum("# a comment\r\n\n1.5,1\t2 3 0 0 0 1.05 extra\n", "a.txt", "camera");
+  ASSERT_EQ(loaded.trajectory.poses.size(), 1u);
+  const StampedPose& pose = loaded.trajectory.poses[0];
+  EXPECT_EQ(loaded.trajectory.frame, "camera");
+  EXPECT_EQ(pose.t.ns, 1500000000);
+  EXPECT_EQ(pose.T_w_f.p, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(pose.T_w_f.q.w(), 1.0);  // brought from 1.05 to unit length
+}
+
+TEST(ParseTum, CountsRowsThatAreNoPose) {
+  const auto loaded = parse_tum("1 0 0 0 0 0 0 0\n2 nan 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n", "a.txt");
+  EXPECT_EQ(loaded.skipped_rows, 2u);
+  EXPECT_EQ(loaded.trajectory.poses.size(), 1u);
+}
+
+TEST(ParseTum, NamesTheLineOfABadRow) {
+  const std::string good = "1 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(message_of(good + "2 0 0 0 0 0 1\n"),
+            "a.txt:2: a pose needs 8 numbers, found 7; expected \"t tx ty tz qx qy qz qw\"");
+  EXPECT_EQ(message_of(good + "2 0 x 0 0 0 0 1\n"), "a.txt:2: \"x\" is not a number");
+  EXPECT_EQ(
+      message_of(good + "1 0 0 0 0 0 0 1\n"),
+      "a.txt:2: stamp 1.000000000 s does not rise after 1.000000000 s; sort the file and remove repeated "
+      "stamps");
+  EXPECT_EQ(message_of("1403636579763555584 0 0 0 0 0 0 1\n"),
+            "a.txt:1: stamp \"1403636579763555584\" is beyond 292 years; nanoseconds instead of seconds?");
+  EXPECT_EQ(message_of("# nothing\n"), "a.txt: holds no pose; expected rows \"t tx ty tz qx qy qz qw\"");
+}
+
+TEST(WriteTum, WritesNineDecimalsThatReadBackTheSame) {
+  const std::string text =
+      "# timestamp tx ty tz qx qy qz qw\n"
+      "1305031098.665900000 1.250000000 -2.500000000 0.000000000 0.000000000 0.000000000 0.600000000 "
+      "0.800000000\n";
+  EXPECT_EQ(format_tum(parse_tum(text, "a.txt").trajectory), text);
+  const auto file = std::filesystem::path(testing::TempDir()) / "stillpoint_write_tum.txt";
+  write_tum(parse_tum(text, "a.txt").trajectory, file);
+  EXPECT_EQ(read_text_file(file), text);
+  std::filesystem::remove(file);
+}
+
+TEST(WriteTum, SaysWhichFileItCannotWrite) {
+  EXPECT_THROW(write_tum({}, "/no/such/folder/a.txt"), InputError);
+}
+
+}  // namespace
+}  // namespace stillpoint
