@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/command_line.h"
+
+#include <exception>
+#include <iostream>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include "bench/record/build_info.h"
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+void add_option(CLI::App& app, const Option& option) {
+  const auto add = [&](auto* target) {
+    CLI::Option* added = nullptr;
+    if constexpr (std::is_same_v<decltype(target), bool*>) {
+      added = app.add_flag(option.name, *target, option.help);
+    } else {
+      added = app.add_option(option.name, *target, option.help);
+    }
+    const bool positional = option.name.front() != '-';
+    if (positional) added->required();
+    if constexpr (std::is_same_v<decltype(target), std::vector<std::string>*>) {
+      if (!positional) added->allow_extra_args(false);
+    }
+  };
+  std::visit(add, option.target);
+}
+
+void add_command(CLI::App& parent, const Command& command, int& exit_code) {
+  CLI::App* app = parent.add_subcommand(command.name, command.summary);
+  app->footer("Example:\n  stillpoint " + command.example);
+  for (const Option& option : command.options) add_option(*app, option);
+  for (const Command& subcommand : command.subcommands) add_command(*app, subcommand, exit_code);
+  if (!command.subcommands.empty()) app->require_subcommand(1);
+  if (command.action) app->callback([&command, &exit_code] { exit_code = command.action(); });
+}
+
+void log_to_stderr(bool verbose) {
+  const auto logger = spdlog::stderr_color_mt("stillpoint");
+  logger->set_pattern("%n: %^%l%$: %v");
+  logger->set_level(verbose ? spdlog::level::debug : spdlog::level::info);
+  spdlog::set_default_logger(logger);
+}
+
+/// Help and version go to stdout and are a success; anything else is wrong usage.
+int finish_parsing(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);
+  std::string problem = error.what();
+  for (char& letter : problem) letter = letter == '\n' ? ' ' : letter;
+  std::cerr << "stillpoint: error: command line: " << problem << "; try --help\n";
+  return kExitBadInput;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, const std::vector<Command>& commands) {
+  CLI::App app(
+      "RGB-D inertial odometry for dynamic scenes, and the benchmark that proves what its parts are worth",
+      "stillpoint");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", build_info().version + " (" + build_info().git_commit + ")");
+  bool verbose = false;
+  app.add_flag("-v,--verbose", verbose, "Log every frame");
+  app.parse_complete_callback([&verbose] { log_to_stderr(verbose); });
+  int exit_code = kExitOk;
+  for (const Command& command : commands) add_command(app, command, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return finish_parsing(app, error);
+  } catch (const InputError& error) {
+    std::cerr << "stillpoint: error: " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "stillpoint: error: " << error.what() << '\n';
+    return kExitInternal;
+  }
+  return exit_code;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The subcommands of the program, one source file each (`run` in run_command.cpp and so on).
+#pragma once
+
+#include "bench/cli/command.h"
+
+namespace stillpoint {
+
+[[nodiscard]] Command run_command();     ///< `stillpoint run`: odometry over one sequence
+[[nodiscard]] Command eval_command();    ///< `stillpoint eval`: scores of a trajectory file
+[[nodiscard]] Command bench_command();   ///< `stillpoint bench`: sequences x variants, one table
+[[nodiscard]] Command config_command();  ///< `stillpoint config`: resolved configs and the reference page
+
+}  // namespace stillpoint

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The program `stillpoint`.
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+
+int main(int argc, char** argv) {
+  using namespace stillpoint;
+  return run_command_line(argc, argv, {config_command()});
+}

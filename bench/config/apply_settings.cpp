@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/config/apply_settings.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "bench/config/field_walk.h"
+#include "bench/config/spelling.h"
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+InputError error_at(const Setting& setting, const std::string& problem) {
+  return setting.line > 0 ? InputError(setting.file, setting.line, problem)
+                          : InputError(setting.file, problem);
+}
+
+InputError bad_value(const Setting& setting, const std::string& problem) {
+  return error_at(setting, fmt::format("\"{}\" {}", setting.key, problem));
+}
+
+/// The value as a T.
+template <class T>
+T value_as(const Setting& setting, const std::string& type) {
+  if (const T* value = std::get_if<T>(&setting.value)) return *value;
+  throw bad_value(setting, "has the wrong type; it must be " + type);
+}
+
+double number_within(double value, const Setting& setting, const Bounds& bounds) {
+  if (value >= bounds.min && value <= bounds.max) return value;  // false for NaN
+  throw bad_value(setting, fmt::format("is {}, out of range; it must lie between {} and {}", value,
+                                       bounds.min, bounds.max));
+}
+
+/// Gives a member of any type the value of a setting.
+struct Assign {
+  const Setting& setting;
+  const Bounds& bounds;
+
+  void operator()(bool& member) const { member = value_as<bool>(setting, "true or false"); }
+
+  void operator()(int& member) const {
+    const std::int64_t value = value_as<std::int64_t>(setting, "a whole number");
+    const Bounds representable{std::max(bounds.min, -2147483648.0), std::min(bounds.max, 2147483647.0)};
+    member = static_cast<int>(number_within(static_cast<double>(value), setting, representable));
+  }
+
+  void operator()(double& member) const {
+    const auto* whole = std::get_if<std::int64_t>(&setting.value);
+    const double value = whole ? static_cast<double>(*whole) : value_as<double>(setting, "a number");
+    member = number_within(value, setting, bounds);
+  }
+
+  void operator()(std::string& member) const { member = value_as<std::string>(setting, "a string"); }
+
+  void operator()(std::vector<std::string>& member) const {
+    member = value_as<std::vector<std::string>>(setting, "a list of strings");
+  }
+
+  template <ConfigEnum Enum>
+  void operator()(Enum& member) const {
+    std::string choices;
+    for (const auto& [value, name] : enum_names(Enum{})) {
+      choices += fmt::format("{}\"{}\"", choices.empty() ? "" : ", ", name);
+    }
+    const std::string typed = value_as<std::string>(setting, "one of " + choices);
+    for (const auto& [value, name] : enum_names(Enum{})) {
+      if (name == typed) {
+        member = value;
+        return;
+      }
+    }
+    throw bad_value(setting, fmt::format("is \"{}\"; it must be one of {}", typed, choices));
+  }
+};
+
+std::vector<std::string> all_keys() {
+  const OdometryConfig config;
+  std::vector<std::string> keys;
+  walk_fields(config, [&](const std::string& key, const auto&, const Bounds&) { keys.push_back(key); });
+  return keys;
+}
+
+InputError unknown_key(const Setting& setting) {
+  const std::vector<std::string> keys = all_keys();
+  const bool is_section = std::any_of(
+      keys.begin(), keys.end(), [&](const std::string& key) { return key.starts_with(setting.key + "."); });
+  if (is_section)
+    return bad_value(setting, "is a section, not a key; write [" + setting.key + "] and keys below it");
+  return error_at(setting, fmt::format("unknown key \"{}\"{}", setting.key, suggestion(setting.key, keys)));
+}
+
+}  // namespace
+
+OdometryConfig with_settings(OdometryConfig config, std::span<const Setting> settings) {
+  for (const Setting& setting : settings) {
+    bool found = false;
+    walk_fields(config, [&](const std::string& key, auto& member, const Bounds& bounds) {
+      if (key != setting.key) return;
+      Assign{setting, bounds}(member);
+      found = true;
+    });
+    if (!found) throw unknown_key(setting);
+  }
+  return config;
+}
+
+}  // namespace stillpoint

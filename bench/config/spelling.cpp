@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/config/spelling.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace stillpoint {
+namespace {
+constexpr double kWrongLetter = 1.0;
+constexpr double kOmittedLetter = 0.1;
+}  // namespace
+
+double spelling_distance(std::string_view typed, std::string_view name) {
+  // Row i of the usual table: cost of turning the first i letters typed into each prefix of the name.
+  std::vector<double> row(name.size() + 1);
+  for (std::size_t j = 0; j <= name.size(); ++j) row[j] = kOmittedLetter * static_cast<double>(j);
+  for (std::size_t i = 1; i <= typed.size(); ++i) {
+    double diagonal = row[0];
+    row[0] += kWrongLetter;
+    for (std::size_t j = 1; j <= name.size(); ++j) {
+      const double replaced = diagonal + (typed[i - 1] == name[j - 1] ? 0.0 : kWrongLetter);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + kWrongLetter, row[j - 1] + kOmittedLetter});
+    }
+  }
+  return row[name.size()];
+}
+
+std::string suggestion(std::string_view typed, std::span<const std::string> names) {
+  const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
+    return spelling_distance(typed, a) < spelling_distance(typed, b);
+  });
+  return nearest == names.end() ? std::string() : "; did you mean \"" + *nearest + "\"?";
+}
+
+}  // namespace stillpoint

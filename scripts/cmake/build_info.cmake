@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Writes OUTPUT from TEMPLATE with the git state of ROOT; the file changes only when its content does.
+# Run at every build by: cmake -DROOT=... -DTEMPLATE=... -DOUTPUT=... -P build_info.cmake
+set(GIT_COMMIT "unknown")
+set(GIT_DIRTY "false")
+find_program(GIT_PROGRAM git)
+if(GIT_PROGRAM)
+  execute_process(COMMAND ${GIT_PROGRAM} -C ${ROOT} rev-parse HEAD
+                  OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+  if(NOT failed)
+    set(GIT_COMMIT ${commit})
+    execute_process(COMMAND ${GIT_PROGRAM} -C ${ROOT} status --porcelain
+                    OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    if(changes)
+      set(GIT_DIRTY "true")
+    endif()
+  endif()
+endif()
+configure_file(${TEMPLATE} ${OUTPUT} @ONLY)

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/config/config_file.h"
+
+#include <gtest/gtest.h>
+
+#include "bench/config/config_text.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/thrown_message.h"
+
+namespace stillpoint {
+namespace {
+
+using test::ScratchFolder;
+using test::thrown_message;
+
+/// The error of a config file with this text, without the folder's name.
+std::string error_of(const std::string& text) {
+  const ScratchFolder folder;
+  const std::string file = folder.write("mine.toml", text);
+  const std::string message =
+      thrown_message([&] { static_cast<void>(load_config({.base = file, .variant = "", .settings = {}})); });
+  return message.starts_with(file) ? "mine.toml" + message.substr(file.size()) : message;
+}
+
+TEST(ConfigFile, NamesTheLineAndTheNearestKeyOfAnUnknownOne) {
+  EXPECT_EQ(error_of("seed = 1\n[frontend]\ncirculr_mask = true\n"),
+            "mine.toml:3: unknown key \"frontend.circulr_mask\"; did you mean \"frontend.circular_mask\"?");
+}
+
+TEST(ConfigFile, RejectsAWrongType) {
+  EXPECT_EQ(error_of("frontend.circular_mask = 1"),
+            "mine.toml:1: \"frontend.circular_mask\" has the wrong type; it must be true or false");
+  EXPECT_EQ(error_of("frontend.grid.rows = 7.5"),
+            "mine.toml:1: \"frontend.grid.rows\" has the wrong type; it must be a whole number");
+}
+
+TEST(ConfigFile, RejectsAValueOutOfRange) {
+  EXPECT_EQ(error_of("\nfrontend.grid.rows = 65"),
+            "mine.toml:2: \"frontend.grid.rows\" is 65, out of range; it must lie between 1 and 64");
+  EXPECT_EQ(error_of("imu.gravity = nan"),
+            "mine.toml:1: \"imu.gravity\" is nan, out of range; it must lie between 9 and 10");
+}
+
+TEST(ConfigFile, ListsTheChoicesOfAnEnum) {
+  EXPECT_EQ(
+      error_of("backend.depth.usage = \"some\""),
+      "mine.toml:1: \"backend.depth.usage\" is \"some\"; it must be one of \"off\", \"fixed\", \"weighted\"");
+}
+
+TEST(ConfigFile, TellsASectionFromAKey) {
+  EXPECT_EQ(error_of("frontend = 3"),
+            "mine.toml:1: \"frontend\" is a section, not a key; write [frontend] and keys below it");
+}
+
+TEST(ConfigFile, RejectsWhatIsNoToml) {
+  EXPECT_TRUE(error_of("seed = 1\nseed = ").starts_with("mine.toml:2: not valid TOML: "));
+}
+
+TEST(ConfigFile, RejectsATypeThatNoKeyHas) {
+  EXPECT_TRUE(error_of("seed = 2020-01-01").starts_with("mine.toml:1: \"seed\" is of type date"));
+}
+
+TEST(ConfigFile, RejectsInheritanceInACircle) {
+  const ScratchFolder folder;
+  static_cast<void>(folder.write("b.toml", "\ninherits = \"a.toml\""));
+  const std::string a = folder.write("a.toml", "inherits = \"b.toml\"");
+  const std::string message =
+      thrown_message([&] { static_cast<void>(load_config({.base = a, .variant = "", .settings = {}})); });
+  EXPECT_EQ(message, (folder.path() / "b.toml").string() + ":2: inherits itself through \"" + a +
+                         "\"; break the circle");
+}
+
+TEST(ConfigFile, ChangesOnlyWhatItSaysAndInheritsTheRest) {
+  const ScratchFolder folder;
+  const std::string file = folder.write("mine.toml", "inherits = \"stillpoint\"\nseed = 7");
+  const OdometryConfig mine = load_config({.base = file, .variant = "", .settings = {}});
+  const std::vector<ConfigEntry> expected = {{"seed", "7"}};
+  EXPECT_EQ(config_difference(load_config({}), mine), expected);
+}
+
+TEST(ConfigFile, AppliesOverlaysInOrderAndSettingsLast) {
+  const ScratchFolder folder;
+  const std::string first = folder.write("first.toml", "seed = 2\nfrontend.grid.rows = 2");
+  const std::string second = folder.write("second.toml", "seed = 3\nfrontend.grid.cols = 3");
+  const OdometryConfig config = load_config(
+      {.base = "stillpoint", .variant = first + "+" + second, .settings = {"frontend.grid.cols=4"}});
+  EXPECT_EQ(config.seed, 3);
+  EXPECT_EQ(config.frontend.grid.rows, 2);
+  EXPECT_EQ(config.frontend.grid.cols, 4);
+}
+
+TEST(ConfigFile, TakesABareWordAsAString) {
+  const OdometryConfig config =
+      load_config({.base = "dynamic_vins", .variant = "", .settings = {"backend.depth.usage=off"}});
+  EXPECT_EQ(config.backend.depth.usage, DepthUsage::kOff);
+}
+
+TEST(ConfigFile, AVariantThatIsABaseReplacesTheBase) {
+  const OdometryConfig by_variant =
+      load_config({.base = "stillpoint", .variant = "vo+dynamic_vins", .settings = {}});
+  const OdometryConfig by_base = load_config({.base = "dynamic_vins", .variant = "vo", .settings = {}});
+  EXPECT_EQ(config_entries(by_variant), config_entries(by_base));
+}
+
+TEST(ConfigFile, RejectsTwoBases) {
+  const std::string message = thrown_message([] {
+    static_cast<void>(
+        load_config({.base = "stillpoint", .variant = "stillpoint+dynamic_vins", .settings = {}}));
+  });
+  EXPECT_EQ(message,
+            "variant \"stillpoint+dynamic_vins\": names two base configs; combine one base with overlays");
+}
+
+TEST(ConfigFile, SuggestsTheNearestVariant) {
+  const std::string message = thrown_message([] {
+    static_cast<void>(load_config({.base = "stillpoint", .variant = "wo_circle_mask", .settings = {}}));
+  });
+  EXPECT_EQ(
+      message,
+      "config \"wo_circle_mask\": there is none of this name; did you mean \"ablations/wo_circular_mask\"?");
+}
+
+TEST(ConfigFile, NamesAMissingFile) {
+  const std::string message = thrown_message(
+      [] { static_cast<void>(load_config({.base = "/nowhere/mine.toml", .variant = "", .settings = {}})); });
+  EXPECT_EQ(message, "/nowhere/mine.toml: cannot be read; give the path of an existing TOML file");
+}
+
+TEST(ConfigFile, RejectsAnAssignmentWithoutEqualsSign) {
+  const std::string message = thrown_message(
+      [] { static_cast<void>(load_config({.base = "stillpoint", .variant = "", .settings = {"seed"}})); });
+  EXPECT_EQ(message, "--set: \"seed\" is no assignment; write key=value");
+}
+
+TEST(ConfigFile, NamesTheOptionOfABadAssignment) {
+  const std::string message = thrown_message(
+      [] { static_cast<void>(load_config({.base = "stillpoint", .variant = "", .settings = {"sed=1"}})); });
+  EXPECT_EQ(message, "--set: unknown key \"sed\"; did you mean \"seed\"?");
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The exact keys in which each shipped config differs from its parent.
+#include <gtest/gtest.h>
+
+#include "bench/config/config_file.h"
+#include "bench/config/config_text.h"
+#include "bench/config/toml_source.h"
+
+namespace stillpoint {
+namespace {
+
+using Entries = std::vector<ConfigEntry>;
+
+OdometryConfig base(const std::string& name) {
+  return load_config({.base = name, .variant = "", .settings = {}});
+}
+
+/// What an overlay changes on top of a base.
+Entries changes(const std::string& base_name, const std::string& overlay) {
+  return config_difference(base(base_name),
+                           load_config({.base = base_name, .variant = overlay, .settings = {}}));
+}
+
+TEST(ConfigOverlays, WithoutCircularMaskSwitchesBothCirclesOff) {
+  EXPECT_EQ(changes("stillpoint", "wo_circular_mask"), (Entries{{"frontend.circular_mask", "false"}}));
+}
+
+TEST(ConfigOverlays, WithoutImuPredictionStartsKltAtTheOldPlace) {
+  EXPECT_EQ(changes("stillpoint", "wo_imu_prediction"), (Entries{{"frontend.prediction", "\"none\""}}));
+  EXPECT_EQ(changes("dynamic_vins", "wo_imu_prediction"), (Entries{{"frontend.prediction", "\"none\""}}));
+}
+
+TEST(ConfigOverlays, WithoutGridDetectionUsesShiTomasi) {
+  EXPECT_EQ(changes("stillpoint", "wo_grid_detection"), (Entries{{"frontend.detector", "\"shi_tomasi\""}}));
+}
+
+TEST(ConfigOverlays, VoUsesNoImu) {
+  EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"}}));
+}
+
+TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
+  EXPECT_EQ(config_difference(base("dynamic_vins"), base("stillpoint")),
+            (Entries{{"frontend.prediction", "\"full\""},
+                     {"backend.depth.usage", "\"weighted\""},
+                     {"backend.initializer.kind", "\"instant\""}}));
+}
+
+TEST(ConfigOverlays, VinsRgbdIsDynamicVinsWithoutItsInventions) {
+  EXPECT_EQ(config_difference(base("dynamic_vins"), base("baselines/vins_rgbd")),
+            (Entries{{"frontend.unstable_radius_px", "1"},
+                     {"frontend.detector", "\"shi_tomasi\""},
+                     {"frontend.prediction", "\"none\""},
+                     {"frontend.pyramid_levels", "3"},
+                     {"backend.depth.min_m", "0.1"},
+                     {"backend.depth.max_m", "3.0"}}));
+}
+
+TEST(ConfigOverlays, DynamicVinsIsTheDefaultOfTheCode) {
+  EXPECT_EQ(config_difference(OdometryConfig{}, base("dynamic_vins")), Entries{});
+}
+
+TEST(ConfigOverlays, EveryEmbeddedConfigLoads) {
+  const std::vector<std::string> names = embedded_names(TomlFamily::kConfig);
+  EXPECT_GE(names.size(), 7u);
+  for (const std::string& name : names)
+    EXPECT_NO_THROW(static_cast<void>(changes("stillpoint", name))) << name;
+}
+
+}  // namespace
+}  // namespace stillpoint
