@@ -18,8 +18,11 @@ class FeatureTracker {
   ~FeatureTracker();
 
   /// Tracks all features into `frame`; with `detect` also rejects outliers, masks and finds new ones.
-  /// @param frame gray of the camera's size; depth may be empty
+  /// @param frame CV_8UC1 gray of the camera's size; depth may be empty, else CV_16UC1 of the same size
   /// @param prior motion of the camera since the last call; ignored as far as it is not valid
+  /// @return only features that this picture saw. Velocities are 0 where no time has passed since the last
+  /// call
+  /// @throws InputError for pictures of another size or type; the tracker then stays as it was
   [[nodiscard]] TrackedFrame track(const Frame& frame, const MotionPrior& prior, bool detect);
 
   /// Forgets all features; ids go on rising.

@@ -46,18 +46,22 @@ void visit_fields(Visitor&& field, Config& config) {
 struct FrontendConfig {
   int max_features = 130;
   int min_distance_px = 30;     ///< radius of the circles around stable features
-  int unstable_radius_px = 30;  ///< radius of the circles around lost features
+  int unstable_radius_px = 30;  ///< radius of the circles around lost features; 0 = none
   bool circular_mask = true;    ///< both circles. Paper Sec. III-A
   FeatureDetectorKind detector = FeatureDetectorKind::kGridFast;
   TrackerPrediction prediction = TrackerPrediction::kRotation;
   int window_px = 21;      ///< side of the KLT window
-  int pyramid_levels = 2;  ///< pictures in the pyramid, the full one included
+  int pyramid_levels = 2;  ///< pictures in the pyramid, the full one included, where motion is predicted
+  int unpredicted_pyramid_levels = 4;  ///< the same without prediction: by choice, in VO, at a gap of the IMU
   int max_iterations = 30;
   bool forward_backward = false;  ///< track back and compare
   double forward_backward_px = 0.5;
   double ransac_threshold_px = 1.0;  ///< epipolar distance, px of the camera's focal length
   double ransac_confidence = 0.99;
+  double ransac_min_inlier_share = 0.5;  ///< a model that fewer fit is not believed: nothing is rejected
   int border_px = 1;
+  double depth_max_spread =
+      0.05;               ///< of the 3x3 depths around a feature, as a share of its own; 0 = no check
   bool equalize = false;  ///< CLAHE(3, 8x8) before tracking
   double shi_tomasi_quality = 0.01;
   GridDetectorConfig grid;
@@ -67,18 +71,21 @@ requires std::is_same_v<std::remove_const_t<Config>, FrontendConfig>
 void visit_fields(Visitor&& field, Config& config) {
   field("max_features", config.max_features, 8, 2000);
   field("min_distance_px", config.min_distance_px, 1, 200);
-  field("unstable_radius_px", config.unstable_radius_px, 1, 200);
+  field("unstable_radius_px", config.unstable_radius_px, 0, 200);
   field("circular_mask", config.circular_mask);
   field("detector", config.detector);
   field("prediction", config.prediction);
   field("window_px", config.window_px, 5, 63);
   field("pyramid_levels", config.pyramid_levels, 1, 8);
+  field("unpredicted_pyramid_levels", config.unpredicted_pyramid_levels, 1, 8);
   field("max_iterations", config.max_iterations, 1, 100);
   field("forward_backward", config.forward_backward);
   field("forward_backward_px", config.forward_backward_px, 0.01, 10.0);
   field("ransac_threshold_px", config.ransac_threshold_px, 0.1, 20.0);
   field("ransac_confidence", config.ransac_confidence, 0.5, 0.99999);
+  field("ransac_min_inlier_share", config.ransac_min_inlier_share, 0.0, 1.0);
   field("border_px", config.border_px, 0, 100);
+  field("depth_max_spread", config.depth_max_spread, 0.0, 10.0);
   field("equalize", config.equalize);
   field("shi_tomasi_quality", config.shi_tomasi_quality, 1e-4, 0.5);
   field("grid", config.grid);

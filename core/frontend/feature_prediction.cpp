@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frontend/feature_prediction.h"
+
+#include <cmath>
+
+namespace stillpoint {
+namespace {
+
+constexpr double kMinCosine = 0.1;  // rays further than 84 degrees from the axis are not projected
+
+cv::Point2f to_point(const Eigen::Vector2d& pixel) {
+  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
+}
+
+}  // namespace
+
+TrackerPrediction usable_prediction(TrackerPrediction wanted, const MotionPrior& prior) {
+  const bool rotation = prior.has_rotation && prior.T_ccur_cprev.q.coeffs().allFinite();
+  const bool translation = prior.has_translation && prior.T_ccur_cprev.p.allFinite();
+  if (wanted == TrackerPrediction::kNone || !rotation) return TrackerPrediction::kNone;
+  return translation ? wanted : TrackerPrediction::kRotation;
+}
+
+std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks, const MotionPrior& prior,
+                                        TrackerPrediction kind, const Camera& camera) {
+  const Eigen::Matrix3d R_ccur_cprev = prior.T_ccur_cprev.R();
+  std::vector<cv::Point2f> pixels;
+  pixels.reserve(tracks.size());
+  for (const Track& track : tracks) {
+    Eigen::Vector2d pixel = track.feature.pixel;
+    if (kind != TrackerPrediction::kNone) {
+      Eigen::Vector3d ray_ccur = R_ccur_cprev * track.feature.bearing.homogeneous();
+      const bool translate = kind == TrackerPrediction::kFull && track.known_depth > 0.0;
+      if (translate) ray_ccur += prior.T_ccur_cprev.p / track.known_depth;
+      if (ray_ccur.z() > kMinCosine * ray_ccur.norm()) pixel = camera.project(ray_ccur);
+    }
+    pixels.push_back(to_point(pixel));
+  }
+  return pixels;
+}
+
+}  // namespace stillpoint

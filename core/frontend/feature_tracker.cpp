@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frontend/feature_tracker.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/frontend/depth_sampling.h"
+#include "core/frontend/feature_detector.h"
+#include "core/frontend/feature_mask.h"
+#include "core/frontend/feature_prediction.h"
+#include "core/frontend/klt.h"
+#include "core/frontend/outlier_rejection.h"
+#include "core/frontend/track.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kClaheClip = 3.0;  // as VINS-Mono has it
+const cv::Size kClaheTiles(8, 8);
+
+std::string size_text(const cv::Size& size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+void check_frame(const Frame& frame, const Camera& camera) {
+  const std::string place = "frame " + std::to_string(frame.id);
+  const cv::Size expected(camera.width, camera.height);
+  if (frame.gray.type() != CV_8UC1 || frame.gray.size() != expected) {
+    throw InputError(place, "gray picture is " + size_text(frame.gray.size()) + " " +
+                                cv::typeToString(frame.gray.type()) + ", the camera gives " +
+                                size_text(expected) + " CV_8UC1; check the calibration");
+  }
+  if (frame.depth.empty()) return;
+  if (frame.depth.type() != CV_16UC1 || frame.depth.size() != expected) {
+    throw InputError(place, "depth picture is " + size_text(frame.depth.size()) + " " +
+                                cv::typeToString(frame.depth.type()) + ", not " + size_text(expected) +
+                                " CV_16UC1; register it to the colour picture");
+  }
+}
+
+Eigen::Vector2d to_vector(const cv::Point2f& point) {
+  return {static_cast<double>(point.x), static_cast<double>(point.y)};
+}
+
+std::vector<cv::Point2f> pixels_of(const std::vector<Track>& tracks) {
+  std::vector<cv::Point2f> pixels;
+  pixels.reserve(tracks.size());
+  for (const Track& track : tracks) {
+    pixels.emplace_back(static_cast<float>(track.feature.pixel.x()),
+                        static_cast<float>(track.feature.pixel.y()));
+  }
+  return pixels;
+}
+
+}  // namespace
+
+/// Tracks are in order of their id, so also from the oldest to the youngest.
+struct FeatureTracker::State {
+  State(const FrontendConfig& frontend_config, const Camera& frontend_camera)
+      : config(frontend_config), camera(frontend_camera), detector(make_feature_detector(frontend_config)) {
+    if (config.equalize) equalizer = cv::createCLAHE(kClaheClip, kClaheTiles);
+  }
+
+  void advance(const Frame& frame, const MotionPrior& prior, bool detect);
+  void follow(const MotionPrior& prior, double interval_s);
+  [[nodiscard]] KltResult match(const std::vector<cv::Point2f>& predicted, TrackerPrediction kind) const;
+  void accept(const KltResult& matches, const std::vector<cv::Point2f>& predicted, double interval_s);
+  void reject_outliers();
+  void apply_mask();
+  void find_new(const cv::Mat& gray);
+  void measure_depth(const Frame& frame);
+
+  FrontendConfig config;
+  Camera camera;
+  std::unique_ptr<FeatureDetector> detector;
+  cv::Ptr<cv::CLAHE> equalizer;  // null unless config.equalize
+  cv::Mat equalized;
+  ImagePyramid previous;
+  ImagePyramid current;
+  Timestamp current_t;
+  std::vector<Track> tracks;
+  std::vector<cv::Point2f> unstable;  // where features were lost since the last detection
+  FeatureMask mask;
+  std::int64_t next_id = 0;
+
+  // Of the present picture.
+  int lost = 0;
+  int detected = 0;
+  ModuleTimings timings;
+};
+
+void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior, bool detect) {
+  lost = 0;
+  detected = 0;
+  if (equalizer) equalizer->apply(frame.gray, equalized);
+  const cv::Mat& gray = equalizer ? equalized : frame.gray;
+  {
+    const ScopedTimer timer(timings, Module::kFeatureTracking);
+    std::swap(previous, current);
+    current.rebuild(gray, config.window_px,
+                    std::max(config.pyramid_levels, config.unpredicted_pyramid_levels));
+    if (!tracks.empty()) follow(prior, seconds_between(current_t, frame.t));
+    current_t = frame.t;
+  }
+  if (detect) {
+    reject_outliers();
+    apply_mask();
+    find_new(gray);
+  }
+  measure_depth(frame);
+}
+
+void FeatureTracker::State::follow(const MotionPrior& prior, double interval_s) {
+  const TrackerPrediction kind = usable_prediction(config.prediction, prior);
+  const std::vector<cv::Point2f> predicted = predict_pixels(tracks, prior, kind, camera);
+  accept(match(predicted, kind), predicted, interval_s);
+}
+
+KltResult FeatureTracker::State::match(const std::vector<cv::Point2f>& predicted,
+                                       TrackerPrediction kind) const {
+  const bool predicts = kind != TrackerPrediction::kNone;
+  const KltSettings settings{.window_px = config.window_px,
+                             .levels = predicts ? config.pyramid_levels : config.unpredicted_pyramid_levels,
+                             .max_iterations = config.max_iterations};
+  const std::vector<cv::Point2f> points = pixels_of(tracks);
+  KltResult matches = follow_points(previous, current, points, predicted, settings);
+  if (!config.forward_backward) return matches;
+  return check_backward(previous, current, points, std::move(matches), settings, config.forward_backward_px);
+}
+
+void FeatureTracker::State::accept(const KltResult& matches, const std::vector<cv::Point2f>& predicted,
+                                   double interval_s) {
+  std::vector<Track> kept;
+  kept.reserve(tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const Eigen::Vector2d pixel = to_vector(matches.pixels[i]);
+    const bool inside = pixel.allFinite() && camera.contains(pixel, config.border_px);
+    if (matches.found[i] != 0 && inside) {
+      Track track = tracks[i];
+      TrackedFeature& feature = track.feature;
+      const Eigen::Vector2d bearing = camera.unproject(pixel);
+      feature.velocity.setZero();
+      if (interval_s > 0.0) feature.velocity = (bearing - feature.bearing) / interval_s;
+      feature.bearing = bearing;
+      feature.pixel = pixel;
+      ++feature.age;
+      kept.push_back(track);
+    } else if (camera.contains(to_vector(predicted[i]), config.border_px)) {
+      unstable.push_back(predicted[i]);
+      ++lost;
+    }
+  }
+  tracks = std::move(kept);
+}
+
+void FeatureTracker::State::reject_outliers() {
+  const ScopedTimer timer(timings, Module::kOutlierRejection);
+  std::vector<Eigen::Vector2d> from;
+  std::vector<Eigen::Vector2d> to;
+  for (const Track& track : tracks) {
+    from.push_back(track.reference_bearing);
+    to.push_back(track.feature.bearing);
+  }
+  const std::vector<std::uint8_t> inliers =
+      epipolar_inliers(from, to,
+                       {.threshold_px = config.ransac_threshold_px,
+                        .confidence = config.ransac_confidence,
+                        .min_inlier_share = config.ransac_min_inlier_share,
+                        .focal_px = camera.focal_px()});
+  std::vector<Track> kept;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (inliers[i] == 0) continue;
+    kept.push_back(tracks[i]);
+    kept.back().reference_bearing = tracks[i].feature.bearing;
+  }
+  lost += static_cast<int>(tracks.size() - kept.size());
+  tracks = std::move(kept);
+}
+
+void FeatureTracker::State::apply_mask() {
+  const ScopedTimer timer(timings, Module::kFeatureMask);
+  mask.clear(cv::Size(camera.width, camera.height));
+  if (config.circular_mask) {
+    const std::vector<cv::Point2f> pixels = pixels_of(tracks);
+    std::vector<Track> kept;
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      if (mask.claim(pixels[i], config.min_distance_px)) kept.push_back(tracks[i]);
+    }
+    tracks = std::move(kept);
+    for (const cv::Point2f& pixel : unstable) mask.take_circle(pixel, config.unstable_radius_px);
+  }
+  unstable.clear();
+}
+
+void FeatureTracker::State::find_new(const cv::Mat& gray) {
+  const ScopedTimer timer(timings, Module::kFeatureDetection);
+  const std::vector<cv::Point2f> tracked = pixels_of(tracks);
+  const std::vector<cv::Point2f> corners =
+      detector->detect({.gray = gray,
+                        .mask = mask,
+                        .tracked = tracked,
+                        .wanted = config.max_features - static_cast<int>(tracks.size()),
+                        .min_distance_px = config.circular_mask ? config.min_distance_px : 0});
+  for (const cv::Point2f& corner : corners) {
+    Track track;
+    track.feature.id = next_id++;
+    track.feature.pixel = to_vector(corner);
+    track.feature.bearing = camera.unproject(track.feature.pixel);
+    track.reference_bearing = track.feature.bearing;
+    tracks.push_back(track);
+  }
+  detected = static_cast<int>(corners.size());
+}
+
+void FeatureTracker::State::measure_depth(const Frame& frame) {
+  for (Track& track : tracks) {
+    track.feature.depth =
+        sample_depth(frame.depth, frame.depth_units_per_m, track.feature.pixel, config.depth_max_spread);
+    if (track.feature.depth > 0.0) track.known_depth = track.feature.depth;
+  }
+}
+
+FeatureTracker::FeatureTracker(const FrontendConfig& config, const Camera& camera)
+    : state_(std::make_unique<State>(config, camera)) {}
+
+FeatureTracker::~FeatureTracker() = default;
+
+TrackedFrame FeatureTracker::track(const Frame& frame, const MotionPrior& prior, bool detect) {
+  check_frame(frame, state_->camera);
+  state_->timings = {};
+  {
+    const ScopedTimer timer(state_->timings, Module::kTrackingThread);
+    state_->advance(frame, prior, detect);
+  }
+  TrackedFrame result{.id = frame.id,
+                      .t = frame.t,
+                      .features = {},
+                      .depth = frame.depth,
+                      .depth_units_per_m = frame.depth_units_per_m,
+                      .lost = state_->lost,
+                      .detected = state_->detected,
+                      .timings = state_->timings};
+  result.features.reserve(state_->tracks.size());
+  for (const Track& track : state_->tracks) result.features.push_back(track.feature);
+  return result;
+}
+
+void FeatureTracker::reset() {
+  state_->tracks.clear();
+  state_->unstable.clear();
+  state_->detector->reset();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What the tracker remembers of one feature between two pictures.
+#pragma once
+
+#include "core/types/tracked_frame.h"
+
+namespace stillpoint {
+
+struct Track {
+  TrackedFeature feature;    ///< as the last picture saw it
+  double known_depth = 0.0;  ///< last depth ever measured [m]; 0 = never
+  /// Bearing at the last outlier rejection, or at birth. Comparing with it instead of the last picture's
+  /// leaves no interval unchecked when pictures without detection lie between, and gives a longer baseline.
+  Eigen::Vector2d reference_bearing = Eigen::Vector2d::Zero();
+};
+
+}  // namespace stillpoint
