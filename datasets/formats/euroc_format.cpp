@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// EuRoC MAV data sets (Burri et al., IJRR 2016), ASL folder layout: left camera and IMU.
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "datasets/formats/formats.h"
+#include "datasets/imu_file.h"
+#include "datasets/sensor_yaml.h"
+#include "datasets/text_table.h"
+#include "datasets/trajectory_file.h"
+
+namespace stillpoint {
+namespace {
+
+/// The folder that holds cam0 and imu0: `folder` itself or its mav0.
+std::filesystem::path sensors_folder(const std::filesystem::path& folder) {
+  return std::filesystem::exists(folder / "mav0") ? folder / "mav0" : folder;
+}
+
+Camera camera_of(const SensorYaml& sensor) {
+  Camera camera = sensor.with_distortion(Camera{});
+  const std::vector<double> size = sensor.numbers("resolution");
+  if (size.size() != 2 || size[0] < 1.0 || size[1] < 1.0)
+    sensor.fail("resolution", "must be width and height");
+  camera.width = static_cast<int>(size[0]);
+  camera.height = static_cast<int>(size[1]);
+  const std::vector<double> values = sensor.numbers("intrinsics");
+  if (values.size() != 4 || values[0] <= 0.0 || values[1] <= 0.0) {
+    sensor.fail("intrinsics", "must be the four numbers fu, fv, cu, cv");
+  }
+  camera.fx = values[0];
+  camera.fy = values[1];
+  camera.cx = values[2];
+  camera.cy = values[3];
+  return camera;
+}
+
+void add_pictures(const std::filesystem::path& camera_folder, SequenceContent& content, FaultLog& faults) {
+  const TextTable table(camera_folder / "data.csv");
+  std::vector<Timestamp>& times = content.info.frame_times;
+  table.for_each(faults, [&](const TextRow& row) {
+    const Timestamp t = table.nanoseconds(row, 0);
+    const std::filesystem::path file = camera_folder / "data" / table.text(row, 1);
+    if (!times.empty()) table.require_rising(row, times.back(), t);
+    times.push_back(t);
+    content.pictures.push_back(PictureFiles{.color = file, .depth = {}});
+  });
+  if (times.empty()) table.fail("lists no pictures; is the sequence complete?");
+}
+
+/// @param T_body_b the IMU in EuRoC's body frame
+void add_ground_truth(const std::filesystem::path& folder, const Pose& T_body_b, SequenceContent& content,
+                      FaultLog& faults) {
+  GroundTruth& truth = content.info.ground_truth;
+  const Pose T_c_b = content.info.rig.T_b_c.inverse();
+  const std::filesystem::path estimate = sensors_folder(folder) / "state_groundtruth_estimate0";
+  if (std::filesystem::exists(estimate / "data.csv")) {
+    truth.trajectory = read_euroc_trajectory(estimate / "data.csv", "body", faults);
+    truth.T_c_f = T_c_b * T_body_b.inverse() * SensorYaml(estimate / "sensor.yaml").pose("T_BS");
+    return;
+  }
+  const std::filesystem::path text = sensors_folder(folder).parent_path() / "groundtruth_tum.txt";
+  if (!std::filesystem::exists(text)) return;
+  truth.trajectory = read_tum_trajectory(text, "imu", faults);
+  truth.T_c_f = T_c_b;
+}
+
+SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
+  const std::filesystem::path sensors = sensors_folder(folder);
+  SequenceContent content;
+  content.info.name = folder.filename().string();
+  content.info.folder = folder;
+  add_pictures(sensors / "cam0", content, faults);
+  content.info.imu = read_imu_file(sensors / "imu0" / "data.csv", TimeUnit::kNanoseconds, faults);
+
+  const SensorYaml camera(sensors / "cam0" / "sensor.yaml");
+  const SensorYaml imu(sensors / "imu0" / "sensor.yaml");
+  const Pose T_body_b = imu.pose("T_BS");
+  Rig& rig = content.info.rig;
+  rig.camera = camera_of(camera);
+  rig.has_imu = true;
+  rig.T_b_c = T_body_b.inverse() * camera.pose("T_BS");
+  rig.imu_noise = ImuNoise{.gyro_noise = imu.number("gyroscope_noise_density"),
+                           .accel_noise = imu.number("accelerometer_noise_density"),
+                           .gyro_walk = imu.number("gyroscope_random_walk"),
+                           .accel_walk = imu.number("accelerometer_random_walk")};
+  add_ground_truth(folder, T_body_b, content, faults);
+  return content;
+}
+
+bool recognise(const std::filesystem::path& folder) {
+  return std::filesystem::exists(sensors_folder(folder) / "cam0" / "data.csv");
+}
+
+}  // namespace
+
+const SequenceFormat kEurocFormat{
+    .name = "euroc", .mark = "mav0/cam0/data.csv", .recognise = recognise, .read = read};
+
+}  // namespace stillpoint

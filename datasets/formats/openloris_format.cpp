@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// OpenLORIS-Scene packages (Shi et al., ICRA 2020), the D435i part.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "datasets/formats/formats.h"
+#include "datasets/formats/paired_pictures.h"
+#include "datasets/imu_file.h"
+#include "datasets/sensor_yaml.h"
+#include "datasets/trajectory_file.h"
+#include "datasets/transform_graph.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr const char* kCamera = "d400_color_optical_frame";
+constexpr const char* kGyroscope = "d400_gyroscope";
+constexpr const char* kAccelerometer = "d400_accelerometer";
+constexpr const char* kGroundTruthFrame = "base_link";
+constexpr double kSamePlace = 1e-3;  ///< [m, rad] by which the two inertial sensors' poses may differ
+
+Camera camera_of(const SensorYaml& sensor) {
+  Camera camera = sensor.with_distortion(Camera{});
+  camera.width = sensor.positive_whole("width");
+  camera.height = sensor.positive_whole("height");
+  const std::vector<double> values = sensor.numbers("intrinsics");  // fx, cx, fy, cy
+  if (values.size() != 4 || values[0] <= 0.0 || values[2] <= 0.0) {
+    sensor.fail("intrinsics", "must be the four numbers fx, cx, fy, cy");
+  }
+  camera.fx = values[0];
+  camera.cx = values[1];
+  camera.fy = values[2];
+  camera.cy = values[3];
+  return camera;
+}
+
+/// Density [unit/sqrt(Hz)] of the mean of the axes' variances.
+double density(const SensorYaml& sensor, const std::string& key) {
+  const std::vector<double> variances = sensor.numbers(key);
+  double sum = 0.0;
+  for (const double variance : variances) sum += variance;
+  if (variances.empty() || !(sum > 0.0)) sensor.fail(key, "must hold variances greater than 0");
+  return std::sqrt(sum / static_cast<double>(variances.size()));
+}
+
+ImuNoise noise_of(const SensorYaml& sensors) {
+  const SensorYaml gyro = sensors.child(kGyroscope);
+  const SensorYaml accel = sensors.child(kAccelerometer);
+  return ImuNoise{.gyro_noise = density(gyro, "noise_variances"),
+                  .accel_noise = density(accel, "noise_variances"),
+                  .gyro_walk = density(gyro, "bias_variances"),
+                  .accel_walk = density(accel, "bias_variances")};
+}
+
+std::vector<NamedTransform> read_links(const std::filesystem::path& file) {
+  std::vector<NamedTransform> links;
+  for (const SensorYaml& entry : SensorYaml(file).list("trans_matrix")) {
+    links.push_back(NamedTransform{.parent = entry.text("parent_frame"),
+                                   .child = entry.text("child_frame"),
+                                   .T_parent_child = entry.pose("matrix")});
+  }
+  return links;
+}
+
+Pose require_transform(const std::filesystem::path& file, const std::vector<NamedTransform>& links,
+                       const std::string& a, const std::string& b) {
+  const std::optional<Pose> T_a_b = find_transform(links, a, b);
+  if (!T_a_b) throw InputError(file.string(), "no chain of transforms joins " + a + " and " + b);
+  return *T_a_b;
+}
+
+/// The body is the gyroscope; an accelerometer elsewhere would need its lever arm.
+void set_extrinsics(SequenceContent& content, const std::filesystem::path& file) {
+  const std::vector<NamedTransform> links = read_links(file);
+  if (content.info.rig.has_imu) {
+    const Pose T_g_a = require_transform(file, links, kGyroscope, kAccelerometer);
+    const double angle = Eigen::AngleAxisd(T_g_a.q).angle();
+    if (T_g_a.p.norm() > kSamePlace || angle > kSamePlace) {
+      throw InputError(file.string(),
+                       "gyroscope and accelerometer sit at different poses, which is not supported");
+    }
+    content.info.rig.T_b_c = require_transform(file, links, kGyroscope, kCamera);
+  }
+  if (!content.info.ground_truth.trajectory.poses.empty()) {
+    content.info.ground_truth.T_c_f = require_transform(file, links, kCamera, kGroundTruthFrame);
+  }
+}
+
+void add_imu(SequenceContent& content, FaultLog& faults) {
+  const std::filesystem::path gyro_file = content.info.folder / "d400_gyroscope.txt";
+  const std::filesystem::path accel_file = content.info.folder / "d400_accelerometer.txt";
+  if (!std::filesystem::exists(gyro_file) && !std::filesystem::exists(accel_file)) return;
+  const std::vector<VectorSample> gyro = read_vector_file(gyro_file, faults);
+  const std::vector<VectorSample> accel = read_vector_file(accel_file, faults);
+  content.info.imu = merge_onto_gyro(gyro, accel);
+  content.info.rig.has_imu = true;
+  faults.guard([&] {
+    if (content.info.imu.empty()) {
+      throw InputError(gyro_file.string(), "no sample lies within the time of d400_accelerometer.txt");
+    }
+  });
+}
+
+SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
+  SequenceContent content;
+  content.info.name = folder.filename().string();
+  content.info.folder = folder;
+  add_paired_pictures(folder / "color.txt", folder / "aligned_depth.txt", content, faults);
+  add_imu(content, faults);
+  if (std::filesystem::exists(folder / "groundtruth.txt")) {
+    content.info.ground_truth.trajectory =
+        read_tum_trajectory(folder / "groundtruth.txt", kGroundTruthFrame, faults);
+  }
+  const SensorYaml sensors(folder / "sensors.yaml");
+  content.info.rig.camera = camera_of(sensors.child(kCamera));
+  if (content.info.rig.has_imu) content.info.rig.imu_noise = noise_of(sensors);
+  set_extrinsics(content, folder / "trans_matrix.yaml");
+  return content;
+}
+
+bool recognise(const std::filesystem::path& folder) {
+  return std::filesystem::exists(folder / "color.txt") &&
+         std::filesystem::exists(folder / "aligned_depth.txt");
+}
+
+}  // namespace
+
+const SequenceFormat kOpenLorisFormat{
+    .name = "openloris", .mark = "color.txt and aligned_depth.txt", .recognise = recognise, .read = read};
+
+}  // namespace stillpoint

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Microsoft 7-Scenes (Shotton et al., CVPR 2013): `frame-000000.{color.png,depth.png,pose.txt}`.
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.h"
+#include "datasets/formats/formats.h"
+#include "datasets/trajectory_file.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::string_view kPrefix = "frame-";
+constexpr std::int64_t kFramesPerSecond = 30;  ///< of the Kinect; the frames carry no stamps
+constexpr std::uint16_t kNoDepth = 65535;
+
+struct NumberedFrame {
+  std::int64_t number = 0;
+  std::filesystem::path color;
+};
+
+/// The number of a colour picture's file name.
+std::optional<std::int64_t> frame_number(const std::string& name) {
+  if (!name.starts_with(kPrefix)) return std::nullopt;
+  std::int64_t number = 0;
+  const char* const last = name.data() + name.size();
+  const auto [end, error] = std::from_chars(name.data() + kPrefix.size(), last, number);
+  const std::string_view rest(end, static_cast<std::size_t>(last - end));
+  if (error != std::errc() || number < 0) return std::nullopt;
+  if (rest != ".color.png" && rest != ".color.jpg") return std::nullopt;
+  return number;
+}
+
+std::vector<NumberedFrame> list_frames(const std::filesystem::path& folder) {
+  std::vector<NumberedFrame> frames;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::optional<std::int64_t> number = frame_number(entry.path().filename().string());
+    if (number) frames.push_back(NumberedFrame{.number = *number, .color = entry.path()});
+  }
+  std::sort(frames.begin(), frames.end(),
+            [](const NumberedFrame& a, const NumberedFrame& b) { return a.number < b.number; });
+  return frames;
+}
+
+Timestamp time_of(std::int64_t number) {
+  return Timestamp{(number * 1'000'000'000 + kFramesPerSecond / 2) / kFramesPerSecond};
+}
+
+void add_frame(const NumberedFrame& frame, SequenceContent& content, FaultLog& faults) {
+  const Timestamp t = time_of(frame.number);
+  const std::string name = frame.color.filename().string();
+  const std::filesystem::path stem = frame.color.parent_path() / name.substr(0, name.find('.'));
+  if (!content.info.frame_times.empty() && content.info.frame_times.back() == t) {
+    throw InputError(frame.color.string(), "the frame is there both as PNG and as JPEG; remove one");
+  }
+  content.info.frame_times.push_back(t);
+  content.pictures.push_back(PictureFiles{.color = frame.color, .depth = stem.string() + ".depth.png"});
+  const std::filesystem::path pose = stem.string() + ".pose.txt";
+  if (!std::filesystem::exists(pose)) return;
+  faults.guard([&] {
+    content.info.ground_truth.trajectory.poses.push_back(
+        StampedPose{.t = t, .T_w_f = read_pose_matrix(pose)});
+  });
+}
+
+SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
+  SequenceContent content;
+  content.info.name = folder.filename().string();
+  content.info.folder = folder;
+  content.info.ground_truth.trajectory.frame = "depth_camera";
+  for (const NumberedFrame& frame : list_frames(folder)) {
+    faults.guard([&] { add_frame(frame, content, faults); });
+  }
+  if (content.pictures.empty()) throw InputError(folder.string(), "holds no frame-N.color.png or .jpg");
+  content.info.rig.camera = Camera{.width = 640,
+                                   .height = 480,
+                                   .fx = 585.0,
+                                   .fy = 585.0,
+                                   .cx = 320.0,
+                                   .cy = 240.0,
+                                   .model = CameraModel::kRadialTangential,
+                                   .distortion = {}};
+  content.no_depth_value = kNoDepth;
+  content.info.notes.push_back("time stamps: frame number / 30, as the frames carry none");
+  return content;
+}
+
+bool recognise(const std::filesystem::path& folder) { return !list_frames(folder).empty(); }
+
+}  // namespace
+
+const SequenceFormat kSevenScenesFormat{
+    .name = "7scenes", .mark = "frame-N.color.png or .jpg", .recognise = recognise, .read = read};
+
+}  // namespace stillpoint

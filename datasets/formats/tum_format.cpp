@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// TUM RGB-D benchmark (Sturm et al., IROS 2012) and folders laid out like it.
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "datasets/formats/formats.h"
+#include "datasets/formats/paired_pictures.h"
+#include "datasets/imu_file.h"
+#include "datasets/trajectory_file.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kTumDepthUnitsPerM = 5000.0;
+
+/// Colour camera of one of the benchmark's three Kinects.
+struct KinectCalibration {
+  std::string_view name;
+  Camera camera;
+};
+
+/// From the benchmark's page "File formats", section on intrinsic calibration (ROS default is not used; depth
+/// is already corrected in the published pictures).
+const std::array<KinectCalibration, 3>& kinects() {
+  static const std::array<KinectCalibration, 3> kAll{
+      {{"freiburg1",
+        {.width = 640,
+         .height = 480,
+         .fx = 517.3,
+         .fy = 516.5,
+         .cx = 318.6,
+         .cy = 255.3,
+         .model = CameraModel::kRadialTangential,
+         .distortion = {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}}},
+       {"freiburg2",
+        {.width = 640,
+         .height = 480,
+         .fx = 520.9,
+         .fy = 521.0,
+         .cx = 325.1,
+         .cy = 249.7,
+         .model = CameraModel::kRadialTangential,
+         .distortion = {0.2312, -0.7849, -0.0033, -0.0001, 0.9172}}},
+       {"freiburg3",
+        {.width = 640,
+         .height = 480,
+         .fx = 535.4,
+         .fy = 539.2,
+         .cx = 320.1,
+         .cy = 247.6,
+         .model = CameraModel::kRadialTangential,
+         .distortion = {}}}}};
+  return kAll;
+}
+
+void set_calibration(SequenceContent& content) {
+  Rig& rig = content.info.rig;
+  rig.depth_units_per_m = kTumDepthUnitsPerM;
+  for (const KinectCalibration& kinect : kinects()) {
+    if (content.info.name.find(kinect.name) == std::string::npos) continue;
+    rig.camera = kinect.camera;
+    content.info.notes.push_back("calibration: the published one of " + std::string(kinect.name));
+    return;
+  }
+  rig.camera = kinects().back().camera;
+  content.calibration_assumed =
+      "calibration: the folder's name says none of freiburg1, freiburg2, freiburg3; freiburg3's is assumed";
+}
+
+void add_imu(SequenceContent& content, FaultLog& faults) {
+  const std::filesystem::path text = content.info.folder / "imu.txt";
+  const std::filesystem::path table = content.info.folder / "imu.csv";
+  if (std::filesystem::exists(text)) {
+    content.info.imu = read_imu_file(text, TimeUnit::kSeconds, faults);
+  } else if (std::filesystem::exists(table)) {
+    content.info.imu = read_imu_file(table, TimeUnit::kNanoseconds, faults);
+  } else {
+    return;
+  }
+  content.info.rig.has_imu = true;
+  content.extrinsic_known = false;
+}
+
+SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
+  SequenceContent content;
+  content.info.name = folder.filename().string();
+  content.info.folder = folder;
+  add_paired_pictures(folder / "rgb.txt", folder / "depth.txt", content, faults);
+  set_calibration(content);
+  add_imu(content, faults);
+  if (std::filesystem::exists(folder / "groundtruth.txt")) {
+    content.info.ground_truth.trajectory = read_tum_trajectory(folder / "groundtruth.txt", "camera", faults);
+  }
+  return content;
+}
+
+bool recognise(const std::filesystem::path& folder) { return std::filesystem::exists(folder / "rgb.txt"); }
+
+}  // namespace
+
+const SequenceFormat kTumFormat{.name = "tum", .mark = "rgb.txt", .recognise = recognise, .read = read};
+
+}  // namespace stillpoint

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "datasets/sequence_content.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/sequence_folders.h"
+#include "tests/support/test_data.h"
+
+namespace stillpoint {
+namespace {
+
+bool has_note(const SequenceInfo& info, const std::string& part) {
+  return std::any_of(info.notes.begin(), info.notes.end(),
+                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
+}
+
+/// A TUM folder named like one of the benchmark's, without a rig file.
+SequenceInfo tum_info(const std::string& name) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  std::filesystem::remove(folder.path() / "rig.toml");
+  const std::filesystem::path named = folder.path().string() + "-" + name;
+  std::filesystem::rename(folder.path(), named);
+  const SequenceInfo info = open_sequence(named)->info();
+  std::filesystem::remove_all(named);
+  return info;
+}
+
+TEST(TumFormat, PairsPicturesAndStampsThemByColour) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const SequenceInfo& info = stream->info();
+  EXPECT_EQ(info.format, "tum");
+  EXPECT_EQ(info.name, folder.path().filename());
+  EXPECT_EQ(info.frame_times, (std::vector<Timestamp>{{1'000'000'000}, {1'040'000'000}, {1'080'000'000}}));
+  EXPECT_EQ(info.rig.depth_units_per_m, 5000.0);
+  EXPECT_FALSE(info.rig.has_imu);
+  const Frame frame = stream->load_frame(1);
+  EXPECT_EQ(frame.id, 1);
+  EXPECT_EQ(frame.t, info.frame_times[1]);
+  EXPECT_EQ(frame.gray.at<std::uint8_t>(5, 7), 76);  // pure red: 0.299 * 255
+  EXPECT_EQ(frame.color.at<cv::Vec3b>(5, 7), cv::Vec3b(255, 0, 0));
+  EXPECT_DOUBLE_EQ(depth_at(frame.depth, frame.depth_units_per_m, 3, 2), 1.0);  // 5000 / 5000
+}
+
+TEST(TumFormat, GroundTruthIsOfTheCamera) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const GroundTruth& truth = stream->info().ground_truth;
+  EXPECT_EQ(truth.trajectory.frame, "camera");
+  ASSERT_EQ(truth.trajectory.poses.size(), 31U);
+  EXPECT_TRUE(truth.trajectory.poses[30].T_w_f.p.isApprox(Eigen::Vector3d(0.3, 0, 0)));
+  EXPECT_TRUE(truth.T_c_f.matrix().isIdentity());
+}
+
+TEST(TumFormat, TakesThePublishedCalibrationByName) {
+  EXPECT_EQ(tum_info("rgbd_dataset_freiburg1_xyz").rig.camera.fx, 517.3);
+  EXPECT_EQ(tum_info("rgbd_dataset_freiburg2_desk").rig.camera.distortion[1], -0.7849);
+  EXPECT_EQ(tum_info("rgbd_dataset_freiburg3_walking_xyz").rig.camera.fy, 539.2);
+}
+
+TEST(TumFormat, SaysSoWhenItAssumesFreiburg3) {
+  const SequenceInfo info = tum_info("mine");
+  EXPECT_EQ(info.rig.camera.fx, 535.4);
+  EXPECT_TRUE(has_note(info, "freiburg3's is assumed"));
+}
+
+TEST(TumFormat, LeavesOutColourWithoutDepthAndSaysSo) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  folder.write("depth.txt",
+               "1.005 depth/1.005000.png\n1.0605 depth/1.045000.png\n1.085 depth/1.085000.png\n");
+  const auto stream = open_sequence(folder.path());
+  EXPECT_EQ(stream->info().frame_times.size(), 2U);  // 1.0605 is 20.5 ms from 1.04 and 19.5 ms from 1.08
+  EXPECT_TRUE(has_note(stream->info(), "1 of 3 colour pictures"));
+}
+
+TEST(TumFormat, ReadsAnImuWhoseRigIsKnown) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  folder.write("imu.txt", "0.9 1 2 3 4 5 6\n1.2 1 2 3 4 5 6\n");
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); }, {"T_b_c"});
+  const auto rig = folder.write("other.toml",
+                                "[camera]\nwidth = 8\nheight = 6\nfx = 10\nfy = 10\n[imu]\n"
+                                "T_b_c = [1,0,0,0.5, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n");
+  const auto stream = open_sequence(folder.path(), {.format = "tum", .rig_file = rig});
+  EXPECT_TRUE(stream->info().rig.has_imu);
+  EXPECT_EQ(stream->info().rig.T_b_c.p.x(), 0.5);
+  ASSERT_EQ(stream->info().imu.size(), 2U);
+  EXPECT_EQ(stream->info().imu[0].t, Timestamp{900'000'000});
+  EXPECT_EQ(stream->info().imu[0].accel_b, Eigen::Vector3d(4, 5, 6));
+}
+
+TEST(OpenLorisFormat, ReadsCalibrationAndWalksTheTransforms) {
+  const TemporaryFolder folder;
+  write_openloris_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const SequenceInfo& info = stream->info();
+  EXPECT_EQ(info.format, "openloris");
+  EXPECT_EQ(info.rig.camera.fx, 10.0);  // the file's order is fx, cx, fy, cy
+  EXPECT_EQ(info.rig.camera.cx, 3.5);
+  EXPECT_EQ(info.rig.camera.fy, 11.0);
+  EXPECT_EQ(info.rig.camera.distortion[0], 0.1);
+  EXPECT_NEAR(info.rig.T_b_c.p.x(), -0.1, 1e-12);            // the IMU sits 0.1 m right of the camera
+  EXPECT_NEAR(info.rig.imu_noise.gyro_noise, 2e-3, 1e-12);   // sqrt(4e-6)
+  EXPECT_NEAR(info.rig.imu_noise.accel_noise, 3e-2, 1e-12);  // sqrt(9e-4)
+  EXPECT_NEAR(info.rig.imu_noise.gyro_walk, 1e-5, 1e-15);
+  EXPECT_NEAR(info.rig.imu_noise.accel_walk, 2e-4, 1e-12);
+  EXPECT_EQ(info.ground_truth.trajectory.frame, "base_link");
+  EXPECT_NEAR(info.ground_truth.T_c_f.p.y(), 1.0, 1e-12);  // base_link below the camera, y points down
+  EXPECT_EQ(stream->load_frame(2).depth.at<std::uint16_t>(0, 0), 1000);
+}
+
+TEST(OpenLorisFormat, InterpolatesAccelerationOntoTheGyroscope) {
+  const TemporaryFolder folder;
+  write_openloris_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const std::vector<ImuSample>& imu = stream->info().imu;
+  ASSERT_EQ(imu.size(), 121U);           // 400 Hz over 0.3 s, ends included
+  for (const ImuSample& sample : imu) {  // both sensors measure the time since 99.9 s
+    EXPECT_NEAR(sample.gyro_b.x(), seconds_between(Timestamp{99'900'000'000}, sample.t), 1e-6);
+    EXPECT_NEAR(sample.accel_b.z(), sample.gyro_b.z(), 1e-6);
+  }
+}
+
+TEST(EurocFormat, ReadsLeftCameraImuAndStateEstimate) {
+  const TemporaryFolder folder;
+  write_euroc_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const SequenceInfo& info = stream->info();
+  EXPECT_EQ(info.format, "euroc");
+  EXPECT_EQ(info.frame_times[1], Timestamp{1'050'000'000});
+  EXPECT_EQ(info.rig.camera.fy, 11.0);
+  EXPECT_EQ(info.rig.camera.distortion[0], -0.2);
+  EXPECT_EQ(info.rig.T_b_c.p.x(), 0.5);
+  EXPECT_EQ(info.rig.imu_noise.accel_walk, 4e-3);
+  EXPECT_EQ(info.imu.size(), 41U);
+  EXPECT_EQ(info.imu[0].gyro_b, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(info.ground_truth.trajectory.poses[40].T_w_f.p.x(), 0.4);
+  EXPECT_EQ(info.ground_truth.T_c_f.p.x(), -0.5);
+  const Frame frame = stream->load_frame(0);
+  EXPECT_EQ(frame.gray.at<std::uint8_t>(0, 0), 7);
+  EXPECT_TRUE(frame.color.empty());
+  EXPECT_TRUE(frame.depth.empty());
+}
+
+TEST(EurocFormat, TakesGroundTruthBesideMav0WhereThereIsNoEstimate) {
+  const TemporaryFolder folder;
+  write_euroc_folder(folder);
+  std::filesystem::remove_all(folder.path() / "mav0/state_groundtruth_estimate0");
+  folder.write("groundtruth_tum.txt", "1.0 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(open_sequence(folder.path())->info().ground_truth.trajectory.poses.size(), 1U);
+  EXPECT_EQ(open_sequence(folder.path() / "mav0")->info().ground_truth.trajectory.frame, "imu");
+}
+
+TEST(SevenScenesFormat, StampsFramesByTheirNumber) {
+  const TemporaryFolder folder;
+  write_seven_scenes_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const SequenceInfo& info = stream->info();
+  EXPECT_EQ(info.format, "7scenes");
+  EXPECT_EQ(info.frame_times, (std::vector<Timestamp>{{0}, {33'333'333}, {66'666'667}}));
+  ASSERT_EQ(info.ground_truth.trajectory.poses.size(), 3U);
+  EXPECT_EQ(info.ground_truth.trajectory.poses[2].T_w_f.p.x(), 0.02);
+}
+
+TEST(SevenScenesFormat, TakesTheLargestRawDepthForNotMeasured) {
+  const TemporaryFolder folder;
+  write_seven_scenes_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const cv::Mat depth = stream->load_frame(0).depth;
+  EXPECT_EQ(*std::max_element(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>()), 1000);
+}
+
+TEST(FolderFormat, PairsByNameAndReadsTheJsonCamera) {
+  const TemporaryFolder folder;
+  write_plain_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const SequenceInfo& info = stream->info();
+  EXPECT_EQ(info.format, "folder");
+  EXPECT_EQ(info.frame_times[0], Timestamp{233'333'333});  // 7 / 30 s
+  EXPECT_EQ(info.rig.camera.fy, 11.0);
+  EXPECT_EQ(info.rig.camera.cx, 3.5);
+  EXPECT_EQ(stream->load_frame(2).depth.at<std::uint16_t>(0, 0), 1000);
+}
+
+TEST(OpenSequence, NamesTheKnownFormatsWhenItRecognisesNone) {
+  const TemporaryFolder folder;
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); },
+                     {"no sequence of a known format", "rgb.txt", "mav0"});
+  expect_input_error(
+      [&] { static_cast<void>(open_sequence(folder.path(), {.format = "kitti", .rig_file = {}})); },
+      {"kitti", "tum, openloris, euroc, 7scenes, folder"});
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path() / "absent")); }, {"no such folder"});
+}
+
+TEST(RealData, EveryFolderAtHandOpensAndDecodes) {
+  const std::array<std::pair<const char*, const char*>, 3> folders{
+      {{"kitchen_rgbd", "7scenes"}, {"two_people_d435", "folder"}, {"euroc_v101_micro", "euroc"}}};
+  const std::array<std::size_t, 3> frames{400, 40, 95};
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    const auto folder = find_test_data(folders[i].first);
+    if (!folder) GTEST_SKIP() << missing_test_data(folders[i].first);
+    const auto stream = open_sequence(*folder);
+    EXPECT_EQ(stream->info().format, folders[i].second);
+    ASSERT_EQ(stream->info().frame_times.size(), frames[i]);
+    EXPECT_EQ(stream->load_frame(frames[i] - 1).gray.cols, stream->info().rig.camera.width);
+  }
+}
+
+TEST(RealData, TheOpenLorisExampleGivesTheD435iExtrinsic) {
+  const auto folder = find_test_data("openloris/package_example");
+  if (!folder) GTEST_SKIP() << missing_test_data("openloris/package_example");
+  FaultLog faults(FaultLog::Mode::kCollect);
+  const SequenceContent content = read_sequence(*folder, {}, faults);
+  // The inverse of the file's pose of the gyroscope in the camera, to its 6 digits: -R^T t.
+  EXPECT_TRUE(content.info.rig.T_b_c.p.isApprox(Eigen::Vector3d(0.02030, -0.00510, -0.01120), 1e-2));
+  EXPECT_NEAR(content.info.rig.imu_noise.gyro_noise, 1.8e-4, 1e-9);  // sqrt(3.24e-8)
+  EXPECT_EQ(content.info.frame_times.size(), 5U);
+  EXPECT_EQ(content.info.imu.size(), 3U);   // the first of the four lies before the accelerometer's first
+  ASSERT_EQ(faults.messages().size(), 2U);  // an excerpt: neither IMU nor ground truth reaches the pictures
+  EXPECT_NE(faults.messages()[0].find("the IMU covers"), std::string::npos);
+  EXPECT_NE(faults.messages()[1].find("the ground truth covers"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace stillpoint
