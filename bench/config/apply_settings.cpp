@@ -7,7 +7,9 @@
 
 #include "bench/config/field_walk.h"
 #include "bench/config/spelling.h"
+#include "bench/plan/bench_plan.h"
 #include "core/base/error.h"
+#include "core/pipeline/odometry_config.h"
 
 namespace stillpoint {
 namespace {
@@ -76,15 +78,14 @@ struct Assign {
   }
 };
 
-std::vector<std::string> all_keys() {
-  const OdometryConfig config;
+template <class Config>
+std::vector<std::string> all_keys(const Config& config) {
   std::vector<std::string> keys;
   walk_fields(config, [&](const std::string& key, const auto&, const Bounds&) { keys.push_back(key); });
   return keys;
 }
 
-InputError unknown_key(const Setting& setting) {
-  const std::vector<std::string> keys = all_keys();
+InputError unknown_key(const Setting& setting, const std::vector<std::string>& keys) {
   const bool is_section = std::any_of(
       keys.begin(), keys.end(), [&](const std::string& key) { return key.starts_with(setting.key + "."); });
   if (is_section)
@@ -94,7 +95,8 @@ InputError unknown_key(const Setting& setting) {
 
 }  // namespace
 
-OdometryConfig with_settings(OdometryConfig config, std::span<const Setting> settings) {
+template <class Config>
+Config with_settings(Config config, std::span<const Setting> settings) {
   for (const Setting& setting : settings) {
     bool found = false;
     walk_fields(config, [&](const std::string& key, auto& member, const Bounds& bounds) {
@@ -102,9 +104,12 @@ OdometryConfig with_settings(OdometryConfig config, std::span<const Setting> set
       Assign{setting, bounds}(member);
       found = true;
     });
-    if (!found) throw unknown_key(setting);
+    if (!found) throw unknown_key(setting, all_keys(config));
   }
   return config;
 }
+
+template OdometryConfig with_settings(OdometryConfig config, std::span<const Setting> settings);
+template BenchPlan with_settings(BenchPlan config, std::span<const Setting> settings);
 
 }  // namespace stillpoint

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint::test {
+namespace stillpoint {
 
 /// Empty if nothing was thrown.
 inline std::string thrown_message(const std::function<void()>& action) {
@@ -19,4 +19,4 @@ inline std::string thrown_message(const std::function<void()>& action) {
   return "";
 }
 
-}  // namespace stillpoint::test
+}  // namespace stillpoint

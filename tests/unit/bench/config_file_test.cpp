@@ -4,19 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "bench/config/config_text.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/thrown_message.h"
 
 namespace stillpoint {
 namespace {
 
-using test::ScratchFolder;
-using test::thrown_message;
-
 /// The error of a config file with this text, without the folder's name.
 std::string error_of(const std::string& text) {
-  const ScratchFolder folder;
-  const std::string file = folder.write("mine.toml", text);
+  const TemporaryFolder folder;
+  const std::string file = folder.write("mine.toml", text).string();
   const std::string message =
       thrown_message([&] { static_cast<void>(load_config({.base = file, .variant = "", .settings = {}})); });
   return message.starts_with(file) ? "mine.toml" + message.substr(file.size()) : message;
@@ -61,9 +58,9 @@ TEST(ConfigFile, RejectsATypeThatNoKeyHas) {
 }
 
 TEST(ConfigFile, RejectsInheritanceInACircle) {
-  const ScratchFolder folder;
-  static_cast<void>(folder.write("b.toml", "\ninherits = \"a.toml\""));
-  const std::string a = folder.write("a.toml", "inherits = \"b.toml\"");
+  const TemporaryFolder folder;
+  folder.write("b.toml", "\ninherits = \"a.toml\"");
+  const std::string a = folder.write("a.toml", "inherits = \"b.toml\"").string();
   const std::string message =
       thrown_message([&] { static_cast<void>(load_config({.base = a, .variant = "", .settings = {}})); });
   EXPECT_EQ(message, (folder.path() / "b.toml").string() + ":2: inherits itself through \"" + a +
@@ -71,17 +68,17 @@ TEST(ConfigFile, RejectsInheritanceInACircle) {
 }
 
 TEST(ConfigFile, ChangesOnlyWhatItSaysAndInheritsTheRest) {
-  const ScratchFolder folder;
-  const std::string file = folder.write("mine.toml", "inherits = \"stillpoint\"\nseed = 7");
+  const TemporaryFolder folder;
+  const std::string file = folder.write("mine.toml", "inherits = \"stillpoint\"\nseed = 7").string();
   const OdometryConfig mine = load_config({.base = file, .variant = "", .settings = {}});
   const std::vector<ConfigEntry> expected = {{"seed", "7"}};
   EXPECT_EQ(config_difference(load_config({}), mine), expected);
 }
 
 TEST(ConfigFile, AppliesOverlaysInOrderAndSettingsLast) {
-  const ScratchFolder folder;
-  const std::string first = folder.write("first.toml", "seed = 2\nfrontend.grid.rows = 2");
-  const std::string second = folder.write("second.toml", "seed = 3\nfrontend.grid.cols = 3");
+  const TemporaryFolder folder;
+  const std::string first = folder.write("first.toml", "seed = 2\nfrontend.grid.rows = 2").string();
+  const std::string second = folder.write("second.toml", "seed = 3\nfrontend.grid.cols = 3").string();
   const OdometryConfig config = load_config(
       {.base = "stillpoint", .variant = first + "+" + second, .settings = {"frontend.grid.cols=4"}});
   EXPECT_EQ(config.seed, 3);

@@ -13,7 +13,7 @@ TEST(ConfigText, ReadsBackToTheSameConfig) {
   config.imu.gravity = 9.8000000000000007;  // needs 17 digits, must not lose any
   config.frontend.prediction = TrackerPrediction::kFull;
   config.backend.rate_hz = 15.0;
-  const OdometryConfig read = with_settings({}, parse_settings(config_text(config), "text"));
+  const OdometryConfig read = with_settings(OdometryConfig{}, parse_settings(config_text(config), "text"));
   EXPECT_EQ(config_entries(read), config_entries(config));
 }
 

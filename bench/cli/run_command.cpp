@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress.h"
+#include "bench/config/config_file.h"
+#include "bench/plan/plan_runner.h"
+#include "bench/record/output_folder.h"
+#include "bench/record/run_files.h"
+#include "bench/record/sequence_checksum.h"
+#include "bench/run/sequence_source.h"
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the command line of `run` says.
+struct RunArguments {
+  std::string sequence;
+  std::string base = "stillpoint";
+  std::vector<std::string> variants;
+  std::vector<std::string> settings;
+  std::string mode = "sequential";
+  std::string out;
+  std::string format;
+  std::string rig;
+  int max_frames = 0;
+};
+
+/// One run of possibly several.
+struct PlannedRun {
+  std::string variant;
+  fs::path folder;
+  RunSpec spec;
+};
+
+/// Every config is read and every folder tried before the first picture is.
+std::vector<PlannedRun> plan_runs(const RunArguments& arguments, const std::string& sequence) {
+  const bool several = arguments.variants.size() > 1;
+  const fs::path root = arguments.out.empty() ? fs::path("build/runs") / sequence : fs::path(arguments.out);
+  std::vector<std::string> variants = arguments.variants;
+  if (variants.empty()) variants.emplace_back();
+  std::vector<PlannedRun> runs;
+  for (const std::string& variant : variants) {
+    const std::string name = variant.empty() ? arguments.base : variant;
+    const bool own_folder = several || arguments.out.empty();
+    runs.push_back({.variant = name,
+                    .folder = own_folder ? root / folder_name(name) : root,
+                    .spec = {.config = load_config({arguments.base, variant, arguments.settings}),
+                             .mode = arguments.mode,
+                             .max_frames = static_cast<std::size_t>(arguments.max_frames)}});
+    require_writable(runs.back().folder);
+  }
+  return runs;
+}
+
+void log_update(const OdometryUpdate& update) {
+  spdlog::debug("frame {}: {} features, {} landmarks, {} iterations{}", update.frame_id,
+                update.counters.tracked_features, update.counters.window_landmarks,
+                update.counters.solver_iterations, update.counters.keyframe ? ", keyframe" : "");
+  if (update.counters.reset)
+    spdlog::warn("frame {}: tracking failed, the estimator begins anew", update.frame_id);
+}
+
+RunResult execute(const SensorStream& stream, const PlannedRun& planned) {
+  const std::size_t total = stream.info().frame_times.size();
+  ProgressLine progress(stream.info().name + " " + planned.variant, total, "frames");
+  const auto on_update = [&](const OdometryUpdate& update) {
+    log_update(update);
+    progress.update(static_cast<std::size_t>(update.frame_id) + 1);
+  };
+  RunResult result = score_run(
+      stream.info(),
+      run_odometry(stream, planned.spec, {.on_update = on_update, .stop_requested = interrupt_requested}));
+  result.variant = planned.variant;
+  result.mode = planned.spec.mode;
+  return result;
+}
+
+RunManifest manifest_of(const SequenceInfo& info, const RunArguments& arguments, const PlannedRun& planned) {
+  return {.sequence = info.name,
+          .sequence_format = info.format,
+          .sequence_checksum = interrupt_requested() ? "" : sequence_checksum(info.folder),
+          .base = arguments.base,
+          .variant = planned.variant,
+          .config = planned.spec.config,
+          .mode = planned.spec.mode,
+          .build = build_info(),
+          .host = host_info(),
+          .started = utc_now()};
+}
+
+std::string text_or_na(const std::optional<double>& value, const char* unit) {
+  return value ? fmt::format("{:.4f}{}", *value, unit) : "n/a";
+}
+
+void print_result(const RunResult& result, const fs::path& folder) {
+  const Score& score = result.score;
+  for (const SkippedFrame& frame : result.run.summary.skipped) {
+    spdlog::warn("frame {} skipped: {}", frame.index, frame.reason);
+  }
+  if (!result.failure.empty()) spdlog::warn("{}", result.failure);
+  std::cout << fmt::format(
+      "{} {}: {}, {} of {} frames, ATE {}, T.RPE {}, R.RPE {}, correct {}, coverage {}, first pose {}\n  "
+      "{}\n",
+      result.sequence, result.variant, status_name(result.status), result.run.summary.frames,
+      result.run.frames_planned, text_or_na(score.ate_rmse_m, " m"),
+      text_or_na(score.rpe_trans_rmse_m_per_s, " m/s"), text_or_na(score.rpe_rot_rmse_deg_per_s, " deg/s"),
+      text_or_na(score.correct_rate, ""), text_or_na(score.coverage, ""),
+      text_or_na(score.first_pose_s, " s"), (folder / "result.json").string());
+}
+
+int exit_code(RunStatus status) {
+  if (status == RunStatus::kInterrupted) return kExitInterrupted;
+  return status == RunStatus::kFailed ? kExitFindings : kExitOk;
+}
+
+int run(const RunArguments& arguments) {
+  if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
+  watch_interrupts();
+  const std::unique_ptr<SensorStream> stream =
+      find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig});
+  for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
+  int code = kExitOk;
+  for (const PlannedRun& planned : plan_runs(arguments, stream->info().name)) {
+    if (interrupt_requested()) return kExitInterrupted;
+    const RunResult result = execute(*stream, planned);
+    write_run(planned.folder, result, manifest_of(stream->info(), arguments, planned));
+    print_result(result, planned.folder);
+    code = std::max(code, exit_code(result.status));
+  }
+  return code;
+}
+
+}  // namespace
+
+Command run_command() {
+  const auto arguments = std::make_shared<RunArguments>();
+  return {.name = "run",
+          .summary = "Run the odometry over one sequence; write trajectory, scores and manifest",
+          .example = "run walking_xyz --variant wo_circular_mask --out /tmp/run",
+          .options = {{"SEQ", "Sequence folder, or the name of a rendered one", &arguments->sequence},
+                      {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+                      {"--variant", "Overlays joined by +; each further --variant is a further run",
+                       &arguments->variants},
+                      {"--set", "Change one key: key=value, may be repeated", &arguments->settings},
+                      {"--mode", "How the stages are run: sequential", &arguments->mode},
+                      {"--out", "Folder for the results [build/runs/SEQ/VARIANT]", &arguments->out},
+                      {"--format", "Layout of the folder: tum, openloris, euroc, 7scenes [recognised]",
+                       &arguments->format},
+                      {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
+                      {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
+          .action = [arguments] { return run(*arguments); },
+          .subcommands = {}};
+}
+
+}  // namespace stillpoint

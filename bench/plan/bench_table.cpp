@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/plan/bench_table.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace stillpoint {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+/// The columns of the paper's Table III, in its order, and the ones that the table has for each.
+struct TimedColumn {
+  Module module;
+  const char* title;
+};
+constexpr TimedColumn kTimedColumns[] = {
+    {Module::kFeatureTracking, "track"},          {Module::kFeatureDetection, "detect"},
+    {Module::kTrackingThread, "tracking thread"}, {Module::kDynamicRecognition, "dynamic"},
+    {Module::kStateOptimization, "state opt"},    {Module::kOptimizationThread, "optim thread"},
+    {Module::kObjectDetection, "objects"}};
+
+std::string cell(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "n/a";
+}
+
+std::vector<TimedColumn> present_columns(std::span<const BenchRow> rows) {
+  std::vector<TimedColumn> present;
+  for (const TimedColumn& column : kTimedColumns) {
+    const bool any = std::any_of(rows.begin(), rows.end(), [&](const BenchRow& row) {
+      return row.mean_ms[static_cast<std::size_t>(column.module)].has_value();
+    });
+    if (any) present.push_back(column);
+  }
+  return present;
+}
+
+Cells header(const std::vector<TimedColumn>& columns) {
+  Cells cells = {"sequence",    "variant", "status",   "ATE m",       "T.RPE m/s",
+                 "R.RPE deg/s", "CR",      "coverage", "first pose s"};
+  for (const TimedColumn& column : columns) cells.push_back(std::string(column.title) + " ms");
+  return cells;
+}
+
+Cells cells_of(const BenchRow& row, const std::vector<TimedColumn>& columns) {
+  Cells cells = {row.sequence,
+                 row.variant,
+                 row.status,
+                 cell(row.ate_rmse_m, 4),
+                 cell(row.rpe_trans_rmse_m_per_s, 4),
+                 cell(row.rpe_rot_rmse_deg_per_s, 3),
+                 cell(row.correct_rate, 3),
+                 cell(row.coverage, 3),
+                 cell(row.first_pose_s, 2)};
+  for (const TimedColumn& column : columns) {
+    cells.push_back(cell(row.mean_ms[static_cast<std::size_t>(column.module)], 2));
+  }
+  return cells;
+}
+
+/// Names to the left, numbers to the right.
+constexpr std::size_t kNameColumns = 3;
+
+std::string line(const Cells& cells, const std::vector<std::size_t>& widths) {
+  std::string text = "|";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    text += i < kNameColumns ? fmt::format(" {:<{}} |", cells[i], widths[i])
+                             : fmt::format(" {:>{}} |", cells[i], widths[i]);
+  }
+  return text + "\n";
+}
+
+std::string rule(const std::vector<std::size_t>& widths) {
+  std::string text = "|";
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    text += std::string(widths[i] + 1, '-') + (i < kNameColumns ? "-|" : ":|");
+  }
+  return text + "\n";
+}
+
+nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json row_json(const BenchRow& row) {
+  nlohmann::ordered_json timings = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < kModuleCount; ++i) {
+    if (row.mean_ms[i]) timings[std::string(module_name(static_cast<Module>(i)))] = *row.mean_ms[i];
+  }
+  return {{"sequence", row.sequence},
+          {"variant", row.variant},
+          {"status", row.status},
+          {"reason", row.reason},
+          {"ate_rmse_m", number_or_null(row.ate_rmse_m)},
+          {"rpe_trans_rmse_m_per_s", number_or_null(row.rpe_trans_rmse_m_per_s)},
+          {"rpe_rot_rmse_deg_per_s", number_or_null(row.rpe_rot_rmse_deg_per_s)},
+          {"correct_rate", number_or_null(row.correct_rate)},
+          {"coverage", number_or_null(row.coverage)},
+          {"first_pose_s", number_or_null(row.first_pose_s)},
+          {"mean_ms", timings}};
+}
+
+}  // namespace
+
+std::string markdown_table(std::span<const BenchRow> rows) {
+  const std::vector<TimedColumn> columns = present_columns(rows);
+  std::vector<Cells> lines = {header(columns)};
+  for (const BenchRow& row : rows) lines.push_back(cells_of(row, columns));
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const Cells& cells : lines) {
+    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
+  }
+  std::string text = line(lines.front(), widths) + rule(widths);
+  for (std::size_t i = 1; i < lines.size(); ++i) text += line(lines[i], widths);
+  for (const BenchRow& row : rows) {
+    if (!row.reason.empty())
+      text += fmt::format("\n{} {} {}: {}\n", row.sequence, row.variant, row.status, row.reason);
+  }
+  return text;
+}
+
+std::string json_table(const std::string& title, std::span<const BenchRow> rows) {
+  nlohmann::ordered_json json;
+  json["schema"] = 1;
+  json["title"] = title;
+  json["rows"] = nlohmann::ordered_json::array();
+  for (const BenchRow& row : rows) json["rows"].push_back(row_json(row));
+  return json.dump(2) + "\n";
+}
+
+}  // namespace stillpoint

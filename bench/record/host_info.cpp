@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/record/host_info.h"
+
+#include <fstream>
+#include <thread>
+
+#include <sys/utsname.h>
+
+namespace stillpoint {
+namespace {
+
+std::string cpu_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string kernel_release() {
+  utsname names{};
+  return uname(&names) == 0 ? std::string(names.sysname) + " " + names.release : "unknown";
+}
+
+std::optional<std::string> clock_governor() {
+  std::ifstream file("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  std::string governor;
+  return std::getline(file, governor) ? std::optional(governor) : std::nullopt;
+}
+
+}  // namespace
+
+HostInfo host_info() {
+  return {.cpu = cpu_model(),
+          .logical_cpus = std::thread::hardware_concurrency(),
+          .kernel = kernel_release(),
+          .governor = clock_governor()};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/record/run_files.h"
+
+#include <nlohmann/json.hpp>
+
+#include "bench/config/config_text.h"
+#include "bench/record/output_folder.h"
+#include "bench/record/score_text.h"
+#include "eval/io/trajectory_file.h"
+
+namespace stillpoint {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kIndent = 2;
+
+Json skipped_json(const std::vector<SkippedFrame>& skipped) {
+  Json list = Json::array();
+  for (const SkippedFrame& frame : skipped)
+    list.push_back({{"index", frame.index}, {"reason", frame.reason}});
+  return list;
+}
+
+Json timing_json(const TimingSamples& samples, bool threads) {
+  Json table = Json::object();
+  for (std::size_t i = 0; i < kModuleCount; ++i) {
+    const auto module = static_cast<Module>(i);
+    const std::optional<TimingStatistics> statistics = samples.statistics(module);
+    if (is_thread(module) != threads || !statistics) continue;
+    table[std::string(module_name(module))] = {{"mean", statistics->mean},
+                                               {"median", statistics->median},
+                                               {"p95", statistics->p95},
+                                               {"max", statistics->max},
+                                               {"calls", statistics->calls}};
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string result_json(const RunResult& result) {
+  const RunSummary& summary = result.run.summary;
+  Json json;
+  json["schema"] = 1;
+  json["sequence"] = result.sequence;
+  json["variant"] = result.variant;
+  json["mode"] = result.mode;
+  json["status"] = status_name(result.status);
+  json["failure"] = result.failure.empty() ? Json(nullptr) : Json(result.failure);
+  json["frames"] = summary.frames;
+  json["frames_planned"] = result.run.frames_planned;
+  json["poses"] = result.run.trajectory.poses.size();
+  json.update(score_members(result.score));
+  json["resets"] = summary.resets;
+  json["skipped_frames"] = skipped_json(summary.skipped);
+  json["imu_health"] = {{"rejected_samples", summary.imu_health.rejected_samples},
+                        {"gaps", summary.imu_health.gaps}};
+  json["notes"] = result.notes;
+  json["wall_s"] = result.run.wall_s;
+  json["timings"] = {{"unit", "ms"},
+                     {"modules", timing_json(result.run.timings, false)},
+                     {"threads", timing_json(result.run.timings, true)}};
+  return json.dump(kIndent) + "\n";
+}
+
+std::string manifest_json(const RunManifest& manifest) {
+  Json config = Json::object();
+  // TOML's spelling of these values is JSON's too.
+  for (const auto& [key, value] : config_entries(manifest.config)) config[key] = Json::parse(value);
+  Json json;
+  json["schema"] = 1;
+  json["started"] = manifest.started;
+  json["sequence"] = {
+      {"name", manifest.sequence},
+      {"format", manifest.sequence_format},
+      {"checksum", manifest.sequence_checksum.empty() ? Json(nullptr) : Json(manifest.sequence_checksum)}};
+  json["config"] = {{"base", manifest.base},
+                    {"variant", manifest.variant},
+                    {"hash", config_hash(manifest.config)},
+                    {"resolved", config}};
+  json["mode"] = manifest.mode;
+  json["seed"] = manifest.config.seed;
+  json["threads"] = {
+      {"odometry", 1}, {"detection_pool", manifest.config.frontend.grid.threads}, {"decoding", 1}};
+  json["build"] = {{"version", manifest.build.version},     {"git_commit", manifest.build.git_commit},
+                   {"git_dirty", manifest.build.git_dirty}, {"type", manifest.build.build_type},
+                   {"compiler", manifest.build.compiler},   {"flags", manifest.build.flags},
+                   {"packages", manifest.build.packages}};
+  json["host"] = {{"cpu", manifest.host.cpu},
+                  {"logical_cpus", manifest.host.logical_cpus},
+                  {"kernel", manifest.host.kernel},
+                  {"governor", manifest.host.governor ? Json(*manifest.host.governor) : Json(nullptr)}};
+  return json.dump(kIndent) + "\n";
+}
+
+std::string trajectory_text(const RunResult& result) {
+  const std::string poses = format_tum(result.run.trajectory);
+  return result.status == RunStatus::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
+}
+
+void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest) {
+  write_files(folder, {{"trajectory.tum", trajectory_text(result)},
+                       {"result.json", result_json(result)},
+                       {"manifest.json", manifest_json(manifest)}});
+}
+
+}  // namespace stillpoint

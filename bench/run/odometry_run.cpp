@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run/odometry_run.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "bench/run/frame_prefetcher.h"
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+std::size_t frames_to_run(const SequenceInfo& info, std::size_t max_frames) {
+  if (info.frame_times.empty()) {
+    throw InputError(info.folder.string(), "has no pictures; check it with `stillpoint data check`");
+  }
+  return max_frames == 0 ? info.frame_times.size() : std::min(max_frames, info.frame_times.size());
+}
+
+SensorInput input_of(const SequenceInfo& info, std::size_t frames, FramePrefetcher& prefetcher) {
+  return {.rig = info.rig,
+          .frame_times = std::span(info.frame_times).first(frames),
+          .imu = info.imu,
+          .detections = info.detections,
+          .load_frame = [&prefetcher](std::size_t index) { return prefetcher.take(index); }};
+}
+
+/// Collects what the updates of one run say. What the runner takes for decoding is only waiting here: the
+/// prefetcher knows the true times.
+void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& info) {
+  for (std::size_t i = 0; i < kModuleCount; ++i) {
+    const auto module = static_cast<Module>(i);
+    if (module != Module::kImageDecoding) run.timings.add(module, update.timings[module]);
+  }
+  if (update.status != OdometryStatus::kTracking) return;
+  const Timestamp t = info.frame_times[static_cast<std::size_t>(update.frame_id)];
+  run.trajectory.poses.push_back({t, update.T_w_c});
+}
+
+void record_decoding(OdometryRun& run, const FramePrefetcher& prefetcher) {
+  for (const std::chrono::nanoseconds elapsed : prefetcher.decoding_times()) {
+    run.timings.add(Module::kImageDecoding, {.ns = elapsed.count(), .calls = 1});
+  }
+}
+
+}  // namespace
+
+OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const RunControl& control) {
+  if (spec.mode != "sequential") {
+    throw InputError("--mode", "\"" + spec.mode + "\" is not known; use \"sequential\"");
+  }
+  const SequenceInfo& info = stream.info();
+  OdometryRun run;
+  run.trajectory.frame = "camera";
+  run.frames_planned = frames_to_run(info, spec.max_frames);
+  FramePrefetcher prefetcher([&stream](std::size_t index) { return stream.load_frame(index); },
+                             run.frames_planned);
+  const auto on_update = [&](const OdometryUpdate& update) {
+    record(run, update, info);
+    if (control.on_update) control.on_update(update);
+  };
+  const auto start = std::chrono::steady_clock::now();
+  run.summary = run_sequential(input_of(info, run.frames_planned, prefetcher), spec.config,
+                               {.on_update = on_update, .stop_requested = control.stop_requested});
+  run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record_decoding(run, prefetcher);
+  return run;
+}
+
+}  // namespace stillpoint

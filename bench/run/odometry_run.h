@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Runs our odometry over a sequence and keeps everything that it said.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "bench/run/timing_statistics.h"
+#include "core/pipeline/runner.h"
+#include "core/types/trajectory.h"
+#include "datasets/sensor_stream.h"
+
+namespace stillpoint {
+
+/// What to run.
+struct RunSpec {
+  OdometryConfig config;
+  std::string mode = "sequential";
+  std::size_t max_frames = 0;  ///< pictures from the start; 0 = all
+};
+
+/// What came of it.
+struct OdometryRun {
+  Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose for each picture that was tracked
+  RunSummary summary;
+  TimingSamples timings;
+  std::size_t frames_planned = 0;
+  double wall_s = 0.0;  ///< from the first picture asked for to the last update
+};
+
+/// @param control `on_update` may be empty
+/// @throws InputError for an unknown mode, a sequence without pictures, and what the runner throws
+[[nodiscard]] OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec,
+                                       const RunControl& control);
+
+}  // namespace stillpoint

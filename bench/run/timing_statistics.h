@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Summaries of the time spent in each module, as in the paper's Table III.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <vector>
+
+#include "core/base/module_timings.h"
+
+namespace stillpoint {
+
+/// [ms]; modules per call, threads per frame.
+struct TimingStatistics {
+  double mean = 0.0;
+  double median = 0.0;
+  double p95 = 0.0;  ///< linear between ranks
+  double max = 0.0;
+  std::int64_t calls = 0;
+};
+
+/// Whether a module is a whole thread of the paper, whose time is counted per frame.
+[[nodiscard]] bool is_thread(Module module);
+
+/// What every frame of a run spent, module by module.
+class TimingSamples {
+ public:
+  /// Adds what one frame spent in a module; nothing if it was not called.
+  void add(Module module, const ModuleTime& frame);
+
+  /// Nothing for a module that was never called.
+  [[nodiscard]] std::optional<TimingStatistics> statistics(Module module) const;
+
+ private:
+  std::array<std::vector<double>, kModuleCount> samples_ms_;  ///< mean of the frame's calls
+  std::array<ModuleTime, kModuleCount> totals_{};
+};
+
+}  // namespace stillpoint
