@@ -24,11 +24,11 @@ Score score(const Trajectory& gt, const Trajectory& est, const ScoreOptions& opt
     result.ate_rmse_m = absolute->translation_m.rmse;
     result.ate_pairs = absolute->pairs;
   }
-  const RpeOptions relative_options{.delta_s = options.rpe_delta_s, .offset_s = options.offset_s};
+  const RpeOptions relative_options{.delta = options.rpe_delta_s, .offset_s = options.offset_s};
   if (const std::optional<RpeResult> relative = rpe(gt, est, relative_options)) {
     result.rpe_trans_rmse_m_per_s = relative->translation_m.rmse / options.rpe_delta_s;
     result.rpe_rot_rmse_deg_per_s = relative->rotation_deg.rmse / options.rpe_delta_s;
-    result.rpe_pairs = relative->pairs;
+    result.rpe_pairs = relative->translation_m.count;
   }
   result.correct_rate = correct_rate(gt, est, options.correct, options.offset_s);
   result.coverage = coverage(est, options.expected_times, options.coverage_tolerance_s);

@@ -26,7 +26,7 @@ AteErrors ate_errors(std::span<const MatchedPose> matches, const Similarity& S_w
 std::optional<AteResult> ate(const Trajectory& gt, const Trajectory& est, const AssociationOptions& options) {
   const std::vector<MatchedPose> matches = matched_poses(gt, est, associate_tum(gt, est, options));
   if (matches.size() < 2) return std::nullopt;
-  const AlignmentResult alignment = align_se3(matches);
+  const AlignmentResult alignment = align(matches, Alignment::kSe3);
   const AteErrors errors = ate_errors(matches, alignment.S_w_v);
   return AteResult{.translation_m = *statistics(errors.translation_m),
                    .rotation_deg = *statistics(errors.rotation_deg),

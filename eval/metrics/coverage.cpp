@@ -49,7 +49,7 @@ std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
       matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
   if (matches.empty()) return 0.0;
   for (MatchedPose& match : matches) match.t = after(match.t, offset_s);
-  const AteErrors errors = ate_errors(matches, align_se3(matches).S_w_v);
+  const AteErrors errors = ate_errors(matches, align(matches, Alignment::kSe3).S_w_v);
   const double correct =
       correct_seconds(matches, errors.translation_m, errors.rotation_deg, gt.poses.back().t, options);
   return correct / seconds_between(gt.poses.front().t, gt.poses.back().t);

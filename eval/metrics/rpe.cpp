@@ -46,40 +46,64 @@ double median_interval(std::span<const double> stamps) {
   return percentile(intervals, 0.5).value_or(0.0);
 }
 
+/// The coordinate in which delta is measured, one a pose.
+std::vector<double> axis_of(const Trajectory& est, RpeUnit unit) {
+  if (unit == RpeUnit::kSeconds) return stamps_of(est);
+  std::vector<double> axis;
+  axis.reserve(est.poses.size());
+  for (std::size_t i = 0; i < est.poses.size(); ++i) {
+    const double step = i == 0                     ? 0.0
+                        : unit == RpeUnit::kFrames ? 1.0
+                                                   : (est.poses[i].T_w_f.p - est.poses[i - 1].T_w_f.p).norm();
+    axis.push_back(i == 0 ? 0.0 : axis.back() + step);
+  }
+  return axis;
+}
+
+/// The ground truth's stamps with the greatest difference at which one may stand for an estimate.
+class GroundTruthLookup {
+ public:
+  explicit GroundTruthLookup(const Trajectory& gt)
+      : stamps_(stamps_of(gt)), max_difference_s_(2.0 * median_interval(stamps_)) {}
+
+  [[nodiscard]] std::optional<std::size_t> nearest(double t) const {
+    const std::size_t index = nearest_by_halving(stamps_, t);
+    if (std::abs(stamps_[index] - t) > max_difference_s_) return std::nullopt;
+    return index;
+  }
+
+ private:
+  std::vector<double> stamps_;
+  double max_difference_s_;
+};
+
 }  // namespace
 
 std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const RpeOptions& options) {
   if (gt.poses.size() < 2 || est.poses.size() < 2) return std::nullopt;
-  const std::vector<double> gt_stamps = stamps_of(gt);
-  const std::vector<double> est_stamps = stamps_of(est);
-  const double max_gt_difference = 2.0 * median_interval(gt_stamps);
+  const GroundTruthLookup lookup(gt);
+  const std::vector<double> stamps = stamps_of(est);
+  const std::vector<double> axis = axis_of(est, options.unit);
   RpeResult result;
   std::vector<double> translation_m;
   std::vector<double> rotation_deg;
-  for (std::size_t i = 0; i < est_stamps.size(); ++i) {
-    const std::size_t j = nearest_by_halving(est_stamps, est_stamps[i] + options.delta_s);
-    if (j + 1 == est_stamps.size()) continue;
-    if (std::abs(est_stamps[j] - est_stamps[i] - options.delta_s) > options.max_span_error_s) {
-      ++result.dropped_span;
-      continue;
-    }
-    const double t_i = est_stamps[i] + options.offset_s;
-    const double t_j = est_stamps[j] + options.offset_s;
-    const std::size_t k = nearest_by_halving(gt_stamps, t_i);
-    const std::size_t m = nearest_by_halving(gt_stamps, t_j);
-    if (std::abs(gt_stamps[k] - t_i) > max_gt_difference ||
-        std::abs(gt_stamps[m] - t_j) > max_gt_difference) {
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    const std::size_t j = nearest_by_halving(axis, axis[i] + options.delta);
+    if (j + 1 == axis.size()) continue;
+    const std::optional<std::size_t> gt_i = lookup.nearest(stamps[i] + options.offset_s);
+    const std::optional<std::size_t> gt_j = lookup.nearest(stamps[j] + options.offset_s);
+    if (!gt_i || !gt_j) {
       ++result.dropped_gt;
       continue;
     }
+    if (i == j) ++result.self_pairs;
     const Pose est_motion = est.poses[j].T_w_f.inverse() * est.poses[i].T_w_f;
-    const Pose gt_motion = gt.poses[m].T_w_f.inverse() * gt.poses[k].T_w_f;
+    const Pose gt_motion = gt.poses[*gt_j].T_w_f.inverse() * gt.poses[*gt_i].T_w_f;
     const Pose error = est_motion.inverse() * gt_motion;
     translation_m.push_back(error.p.norm());
     rotation_deg.push_back(rotation_angle(error.q) * 180.0 / std::numbers::pi);
   }
   if (translation_m.empty()) return std::nullopt;
-  result.pairs = translation_m.size();
   result.translation_m = *statistics(translation_m);
   result.rotation_deg = *statistics(rotation_deg);
   return result;

@@ -2,48 +2,99 @@
 #include "eval/trajectory/alignment.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/base/error.h"
 
 namespace stillpoint {
 namespace {
+
+constexpr double kRankTolerance = 1e-9;  // of the largest singular value
 
 /// Means and the correlation of centred positions.
 struct Moments {
   Eigen::Vector3d mean_gt = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_est = Eigen::Vector3d::Zero();
   Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();  ///< mean of (g - g~)(e - e~)^T [m^2]
+  double variance_est = 0.0;                              ///< mean of |e - e~|^2 [m^2]
 };
 
 Moments moments_of(std::span<const MatchedPose> matches) {
   Moments moments;
   const double count = static_cast<double>(matches.size());
   for (const MatchedPose& match : matches) {
-    moments.mean_gt += match.gt.p / count;
-    moments.mean_est += match.est.p / count;
+    moments.mean_gt += match.gt.p;
+    moments.mean_est += match.est.p;
   }
+  moments.mean_gt /= count;
+  moments.mean_est /= count;
   for (const MatchedPose& match : matches) {
-    moments.correlation +=
-        (match.gt.p - moments.mean_gt) * (match.est.p - moments.mean_est).transpose() / count;
+    const Eigen::Vector3d gt = match.gt.p - moments.mean_gt;
+    const Eigen::Vector3d est = match.est.p - moments.mean_est;
+    moments.correlation += gt * est.transpose();
+    moments.variance_est += est.squaredNorm();
   }
+  moments.correlation /= count;
+  moments.variance_est /= count;
   return moments;
 }
 
-}  // namespace
+Similarity through_means(const Moments& moments, const Eigen::Quaterniond& q_w_v, double scale) {
+  return {Pose{q_w_v, moments.mean_gt - q_w_v * (scale * moments.mean_est)}, scale};
+}
 
-AlignmentResult align_se3(std::span<const MatchedPose> matches) {
-  constexpr double kRankTolerance = 1e-9;  // of the largest singular value
-  AlignmentResult result;
-  if (matches.empty()) return result;
-  const Moments moments = moments_of(matches);
+AlignmentResult fit_rotation(const Moments& moments, bool with_scale) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments.correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
   const Eigen::Matrix3d R_w_v = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  Pose& T_w_v = result.S_w_v.T_w_v;
-  T_w_v.q = Eigen::Quaterniond(R_w_v).normalized();
-  T_w_v.p = moments.mean_gt - T_w_v.q * moments.mean_est;
   const Eigen::Vector3d& singular = svd.singularValues();
-  result.determined = singular(0) > 0.0 && singular(1) > kRankTolerance * singular(0);
-  return result;
+  const bool determined = singular(0) > 0.0 && singular(1) > kRankTolerance * singular(0);
+  const double scale = with_scale && determined ? singular.dot(signs) / moments.variance_est : 1.0;
+  return {through_means(moments, Eigen::Quaterniond(R_w_v).normalized(), scale), determined};
+}
+
+AlignmentResult fit_yaw(const Moments& moments) {
+  // trace(Rz(a) C^T) is greatest where a is the argument of (C00 + C11, C10 - C01).
+  const Eigen::Matrix3d& c = moments.correlation;
+  const double along = c(0, 0) + c(1, 1);
+  const double across = c(1, 0) - c(0, 1);
+  const bool determined = std::hypot(along, across) > kRankTolerance * c.norm();
+  const Eigen::Quaterniond q(
+      Eigen::AngleAxisd(determined ? std::atan2(across, along) : 0.0, Eigen::Vector3d::UnitZ()));
+  return {through_means(moments, q, 1.0), determined};
+}
+
+std::string_view name_of(Alignment kind) {
+  for (const auto& [value, name] : enum_names(kind)) {
+    if (value == kind) return name;
+  }
+  return "?";
+}
+
+}  // namespace
+
+AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n) {
+  if (kind == Alignment::kNone) return {Similarity{}, true};
+  if (matches.empty()) return {};
+  if (kind == Alignment::kFirstPose) {
+    return {{matches.front().gt * matches.front().est.inverse()}, true};
+  }
+  const std::size_t count = first_n == 0 ? matches.size() : std::min(first_n, matches.size());
+  const Moments moments = moments_of(matches.first(count));
+  if (kind == Alignment::kYaw) return fit_yaw(moments);
+  return fit_rotation(moments, kind == Alignment::kSim3);
+}
+
+AlignmentResult align_or_throw(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n,
+                               const std::string& place) {
+  const AlignmentResult result = align(matches, kind, first_n);
+  if (result.determined) return result;
+  throw InputError(place, "alignment " + std::string(name_of(kind)) + " is not determined by " +
+                              std::to_string(matches.size()) +
+                              " matched poses (they stand still or lie on one line); use first_pose or none");
 }
 
 }  // namespace stillpoint

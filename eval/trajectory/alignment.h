@@ -2,8 +2,11 @@
 /// The transform that lays an estimate over its ground truth.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <string_view>
 
+#include "core/base/fields.h"
 #include "eval/trajectory/association.h"
 
 namespace stillpoint {
@@ -21,6 +24,21 @@ struct Similarity {
   }
 };
 
+enum class Alignment {
+  kNone,       ///< the worlds are taken as one
+  kFirstPose,  ///< the first matched poses fall together
+  kYaw,        ///< position and the angle about z: what an odometry that knows gravity leaves open
+  kSe3,        ///< position and rotation
+  kSim3,       ///< and scale
+};
+constexpr auto enum_names(Alignment) {
+  return EnumNames<Alignment, 5>{{{Alignment::kNone, "none"},
+                                  {Alignment::kFirstPose, "first_pose"},
+                                  {Alignment::kYaw, "yaw"},
+                                  {Alignment::kSe3, "se3"},
+                                  {Alignment::kSim3, "sim3"}}};
+}
+
 /// A fitted transform, and whether the data determine all of it: a path along a line leaves the rotation
 /// about the line open, a path that stands still leaves the whole rotation open.
 struct AlignmentResult {
@@ -28,8 +46,15 @@ struct AlignmentResult {
   bool determined = false;
 };
 
-/// Rigid least-squares fit of positions. Horn, J. Opt. Soc. Am. A 4, 1987, in the SVD form of Arun et al.,
-/// IEEE PAMI 9, 1987, with Umeyama's sign rule (IEEE PAMI 13, 1991). Identity for no matches.
-[[nodiscard]] AlignmentResult align_se3(std::span<const MatchedPose> matches);
+/// Least-squares fit over positions; se3 and sim3 after Horn, J. Opt. Soc. Am. A 4, 1987, and Umeyama, IEEE
+/// PAMI 13, 1991. Identity for no matches.
+/// @param first_n fit over the first n matches only; 0 = all
+[[nodiscard]] AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind,
+                                    std::size_t first_n = 0);
+
+/// `align`, where an alignment that the data leave open is an error.
+/// @throws InputError if the fit is not determined; `place` names the estimate in the message
+[[nodiscard]] AlignmentResult align_or_throw(std::span<const MatchedPose> matches, Alignment kind,
+                                             std::size_t first_n, const std::string& place);
 
 }  // namespace stillpoint

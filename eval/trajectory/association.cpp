@@ -114,6 +114,27 @@ std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est
   return GreedyMatcher(gt, est, options).run();
 }
 
+std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est,
+                                     const AssociationOptions& options) {
+  const bool gt_is_longer = gt.poses.size() >= est.poses.size();
+  const std::size_t shorter = std::min(gt.poses.size(), est.poses.size());
+  const std::size_t longer = std::max(gt.poses.size(), est.poses.size());
+  const auto pair_of = [&](std::size_t s, std::size_t l) {
+    return gt_is_longer ? IndexPair{l, s} : IndexPair{s, l};
+  };
+  const auto difference = [&](const IndexPair& pair) {
+    return std::abs(
+        stamp_difference(gt.poses[pair.gt].t, est.poses[pair.est].t, options.offset_s, options.arithmetic));
+  };
+  std::vector<IndexPair> pairs;
+  std::size_t l = 0;
+  for (std::size_t s = 0; s < shorter; ++s) {
+    while (l + 1 < longer && difference(pair_of(s, l + 1)) < difference(pair_of(s, l))) ++l;
+    if (difference(pair_of(s, l)) <= options.max_difference_s) pairs.push_back(pair_of(s, l));
+  }
+  return pairs;
+}
+
 std::vector<InterpolatedPair> associate_interpolated(const Trajectory& gt, const Trajectory& est,
                                                      double max_gap_s, double offset_s) {
   std::vector<InterpolatedPair> pairs;

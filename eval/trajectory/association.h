@@ -34,6 +34,11 @@ struct AssociationOptions {
 [[nodiscard]] std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
                                                    const AssociationOptions& options = {});
 
+/// Pairs of evo: each stamp of the shorter trajectory with the nearest of the longer, kept if at most
+/// max_difference_s apart. Not one-to-one: a pose of the longer trajectory may be taken twice. O(n + m).
+[[nodiscard]] std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est,
+                                                   const AssociationOptions& options = {});
+
 /// A pair whose ground truth is `share` of the way from pose `gt` to pose `gt + 1`.
 struct InterpolatedPair {
   std::size_t gt = 0;

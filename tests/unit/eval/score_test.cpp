@@ -78,7 +78,8 @@ TEST(Rpe, MeasuresAConstantSlipPerSecond) {
   }
   const std::optional<RpeResult> result = rpe(gt, est);
   ASSERT_TRUE(result);
-  EXPECT_EQ(result->pairs, 90u);  // starts 0 .. 8.9 s; the partner of 9.0 s is the last pose, which drops it
+  EXPECT_EQ(result->translation_m.count,
+            90u);  // starts 0 .. 8.9 s; the partner of 9.0 s is the last pose, which drops it
   EXPECT_NEAR(result->translation_m.rmse, 0.02, 1e-9);
   EXPECT_NEAR(result->rotation_deg.rmse, 0.01 * 180.0 / std::numbers::pi, 1e-9);
 }

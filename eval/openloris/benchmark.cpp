@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/openloris/benchmark.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "core/base/error.h"
+#include "eval/io/openloris_file.h"
+#include "eval/metrics/strict_rpe.h"
+#include "eval/openloris/robot_frames.h"
+#include "eval/trajectory/frames.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 5> kScenes{"home", "cafe", "corridor", "office", "market"};
+constexpr double kRpeDelta = 1.0;  // [s]
+
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> entries;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    entries.push_back(entry.path());
+  if (error) throw InputError(folder.string(), "cannot be listed; name a folder");
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+CorrectRateOptions lifelong(const std::string& scene, CorrectRateOptions limits) {
+  limits.max_translation_m = scene == "office" ? 1.0 : scene == "home" || scene == "cafe" ? 3.0 : 5.0;
+  limits.max_rotation_deg = 30.0;
+  return limits;
+}
+
+OpenlorisRun score_run(const Trajectory& gt, const Trajectory& est, const Similarity& S_w_v,
+                       const OpenlorisOptions& options) {
+  OpenlorisRun run;
+  run.score = score_openloris_sequence(gt, est, S_w_v, options);
+  Trajectory aligned = est;
+  for (StampedPose& pose : aligned.poses) pose.T_w_f = S_w_v * pose.T_w_f;
+  const StrictRpeResult rpe = strict_rpe(strict_matches(gt, aligned), kRpeDelta);
+  if (rpe.errors) {
+    run.rpe_m = rpe.errors->translation_m;
+    run.rpe_deg = rpe.errors->rotation_deg;
+  }
+  run.rpe_dropped = rpe.dropped;
+  return run;
+}
+
+/// Scores file after file.
+class Evaluator {
+ public:
+  Evaluator(const fs::path& ground_truth, const OpenlorisBenchmarkOptions& options) : options_(options) {
+    for (const char* const scene : kScenes) {
+      const fs::path file = ground_truth / ("gt_" + std::string(scene) + "_1.txt");
+      if (!fs::exists(file)) continue;
+      OpenlorisFile truth = read_openloris(file);
+      std::map<int, double>& durations = evaluation_.benchmark.gt_durations_s[scene];
+      for (const auto& [number, path] : truth.sequences) {
+        if (path.poses.empty()) throw InputError(file.string(), "sequence without a pose is no ground truth");
+        durations[number] = seconds_between(path.poses.front().t, path.poses.back().t);
+      }
+      truths_.emplace(scene, std::move(truth));
+    }
+    if (truths_.empty()) throw InputError(ground_truth.string(), "holds no gt_<scene>_1.txt");
+  }
+
+  void add(const std::string& system, const fs::path& file) {
+    const OpenlorisFile result =
+        read_openloris(file, options_.keep_repeated_poses ? RepeatedPoses::kKeep : RepeatedPoses::kDrop);
+    const auto truth = truths_.find(result.scene);
+    if (truth == truths_.end()) {
+      without_truth_.insert(result.scene);
+      return;
+    }
+    const std::map<int, Trajectory> gt = moved_truth(truth->second, result);
+    const OpenlorisOptions metric = metric_of(system, result.scene);
+    const Similarity S_w_v = align_openloris(gt, result.sequences, metric);
+    std::map<int, OpenlorisRun>& runs = evaluation_.benchmark.systems[system][result.scene].runs;
+    for (const auto& [number, est] : result.sequences) {
+      const auto path = gt.find(number);
+      if (path == gt.end()) {
+        throw InputError(file.string(), "sequence " + std::to_string(number) + " is not in the ground truth");
+      }
+      if (!runs.emplace(number, score_run(path->second, est, S_w_v, metric)).second) {
+        throw InputError(file.string(), "a second result for sequence " + std::to_string(number) + " of " +
+                                            result.scene + "; keep one file for each");
+      }
+    }
+  }
+
+  [[nodiscard]] OpenlorisEvaluation finish() {
+    for (auto& [system, scenes] : evaluation_.benchmark.systems) {
+      for (const auto& [name, durations] : evaluation_.benchmark.gt_durations_s) {
+        OpenlorisScene& scene = scenes[name];
+        scene.score = score_openloris_scene(scene.runs, durations);
+      }
+    }
+    for (const std::string& scene : without_truth_) {
+      evaluation_.skipped.push_back("scene \"" + scene + "\": no ground truth, results left out");
+    }
+    return std::move(evaluation_);
+  }
+
+ private:
+  [[nodiscard]] static std::map<int, Trajectory> moved_truth(const OpenlorisFile& truth,
+                                                             const OpenlorisFile& result) {
+    const Pose T_base_gt = openloris_frame(result.scene, truth.frame);
+    const Pose T_base_sensor = openloris_frame(result.scene, result.frame);
+    std::map<int, Trajectory> moved;
+    for (const auto& [number, path] : truth.sequences) {
+      if (!result.sequences.contains(number)) continue;
+      moved[number] = move_to_frame(path, T_base_gt.inverse() * T_base_sensor, result.frame);
+    }
+    return moved;
+  }
+
+  [[nodiscard]] OpenlorisOptions metric_of(const std::string& system, const std::string& scene) const {
+    OpenlorisOptions metric = options_.metric;
+    const std::vector<std::string>& scaled = options_.scaled_systems;
+    if (std::find(scaled.begin(), scaled.end(), system) != scaled.end()) metric.scale = true;
+    if (options_.lifelong_thresholds) metric.correct = lifelong(scene, metric.correct);
+    return metric;
+  }
+
+  const OpenlorisBenchmarkOptions& options_;
+  std::map<std::string, OpenlorisFile> truths_;
+  OpenlorisEvaluation evaluation_;
+  std::set<std::string> without_truth_;
+};
+
+}  // namespace
+
+OpenlorisEvaluation evaluate_openloris(const fs::path& results, const fs::path& ground_truth,
+                                       const OpenlorisBenchmarkOptions& options) {
+  Evaluator evaluator(ground_truth, options);
+  bool any = false;
+  for (const fs::path& folder : sorted_entries(results)) {
+    if (!fs::is_directory(folder)) continue;
+    for (const fs::path& file : sorted_entries(folder)) {
+      if (file.extension() != ".txt") continue;
+      evaluator.add(folder.filename().string(), file);
+      any = true;
+    }
+  }
+  if (!any) {
+    throw InputError(results.string(),
+                     "holds no result; expected one folder a system with *.txt files in it");
+  }
+  return evaluator.finish();
+}
+
+}  // namespace stillpoint
