@@ -45,6 +45,67 @@ struct SynthRequest {
   std::filesystem::path imu_file;         ///< preset flight: its readings (EuRoC csv)
 };
 
+/// The list that printing and hashing walk: every field in a fixed order.
+template <class Visitor>
+void visit_fields(Visitor&& field, const ColorSensor& sensor) {
+  field("exposure_s", sensor.exposure_s);
+  field("read_noise", sensor.read_noise);
+  field("shot_noise", sensor.shot_noise);
+  field("vignetting", sensor.vignetting);
+  field("exposure_swing", sensor.exposure_swing);
+  field("exposure_period_s", sensor.exposure_period_s);
+}
+template <class Visitor>
+void visit_fields(Visitor&& field, const DepthSensor& sensor) {
+  field("noise_per_m", sensor.noise_per_m);
+  field("correlated_share", sensor.correlated_share);
+  field("correlation_px", sensor.correlation_px);
+  field("focal_baseline_px_m", sensor.focal_baseline_px_m);
+  field("disparity_step_px", sensor.disparity_step_px);
+  field("min_m", sensor.min_m);
+  field("max_m", sensor.max_m);
+  field("edge_dropout", sensor.edge_dropout);
+  field("units_per_m", sensor.units_per_m);
+}
+template <class Visitor>
+void visit_fields(Visitor&& field, const ImuNoise& noise) {
+  field("gyro_noise", noise.gyro_noise);
+  field("accel_noise", noise.accel_noise);
+  field("gyro_walk", noise.gyro_walk);
+  field("accel_walk", noise.accel_walk);
+}
+template <class Visitor>
+void visit_fields(Visitor&& field, const ImuSensor& sensor) {
+  field("gyro_rate_hz", sensor.gyro_rate_hz);
+  field("accel_rate_hz", sensor.accel_rate_hz);
+  field("noise", sensor.noise);
+  field("gyro_bias", sensor.gyro_bias);
+  field("accel_bias", sensor.accel_bias);
+  field("time_offset_s", sensor.time_offset_s);
+}
+template <class Visitor>
+void visit_fields(Visitor&& field, const SynthRequest& request) {
+  field("preset", request.preset);
+  field("seed", request.seed);
+  field("seconds", request.seconds);
+  field("frames_per_s", request.frames_per_s);
+  field("width", request.width);
+  field("height", request.height);
+  field("focal_px", request.focal_px);
+  field("walkers", request.walkers);
+  field("seated", request.seated);
+  field("unknown_movers", request.unknown_movers);
+  field("rolling_shutter_s", request.rolling_shutter_s);
+  field("dropped_share", request.dropped_share);
+  field("layout", request.layout);
+  field("labels", request.labels);
+  field("color", request.color);
+  field("depth", request.depth);
+  field("imu", request.imu);
+  field("trajectory_file", request.trajectory_file.string());
+  field("imu_file", request.imu_file.string());
+}
+
 /// Names of all presets: walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with the ending
 /// `_empty` (nobody moves), and `flight` (a given path and its real IMU readings, nobody moves).
 [[nodiscard]] std::vector<std::string> preset_names();

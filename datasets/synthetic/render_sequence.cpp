@@ -110,6 +110,7 @@ bool render_sequence(const SynthRequest& request, const fs::path& folder, const 
   const SequenceWriter writer(partial.path(), request.layout, request.labels);
   if (!render_pictures(request, stage, times, writer, control)) return false;
   writer.write_lists(times);
+  writer.write_request(request);
   writer.write_rig(stage.rig, request);
   writer.write_inertia(stage.inertia);
   writer.write_ground_truth(camera_truth(request, stage));

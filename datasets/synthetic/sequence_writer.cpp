@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "datasets/image_io.h"
+#include "datasets/synthetic/request_text.h"
 
 namespace stillpoint {
 namespace {
@@ -149,6 +150,10 @@ void SequenceWriter::write_ground_truth(const Trajectory& camera_path) const {
                         p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   }
   write_text(folder_ / "groundtruth.txt", text);
+}
+
+void SequenceWriter::write_request(const SynthRequest& request) const {
+  write_text(folder_ / "request.toml", request_text(request));
 }
 
 void SequenceWriter::write_boxes(const std::string& file, const std::string& comment,
