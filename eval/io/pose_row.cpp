@@ -22,7 +22,7 @@ std::string quoted(std::string_view field) {
 Timestamp require_stamp(std::string_view field, const RowPlace& place) {
   const std::optional<Timestamp> t = parse_stamp(field);
   if (t) return *t;
-  if (parse_nanoseconds(field)) {
+  if (parse_number(field).value_or(0.0) > 1.0) {
     throw place.error("stamp " + quoted(field) + " is beyond 292 years; nanoseconds instead of seconds?");
   }
   throw place.error("stamp " + quoted(field) + " is not a number of seconds");

@@ -28,6 +28,26 @@ std::optional<double> first_pose_seconds(const Trajectory& est, Timestamp start)
   return seconds_between(start, est.poses.front().t);
 }
 
+std::vector<TimeSpan> lost_spans(const Trajectory& est, const TimeSpan& whole, double max_hold_s) {
+  std::vector<TimeSpan> lost;
+  Timestamp covered_until = whole.begin;
+  for (const StampedPose& pose : est.poses) {
+    if (pose.t >= whole.end) break;
+    if (pose.t > covered_until) lost.push_back({covered_until, pose.t});
+    covered_until = std::max(covered_until, after(pose.t, max_hold_s));
+  }
+  if (covered_until < whole.end) lost.push_back({covered_until, whole.end});
+  return lost;
+}
+
+std::optional<double> time_coverage(std::span<const TimeSpan> lost, const TimeSpan& whole) {
+  const double duration_s = seconds_between(whole.begin, whole.end);
+  if (duration_s <= 0.0) return std::nullopt;
+  double lost_s = 0.0;
+  for (const TimeSpan& span : lost) lost_s += seconds_between(span.begin, span.end);
+  return 1.0 - lost_s / duration_s;
+}
+
 double correct_seconds(std::span<const MatchedPose> matches, std::span<const double> errors_m,
                        std::span<const double> errors_deg, Timestamp end, const CorrectRateOptions& options) {
   STILLPOINT_CHECK(errors_m.size() == matches.size() && errors_deg.size() == matches.size());

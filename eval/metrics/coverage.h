@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "eval/trajectory/association.h"
 
@@ -18,6 +19,19 @@ namespace stillpoint {
 
 /// Seconds from `start` to the first pose; nothing without a pose.
 [[nodiscard]] std::optional<double> first_pose_seconds(const Trajectory& est, Timestamp start);
+
+struct TimeSpan {
+  Timestamp begin;
+  Timestamp end;
+};
+
+/// Parts of `whole` in which no pose stands: a pose stands from its stamp to the next one, at most
+/// `max_hold_s`. In order of time.
+[[nodiscard]] std::vector<TimeSpan> lost_spans(const Trajectory& est, const TimeSpan& whole,
+                                               double max_hold_s);
+
+/// Share of `whole` outside the lost spans; nothing when it has no extent.
+[[nodiscard]] std::optional<double> time_coverage(std::span<const TimeSpan> lost, const TimeSpan& whole);
 
 /// When a pose counts as correct, and for how long.
 struct CorrectRateOptions {

@@ -20,8 +20,7 @@ else()
 endif()
 
 add_library(stillpoint_warnings INTERFACE)
-target_compile_options(stillpoint_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Werror
-                       -Wno-missing-field-initializers)  # designated initialisers leave the rest at their defaults
+target_compile_options(stillpoint_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Werror)
 
 add_library(stillpoint_options INTERFACE)
 target_include_directories(stillpoint_options INTERFACE ${PROJECT_SOURCE_DIR})

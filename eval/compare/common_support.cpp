@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/compare/common_support.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "eval/metrics/ate.h"
+#include "eval/metrics/coverage.h"
+#include "eval/metrics/strict_rpe.h"
+
+namespace stillpoint {
+namespace {
+
+/// Parts of `whole` outside all of `lost`.
+std::vector<TimeSpan> outside(std::vector<TimeSpan> lost, const TimeSpan& whole) {
+  std::sort(lost.begin(), lost.end(), [](const TimeSpan& a, const TimeSpan& b) { return a.begin < b.begin; });
+  std::vector<TimeSpan> kept;
+  Timestamp from = whole.begin;
+  for (const TimeSpan& span : lost) {
+    if (span.begin > from) kept.push_back({from, span.begin});
+    from = std::max(from, span.end);
+  }
+  if (from < whole.end) kept.push_back({from, whole.end});
+  return kept;
+}
+
+std::vector<MatchedPose> inside(std::span<const MatchedPose> matches, std::span<const TimeSpan> spans) {
+  std::vector<MatchedPose> chosen;
+  auto span = spans.begin();
+  for (const MatchedPose& match : matches) {
+    while (span != spans.end() && span->end < match.t) ++span;
+    if (span == spans.end()) break;
+    if (match.t >= span->begin) chosen.push_back(match);
+  }
+  return chosen;
+}
+
+std::optional<double> ate_rmse(std::span<const MatchedPose> matches, Alignment alignment) {
+  const std::optional<Statistics> errors =
+      statistics(ate_errors(matches, align(matches, alignment).S_w_v).translation_m);
+  if (!errors || errors->count < 3) return std::nullopt;
+  return errors->rmse;
+}
+
+bool ranks_before(const ComparedRun& a, const ComparedRun& b) {
+  if (a.failed != b.failed) return b.failed;
+  if (a.failed) return a.coverage > b.coverage;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  return a.common_ate_rmse_m.value_or(kNone) < b.common_ate_rmse_m.value_or(kNone);
+}
+
+void fill_common(ComparedRun& run, std::span<const MatchedPose> matches, std::span<const TimeSpan> common,
+                 Alignment alignment) {
+  const std::vector<MatchedPose> shared = inside(matches, common);
+  run.common_pairs = shared.size();
+  run.common_ate_rmse_m = ate_rmse(shared, alignment);
+  if (const StrictRpeResult rpe = strict_rpe(shared, 1.0); rpe.errors) {
+    run.common_rpe_m = rpe.errors->translation_m.rmse;
+    run.common_rpe_deg = rpe.errors->rotation_deg.rmse;
+  }
+}
+
+}  // namespace
+
+Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs, const CompareOptions& options) {
+  Comparison comparison;
+  if (gt.poses.size() < 2) return comparison;
+  const TimeSpan whole{gt.poses.front().t, gt.poses.back().t};
+  std::vector<TimeSpan> lost_by_any;
+  std::vector<std::vector<MatchedPose>> matches;
+  for (const NamedRun& run : runs) {
+    const std::vector<TimeSpan> lost = lost_spans(run.est, whole, options.max_hold_s);
+    matches.push_back(strict_matches(gt, run.est));
+    ComparedRun compared;
+    compared.name = run.name;
+    compared.coverage = time_coverage(lost, whole).value_or(0.0);
+    compared.failed = matches.back().empty() || compared.coverage < options.min_coverage;
+    compared.own_ate_rmse_m = ate_rmse(matches.back(), options.alignment);
+    if (!compared.failed) lost_by_any.insert(lost_by_any.end(), lost.begin(), lost.end());
+    comparison.ranking.push_back(compared);
+  }
+  const std::vector<TimeSpan> common = outside(lost_by_any, whole);
+  for (const TimeSpan& span : common) comparison.common_s += seconds_between(span.begin, span.end);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!comparison.ranking[i].failed)
+      fill_common(comparison.ranking[i], matches[i], common, options.alignment);
+  }
+  std::stable_sort(comparison.ranking.begin(), comparison.ranking.end(), ranks_before);
+  return comparison;
+}
+
+}  // namespace stillpoint

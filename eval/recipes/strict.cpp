@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/recipes/strict.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "eval/metrics/relative_error.h"
+#include "eval/metrics/strict_rpe.h"
+#include "eval/recipes/compat.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kSegmentTolerance = 0.02;  // of the segment's length; metres of a path: of delta
+constexpr double kMaxHold = 1.0;            // [s]; how long a pose stands
+
+void fill_rpe(Evaluation& evaluation, std::span<const MatchedPose> matches, const RecipeOptions& options) {
+  if (options.rpe_unit == RpeUnit::kFrames) {
+    throw InputError("--rpe-unit f", "frames are no measure that runs share; strict recipes know s and m");
+  }
+  std::size_t dropped = 0;
+  if (options.rpe_unit == RpeUnit::kSeconds) {
+    const StrictRpeResult result = strict_rpe(matches, options.rpe_delta);
+    dropped = result.dropped;
+    if (result.errors) {
+      evaluation.rpe_m = result.errors->translation_m;
+      evaluation.rpe_deg = result.errors->rotation_deg;
+    }
+  } else {
+    const std::vector<double> lengths = path_lengths(matches, PathOf::kGroundTruth);
+    const Motions found =
+        motions_over_metres(lengths, options.rpe_delta, kSegmentTolerance * options.rpe_delta);
+    const RelativeErrors errors = relative_errors(matches, found.motions);
+    dropped = found.dropped;
+    evaluation.rpe_m = statistics(errors.translation_m);
+    evaluation.rpe_deg = statistics(errors.rotation_deg);
+  }
+  if (dropped > 0) {
+    evaluation.notes.push_back(std::to_string(dropped) + " of " + std::to_string(matches.size()) +
+                               " RPE starts have no pose at the right distance and were dropped");
+  }
+}
+
+/// RMS of e_(i-1) - 2 e_i + e_(i+1), e the aligned position error: what a smooth drift does not show.
+std::optional<double> jitter_of(std::span<const MatchedPose> matches, const Similarity& S_w_v) {
+  if (matches.size() < 3) return std::nullopt;
+  const auto error = [&](std::size_t i) -> Eigen::Vector3d {
+    return S_w_v * matches[i].est.p - matches[i].gt.p;
+  };
+  double sum = 0.0;
+  for (std::size_t i = 1; i + 1 < matches.size(); ++i) {
+    sum += (error(i - 1) - 2.0 * error(i) + error(i + 1)).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(matches.size() - 2));
+}
+
+}  // namespace
+
+Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
+  const RecipeOptions& options = input.options;
+  Evaluation evaluation;
+  Trajectory est = input.est;
+  for (StampedPose& pose : est.poses) pose.t = after(pose.t, options.offset_s);
+  if (!input.gt.poses.empty()) {
+    const TimeSpan whole{input.gt.poses.front().t, input.gt.poses.back().t};
+    evaluation.lost = lost_spans(est, whole, kMaxHold);
+    evaluation.coverage = time_coverage(evaluation.lost, whole);
+    evaluation.first_pose_s = first_pose_seconds(est, whole.begin);
+  }
+  std::vector<MatchedPose> matches = strict_matches(input.gt, est);
+  if (matches.size() < est.poses.size()) {
+    evaluation.notes.push_back(std::to_string(est.poses.size() - matches.size()) + " of " +
+                               std::to_string(est.poses.size()) + " poses have no ground truth near them");
+  }
+  evaluation.correct_rate = correct_rate(input.gt, est, options.correct);
+  if (matches.empty()) return evaluation;
+  const AlignmentResult fit =
+      align_or_throw(matches, options.alignment.value_or(alignment), options.align_first_n, "strict recipe");
+  fill_absolute(evaluation, matches, fit);
+  evaluation.jitter_m = jitter_of(matches, fit.S_w_v);
+  for (MatchedPose& match : matches) match.est = fit.S_w_v * match.est;
+  fill_rpe(evaluation, matches, options);
+  evaluation.segments =
+      segment_errors(matches, {.lengths_m = options.segment_lengths_m, .tolerance = kSegmentTolerance});
+  evaluation.drift_percent = drift_percent(evaluation.segments);
+  return evaluation;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "eval/io/any_trajectory.h"
+#include "eval/io/euroc_file.h"
+#include "eval/io/matrix_files.h"
+#include "eval/io/openloris_file.h"
+#include "eval/metrics/nees.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/smooth_path.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+void expect_same(const Trajectory& a, const Trajectory& b) {
+  ASSERT_EQ(a.poses.size(), b.poses.size());
+  for (std::size_t i = 0; i < a.poses.size(); ++i) {
+    EXPECT_EQ(a.poses[i].t, b.poses[i].t);
+    EXPECT_LT((a.poses[i].T_w_f.p - b.poses[i].T_w_f.p).norm(), 2e-9);  // 9 decimals a coordinate
+    EXPECT_LT(a.poses[i].T_w_f.q.angularDistance(b.poses[i].T_w_f.q), 1e-7);
+  }
+}
+
+const Trajectory kPath = test::smooth_path(20, 0.1, 1403636579.763555584);
+
+TEST(Formats, ReadBackWhatTheyWrite) {
+  expect_same(parse_tum(format_tum(kPath), "a").trajectory, kPath);
+  expect_same(parse_euroc(format_euroc(kPath), "a").trajectory, kPath);
+  const KittiTexts kitti = format_kitti(kPath);
+  expect_same(parse_kitti(kitti.poses, "a", kitti.times, "b").trajectory, kPath);
+  const OpenlorisFile file{.scene = "home", .frame = "d400_color", .sequences = {{3, kPath}}};
+  expect_same(parse_openloris(format_openloris(file), "a").sequences.at(3), kPath);
+}
+
+TEST(Formats, ReadBackASevenScenesFolder) {
+  Trajectory path;  // stamps of a 30 Hz clock, as the format has no other
+  for (int i = 0; i < 5; ++i) {
+    path.poses.push_back({Timestamp{(i * 1'000'000'000LL + 15) / 30}, test::smooth_pose(i)});
+  }
+  const TemporaryFolder folder;
+  write_seven_scenes(path, folder.path());
+  expect_same(read_trajectory({.path = folder.path(), .format = "", .times = ""}).trajectory, path);
+}
+
+TEST(Formats, AreRecognisedByContent) {
+  EXPECT_EQ(recognise_format(format_tum(kPath)), "tum");
+  EXPECT_EQ(recognise_format(format_euroc(kPath)), "euroc");
+  EXPECT_EQ(recognise_format(format_kitti(kPath).poses), "kitti");
+  EXPECT_EQ(recognise_format("scene: home\nseq: 1\n"), "openloris");
+}
+
+TEST(Openloris, DropsRepeatedPosesAndKeepsThemWhenTold) {
+  const std::string text =
+      "scene:Home\nframe: d400_imu\nseq: 1\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 nan 0 0 0 0 0 1\n"
+      "4 9.5 1 0 0 0 0 0 1\nseq: 2\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n";
+  const OpenlorisFile dropped = parse_openloris(text, "a");
+  EXPECT_EQ(dropped.scene, "home");
+  EXPECT_EQ(dropped.frame, "d400_imu");
+  // Of sequence 1 the row at 2 s repeats the pose, the one at 3 s is NaN, the one at 4 s has a ninth column
+  // and its pose in the last seven. The first of sequence 2 equals that last one, which is not forgotten
+  // between.
+  EXPECT_EQ(dropped.sequences.at(1).poses.size(), 2u);
+  EXPECT_EQ(dropped.sequences.at(2).poses.size(), 1u);
+  EXPECT_EQ(dropped.repeated_poses, 2u);
+  EXPECT_EQ(dropped.skipped_rows, 1u);
+  EXPECT_EQ(parse_openloris(text, "a", RepeatedPoses::kKeep).sequences.at(2).poses.size(), 2u);
+}
+
+TEST(Formats, NameTheLineOfABadRow) {
+  expect_input_error([] { static_cast<void>(parse_euroc("1.5,0,0,0,1,0,0,0\n", "a.csv")); },
+                     {"a.csv:1", "nanoseconds"});
+  expect_input_error([] { static_cast<void>(parse_kitti("1 0 0 0 0 1 0 0 0 0 2 0\n", "p", "0\n", "t")); },
+                     {"p:1", "no rotation"});
+  expect_input_error([] { static_cast<void>(parse_kitti("1 0 0 0 0 1 0 0 0 0 1 0\n", "p", "0\n1\n", "t")); },
+                     {"t", "more times"});
+  expect_input_error([] { static_cast<void>(parse_openloris("1 0 0 0 0 0 0 1\n", "o")); }, {"o:1", "seq"});
+  expect_input_error([] { static_cast<void>(parse_openloris("seq: 1\nseq: 1\n", "o")); }, {"o:2", "twice"});
+  expect_input_error([] { static_cast<void>(read_trajectory({.path = "/none", .format = "", .times = ""})); },
+                     {"/none", "opened"});
+}
+
+TEST(Nees, IsTheSquaredErrorInUnitsOfTheCovariance) {
+  // 0.2 rad about x with a standard deviation of 0.1 rad: 4. 3 m along y with 1.5 m: 4.
+  const Pose est{exp_so3({0.2, 0.0, 0.0}), {0.0, 3.0, 0.0}};
+  const Nees result =
+      nees(Pose{}, est, 0.01 * Eigen::Matrix3d::Identity(), 2.25 * Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(result.rotation, 4.0, 1e-9);
+  EXPECT_NEAR(result.position, 4.0, 1e-12);
+  EXPECT_THROW(static_cast<void>(nees(Pose{}, est, Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Identity())),
+               InputError);
+}
+
+}  // namespace
+}  // namespace stillpoint
