@@ -73,6 +73,7 @@ struct FeatureTracker::State {
   void apply_mask();
   void find_new(const cv::Mat& gray);
   void measure_depth(const Frame& frame);
+  void remember_references();
 
   FrontendConfig config;
   Camera camera;
@@ -83,7 +84,10 @@ struct FeatureTracker::State {
   ImagePyramid current;
   Timestamp current_t;
   std::vector<Track> tracks;
-  std::vector<cv::Point2f> unstable;  // where features were lost since the last detection
+  // Where features were lost since the last detection: the predicted pixel where KLT failed, the present one
+  // where the motion did not fit. The paper's "failed to be tracked" may not mean the latter, the published
+  // code leaves them out; with them, features on movers are not born again at every detection.
+  std::vector<cv::Point2f> unstable;
   FeatureMask mask;
   std::int64_t next_id = 0;
 
@@ -112,6 +116,7 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
     find_new(gray);
   }
   measure_depth(frame);
+  if (detect) remember_references();
 }
 
 void FeatureTracker::State::follow(const MotionPrior& prior, double interval_s) {
@@ -159,25 +164,27 @@ void FeatureTracker::State::accept(const KltResult& matches, const std::vector<c
 
 void FeatureTracker::State::reject_outliers() {
   const ScopedTimer timer(timings, Module::kOutlierRejection);
-  std::vector<Eigen::Vector2d> from;
-  std::vector<Eigen::Vector2d> to;
+  const std::vector<cv::Point2f> pixels = pixels_of(tracks);
+  std::vector<Match> matches;
+  matches.reserve(tracks.size());
   for (const Track& track : tracks) {
-    from.push_back(track.reference_bearing);
-    to.push_back(track.feature.bearing);
+    matches.push_back({track.reference_bearing, track.reference_depth, track.feature.bearing});
   }
-  const std::vector<std::uint8_t> inliers =
-      epipolar_inliers(from, to,
-                       {.threshold_px = config.ransac_threshold_px,
-                        .confidence = config.ransac_confidence,
-                        .min_inlier_share = config.ransac_min_inlier_share,
-                        .focal_px = camera.focal_px()});
+  const Inliers inliers = find_inliers(matches, {.model = config.outlier_model,
+                                                 .threshold_px = config.ransac_threshold_px,
+                                                 .confidence = config.ransac_confidence,
+                                                 .min_inlier_share = config.ransac_min_inlier_share,
+                                                 .focal_px = camera.focal_px()});
   std::vector<Track> kept;
+  kept.reserve(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (inliers[i] == 0) continue;
-    kept.push_back(tracks[i]);
-    kept.back().reference_bearing = tracks[i].feature.bearing;
+    if (inliers[i] != 0) {
+      kept.push_back(tracks[i]);
+    } else {
+      unstable.push_back(pixels[i]);
+      ++lost;
+    }
   }
-  lost += static_cast<int>(tracks.size() - kept.size());
   tracks = std::move(kept);
 }
 
@@ -210,7 +217,6 @@ void FeatureTracker::State::find_new(const cv::Mat& gray) {
     track.feature.id = next_id++;
     track.feature.pixel = to_vector(corner);
     track.feature.bearing = camera.unproject(track.feature.pixel);
-    track.reference_bearing = track.feature.bearing;
     tracks.push_back(track);
   }
   detected = static_cast<int>(corners.size());
@@ -221,6 +227,13 @@ void FeatureTracker::State::measure_depth(const Frame& frame) {
     track.feature.depth =
         sample_depth(frame.depth, frame.depth_units_per_m, track.feature.pixel, config.depth_max_spread);
     if (track.feature.depth > 0.0) track.known_depth = track.feature.depth;
+  }
+}
+
+void FeatureTracker::State::remember_references() {
+  for (Track& track : tracks) {
+    track.reference_bearing = track.feature.bearing;
+    track.reference_depth = track.feature.depth;
   }
 }
 

@@ -21,6 +21,11 @@ constexpr auto enum_names(FeatureDetectorKind) {
       {{FeatureDetectorKind::kGridFast, "grid_fast"}, {FeatureDetectorKind::kShiTomasi, "shi_tomasi"}}};
 }
 
+enum class OutlierModel { kEpipolar, kRigid };
+constexpr auto enum_names(OutlierModel) {
+  return EnumNames<OutlierModel, 2>{{{OutlierModel::kEpipolar, "epipolar"}, {OutlierModel::kRigid, "rigid"}}};
+}
+
 /// Settings of the grid detector. Paper Sec. III-B; 7x8 from Sec. IV-C, the rest as published code has it.
 struct GridDetectorConfig {
   int rows = 7;
@@ -56,7 +61,9 @@ struct FrontendConfig {
   int max_iterations = 30;
   bool forward_backward = false;  ///< track back and compare
   double forward_backward_px = 0.5;
-  double ransac_threshold_px = 1.0;  ///< epipolar distance, px of the camera's focal length
+  OutlierModel outlier_model =
+      OutlierModel::kEpipolar;       ///< what tracks must agree on; rigid uses their depth
+  double ransac_threshold_px = 1.0;  ///< misfit, px of the camera's focal length
   double ransac_confidence = 0.99;
   double ransac_min_inlier_share = 0.5;  ///< a model that fewer fit is not believed: nothing is rejected
   int border_px = 1;
@@ -81,6 +88,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("max_iterations", config.max_iterations, 1, 100);
   field("forward_backward", config.forward_backward);
   field("forward_backward_px", config.forward_backward_px, 0.01, 10.0);
+  field("outlier_model", config.outlier_model);
   field("ransac_threshold_px", config.ransac_threshold_px, 0.1, 20.0);
   field("ransac_confidence", config.ransac_confidence, 0.5, 0.99999);
   field("ransac_min_inlier_share", config.ransac_min_inlier_share, 0.0, 1.0);

@@ -1,44 +1,89 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frontend/outlier_rejection.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <opencv2/calib3d.hpp>
+#include <optional>
+#include <utility>
 
-#include "core/base/error.h"
+#include "core/frontend/rigid_motion.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMinMatches = 8;
+constexpr std::size_t kMinDepthMatches = 20;
+constexpr double kNoLine = 1e-12;  // without translation there are no epipolar lines to be off
 
-std::vector<cv::Point2f> scaled(std::span<const Eigen::Vector2d> bearings, double focal_px) {
-  std::vector<cv::Point2f> points;
-  points.reserve(bearings.size());
-  for (const Eigen::Vector2d& bearing : bearings) {
-    points.emplace_back(static_cast<float>(focal_px * bearing.x()),
-                        static_cast<float>(focal_px * bearing.y()));
+cv::Point2f to_pixel(const Eigen::Vector2d& bearing, double focal_px) {
+  return {static_cast<float>(focal_px * bearing.x()), static_cast<float>(focal_px * bearing.y())};
+}
+
+std::optional<Inliers> believed(Inliers inliers, const OutlierRejectionSettings& settings) {
+  const auto fitting = std::count(inliers.begin(), inliers.end(), std::uint8_t{1});
+  const double share = static_cast<double>(fitting) / static_cast<double>(inliers.size());
+  if (share < settings.min_inlier_share) return std::nullopt;
+  return inliers;
+}
+
+std::optional<Inliers> epipolar_inliers(std::span<const Match> matches,
+                                        const OutlierRejectionSettings& settings) {
+  std::vector<cv::Point2f> from;
+  std::vector<cv::Point2f> to;
+  for (const Match& match : matches) {
+    from.push_back(to_pixel(match.from, settings.focal_px));
+    to.push_back(to_pixel(match.to, settings.focal_px));
   }
-  return points;
+  Inliers inliers;
+  const cv::Mat matrix =
+      cv::findFundamentalMat(from, to, cv::FM_RANSAC, settings.threshold_px, settings.confidence, inliers);
+  if (matrix.empty() || inliers.size() != matches.size()) return std::nullopt;
+  return believed(std::move(inliers), settings);
+}
+
+/// Distance of a match from where the motion says it should be, or from the line it should be on [normalised
+/// plane].
+double misfit(const Match& match, const Pose& T_to_from) {
+  if (match.depth > 0.0) {
+    const Eigen::Vector3d p_to = T_to_from * Eigen::Vector3d(match.depth * match.from.homogeneous());
+    return p_to.z() > 0.0 ? (p_to.hnormalized() - match.to).norm() : std::numeric_limits<double>::infinity();
+  }
+  const Eigen::Vector3d ray_from = match.from.homogeneous();
+  const Eigen::Vector3d line = T_to_from.p.cross(T_to_from.q * ray_from);
+  const double slope = line.head<2>().norm();
+  return slope < kNoLine ? 0.0 : std::abs(line.dot(match.to.homogeneous())) / slope;
+}
+
+std::optional<Inliers> rigid_inliers(std::span<const Match> matches,
+                                     const OutlierRejectionSettings& settings) {
+  std::vector<PointObservation> observations;
+  for (const Match& match : matches) {
+    if (match.depth > 0.0) observations.push_back({match.depth * match.from.homogeneous(), match.to});
+  }
+  if (observations.size() < kMinDepthMatches) return std::nullopt;
+  const std::optional<Pose> T_to_from = estimate_rigid_motion(
+      observations,
+      {.threshold = settings.threshold_px / settings.focal_px, .confidence = settings.confidence});
+  if (!T_to_from) return std::nullopt;
+  Inliers inliers;
+  for (const Match& match : matches) {
+    inliers.push_back(misfit(match, *T_to_from) * settings.focal_px <= settings.threshold_px ? 1 : 0);
+  }
+  return believed(std::move(inliers), settings);
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> epipolar_inliers(std::span<const Eigen::Vector2d> from,
-                                           std::span<const Eigen::Vector2d> to,
-                                           const OutlierRejectionSettings& settings) {
-  STILLPOINT_CHECK(from.size() == to.size());
-  std::vector<std::uint8_t> all(from.size(), 1);
-  if (from.size() < kMinMatches) return all;
-
-  std::vector<std::uint8_t> inliers;
-  const cv::Mat model =
-      cv::findFundamentalMat(scaled(from, settings.focal_px), scaled(to, settings.focal_px), cv::FM_RANSAC,
-                             settings.threshold_px, settings.confidence, inliers);
-  if (model.empty() || inliers.size() != all.size()) return all;
-  const auto fitting =
-      static_cast<double>(std::count_if(inliers.begin(), inliers.end(), [](auto in) { return in != 0; }));
-  const bool believed = fitting >= settings.min_inlier_share * static_cast<double>(all.size());
-  return believed ? inliers : all;
+Inliers find_inliers(std::span<const Match> matches, const OutlierRejectionSettings& settings) {
+  const Inliers all(matches.size(), 1);
+  if (matches.size() < kMinMatches) return all;
+  if (settings.model == OutlierModel::kRigid) {
+    if (const std::optional<Inliers> inliers = rigid_inliers(matches, settings)) return *inliers;
+  }
+  return epipolar_inliers(matches, settings).value_or(all);
 }
 
 }  // namespace stillpoint

@@ -9,9 +9,11 @@ namespace stillpoint {
 struct Track {
   TrackedFeature feature;    ///< as the last picture saw it
   double known_depth = 0.0;  ///< last depth ever measured [m]; 0 = never
-  /// Bearing at the last outlier rejection, or at birth. Comparing with it instead of the last picture's
-  /// leaves no interval unchecked when pictures without detection lie between, and gives a longer baseline.
+  /// Where it was at the last detection: outliers are looked for against that instead of the last picture,
+  /// which leaves no interval unchecked when pictures without detection lie between, and gives a longer
+  /// baseline.
   Eigen::Vector2d reference_bearing = Eigen::Vector2d::Zero();
+  double reference_depth = 0.0;  ///< [m] at that time; 0 = not measured
 };
 
 }  // namespace stillpoint

@@ -20,7 +20,8 @@ else()
 endif()
 
 add_library(stillpoint_warnings INTERFACE)
-target_compile_options(stillpoint_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Werror)
+target_compile_options(stillpoint_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Werror
+                       -Wno-missing-field-initializers)  # designated initialisers leave the rest at their defaults
 
 add_library(stillpoint_options INTERFACE)
 target_include_directories(stillpoint_options INTERFACE ${PROJECT_SOURCE_DIR})

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/commands.h"
+
+namespace stillpoint {
+
+Command data_command() {
+  return {.name = "data",
+          .summary = "Make and inspect sequences",
+          .example = "data synth walking_xyz --out build/walking_xyz",
+          .options = {},
+          .action = {},
+          .subcommands = {synth_command()}};
+}
+
+}  // namespace stillpoint

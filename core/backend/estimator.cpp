@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/estimator.h"
+
+#include <algorithm>
+
+#include "core/backend/camera_pose.h"
+#include "core/backend/depth_initialization.h"
+#include "core/backend/initializer.h"
+#include "core/backend/landmark_tracks.h"
+#include "core/backend/marginalization.h"
+#include "core/base/error.h"
+#include "core/geometry/so3.h"
+#include "core/imu/propagation.h"
+
+namespace stillpoint {
+namespace {
+
+/// Reprojection within which a point takes part in locating a new camera.
+constexpr double kLocateInlier_px = 5.0;
+
+/// Limits beyond which an estimate is held to be lost. Qin et al. 2018, Sec. VI-E; values of the published
+/// code.
+constexpr double kMaxAccelBias = 2.5;  // [m/s^2]
+constexpr double kMaxGyroBias = 1.0;   // [rad/s]
+constexpr double kMaxJump_m = 5.0;     // between two pictures
+
+/// Biases further than this from where samples were integrated are not served by the first-order correction.
+constexpr double kRepropagateGyro = 0.01;  // [rad/s]
+constexpr double kRepropagateAccel = 0.1;  // [m/s^2]
+
+ImuNoise scaled(const ImuNoise& noise, double factor) {
+  return {factor * noise.gyro_noise, factor * noise.accel_noise, factor * noise.gyro_walk,
+          factor * noise.accel_walk};
+}
+
+/// Points that the newest frame sees and whose place earlier frames know.
+std::vector<PointSighting> known_points(const Window& window, const DepthConfig& depth) {
+  std::vector<PointSighting> sightings;
+  for (const Landmark& landmark : window.landmarks) {
+    if (landmark.dynamic || landmark.last() != window.newest() || landmark.host == window.newest()) continue;
+    const Observation& host = landmark.observations.front();
+    Landmark placed = landmark;
+    const bool measured = host.depth > 0.0 && host.depth <= depth.max_m;
+    if (placed.inverse_depth <= 0.0 && measured) placed.inverse_depth = 1.0 / host.depth;
+    if (placed.inverse_depth <= 0.0) continue;
+    sightings.push_back({window.position(placed), landmark.observations.back().bearing});
+  }
+  return sightings;
+}
+
+}  // namespace
+
+Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed)
+    : backend_(backend),
+      imu_config_(imu),
+      rig_(rig),
+      seed_(static_cast<std::uint32_t>(seed)),
+      imu_(imu.max_gap_s) {
+  if (imu.enabled && !rig.has_imu) {
+    throw InputError("imu.enabled", "the sequence has no inertial data; run with --variant vo");
+  }
+  if (backend.depth.usage == DepthUsage::kOff) {
+    throw InputError("backend.depth.usage",
+                     "\"off\" leaves the scale unknown; use \"fixed\" or \"weighted\"");
+  }
+  rig_.imu_noise = scaled(rig.imu_noise, imu.noise_scale);
+  window_.T_b_c = rig.T_b_c;
+  window_.time_offset_s = rig.time_offset_s;
+}
+
+MotionPrior Estimator::motion_prior(Timestamp from, Timestamp to) {
+  if (window_.frames.empty()) return {};
+  if (window_.inertial || !uses_imu()) {
+    const bool moved = window_.inertial || window_.newest() > 0;
+    return moved ? full_prior(extrapolate(from).T_w_b, extrapolate(to).T_w_b, window_.T_b_c) : MotionPrior{};
+  }
+  const double offset = window_.time_offset_s;
+  return rotation_prior(imu_.samples_up_to(after(from, offset), after(to, offset)), newest_.gyro_bias,
+                        window_.T_b_c);
+}
+
+/// State at an image stamp: inertial propagation, or constant velocity.
+NavState Estimator::extrapolate(Timestamp t) {
+  if (t == newest_.t) return newest_;
+  NavState state = newest_;
+  const double offset = window_.time_offset_s;
+  if (window_.inertial) {
+    NavState start = newest_;
+    start.t = after(newest_.t, offset);
+    const std::vector<NavState> path =
+        propagate(start, imu_.samples_up_to(start.t, after(t, offset)), window_.gravity_w);
+    if (!path.empty()) state = path.back();
+  } else if (previous_.t < newest_.t) {
+    const double share = seconds_between(newest_.t, t) / seconds_between(previous_.t, newest_.t);
+    const Pose step = previous_.T_w_b.inverse() * newest_.T_w_b;
+    state.T_w_b = newest_.T_w_b * Pose{exp_so3(share * log_so3(step.q)), share * step.p};
+  }
+  state.t = t;
+  return state;
+}
+
+void Estimator::push_frame(const TrackedFrame& frame) {
+  WindowFrame next;
+  next.id = frame.id;
+  next.time_offset_s = window_.time_offset_s;
+  if (window_.frames.empty()) {
+    next.state = newest_;
+    next.state.t = frame.t;
+    window_.frames.push_back(next);
+    window_.prior = first_prior(window_, backend_.initializer);
+    window_.calibration = calibration_prior(window_, backend_);
+    return;
+  }
+  const WindowFrame& last = window_.frames.back();
+  next.state = extrapolate(frame.t);
+  if (uses_imu()) {
+    const std::vector<ImuSample> samples =
+        imu_.samples_up_to(after(last.state.t, last.time_offset_s), after(frame.t, next.time_offset_s));
+    if (samples.size() >= 2) {
+      next.gyro_b = samples.back().gyro_b;
+      next.from_previous.emplace(rig_.imu_noise, last.state.gyro_bias, last.state.accel_bias);
+      next.from_previous->integrate(samples);
+    }
+  }
+  window_.frames.push_back(next);
+}
+
+/// Finds the newest camera among known points where inertial data do not say where it is.
+bool Estimator::locate_newest() {
+  WindowFrame& newest = window_.frames.back();
+  if (window_.inertial) return newest.from_previous.has_value();
+  if (window_.newest() == 0) return true;
+  Pose prediction = newest.state.T_w_b;
+  if (newest.from_previous) {
+    const NavState& before = window_.frames[window_.frames.size() - 2].state;
+    prediction.q = before.T_w_b.q * newest.from_previous->delta_q(before.gyro_bias);
+  }
+  const CameraPoseOptions options{.inlier_threshold = kLocateInlier_px / rig_.camera.focal_px(),
+                                  .seed = seed_ + static_cast<std::uint32_t>(newest.id)};
+  const std::optional<CameraPose> found =
+      estimate_camera_pose(known_points(window_, backend_.depth), prediction * window_.T_b_c, options);
+  newest.state.T_w_b = found ? found->T_w_c * window_.T_b_c.inverse() : prediction;
+  return found.has_value();
+}
+
+void Estimator::refresh_preintegrations() {
+  for (std::size_t i = 1; i < window_.frames.size(); ++i) {
+    std::optional<Preintegration>& imu = window_.frames[i].from_previous;
+    const NavState& state = window_.frames[i - 1].state;
+    if (!imu) continue;
+    const bool far = (state.gyro_bias - imu->gyro_bias()).norm() > kRepropagateGyro ||
+                     (state.accel_bias - imu->accel_bias()).norm() > kRepropagateAccel;
+    if (far) imu->repropagate(state.gyro_bias, state.accel_bias);
+  }
+}
+
+void Estimator::try_to_become_inertial() {
+  if (!uses_imu() || window_.inertial) return;
+  const double span = seconds_between(window_.frames.front().state.t, window_.frames.back().state.t);
+  const bool instant = backend_.initializer.kind == InitializerKind::kInstant && window_.newest() >= 4;
+  if (!is_full() && !(instant && span >= backend_.initializer.min_span_s)) return;
+  const std::optional<InertialAlignment> alignment =
+      align_with_imu(window_, imu_config_.gravity, backend_.initializer);
+  if (!alignment) return;
+  make_inertial(*alignment, window_.frames.front().state.T_w_b, window_);
+  window_.prior = first_prior(window_, backend_.initializer);
+}
+
+bool Estimator::has_failed(const NavState& before) const {
+  const NavState& now = window_.frames.back().state;
+  const bool finite = now.T_w_b.p.allFinite() && now.T_w_b.q.coeffs().allFinite() && now.v_w.allFinite();
+  return !finite || now.accel_bias.norm() > kMaxAccelBias || now.gyro_bias.norm() > kMaxGyroBias ||
+         (now.T_w_b.p - before.T_w_b.p).norm() > kMaxJump_m;
+}
+
+/// Begins anew where the last trusted state was, so that the world stays the same world.
+void Estimator::restart() {
+  Window fresh;
+  fresh.T_b_c = rig_.T_b_c;
+  fresh.time_offset_s = rig_.time_offset_s;
+  fresh.gravity_w = window_.gravity_w;
+  window_ = std::move(fresh);
+  newest_.v_w.setZero();
+  previous_ = newest_;
+}
+
+void Estimator::slide(bool keyframe) {
+  if (!is_full()) return;
+  if (keyframe) {
+    LinearPrior prior = marginalize_oldest(window_, backend_, rig_.camera.focal_px());
+    remove_oldest_frame(window_);
+    window_.prior = std::move(prior);
+  } else {
+    window_.prior = marginalize_frame(window_.prior, window_.newest() - 1);
+    remove_second_newest_frame(window_);
+  }
+}
+
+OdometryStatus Estimator::status() const {
+  if (uses_imu() && !window_.inertial) return OdometryStatus::kInitialising;
+  return located_ ? OdometryStatus::kTracking : OdometryStatus::kLost;
+}
+
+OdometryUpdate Estimator::process(const TrackedFrame& frame) {
+  OdometryUpdate update{.frame_id = frame.id};
+  const ScopedTimer thread_timer(update.timings, Module::kOptimizationThread);
+  push_frame(frame);
+  {
+    const ScopedTimer timer(update.timings, Module::kStateOptimization);
+    add_observations(frame, rig_, backend_.depth, window_);
+    const bool keyframe = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
+    located_ = locate_newest();
+    try_to_become_inertial();
+    refresh_preintegrations();
+    initialize_depths(backend_, rig_.camera.focal_px(), window_);
+    const NavState before = newest_;
+    SolveReport report;
+    {
+      const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
+      report = solve_window(window_, backend_, rig_.camera.focal_px());
+    }
+    update.counters = {.tracked_features = static_cast<int>(frame.features.size()),
+                       .window_landmarks = report.landmarks,
+                       .depth_landmarks = report.depth_landmarks,
+                       .solver_iterations = report.iterations,
+                       .keyframe = keyframe};
+    if (has_failed(before)) {
+      update.counters.reset = true;
+      restart();
+    } else {
+      previous_ = newest_;
+      newest_ = window_.frames.back().state;
+      const ScopedTimer slide_timer(update.timings, Module::kMarginalization);
+      slide(keyframe);
+    }
+  }
+  update.status = window_.frames.empty() ? OdometryStatus::kLost : status();
+  update.state = newest_;
+  update.T_w_c = newest_.T_w_b * window_.T_b_c;
+  update.time_offset_s = window_.time_offset_s;
+  return update;
+}
+
+OdometryUpdate Estimator::predict(std::int64_t frame_id, Timestamp t) {
+  OdometryUpdate update{.frame_id = frame_id};
+  update.state = extrapolate(t);
+  update.T_w_c = update.state.T_w_b * window_.T_b_c;
+  update.status = window_.frames.empty() ? OdometryStatus::kInitialising : status();
+  update.time_offset_s = window_.time_offset_s;
+  return update;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/factors/reprojection_factor.h"
+
+#include <cmath>
+
+#include "core/geometry/pose.h"
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+Pose pose_of(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Vector3d(x)}; }
+
+/// A whitened depth error, bounded at `c`, and the slope of the bound.
+struct Bounded {
+  double value;
+  double slope;
+};
+Bounded bound(double d, double c) {
+  const double inner = 1.0 + d * d / (c * c);
+  const double root = std::sqrt(inner);
+  return {d / root, 1.0 / (inner * root)};
+}
+
+/// The landmark on its way from camera i to camera j, and the rotations on that way.
+struct Transfer {
+  Pose T_w_bi, T_w_bj, T_b_c;
+  Eigen::Matrix3d R_cj_w;  ///< R_b_c^T R_w_bj^T
+  Eigen::Matrix3d R_cj_bi;
+  Eigen::Vector3d ray_i;  ///< bearing at the state's time, z = 1
+  Eigen::Vector3d p_ci, p_bi, p_bj, p_cj;
+
+  Transfer(double const* const* x, const Eigen::Vector2d& bearing_i)
+      : T_w_bi(pose_of(x[0])), T_w_bj(pose_of(x[1])), T_b_c(pose_of(x[2])) {
+    const Eigen::Matrix3d R_bi = T_w_bi.R();
+    const Eigen::Matrix3d R_bj_t = T_w_bj.R().transpose();
+    const Eigen::Matrix3d R_bc_t = T_b_c.R().transpose();
+    R_cj_w = R_bc_t * R_bj_t;
+    R_cj_bi = R_cj_w * R_bi;
+    ray_i = bearing_i.homogeneous();
+    p_ci = ray_i / x[4][0];
+    p_bi = T_b_c * p_ci;
+    p_bj = R_bj_t * (R_bi * p_bi + T_w_bi.p - T_w_bj.p);
+    p_cj = R_bc_t * (p_bj - T_b_c.p);
+  }
+};
+
+using Matrix36 = Eigen::Matrix<double, 3, 6>;
+
+Matrix36 point_by_pose_i(const Transfer& t) {
+  Matrix36 J;
+  J << t.R_cj_w, -t.R_cj_bi * skew(t.p_bi);
+  return J;
+}
+
+Matrix36 point_by_pose_j(const Transfer& t) {
+  Matrix36 J;
+  J << -t.R_cj_w, t.T_b_c.R().transpose() * skew(t.p_bj);
+  return J;
+}
+
+Matrix36 point_by_extrinsics(const Transfer& t) {
+  const Eigen::Matrix3d R_bc = t.T_b_c.R();
+  Matrix36 J;
+  J << t.R_cj_bi - R_bc.transpose(), -t.R_cj_bi * R_bc * skew(t.p_ci) + skew(t.p_cj);
+  return J;
+}
+
+/// Writes d residual / d pose, tangent in the first six columns of seven.
+template <int Rows>
+void write_pose_jacobian(double* out, const Eigen::Matrix<double, Rows, 3>& by_point,
+                         const Matrix36& point_by_pose) {
+  Eigen::Map<Eigen::Matrix<double, Rows, 7, Eigen::RowMajor>> J(out);
+  J.template leftCols<6>() = by_point * point_by_pose;
+  J.col(6).setZero();
+}
+
+}  // namespace
+
+template <int Rows>
+bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const ReprojectionMeasurement& m = measurement_;
+  const double time_offset = x[3][0];
+  const Eigen::Vector2d bearing_i = m.bearing_i - (time_offset + m.exposure_i_s) * m.velocity_i;
+  const Eigen::Vector2d bearing_j = m.bearing_j - (time_offset + m.exposure_j_s) * m.velocity_j;
+  const Transfer t(x, bearing_i);
+  if (t.p_cj.z() < 1e-3) return false;  // behind the camera: the step that led here is refused
+
+  const double inverse_z = 1.0 / t.p_cj.z();
+  const double weight = 1.0 / noise_.bearing;
+  const Eigen::Vector2d seen = t.p_cj.head<2>() * inverse_z;
+  Eigen::Map<Eigen::Matrix<double, Rows, 1>> r(residuals);
+  r.template head<2>() = weight * (seen - bearing_j);
+
+  Eigen::Matrix<double, Rows, 3> by_point;
+  by_point.template topRows<2>() << weight * inverse_z, 0.0, -weight * seen.x() * inverse_z,  //
+      0.0, weight * inverse_z, -weight * seen.y() * inverse_z;
+  if constexpr (Rows == 3) {
+    const Bounded depth = bound((inverse_z - m.inverse_depth_j) / noise_.inverse_depth, noise_.depth_outlier);
+    r[2] = depth.value;
+    by_point.row(2) << 0.0, 0.0, -depth.slope * inverse_z * inverse_z / noise_.inverse_depth;
+  }
+  if (jacobians == nullptr) return true;
+
+  if (jacobians[0] != nullptr) write_pose_jacobian<Rows>(jacobians[0], by_point, point_by_pose_i(t));
+  if (jacobians[1] != nullptr) write_pose_jacobian<Rows>(jacobians[1], by_point, point_by_pose_j(t));
+  if (jacobians[2] != nullptr) write_pose_jacobian<Rows>(jacobians[2], by_point, point_by_extrinsics(t));
+  if (jacobians[3] == nullptr && jacobians[4] == nullptr) return true;
+  const Eigen::Matrix<double, Rows, 3> by_ray = by_point * t.R_cj_bi * t.T_b_c.R();
+  if (jacobians[3] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[3]);
+    J = by_ray.template leftCols<2>() * m.velocity_i / -x[4][0];
+    J.template head<2>() += weight * m.velocity_j;
+  }
+  if (jacobians[4] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, Rows, 1>>{jacobians[4]} = by_ray * t.p_ci / -x[4][0];
+  }
+  return true;
+}
+
+template class ReprojectionFactor<2>;
+template class ReprojectionFactor<3>;
+
+bool HostDepthFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const Bounded depth = bound((x[0][0] - measured_) / noise_.inverse_depth, noise_.depth_outlier);
+  residuals[0] = depth.value;
+  if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = depth.slope / noise_.inverse_depth;
+  return true;
+}
+
+}  // namespace stillpoint

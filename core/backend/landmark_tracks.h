@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Keeps the landmarks' observations in step with the frames of the window.
+#pragma once
+
+#include "core/backend/backend_config.h"
+#include "core/backend/window.h"
+#include "core/types/tracked_frame.h"
+
+namespace stillpoint {
+
+/// Adds what the tracker saw in the window's newest frame; unknown ids become new landmarks.
+/// @param frame features by rising id
+void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConfig& config, Window& window);
+
+/// Whether the frame before the newest should stay in the window: it sees few old landmarks, or moved enough
+/// against its predecessor, or that one is long past. Qin et al. 2018, Sec. IV-A.
+[[nodiscard]] bool is_second_newest_keyframe(const Window& window, const BackendConfig& config,
+                                             double focal_px);
+
+/// Drops the oldest frame; landmarks hosted there move to the next frame that saw them.
+void remove_oldest_frame(Window& window);
+
+/// Drops the frame before the newest; its inertial samples go to the newest.
+void remove_second_newest_frame(Window& window);
+
+/// Inertial samples of `later` appended to `earlier`; absent if either is.
+[[nodiscard]] std::optional<Preintegration> merged(const std::optional<Preintegration>& earlier,
+                                                   const std::optional<Preintegration>& later);
+
+}  // namespace stillpoint

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/marginalization.h"
+
+#include <algorithm>
+
+#include "core/backend/normal_equations.h"
+
+namespace stillpoint {
+namespace {
+
+std::vector<int> columns_of(int first, int size) {
+  std::vector<int> columns(static_cast<std::size_t>(size));
+  for (int i = 0; i < size; ++i) columns[static_cast<std::size_t>(i)] = first + i;
+  return columns;
+}
+
+void append(std::vector<int>& to, const std::vector<int>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+/// All blocks that a prior over this window may speak of: the states after the oldest. Calibration is taken
+/// as known: an early, wrong time offset would be frozen into the prior, sure of itself.
+std::vector<BlockRef> candidate_blocks(const Window& window) {
+  std::vector<BlockRef> blocks;
+  for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
+  if (!window.inertial) return blocks;
+  for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
+  return blocks;
+}
+
+NormalEquations linearize_oldest(const Window& window, const BackendConfig& config, double focal_px,
+                                 ParameterBlocks& blocks) {
+  NormalEquations equations(static_cast<int>(window.frames.size()));
+  ResidualBuilder builder(window, config, focal_px);
+  std::vector<Residual> group;
+  builder.add_prior(group);
+  if (window.newest() >= 1) builder.add_imu(1, group);
+  equations.add(group, blocks, false);
+  for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
+    const Landmark& landmark = window.landmarks[i];
+    if (landmark.host != 0 || !is_usable(landmark)) continue;
+    group.clear();
+    builder.add_landmark(static_cast<int>(i), group);
+    const bool fixed = config.depth.usage == DepthUsage::kFixed && landmark.source == DepthSource::kMeasured;
+    equations.add(group, blocks, fixed);
+  }
+  return equations;
+}
+
+}  // namespace
+
+LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config, double focal_px) {
+  ParameterBlocks blocks = pack(window);
+  const NormalEquations equations = linearize_oldest(window, config, focal_px, blocks);
+  const StateLayout& layout = equations.layout;
+
+  std::vector<int> gone = columns_of(layout.column({BlockKind::kPose, 0}), 6);
+  if (window.inertial) append(gone, columns_of(layout.column({BlockKind::kSpeedBias, 0}), 9));
+
+  LinearPrior prior;
+  std::vector<int> kept;
+  for (const BlockRef block : candidate_blocks(window)) {
+    const int column = layout.column(block);
+    const int size = local_size(block.kind);
+    if (equations.H.diagonal().segment(column, size).isZero(0.0)) continue;
+    append(kept, columns_of(column, size));
+    const Eigen::Map<const Eigen::VectorXd> now(block_address(blocks, block), global_size(block.kind));
+    prior.blocks.push_back({block.kind, block.frame - 1, now});
+  }
+  SquareRoot root = eliminate(equations.H, equations.b, gone, kept);
+  prior.jacobian = std::move(root.jacobian);
+  prior.residual = std::move(root.residual);
+  return prior;
+}
+
+LinearPrior marginalize_frame(const LinearPrior& prior, int frame) {
+  LinearPrior left;
+  std::vector<int> gone;
+  std::vector<int> kept;
+  int column = 0;
+  for (const PriorBlock& block : prior.blocks) {
+    const int size = local_size(block.kind);
+    append(block.frame == frame ? gone : kept, columns_of(column, size));
+    if (block.frame != frame) {
+      left.blocks.push_back(block);
+      if (block.frame > frame) --left.blocks.back().frame;
+    }
+    column += size;
+  }
+  if (gone.empty()) {
+    left.jacobian = prior.jacobian;
+    left.residual = prior.residual;
+    return left;
+  }
+  const Eigen::MatrixXd H = prior.jacobian.transpose() * prior.jacobian;
+  const Eigen::VectorXd b = prior.jacobian.transpose() * prior.residual;
+  SquareRoot root = eliminate(H, b, gone, kept);
+  left.jacobian = std::move(root.jacobian);
+  left.residual = std::move(root.residual);
+  return left;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/window_solver.h"
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include "core/backend/factors/pose_manifold.h"
+#include "core/backend/window_problem.h"
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+/// Below this speed the picture does not move enough to show its own delay.
+constexpr double kMinSpeedForCalibration = 0.2;  // [m/s]
+
+/// Elimination groups of the Schur complement.
+constexpr int kLandmarkGroup = 0;
+constexpr int kStateGroup = 1;
+
+std::vector<Residual> make_residuals(const Window& window, ResidualBuilder& builder, SolveReport& report) {
+  std::vector<Residual> residuals;
+  builder.add_prior(residuals);
+  builder.add_calibration(residuals);
+  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame, residuals);
+  for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
+    if (!is_usable(window.landmarks[i])) continue;
+    builder.add_landmark(static_cast<int>(i), residuals);
+    ++report.landmarks;
+    report.depth_landmarks += window.landmarks[i].source == DepthSource::kMeasured;
+  }
+  return residuals;
+}
+
+/// A window's blocks, residuals and Ceres problem, in one place because they point at each other.
+class WindowProblem {
+ public:
+  WindowProblem(const Window& window, const BackendConfig& config, double focal_px, SolveReport& report)
+      : blocks_(pack(window)),
+        builder_(window, config, focal_px),
+        residuals_(make_residuals(window, builder_, report)),
+        problem_(options()) {
+    add_states(window);
+    for (const Residual& r : residuals_) {
+      problem_.AddResidualBlock(r.cost.get(), r.loss, parameter_addresses(r, blocks_));
+    }
+    order_landmarks(window, config);
+    hold_calibration(window, config);
+  }
+
+  ceres::Solver::Summary solve(const BackendConfig& config) {
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_SCHUR;
+    options.linear_solver_ordering = ordering_;
+    options.trust_region_strategy_type = ceres::DOGLEG;
+    options.max_num_iterations = config.max_iterations;
+    options.function_tolerance = config.function_tolerance;
+    options.num_threads = 1;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem_, &summary);
+    return summary;
+  }
+
+  [[nodiscard]] ParameterBlocks& blocks() { return blocks_; }
+
+ private:
+  static ceres::Problem::Options options() {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;
+    return options;
+  }
+
+  void add_states(const Window& window) {
+    for (std::size_t i = 0; i < window.frames.size(); ++i) {
+      add_state(blocks_.pose(i), 7, &manifold_);
+      if (window.inertial) add_state(blocks_.speed_bias(i), 9, nullptr);
+    }
+    add_state(blocks_.extrinsics(), 7, &manifold_);
+    add_state(blocks_.time_offset(), 1, nullptr);
+  }
+
+  void add_state(double* block, int size, ceres::Manifold* manifold) {
+    problem_.AddParameterBlock(block, size, manifold);
+    ordering_->AddElementToGroup(block, kStateGroup);
+  }
+
+  /// Measured depth is held fixed where the configuration says so (the published system's choice).
+  void order_landmarks(const Window& window, const BackendConfig& config) {
+    for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
+      if (!is_usable(window.landmarks[i])) continue;
+      double* block = blocks_.inverse_depth(i);
+      ordering_->AddElementToGroup(block, kLandmarkGroup);
+      const bool measured = window.landmarks[i].source == DepthSource::kMeasured;
+      if (config.depth.usage == DepthUsage::kFixed && measured)
+        problem_.SetParameterBlockConstant(block);
+      else
+        problem_.SetParameterLowerBound(block, 0, 1.0 / config.depth.farthest_m);
+    }
+  }
+
+  void hold_calibration(const Window& window, const BackendConfig& config) {
+    const bool moving = window.inertial && window.frames.back().state.v_w.norm() > kMinSpeedForCalibration;
+    if (!config.estimate_extrinsics || !moving) problem_.SetParameterBlockConstant(blocks_.extrinsics());
+    if (!config.estimate_time_offset || !moving) problem_.SetParameterBlockConstant(blocks_.time_offset());
+  }
+
+  PoseManifold manifold_;
+  ParameterBlocks blocks_;
+  ResidualBuilder builder_;
+  std::vector<Residual> residuals_;
+  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
+      std::make_shared<ceres::ParameterBlockOrdering>();
+  ceres::Problem problem_;
+};
+
+}  // namespace
+
+SolveReport solve_window(Window& window, const BackendConfig& config, double focal_px) {
+  STILLPOINT_CHECK(!window.prior.empty());
+  SolveReport report;
+  WindowProblem problem(window, config, focal_px, report);
+  const ceres::Solver::Summary summary = problem.solve(config);
+  report.iterations = static_cast<int>(summary.iterations.size());
+  report.initial_cost = summary.initial_cost;
+  report.final_cost = summary.final_cost;
+  report.usable = summary.IsSolutionUsable();
+  if (report.usable) unpack(problem.blocks(), window);
+  return report;
+}
+
+}  // namespace stillpoint

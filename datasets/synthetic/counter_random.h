@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Random numbers that depend on a key and a counter only: same seed, same bits, whatever the thread and
+/// order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace stillpoint {
+
+/// What a random stream is for; each purpose has its own numbers, so that adding one never shifts another.
+enum class RandomStream : std::uint64_t {
+  kColorNoise = 1,
+  kDepthNoise,
+  kDroppedFrames,
+  kGyro,
+  kAccel,
+  kMotion,
+  kTexture,
+  kScene,
+  kPeople,
+  kDetector,
+};
+
+/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits look independent.
+[[nodiscard]] constexpr std::uint64_t mix_bits(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+/// Key of one stream of one seed; `index` parts it further (a frame, a person, a texture).
+[[nodiscard]] constexpr std::uint64_t random_key(std::uint64_t seed, RandomStream stream,
+                                                 std::uint64_t index = 0) {
+  return mix_bits(mix_bits(seed ^ (static_cast<std::uint64_t>(stream) << 56)) + index);
+}
+
+/// Normal deviate of 12 random bits: the quantile of the middle of their cell. Tails end at 3.7 sigma.
+[[nodiscard]] float normal_from_bits(std::uint64_t bits);
+
+/// A sequence of numbers for scene building and sensors with few draws.
+class RandomSequence {
+ public:
+  explicit RandomSequence(std::uint64_t key) : key_(key) {}
+
+  [[nodiscard]] std::uint64_t bits() { return mix_bits(key_ + counter_++ * 0xd1342543de82ef95ULL); }
+  /// In [0, 1).
+  [[nodiscard]] double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
+  [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// In [0, count).
+  [[nodiscard]] int index(int count) { return static_cast<int>(uniform() * count); }
+  /// Zero mean, unit variance (Box and Muller 1958).
+  [[nodiscard]] double normal();
+  [[nodiscard]] bool chance(double probability) { return uniform() < probability; }
+
+ private:
+  std::uint64_t key_;
+  std::uint64_t counter_ = 0;
+};
+
+}  // namespace stillpoint

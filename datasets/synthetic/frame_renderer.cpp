@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/synthetic/frame_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "datasets/synthetic/lightmap.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kBlockColumns = 4;  // pixels of a packet: near each other, so that their rays stay together
+constexpr int kBlockRows = 2;
+constexpr int kCenterTable = kLightSamples;
+constexpr float kFar_m = 1000.0F;
+/// Rotated-grid places in the pixel [px].
+constexpr std::array<Eigen::Vector2d::Scalar, kLightSamples> kOffset_x{-0.125, 0.375, 0.125, -0.375};
+constexpr std::array<Eigen::Vector2d::Scalar, kLightSamples> kOffset_y{-0.375, -0.125, 0.375, 0.125};
+/// Added to the wanted mip level before rounding down: the mean over the samples blends two levels
+/// (trilinear).
+constexpr std::array<float, kLightSamples> kLevelDither{0.625F, 0.125F, 0.875F, 0.375F};
+/// Each sample stands for about half a pixel's width; its filter is sqrt(1/2) wide as a compromise with
+/// aliasing.
+constexpr float kLevelBias = -0.5F;
+
+/// log2 by the exponent and a straight line through the mantissa: within 0.09.
+float rough_log2(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const float exponent = static_cast<float>(static_cast<int>(bits >> 23) - 127);
+  return exponent + static_cast<float>(bits & 0x7fffffU) * 0x1.0p-23F;
+}
+
+struct View {
+  Eigen::Matrix3f R_w_c;
+  Eigen::Vector3f p_w;
+};
+
+View view_of(const Pose& T_w_c) { return {T_w_c.R().cast<float>(), T_w_c.p.cast<float>()}; }
+
+}  // namespace
+
+/// The pixels of one packet; those beyond the picture are off.
+struct FrameRenderer::Block {
+  int row, column;
+  [[nodiscard]] int row_of(int lane) const { return row + lane / kBlockColumns; }
+  [[nodiscard]] int column_of(int lane) const { return column + lane % kBlockColumns; }
+};
+
+struct FrameRenderer::Job {
+  const Shot* shot;
+  const MoverFrame* looks;
+  const RayTracer::Movers* movers;
+  std::vector<std::array<View, kLightSamples + 1>> views;  // per row
+};
+
+double exposure_share(int index) { return (index + 0.5) / kLightSamples - 0.5; }
+
+FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const Camera& camera)
+    : world_(world), tracer_(tracer), camera_(camera) {
+  for (int table = 0; table <= kLightSamples; ++table) {
+    const auto at = static_cast<std::size_t>(table);
+    const Eigen::Vector2d offset =
+        table < kLightSamples ? Eigen::Vector2d(kOffset_x[at], kOffset_y[at]) : Eigen::Vector2d(0.0, 0.0);
+    for (int row = 0; row < camera.height; ++row) {
+      for (int column = 0; column < camera.width; ++column) {
+        directions_[at].push_back(camera.unproject(Eigen::Vector2d(column, row) + offset).cast<float>());
+      }
+    }
+  }
+}
+
+RenderedFrame FrameRenderer::render(const Shot& shot, const MoverFrame* movers) const {
+  Job job{&shot, movers, nullptr, {}};
+  for (std::size_t row = 0; row < shot.light_poses.size(); ++row) {
+    std::array<View, kLightSamples + 1> views;
+    for (std::size_t i = 0; i < kLightSamples; ++i) views[i] = view_of(shot.light_poses[row][i]);
+    views[kCenterTable] = view_of(shot.depth_poses[row]);
+    job.views.push_back(views);
+  }
+  std::optional<RayTracer::Movers> mover_scene;
+  if (movers != nullptr && !movers->mesh.triangles.empty()) {
+    mover_scene.emplace(tracer_, movers->mesh);
+    job.movers = &*mover_scene;
+  }
+  const auto pixels = static_cast<std::size_t>(camera_.width * camera_.height);
+  RenderedFrame frame{camera_.width, camera_.height, std::vector<Float4>(pixels), std::vector<float>(pixels),
+                      std::vector<std::uint16_t>(pixels)};
+  for (int row = 0; row < camera_.height; row += kBlockRows) {
+    for (int column = 0; column < camera_.width; column += kBlockColumns)
+      render_block(job, row, column, frame);
+  }
+  return frame;
+}
+
+RayPacket FrameRenderer::aim(const Job& job, const Block& block, int sample) const {
+  RayPacket packet;
+  const std::vector<Eigen::Vector2f>& table = directions_[static_cast<std::size_t>(sample)];
+  for (int lane = 0; lane < kPacket; ++lane) {
+    const int row = std::min(block.row_of(lane), camera_.height - 1);
+    const int column = std::min(block.column_of(lane), camera_.width - 1);
+    const bool inside = row == block.row_of(lane) && column == block.column_of(lane);
+    const std::size_t moment = job.views.size() == 1 ? 0 : static_cast<std::size_t>(row);
+    const View& view = job.views[moment][static_cast<std::size_t>(sample)];
+    const Eigen::Vector2f& point = table[static_cast<std::size_t>(row * camera_.width + column)];
+    const Eigen::Vector3f direction = view.R_w_c * Eigen::Vector3f(point.x(), point.y(), 1.0F);
+    const float share = sample == kCenterTable ? 0.0F : static_cast<float>(exposure_share(sample));
+    packet.origin_x[lane] = view.p_w.x(), packet.direction_x[lane] = direction.x();
+    packet.origin_y[lane] = view.p_w.y(), packet.direction_y[lane] = direction.y();
+    packet.origin_z[lane] = view.p_w.z(), packet.direction_z[lane] = direction.z();
+    packet.time[lane] =
+        std::clamp(job.shot->mid_times[moment] + share * job.shot->exposure_share_of_span, 0.0F, 1.0F);
+    packet.far[lane] = inside ? kFar_m : -1.0F;
+    packet.primitive[lane] = -1;
+    packet.moving[lane] = false;
+  }
+  return packet;
+}
+
+void FrameRenderer::render_block(const Job& job, int block_row, int block_column,
+                                 RenderedFrame& frame) const {
+  const Block block{block_row, block_column};
+  std::array<Float4, kPacket> light{};
+  for (int sample = 0; sample <= kLightSamples; ++sample) {
+    RayPacket packet = aim(job, block, sample);
+    tracer_.trace(packet);
+    if (job.movers != nullptr) job.movers->trace(packet);
+    for (int lane = 0; lane < kPacket; ++lane) {
+      const int row = block.row_of(lane), column = block.column_of(lane);
+      if (packet.primitive[lane] < 0 || row >= camera_.height || column >= camera_.width) continue;
+      if (sample < kLightSamples) {
+        light[static_cast<std::size_t>(lane)] += shade(job, packet, lane, sample) * (1.0F / kLightSamples);
+        continue;
+      }
+      const auto pixel = static_cast<std::size_t>(row * camera_.width + column);
+      const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
+      frame.depth_m[pixel] = packet.far[lane];  // the direction has length 1 along the optical axis
+      if (packet.moving[lane]) {
+        frame.object[pixel] = static_cast<std::uint16_t>(job.looks->looks[primitive].object);
+      }
+    }
+  }
+  for (int lane = 0; lane < kPacket; ++lane) {
+    const int row = block.row_of(lane), column = block.column_of(lane);
+    if (row >= camera_.height || column >= camera_.width) continue;
+    frame.radiance[static_cast<std::size_t>(row * camera_.width + column)] =
+        light[static_cast<std::size_t>(lane)];
+  }
+}
+
+Float4 FrameRenderer::shade(const Job& job, const RayPacket& packet, int lane, int sample) const {
+  const Eigen::Vector3f direction(packet.direction_x[lane], packet.direction_y[lane],
+                                  packet.direction_z[lane]);
+  const float u = packet.u[lane], v = packet.v[lane];
+  const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
+  // Width of half a pixel's cone at the hit, lengthened by the slant of the surface (geometric mean).
+  const float pixel_m = packet.far[lane] / static_cast<float>(camera_.fx);
+  const auto level_of = [&](float texels_per_m, const Eigen::Vector3f& normal) {
+    const float cosine = std::max(std::abs(normal.dot(direction)) / direction.norm(), 0.05F);
+    const float level = rough_log2(pixel_m * texels_per_m) - 0.5F * rough_log2(cosine) + kLevelBias;
+    return std::max(0.0F, level + kLevelDither[static_cast<std::size_t>(sample)]);
+  };
+  if (!packet.moving[lane]) {
+    const Quad& quad = world_.quads[primitive];
+    const Float4 root = world_.textures[static_cast<std::size_t>(quad.texture)].sample(
+        quad.s + u * quad.s_per_u, quad.t + v * quad.t_per_v, level_of(quad.texels_per_m, quad.normal));
+    return root * root * baked_light(world_, quad, u, v);
+  }
+  const MoverTriangle& look = job.looks->looks[primitive];
+  const std::array<std::uint32_t, 3>& corners = job.looks->mesh.triangles[primitive];
+  const float w = 1.0F - u - v;
+  const auto& normals = job.looks->normals;
+  const Eigen::Vector3f normal =
+      (w * normals[corners[0]] + u * normals[corners[1]] + v * normals[corners[2]]).normalized();
+  const Eigen::Vector2f st = w * look.picture[0] + u * look.picture[1] + v * look.picture[2];
+  const Eigen::Vector3f point =
+      Eigen::Vector3f(packet.origin_x[lane], packet.origin_y[lane], packet.origin_z[lane]) +
+      packet.far[lane] * direction;
+  const Float4 root = world_.textures[static_cast<std::size_t>(look.texture)].sample(
+      st.x(), st.y(), level_of(look.texels_per_m, normal));
+  return root * root * open_light(world_, point, normal);
+}
+
+}  // namespace stillpoint

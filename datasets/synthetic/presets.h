@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What to render: a named preset, and everything about it that may be changed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/fields.h"
+#include "core/types/rig.h"
+#include "datasets/synthetic/color_sensor.h"
+#include "datasets/synthetic/depth_sensor.h"
+#include "datasets/synthetic/imu_model.h"
+
+namespace stillpoint {
+
+enum class SequenceLayout { kOpenLoris, kTum };
+constexpr auto enum_names(SequenceLayout) {
+  return EnumNames<SequenceLayout, 2>{
+      {{SequenceLayout::kOpenLoris, "openloris"}, {SequenceLayout::kTum, "tum"}}};
+}
+
+/// A sequence to render. Equal requests give equal bits. Make one with `preset_request`.
+struct SynthRequest {
+  std::string preset = "walking_xyz";
+  std::uint64_t seed = 1;
+  double seconds = 20.0;
+  double frames_per_s = 30.0;
+  int width = 640;
+  int height = 480;
+  double focal_px = 535.0;  ///< for `width`; both axes
+  int walkers = 0;          ///< people who walk, some of whom stop and go
+  int seated = 0;           ///< people who sit and move a little
+  int unknown_movers = 0;   ///< carts and chairs that no detector knows
+  double rolling_shutter_s =
+      0.0;                     ///< read-out time from the first to the last row; stamps are of the middle row
+  double dropped_share = 0.0;  ///< of the frames, lost singly or in short runs
+  SequenceLayout layout = SequenceLayout::kOpenLoris;
+  bool labels = false;  ///< also write a picture of instance numbers for each frame
+  ColorSensor color;
+  DepthSensor depth;
+  ImuSensor imu;
+  std::filesystem::path trajectory_file;  ///< preset flight: poses of the IMU (TUM text)
+  std::filesystem::path imu_file;         ///< preset flight: its readings (EuRoC csv)
+};
+
+/// The list that printing and hashing walk: every field in a fixed order.
+template <class Visitor>
+void visit_fields(Visitor&& field, const ColorSensor& sensor) {
+  field("exposure_s", sensor.exposure_s);
+  field("read_noise", sensor.read_noise);
+  field("shot_noise", sensor.shot_noise);
+  field("vignetting", sensor.vignetting);
+  field("exposure_swing", sensor.exposure_swing);
+  field("exposure_period_s", sensor.exposure_period_s);
+}
+template <class Visitor>
+void visit_fields(Visitor&& field, const DepthSensor& sensor) {
+  field("noise_per_m", sensor.noise_per_m);
+  field("correlated_share", sensor.correlated_share);
+  field("correlation_px", sensor.correlation_px);
+  field("focal_baseline_px_m", sensor.focal_baseline_px_m);
+  field("disparity_step_px", sensor.disparity_step_px);
+  field("min_m", sensor.min_m);
+  field("max_m", sensor.max_m);
+  field("edge_dropout", sensor.edge_dropout);
+  field("units_per_m", sensor.units_per_m);
+}
+template <class Visitor>
+void visit_fields(Visitor&& field, const ImuNoise& noise) {
+  field("gyro_noise", noise.gyro_noise);
+  field("accel_noise", noise.accel_noise);
+  field("gyro_walk", noise.gyro_walk);
+  field("accel_walk", noise.accel_walk);
+}
+template <class Visitor>
+void visit_fields(Visitor&& field, const ImuSensor& sensor) {
+  field("gyro_rate_hz", sensor.gyro_rate_hz);
+  field("accel_rate_hz", sensor.accel_rate_hz);
+  field("noise", sensor.noise);
+  field("gyro_bias", sensor.gyro_bias);
+  field("accel_bias", sensor.accel_bias);
+  field("time_offset_s", sensor.time_offset_s);
+}
+template <class Visitor>
+void visit_fields(Visitor&& field, const SynthRequest& request) {
+  field("preset", request.preset);
+  field("seed", request.seed);
+  field("seconds", request.seconds);
+  field("frames_per_s", request.frames_per_s);
+  field("width", request.width);
+  field("height", request.height);
+  field("focal_px", request.focal_px);
+  field("walkers", request.walkers);
+  field("seated", request.seated);
+  field("unknown_movers", request.unknown_movers);
+  field("rolling_shutter_s", request.rolling_shutter_s);
+  field("dropped_share", request.dropped_share);
+  field("layout", request.layout);
+  field("labels", request.labels);
+  field("color", request.color);
+  field("depth", request.depth);
+  field("imu", request.imu);
+  field("trajectory_file", request.trajectory_file.string());
+  field("imu_file", request.imu_file.string());
+}
+
+/// Names of all presets: walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with the ending
+/// `_empty` (nobody moves), and `flight` (a given path and its real IMU readings, nobody moves).
+[[nodiscard]] std::vector<std::string> preset_names();
+
+/// The request of a preset with its defaults.
+/// @throws InputError if there is no preset of that name
+[[nodiscard]] SynthRequest preset_request(const std::string& name);
+
+/// Checks ranges. @throws InputError naming the first field that is out of range
+void check_request(const SynthRequest& request);
+
+/// Pinhole camera of the request, its axis through the middle of the picture.
+[[nodiscard]] Camera camera_of(const SynthRequest& request);
+
+/// Camera in the body of presets that have no real body: RealSense D435i, colour camera to IMU.
+[[nodiscard]] Pose realsense_T_b_c();
+
+}  // namespace stillpoint

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the Debian 12 packages that Stillpoint is built from. Asks dpkg first and does nothing when all are there.
+#   scripts/setup.sh         what building, testing and running need
+#   scripts/setup.sh --dev   also clang-format and clang-tidy, for scripts/check.sh
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build git make pkg-config ccache
+  libeigen3-dev libceres-dev libsuitesparse-dev
+  libopencv-dev
+  libopenimageio-dev openimageio-tools
+  libembree-dev libtbb-dev
+  libfmt-dev libspdlog-dev libcli11-dev
+  nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev
+  libgtest-dev libbenchmark-dev
+)
+case "${1:-}" in
+  "") ;;
+  --dev) packages+=(clang-format clang-tidy) ;;
+  *) echo "setup: error: unknown option \"$1\"; the only option is --dev" >&2; exit 2 ;;
+esac
+
+is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
+
+if ! command -v dpkg-query apt-get >/dev/null; then
+  echo "setup: error: this is not a Debian system; install the counterparts of: ${packages[*]}" >&2
+  exit 1
+fi
+missing=()
+for package in "${packages[@]}"; do is_installed "$package" || missing+=("$package"); done
+if ((${#missing[@]} == 0)); then
+  echo "setup: all ${#packages[@]} packages are installed"
+  exit 0
+fi
+
+as_root=()
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    echo "setup: error: installing needs root, and there is no sudo; as root run: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y "$@"; }
+
+echo "setup: installing ${#missing[@]} packages: ${missing[*]}"
+apt update || { echo "setup: the package lists could not be fetched; trying once more"; sleep 5; apt update; }
+apt install --no-install-recommends "${missing[@]}"

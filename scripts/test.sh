@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Sets the machine up, builds, and runs every test: the fast ones under asan and ubsan, then all in the release build.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+export UBSAN_OPTIONS=print_stacktrace=1
+
+step "packages"
+scripts/setup.sh
+
+step "release build"
+configure release
+build release all
+
+step "asan and ubsan build of the fast tests"
+configure asan
+build asan fast_tests
+
+step "fast tests under asan and ubsan"
+sanitizers=clean
+ctest --preset asan --label-regex '^fast$' --parallel 2 --quiet --output-log build/logs/ctest-asan.log || sanitizers=failed
+tail -n 12 build/logs/ctest-asan.log
+[[ $sanitizers == clean ]] || cat build/logs/ctest-asan.log
+
+step "all tests of the release build (sanitizers: $sanitizers)"
+ctest --preset release --parallel 2
+[[ $sanitizers == clean ]]

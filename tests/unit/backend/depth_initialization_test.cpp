@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/depth_initialization.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/window_world.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kFocal_px = 500.0;
+
+TEST(DepthInitialization, TriangulatesExactTracks) {
+  const Window window = visual_window(6, 20);
+  for (const Landmark& landmark : window.landmarks) {
+    EXPECT_NEAR(triangulate_depth(window, landmark, 1e-4), 1.0 / landmark.inverse_depth, 1e-9);
+  }
+}
+
+TEST(DepthInitialization, RefusesToTriangulateWithoutParallax) {
+  Window window = visual_window(6, 1);
+  for (WindowFrame& frame : window.frames) frame.state.T_w_b.p.setZero();
+  EXPECT_EQ(triangulate_depth(window, window.landmarks[0], 1.5 / kFocal_px), 0.0);
+}
+
+TEST(DepthInitialization, LeavesOutAMeasurementThatNoOtherViewConfirms) {
+  Window window = visual_window(6, 1);
+  Landmark& landmark = window.landmarks[0];
+  const double truth = 1.0 / landmark.inverse_depth;
+  landmark.inverse_depth = 0.0;
+  landmark.observations[0].depth =
+      0.5;  // an edge: other views would see the point elsewhere by far more than 10 px
+  for (std::size_t i = 2; i < landmark.observations.size(); ++i) landmark.observations[i].depth = 0.0;
+  initialize_depths({}, kFocal_px, window);
+  EXPECT_NEAR(1.0 / landmark.inverse_depth, truth, 1e-9);  // from the one good depth, that of frame 1
+  EXPECT_EQ(landmark.source, DepthSource::kMeasured);
+}
+
+TEST(DepthInitialization, DoesNotBelieveDepthsBeyondTheLimit) {
+  Window window = visual_window(6, 1);
+  Landmark& landmark = window.landmarks[0];
+  landmark.inverse_depth = 0.0;
+  BackendConfig config;
+  config.depth.max_m = 1.0;
+  initialize_depths(config, kFocal_px, window);
+  EXPECT_EQ(landmark.source, DepthSource::kTriangulated);
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/factors/imu_factor.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/so3.h"
+#include "tests/support/numeric_jacobian.h"
+
+namespace stillpoint {
+namespace {
+
+const Eigen::Vector3d kGravity(0.0, 0.0, -9.81);
+
+Preintegration turning_motion() {
+  Preintegration imu(ImuNoise{}, Eigen::Vector3d(0.01, -0.02, 0.03), Eigen::Vector3d(0.1, 0.0, -0.1));
+  std::vector<ImuSample> samples;
+  for (int i = 0; i <= 20; ++i) {
+    const double t = 0.005 * i;
+    samples.push_back({from_seconds(t), {0.5 * t, 1.0 - t, 0.3}, {0.2 + t, -1.0, 9.6}});
+  }
+  imu.integrate(samples);
+  return imu;
+}
+
+std::vector<double> pose_block(const Eigen::Vector3d& p, const Eigen::Vector3d& theta) {
+  const Eigen::Quaterniond q = exp_so3(theta);
+  return {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+TEST(ImuFactor, JacobiansEqualNumericOnes) {
+  const Preintegration imu = turning_motion();
+  const ImuFactor factor(imu, kGravity);
+  const Blocks blocks = {pose_block({1.0, 2.0, 3.0}, {0.1, -0.4, 0.9}),
+                         {0.5, -0.2, 0.1, 0.012, -0.019, 0.028, 0.15, -0.05, -0.08},
+                         pose_block({1.1, 1.9, 3.1}, {0.2, -0.3, 1.0}),
+                         {0.4, -0.1, 0.3, 0.011, -0.021, 0.03, 0.12, 0.02, -0.11}};
+  EXPECT_LT(jacobian_error(factor, blocks), 1e-6);
+}
+
+TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
+  const Preintegration imu = turning_motion();
+  NavState start;
+  start.T_w_b = Pose{exp_so3({0.1, -0.4, 0.9}), {1.0, 2.0, 3.0}};
+  start.v_w = {0.5, -0.2, 0.1};
+  start.gyro_bias = imu.gyro_bias();
+  start.accel_bias = imu.accel_bias();
+  const NavState end = imu.predict(start, kGravity);
+  const auto state_blocks = [](const NavState& s) {
+    const Pose& T = s.T_w_b;
+    return Blocks{{T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w()},
+                  {s.v_w.x(), s.v_w.y(), s.v_w.z(), s.gyro_bias.x(), s.gyro_bias.y(), s.gyro_bias.z(),
+                   s.accel_bias.x(), s.accel_bias.y(), s.accel_bias.z()}};
+  };
+  Blocks blocks = state_blocks(start);
+  const Blocks last = state_blocks(end);
+  blocks.insert(blocks.end(), last.begin(), last.end());
+  EXPECT_LT(residual_at(ImuFactor(imu, kGravity), blocks).norm(), 1e-6);  // standard deviations
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/landmark_tracks.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/window_world.h"
+
+namespace stillpoint {
+namespace {
+
+TEST(LandmarkTracks, KeepTheirPlaceWhenTheOldestFrameGoes) {
+  Window window = visual_window(5, 10);
+  const Eigen::Vector3d before = window.position(window.landmarks[3]);
+  remove_oldest_frame(window);
+  ASSERT_EQ(window.frames.size(), 4u);
+  EXPECT_EQ(window.landmarks[3].host, 0);
+  EXPECT_EQ(window.landmarks[3].observations.size(), 4u);
+  EXPECT_LT((window.position(window.landmarks[3]) - before).norm(), 1e-9);
+}
+
+TEST(LandmarkTracks, LoseOneObservationWhenTheSecondNewestFrameGoes) {
+  Window window = visual_window(5, 10);
+  const Eigen::Vector2d newest = window.landmarks[0].observations.back().bearing;
+  remove_second_newest_frame(window);
+  EXPECT_EQ(window.landmarks[0].last(), 3);
+  EXPECT_EQ(window.landmarks[0].in(3).bearing, newest);
+}
+
+TEST(LandmarkTracks, MoveToTheNewestFrameWhenTheirHostGoes) {
+  Window window = visual_window(5, 1);
+  Landmark& landmark = window.landmarks[0];
+  landmark.host = 3;  // seen by frames 3 and 4 only
+  landmark.observations = {landmark.observations[3], landmark.observations[4]};
+  landmark.inverse_depth = 1.0 / landmark.observations[0].depth;
+  const double depth_in_newest = landmark.observations[1].depth;
+  remove_second_newest_frame(window);
+  ASSERT_EQ(window.landmarks.size(), 1u);
+  EXPECT_EQ(window.landmarks[0].host, 3);
+  EXPECT_NEAR(1.0 / window.landmarks[0].inverse_depth, depth_in_newest, 1e-9);
+}
+
+TEST(LandmarkTracks, JoinByIdAndStartWhereTheTrackerFoundThem) {
+  Window window = visual_window(3, 2);
+  window.frames.push_back(window.frames.back());
+  TrackedFrame frame;
+  frame.features = {{.id = 1, .depth = 2.0}, {.id = 7, .depth = 0.1}};
+  add_observations(frame, Rig{.camera = {.height = 480}}, DepthConfig{}, window);
+  ASSERT_EQ(window.landmarks.size(), 3u);
+  EXPECT_EQ(window.landmarks[1].observations.size(), 4u);
+  EXPECT_EQ(window.landmarks[2].host, 3);
+  EXPECT_EQ(window.landmarks[2].observations[0].depth, 0.0);  // nearer than min_m: not believed
+}
+
+TEST(LandmarkTracks, AStillCameraMakesNoKeyframe) {
+  Window window = visual_window(4, 30);
+  for (Landmark& landmark : window.landmarks) {
+    for (Observation& seen : landmark.observations) seen = landmark.observations[0];
+  }
+  EXPECT_FALSE(is_second_newest_keyframe(window, {}, 500.0));
+  EXPECT_TRUE(
+      is_second_newest_keyframe(window, {.keyframe_max_interval_s = 0.15}, 500.0));  // 0.2 s have passed
+}
+
+}  // namespace
+}  // namespace stillpoint

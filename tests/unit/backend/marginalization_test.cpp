@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/marginalization.h"
+
+#include <gtest/gtest.h>
+
+#include "core/backend/initializer.h"
+#include "core/backend/landmark_tracks.h"
+#include "core/backend/window_solver.h"
+#include "tests/support/window_world.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kFocal_px = 500.0;
+
+TEST(Marginalization, ExactDataGiveAPriorWithoutResidual) {
+  Window window = visual_window(5, 30);
+  window.prior = first_prior(window, InitializerConfig{});
+  const LinearPrior prior = marginalize_oldest(window, {}, kFocal_px);
+  EXPECT_EQ(prior.blocks.size(), 4u);  // poses 1..4, now 0..3
+  EXPECT_EQ(prior.blocks.front().frame, 0);
+  EXPECT_LT(prior.residual.norm(), 1e-6);
+}
+
+TEST(Marginalization, ThePriorPullsADisplacedFrameBack) {
+  const Window truth = visual_window(5, 30);
+  Window window = truth;
+  BackendConfig config;
+  config.depth.usage = DepthUsage::kWeighted;
+  window.prior = first_prior(window, config.initializer);
+  window.prior = marginalize_oldest(window, config, kFocal_px);
+  remove_oldest_frame(window);
+  window.landmarks.clear();  // the prior alone must know where everything is
+  for (WindowFrame& frame : window.frames) frame.state.T_w_b.p += Eigen::Vector3d(0.01, -0.02, 0.015);
+  ASSERT_TRUE(solve_window(window, config, kFocal_px).usable);
+  for (std::size_t i = 0; i < window.frames.size(); ++i) {
+    EXPECT_LT((window.frames[i].state.T_w_b.p - truth.frames[i + 1].state.T_w_b.p).norm(), 1e-6);
+  }
+}
+
+TEST(Marginalization, DroppingAFrameFromAPriorKeepsTheOthersMarginals) {
+  // Two scalars-as-offsets would do, but blocks are poses: x0 - x1 = 0 and x1 = 0 known with unit weight in
+  // p.
+  Eigen::VectorXd origin(7);
+  origin << 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  LinearPrior prior;
+  prior.blocks = {{BlockKind::kPose, 0, origin}, {BlockKind::kPose, 1, origin}};
+  prior.jacobian = Eigen::MatrixXd::Zero(12, 12);
+  prior.jacobian.topLeftCorner<6, 6>().setIdentity();
+  prior.jacobian.topRightCorner<6, 6>() = -Eigen::MatrixXd::Identity(6, 6);
+  prior.jacobian.bottomRightCorner<6, 6>().setIdentity();
+  prior.residual = Eigen::VectorXd::Zero(12);
+  const LinearPrior left = marginalize_frame(prior, 1);
+  ASSERT_EQ(left.blocks.size(), 1u);
+  const Eigen::MatrixXd information = left.jacobian.transpose() * left.jacobian;
+  // variances add: 1 + 1 = 2, so the information is 1/2
+  EXPECT_LT((information - 0.5 * Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace stillpoint

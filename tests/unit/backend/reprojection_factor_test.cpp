@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/factors/reprojection_factor.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/pose.h"
+#include "core/geometry/so3.h"
+#include "tests/support/numeric_jacobian.h"
+
+namespace stillpoint {
+namespace {
+
+std::vector<double> block(const Pose& T) {
+  return {T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w()};
+}
+
+const Pose kTwBi{exp_so3({0.1, -0.2, 0.3}), {0.1, 0.2, 0.3}};
+const Pose kTwBj{exp_so3({0.15, -0.1, 0.25}), {0.3, 0.1, 0.5}};
+const Pose kTbC{exp_so3({0.02, 0.01, -0.03}), {0.02, -0.01, 0.05}};
+constexpr double kInverseDepth = 0.5;  // [1/m]
+
+ReprojectionMeasurement measurement() {
+  return {.bearing_i = {0.2, -0.1},
+          .bearing_j = {0.1, -0.05},
+          .velocity_i = {0.3, -0.2},
+          .velocity_j = {0.25, 0.1},
+          .exposure_i_s = 0.004,
+          .exposure_j_s = -0.003,
+          .inverse_depth_j = 0.53};
+}
+const ReprojectionNoise kNoise{.bearing = 0.003, .inverse_depth = 0.01, .depth_outlier = 2.0};
+
+Blocks blocks_at(double time_offset) {
+  return {block(kTwBi), block(kTwBj), block(kTbC), {time_offset}, {kInverseDepth}};
+}
+
+TEST(ReprojectionFactor, JacobiansEqualNumericOnesWithoutDepth) {
+  EXPECT_LT(jacobian_error(ReprojectionFactor<2>(measurement(), kNoise), blocks_at(0.002)), 1e-6);
+}
+
+TEST(ReprojectionFactor, JacobiansEqualNumericOnesWithDepth) {
+  EXPECT_LT(jacobian_error(ReprojectionFactor<3>(measurement(), kNoise), blocks_at(0.002)), 1e-6);
+}
+
+TEST(ReprojectionFactor, IsZeroWhereTheLandmarkReallyIs) {
+  ReprojectionMeasurement m = measurement();
+  m.velocity_i = m.velocity_j = Eigen::Vector2d::Zero();
+  const Eigen::Vector3d p_ci = m.bearing_i.homogeneous() / kInverseDepth;
+  const Eigen::Vector3d p_cj = (kTwBj * kTbC).inverse() * (kTwBi * kTbC * p_ci);
+  m.bearing_j = p_cj.hnormalized();
+  m.inverse_depth_j = 1.0 / p_cj.z();
+  EXPECT_LT(residual_at(ReprojectionFactor<3>(m, kNoise), blocks_at(0.0)).norm(), 1e-9);
+}
+
+TEST(ReprojectionFactor, DepthRowIsBounded) {
+  ReprojectionMeasurement m = measurement();
+  m.inverse_depth_j = 100.0;  // 1 cm: absurd
+  const double depth_row = residual_at(ReprojectionFactor<3>(m, kNoise), blocks_at(0.0))[2];
+  EXPECT_NEAR(std::abs(depth_row), kNoise.depth_outlier, 1e-3);  // d / sqrt(1 + (d/c)^2) tends to c
+}
+
+TEST(HostDepthFactor, JacobianEqualsNumericOne) {
+  EXPECT_LT(jacobian_error(HostDepthFactor(0.51, kNoise), {{kInverseDepth}}), 1e-6);
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frontend/klt.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/frontend/textured_picture.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kWindowPx = 21;
+const cv::Size kPictureSize(320, 240);
+
+/// Two views of one texture: the second sees everything `shift_px` further left.
+struct Views {
+  ImagePyramid from;
+  ImagePyramid to;
+};
+
+Views shifted_views(int shift_px, int levels) {
+  const cv::Mat texture = random_texture(cv::Size(512, 256), 3);
+  Views views;
+  views.from.rebuild(texture(cv::Rect({50, 8}, kPictureSize)), kWindowPx, levels);
+  views.to.rebuild(texture(cv::Rect({50 + shift_px, 8}, kPictureSize)), kWindowPx, levels);
+  return views;
+}
+
+const std::vector<cv::Point2f> kPoints = {{100.0F, 60.0F}, {160.0F, 120.0F}, {220.0F, 180.0F}};
+
+TEST(Klt, FindsWholePixelShiftsExactly) {
+  const Views views = shifted_views(3, 2);
+  const KltResult result = follow_points(views.from, views.to, kPoints, kPoints, {});
+  for (std::size_t i = 0; i < kPoints.size(); ++i) {
+    EXPECT_TRUE(result.found[i]);
+    EXPECT_LT(cv::norm(result.pixels[i] - (kPoints[i] - cv::Point2f(3.0F, 0.0F))), 0.05);
+  }
+}
+
+TEST(Klt, BackwardCheckKeepsTrueMatchesOnly) {
+  const Views views = shifted_views(3, 2);
+  KltResult forward = follow_points(views.from, views.to, kPoints, kPoints, {});
+  forward.pixels[1] += cv::Point2f(40.0F, 0.0F);  // a match with something else
+  const KltResult checked = check_backward(views.from, views.to, kPoints, forward, {}, 0.5);
+  EXPECT_EQ(checked.found, (std::vector<std::uint8_t>{1, 0, 1}));
+}
+
+TEST(Klt, AcceptsNoPoints) {
+  const Views views = shifted_views(0, 2);
+  EXPECT_TRUE(follow_points(views.from, views.to, {}, {}, {}).pixels.empty());
+}
+
+TEST(Klt, RebuildingKeepsThePixelsInPlace) {
+  ImagePyramid pyramid;
+  pyramid.rebuild(random_texture(kPictureSize, 1), kWindowPx, 3);
+  const unsigned char* const before = pyramid.images().front().data;
+  pyramid.rebuild(random_texture(kPictureSize, 2), kWindowPx, 3);
+  EXPECT_EQ(pyramid.images().front().data, before);
+}
+
+}  // namespace
+}  // namespace stillpoint

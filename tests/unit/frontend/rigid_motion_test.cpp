@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frontend/rigid_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+std::vector<PointObservation> observe(const Pose& T_to_from, int count) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> across(-0.6, 0.6);
+  std::uniform_real_distribution<double> along(1.0, 5.0);
+  std::vector<PointObservation> observations;
+  for (int i = 0; i < count; ++i) {
+    const double depth = along(random);
+    const Eigen::Vector3d point(depth * across(random), depth * across(random), depth);
+    observations.push_back({point, (T_to_from * point).hnormalized()});
+  }
+  return observations;
+}
+
+TEST(RigidMotion, FindsTheMotionBehindAThirdOfOutliers) {
+  const Pose truth{exp_so3({0.02, -0.03, 0.05}), {0.05, -0.02, 0.08}};
+  std::vector<PointObservation> observations = observe(truth, 90);
+  for (std::size_t i = 0; i < 30; ++i) observations[3 * i].bearing.x() += 0.05;
+  const std::optional<Pose> found = estimate_rigid_motion(observations, {});
+  ASSERT_TRUE(found.has_value());
+  // The 60 exact observations hold it against 30 pulls of Cauchy weight (0.001 / 0.05)^2 * 0.05 = 2e-5.
+  EXPECT_LT(log_so3(truth.q.conjugate() * found->q).norm(), 1e-4);
+  EXPECT_LT((truth.p - found->p).norm(), 3e-4);
+}
+
+TEST(RigidMotion, NeedsFourPoints) {
+  EXPECT_FALSE(estimate_rigid_motion(observe(Pose{}, 3), {}).has_value());
+  EXPECT_TRUE(estimate_rigid_motion(observe(Pose{}, 4), {}).has_value());
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/synthetic/render_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "core/base/error.h"
+#include "datasets/sensor_stream.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+SynthRequest small_request(const std::string& preset) {
+  SynthRequest request = preset_request(preset);
+  request.width = 160;
+  request.height = 120;
+  request.focal_px = 134.0;
+  request.seconds = 0.2;  // 6 frames
+  return request;
+}
+
+fs::path fresh_folder(const std::string& name) {
+  const fs::path folder = fs::path(STILLPOINT_BINARY_DIR) / "tests" / "synthetic" / name;
+  fs::remove_all(folder);
+  fs::create_directories(folder.parent_path());
+  return folder;
+}
+
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    files[fs::relative(entry.path(), folder).string()] = {std::istreambuf_iterator<char>(in), {}};
+  }
+  return files;
+}
+
+TEST(RenderSequence, SameSeedGivesTheSameBitsOnOneAndTwoThreads) {
+  const fs::path one = fresh_folder("one_thread"), two = fresh_folder("two_threads");
+  ASSERT_TRUE(render_sequence(small_request("walking_rpy"), one, {.threads = 1}));
+  ASSERT_TRUE(render_sequence(small_request("walking_rpy"), two, {.threads = 2}));
+  EXPECT_EQ(contents(one), contents(two));
+}
+
+TEST(RenderSequence, OtherSeedsGiveOtherPictures) {
+  const fs::path one = fresh_folder("seed_one"), two = fresh_folder("seed_two");
+  SynthRequest request = small_request("walking_xyz");
+  ASSERT_TRUE(render_sequence(request, one));
+  request.seed = 2;
+  ASSERT_TRUE(render_sequence(request, two));
+  const std::string first = "color/1700000000.050000.png";
+  EXPECT_NE(contents(one).at(first), contents(two).at(first));
+}
+
+TEST(RenderSequence, TheReaderFindsWhatWasRendered) {
+  const fs::path folder = fresh_folder("openloris");
+  const SynthRequest request = small_request("walking_xyz_empty");
+  ASSERT_TRUE(render_sequence(request, folder));
+  const std::unique_ptr<SensorStream> stream = open_sequence(folder);
+  const SequenceInfo& info = stream->info();
+  EXPECT_EQ(info.format, "openloris");
+  ASSERT_EQ(info.frame_times.size(), 6U);
+  EXPECT_EQ(info.frame_times[1].ns - info.frame_times[0].ns, 33333000);  // whole microseconds
+  EXPECT_DOUBLE_EQ(info.rig.camera.fx, 134.0);
+  EXPECT_TRUE(info.rig.has_imu);
+  EXPECT_LT((info.rig.T_b_c.matrix() - realsense_T_b_c().matrix()).norm(), 1e-6);
+  EXPECT_NEAR(info.rig.imu_noise.gyro_noise, 1.8e-4, 1e-9);
+  EXPECT_GT(info.imu.size(), 90U);  // 0.3 s at 400 Hz, less what the accelerometer does not cover
+  EXPECT_GE(info.ground_truth.trajectory.poses.size(), 60U);
+  const Frame frame = stream->load_frame(3);
+  EXPECT_EQ(frame.color.size(), cv::Size(160, 120));
+  EXPECT_GT(cv::countNonZero(frame.depth), 160 * 120 * 3 / 4);
+}
+
+TEST(RenderSequence, TumFoldersAreReadToo) {
+  const fs::path folder = fresh_folder("tum");
+  SynthRequest request = small_request("walking_static_empty");
+  request.layout = SequenceLayout::kTum;
+  ASSERT_TRUE(render_sequence(request, folder));
+  const std::unique_ptr<SensorStream> stream = open_sequence(folder);
+  EXPECT_EQ(stream->info().format, "tum");
+  EXPECT_EQ(stream->info().frame_times.size(), 6U);
+  EXPECT_DOUBLE_EQ(stream->info().rig.camera.fy, 134.0);
+  EXPECT_EQ(stream->load_frame(0).depth_units_per_m, 1000.0);
+}
+
+TEST(RenderSequence, LeavesNothingBehindWhenStopped) {
+  const fs::path folder = fresh_folder("stopped");
+  int frames = 0;
+  RenderControl control{.progress = [&](int done, int) { frames = done; },
+                        .stop_requested = [&] { return frames >= 2; },
+                        .threads = 1};
+  EXPECT_FALSE(render_sequence(small_request("walking_xyz_empty"), folder, control));
+  EXPECT_EQ(frames, 2);
+  for (const auto& entry : fs::directory_iterator(folder.parent_path())) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with("stopped")) << entry.path();
+  }
+}
+
+TEST(RenderSequence, NeverOverwritesAFolder) {
+  const fs::path folder = fresh_folder("taken");
+  fs::create_directories(folder);
+  EXPECT_THROW(render_sequence(small_request("walking_xyz_empty"), folder), InputError);
+}
+
+TEST(RenderSequence, RefusesRequestsOutOfRange) {
+  SynthRequest request = small_request("walking_xyz_empty");
+  request.color.exposure_s = 0.05;  // longer than a frame at 30 Hz
+  EXPECT_THROW(render_sequence(request, fresh_folder("refused")), InputError);
+  EXPECT_THROW(preset_request("walking"), InputError);
+  EXPECT_THROW(render_sequence(small_request("flight"), fresh_folder("refused")), InputError);
+}
+
+}  // namespace
+}  // namespace stillpoint
