@@ -41,16 +41,16 @@ TEST(ConfigOverlays, VoUsesNoImu) {
 TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
   EXPECT_EQ(config_difference(base("dynamic_vins"), base("stillpoint")),
             (Entries{{"frontend.prediction", "\"full\""},
+                     {"frontend.outlier_model", "\"rigid\""},
                      {"backend.depth.usage", "\"weighted\""},
                      {"backend.initializer.kind", "\"instant\""}}));
 }
 
 TEST(ConfigOverlays, VinsRgbdIsDynamicVinsWithoutItsInventions) {
   EXPECT_EQ(config_difference(base("dynamic_vins"), base("baselines/vins_rgbd")),
-            (Entries{{"frontend.unstable_radius_px", "1"},
+            (Entries{{"frontend.unstable_radius_px", "0"},
                      {"frontend.detector", "\"shi_tomasi\""},
                      {"frontend.prediction", "\"none\""},
-                     {"frontend.pyramid_levels", "3"},
                      {"backend.depth.min_m", "0.1"},
                      {"backend.depth.max_m", "3.0"}}));
 }
