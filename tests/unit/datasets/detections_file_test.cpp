@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/detections_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+std::vector<DetectionSet> read(const std::string& text) {
+  const TemporaryFolder folder;
+  FaultLog strict;
+  return read_detections(folder.write("detections.txt", text), strict);
+}
+
+void expect_refused(const std::string& text, const std::vector<std::string>& parts) {
+  expect_input_error([&] { static_cast<void>(read(text)); }, parts);
+}
+
+TEST(DetectionsFile, GathersTheBoxesOfOneStamp) {
+  const auto sets = read(
+      "# t class score box\n1.0 person 0.9 10 20 30 40\n1.0 traffic light 0.5 -5 0 7.5 700\n"
+      "1.1 person 1 1 2 3 4\n");
+  ASSERT_EQ(sets.size(), 2U);
+  EXPECT_EQ(sets[0].t, Timestamp{1'000'000'000});
+  EXPECT_EQ(sets[0].state, DetectionState::kPresent);
+  ASSERT_EQ(sets[0].detections.size(), 2U);
+  EXPECT_EQ(sets[0].detections[0].class_name, "person");
+  EXPECT_EQ(sets[0].detections[0].score, 0.9);
+  EXPECT_EQ(sets[0].detections[0].box.y_max, 40.0);
+  EXPECT_EQ(sets[0].detections[1].class_name, "traffic light");
+  EXPECT_EQ(sets[0].detections[1].box.x_min, -5.0);
+}
+
+TEST(DetectionsFile, AStampAloneSaysThatNothingWasFound) {
+  const auto sets = read("1.0\n1.1 person 0.5 1 2 3 4\n");
+  ASSERT_EQ(sets.size(), 2U);
+  EXPECT_EQ(sets[0].state, DetectionState::kPresent);
+  EXPECT_TRUE(sets[0].detections.empty());
+}
+
+TEST(DetectionsFile, RefusesBoxesAndScoresThatCannotBe) {
+  expect_refused("1 person 0.9 30 20 10 40\n", {"detections.txt:1", "inverted"});
+  expect_refused("1 person 0.9 10 20 30 20\n", {"detections.txt:1", "empty"});
+  expect_refused("1 person nan 10 20 30 40\n", {"detections.txt:1", "not finite"});
+  expect_refused("1 person 0.9 10 nan 30 40\n", {"detections.txt:1", "not finite"});
+  expect_refused("1 person 1.2 10 20 30 40\n", {"detections.txt:1", "outside [0, 1]"});
+  expect_refused("1 person 0.9 10 20 30\n", {"detections.txt:1", "expected"});
+}
+
+TEST(DetectionsFile, RefusesStampsOutOfOrder) {
+  expect_refused("2 person 0.9 1 2 3 4\n1 person 0.9 1 2 3 4\n",
+                 {"detections.txt:2", "before the row before"});
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/imu_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+std::vector<VectorSample> samples_ms(std::initializer_list<std::pair<std::int64_t, double>> values) {
+  std::vector<VectorSample> samples;
+  for (const auto& [t, x] : values) {
+    samples.push_back(VectorSample{.t = Timestamp{t * 1'000'000}, .value = Eigen::Vector3d(x, 2 * x, 3 * x)});
+  }
+  return samples;
+}
+
+TEST(MergeOntoGyro, InterpolatesBetweenNeighboursAndDropsWhatLiesOutside) {
+  const auto gyro = samples_ms({{0, 1}, {5, 2}, {10, 3}, {11, 4}, {20, 5}, {21, 6}});
+  const auto accel = samples_ms({{1, 0}, {9, 8}, {11, 20}, {20, 2}});
+  const std::vector<ImuSample> merged = merge_onto_gyro(gyro, accel);
+  ASSERT_EQ(merged.size(), 4U);                                          // 0 and 21 ms lie outside 1 to 20 ms
+  EXPECT_TRUE(merged[0].accel_b.isApprox(Eigen::Vector3d(4, 8, 12)));    // halfway from 0 to 8
+  EXPECT_TRUE(merged[1].accel_b.isApprox(Eigen::Vector3d(14, 28, 42)));  // halfway from 8 to 20
+  EXPECT_TRUE(merged[2].accel_b.isApprox(Eigen::Vector3d(20, 40, 60)));  // on a sample
+  EXPECT_TRUE(merged[3].accel_b.isApprox(Eigen::Vector3d(2, 4, 6)));     // on the last
+  EXPECT_EQ(merged[3].gyro_b, Eigen::Vector3d(5, 10, 15));
+  EXPECT_TRUE(merge_onto_gyro(gyro, {}).empty());
+}
+
+TEST(ImuFile, BadRowsAreErrorsWithTheirLine) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& text) {
+    return [&folder, text] {
+      FaultLog strict;
+      static_cast<void>(read_imu_file(folder.write("imu.csv", text), TimeUnit::kNanoseconds, strict));
+    };
+  };
+  expect_input_error(read("#t\n"), {"imu.csv", "holds no samples"});
+  expect_input_error(read("2,0,0,0,0,0,9\n1,0,0,0,0,0,9\n"), {"imu.csv:2", "sort the file"});
+  expect_input_error(read("2,0,0,0,0,0,9\n2,0,0,0,0,0,9\n"), {"imu.csv:2", "repeats"});
+  expect_input_error(read("2,0,nan,0,0,0,9\n"), {"imu.csv:1", "not finite"});
+  expect_input_error(read("2,0,0,0,0,0\n"), {"imu.csv:1", "6 field(s)"});
+  expect_input_error(read("2.5,0,0,0,0,0,9\n"), {"imu.csv:1", "whole nanoseconds"});
+}
+
+TEST(ImuFile, ACollectingLogKeepsTheGoodRows) {
+  const TemporaryFolder folder;
+  FaultLog faults(FaultLog::Mode::kCollect);
+  const auto samples =
+      read_imu_file(folder.write("imu.csv", "1,0,0,0,0,0,9\n3,0,0,0,0,0,inf\n2,0,0,0,0,0,9\n"),
+                    TimeUnit::kNanoseconds, faults);
+  EXPECT_EQ(samples.size(), 2U);
+  EXPECT_EQ(faults.messages().size(), 1U);
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/rig_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+void expect_refused(const std::string& text, const std::vector<std::string>& parts) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.write("rig.toml", text);
+  expect_input_error([&] { static_cast<void>(apply_rig_file(file, Rig{})); }, parts);
+}
+
+TEST(RigFile, ReadsEveryKey) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.write("rig.toml", R"(
+[camera]
+width = 640
+height = 480
+fx = 500
+fy = 501.5
+cx = 320
+cy = 240
+model = "kannala-brandt"
+distortion = [0.1, 0.2]
+rolling_shutter_s = 0.03
+[depth]
+scale = 5000
+[imu]
+T_b_c = [0,-1,0,0.1, 1,0,0,0.2, 0,0,1,0.3, 0,0,0,1]
+gyro_noise = 0.001
+accel_noise = 0.01
+gyro_walk = 0.0001
+accel_walk = 0.002
+time_offset_s = -0.005
+)");
+  const OverriddenRig result = apply_rig_file(file, Rig{});
+  const Rig& rig = result.rig;
+  EXPECT_TRUE(result.has_extrinsic);
+  EXPECT_EQ(rig.camera.width, 640);
+  EXPECT_EQ(rig.camera.height, 480);
+  EXPECT_EQ(rig.camera.fx, 500.0);
+  EXPECT_EQ(rig.camera.fy, 501.5);
+  EXPECT_EQ(rig.camera.cx, 320.0);
+  EXPECT_EQ(rig.camera.cy, 240.0);
+  EXPECT_EQ(rig.camera.model, CameraModel::kKannalaBrandt);
+  EXPECT_EQ(rig.camera.distortion, (std::array<double, 5>{0.1, 0.2, 0, 0, 0}));
+  EXPECT_EQ(rig.rolling_shutter_s, 0.03);
+  EXPECT_EQ(rig.depth_units_per_m, 5000.0);
+  EXPECT_TRUE((rig.T_b_c * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(0.1, 1.2, 0.3)));
+  EXPECT_EQ(rig.imu_noise.gyro_noise, 0.001);
+  EXPECT_EQ(rig.imu_noise.accel_noise, 0.01);
+  EXPECT_EQ(rig.imu_noise.gyro_walk, 0.0001);
+  EXPECT_EQ(rig.imu_noise.accel_walk, 0.002);
+  EXPECT_EQ(rig.time_offset_s, -0.005);
+}
+
+TEST(RigFile, LeavesWhatItDoesNotName) {
+  const TemporaryFolder folder;
+  Rig before;
+  before.camera.fx = 123.0;
+  before.camera.distortion[0] = 0.5;
+  before.imu_noise.gyro_noise = 0.7;
+  const OverriddenRig result = apply_rig_file(folder.write("rig.toml", "[camera]\nfy = 99\n"), before);
+  EXPECT_FALSE(result.has_extrinsic);
+  EXPECT_EQ(result.rig.camera.fx, 123.0);
+  EXPECT_EQ(result.rig.camera.fy, 99.0);
+  EXPECT_EQ(result.rig.camera.distortion[0], 0.5);
+  EXPECT_EQ(result.rig.imu_noise.gyro_noise, 0.7);
+}
+
+TEST(RigFile, UnknownKeysAreErrorsWithTheirLine) {
+  expect_refused("[camera]\nfx = 500\nfocal = 3\n", {"rig.toml:3", "\"focal\"", "width, height, fx"});
+  expect_refused("[lidar]\nrange = 3\n", {"rig.toml:1", "\"lidar\"", "camera, depth, imu"});
+  expect_refused("\n[imu]\nnoise = 1\n", {"rig.toml:3", "\"noise\""});
+}
+
+TEST(RigFile, WrongTypesAndRangesAreErrorsWithTheirLine) {
+  expect_refused("[camera]\nfx = \"500\"\n", {"rig.toml:2", "\"fx\" must be a finite number"});
+  expect_refused("[camera]\nfx = -1\n", {"rig.toml:2", "greater than 0"});
+  expect_refused("[camera]\nwidth = 640.5\n", {"rig.toml:2", "whole number"});
+  expect_refused("[camera]\nfx = nan\n", {"rig.toml:2", "finite"});
+  expect_refused("[camera]\nmodel = \"fov\"\n", {"rig.toml:2", "radial-tangential"});
+  expect_refused("[camera]\ndistortion = [1,2,3,4,5,6]\n", {"rig.toml:2", "more than 5"});
+  expect_refused("[camera]\nrolling_shutter_s = -0.1\n", {"rig.toml:2", "must not be negative"});
+  expect_refused("[depth]\nscale = 0\n", {"rig.toml:2", "greater than 0"});
+  expect_refused("[imu]\nT_b_c = [1, 0]\n", {"rig.toml:2", "16 numbers"});
+  expect_refused("[imu]\nT_b_c = [2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n",
+                 {"rig.toml:2", "not a rigid transform"});
+  expect_refused("camera = 3\n", {"rig.toml:1", "must be a table"});
+}
+
+TEST(RigFile, BrokenTomlAndMissingFilesAreErrors) {
+  expect_refused("[camera\n", {"rig.toml:1"});
+  expect_input_error([] { static_cast<void>(apply_rig_file("/nonexistent/rig.toml", Rig{})); },
+                     {"no such rig file"});
+}
+
+}  // namespace
+}  // namespace stillpoint
