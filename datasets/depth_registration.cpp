@@ -9,13 +9,19 @@
 namespace stillpoint {
 namespace {
 
+/// By how much a depth pixel reaches into its neighbours [px]: their rectangles move apart where depth
+/// changes.
+constexpr double kOverlap_px = 0.25;
+
 /// Writes `value` into the pixels whose centres lie in the rectangle, where it is the nearest so far.
 void splat(cv::Mat& registered, const Eigen::Vector2d& top_left, const Eigen::Vector2d& bottom_right,
            std::uint16_t value) {
-  const int first_column = std::max(0, static_cast<int>(std::ceil(top_left.x())));
-  const int first_row = std::max(0, static_cast<int>(std::ceil(top_left.y())));
-  const int last_column = std::min(registered.cols - 1, static_cast<int>(std::floor(bottom_right.x())));
-  const int last_row = std::min(registered.rows - 1, static_cast<int>(std::floor(bottom_right.y())));
+  const int first_column = std::max(0, static_cast<int>(std::ceil(top_left.x() - kOverlap_px)));
+  const int first_row = std::max(0, static_cast<int>(std::ceil(top_left.y() - kOverlap_px)));
+  const int last_column =
+      std::min(registered.cols - 1, static_cast<int>(std::floor(bottom_right.x() + kOverlap_px)));
+  const int last_row =
+      std::min(registered.rows - 1, static_cast<int>(std::floor(bottom_right.y() + kOverlap_px)));
   for (int row = first_row; row <= last_row; ++row) {
     for (int column = first_column; column <= last_column; ++column) {
       std::uint16_t& nearest = registered.at<std::uint16_t>(row, column);
