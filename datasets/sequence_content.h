@@ -18,6 +18,7 @@ namespace stillpoint {
 struct PictureFiles {
   std::filesystem::path color;
   std::filesystem::path depth;  ///< empty when the sequence has no depth
+  double depth_offset_s = 0.0;  ///< stamp of the depth picture minus that of the colour picture
 };
 
 struct SequenceContent {

@@ -11,6 +11,7 @@ namespace stillpoint {
 [[nodiscard]] Command bench_command();   ///< `stillpoint bench`: sequences x variants, one table
 [[nodiscard]] Command config_command();  ///< `stillpoint config`: resolved configs and the reference page
 [[nodiscard]] Command data_command();    ///< `stillpoint data`: make and inspect sequences
+[[nodiscard]] Command check_command();   ///< `stillpoint data check`: the sequence doctor
 [[nodiscard]] Command synth_command();   ///< `stillpoint data synth`: render a sequence
 
 }  // namespace stillpoint

@@ -9,7 +9,7 @@ Command data_command() {
           .example = "data synth walking_xyz --out build/walking_xyz",
           .options = {},
           .action = {},
-          .subcommands = {synth_command()}};
+          .subcommands = {check_command(), synth_command()}};
 }
 
 }  // namespace stillpoint

@@ -44,7 +44,7 @@ void add_pictures(const std::filesystem::path& camera_folder, SequenceContent& c
     const std::filesystem::path file = camera_folder / "data" / table.text(row, 1);
     if (!times.empty()) table.require_rising(row, times.back(), t);
     times.push_back(t);
-    content.pictures.push_back(PictureFiles{.color = file, .depth = {}});
+    content.pictures.push_back(PictureFiles{.color = file, .depth = {}, .depth_offset_s = 0.0});
   });
   if (times.empty()) table.fail("lists no pictures; is the sequence complete?");
 }

@@ -26,7 +26,10 @@ void add_paired_pictures(const std::filesystem::path& color_list, const std::fil
   }
   for (const auto& [in_color, in_depth] : pairs) {
     content.info.frame_times.push_back(color[in_color].t);
-    content.pictures.push_back(PictureFiles{.color = color[in_color].file, .depth = depth[in_depth].file});
+    content.pictures.push_back(
+        PictureFiles{.color = color[in_color].file,
+                     .depth = depth[in_depth].file,
+                     .depth_offset_s = seconds_between(color[in_color].t, depth[in_depth].t)});
   }
   if (const std::size_t alone = color.size() - pairs.size(); alone > 0) {
     content.info.notes.push_back(std::to_string(alone) + " of " + std::to_string(color.size()) +

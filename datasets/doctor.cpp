@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/doctor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/error.h"
+#include "datasets/sequence_content.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kGapIntervals = 2.5;       ///< longer than so many median intervals is a gap
+constexpr double kDepthOffset_s = 0.01;     ///< median beyond which motion shows between colour and depth
+constexpr double kCoverage = 0.95;          ///< share of the pictures that ground truth should cover
+constexpr double kTruthReach_s = 0.1;       ///< a picture further from any true pose is not covered
+constexpr double kLeastAccel = 7.0;         ///< [m/s^2] the mean of |a| of a hand-held or rolling IMU
+constexpr double kMostAccel = 13.0;         ///< lies between these; 1 would be g, 1000 mg
+constexpr std::size_t kSamePlaceLimit = 5;  ///< findings shown in full for one file
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Splits an InputError's message at its first ": " into place and text.
+Finding finding_of(const std::string& message) {
+  const std::size_t colon = message.find(": ");
+  if (colon == std::string::npos) return Finding{.severity = Severity::kError, .place = {}, .text = message};
+  return Finding{
+      .severity = Severity::kError, .place = message.substr(0, colon), .text = message.substr(colon + 2)};
+}
+
+void warn(CheckReport& report, const std::string& place, const std::string& text) {
+  report.findings.push_back(Finding{.severity = Severity::kWarning, .place = place, .text = text});
+}
+
+/// Adds the facts of one stream, and a finding when it has gaps.
+void summarise(const std::string& name, const std::vector<Timestamp>& times, Timestamp origin,
+               CheckReport& report) {
+  if (times.empty()) return;
+  StreamSummary summary{.name = name,
+                        .count = times.size(),
+                        .first_s = seconds_between(origin, times.front()),
+                        .last_s = seconds_between(origin, times.back())};
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(seconds_between(times[i - 1], times[i]));
+  if (!intervals.empty()) {
+    const double usual = median(intervals);
+    const auto longest = std::max_element(intervals.begin(), intervals.end());
+    const auto gaps = std::count_if(intervals.begin(), intervals.end(),
+                                    [usual](double interval) { return interval > kGapIntervals * usual; });
+    summary.rate_hz = 1.0 / usual;
+    summary.longest_gap_s = *longest;
+    if (gaps > 0) {
+      const std::size_t at = static_cast<std::size_t>(longest - intervals.begin());
+      warn(report, name,
+           fmt::format("{} gap(s) longer than {} intervals; the longest, {:.3f} s, begins {:.3f} s after the "
+                       "first picture",
+                       gaps, kGapIntervals, *longest, seconds_between(origin, times[at])));
+    }
+  }
+  report.streams.push_back(summary);
+}
+
+template <class Sample>
+std::vector<Timestamp> stamps(const std::vector<Sample>& samples) {
+  std::vector<Timestamp> times;
+  times.reserve(samples.size());
+  for (const Sample& sample : samples) times.push_back(sample.t);
+  return times;
+}
+
+void check_imu(const SequenceInfo& info, CheckReport& report) {
+  if (info.imu.empty()) return;
+  const auto outside = std::count_if(info.frame_times.begin(), info.frame_times.end(), [&](Timestamp t) {
+    return t < info.imu.front().t || t > info.imu.back().t;
+  });
+  if (outside > 0) {
+    warn(report, "imu", fmt::format("does not cover {} of {} pictures", outside, info.frame_times.size()));
+  }
+  double sum = 0.0;
+  for (const ImuSample& sample : info.imu) sum += sample.accel_b.norm();
+  const double mean = sum / static_cast<double>(info.imu.size());
+  if (mean < kLeastAccel || mean > kMostAccel) {
+    warn(report, "imu",
+         fmt::format("the mean acceleration is {:.3f} where gravity gives about 9.8; is it in m/s^2?", mean));
+  }
+}
+
+/// Whether a true pose lies within reach of the picture.
+bool is_covered(const std::vector<StampedPose>& poses, Timestamp t) {
+  const auto next = std::lower_bound(poses.begin(), poses.end(), t,
+                                     [](const StampedPose& pose, Timestamp time) { return pose.t < time; });
+  const bool after_it = next != poses.end() && seconds_between(t, next->t) <= kTruthReach_s;
+  return after_it || (next != poses.begin() && seconds_between(std::prev(next)->t, t) <= kTruthReach_s);
+}
+
+void check_ground_truth(const SequenceInfo& info, CheckReport& report) {
+  const std::vector<StampedPose>& poses = info.ground_truth.trajectory.poses;
+  if (poses.empty()) {
+    report.notes.push_back("no ground truth");
+    return;
+  }
+  const auto covered = std::count_if(info.frame_times.begin(), info.frame_times.end(),
+                                     [&](Timestamp t) { return is_covered(poses, t); });
+  const double share = static_cast<double>(covered) / static_cast<double>(info.frame_times.size());
+  report.notes.push_back(fmt::format("ground truth of \"{}\" covers {:.1f} % of the pictures",
+                                     info.ground_truth.trajectory.frame, 100.0 * share));
+  if (share < kCoverage) {
+    warn(report, "ground truth", fmt::format("covers {} of {} pictures", covered, info.frame_times.size()));
+  }
+}
+
+void check_depth_offset(const SequenceContent& content, CheckReport& report) {
+  std::vector<double> offsets;
+  for (const PictureFiles& files : content.pictures) offsets.push_back(files.depth_offset_s);
+  report.depth_offset_s = median(offsets);
+  if (std::abs(report.depth_offset_s) > kDepthOffset_s) {
+    warn(report, "depth",
+         fmt::format("is taken {:.1f} ms after its colour picture (median)", 1e3 * report.depth_offset_s));
+  }
+}
+
+/// Decodes every picture.
+void check_pictures(const SequenceContent& content, const CheckOptions& options, CheckReport& report) {
+  const std::size_t total = content.pictures.size();
+  for (std::size_t i = 0; i < total; ++i) {
+    try {
+      const Frame frame = decode_frame(content, i);
+      const auto measured = [](std::uint16_t raw) { return raw != 0; };
+      if (!frame.depth.empty() &&
+          std::none_of(frame.depth.begin<std::uint16_t>(), frame.depth.end<std::uint16_t>(), measured)) {
+        warn(report, content.pictures[i].depth.string(), "has no measured depth at all");
+      }
+    } catch (const InputError& error) {
+      report.findings.push_back(finding_of(error.what()));
+    }
+    if (options.progress) options.progress(i + 1, total);
+  }
+}
+
+/// The file of a place, without its line.
+std::string file_of(const std::string& place) { return place.substr(0, place.find_last_of(':')); }
+
+}  // namespace
+
+CheckReport check_sequence(const std::filesystem::path& folder, const CheckOptions& options) {
+  FaultLog faults(FaultLog::Mode::kCollect);
+  const SequenceContent content = read_sequence(folder, options.open, faults);
+  const SequenceInfo& info = content.info;
+  CheckReport report;
+  report.name = info.name;
+  report.format = info.format;
+  report.notes = info.notes;
+  for (const std::string& message : faults.messages()) report.findings.push_back(finding_of(message));
+
+  const Timestamp origin = info.frame_times.front();
+  summarise("pictures", info.frame_times, origin, report);
+  summarise("imu", stamps(info.imu), origin, report);
+  summarise("ground truth", stamps(info.ground_truth.trajectory.poses), origin, report);
+  if (!info.detections.empty()) {
+    report.notes.push_back(fmt::format("recorded detections for {} stamps", info.detections.size()));
+  }
+  check_depth_offset(content, report);
+  check_imu(info, report);
+  check_ground_truth(info, report);
+  check_pictures(content, options, report);
+  return report;
+}
+
+std::string report_text(const CheckReport& report) {
+  std::string text = fmt::format("{} ({})\n", report.name, report.format);
+  for (const StreamSummary& stream : report.streams) {
+    text += fmt::format("  {:<13}{:>7} at {:>6.1f} Hz, {:>8.3f} to {:>8.3f} s, longest gap {:.3f} s\n",
+                        stream.name, stream.count, stream.rate_hz, stream.first_s, stream.last_s,
+                        stream.longest_gap_s);
+  }
+  text += fmt::format("  depth lags colour by {:.1f} ms (median)\n", 1e3 * report.depth_offset_s);
+  for (const std::string& note : report.notes) text += "  note: " + note + "\n";
+  std::map<std::string, std::size_t> shown;
+  for (const Finding& finding : report.findings) {
+    if (++shown[file_of(finding.place)] > kSamePlaceLimit) continue;
+    text += fmt::format("  {}: {}: {}\n", finding.severity == Severity::kError ? "error" : "warning",
+                        finding.place, finding.text);
+  }
+  for (const auto& [place, count] : shown) {
+    if (count > kSamePlaceLimit) text += fmt::format("  ... {} more in {}\n", count - kSamePlaceLimit, place);
+  }
+  return text +
+         (report.findings.empty() ? "clean\n" : fmt::format("{} finding(s)\n", report.findings.size()));
+}
+
+}  // namespace stillpoint
