@@ -5,10 +5,14 @@
 
 namespace stillpoint {
 
+std::filesystem::path rendered_folder(const RenderRequest& request) {
+  throw InputError("sequence \"" + request.preset + "\"",
+                   "there is no folder of this name; give the path of a sequence");
+}
+
 std::unique_ptr<SensorStream> find_sequence(const std::string& name, const OpenOptions& options) {
   if (std::filesystem::is_directory(name)) return open_sequence(name, options);
-  throw InputError("sequence \"" + name + "\"",
-                   "there is no folder of this name; give the path of a sequence");
+  return open_sequence(rendered_folder({.preset = name}), options);
 }
 
 }  // namespace stillpoint
