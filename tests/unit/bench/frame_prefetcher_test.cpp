@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run/frame_prefetcher.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "tests/support/expect_input_error.h"
+
+namespace stillpoint {
+namespace {
+
+Frame frame_of(std::size_t index) {
+  Frame frame;
+  frame.id = static_cast<std::int64_t>(index);
+  return frame;
+}
+
+TEST(FramePrefetcher, HandsFramesOutInOrder) {
+  FramePrefetcher prefetcher(frame_of, 20, 3);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(prefetcher.take(i).id, static_cast<std::int64_t>(i));
+  EXPECT_EQ(prefetcher.decoding_times().size(), 20u);
+}
+
+TEST(FramePrefetcher, DropsFramesThatAreJumpedOver) {
+  FramePrefetcher prefetcher(frame_of, 20, 3);
+  EXPECT_EQ(prefetcher.take(7).id, 7);
+  EXPECT_EQ(prefetcher.take(19).id, 19);
+}
+
+TEST(FramePrefetcher, ThrowsTheFaultOfAFrameWhereItIsTakenAndGoesOn) {
+  const auto load = [](std::size_t index) {
+    if (index == 1) throw InputError("1.png", "is truncated");
+    return frame_of(index);
+  };
+  FramePrefetcher prefetcher(load, 3);
+  EXPECT_EQ(prefetcher.take(0).id, 0);
+  expect_input_error([&] { static_cast<void>(prefetcher.take(1)); }, {"1.png: is truncated"});
+  EXPECT_EQ(prefetcher.take(2).id, 2);
+}
+
+TEST(FramePrefetcher, EndsWithFramesLeftOver) {
+  FramePrefetcher prefetcher(frame_of, 1000, 2);
+  EXPECT_EQ(prefetcher.take(0).id, 0);
+}
+
+TEST(FramePrefetcher, RefusesToGoBackAndBeyondTheEnd) {
+  FramePrefetcher prefetcher(frame_of, 3);
+  static_cast<void>(prefetcher.take(1));
+  EXPECT_THROW(static_cast<void>(prefetcher.take(1)), std::logic_error);
+  EXPECT_THROW(static_cast<void>(prefetcher.take(3)), std::logic_error);
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run/run_result.h"
+
+#include <gtest/gtest.h>
+
+#include "bench/plan/bench_row.h"
+#include "bench/record/run_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kFrames = 60;
+constexpr double kFrameInterval_s = 0.1;
+
+Pose at_x(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
+
+/// Frames every 0.1 s; the truth moves at 1 m/s along x, told of a frame 2 m beside the camera.
+SequenceInfo straight_sequence() {
+  SequenceInfo info;
+  info.name = "straight";
+  info.ground_truth.T_c_f = {Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 2.0, 0.0)};
+  for (int i = 0; i < kFrames; ++i) {
+    const Timestamp t = from_seconds(i * kFrameInterval_s);
+    info.frame_times.push_back(t);
+    info.ground_truth.trajectory.poses.push_back({t, at_x(i * kFrameInterval_s)});
+  }
+  return info;
+}
+
+/// The camera's own path for the first `frames` pictures, true to the bit.
+OdometryRun perfect_run(const SequenceInfo& info, int frames) {
+  OdometryRun run;
+  run.trajectory.frame = "camera";
+  run.frames_planned = kFrames;
+  run.summary.frames = static_cast<std::size_t>(frames);
+  const Pose T_f_c = info.ground_truth.T_c_f.inverse();
+  for (int i = 0; i < frames; ++i) {
+    const StampedPose& truth = info.ground_truth.trajectory.poses[static_cast<std::size_t>(i)];
+    run.trajectory.poses.push_back({truth.t, truth.T_w_f * T_f_c});
+  }
+  return run;
+}
+
+TEST(RunResult, ScoresAgainstTheTruthOfTheCamera) {
+  const SequenceInfo info = straight_sequence();
+  const RunResult result = score_run(info, perfect_run(info, kFrames));
+  EXPECT_EQ(result.status, RunStatus::kOk);
+  EXPECT_NEAR(result.score.ate_rmse_m.value(), 0.0, 1e-9);
+  EXPECT_NEAR(result.score.rpe_trans_rmse_m_per_s.value(), 0.0, 1e-9);
+  EXPECT_DOUBLE_EQ(result.score.coverage.value(), 1.0);
+  EXPECT_NEAR(result.score.correct_rate.value(), 1.0, 1e-9);
+}
+
+TEST(RunResult, AnInterruptedRunIsMarkedAndScoredOnItsPart) {
+  const SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, 30);
+  run.summary.interrupted = true;
+  const RunResult result = score_run(info, std::move(run));
+  EXPECT_EQ(result.status, RunStatus::kInterrupted);
+  EXPECT_EQ(result.failure, "interrupted after 30 of 60 frames");
+  EXPECT_DOUBLE_EQ(result.score.coverage.value(), 1.0);
+  EXPECT_NEAR(result.score.correct_rate.value(), 1.0, 1e-9);
+  EXPECT_TRUE(trajectory_text(result).starts_with("# partial: interrupted after 30 of 60 frames\n"));
+}
+
+TEST(RunResult, ARunWithoutPosesFailedAndSaysWhy) {
+  const SequenceInfo info = straight_sequence();
+  OdometryRun run;
+  run.frames_planned = kFrames;
+  run.summary.frames = kFrames;
+  const RunResult result = score_run(info, std::move(run));
+  EXPECT_EQ(result.status, RunStatus::kFailed);
+  EXPECT_FALSE(result.failure.empty());
+  EXPECT_FALSE(result.score.ate_rmse_m.has_value());
+}
+
+TEST(RunResult, IsReadBackFromItsFileAsARow) {
+  const SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  run.trajectory.poses.erase(run.trajectory.poses.begin(), run.trajectory.poses.begin() + 15);
+  run.timings.add(Module::kWindowSolve, {.ns = 2'500'000, .calls = 1});
+  run.timings.add(Module::kTrackingThread, {.ns = 1'500'000, .calls = 1});
+  const TemporaryFolder folder;
+  const auto file = folder.write("result.json", result_json(score_run(info, std::move(run))));
+  const BenchRow row = read_result(file, {});
+  EXPECT_EQ(row.status, "ok");
+  EXPECT_EQ(row.reason, "");
+  EXPECT_DOUBLE_EQ(row.coverage.value(), 0.75);      // 45 of 60
+  EXPECT_NEAR(row.first_pose_s.value(), 1.5, 1e-9);  // 15 frames of 0.1 s
+  EXPECT_DOUBLE_EQ(row.mean_ms[static_cast<std::size_t>(Module::kWindowSolve)].value(), 2.5);
+  EXPECT_DOUBLE_EQ(row.mean_ms[static_cast<std::size_t>(Module::kTrackingThread)].value(), 1.5);
+  EXPECT_FALSE(row.mean_ms[static_cast<std::size_t>(Module::kObjectDetection)].has_value());
+}
+
+}  // namespace
+}  // namespace stillpoint
