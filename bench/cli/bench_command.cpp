@@ -8,6 +8,7 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
+#include "bench/cli/progress.h"
 #include "bench/plan/bench_table.h"
 #include "bench/plan/plan_runner.h"
 #include "bench/record/output_folder.h"
@@ -29,16 +30,32 @@ int exit_code(const std::vector<BenchRow>& rows) {
   return any_failed ? kExitFindings : kExitOk;
 }
 
+/// Tells what is being done, and how far a rendering is.
+PlanHooks hooks() {
+  const auto progress = std::make_shared<std::unique_ptr<ProgressLine>>();
+  return {.on_step =
+              [progress](const std::string& what) {
+                progress->reset();
+                spdlog::info("{}", what);
+              },
+          .on_rendered =
+              [progress](int done, int total) {
+                if (!*progress) {
+                  *progress =
+                      std::make_unique<ProgressLine>("rendering", static_cast<std::size_t>(total), "frames");
+                }
+                (*progress)->update(static_cast<std::size_t>(done));
+              },
+          .stop_requested = interrupt_requested};
+}
+
 int bench(const BenchArguments& arguments) {
   watch_interrupts();
   const BenchPlan plan = load_plan(arguments.plan);
   const fs::path out = arguments.out.empty() ? fs::path("build/bench") / fs::path(arguments.plan).stem()
                                              : fs::path(arguments.out);
   require_writable(out);
-  const std::vector<BenchRow> rows =
-      run_plan(plan, out,
-               {.on_step = [](const std::string& what) { spdlog::info("{}", what); },
-                .stop_requested = interrupt_requested});
+  const std::vector<BenchRow> rows = run_plan(plan, out, hooks());
   const std::string title =
       plan.title + (interrupt_requested() ? " (interrupted: not every run was made)" : "");
   const std::string table = markdown_table(rows);

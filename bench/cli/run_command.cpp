@@ -39,26 +39,33 @@ struct RunArguments {
 /// One run of possibly several.
 struct PlannedRun {
   std::string variant;
-  fs::path folder;
   RunSpec spec;
+  fs::path folder;
 };
 
-/// Every config is read and every folder tried before the first picture is.
-std::vector<PlannedRun> plan_runs(const RunArguments& arguments, const std::string& sequence) {
-  const bool several = arguments.variants.size() > 1;
-  const fs::path root = arguments.out.empty() ? fs::path("build/runs") / sequence : fs::path(arguments.out);
+/// Reads every config, so that a fault in the last one ends the program before the first run.
+std::vector<PlannedRun> plan_runs(const RunArguments& arguments) {
   std::vector<std::string> variants = arguments.variants;
   if (variants.empty()) variants.emplace_back();
   std::vector<PlannedRun> runs;
   for (const std::string& variant : variants) {
-    const std::string name = variant.empty() ? arguments.base : variant;
-    const bool own_folder = several || arguments.out.empty();
-    runs.push_back({.variant = name,
-                    .folder = own_folder ? root / folder_name(name) : root,
+    runs.push_back({.variant = variant.empty() ? arguments.base : variant,
                     .spec = {.config = load_config({arguments.base, variant, arguments.settings}),
                              .mode = arguments.mode,
-                             .max_frames = static_cast<std::size_t>(arguments.max_frames)}});
-    require_writable(runs.back().folder);
+                             .max_frames = static_cast<std::size_t>(arguments.max_frames)},
+                    .folder = {}});
+  }
+  return runs;
+}
+
+/// Chooses and tries each run's folder: --out itself for a single run, else one below it for each.
+std::vector<PlannedRun> with_folders(std::vector<PlannedRun> runs, const std::string& out,
+                                     const std::string& sequence) {
+  const fs::path root = out.empty() ? fs::path("build/runs") / sequence : fs::path(out);
+  const bool shared_root = out.empty() || runs.size() > 1;
+  for (PlannedRun& run : runs) {
+    run.folder = shared_root ? root / folder_name(run.variant) : root;
+    require_writable(run.folder);
   }
   return runs;
 }
@@ -124,14 +131,29 @@ int exit_code(RunStatus status) {
   return status == RunStatus::kFailed ? kExitFindings : kExitOk;
 }
 
+/// Opens the sequence, rendering it first if need be; nothing after Ctrl-C.
+std::unique_ptr<SensorStream> open(const RunArguments& arguments) {
+  std::unique_ptr<ProgressLine> progress;
+  const auto on_rendered = [&](int done, int total) {
+    if (!progress) {
+      progress = std::make_unique<ProgressLine>("rendering " + arguments.sequence,
+                                                static_cast<std::size_t>(total), "frames");
+    }
+    progress->update(static_cast<std::size_t>(done));
+  };
+  return find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
+                       {.progress = on_rendered, .stop_requested = interrupt_requested});
+}
+
 int run(const RunArguments& arguments) {
   if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
   watch_interrupts();
-  const std::unique_ptr<SensorStream> stream =
-      find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig});
+  const std::vector<PlannedRun> runs = plan_runs(arguments);
+  const std::unique_ptr<SensorStream> stream = open(arguments);
+  if (!stream) return kExitInterrupted;
   for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
   int code = kExitOk;
-  for (const PlannedRun& planned : plan_runs(arguments, stream->info().name)) {
+  for (const PlannedRun& planned : with_folders(runs, arguments.out, stream->info().name)) {
     if (interrupt_requested()) return kExitInterrupted;
     const RunResult result = execute(*stream, planned);
     write_run(planned.folder, result, manifest_of(stream->info(), arguments, planned));

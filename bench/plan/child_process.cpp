@@ -37,7 +37,7 @@ std::string read_messages(int pipe, pid_t child, const std::function<bool()>& st
     const ssize_t got = read(pipe, block.data(), block.size());
     if (got > 0) text.append(block.data(), static_cast<std::size_t>(got));
     if (got == 0 || (got < 0 && errno != EINTR)) return text;
-    if (got < 0 && stop_requested()) kill(child, SIGTERM);
+    if (got < 0 && stop_requested && stop_requested()) kill(child, SIGTERM);
   }
 }
 

@@ -14,7 +14,8 @@ struct ChildResult {
 };
 
 /// @param arguments     without the program's name
-/// @param stop_requested asked whenever a signal comes in; when true the child is asked to end too
+/// @param stop_requested asked whenever a signal comes in; when true the child is asked to end too; may be
+/// empty
 /// @throws std::system_error if no process can be made
 [[nodiscard]] ChildResult run_self(const std::vector<std::string>& arguments,
                                    const std::function<bool()>& stop_requested);

@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "bench/plan/child_process.h"
-#include "bench/run/sequence_source.h"
 #include "core/base/error.h"
+#include "datasets/synthetic/sequence_cache.h"
 
 namespace stillpoint {
 namespace {
@@ -30,6 +30,8 @@ std::string reason_of(const ChildResult& child) {
   return is_error ? child.last_message.substr(kErrorPrefix.size()) : child.last_message;
 }
 
+bool stopped(const PlanHooks& hooks) { return hooks.stop_requested && hooks.stop_requested(); }
+
 /// Runs one variant on a sequence folder in a child process.
 BenchRow run_one(const fs::path& sequence, const BenchRow& row, const fs::path& out, const PlanHooks& hooks) {
   hooks.on_step("run " + row.sequence + " " + row.variant);
@@ -45,14 +47,19 @@ BenchRow run_one(const fs::path& sequence, const BenchRow& row, const fs::path& 
 struct Located {
   std::string name;
   fs::path folder;
-  std::string missing_status;  ///< of its rows when there is no folder
+  std::string missing_status;  ///< of its rows, when the folder is empty
   std::string missing_reason;
 };
 
 Located locate_rendered(const std::string& name, const RenderedGroup& group, const PlanHooks& hooks) {
   hooks.on_step("render " + name);
   try {
-    return {name, rendered_folder({.preset = name, .seconds = group.seconds, .seed = group.seed}), "", ""};
+    SynthRequest request = preset_request(name);
+    request.seconds = group.seconds;
+    request.seed = static_cast<std::uint64_t>(group.seed);
+    return {name,
+            cached_sequence(request, {.progress = hooks.on_rendered, .stop_requested = hooks.stop_requested}),
+            "interrupted", "the rendering was stopped"};
   } catch (const InputError& error) {
     return {name, {}, "failed", error.what()};
   }
@@ -80,7 +87,7 @@ std::vector<BenchRow> run_plan(const BenchPlan& plan, const fs::path& out, const
   std::vector<BenchRow> rows;
   const auto run_variants = [&](const Located& located, const std::vector<std::string>& variants) {
     for (const std::string& variant : variants) {
-      if (hooks.stop_requested()) return;
+      if (stopped(hooks)) return;
       BenchRow row;
       row.sequence = located.name;
       row.variant = variant;
@@ -89,7 +96,7 @@ std::vector<BenchRow> run_plan(const BenchPlan& plan, const fs::path& out, const
     }
   };
   for (const std::string& name : plan.rendered.sequences) {
-    if (hooks.stop_requested()) return rows;
+    if (stopped(hooks)) return rows;
     run_variants(locate_rendered(name, plan.rendered, hooks), plan.rendered.variants);
   }
   for (const std::string& name : plan.recorded.sequences) {

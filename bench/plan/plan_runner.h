@@ -13,8 +13,9 @@
 namespace stillpoint {
 
 struct PlanHooks {
-  std::function<void(const std::string& what)> on_step;  ///< before each rendering and each run
-  std::function<bool()> stop_requested;
+  std::function<void(const std::string& what)> on_step;       ///< before each rendering and each run
+  std::function<void(int done, int total)> on_rendered = {};  ///< after each frame of a rendering
+  std::function<bool()> stop_requested = {};
 };
 
 /// Runs every variant on every sequence of a plan; what a run writes lies in `out`/SEQUENCE/VARIANT. A run

@@ -14,13 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+InputError cannot_make(const fs::path& folder, const std::error_code& error) {
+  return {folder.string(), "cannot be made: " + error.message() + "; choose another folder with --out"};
+}
+
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) {
-    throw InputError(folder.string(),
-                     "cannot be made: " + error.message() + "; choose another folder with --out");
-  }
+  if (error) throw cannot_make(folder, error);
 }
 
 /// Temporary files of one group; what is not renamed is removed.
@@ -63,8 +64,11 @@ class TemporaryFiles {
 }  // namespace
 
 void require_writable(const fs::path& folder) {
-  make_folder(folder);
-  TemporaryFiles(folder).write({"probe", "x"});
+  fs::path existing = fs::absolute(folder).lexically_normal();
+  while (!fs::exists(existing)) existing = existing.parent_path();
+  if (!fs::is_directory(existing))
+    throw cannot_make(folder, std::make_error_code(std::errc::not_a_directory));
+  TemporaryFiles(existing).write({"probe", "x"});
 }
 
 void write_files(const fs::path& folder, const std::vector<OutputFile>& files) {

@@ -13,7 +13,8 @@ struct OutputFile {
   std::string text;
 };
 
-/// Makes a folder and proves that a file can be written there: asked before hours of work, not after.
+/// Proves that a file can be written in a folder, or in the nearest one above that exists: asked before hours
+/// of work, not after. Leaves no trace.
 /// @throws InputError if it cannot
 void require_writable(const std::filesystem::path& folder);
 

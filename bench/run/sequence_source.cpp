@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/run/sequence_source.h"
 
+#include <algorithm>
+
+#include "bench/config/spelling.h"
 #include "core/base/error.h"
+#include "datasets/synthetic/sequence_cache.h"
 
 namespace stillpoint {
 
-std::filesystem::path rendered_folder(const RenderRequest& request) {
-  throw InputError("sequence \"" + request.preset + "\"",
-                   "there is no folder of this name; give the path of a sequence");
-}
-
-std::unique_ptr<SensorStream> find_sequence(const std::string& name, const OpenOptions& options) {
+std::unique_ptr<SensorStream> find_sequence(const std::string& name, const OpenOptions& options,
+                                            const RenderControl& control) {
   if (std::filesystem::is_directory(name)) return open_sequence(name, options);
-  return open_sequence(rendered_folder({.preset = name}), options);
+  const std::vector<std::string> presets = preset_names();
+  if (std::find(presets.begin(), presets.end(), name) == presets.end()) {
+    throw InputError("sequence \"" + name + "\"",
+                     "is neither a folder nor a preset" + suggestion(name, presets));
+  }
+  const std::filesystem::path folder = cached_sequence(preset_request(name), control);
+  return folder.empty() ? nullptr : open_sequence(folder, options);
 }
 
 }  // namespace stillpoint

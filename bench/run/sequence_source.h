@@ -2,28 +2,20 @@
 /// Finds the sequence that a user names: a folder, or a rendered one that is made on demand.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "datasets/sensor_stream.h"
+#include "datasets/synthetic/render_sequence.h"
 
 namespace stillpoint {
 
-/// A sequence that the program renders itself.
-struct RenderRequest {
-  std::string preset;
-  double seconds = 20.0;
-  int seed = 1;
-};
-
-/// The folder of a rendered sequence, taken from the cache or made now.
-/// @throws InputError for an unknown preset, and if the cache cannot be written
-[[nodiscard]] std::filesystem::path rendered_folder(const RenderRequest& request);
-
-/// @param name path of a sequence folder, or a preset, e.g. "walking_xyz"
-/// @throws InputError if it is neither, and what `open_sequence` throws
-[[nodiscard]] std::unique_ptr<SensorStream> find_sequence(const std::string& name,
-                                                          const OpenOptions& options);
+/// Opens a folder, or a preset's rendering with its default settings, from the cache or made now.
+/// @param name    path of a sequence folder, or a preset, e.g. "walking_xyz"
+/// @param control of the rendering, if there is one
+/// @return nothing if the rendering was stopped
+/// @throws InputError if the name is neither, and what opening and rendering throw
+[[nodiscard]] std::unique_ptr<SensorStream> find_sequence(const std::string& name, const OpenOptions& options,
+                                                          const RenderControl& control);
 
 }  // namespace stillpoint

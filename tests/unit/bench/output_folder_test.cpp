@@ -79,7 +79,7 @@ TEST(OutputFolder, RefusesAFolderThatCannotBe) {
 
 TEST(OutputFolder, ProbesWithoutATrace) {
   const TemporaryFolder folder;
-  require_writable(folder.path());
+  require_writable(folder.path() / "not" / "yet");
   EXPECT_EQ(entries_in(folder.path()), 0u);
 }
 
