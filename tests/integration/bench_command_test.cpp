@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint bench` with a plan of its own.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+#include "tests/support/rendered_sequence.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A plan over the rendered sequence, which stands in for a recorded one.
+std::string plan_text(const std::string& variants) {
+  return "title = \"Test\"\n[recorded]\nsequences = [\"" + rendered_sequence().filename().string() +
+         "\", \"not_at_hand\"]\nvariants = [" + variants + "]\n";
+}
+
+ProgramResult bench(const TemporaryFolder& folder, const std::string& variants) {
+  const fs::path plan = folder.write("plan.toml", plan_text(variants));
+  ProgramOptions options;
+  options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()};
+  return run_program({"bench", plan.string(), "--out", (folder.path() / "out").string()}, options);
+}
+
+nlohmann::json rows_of(const TemporaryFolder& folder) {
+  return nlohmann::json::parse(std::ifstream(folder.path() / "out" / "table.json"))["rows"];
+}
+
+TEST(BenchCommand, RunsSequencesTimesVariantsAndPrintsOneTable) {
+  const TemporaryFolder folder;
+  const ProgramResult result = bench(folder, "\"stillpoint\", \"vo\"");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json rows = rows_of(folder);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0]["variant"], "stillpoint");
+  EXPECT_EQ(rows[0]["status"], "ok");
+  EXPECT_LT(rows[0]["ate_rmse_m"], 0.05);
+  EXPECT_EQ(rows[3]["sequence"], "not_at_hand");
+  EXPECT_EQ(rows[3]["status"], "skipped");
+  std::ifstream markdown(folder.path() / "out" / "table.md");
+  const std::string text{std::istreambuf_iterator<char>(markdown), {}};
+  EXPECT_NE(text.find("| office      | vo         | ok      |"), std::string::npos) << text;
+  EXPECT_NE(result.out.find("| office      | vo         | ok      |"), std::string::npos) << result.out;
+}
+
+TEST(BenchCommand, ShowsAFailedRunWithItsReason) {
+  const TemporaryFolder folder;
+  // An absolute path instead of a name: the recording has no readable gyroscope file.
+  const fs::path spoilt = copy_of_rendered_sequence(folder);
+  std::ofstream(spoilt / "d400_gyroscope.txt", std::ios::trunc).close();
+  const fs::path plan =
+      folder.write("plan.toml", "[recorded]\nsequences = [\"copy\"]\nvariants = [\"stillpoint\"]");
+  ProgramOptions options;
+  options.environment = {"STILLPOINT_DATA=" + folder.path().string()};
+  const ProgramResult result =
+      run_program({"bench", plan.string(), "--out", (folder.path() / "out").string()}, options);
+  EXPECT_EQ(result.exit_code, 1);
+  const nlohmann::json rows = rows_of(folder);
+  EXPECT_EQ(rows[0]["status"], "failed");
+  EXPECT_NE(rows[0]["reason"].get<std::string>().find("d400_gyroscope.txt"), std::string::npos);
+  EXPECT_NE(result.out.find("copy stillpoint failed: "), std::string::npos);
+}
+
+TEST(BenchCommand, RefusesAnUnknownPlan) {
+  const ProgramResult result = run_program({"bench", "quik"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err,
+            "stillpoint: error: plan \"quik\": there is none of this name; did you mean \"quick\"?\n");
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Help, usage errors, and the small commands.
+#include <gtest/gtest.h>
+
+#include "tests/support/program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+class HelpOf : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(HelpOf, ShowsAnExampleOfTheCommand) {
+  std::vector<std::string> arguments = GetParam();
+  std::string command = "  stillpoint";
+  for (const std::string& word : arguments) command += " " + word;
+  arguments.push_back("--help");
+  const ProgramResult result = run_program(arguments);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.out.find("Example:\n" + command), std::string::npos) << result.out;
+  EXPECT_EQ(result.err, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryCommand, HelpOf,
+                         testing::Values(std::vector<std::string>{"run"}, std::vector<std::string>{"eval"},
+                                         std::vector<std::string>{"bench"},
+                                         std::vector<std::string>{"config", "show"},
+                                         std::vector<std::string>{"config", "list"},
+                                         std::vector<std::string>{"config", "reference"},
+                                         std::vector<std::string>{"data", "check"},
+                                         std::vector<std::string>{"data", "synth"}));
+
+class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(WrongUsage, IsOneErrorLineAndExitCodeTwo) {
+  const ProgramResult result = run_program(GetParam());
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(result.err.starts_with("stillpoint: error: command line: ")) << result.err;
+  EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << result.err;
+  EXPECT_EQ(result.out, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(CommandLine, WrongUsage,
+                         testing::Values(std::vector<std::string>{}, std::vector<std::string>{"walk"},
+                                         std::vector<std::string>{"run"},
+                                         std::vector<std::string>{"run", "a", "b"},
+                                         std::vector<std::string>{"run", "a", "--speed", "3"},
+                                         std::vector<std::string>{"run", "a", "--max-frames", "many"}));
+
+TEST(ConfigCommand, ShowsTheResolvedValuesOfAVariant) {
+  const ProgramResult result =
+      run_program({"config", "show", "--config", "dynamic_vins", "--variant", "vo", "--set", "seed=5"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.out.find("\nimu.enabled = false\n"), std::string::npos);
+  EXPECT_NE(result.out.find("\nseed = 5\n"), std::string::npos);
+}
+
+TEST(ConfigCommand, ListsOverlays) {
+  EXPECT_NE(run_program({"config", "list"}).out.find("ablations/wo_circular_mask\n"), std::string::npos);
+}
+
+TEST(EvalCommand, ScoresATrajectoryAgainstItself) {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 30; ++i) text += std::to_string(0.1 * i) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
+  const std::string file = folder.write("a.tum", text).string();
+  const ProgramResult result = run_program({"eval", file, file, "--json"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.out.find("\"ate_pairs\": 30"), std::string::npos) << result.out;
+}
+
+TEST(EvalCommand, NamesTheLineOfAMalformedFile) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("a.tum", "1 0 0 0 0 0 0 1\n2 0 0\n").string();
+  const ProgramResult result = run_program({"eval", file, file});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(result.err.starts_with("stillpoint: error: " + file + ":2: ")) << result.err;
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint run`, from a folder of sensor files to results.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+#include "tests/support/rendered_sequence.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrames = 90;  // 3 s at 30 Hz
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+nlohmann::json json_of(const fs::path& file) { return nlohmann::json::parse(text_of(file)); }
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Arguments of a run over the rendered sequence.
+std::vector<std::string> run_of(const fs::path& sequence, const fs::path& out,
+                                const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = {"run", sequence.string(), "--out", out.string()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(RunCommand, WritesTrajectoryResultAndManifest) {
+  const TemporaryFolder out;
+  const ProgramResult result = run_program(run_of(rendered_sequence(), out.path()));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(names_in(out.path()),
+            (std::vector<std::string>{"manifest.json", "result.json", "trajectory.tum"}));
+  const nlohmann::json scores = json_of(out.path() / "result.json");
+  EXPECT_EQ(scores["status"], "ok");
+  EXPECT_EQ(scores["frames"], kFrames);
+  EXPECT_GT(scores["coverage"], 0.5);
+  EXPECT_LT(scores["ate_rmse_m"], 0.05);  // a sanity bound; accuracy is judged at full size
+  EXPECT_GT(scores["timings"]["modules"]["state_optimization"]["median"], 0.0);
+  EXPECT_EQ(scores["timings"]["threads"]["tracking_thread"]["calls"], kFrames);
+  EXPECT_EQ(scores["timings"]["modules"]["image_decoding"]["calls"], kFrames);
+  const nlohmann::json manifest = json_of(out.path() / "manifest.json");
+  EXPECT_EQ(manifest["sequence"]["checksum"].get<std::string>().size(), 16u);
+  EXPECT_EQ(manifest["config"]["resolved"]["imu.enabled"], true);
+  EXPECT_FALSE(manifest["build"]["git_commit"].get<std::string>().empty());
+}
+
+TEST(RunCommand, IsTheSameToTheBitTwiceAndWithTwoPoolThreads) {
+  const TemporaryFolder out;
+  for (const char* name : {"first", "second"}) {
+    ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path() / name)).exit_code, 0);
+  }
+  ASSERT_EQ(
+      run_program(run_of(rendered_sequence(), out.path() / "pool", {"--set", "frontend.grid.threads=2"}))
+          .exit_code,
+      0);
+  const std::string first = text_of(out.path() / "first" / "trajectory.tum");
+  EXPECT_GT(first.size(), 1000u);
+  EXPECT_EQ(first, text_of(out.path() / "second" / "trajectory.tum"));
+  EXPECT_EQ(first, text_of(out.path() / "pool" / "trajectory.tum"));
+}
+
+TEST(RunCommand, EachVariantHasItsFolder) {
+  const TemporaryFolder out;
+  const ProgramResult result = run_program(
+      run_of(rendered_sequence(), out.path(),
+             {"--variant", "vo", "--variant", "ablations/wo_circular_mask+vo", "--max-frames", "20"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(names_in(out.path()), (std::vector<std::string>{"ablations-wo_circular_mask+vo", "vo"}));
+  const nlohmann::json manifest =
+      json_of(out.path() / "ablations-wo_circular_mask+vo" / "manifest.json")["config"]["resolved"];
+  EXPECT_EQ(manifest["imu.enabled"], false);
+  EXPECT_EQ(manifest["frontend.circular_mask"], false);
+  EXPECT_EQ(json_of(out.path() / "vo" / "result.json")["frames"], 20);
+}
+
+TEST(RunCommand, SkipsCountsAndReportsOneBadPicture) {
+  const TemporaryFolder folder;
+  const fs::path sequence = copy_of_rendered_sequence(folder);
+  const fs::path picture = sequence / "color" / names_in(sequence / "color")[40];
+  fs::remove(picture);
+  folder.write("copy/color/" + picture.filename().string(), "no picture");
+  const ProgramResult result = run_program(run_of(sequence, folder.path() / "out", {"--variant", "vo"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("warning: frame 40 skipped: " + picture.string()), std::string::npos)
+      << result.err;
+  const nlohmann::json skipped = json_of(folder.path() / "out" / "result.json")["skipped_frames"];
+  ASSERT_EQ(skipped.size(), 1u);
+  EXPECT_EQ(skipped[0]["index"], 40);
+}
+
+TEST(RunCommand, CtrlCLeavesAMarkedPartialResult) {
+  const TemporaryFolder out;
+  std::vector<std::string> arguments = {"--verbose"};
+  const std::vector<std::string> run = run_of(rendered_sequence(), out.path(), {"--variant", "vo"});
+  arguments.insert(arguments.end(), run.begin(), run.end());
+  ProgramOptions options;
+  options.interrupt_after = "frame 5:";
+  const ProgramResult result = run_program(arguments, options);
+  EXPECT_EQ(result.exit_code, 130);
+  const nlohmann::json scores = json_of(out.path() / "result.json");
+  EXPECT_EQ(scores["status"], "interrupted");
+  EXPECT_GE(scores["frames"], 6);
+  EXPECT_LT(scores["frames"], kFrames);
+  EXPECT_TRUE(text_of(out.path() / "trajectory.tum").starts_with("# partial: interrupted after "));
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/rendered_sequence.h"
+
+#include "datasets/synthetic/render_sequence.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+
+/// Renders on construction; the folder goes when the test program ends.
+struct Rendering {
+  TemporaryFolder folder;
+  fs::path sequence = folder.path() / "office";
+  Rendering() {
+    SynthRequest request = preset_request("walking_xyz_empty");
+    request.seconds = 3.0;
+    request.focal_px *= static_cast<double>(kWidth) / request.width;
+    request.width = kWidth;
+    request.height = kHeight;
+    render_sequence(request, sequence);
+  }
+};
+
+void link_or_copy(const fs::path& from, const fs::path& to) {
+  if (from.extension() == ".png") {
+    fs::create_hard_link(from, to);
+  } else {
+    fs::copy_file(from, to);
+  }
+}
+
+}  // namespace
+
+const fs::path& rendered_sequence() {
+  static const Rendering kRendering;
+  return kRendering.sequence;
+}
+
+fs::path copy_of_rendered_sequence(const TemporaryFolder& folder) {
+  const fs::path copy = folder.path() / "copy";
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(rendered_sequence())) {
+    const fs::path target = copy / entry.path().lexically_relative(rendered_sequence());
+    fs::create_directories(entry.is_directory() ? target : target.parent_path());
+    if (entry.is_regular_file()) link_or_copy(entry.path(), target);
+  }
+  return copy;
+}
+
+}  // namespace stillpoint
