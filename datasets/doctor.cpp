@@ -118,7 +118,13 @@ void check_ground_truth(const SequenceInfo& info, CheckReport& report) {
 
 void check_depth_offset(const SequenceContent& content, CheckReport& report) {
   std::vector<double> offsets;
-  for (const PictureFiles& files : content.pictures) offsets.push_back(files.depth_offset_s);
+  for (const PictureFiles& files : content.pictures) {
+    if (!files.depth.empty()) offsets.push_back(files.depth_offset_s);
+  }
+  if (offsets.empty()) {
+    report.notes.push_back("no depth");
+    return;
+  }
   report.depth_offset_s = median(offsets);
   if (std::abs(report.depth_offset_s) > kDepthOffset_s) {
     warn(report, "depth",
@@ -180,7 +186,9 @@ std::string report_text(const CheckReport& report) {
                         stream.name, stream.count, stream.rate_hz, stream.first_s, stream.last_s,
                         stream.longest_gap_s);
   }
-  text += fmt::format("  depth lags colour by {:.1f} ms (median)\n", 1e3 * report.depth_offset_s);
+  if (report.depth_offset_s != 0.0) {
+    text += fmt::format("  depth lags colour by {:.1f} ms (median)\n", 1e3 * report.depth_offset_s);
+  }
   for (const std::string& note : report.notes) text += "  note: " + note + "\n";
   std::map<std::string, std::size_t> shown;
   for (const Finding& finding : report.findings) {

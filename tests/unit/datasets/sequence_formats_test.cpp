@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "datasets/image_io.h"
 #include "datasets/sequence_content.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/sequence_folders.h"
@@ -172,9 +173,28 @@ TEST(SevenScenesFormat, StampsFramesByTheirNumber) {
 TEST(SevenScenesFormat, TakesTheLargestRawDepthForNotMeasured) {
   const TemporaryFolder folder;
   write_seven_scenes_folder(folder);
+  write_png(folder.path() / "frame-000000.depth.png", cv::Mat(480, 640, CV_16UC1, cv::Scalar(65535)));
   const auto stream = open_sequence(folder.path());
   const cv::Mat depth = stream->load_frame(0).depth;
-  EXPECT_EQ(*std::max_element(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>()), 1000);
+  EXPECT_EQ(depth.at<std::uint16_t>(240, 320), 0);
+}
+
+TEST(SevenScenesFormat, RegistersDepthToTheColourCamera) {
+  const TemporaryFolder folder;
+  write_seven_scenes_folder(folder);
+  const auto stream = open_sequence(folder.path());
+  const SequenceInfo& info = stream->info();
+  EXPECT_NEAR(info.rig.camera.fx, 526.0, 1e-9);
+  EXPECT_NEAR(info.ground_truth.T_c_f.p.x(), -0.025, 1e-9);  // the poses are of the depth camera
+  const cv::Mat depth = stream->load_frame(0).depth;
+  // A wall at 1 m ends at 320 / 585 m to either side; in colour at 526 * (320 / 585 -+ 0.025) px from the
+  // centre, 275 to the right and 301 to the left: at the columns 595 and 19, and a pixel or two further in by
+  // distortion.
+  EXPECT_NEAR(depth.at<std::uint16_t>(240, 320), 1000, 1);
+  EXPECT_GT(depth.at<std::uint16_t>(240, 585), 0);
+  EXPECT_EQ(depth.at<std::uint16_t>(240, 600), 0);
+  EXPECT_GT(depth.at<std::uint16_t>(240, 32), 0);
+  EXPECT_EQ(depth.at<std::uint16_t>(240, 15), 0);
 }
 
 TEST(FolderFormat, PairsByNameAndReadsTheJsonCamera) {
