@@ -33,7 +33,7 @@ libraries=(
   '<embree3/          ^datasets/synthetic/'
   '<ceres/            ^core/(backend|loop)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/(backend|loop)/'
-  '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/'
+  '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/raster_drawing\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
   '<sqlite3           ^bench/'
   '<CLI/              ^bench/cli/command_line\.cpp$'

@@ -27,7 +27,7 @@ struct Command {
   std::string example;  ///< a command line that works, without the program's name
   std::vector<Option> options;
   std::function<int()>
-      action;  ///< runs after parsing; returns the exit code; empty when there are subcommands
+      action;  ///< runs after parsing, unless a subcommand was named; returns the exit code; may be empty then
   std::vector<Command> subcommands;
 };
 

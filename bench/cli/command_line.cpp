@@ -14,7 +14,8 @@
 namespace stillpoint {
 namespace {
 
-void add_option(CLI::App& app, const Option& option) {
+/// @param optional whether even arguments may be absent: a subcommand may take their place
+void add_option(CLI::App& app, const Option& option, bool optional) {
   const auto add = [&](auto* target) {
     CLI::Option* added = nullptr;
     if constexpr (std::is_same_v<decltype(target), bool*>) {
@@ -23,7 +24,7 @@ void add_option(CLI::App& app, const Option& option) {
       added = app.add_option(option.name, *target, option.help);
     }
     const bool positional = option.name.front() != '-';
-    if (positional) added->required();
+    if (positional && !optional) added->required();
     if constexpr (std::is_same_v<decltype(target), std::vector<std::string>*>) {
       if (!positional) added->allow_extra_args(false);
     }
@@ -34,10 +35,13 @@ void add_option(CLI::App& app, const Option& option) {
 void add_command(CLI::App& parent, const Command& command, int& exit_code) {
   CLI::App* app = parent.add_subcommand(command.name, command.summary);
   app->footer("Example:\n  stillpoint " + command.example);
-  for (const Option& option : command.options) add_option(*app, option);
+  for (const Option& option : command.options) add_option(*app, option, !command.subcommands.empty());
   for (const Command& subcommand : command.subcommands) add_command(*app, subcommand, exit_code);
-  if (!command.subcommands.empty()) app->require_subcommand(1);
-  if (command.action) app->callback([&command, &exit_code] { exit_code = command.action(); });
+  if (!command.subcommands.empty() && !command.action) app->require_subcommand(1);
+  if (!command.action) return;
+  app->callback([app, &command, &exit_code] {
+    if (app->get_subcommands().empty()) exit_code = command.action();
+  });
 }
 
 void log_to_stderr(bool verbose) {

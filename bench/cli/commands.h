@@ -6,9 +6,10 @@
 
 namespace stillpoint {
 
-[[nodiscard]] Command run_command();     ///< `stillpoint run`: odometry over one sequence
-[[nodiscard]] Command eval_command();    ///< `stillpoint eval`: scores of a trajectory file
-[[nodiscard]] Command bench_command();   ///< `stillpoint bench`: sequences x variants, one table
+[[nodiscard]] Command run_command();             ///< `stillpoint run`: odometry over one sequence
+[[nodiscard]] Command eval_command();            ///< `stillpoint eval`: scores of a trajectory file
+[[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: result files by scene
+[[nodiscard]] Command bench_command();           ///< `stillpoint bench`: sequences x variants, one table
 [[nodiscard]] Command config_command();  ///< `stillpoint config`: resolved configs and the reference page
 [[nodiscard]] Command data_command();    ///< `stillpoint data`: make and inspect sequences
 [[nodiscard]] Command check_command();   ///< `stillpoint data check`: the sequence doctor
