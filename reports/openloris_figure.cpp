@@ -19,7 +19,9 @@ constexpr double kFooter = 34.0;
 constexpr double kSize = 21.0;  // of text: 5.3 pt at a column's 252 pt
 constexpr Color kBlack{20, 20, 20};
 constexpr Color kGray{215, 215, 215};
-constexpr Color kBlue{30, 90, 200};
+constexpr Color kBlue{20, 70, 180};         // first poses
+constexpr Color kLightBlue{120, 170, 240};  // tracked spans
+constexpr double kBarWidth = 7.0;
 constexpr Color kRed{200, 40, 40};
 
 struct DisplayName {
@@ -117,13 +119,13 @@ void draw_runs(Drawing& drawing, const Panel& panel, const OpenlorisScene& scene
   for (const auto& [sequence, run] : scene.runs) {
     const double begin_s = panel.begins_s.at(sequence);
     for (const TrackedSpan& span : run.score.tracked_spans) {
-      drawing.marks.push_back(
-          Polyline{{{panel.x(begin_s + span.begin_s), y}, {panel.x(begin_s + span.end_s), y}}, kBlue, 8.0});
+      drawing.marks.push_back(Polyline{
+          {{panel.x(begin_s + span.begin_s), y}, {panel.x(begin_s + span.end_s), y}}, kLightBlue, kBarWidth});
     }
     if (!run.score.relocalization_time_s) continue;
     const bool correct = run.score.relocalization_score > 0.0;
     drawing.marks.push_back(
-        Disc{{panel.x(begin_s + *run.score.relocalization_time_s), y}, 6.0, correct ? kBlue : kRed});
+        Disc{{panel.x(begin_s + *run.score.relocalization_time_s), y}, 5.0, correct ? kBlue : kRed});
   }
 }
 

@@ -79,13 +79,22 @@ Trajectory load(const EvalArguments& arguments, const std::string& path) {
   return std::move(loaded.trajectory);
 }
 
+/// The file's name, or the whole path where two files have one name.
+std::string shown_name(const std::string& path, const std::vector<std::string>& all) {
+  const auto name_of = [](const std::string& file) { return std::filesystem::path(file).filename(); };
+  const auto same = std::count_if(all.begin(), all.end(),
+                                  [&](const std::string& other) { return name_of(other) == name_of(path); });
+  return same > 1 || name_of(path).empty() ? path : name_of(path).string();
+}
+
 std::vector<EvaluatedRun> evaluate_all(const EvalArguments& arguments, const Trajectory& gt) {
   std::vector<std::string> recipes = arguments.recipes;
   if (recipes.empty()) recipes = {"compat:tum", "strict:se3"};
   const RecipeOptions options = recipe_options(arguments);
   std::vector<EvaluatedRun> runs;
   for (const std::string& path : arguments.estimates) {
-    EvaluatedRun run{.name = path, .est = load(arguments, path), .evaluations = {}};
+    EvaluatedRun run{
+        .name = shown_name(path, arguments.estimates), .est = load(arguments, path), .evaluations = {}};
     for (const std::string& recipe : recipes)
       run.evaluations.push_back(evaluate(recipe, {gt, run.est, options}));
     runs.push_back(std::move(run));

@@ -49,7 +49,7 @@ TEST(OpenlorisFigure, DrawsATrackedSpanAtItsTime) {
   std::vector<Polyline> bars;
   std::vector<Disc> starts;
   for (const Mark& mark : figure.marks) {
-    if (const Polyline* const line = std::get_if<Polyline>(&mark); line != nullptr && line->width == 8.0) {
+    if (const Polyline* const line = std::get_if<Polyline>(&mark); line != nullptr && line->width == 7.0) {
       bars.push_back(*line);
     }
     if (const Disc* const disc = std::get_if<Disc>(&mark); disc != nullptr && disc->color.blue < 100) {
