@@ -22,7 +22,7 @@ declare -A may_include=(
   [datasets]="$below_types"
   [eval]="$below_types"
   [bench]="core/* datasets eval"
-  [bench/micro]="core/* datasets eval"
+  [bench/micro]="core/* datasets eval tests/support"
   [reports]="core/* datasets eval bench"
   [bench/cli]="core/* datasets eval bench reports"
 )
@@ -59,6 +59,7 @@ module_of() {
     core/*/*) REPLY="${1#core/}" REPLY="core/${REPLY%%/*}" ;;
     bench/cli/*) REPLY=bench/cli ;;
     bench/micro/*) REPLY=bench/micro ;;
+    tests/support/*) REPLY=tests/support ;;
     datasets/* | eval/* | bench/* | reports/*) REPLY="${1%%/*}" ;;
     *) REPLY="" ;;
   esac

@@ -50,8 +50,10 @@ class WindowProblem {
 
   ceres::Solver::Summary solve(const BackendConfig& config) {
     ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_SCHUR;
-    options.linear_solver_ordering = ordering_;
+    // With every landmark held there is nothing to eliminate, and Ceres would fall back to a dense QR, thrice
+    // as slow.
+    options.linear_solver_type = landmarks_are_free_ ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
+    if (landmarks_are_free_) options.linear_solver_ordering = ordering_;
     options.trust_region_strategy_type = ceres::DOGLEG;
     options.max_num_iterations = config.max_iterations;
     options.function_tolerance = config.function_tolerance;
@@ -95,10 +97,9 @@ class WindowProblem {
       double* block = blocks_.inverse_depth(i);
       ordering_->AddElementToGroup(block, kLandmarkGroup);
       const bool measured = window.landmarks[i].source == DepthSource::kMeasured;
-      if (config.depth.usage == DepthUsage::kFixed && measured)
-        problem_.SetParameterBlockConstant(block);
-      else
-        problem_.SetParameterLowerBound(block, 0, 1.0 / config.depth.farthest_m);
+      const bool held = config.depth.usage == DepthUsage::kFixed && measured;
+      if (held) problem_.SetParameterBlockConstant(block);
+      landmarks_are_free_ |= !held;
     }
   }
 
@@ -115,7 +116,15 @@ class WindowProblem {
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
       std::make_shared<ceres::ParameterBlockOrdering>();
   ceres::Problem problem_;
+  bool landmarks_are_free_ = false;
 };
+
+/// Points that went to infinity or behind their host start anew from what was measured.
+void forget_lost_depths(const DepthConfig& config, Window& window) {
+  for (Landmark& landmark : window.landmarks) {
+    if (landmark.inverse_depth * config.farthest_m < 1.0) landmark.inverse_depth = 0.0;
+  }
+}
 
 }  // namespace
 
@@ -128,7 +137,10 @@ SolveReport solve_window(Window& window, const BackendConfig& config, double foc
   report.initial_cost = summary.initial_cost;
   report.final_cost = summary.final_cost;
   report.usable = summary.IsSolutionUsable();
-  if (report.usable) unpack(problem.blocks(), window);
+  if (report.usable) {
+    unpack(problem.blocks(), window);
+    forget_lost_depths(config.depth, window);
+  }
   return report;
 }
 
