@@ -87,16 +87,27 @@ std::string shown_name(const std::string& path, const std::vector<std::string>& 
   return same > 1 || name_of(path).empty() ? path : name_of(path).string();
 }
 
+/// Without a choice the TUM tools' numbers and ours; ours may need more than the path gives (it is a line, it
+/// stands still), which is an error only where it was asked for.
+std::vector<Evaluation> evaluate_by_default(const EvaluationInput& input, const std::string& name) {
+  std::vector<Evaluation> evaluations{evaluate("compat:tum", input)};
+  try {
+    evaluations.push_back(evaluate("strict:se3", input));
+  } catch (const InputError& error) {
+    spdlog::warn("{}: left out: {}", name, error.what());
+  }
+  return evaluations;
+}
+
 std::vector<EvaluatedRun> evaluate_all(const EvalArguments& arguments, const Trajectory& gt) {
-  std::vector<std::string> recipes = arguments.recipes;
-  if (recipes.empty()) recipes = {"compat:tum", "strict:se3"};
   const RecipeOptions options = recipe_options(arguments);
   std::vector<EvaluatedRun> runs;
   for (const std::string& path : arguments.estimates) {
     EvaluatedRun run{
         .name = shown_name(path, arguments.estimates), .est = load(arguments, path), .evaluations = {}};
-    for (const std::string& recipe : recipes)
-      run.evaluations.push_back(evaluate(recipe, {gt, run.est, options}));
+    const EvaluationInput input{gt, run.est, options};
+    for (const std::string& recipe : arguments.recipes) run.evaluations.push_back(evaluate(recipe, input));
+    if (arguments.recipes.empty()) run.evaluations = evaluate_by_default(input, run.name);
     runs.push_back(std::move(run));
   }
   return runs;
