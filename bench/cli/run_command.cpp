@@ -167,22 +167,23 @@ int run(const RunArguments& arguments) {
 
 Command run_command() {
   const auto arguments = std::make_shared<RunArguments>();
-  return {.name = "run",
-          .summary = "Run the odometry over one sequence; write trajectory, scores and manifest",
-          .example = "run walking_xyz --variant wo_circular_mask --out /tmp/run",
-          .options = {{"SEQ", "Sequence folder, or the name of a rendered one", &arguments->sequence},
-                      {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
-                      {"--variant", "Overlays joined by +; each further --variant is a further run",
-                       &arguments->variants},
-                      {"--set", "Change one key: key=value, may be repeated", &arguments->settings},
-                      {"--mode", "How the stages are run: sequential", &arguments->mode},
-                      {"--out", "Folder for the results [build/runs/SEQ/VARIANT]", &arguments->out},
-                      {"--format", "Layout of the folder: tum, openloris, euroc, 7scenes [recognised]",
-                       &arguments->format},
-                      {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
-                      {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
-          .action = [arguments] { return run(*arguments); },
-          .subcommands = {}};
+  return {
+      .name = "run",
+      .summary = "Run the odometry over one sequence; write trajectory, scores and manifest",
+      .example = "run walking_xyz --variant wo_circular_mask --out /tmp/run",
+      .options = {{"SEQ", "Sequence folder, or the name of a rendered one", &arguments->sequence},
+                  {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+                  {"--variant", "Overlays joined by +; each further --variant is a further run",
+                   &arguments->variants},
+                  {"--set", "Change one key: key=value, may be repeated", &arguments->settings},
+                  {"--mode", "How the stages are run: sequential", &arguments->mode},
+                  {"--out", "Folder for the results [build/runs/SEQ/VARIANT]", &arguments->out},
+                  {"--format", "Layout of the folder: tum, openloris, euroc, 7scenes, folder [recognised]",
+                   &arguments->format},
+                  {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
+                  {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
+      .action = [arguments] { return run(*arguments); },
+      .subcommands = {}};
 }
 
 }  // namespace stillpoint

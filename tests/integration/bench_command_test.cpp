@@ -17,9 +17,8 @@ std::string plan_text(const std::string& variants) {
          "\", \"not_at_hand\"]\nvariants = [" + variants + "]\n";
 }
 
-ProgramResult bench(const TemporaryFolder& folder, const std::string& variants) {
+ProgramResult bench(const TemporaryFolder& folder, const std::string& variants, ProgramOptions options = {}) {
   const fs::path plan = folder.write("plan.toml", plan_text(variants));
-  ProgramOptions options;
   options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()};
   return run_program({"bench", plan.string(), "--out", (folder.path() / "out").string()}, options);
 }
@@ -61,6 +60,16 @@ TEST(BenchCommand, ShowsAFailedRunWithItsReason) {
   EXPECT_EQ(rows[0]["status"], "failed");
   EXPECT_NE(rows[0]["reason"].get<std::string>().find("d400_gyroscope.txt"), std::string::npos);
   EXPECT_NE(result.out.find("copy stillpoint failed: "), std::string::npos);
+}
+
+TEST(BenchCommand, CtrlCLeavesAMarkedTableOfTheRunsSoFar) {
+  const TemporaryFolder folder;
+  ProgramOptions options;
+  options.interrupt_after = "run office stillpoint";
+  const ProgramResult result = bench(folder, "\"stillpoint\", \"vo\"", options);
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_NE(result.out.find("Test (interrupted: not every run was made)"), std::string::npos) << result.out;
+  EXPECT_EQ(rows_of(folder).size(), 1u);  // the run that was going on; those after it were not begun
 }
 
 TEST(BenchCommand, RefusesAnUnknownPlan) {
