@@ -4,6 +4,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -34,11 +35,27 @@ std::string reason(std::string text) {
   return text;
 }
 
+/// Whether a PNG has its last chunk. Asked before decoding, because libpng leaves a truncated file by a jump
+/// that leaks what the library above it holds, and prints to stderr.
+bool has_png_end(const std::filesystem::path& file) {
+  constexpr std::streamoff kTail = 64;  // the chunk is 12 bytes; some writers pad
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in.tellg();
+  std::string tail(static_cast<std::size_t>(std::clamp(size, std::streamoff{0}, kTail)), '\0');
+  in.seekg(size - static_cast<std::streamoff>(tail.size()));
+  in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+  return in && tail.find("IEND") != std::string::npos;
+}
+
 std::unique_ptr<OIIO::ImageInput> open_picture(const std::filesystem::path& file) {
   keep_to_one_thread();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw InputError(file.string(), "no such picture; is the sequence complete?");
+  }
+  const bool is_png = file.extension() == ".png" || file.extension() == ".PNG";
+  if (is_png && !has_png_end(file)) {
+    throw InputError(file.string(), "is truncated or no PNG; copy the file anew");
   }
   OIIO::ImageSpec keep_alpha;
   keep_alpha.attribute("oiio:UnassociatedAlpha", 1);
