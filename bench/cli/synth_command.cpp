@@ -29,6 +29,7 @@ struct SynthArguments {
   int width = -1, height = -1;
   double seconds = kPresetValue, rate = kPresetValue, focal = kPresetValue;
   double exposure_ms = kPresetValue, exposure_swing = kPresetValue, rolling_ms = kPresetValue;
+  double start = kPresetValue;
   double depth_noise = kPresetValue, time_offset_ms = 0.0, dropped = kPresetValue;
 };
 
@@ -49,6 +50,7 @@ SynthRequest request_of(const SynthArguments& arguments) {
   request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
   take(request.seed, arguments.seed);
   take(request.seconds, arguments.seconds);
+  take(request.start_s, arguments.start);
   take(request.frames_per_s, arguments.rate);
   take(request.walkers, arguments.people);
   take(request.seated, arguments.seated);
@@ -97,6 +99,7 @@ std::vector<Option> options_of(SynthArguments& arguments) {
           {"--labels", "Also write instance numbers of every pixel", &arguments.labels},
           {"--trajectory", "flight: poses of the IMU (TUM text)", &arguments.trajectory},
           {"--imu", "flight: its readings (EuRoC csv)", &arguments.imu},
+          {"--start", "flight: begin this long after its start [s]", &arguments.start},
           {"--width", "Picture width [px]", &arguments.width},
           {"--height", "Picture height [px]", &arguments.height},
           {"--focal", "Focal length [px]", &arguments.focal},

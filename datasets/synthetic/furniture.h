@@ -47,13 +47,24 @@ struct RoomLook {
   double lamp_power = 1.9;
 };
 void add_room(Builder& builder, const Room& room, const RoomLook& look, const Palette& palette);
+/// The parts of a room, for places that are no rectangle.
+void add_floor_and_ceiling(Builder& builder, const Room& room, const RoomLook& look, const Palette& palette);
+void add_wall(Builder& builder, const Wall& wall, double height, const RoomLook& look,
+              const Palette& palette);
 
 /// Hangs a picture with its lower left corner at (along, up) on a wall.
 void hang(Builder& builder, const Wall& wall, const Eigen::Vector2d& at, const Eigen::Vector2d& size,
           int texture);
 
-/// Fills a wall between two heights with posters, boards and sheets. @param density in [0, 1]
-void decorate(Builder& builder, const Wall& wall, double density, const Palette& palette,
+/// How much hangs on a wall: gaps shrink as the density grows; the row is raised by `lift` [m] from eye
+/// level.
+struct Decoration {
+  double density = 1.0;  ///< > 0
+  double lift = 0.0;
+};
+
+/// Hangs a row of posters, noticeboards and sheets.
+void decorate(Builder& builder, const Wall& wall, const Decoration& decoration, const Palette& palette,
               RandomSequence& random);
 
 /// Each stands at `place`, its front towards -y before it is turned by `yaw`.

@@ -24,7 +24,7 @@ void add_workplaces(Builder& builder, const Palette& palette, RandomSequence& ra
 
 void add_walls(Builder& builder, const Room& room, const Palette& palette, RandomSequence& random) {
   const auto walls = room.walls();
-  for (std::size_t i : {0, 2, 3}) decorate(builder, walls[i], 1.0, palette, random);
+  for (std::size_t i : {0, 2, 3}) decorate(builder, walls[i], {}, palette, random);
   for (const double along : {0.6, 2.6, 4.6})
     hang(builder, walls[1], {along, 0.9}, {1.5, 1.5}, palette.window);
   hang(builder, walls[2], {6.2, 0.0}, {1.0, 2.1}, palette.door);

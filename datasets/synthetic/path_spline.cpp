@@ -67,6 +67,12 @@ double PathSpline::last_s() const {
   return start_s_ + interval_s_ * (static_cast<double>(positions_.size()) - 3.0);
 }
 
+PathSpline PathSpline::shifted(const Eigen::Vector3d& shift_w) const {
+  PathSpline path = *this;
+  for (Eigen::Vector3d& position : path.positions_) position += shift_w;
+  return path;
+}
+
 BodyMotion PathSpline::at(double t_s) const {
   const double last_span = static_cast<double>(positions_.size()) - 6.0;
   const double knots = std::clamp((t_s - first_s()) / interval_s_, 0.0, last_span + 1.0);

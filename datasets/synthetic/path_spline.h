@@ -47,6 +47,9 @@ class PathSpline {
 
   /// @param t_s is held to [first_s, last_s]
   [[nodiscard]] BodyMotion at(double t_s) const;
+  /// The same path elsewhere.
+  [[nodiscard]] PathSpline shifted(const Eigen::Vector3d& shift_w) const;
+
   [[nodiscard]] Pose pose_at(double t_s) const { return at(t_s).T_w_b; }
 
  private:

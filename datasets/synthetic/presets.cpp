@@ -70,6 +70,7 @@ void check_request(const SynthRequest& request) {
   require(request.depth.correlation_px >= 1, "depth.correlation_px", "1 or more");
   require(request.imu.gyro_rate_hz >= 10.0 && request.imu.accel_rate_hz >= 10.0, "imu rates",
           "10 Hz or more");
+  require(request.start_s >= 0.0, "start_s", "0 or more");
   const bool files = !request.trajectory_file.empty() && !request.imu_file.empty();
   if (request.preset == "flight" && !files) {
     throw InputError("preset \"flight\"",

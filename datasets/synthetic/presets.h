@@ -41,6 +41,7 @@ struct SynthRequest {
   ColorSensor color;
   DepthSensor depth;
   ImuSensor imu;
+  double start_s = 5.0;  ///< preset flight: begin this long after the first moment that both files cover
   std::filesystem::path trajectory_file;  ///< preset flight: poses of the IMU (TUM text)
   std::filesystem::path imu_file;         ///< preset flight: its readings (EuRoC csv)
 };
@@ -102,6 +103,7 @@ void visit_fields(Visitor&& field, const SynthRequest& request) {
   field("color", request.color);
   field("depth", request.depth);
   field("imu", request.imu);
+  field("start_s", request.start_s);
   field("trajectory_file", request.trajectory_file.string());
   field("imu_file", request.imu_file.string());
 }

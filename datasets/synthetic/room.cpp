@@ -22,20 +22,28 @@ std::array<Wall, 4> Room::walls() const {
           Wall{{low.x(), low.y(), 0.0}, Vector3d::UnitY(), depth}};
 }
 
+void add_wall(Builder& builder, const Wall& wall, double height, const RoomLook& look,
+              const Palette& palette) {
+  constexpr double kWallMetres = 2.0;
+  const Vector3d up(0.0, 0.0, height), skirting(0.0, 0.0, 0.1);
+  const Vector3d inward = wall.right.cross(Vector3d::UnitZ());
+  builder.set_frame(Vector3d::Zero(), 0.0);
+  builder.add_surface(wall.left_foot + up, wall.length * wall.right, -up, look.wall, kWallMetres);
+  builder.add_surface(wall.left_foot + skirting + kOffWall_m * inward, wall.length * wall.right, -skirting,
+                      palette.walnut, 1.0);
+}
+
 void add_room(Builder& builder, const Room& room, const RoomLook& look, const Palette& palette) {
+  add_floor_and_ceiling(builder, room, look, palette);
+  for (const Wall& wall : room.walls()) add_wall(builder, wall, room.height, look, palette);
+}
+
+void add_floor_and_ceiling(Builder& builder, const Room& room, const RoomLook& look, const Palette& palette) {
   const Vector3d x(room.high.x() - room.low.x(), 0.0, 0.0), y(0.0, room.high.y() - room.low.y(), 0.0);
-  const Vector3d up(0.0, 0.0, room.height);
-  constexpr double kWallMetres = 2.0, kCeilingMetres = 0.6;
+  constexpr double kCeilingMetres = 0.6;
   builder.set_frame(Vector3d::Zero(), 0.0);
   builder.add_surface({room.low.x(), room.high.y(), 0.0}, x, -y, look.floor, look.floor_metres);
   builder.add_surface({room.low.x(), room.low.y(), room.height}, x, y, look.ceiling, kCeilingMetres);
-  for (const Wall& wall : room.walls()) {
-    builder.add_surface(wall.left_foot + up, wall.length * wall.right, -up, look.wall, kWallMetres);
-    const Vector3d inward = wall.right.cross(Vector3d::UnitZ());
-    const Vector3d skirting(0.0, 0.0, 0.1);
-    builder.add_surface(wall.left_foot + skirting + kOffWall_m * inward, wall.length * wall.right, -skirting,
-                        palette.walnut, 1.0);
-  }
   const int columns = std::max(1, static_cast<int>(std::lround(x.x() / look.lamp_distance)));
   const int rows = std::max(1, static_cast<int>(std::lround(y.y() / look.lamp_distance)));
   for (int row = 0; row < rows; ++row) {
@@ -55,21 +63,24 @@ void hang(Builder& builder, const Wall& wall, const Vector2d& at, const Vector2d
   builder.add_picture(corner, size.x() * wall.right, Vector3d(0.0, 0.0, -size.y()), texture);
 }
 
-void decorate(Builder& builder, const Wall& wall, double density, const Palette& palette,
+void decorate(Builder& builder, const Wall& wall, const Decoration& decoration, const Palette& palette,
               RandomSequence& random) {
+  const double lift = decoration.lift;
   double along = random.uniform(0.2, 0.6);
   while (along < wall.length - 0.9) {
-    const double gap = random.uniform(0.15, 0.5) / std::max(density, 0.05);
+    const double gap = random.uniform(0.15, 0.5) / decoration.density;
     if (random.chance(0.2) && along + 1.8 < wall.length) {
-      hang(builder, wall, {along, random.uniform(1.1, 1.4)}, {1.6, 0.9}, any_of(palette.boards, random));
+      hang(builder, wall, {along, lift + random.uniform(1.1, 1.3)}, {1.6, 0.8},
+           any_of(palette.boards, random));
       along += 1.6 + gap;
     } else if (random.chance(0.75)) {
-      const double width = random.uniform(0.5, 0.8);
-      hang(builder, wall, {along, random.uniform(1.2, 1.6)}, {width, 1.3 * width},
+      const double width = random.uniform(0.45, 0.7);
+      hang(builder, wall, {along, lift + random.uniform(1.15, 1.4)}, {width, 1.3 * width},
            any_of(palette.posters, random));
       along += width + gap;
     } else {
-      hang(builder, wall, {along, random.uniform(1.3, 1.7)}, {0.21, 0.297}, any_of(palette.papers, random));
+      hang(builder, wall, {along, lift + random.uniform(1.3, 1.7)}, {0.21, 0.297},
+           any_of(palette.papers, random));
       along += 0.21 + gap;
     }
   }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
 #include "datasets/synthetic/counter_random.h"
+#include "datasets/synthetic/flight.h"
 
 namespace stillpoint {
 namespace {
@@ -35,22 +35,50 @@ Rig rig_of(const SynthRequest& request) {
 
 double last_path_time(const SynthRequest& request) { return kFirstFrame_s + request.seconds + kTail_s; }
 
-Stage office_stage(const SynthRequest& request) {
+Scene scene_of(const SynthRequest& request) {
+  if (request.preset.starts_with("market")) return build_market(request.seed);
+  if (request.preset.starts_with("corridor")) return build_corridor(request.seed);
+  return build_office(request.seed);
+}
+
+Stage simulated_stage(const SynthRequest& request) {
   const Rig rig = rig_of(request);
-  Scene scene = build_office(request.seed);
-  PathSpline path = hand_path(hand_motion_of(request.preset), scene.viewpoint, rig.T_b_c, request.seed, 0.0,
-                              last_path_time(request));
+  Scene scene = scene_of(request);
+  const double last_s = last_path_time(request);
+  const bool by_hand = request.preset.starts_with("walking");
+  PathSpline path = by_hand ? hand_path(hand_motion_of(request.preset), scene.viewpoint, rig.T_b_c,
+                                        request.seed, 0.0, last_s)
+                            : robot_path(scene.route, rig.T_b_c, request.seed, 0.0, last_s);
   const Timestamp epoch{kEpoch_ns};
   InertialRecord inertia =
       measure_inertia(path, request.imu, epoch, 0.0, last_path_time(request), request.seed);
   return {std::move(scene), std::move(path), rig, epoch, kFirstFrame_s, std::move(inertia)};
 }
 
+std::vector<Eigen::Vector3d> camera_positions(const PathSpline& path, const Pose& T_b_c) {
+  constexpr double kInterval_s = 0.05;
+  std::vector<Eigen::Vector3d> positions;
+  for (double t_s = path.first_s(); t_s < path.last_s(); t_s += kInterval_s) {
+    positions.push_back((path.pose_at(t_s) * T_b_c).p);
+  }
+  return positions;
+}
+
+Stage flight_stage(const SynthRequest& request) {
+  Flight flight = load_flight(request);
+  Rig rig = rig_of(request);
+  rig.T_b_c = flight.T_b_c;
+  rig.imu_noise = ImuNoise{};  // a real sensor on a vibrating body: the wide densities of core/types
+  const Eigen::Vector3d shift = hall_shift(camera_positions(flight.smoothed.path, rig.T_b_c));
+  PathSpline path = flight.smoothed.path.shifted(shift);
+  Scene scene = build_hall(request.seed, camera_positions(path, rig.T_b_c));
+  return {std::move(scene), std::move(path), rig, flight.epoch, 0.0, std::move(flight.readings)};
+}
+
 }  // namespace
 
 Stage make_stage(const SynthRequest& request) {
-  if (request.preset.starts_with("walking")) return office_stage(request);
-  throw InputError("preset \"" + request.preset + "\"", "cannot be rendered yet");
+  return request.preset == "flight" ? flight_stage(request) : simulated_stage(request);
 }
 
 std::vector<Timestamp> frame_times(const SynthRequest& request, const Stage& stage) {
@@ -96,7 +124,7 @@ Trajectory camera_truth(const SynthRequest& request, const Stage& stage) {
   Trajectory truth{"camera", {}};
   const double last_s = stage.first_frame_s + request.seconds + kTail_s;
   for (int i = 0;; ++i) {
-    const double t_s = std::max(0.0, stage.first_frame_s - kFirstFrame_s) + i * kTruthInterval_s;
+    const double t_s = stage.first_frame_s - kFirstFrame_s + i * kTruthInterval_s;
     if (t_s > last_s) return truth;
     truth.poses.push_back({after(stage.epoch, t_s), stage.body_path.pose_at(t_s) * stage.rig.T_b_c});
   }

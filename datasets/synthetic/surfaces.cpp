@@ -132,7 +132,7 @@ cv::Mat paint_plaster(const Colour& base, RandomSequence& random) {
   add_rough_noise(canvas, 7.0, 256, random);
   add_noise(canvas, 5.0, 8, 8, random);
   add_grain(canvas, 2.5, random);
-  add_specks(canvas, 260, 6, 28.0, random);
+  add_specks(canvas, 420, 8, 38.0, random);
   return canvas;
 }
 

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/synthetic/lightmap.h"
+#include "datasets/synthetic/scenes.h"
+
+namespace stillpoint {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kHalfWidth_m = 1.2;
+constexpr double kFirstLeg_m = 14.0;   // along x
+constexpr double kSecondLeg_m = 18.0;  // along y, from the corner on
+constexpr double kHeight_m = 2.5;
+
+std::vector<Wall> corridor_walls() {
+  const double inner = kFirstLeg_m - 2.0 * kHalfWidth_m;
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
+  return {{{0.0, kHalfWidth_m, 0.0}, x, inner},
+          {{kFirstLeg_m, -kHalfWidth_m, 0.0}, -x, kFirstLeg_m},
+          {{0.0, -kHalfWidth_m, 0.0}, y, 2.0 * kHalfWidth_m},
+          {{kFirstLeg_m, kSecondLeg_m, 0.0}, -y, kSecondLeg_m + kHalfWidth_m},
+          {{inner, kHalfWidth_m, 0.0}, y, kSecondLeg_m - kHalfWidth_m},
+          {{inner, kSecondLeg_m, 0.0}, x, 2.0 * kHalfWidth_m}};
+}
+
+/// Doors every few metres and little else.
+void furnish_wall(Builder& builder, const Wall& wall, const Palette& palette, RandomSequence& random) {
+  const Vector3d inward = wall.right.cross(Vector3d::UnitZ());
+  double along = random.uniform(0.4, 1.0);
+  while (along + 1.0 < wall.length) {
+    if (random.chance(0.4)) {
+      hang(builder, wall, {along, 0.0}, {0.95, 2.05}, palette.door);
+      hang(builder, wall, {along + 1.1, 1.5}, {0.15, 0.2}, any_of(palette.papers, random));
+    } else if (random.chance(0.35)) {
+      hang(builder, wall, {along, 1.1}, {1.4, 0.7}, any_of(palette.boards, random));
+    } else if (random.chance(0.6)) {
+      hang(builder, wall, {along, 1.25}, {0.5, 0.7}, any_of(palette.posters, random));
+    } else {
+      add_bin(builder, {wall.left_foot + along * wall.right + 0.2 * inward, 0.0}, palette);
+    }
+    along += 1.5 + random.uniform(0.0, 0.7);
+  }
+}
+
+}  // namespace
+
+Scene build_corridor(std::uint64_t seed) {
+  Scene scene;
+  scene.room = Room{{0.0, -kHalfWidth_m}, {kFirstLeg_m, kSecondLeg_m}, kHeight_m};
+  scene.gain = 0.8;  // the camera's exposure is at its limit: a dark picture
+  const double lane = 0.45, middle = kFirstLeg_m - kHalfWidth_m;
+  scene.route = RobotRoute{{{1.2, -lane},
+                            {middle + lane, -lane},
+                            {middle + lane, kSecondLeg_m - 1.2},
+                            {middle - lane, kSecondLeg_m - 1.2},
+                            {middle - lane, lane},
+                            {1.2, lane}},
+                           0.9,
+                           0.65,
+                           0.6,
+                           0.95};
+  Builder builder(scene.world);
+  const Palette palette = make_palette(builder, seed);
+  RandomSequence random(random_key(seed, RandomStream::kScene));
+  const RoomLook look{palette.tiles, palette.plaster, palette.ceiling, 1.6, 3.0, 1.6};
+  const double inner = kFirstLeg_m - 2.0 * kHalfWidth_m;
+  const Room first{{0.0, -kHalfWidth_m}, {inner, kHalfWidth_m}, kHeight_m};
+  const Room second{{inner, -kHalfWidth_m}, {kFirstLeg_m, kSecondLeg_m}, kHeight_m};
+  for (const Room& leg : {first, second}) add_floor_and_ceiling(builder, leg, look, palette);
+  for (const Wall& wall : corridor_walls()) {
+    add_wall(builder, wall, kHeight_m, look, palette);
+    furnish_wall(builder, wall, palette, random);
+  }
+  bake_light(scene.world, RayTracer(scene.world), seed);
+  return scene;
+}
+
+}  // namespace stillpoint
