@@ -58,8 +58,15 @@ Scene build_corridor(std::uint64_t seed) {
                            0.65,
                            0.6,
                            0.95};
+  scene.walkways = {{{3.0, 0.6},
+                     {middle - 0.6, 0.6},
+                     {middle - 0.6, 13.0},
+                     {middle - 0.1, 13.0},
+                     {middle - 0.1, 0.1},
+                     {3.0, 0.1}}};
+  scene.cartways = {{{5.0, 0.75}, {11.0, 0.75}, {11.0, 0.35}, {5.0, 0.35}}};
   Builder builder(scene.world);
-  const Palette palette = make_palette(builder, seed);
+  const Palette& palette = scene.palette = make_palette(builder, seed);
   RandomSequence random(random_key(seed, RandomStream::kScene));
   const RoomLook look{palette.tiles, palette.plaster, palette.ceiling, 1.6, 3.0, 1.6};
   const double inner = kFirstLeg_m - 2.0 * kHalfWidth_m;

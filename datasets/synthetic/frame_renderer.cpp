@@ -7,17 +7,19 @@
 #include <cmath>
 
 #include "datasets/synthetic/lightmap.h"
+#include "datasets/synthetic/mover_tiles.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kBlockColumns = 4;  // pixels of a packet: near each other, so that their rays stay together
 constexpr int kBlockRows = 2;
-constexpr int kCenterTable = kLightSamples;
 constexpr float kFar_m = 1000.0F;
-/// Rotated-grid places in the pixel [px].
-constexpr std::array<Eigen::Vector2d::Scalar, kLightSamples> kOffset_x{-0.125, 0.375, 0.125, -0.375};
-constexpr std::array<Eigen::Vector2d::Scalar, kLightSamples> kOffset_y{-0.375, -0.125, 0.375, 0.125};
+/// Places in the pixel [px]: the first in its centre, the others spread over it; their mean is the centre.
+constexpr std::array<double, kLightSamples> kOffset_x{0.0, -0.45, 0.2, 0.25};
+constexpr std::array<double, kLightSamples> kOffset_y{0.0, -0.05, 0.4, -0.35};
+/// Moments within the exposure: their mean is its middle, their variance that of an open shutter (1/12).
+constexpr std::array<double, kLightSamples> kMoments{0.0, 0.0, -0.408, 0.408};
 /// Added to the wanted mip level before rounding down: the mean over the samples blends two levels
 /// (trilinear).
 constexpr std::array<float, kLightSamples> kLevelDither{0.625F, 0.125F, 0.875F, 0.375F};
@@ -52,17 +54,17 @@ struct FrameRenderer::Job {
   const Shot* shot;
   const MoverFrame* looks;
   const RayTracer::Movers* movers;
-  std::vector<std::array<View, kLightSamples + 1>> views;  // per row
+  std::vector<std::array<View, kLightSamples>> views;  // per row
+  std::vector<float> vertex_light;
+  std::optional<MoverTiles> tiles;
 };
 
-double exposure_share(int index) { return (index + 0.5) / kLightSamples - 0.5; }
+double exposure_share(int index) { return kMoments[static_cast<std::size_t>(index)]; }
 
 FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const Camera& camera)
     : world_(world), tracer_(tracer), camera_(camera) {
-  for (int table = 0; table <= kLightSamples; ++table) {
-    const auto at = static_cast<std::size_t>(table);
-    const Eigen::Vector2d offset =
-        table < kLightSamples ? Eigen::Vector2d(kOffset_x[at], kOffset_y[at]) : Eigen::Vector2d(0.0, 0.0);
+  for (std::size_t at = 0; at < kLightSamples; ++at) {
+    const Eigen::Vector2d offset(kOffset_x[at], kOffset_y[at]);
     for (int row = 0; row < camera.height; ++row) {
       for (int column = 0; column < camera.width; ++column) {
         directions_[at].push_back(camera.unproject(Eigen::Vector2d(column, row) + offset).cast<float>());
@@ -72,17 +74,21 @@ FrameRenderer::FrameRenderer(const World& world, const RayTracer& tracer, const 
 }
 
 RenderedFrame FrameRenderer::render(const Shot& shot, const MoverFrame* movers) const {
-  Job job{&shot, movers, nullptr, {}};
-  for (std::size_t row = 0; row < shot.light_poses.size(); ++row) {
-    std::array<View, kLightSamples + 1> views;
-    for (std::size_t i = 0; i < kLightSamples; ++i) views[i] = view_of(shot.light_poses[row][i]);
-    views[kCenterTable] = view_of(shot.depth_poses[row]);
+  Job job{&shot, movers, nullptr, {}, {}, {}};
+  for (const std::array<Pose, kLightSamples>& poses : shot.poses) {
+    std::array<View, kLightSamples> views;
+    std::transform(poses.begin(), poses.end(), views.begin(), view_of);
     job.views.push_back(views);
   }
   std::optional<RayTracer::Movers> mover_scene;
   if (movers != nullptr && !movers->mesh.triangles.empty()) {
     mover_scene.emplace(tracer_, movers->mesh);
     job.movers = &*mover_scene;
+    job.tiles.emplace(movers->mesh, camera_,
+                      std::array{shot.poses.front().front(), shot.poses.back().back()});
+    for (std::size_t i = 0; i < movers->mesh.start.size(); ++i) {
+      job.vertex_light.push_back(open_light(world_, movers->mesh.start[i], movers->normals[i]));
+    }
   }
   const auto pixels = static_cast<std::size_t>(camera_.width * camera_.height);
   RenderedFrame frame{camera_.width, camera_.height, std::vector<Float4>(pixels), std::vector<float>(pixels),
@@ -105,7 +111,7 @@ RayPacket FrameRenderer::aim(const Job& job, const Block& block, int sample) con
     const View& view = job.views[moment][static_cast<std::size_t>(sample)];
     const Eigen::Vector2f& point = table[static_cast<std::size_t>(row * camera_.width + column)];
     const Eigen::Vector3f direction = view.R_w_c * Eigen::Vector3f(point.x(), point.y(), 1.0F);
-    const float share = sample == kCenterTable ? 0.0F : static_cast<float>(exposure_share(sample));
+    const auto share = static_cast<float>(exposure_share(sample));
     packet.origin_x[lane] = view.p_w.x(), packet.direction_x[lane] = direction.x();
     packet.origin_y[lane] = view.p_w.y(), packet.direction_y[lane] = direction.y();
     packet.origin_z[lane] = view.p_w.z(), packet.direction_z[lane] = direction.z();
@@ -121,31 +127,36 @@ RayPacket FrameRenderer::aim(const Job& job, const Block& block, int sample) con
 void FrameRenderer::render_block(const Job& job, int block_row, int block_column,
                                  RenderedFrame& frame) const {
   const Block block{block_row, block_column};
+  const bool may_move = job.movers != nullptr && job.tiles->touches(block_row, block_column);
   std::array<Float4, kPacket> light{};
-  for (int sample = 0; sample <= kLightSamples; ++sample) {
+  for (int sample = 0; sample < kLightSamples; ++sample) {
     RayPacket packet = aim(job, block, sample);
     tracer_.trace(packet);
-    if (job.movers != nullptr) job.movers->trace(packet);
+    if (may_move) job.movers->trace(packet);
     for (int lane = 0; lane < kPacket; ++lane) {
-      const int row = block.row_of(lane), column = block.column_of(lane);
-      if (packet.primitive[lane] < 0 || row >= camera_.height || column >= camera_.width) continue;
-      if (sample < kLightSamples) {
-        light[static_cast<std::size_t>(lane)] += shade(job, packet, lane, sample) * (1.0F / kLightSamples);
-        continue;
-      }
-      const auto pixel = static_cast<std::size_t>(row * camera_.width + column);
-      const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
-      frame.depth_m[pixel] = packet.far[lane];  // the direction has length 1 along the optical axis
-      if (packet.moving[lane]) {
-        frame.object[pixel] = static_cast<std::uint16_t>(job.looks->looks[primitive].object);
-      }
+      if (packet.primitive[lane] < 0) continue;
+      light[static_cast<std::size_t>(lane)] += shade(job, packet, lane, sample) * (1.0F / kLightSamples);
     }
+    if (sample == 0) record_geometry(job, block, packet, frame);
   }
   for (int lane = 0; lane < kPacket; ++lane) {
     const int row = block.row_of(lane), column = block.column_of(lane);
     if (row >= camera_.height || column >= camera_.width) continue;
     frame.radiance[static_cast<std::size_t>(row * camera_.width + column)] =
         light[static_cast<std::size_t>(lane)];
+  }
+}
+
+void FrameRenderer::record_geometry(const Job& job, const Block& block, const RayPacket& packet,
+                                    RenderedFrame& frame) const {
+  for (int lane = 0; lane < kPacket; ++lane) {
+    const int row = block.row_of(lane), column = block.column_of(lane);
+    if (packet.primitive[lane] < 0 || row >= camera_.height || column >= camera_.width) continue;
+    const auto pixel = static_cast<std::size_t>(row * camera_.width + column);
+    const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
+    frame.depth_m[pixel] = packet.far[lane];  // the direction has length 1 along the optical axis
+    if (packet.moving[lane])
+      frame.object[pixel] = static_cast<std::uint16_t>(job.looks->looks[primitive].object);
   }
 }
 
@@ -170,16 +181,15 @@ Float4 FrameRenderer::shade(const Job& job, const RayPacket& packet, int lane, i
   const MoverTriangle& look = job.looks->looks[primitive];
   const std::array<std::uint32_t, 3>& corners = job.looks->mesh.triangles[primitive];
   const float w = 1.0F - u - v;
-  const auto& normals = job.looks->normals;
-  const Eigen::Vector3f normal =
-      (w * normals[corners[0]] + u * normals[corners[1]] + v * normals[corners[2]]).normalized();
+  const auto blend = [&](const auto& values) {
+    using Value = std::decay_t<decltype(values[0])>;
+    return Value(w * values[corners[0]] + u * values[corners[1]] + v * values[corners[2]]);
+  };
+  const Eigen::Vector3f normal = blend(job.looks->normals).normalized();
   const Eigen::Vector2f st = w * look.picture[0] + u * look.picture[1] + v * look.picture[2];
-  const Eigen::Vector3f point =
-      Eigen::Vector3f(packet.origin_x[lane], packet.origin_y[lane], packet.origin_z[lane]) +
-      packet.far[lane] * direction;
   const Float4 root = world_.textures[static_cast<std::size_t>(look.texture)].sample(
       st.x(), st.y(), level_of(look.texels_per_m, normal));
-  return root * root * open_light(world_, point, normal);
+  return root * root * blend(job.vertex_light);
 }
 
 }  // namespace stillpoint

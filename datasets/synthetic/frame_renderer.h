@@ -13,8 +13,9 @@
 
 namespace stillpoint {
 
-/// Moments (and places in the pixel) at which each pixel gathers light. Four along the exposure make a blur
-/// without visible steps up to about 8 px of motion; their places also smooth edges.
+/// Moments (and places in the pixel) at which each pixel gathers light: the first in the pixel's centre at
+/// mid-exposure, which also gives depth and label. Four make a blur without visible steps up to about 8 px of
+/// motion.
 inline constexpr int kLightSamples = 4;
 
 /// Where, within the exposure, light sample `index` lies: -0.5 .. 0.5.
@@ -37,8 +38,7 @@ struct MoverFrame {
 
 /// Camera poses T_w_c of one frame. One row: global shutter; else one row per picture row.
 struct Shot {
-  std::vector<std::array<Pose, kLightSamples>> light_poses;  ///< per row
-  std::vector<Pose> depth_poses;                             ///< per row, at mid-exposure
+  std::vector<std::array<Pose, kLightSamples>> poses;  ///< per row
   std::vector<float> mid_times;         ///< per row: mid-exposure as a share of the movers' span of time
   float exposure_share_of_span = 0.0F;  ///< length of the exposure as a share of that span
 };
@@ -64,6 +64,8 @@ class FrameRenderer {
  private:
   struct Block;
   struct Job;
+  void record_geometry(const Job& job, const Block& block, const RayPacket& packet,
+                       RenderedFrame& frame) const;
   void render_block(const Job& job, int block_row, int block_column, RenderedFrame& frame) const;
   [[nodiscard]] RayPacket aim(const Job& job, const Block& block, int sample) const;
   [[nodiscard]] Float4 shade(const Job& job, const RayPacket& packet, int lane, int sample) const;
@@ -71,8 +73,8 @@ class FrameRenderer {
   const World& world_;
   const RayTracer& tracer_;
   Camera camera_;
-  /// Normalised directions (x, y) of every pixel: one table per light sample, and one through the centres.
-  std::array<std::vector<Eigen::Vector2f>, kLightSamples + 1> directions_;
+  /// Normalised directions (x, y) of every pixel, one table per light sample.
+  std::array<std::vector<Eigen::Vector2f>, kLightSamples> directions_;
 };
 
 }  // namespace stillpoint

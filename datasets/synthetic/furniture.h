@@ -13,8 +13,9 @@ namespace stillpoint {
 
 /// Textures that scenes share, by their numbers in the world.
 struct Palette {
-  int carpet, tiles, plaster, ceiling, lamp;
-  int oak, walnut, metal, dark_plastic, light_plastic, paint, carton, door, window;
+  int carpet = 0, tiles = 0, plaster = 0, ceiling = 0, lamp = 0;
+  int oak = 0, walnut = 0, metal = 0, dark_plastic = 0, light_plastic = 0, paint = 0, carton = 0, door = 0,
+      window = 0;
   std::vector<int> fabrics, posters, boards, papers, screens, keyboards, spines, packages, plains;
 };
 

@@ -92,7 +92,7 @@ Scene build_hall(std::uint64_t seed, std::span<const Vector3d> path) {
   scene.room = room_around(path);
   scene.gain = 1.5;
   Builder builder(scene.world);
-  const Palette palette = make_palette(builder, seed);
+  const Palette& palette = scene.palette = make_palette(builder, seed);
   RandomSequence random(random_key(seed, RandomStream::kScene));
   add_room(builder, scene.room, {palette.carpet, palette.plaster, palette.ceiling}, palette);
   furnish_walls(builder, scene.room, palette, random);

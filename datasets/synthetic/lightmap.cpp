@@ -17,6 +17,7 @@ constexpr float kLift_m = 0.004F;    // start of a shadow ray above the surface
 constexpr int kLampSamples = 3;      // per lamp and node
 constexpr int kAmbientSamples = 12;  // per node
 constexpr float kAmbientReach_m = 1.2F;
+constexpr float kNearLamp_m = 7.0F;  // lamps that light things that move
 constexpr float kFarLamp_m = 12.0F;  // lamps further away are left out
 
 /// Irradiance from one point of a horizontal lamp that shines downwards, per unit of its power.
@@ -79,7 +80,10 @@ float node_light(const World& world, const RayTracer& tracer, const Quad& quad, 
 
 float open_light(const World& world, const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
   float sum = world.ambient;
-  for (const Lamp& lamp : world.lamps) sum += lamp.power * lamp_share(lamp.center - point, normal);
+  for (const Lamp& lamp : world.lamps) {
+    const Eigen::Vector3f way = lamp.center - point;
+    if (way.squaredNorm() < kNearLamp_m * kNearLamp_m) sum += lamp.power * lamp_share(way, normal);
+  }
   return sum;
 }
 

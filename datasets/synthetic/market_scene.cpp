@@ -42,6 +42,19 @@ void add_signs_and_stacks(Builder& builder, const Palette& palette, RandomSequen
   }
 }
 
+/// Ways around each shelf, some of them along the robot's route. @param shift to the side of the aisle's
+/// middle [m]
+std::vector<std::vector<Eigen::Vector2d>> market_ways(double lane, double shift) {
+  std::vector<std::vector<Eigen::Vector2d>> ways;
+  for (const double row : {0.0, 2.0, -2.0, 4.0}) {
+    const double low = (row - 1.0) * lane + shift, high = (row + 1.0) * lane - shift;
+    ways.push_back({{-12.4, low}, {-1.6, low}, {-1.6, high}, {-12.4, high}});
+    ways.push_back({{12.4, high}, {1.6, high}, {1.6, low}, {12.4, low}});
+  }
+  ways.push_back({{-0.9, -8.0}, {0.9, -8.0}, {0.9, 8.0}, {-0.9, 8.0}});
+  return ways;
+}
+
 }  // namespace
 
 Scene build_market(std::uint64_t seed) {
@@ -61,8 +74,10 @@ Scene build_market(std::uint64_t seed) {
                            0.75,
                            0.6,
                            1.1};
+  scene.walkways = market_ways(lane, 0.6);
+  scene.cartways = market_ways(lane, -0.25);
   Builder builder(scene.world);
-  const Palette palette = make_palette(builder, seed);
+  const Palette& palette = scene.palette = make_palette(builder, seed);
   RandomSequence random(random_key(seed, RandomStream::kScene));
   RoomLook look{palette.tiles, palette.paint, palette.ceiling, 1.6, 3.2, 6.0};
   add_room(builder, scene.room, look, palette);

@@ -10,6 +10,10 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
 
+/// Chairs at the desks; people take them in this order.
+const std::vector<Place> kSeats{
+    {{-0.95, -1.0, 0.0}, kPi + 0.3}, {{0.75, 1.2, 0.0}, -0.2}, {{-0.8, 1.25, 0.0}, 0.35}};
+
 void add_workplaces(Builder& builder, const Palette& palette, RandomSequence& random) {
   for (const double x : {-0.82, 0.82}) {
     add_desk(builder, {{x, 0.0, 0.0}, 0.0}, palette, random);
@@ -52,8 +56,15 @@ Scene build_office(std::uint64_t seed) {
   scene.room = Room{{-4.0, -3.5}, {4.0, 3.5}, 2.9};
   scene.viewpoint = Viewpoint{{0.1, -2.25, 1.5}, {0.0, 0.1, 0.95}};
   scene.gain = 1.5;
+  scene.seats = kSeats;
+  scene.walkways = {{{-2.6, -1.45}, {2.3, -1.4}, {2.5, 2.2}, {-2.4, 2.3}},
+                    {{2.4, 2.0}, {-2.2, 2.1}, {-2.6, 2.8}, {2.3, 2.6}},
+                    {{-2.3, 1.9}, {-2.5, -1.6}, {-2.9, -1.6}, {-2.9, 2.0}},
+                    {{2.2, -1.5}, {2.2, 2.4}, {2.6, 2.4}, {2.6, -1.6}}};
+  scene.cartways = {{{1.9, -1.5}, {0.3, -1.3}, {0.4, -1.6}, {1.8, -1.9}},
+                    {{-2.4, 1.8}, {2.2, 1.9}, {2.2, 2.4}, {-2.4, 2.3}}};
   Builder builder(scene.world);
-  const Palette palette = make_palette(builder, seed);
+  const Palette& palette = scene.palette = make_palette(builder, seed);
   RandomSequence random(random_key(seed, RandomStream::kScene));
   add_room(builder, scene.room, {palette.carpet, palette.plaster, palette.ceiling}, palette);
   add_walls(builder, scene.room, palette, random);

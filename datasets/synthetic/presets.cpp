@@ -68,6 +68,9 @@ void check_request(const SynthRequest& request) {
   require(request.depth.noise_per_m >= 0.0 && request.depth.min_m < request.depth.max_m, "depth",
           "noise_per_m >= 0 and min_m < max_m");
   require(request.depth.correlation_px >= 1, "depth.correlation_px", "1 or more");
+  require(request.detector.miss_share >= 0.0 && request.detector.miss_share <= 0.9, "detector.miss_share",
+          "0 to 0.9");
+  require(request.detector.burst_frames >= 1.0, "detector.burst_frames", "1 or more");
   require(request.imu.gyro_rate_hz >= 10.0 && request.imu.accel_rate_hz >= 10.0, "imu rates",
           "10 Hz or more");
   require(request.start_s >= 0.0, "start_s", "0 or more");

@@ -12,6 +12,7 @@
 #include "datasets/synthetic/color_sensor.h"
 #include "datasets/synthetic/depth_sensor.h"
 #include "datasets/synthetic/imu_model.h"
+#include "datasets/synthetic/object_boxes.h"
 
 namespace stillpoint {
 
@@ -41,6 +42,7 @@ struct SynthRequest {
   ColorSensor color;
   DepthSensor depth;
   ImuSensor imu;
+  DetectorModel detector;
   double start_s = 5.0;  ///< preset flight: begin this long after the first moment that both files cover
   std::filesystem::path trajectory_file;  ///< preset flight: poses of the IMU (TUM text)
   std::filesystem::path imu_file;         ///< preset flight: its readings (EuRoC csv)
@@ -85,6 +87,14 @@ void visit_fields(Visitor&& field, const ImuSensor& sensor) {
   field("time_offset_s", sensor.time_offset_s);
 }
 template <class Visitor>
+void visit_fields(Visitor&& field, const DetectorModel& model) {
+  field("miss_share", model.miss_share);
+  field("burst_frames", model.burst_frames);
+  field("jitter_share", model.jitter_share);
+  field("false_share", model.false_share);
+  field("min_height_px", model.min_height_px);
+}
+template <class Visitor>
 void visit_fields(Visitor&& field, const SynthRequest& request) {
   field("preset", request.preset);
   field("seed", request.seed);
@@ -103,6 +113,7 @@ void visit_fields(Visitor&& field, const SynthRequest& request) {
   field("color", request.color);
   field("depth", request.depth);
   field("imu", request.imu);
+  field("detector", request.detector);
   field("start_s", request.start_s);
   field("trajectory_file", request.trajectory_file.string());
   field("imu_file", request.imu_file.string());

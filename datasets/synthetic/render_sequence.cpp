@@ -79,22 +79,73 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-bool render_pictures(const SynthRequest& request, const Stage& stage, const std::vector<Timestamp>& times,
-                     const SequenceWriter& writer, const RenderControl& control) {
-  const RayTracer tracer(stage.scene.world);
-  const FrameRenderer renderer(stage.scene.world, tracer, stage.rig.camera);
-  const double span_s = std::max(1e-3, request.color.exposure_s + request.rolling_shutter_s);
-  return for_each_frame(static_cast<int>(times.size()), control, [&](int index) {
-    const Timestamp t = times[static_cast<std::size_t>(index)];
-    const auto frame_number = static_cast<std::uint64_t>(index);
-    const RenderedFrame frame = renderer.render(shot_at(request, stage, t, span_s), nullptr);
-    const double gain = stage.scene.gain * exposure_gain(request.color, seconds_between(times.front(), t));
-    writer.write_pictures(t,
-                          develop(frame, stage.rig.camera, request.color, gain,
-                                  random_key(request.seed, RandomStream::kColorNoise, frame_number)),
-                          measure_depth(frame.depth_m, frame.width, frame.height, request.depth,
-                                        random_key(request.seed, RandomStream::kDepthNoise, frame_number)));
-  });
+/// What is done with each frame.
+class FrameWork {
+ public:
+  FrameWork(const SynthRequest& request, const Stage& stage, const std::vector<Timestamp>& times,
+            const SequenceWriter& writer)
+      : request_(request),
+        stage_(stage),
+        times_(times),
+        writer_(writer),
+        tracer_(stage.scene.world),
+        renderer_(stage.scene.world, tracer_, stage.rig.camera),
+        seen_(times.size()) {}
+
+  /// Safe for different frames at once.
+  void render(std::size_t index) {
+    const Timestamp t = times_[index];
+    const RenderedFrame frame = draw(t);
+    const double gain = stage_.scene.gain * exposure_gain(request_.color, seconds_between(times_.front(), t));
+    const std::uint64_t color_key = random_key(request_.seed, RandomStream::kColorNoise, index);
+    const std::uint64_t depth_key = random_key(request_.seed, RandomStream::kDepthNoise, index);
+    writer_.write_pictures(
+        t, develop(frame, stage_.rig.camera, request_.color, gain, color_key),
+        measure_depth(frame.depth_m, frame.width, frame.height, request_.depth, depth_key));
+    if (request_.labels) writer_.write_labels(t, label_picture(frame));
+    seen_[index] = seen_objects(frame);
+  }
+
+  /// What is seen in each frame, once all are rendered.
+  [[nodiscard]] const std::vector<std::vector<SeenObject>>& seen() const { return seen_; }
+
+ private:
+  [[nodiscard]] RenderedFrame draw(Timestamp t) const {
+    const double span_s = std::max(1e-3, request_.color.exposure_s + request_.rolling_shutter_s);
+    const Shot shot = shot_at(request_, stage_, t, span_s);
+    if (stage_.actors.empty()) return renderer_.render(shot, nullptr);
+    const double middle_s = seconds_between(stage_.epoch, t);
+    const MoverFrame movers =
+        assemble_movers(stage_.actors, middle_s - 0.5 * span_s, middle_s + 0.5 * span_s);
+    return renderer_.render(shot, &movers);
+  }
+
+  static cv::Mat label_picture(const RenderedFrame& frame) {
+    cv::Mat labels(frame.height, frame.width, CV_8UC1);
+    std::transform(frame.object.begin(), frame.object.end(), labels.begin<std::uint8_t>(),
+                   [](std::uint16_t object) { return static_cast<std::uint8_t>(object); });
+    return labels;
+  }
+
+  const SynthRequest& request_;
+  const Stage& stage_;
+  const std::vector<Timestamp>& times_;
+  const SequenceWriter& writer_;
+  RayTracer tracer_;
+  FrameRenderer renderer_;
+  std::vector<std::vector<SeenObject>> seen_;
+};
+
+void write_boxes(const SynthRequest& request, const Stage& stage, const std::vector<Timestamp>& times,
+                 const std::vector<std::vector<SeenObject>>& seen, const SequenceWriter& writer) {
+  const auto reports = simulate_detector(seen, request.detector, request.width, request.height, request.seed);
+  std::vector<DetectionSet> detections, truth;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    truth.push_back({times[i], DetectionState::kPresent, true_detections(seen[i], stage.actors)});
+    detections.push_back({times[i], DetectionState::kPresent, reports[i]});
+  }
+  writer.write_boxes("true_boxes.txt", "what is seen of each thing that moves", truth);
+  writer.write_boxes("detections.txt", "a simulated detector of people", detections);
 }
 
 }  // namespace
@@ -108,7 +159,10 @@ bool render_sequence(const SynthRequest& request, const fs::path& folder, const 
 
   TemporaryFolder partial(folder.string() + ".partial-" + std::to_string(::getpid()));
   const SequenceWriter writer(partial.path(), request.layout, request.labels);
-  if (!render_pictures(request, stage, times, writer, control)) return false;
+  FrameWork work(request, stage, times, writer);
+  const auto render = [&work](int index) { work.render(static_cast<std::size_t>(index)); };
+  if (!for_each_frame(static_cast<int>(times.size()), control, render)) return false;
+  if (!stage.actors.empty()) write_boxes(request, stage, times, work.seen(), writer);
   writer.write_lists(times);
   writer.write_request(request);
   writer.write_rig(stage.rig, request);

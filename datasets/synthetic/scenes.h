@@ -16,9 +16,13 @@ namespace stillpoint {
 struct Scene {
   World world;
   Room room;
-  Viewpoint viewpoint;  ///< of a hand-held camera
-  RobotRoute route;     ///< of a robot
-  double gain = 1.0;    ///< from the scene's light to the sensor's range
+  Viewpoint viewpoint;                                 ///< of a hand-held camera
+  RobotRoute route;                                    ///< of a robot
+  std::vector<std::vector<Eigen::Vector2d>> walkways;  ///< closed ways for people
+  std::vector<std::vector<Eigen::Vector2d>> cartways;  ///< and for carts and chairs
+  std::vector<Place> seats;                            ///< free chairs
+  Palette palette;
+  double gain = 1.0;  ///< from the scene's light to the sensor's range
 };
 
 /// Furnished office of 8 x 7 m with four desks, as in the TUM freiburg3 sequences.

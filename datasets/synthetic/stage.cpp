@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/synthetic/cast.h"
 #include "datasets/synthetic/counter_random.h"
 #include "datasets/synthetic/flight.h"
 
@@ -52,7 +53,12 @@ Stage simulated_stage(const SynthRequest& request) {
   const Timestamp epoch{kEpoch_ns};
   InertialRecord inertia =
       measure_inertia(path, request.imu, epoch, 0.0, last_path_time(request), request.seed);
-  return {std::move(scene), std::move(path), rig, epoch, kFirstFrame_s, std::move(inertia)};
+  const auto camera_at = [&](double t_s) {
+    return Eigen::Vector2d((path.pose_at(t_s) * rig.T_b_c).p.head<2>());
+  };
+  std::vector<Actor> actors = cast_actors(request, scene, camera_at, 0.0, last_s);
+  return {std::move(scene),   std::move(path),  rig, epoch, kFirstFrame_s,
+          std::move(inertia), std::move(actors)};
 }
 
 std::vector<Eigen::Vector3d> camera_positions(const PathSpline& path, const Pose& T_b_c) {
@@ -72,7 +78,7 @@ Stage flight_stage(const SynthRequest& request) {
   const Eigen::Vector3d shift = hall_shift(camera_positions(flight.smoothed.path, rig.T_b_c));
   PathSpline path = flight.smoothed.path.shifted(shift);
   Scene scene = build_hall(request.seed, camera_positions(path, rig.T_b_c));
-  return {std::move(scene), std::move(path), rig, flight.epoch, 0.0, std::move(flight.readings)};
+  return {std::move(scene), std::move(path), rig, flight.epoch, 0.0, std::move(flight.readings), {}};
 }
 
 }  // namespace
@@ -113,8 +119,7 @@ Shot shot_at(const SynthRequest& request, const Stage& stage, Timestamp t, doubl
       const double t_s = middle_s + delay_s + exposure_share(sample) * request.color.exposure_s;
       poses[static_cast<std::size_t>(sample)] = stage.body_path.pose_at(t_s) * stage.rig.T_b_c;
     }
-    shot.light_poses.push_back(poses);
-    shot.depth_poses.push_back(stage.body_path.pose_at(middle_s + delay_s) * stage.rig.T_b_c);
+    shot.poses.push_back(poses);
     shot.mid_times.push_back(static_cast<float>(0.5 + delay_s / span_s));
   }
   return shot;

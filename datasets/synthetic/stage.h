@@ -6,6 +6,7 @@
 
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"
+#include "datasets/synthetic/actor.h"
 #include "datasets/synthetic/frame_renderer.h"
 #include "datasets/synthetic/imu_model.h"
 #include "datasets/synthetic/path_spline.h"
@@ -21,6 +22,7 @@ struct Stage {
   Timestamp epoch;           ///< stamp of path time 0
   double first_frame_s = 0;  ///< path time of the first picture
   InertialRecord inertia;
+  std::vector<Actor> actors;
 };
 
 [[nodiscard]] Stage make_stage(const SynthRequest& request);

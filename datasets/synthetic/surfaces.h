@@ -26,6 +26,9 @@ namespace stillpoint {
 [[nodiscard]] cv::Mat paint_window(RandomSequence& random);
 [[nodiscard]] cv::Mat paint_carton(RandomSequence& random);
 
+/// Shirts: stripes, checks, print, dots.
+[[nodiscard]] cv::Mat paint_clothes(RandomSequence& random);
+
 /// Sixteen book spines side by side.
 [[nodiscard]] cv::Mat paint_book_spines(RandomSequence& random);
 /// Four by four fronts of packaged goods.

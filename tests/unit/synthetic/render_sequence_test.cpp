@@ -7,9 +7,11 @@
 #include <iterator>
 #include <map>
 #include <opencv2/core.hpp>
+#include <sstream>
 #include <string>
 
 #include "core/base/error.h"
+#include "datasets/image_io.h"
 #include "datasets/sensor_stream.h"
 
 namespace stillpoint {
@@ -90,6 +92,68 @@ TEST(RenderSequence, TumFoldersAreReadToo) {
   EXPECT_EQ(stream->info().frame_times.size(), 6U);
   EXPECT_DOUBLE_EQ(stream->info().rig.camera.fy, 134.0);
   EXPECT_EQ(stream->load_frame(0).depth_units_per_m, 1000.0);
+}
+
+/// Label pictures hold every pixel inside the true box of its object, and some at each of the box's four
+/// edges.
+TEST(RenderSequence, TrueBoxesEncloseTheLabels) {
+  const fs::path folder = fresh_folder("labels");
+  SynthRequest request = small_request("walking_xyz");
+  request.labels = true;
+  ASSERT_TRUE(render_sequence(request, folder));
+  std::ifstream boxes(folder / "true_boxes.txt");
+  int checked = 0;
+  for (std::string line; std::getline(boxes, line);) {
+    if (line.starts_with('#')) continue;
+    std::istringstream fields(line);
+    std::string stamp, name;
+    double score = 0.0, x_min = 0.0, y_min = 0.0, x_max = 0.0, y_max = 0.0;
+    fields >> stamp >> name >> score >> x_min >> y_min >> x_max >> y_max;
+    const cv::Mat labels = read_picture(folder / "labels" / (stamp + ".png"));
+    const cv::Rect box(cv::Point(cvRound(x_min + 0.5), cvRound(y_min + 0.5)),
+                       cv::Point(cvRound(x_max + 0.5), cvRound(y_max + 0.5)));
+    const cv::Mat inside = labels(box);
+    EXPECT_GT(cv::countNonZero(inside.row(0)), 0) << line;
+    EXPECT_GT(cv::countNonZero(inside.row(inside.rows - 1)), 0) << line;
+    EXPECT_GT(cv::countNonZero(inside.col(0)), 0) << line;
+    EXPECT_GT(cv::countNonZero(inside.col(inside.cols - 1)), 0) << line;
+    ++checked;
+  }
+  EXPECT_GE(checked, 6);
+  EXPECT_TRUE(fs::exists(folder / "detections.txt"));
+}
+
+TEST(RenderSequence, DroppedFramesAreMissingFromListsAndFolders) {
+  const fs::path folder = fresh_folder("dropped");
+  SynthRequest request = small_request("walking_static_empty");
+  request.seconds = 2.0;
+  request.dropped_share = 0.3;
+  ASSERT_TRUE(render_sequence(request, folder));
+  const std::size_t frames = open_sequence(folder)->info().frame_times.size();
+  EXPECT_LT(frames, 56U);
+  EXPECT_GT(frames, 25U);
+}
+
+TEST(RenderSequence, RollingShutterSkewsWhatTheCameraTurnsPast) {
+  SynthRequest request = small_request("walking_rpy_empty");
+  const fs::path global = fresh_folder("global"), rolling = fresh_folder("rolling");
+  ASSERT_TRUE(render_sequence(request, global));
+  request.rolling_shutter_s = 0.03;
+  ASSERT_TRUE(render_sequence(request, rolling));
+  const cv::Mat a = open_sequence(global)->load_frame(5).gray, b = open_sequence(rolling)->load_frame(5).gray;
+  const auto difference = [&](int row) { return cv::norm(a.row(row), b.row(row), cv::NORM_L1) / a.cols; };
+  // The stamp is of the middle row: there both cameras see the same, but for noise of the sensor (none
+  // differs).
+  EXPECT_LT(difference(60), 1.0);
+  EXPECT_GT(difference(2), 2.0 * difference(60));
+}
+
+TEST(RenderSequence, MarketAndCorridorCanBeRendered) {
+  for (const std::string preset : {"market", "corridor"}) {
+    const fs::path folder = fresh_folder(preset);
+    ASSERT_TRUE(render_sequence(small_request(preset), folder));
+    EXPECT_EQ(open_sequence(folder)->info().frame_times.size(), 6U);
+  }
 }
 
 TEST(RenderSequence, LeavesNothingBehindWhenStopped) {
