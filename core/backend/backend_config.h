@@ -69,7 +69,7 @@ struct BackendConfig {
   double cauchy_scale = 1.0;           ///< of the robust loss, in standard deviations
   int max_iterations = 8;
   double function_tolerance = 1e-6;      ///< relative change of the cost that ends the solve
-  double keyframe_max_interval_s = 0.0;  ///< a keyframe at least this often; 0 = by parallax alone
+  double keyframe_max_interval_s = 5.0;  ///< a keyframe at least this often: inertial spans must stay short
   bool estimate_time_offset = true;
   double time_offset_sigma_s = 0.01;  ///< how far the rig's value may be off
   bool estimate_extrinsics = false;
@@ -89,7 +89,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("cauchy_scale", config.cauchy_scale, 0.01, 100.0);
   field("max_iterations", config.max_iterations, 1, 100);
   field("function_tolerance", config.function_tolerance, 1e-12, 0.1);
-  field("keyframe_max_interval_s", config.keyframe_max_interval_s, 0.0, 10.0);
+  field("keyframe_max_interval_s", config.keyframe_max_interval_s, 0.05, 10.0);
   field("estimate_time_offset", config.estimate_time_offset);
   field("time_offset_sigma_s", config.time_offset_sigma_s, 1e-6, 1.0);
   field("estimate_extrinsics", config.estimate_extrinsics);

@@ -64,7 +64,7 @@ bool is_second_newest_keyframe(const Window& window, const BackendConfig& config
 
   const double interval = seconds_between(window.frames[static_cast<std::size_t>(second - 1)].state.t,
                                           window.frames.back().state.t);
-  if (config.keyframe_max_interval_s > 0.0 && interval > config.keyframe_max_interval_s) return true;
+  if (interval > config.keyframe_max_interval_s) return true;
 
   int tracked = 0;
   int common = 0;

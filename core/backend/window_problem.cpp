@@ -9,9 +9,6 @@
 namespace stillpoint {
 namespace {
 
-/// Longer spans of the IMU say nothing of use about position.
-constexpr double kMaxImuSpan_s = 10.0;
-
 void pack_pose(const Pose& pose, double* values) {
   Eigen::Map<Eigen::Vector3d>{values} = pose.p;
   Eigen::Map<Eigen::Vector4d>{values + 3} = pose.q.coeffs();
@@ -149,7 +146,7 @@ void ResidualBuilder::add_landmark(int index, std::vector<Residual>& out) {
 
 void ResidualBuilder::add_imu(int frame, std::vector<Residual>& out) {
   const std::optional<Preintegration>& imu = window_.frames[static_cast<std::size_t>(frame)].from_previous;
-  if (!window_.inertial || !imu || imu->duration_s() > kMaxImuSpan_s) return;
+  if (!window_.inertial || !imu) return;
   out.push_back({std::make_unique<ImuFactor>(*imu, window_.gravity_w),
                  nullptr,
                  {{BlockKind::kPose, frame - 1},
