@@ -15,9 +15,9 @@ struct Timestamp {
   friend constexpr auto operator<=>(Timestamp, Timestamp) = default;
 };
 
-/// Signed span from `from` to `to` [s].
+/// Signed span from `from` to `to` [s]. Files may hold stamps whose difference is beyond 64 bits.
 [[nodiscard]] constexpr double seconds_between(Timestamp from, Timestamp to) {
-  return static_cast<double>(to.ns - from.ns) * 1e-9;
+  return static_cast<double>(static_cast<__int128>(to.ns) - from.ns) * 1e-9;
 }
 
 /// The stamp `seconds` after `t`, rounded to the nearest nanosecond.
