@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/dynamic/feature_recognition.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace stillpoint {
+namespace {
+
+bool is_dynamic(const FeatureVerdict& verdict) { return verdict.verdict != Verdict::kStable; }
+
+/// The verdict at the beginning of a new picture, before anything in it was looked at.
+FeatureVerdict carried_over(const FeatureVerdict& before) {
+  return {.id = before.id,
+          .verdict = before.verdict,
+          .reason = is_dynamic(before) ? VerdictReason::kHistory : VerdictReason::kNothingSuspect};
+}
+
+/// Calls `visit(feature, residual)` where both have the same id; both ranges are by rising id.
+template <class Features, class Visit>
+void for_each_match(Features& features, std::span<const ConsistencyResidual> residuals, const Visit& visit) {
+  auto feature = features.begin();
+  for (const ConsistencyResidual& residual : residuals) {
+    while (feature != features.end() && feature->verdict.id < residual.id) ++feature;
+    if (feature == features.end()) return;
+    if (feature->verdict.id == residual.id) visit(*feature, residual);
+  }
+}
+
+/// A residual over the threshold: motion, unless an object was named already.
+void flag(FeatureVerdict& verdict, VerdictReason reason) {
+  if (is_dynamic(verdict)) return;
+  verdict.verdict = Verdict::kDynamicMotion;
+  verdict.reason = reason;
+}
+
+}  // namespace
+
+bool FeatureRecognition::is_inside(const TrackedFeature& feature, const SemanticMask& mask) const {
+  const double threshold = mask.threshold_at(feature.pixel);
+  if (threshold <= 0.0) return false;
+  if (feature.depth > 0.0) return feature.depth < threshold;
+  return config_.unmeasured_is_dynamic || std::isinf(threshold);
+}
+
+std::vector<FeatureVerdict> FeatureRecognition::judge(const TrackedFrame& frame, const SemanticMask& mask) {
+  std::vector<Feature> present;
+  present.reserve(frame.features.size());
+  auto known = features_.begin();
+  for (const TrackedFeature& tracked : frame.features) {
+    while (known != features_.end() && known->verdict.id < tracked.id) ++known;
+    const bool is_known = known != features_.end() && known->verdict.id == tracked.id;
+    Feature feature{.verdict = is_known ? carried_over(known->verdict) : FeatureVerdict{.id = tracked.id}};
+    feature.inside_mask = is_inside(tracked, mask);
+    if (feature.inside_mask) {
+      feature.verdict.verdict = Verdict::kDynamicObject;
+      feature.verdict.reason = VerdictReason::kInsideMask;
+    }
+    present.push_back(feature);
+  }
+  features_ = std::move(present);
+  return verdicts();
+}
+
+std::vector<FeatureVerdict> FeatureRecognition::gate(std::span<const ConsistencyResidual> residuals) {
+  for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
+    feature.verdict.residual_px = residual.mean_px;
+    if (residual.mean_px > config_.gate_threshold_px)
+      flag(feature.verdict, VerdictReason::kPredictionResidual);
+  });
+  return apply_floor(verdicts(), config_.min_stable_features);
+}
+
+std::vector<FeatureVerdict> FeatureRecognition::check(std::span<const ConsistencyResidual> residuals) {
+  for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
+    FeatureVerdict& verdict = feature.verdict;
+    verdict.residual_px = residual.mean_px;
+    const int observations = residual.compared + 1;
+    if (residual.mean_px > config_.mcc_threshold_px) {
+      flag(verdict, VerdictReason::kResidual);
+    } else if (is_dynamic(verdict) && !feature.inside_mask && observations >= config_.mcc_min_observations) {
+      verdict.verdict = Verdict::kStable;
+      verdict.reason = VerdictReason::kRecycled;
+    }
+  });
+  return apply_floor(verdicts(), config_.min_stable_features);
+}
+
+std::vector<FeatureVerdict> FeatureRecognition::verdicts() const {
+  std::vector<FeatureVerdict> list;
+  list.reserve(features_.size());
+  for (const Feature& feature : features_) list.push_back(feature.verdict);
+  return list;
+}
+
+std::vector<FeatureVerdict> apply_floor(std::vector<FeatureVerdict> verdicts, int min_stable) {
+  std::vector<FeatureVerdict*> candidates;
+  int stable = 0;
+  for (FeatureVerdict& verdict : verdicts) {
+    if (!is_dynamic(verdict)) ++stable;
+    if (is_dynamic(verdict) && verdict.reason != VerdictReason::kInsideMask) candidates.push_back(&verdict);
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const FeatureVerdict* a, const FeatureVerdict* b) {
+    const auto rank = [](const FeatureVerdict& verdict) {
+      return std::tuple(verdict.residual_px.value_or(std::numeric_limits<double>::infinity()), verdict.id);
+    };
+    return rank(*a) < rank(*b);
+  });
+  for (FeatureVerdict* const candidate : candidates) {
+    if (stable >= min_stable) break;
+    candidate->verdict = Verdict::kStable;
+    candidate->reason = VerdictReason::kFloor;
+    ++stable;
+  }
+  return verdicts;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/dynamic/moving_consistency.h"
+
+#include <optional>
+
+namespace stillpoint {
+namespace {
+
+/// Nearer than this in front of the camera counts as behind it [m].
+constexpr double kNearest_m = 1e-3;
+
+/// The feature in the camera of observation `seen`, if its depth is known.
+std::optional<Eigen::Vector3d> position_in(const ConsistencyView& view, const ConsistencyFeature& feature,
+                                           const ConsistencyObservation& seen) {
+  if (seen.depth > 0.0) return seen.depth * seen.bearing.homogeneous();
+  if (feature.inverse_depth <= 0.0) return std::nullopt;
+  const ConsistencyObservation& first = feature.observations.front();
+  const Pose& T_w_cj = view.T_w_c[static_cast<std::size_t>(seen.frame)];
+  const Pose& T_w_ci = view.T_w_c[static_cast<std::size_t>(first.frame)];
+  const Eigen::Vector3d p_ci = first.bearing.homogeneous() / feature.inverse_depth;
+  const double depth = (T_w_cj.inverse() * (T_w_ci * p_ci)).z();
+  if (depth <= kNearest_m) return std::nullopt;
+  return depth * seen.bearing.homogeneous();
+}
+
+/// Sum over the `others` of the distance between `reference` and each of them carried into its picture.
+ConsistencyResidual residual(const ConsistencyView& view, const ConsistencyFeature& feature,
+                             const ConsistencyObservation& reference) {
+  ConsistencyResidual result{.id = feature.id};
+  const Pose T_ci_w = view.T_w_c[static_cast<std::size_t>(reference.frame)].inverse();
+  double sum = 0.0;
+  for (const ConsistencyObservation& other : feature.observations) {
+    if (other.frame == reference.frame) continue;
+    const std::optional<Eigen::Vector3d> p_cj = position_in(view, feature, other);
+    if (!p_cj) continue;
+    const Eigen::Vector3d p_ci = T_ci_w * (view.T_w_c[static_cast<std::size_t>(other.frame)] * *p_cj);
+    const bool in_front = p_ci.z() > kNearest_m;
+    sum += in_front ? (reference.bearing - p_ci.hnormalized()).norm() : 1.0;
+    ++result.compared;
+  }
+  if (result.compared > 0) result.mean_px = view.focal_px * sum / result.compared;
+  return result;
+}
+
+}  // namespace
+
+std::vector<ConsistencyResidual> consistency_residuals(const ConsistencyView& view) {
+  std::vector<ConsistencyResidual> residuals;
+  for (const ConsistencyFeature& feature : view.features) {
+    if (feature.observations.size() < 2) continue;
+    const ConsistencyResidual result = residual(view, feature, feature.observations.front());
+    if (result.compared > 0) residuals.push_back(result);
+  }
+  return residuals;
+}
+
+std::vector<ConsistencyResidual> gate_on_prediction(const ConsistencyView& view) {
+  const int newest = static_cast<int>(view.T_w_c.size()) - 1;
+  std::vector<ConsistencyResidual> residuals;
+  for (const ConsistencyFeature& feature : view.features) {
+    if (feature.observations.size() < 2 || feature.observations.back().frame != newest) continue;
+    const ConsistencyResidual result = residual(view, feature, feature.observations.back());
+    if (result.compared > 0) residuals.push_back(result);
+  }
+  return residuals;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Depth-aware masks for detected objects. Paper Sec. III-C, Eqs. (1)-(2).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <vector>
+
+#include "core/dynamic/dynamic_config.h"
+#include "core/types/detection.h"
+
+namespace stillpoint {
+
+/// Depths sampled on one detection box [m]; 0 means "not measured".
+struct BoxDepths {
+  std::array<double, 4> corners{};  ///< top-left, top-right, bottom-left, bottom-right
+  double center = 0.0;
+};
+
+/// Depth below which a feature inside the box belongs to the object [m].
+///
+/// @param depths    samples on the box, each finite and >= 0
+/// @param epsilon_m typical depth extent of a dynamic object [m], > 0
+/// @return threshold in (0, +inf]; +inf when nothing was measured
+///
+/// Read to the letter, Eq. (2) sends `d_max - d_c == epsilon` to +inf; here it falls to the second case. A
+/// measured centre before unmeasured corners (d_max = 0) satisfies the second case as it stands.
+[[nodiscard]] double object_depth_threshold(const BoxDepths& depths, double epsilon_m);
+
+/// A registered raw depth picture.
+struct DepthView {
+  cv::Mat pixels;  ///< CV_16UC1, 0 = not measured; may be empty
+  double units_per_m = 1000.0;
+};
+
+/// Median of the measured depths in a square window around a pixel, the upper one of an even number [m]; 0
+/// where none is measured. The window ends at the edge of the picture.
+/// @param window_px side of the window, odd
+[[nodiscard]] double robust_depth(const DepthView& depth, const Eigen::Vector2d& pixel, int window_px);
+
+/// The boxes of one picture, each with its depth threshold: the paper's mask picture, never drawn.
+class SemanticMask {
+ public:
+  struct MaskedBox {
+    Box box;                   ///< margin included, ends at the picture's edges
+    double threshold_m = 0.0;  ///< in (0, +inf]
+  };
+
+  /// The mask without objects.
+  SemanticMask() = default;
+
+  /// Takes up boxes with the margin of `config`; those without area in the picture are left out.
+  /// @param depth picture of the size `size`; empty = nothing measured
+  SemanticMask(std::span<const Box> boxes, const DepthView& depth, cv::Size size,
+               const DynamicConfig& config);
+
+  /// Threshold at a pixel [m]; the largest where boxes overlap; 0 = no object.
+  [[nodiscard]] double threshold_at(const Eigen::Vector2d& pixel) const;
+
+  [[nodiscard]] const std::vector<MaskedBox>& boxes() const { return boxes_; }
+
+ private:
+  std::vector<MaskedBox> boxes_;
+};
+
+}  // namespace stillpoint
