@@ -9,12 +9,14 @@ namespace stillpoint {
 namespace {
 
 constexpr double kTurnRadius_m = 0.5;
-constexpr double kYield_m = 1.2;  // from the camera
+constexpr double kYieldToHand_m = 0.75;  // from a camera in somebody's hand
+constexpr double kYieldToRobot_m = 1.2;
 
 /// Where things move, and what they keep away from.
 struct Surroundings {
   const std::function<Eigen::Vector2d(double t_s)>& camera_at;
   double from_s, to_s;
+  double yield_m;
 };
 
 Walk walk_along(const std::vector<Eigen::Vector2d>& way, WalkStyle style, const Surroundings& around,
@@ -23,6 +25,7 @@ Walk walk_along(const std::vector<Eigen::Vector2d>& way, WalkStyle style, const 
   const ClosedRoute route(way, kTurnRadius_m);
   style.start_m = random.uniform() * route.length_m();
   style.speed *= random.uniform(0.8, 1.2);
+  style.yield_m = around.yield_m;
   return {route, style, around.camera_at, mix_bits(key), around.from_s, around.to_s};
 }
 
@@ -45,23 +48,24 @@ std::vector<Actor> cast_actors(const SynthRequest& request, Scene& scene,
                      "the scene has " + std::to_string(scene.seats.size()) + " free chairs; use --seated");
   }
   Builder builder(scene.world);
-  const Surroundings around{camera_at, from_s, to_s};
+  const bool office = request.preset.starts_with("walking");
+  const Surroundings around{camera_at, from_s, to_s, office ? kYieldToHand_m : kYieldToRobot_m};
   std::vector<Actor> actors;
   const auto key = [&] { return random_key(request.seed, RandomStream::kPeople, actors.size()); };
   const auto object = [&] { return static_cast<int>(actors.size()) + 1; };
   for (int i = 0; i < request.walkers; ++i) {
     const auto& way = scene.walkways[static_cast<std::size_t>(i) % scene.walkways.size()];
-    actors.push_back(make_walker(builder, object(),
-                                 walk_along(way, {.speed = 1.0, .yield_m = kYield_m}, around, key()), key()));
+    actors.push_back(make_walker(
+        builder, object(), walk_along(way, {.speed = 0.9, .stops_per_minute = 7.0}, around, key()), key()));
   }
   for (int i = 0; i < request.seated; ++i) {
     actors.push_back(make_sitter(builder, object(), scene.seats[static_cast<std::size_t>(i)], key()));
   }
   for (int i = 0; i < request.unknown_movers; ++i) {
     const auto& way = scene.cartways[static_cast<std::size_t>(i) % scene.cartways.size()];
-    const WalkStyle style{.speed = 0.55, .stops_per_minute = 6.0, .stop_s = 3.0, .yield_m = kYield_m};
+    const WalkStyle style{.speed = 0.55, .stops_per_minute = 6.0, .stop_s = 3.0};
     const Walk walk = walk_along(way, style, around, key());
-    const bool chair = request.preset.starts_with("walking") && i % 2 == 0;
+    const bool chair = office && i % 2 == 0;
     actors.push_back(chair ? make_rolling_chair(scene.palette, kFirstUnknownObject + i, walk, key())
                            : make_cart(scene.palette, kFirstUnknownObject + i, walk, key()));
   }

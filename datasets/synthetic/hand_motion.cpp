@@ -78,7 +78,7 @@ MotionSize size_of(HandMotion motion) {
       return {{{0.05, 0.04, 0.05}, {0.28, 0.33, 0.24}, kTremor_m},
               {{26.0 * kDegree, 16.0 * kDegree, 24.0 * kDegree}, {0.21, 0.27, 0.24}, kTremor_rad}};
     case HandMotion::kHalfsphere:  // the first: azimuth [rad], elevation [rad], radius [m]
-      return {{{55.0 * kDegree, 18.0 * kDegree, 0.18}, {0.055, 0.11, 0.16}, kTremor_m}, steady_turn};
+      return {{{50.0 * kDegree, 14.0 * kDegree, 0.18}, {0.055, 0.11, 0.16}, kTremor_m}, steady_turn};
   }
   return {};
 }

@@ -13,7 +13,8 @@ namespace {
 constexpr float kNodeDistance_m = 0.2F;
 constexpr int kMaxNodes = 96;        // along one edge
 constexpr float kInset = 0.02F;      // nodes at the edges are moved this share inwards, off the neighbours
-constexpr float kLift_m = 0.004F;    // start of a shadow ray above the surface
+constexpr float kLift_m = 0.03F;     // start of a shadow ray above a wall: beyond what hangs on it
+constexpr float kLiftShare = 0.05F;  // the same for small surfaces, as a share of their shorter edge
 constexpr int kLampSamples = 3;      // per lamp and node
 constexpr int kAmbientSamples = 12;  // per node
 constexpr float kAmbientReach_m = 1.2F;
@@ -70,8 +71,9 @@ int node_count(float length) {
 float node_light(const World& world, const RayTracer& tracer, const Quad& quad, float u, float v,
                  RandomSequence& random) {
   const float inner_u = kInset + u * (1.0F - 2.0F * kInset), inner_v = kInset + v * (1.0F - 2.0F * kInset);
+  const float lift = std::min(kLift_m, kLiftShare * std::min(quad.edge_u.norm(), quad.edge_v.norm()));
   const Eigen::Vector3f point =
-      quad.origin + inner_u * quad.edge_u + inner_v * quad.edge_v + kLift_m * quad.normal;
+      quad.origin + inner_u * quad.edge_u + inner_v * quad.edge_v + lift * quad.normal;
   return lamp_light(world, tracer, point, quad.normal, random) +
          world.ambient * (0.25F + 0.75F * openness(tracer, point, quad.normal, random));
 }

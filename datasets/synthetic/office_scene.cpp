@@ -54,14 +54,15 @@ void add_furniture_at_walls(Builder& builder, const Room& room, const Palette& p
 Scene build_office(std::uint64_t seed) {
   Scene scene;
   scene.room = Room{{-4.0, -3.5}, {4.0, 3.5}, 2.9};
-  scene.viewpoint = Viewpoint{{0.1, -2.25, 1.5}, {0.0, 0.1, 0.95}};
+  scene.viewpoint = Viewpoint{{0.1, -2.55, 1.6}, {0.0, 0.1, 0.95}};
   scene.gain = 1.5;
   scene.seats = kSeats;
-  scene.walkways = {{{-2.6, -1.45}, {2.3, -1.4}, {2.5, 2.2}, {-2.4, 2.3}},
+  // The first ways pass close before the camera, as people do in the TUM walking sequences.
+  scene.walkways = {{{-1.6, -1.5}, {1.6, -1.5}, {1.6, -1.75}, {-1.6, -1.75}},
+                    {{-2.3, -1.6}, {2.2, -1.6}, {2.4, 2.2}, {-2.4, 2.3}},
                     {{2.4, 2.0}, {-2.2, 2.1}, {-2.6, 2.8}, {2.3, 2.6}},
-                    {{-2.3, 1.9}, {-2.5, -1.6}, {-2.9, -1.6}, {-2.9, 2.0}},
                     {{2.2, -1.5}, {2.2, 2.4}, {2.6, 2.4}, {2.6, -1.6}}};
-  scene.cartways = {{{1.9, -1.5}, {0.3, -1.3}, {0.4, -1.6}, {1.8, -1.9}},
+  scene.cartways = {{{-0.3, -1.3}, {1.5, -1.3}, {1.5, -1.7}, {-0.3, -1.7}},
                     {{-2.4, 1.8}, {2.2, 1.9}, {2.2, 2.4}, {-2.4, 2.3}}};
   Builder builder(scene.world);
   const Palette& palette = scene.palette = make_palette(builder, seed);

@@ -17,7 +17,13 @@ struct RenderControl {
   int threads = 0;                            ///< 0 = as many as the machine has; the result is the same
 };
 
-/// Writes the sequence into `folder`, which appears only when it is complete.
+/// Writes the sequence into `folder`, which appears only when it is complete. Besides the files of the
+/// layout:
+///   request.toml    what was asked for
+///   true_boxes.txt  boxes around what is seen of each person, cart and chair that moves (where there are
+///   any) detections.txt  what a simulated detector of people found (likewise) labels/         on request:
+///   one 8-bit picture per frame; 0 = stands still, 1..127 = a person, 128.. = a mover
+///                   that no detector knows
 /// @return false if it was stopped: then nothing is left behind
 /// @throws InputError if the request is out of range, `folder` exists already, or anything cannot be written
 bool render_sequence(const SynthRequest& request, const std::filesystem::path& folder,
