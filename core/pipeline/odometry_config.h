@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "core/backend/backend_config.h"
+#include "core/detector/detector_config.h"
 #include "core/dynamic/dynamic_config.h"
 #include "core/frontend/frontend_config.h"
 #include "core/imu/imu_config.h"
@@ -16,6 +17,7 @@ struct OdometryConfig {
   int seed = 1;  ///< of everything random in a run
   ImuConfig imu;
   FrontendConfig frontend;
+  DetectorConfig detector;
   DynamicConfig dynamic;
   BackendConfig backend;
 };
@@ -25,6 +27,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("seed", config.seed, 0, 1000000000);
   field("imu", config.imu);
   field("frontend", config.frontend);
+  field("detector", config.detector);
   field("dynamic", config.dynamic);
   field("backend", config.backend);
 }

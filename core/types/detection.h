@@ -15,6 +15,8 @@ struct Box {
   double y_min = 0.0;
   double x_max = 0.0;
   double y_max = 0.0;
+
+  friend bool operator==(const Box&, const Box&) = default;
 };
 
 struct Detection {

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/detector/network_detector.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/core/version.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/base/error.h"
+#include "core/detector/usable_boxes.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPadding = 114.0;  ///< gray beside a picture of other proportions, as in training of YOLO
+
+void require_file(const std::string& key, const std::string& file) {
+  if (file.empty()) throw InputError(key, "is not set; it names a file of the network");
+  if (!fs::is_regular_file(file))
+    throw InputError(file, "is no file; " + key + " names a file of the network");
+}
+
+std::vector<std::string> read_names(const std::string& file) {
+  require_file("detector.names", file);
+  std::ifstream in(file);
+  std::vector<std::string> names;
+  for (std::string line; std::getline(in, line);) {
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    if (!line.empty()) names.push_back(line);
+  }
+  if (names.empty()) throw InputError(file, "holds no class names; it should have one a line");
+  return names;
+}
+
+void require_known_class(const DetectorConfig& config, const std::vector<std::string>& names,
+                         std::span<const std::string> dynamic_classes) {
+  const bool known = std::any_of(
+      dynamic_classes.begin(), dynamic_classes.end(),
+      [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); });
+  if (known || dynamic_classes.empty()) return;
+  throw InputError(config.names,
+                   "has none of the classes of dynamic.classes; the first here is \"" + names.front() + "\"");
+}
+
+int opencv_backend(NetworkBackend backend) {
+  switch (backend) {
+    case NetworkBackend::kOpencv:
+      return cv::dnn::DNN_BACKEND_OPENCV;
+    case NetworkBackend::kOpenvino:
+      return cv::dnn::DNN_BACKEND_INFERENCE_ENGINE;
+    case NetworkBackend::kCuda:
+      return cv::dnn::DNN_BACKEND_CUDA;
+  }
+  check_failed("a backend of this name exists", __FILE__, __LINE__);
+}
+
+int target_of(NetworkBackend backend) {
+  return backend == NetworkBackend::kCuda ? cv::dnn::DNN_TARGET_CUDA : cv::dnn::DNN_TARGET_CPU;
+}
+
+void choose_backend(cv::dnn::Net& net, NetworkBackend backend) {
+  const auto id = static_cast<cv::dnn::Backend>(opencv_backend(backend));
+  const std::vector<cv::dnn::Target> targets = cv::dnn::getAvailableTargets(id);
+  if (std::find(targets.begin(), targets.end(), target_of(backend)) == targets.end()) {
+    throw InputError("detector.backend", "this OpenCV was built without it; use \"opencv\"");
+  }
+  net.setPreferableBackend(id);
+  net.setPreferableTarget(target_of(backend));
+}
+
+/// Keeps OpenCV from printing what it throws as well.
+class QuietOpencv {
+ public:
+  QuietOpencv() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~QuietOpencv() { cv::utils::logging::setLogLevel(before_); }
+  QuietOpencv(const QuietOpencv&) = delete;
+  QuietOpencv& operator=(const QuietOpencv&) = delete;
+
+ private:
+  cv::utils::logging::LogLevel before_;
+};
+
+/// What OpenCV says, without its line breaks.
+std::string one_line(const cv::Exception& error) {
+  std::string text = error.err;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+cv::dnn::Net load(const DetectorConfig& config) {
+  require_file("detector.weights", config.weights);
+  const bool darknet = config.layout == NetworkLayout::kDarknet;
+  if (darknet) require_file("detector.cfg", config.cfg);
+  const QuietOpencv quiet;
+  try {
+    return darknet ? cv::dnn::readNetFromDarknet(config.cfg, config.weights)
+                   : cv::dnn::readNetFromONNX(config.weights);
+  } catch (const cv::Exception& error) {
+    throw InputError(config.weights, "is no network that OpenCV can read (" + one_line(error) +
+                                         "); check detector.weights, detector.cfg and detector.layout");
+  }
+}
+
+/// OpenCV takes what a short file of weights lacks as zeros, in silence.
+/// @throws InputError if the file holds fewer numbers than the Darknet network has
+void require_complete_weights(const cv::dnn::Net& net, const std::string& file) {
+  constexpr std::uintmax_t kShortestHeader = 16;
+  std::uintmax_t numbers = 0;
+  for (const cv::String& name : net.getLayerNames()) {
+    const cv::Ptr<cv::dnn::Layer> layer = net.getLayer(net.getLayerId(name));
+    if (layer->type == "Region") continue;  // its numbers are the anchors of the cfg
+    for (const cv::Mat& blob : layer->blobs) numbers += blob.total();
+  }
+  const std::uintmax_t needed = kShortestHeader + numbers * sizeof(float);
+  if (fs::file_size(file) >= needed) return;
+  throw InputError(file, "holds " + std::to_string(fs::file_size(file)) + " bytes, detector.cfg asks for " +
+                             std::to_string(needed) + "; it is truncated or belongs to another network");
+}
+
+/// How the picture lies in the network's input: input = picture * scale.
+struct Placement {
+  double x = 1.0;
+  double y = 1.0;
+};
+
+Placement placement_of(cv::Size picture, const DetectorConfig& config) {
+  const double x = static_cast<double>(config.input_px) / picture.width;
+  const double y = static_cast<double>(config.input_px) / picture.height;
+  if (config.layout == NetworkLayout::kDarknet) return {x, y};
+  return {std::min(x, y), std::min(x, y)};
+}
+
+cv::Mat input_of(const Frame& frame, const Placement& scale, const DetectorConfig& config) {
+  cv::Mat color = frame.color;
+  if (color.empty()) cv::cvtColor(frame.gray, color, cv::COLOR_GRAY2RGB);
+  const cv::Size size(std::min(cvRound(color.cols * scale.x), config.input_px),
+                      std::min(cvRound(color.rows * scale.y), config.input_px));
+  cv::Mat square(config.input_px, config.input_px, CV_8UC3, cv::Scalar::all(kPadding));
+  cv::resize(color, square(cv::Rect({0, 0}, size)), size, 0.0, 0.0, cv::INTER_LINEAR);
+  const bool yolox = config.layout == NetworkLayout::kYolox;
+  return cv::dnn::blobFromImage(square, yolox ? 1.0 : 1.0 / 255.0, {}, {}, yolox);
+}
+
+}  // namespace
+
+NetworkDetector::NetworkDetector(const DetectorConfig& config, std::span<const std::string> dynamic_classes)
+    : config_(config),
+      reader_{.layout = config.layout,
+              .input_px = config.input_px,
+              .names = read_names(config.names),
+              .score_threshold = config.score_threshold},
+      net_(load(config)),
+      output_names_(net_.getUnconnectedOutLayersNames()) {
+  require_known_class(config, reader_.names, dynamic_classes);
+  if (config.layout == NetworkLayout::kDarknet) require_complete_weights(net_, config.weights);
+  choose_backend(net_, config.backend);
+  cv::setNumThreads(config.threads);
+  const cv::Mat empty(config.input_px, config.input_px, CV_8UC3, cv::Scalar::all(kPadding));
+  static_cast<void>(read_outputs(reader_, run(cv::dnn::blobFromImage(empty)), config.weights));
+}
+
+std::vector<cv::Mat> NetworkDetector::run(const cv::Mat& input) {
+  std::vector<cv::Mat> outputs;
+  const QuietOpencv quiet;
+  try {
+    net_.setInput(input);
+    net_.forward(outputs, output_names_);
+  } catch (const cv::Exception& error) {
+    throw InputError(config_.weights, "cannot be run on " + std::to_string(config_.input_px) + " px (" +
+                                          one_line(error) + "); check detector.input_px");
+  }
+  return outputs;
+}
+
+DetectionSet NetworkDetector::detect(const Frame& frame) {
+  const Placement scale = placement_of(frame.gray.size(), config_);
+  std::vector<Detection> detections = without_duplicates(
+      read_outputs(reader_, run(input_of(frame, scale, config_)), config_.weights), config_.nms_threshold);
+  for (Detection& detection : detections) {
+    Box& box = detection.box;
+    box = {.x_min = box.x_min / scale.x,
+           .y_min = box.y_min / scale.y,
+           .x_max = box.x_max / scale.x,
+           .y_max = box.y_max / scale.y};
+  }
+  ++counters_.looked;
+  return {.t = frame.t,
+          .state = DetectionState::kPresent,
+          .detections = usable_boxes(std::move(detections), frame.gray.size(), counters_)};
+}
+
+std::string NetworkDetector::description() const {
+  const char* const where[] = {"cpu", "openvino cpu", "cuda"};
+  return "network " + fs::path(config_.weights).filename().string() + ", opencv " CV_VERSION " " +
+         where[static_cast<std::size_t>(config_.backend)] + ", " + std::to_string(config_.threads) +
+         " thread(s)";
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Nobody looks.
+#pragma once
+
+#include "core/detector/object_detector.h"
+
+namespace stillpoint {
+
+class NoDetector : public ObjectDetector {
+ public:
+  [[nodiscard]] DetectionSet detect(const Frame& frame) override {
+    ++counters_.unlooked;
+    return {.t = frame.t, .state = DetectionState::kNone, .detections = {}};
+  }
+  [[nodiscard]] std::string description() const override { return "none"; }
+  [[nodiscard]] const DetectorCounters& counters() const override { return counters_; }
+
+ private:
+  DetectorCounters counters_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/detector/simulated_detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "core/detector/usable_boxes.h"
+
+namespace stillpoint {
+namespace {
+
+/// What random numbers are for; each purpose has its own.
+enum class Purpose : std::uint32_t { kMiss = 1, kPhase, kJitter, kFalsePositive };
+
+/// Numbers that depend on what is named alone. Engine and mapping are fixed by the standard and by us, so
+/// every machine draws the same.
+class Draw {
+ public:
+  Draw(int seed, Purpose purpose, const std::string& object, std::int64_t count) {
+    std::vector<std::uint32_t> key = {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(purpose),
+                                      static_cast<std::uint32_t>(count),
+                                      static_cast<std::uint32_t>(count >> 32)};
+    for (const char letter : object) key.push_back(static_cast<unsigned char>(letter));
+    std::seed_seq sequence(key.begin(), key.end());
+    engine_.seed(sequence);
+  }
+  /// In [0, 1).
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// Zero mean, unit variance (Box and Muller 1958).
+  double normal() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+Box shaken(const Box& box, double sigma_px, Draw draw) {
+  Box result = box;
+  for (double* const edge : {&result.x_min, &result.y_min, &result.x_max, &result.y_max}) {
+    *edge += sigma_px * draw.normal();
+  }
+  return result;
+}
+
+/// A person somewhere in the picture, a tenth to half as wide and a fifth to nine tenths as high.
+Detection ghost(Draw& draw, cv::Size picture) {
+  const double width = draw.uniform(0.1, 0.5) * picture.width;
+  const double height = draw.uniform(0.2, 0.9) * picture.height;
+  const double x = draw.uniform(0.0, picture.width - 1 - width);
+  const double y = draw.uniform(0.0, picture.height - 1 - height);
+  return {.class_name = "person",
+          .score = 0.5,
+          .box = {.x_min = x, .y_min = y, .x_max = x + width, .y_max = y + height}};
+}
+
+}  // namespace
+
+SimulatedDetector::SimulatedDetector(std::span<const DetectionSet> truth, const DetectorConfig& config,
+                                     int seed)
+    : truth_(truth), config_(config.simulated), max_difference_s_(config.max_time_difference_s), seed_(seed) {
+  require_rising(truth, "true boxes");
+}
+
+/// The last set up to a time, with the tolerance of stamps; null before the first and after the last.
+const DetectionSet* SimulatedDetector::newest_at(Timestamp t) const {
+  const Timestamp end = after(t, max_difference_s_);
+  const auto later = std::upper_bound(truth_.begin(), truth_.end(), end,
+                                      [](Timestamp stamp, const DetectionSet& set) { return stamp < set.t; });
+  return later == truth_.begin() ? nullptr : &*std::prev(later);
+}
+
+bool SimulatedDetector::is_missed(std::int64_t frame_id, const std::string& object) const {
+  Draw phase(seed_, Purpose::kPhase, object, 0);
+  const auto offset = static_cast<std::int64_t>(phase.uniform() * config_.burst_frames);
+  Draw draw(seed_, Purpose::kMiss, object, (frame_id + offset) / config_.burst_frames);
+  return draw.uniform() < config_.miss_rate;
+}
+
+DetectionSet SimulatedDetector::detect(const Frame& frame) {
+  const DetectionSet* const truth = newest_at(after(frame.t, -config_.latency_s));
+  if (truth == nullptr) {
+    ++counters_.unlooked;
+    return {.t = frame.t, .state = DetectionState::kLate, .detections = {}};
+  }
+  std::vector<Detection> found;
+  std::map<std::string, int> seen_of_class;
+  for (const Detection& detection : truth->detections) {
+    const std::string object =
+        detection.class_name + " " + std::to_string(seen_of_class[detection.class_name]++);
+    if (is_missed(frame.id, object)) continue;
+    found.push_back(detection);
+    found.back().box =
+        shaken(detection.box, config_.jitter_px, Draw(seed_, Purpose::kJitter, object, frame.id));
+  }
+  Draw draw(seed_, Purpose::kFalsePositive, "", frame.id);
+  if (draw.uniform() < config_.false_positive_rate) found.push_back(ghost(draw, frame.gray.size()));
+  ++counters_.looked;
+  return {.t = frame.t,
+          .state = DetectionState::kPresent,
+          .detections = usable_boxes(std::move(found), frame.gray.size(), counters_)};
+}
+
+std::string SimulatedDetector::description() const {
+  return "simulated over " + std::to_string(truth_.size()) + " pictures of true boxes";
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/detector/usable_boxes.h"
+
+#include "core/base/error.h"
+#include "core/types/box_geometry.h"
+
+namespace stillpoint {
+
+std::vector<Detection> usable_boxes(std::vector<Detection> detections, cv::Size picture,
+                                    DetectorCounters& counters) {
+  const Box whole{.x_min = 0.0, .y_min = 0.0, .x_max = picture.width - 1.0, .y_max = picture.height - 1.0};
+  std::vector<Detection> usable;
+  for (Detection& detection : detections) {
+    const Box inside = common_part(detection.box, whole);
+    if (!has_area(detection.box) || !has_area(inside)) {
+      ++counters.unusable;
+      continue;
+    }
+    if (inside != detection.box) ++counters.clipped;
+    detection.box = inside;
+    usable.push_back(std::move(detection));
+  }
+  counters.boxes += static_cast<std::int64_t>(usable.size());
+  return usable;
+}
+
+void require_rising(std::span<const DetectionSet> sets, const std::string& place) {
+  for (std::size_t i = 1; i < sets.size(); ++i) {
+    if (sets[i].t > sets[i - 1].t) continue;
+    throw InputError(place, "set " + std::to_string(i) + " at " + std::to_string(to_seconds(sets[i].t)) +
+                                " s is not after the one before it; sort the boxes by time");
+  }
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A picture for detectors that need only its time, its number and its size.
+#pragma once
+
+#include "core/types/frame.h"
+
+namespace stillpoint {
+
+inline constexpr int kBlankWidth = 640;
+inline constexpr int kBlankHeight = 480;
+
+/// The `id`-th picture at 30 Hz.
+inline Frame blank_frame(std::int64_t id) {
+  Frame frame;
+  frame.id = id;
+  frame.t = from_seconds(static_cast<double>(id) / 30.0);
+  frame.gray = cv::Mat::zeros(kBlankHeight, kBlankWidth, CV_8UC1);
+  return frame;
+}
+
+}  // namespace stillpoint

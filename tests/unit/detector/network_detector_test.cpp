@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/detector/network_detector.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tiny_onnx.h"
+#include "tests/unit/detector/blank_frame.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kInput = 64;
+
+/// One box (x, y, w, h), objectness and two scores, in the layout of YOLOv5.
+std::string one_person_onnx() { return constant_onnx({16, 24, 16, 16, 1.0F, 0.1F, 0.8F}, {1, 1, 7}, kInput); }
+
+/// A network in a folder of its own.
+struct NetworkFiles {
+  TemporaryFolder folder;
+  DetectorConfig config;
+
+  explicit NetworkFiles(const std::string& onnx = one_person_onnx(),
+                        const std::string& names = "cat\nperson\n") {
+    config.kind = DetectorKind::kNetwork;
+    config.layout = NetworkLayout::kYolov5;
+    config.input_px = kInput;
+    config.weights = folder.write("net.onnx", onnx).string();
+    config.names = folder.write("net.names", names).string();
+  }
+};
+
+const std::vector<std::string> kPerson = {"person"};
+
+void expect_refused(const DetectorConfig& config, const std::vector<std::string>& parts,
+                    std::span<const std::string> dynamic_classes = kPerson) {
+  expect_input_error([&] { NetworkDetector(config, dynamic_classes); }, parts);
+}
+
+TEST(NetworkDetector, RunsAnOnnxNetworkAndKeepsProportions) {
+  const NetworkFiles files;
+  NetworkDetector detector(files.config, kPerson);
+  // 640 px become 64: each box times 10. Centre (160, 240), size (160, 160).
+  const DetectionSet found = detector.detect(blank_frame(3));
+  EXPECT_EQ(found.t, blank_frame(3).t);
+  EXPECT_EQ(found.state, DetectionState::kPresent);
+  ASSERT_EQ(found.detections.size(), 1U);
+  EXPECT_EQ(found.detections[0].class_name, "person");
+  EXPECT_NEAR(found.detections[0].score, 0.8, 1e-5);
+  EXPECT_NEAR(found.detections[0].box.x_min, 80.0, 1e-3);
+  EXPECT_NEAR(found.detections[0].box.y_min, 160.0, 1e-3);
+  EXPECT_NEAR(found.detections[0].box.x_max, 240.0, 1e-3);
+  EXPECT_NEAR(found.detections[0].box.y_max, 320.0, 1e-3);
+}
+
+TEST(NetworkDetector, SaysWhatIsReallyAtWork) {
+  const NetworkFiles files;
+  const NetworkDetector detector(files.config, kPerson);
+  const std::string text = detector.description();
+  for (const char* const part : {"net.onnx", "opencv", "cpu", "1 thread"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " / " << text;
+}
+
+TEST(NetworkDetector, RefusesMissingFiles) {
+  NetworkFiles files;
+  files.config.weights = "";
+  expect_refused(files.config, {"detector.weights", "not set"});
+  files.config.weights = "/nowhere/net.onnx";
+  expect_refused(files.config, {"/nowhere/net.onnx", "is no file"});
+  NetworkFiles darknet;
+  darknet.config.layout = NetworkLayout::kDarknet;
+  expect_refused(darknet.config, {"detector.cfg", "not set"});
+  NetworkFiles nameless;
+  nameless.config.names = "/nowhere/net.names";
+  expect_refused(nameless.config, {"/nowhere/net.names", "detector.names"});
+}
+
+TEST(NetworkDetector, RefusesFilesThatAreNoNetwork) {
+  const NetworkFiles garbage("this is no network");
+  expect_refused(garbage.config, {"net.onnx", "no network"});
+  const NetworkFiles truncated(one_person_onnx().substr(0, 120));
+  expect_refused(truncated.config, {"net.onnx"});
+  NetworkFiles darknet;
+  darknet.config.layout = NetworkLayout::kDarknet;
+  darknet.config.cfg = darknet.folder.write("net.cfg", "[net]\nwidth=oops\n[nonsense]\n").string();
+  expect_refused(darknet.config, {"net.onnx", "no network"});
+}
+
+TEST(NetworkDetector, RefusesAnotherNumberOfClasses) {
+  const NetworkFiles files(one_person_onnx(), "cat\nperson\ndog\n");
+  expect_refused(files.config, {"net.onnx", "1 x 1 x 7", "3 classes"});
+}
+
+TEST(NetworkDetector, RefusesAnotherLayout) {
+  NetworkFiles files;
+  files.config.layout = NetworkLayout::kYolov8;
+  expect_refused(files.config, {"net.onnx", "detector.layout"});
+}
+
+TEST(NetworkDetector, RefusesEmptyNames) {
+  const NetworkFiles files(one_person_onnx(), "\n\n");
+  expect_refused(files.config, {"net.names", "no class names"});
+}
+
+TEST(NetworkDetector, RefusesNetworksThatKnowNoDynamicClass) {
+  const NetworkFiles files;
+  expect_refused(files.config, {"net.names", "dynamic.classes", "\"cat\""}, std::vector<std::string>{"body"});
+  EXPECT_NO_THROW(NetworkDetector(files.config, {}));
+}
+
+TEST(NetworkDetector, RefusesABackendThatIsNotThereInsteadOfFallingBack) {
+  NetworkFiles files;
+  files.config.backend = NetworkBackend::kCuda;
+  if (!cv::dnn::getAvailableTargets(cv::dnn::DNN_BACKEND_CUDA).empty()) GTEST_SKIP() << "CUDA is there";
+  expect_refused(files.config, {"detector.backend", "opencv"});
+}
+
+}  // namespace
+}  // namespace stillpoint
