@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/detections_file.h"
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "datasets/text_table.h"
@@ -49,6 +51,21 @@ std::vector<DetectionSet> read_detections(const std::filesystem::path& file, Fau
     }
   });
   return sets;
+}
+
+std::string detections_text(std::span<const DetectionSet> sets) {
+  std::string text =
+      "# timestamp class score x_min y_min x_max y_max; a timestamp alone: nothing was found\n";
+  for (const DetectionSet& set : sets) {
+    if (set.state != DetectionState::kPresent) continue;
+    const std::string stamp = fmt::format("{}.{:09}", set.t.ns / 1'000'000'000, set.t.ns % 1'000'000'000);
+    if (set.detections.empty()) text += stamp + "\n";
+    for (const Detection& found : set.detections) {
+      text += fmt::format("{} {} {:.4f} {:.2f} {:.2f} {:.2f} {:.2f}\n", stamp, found.class_name, found.score,
+                          found.box.x_min, found.box.y_min, found.box.x_max, found.box.y_max);
+    }
+  }
+  return text;
 }
 
 }  // namespace stillpoint

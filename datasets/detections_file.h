@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/types/detection.h"
@@ -17,5 +19,9 @@ namespace stillpoint {
 /// @return sets in rising order of time, every one `kPresent`
 /// @throws InputError if the file is missing, unsorted, or a row is not finite, inverted or out of range
 [[nodiscard]] std::vector<DetectionSet> read_detections(const std::filesystem::path& file, FaultLog& faults);
+
+/// The text that `read_detections` reads back: stamps exact, edges to a hundredth of a pixel, scores to a
+/// ten-thousandth. Sets that nobody looked for, or that came late, leave no row.
+[[nodiscard]] std::string detections_text(std::span<const DetectionSet> sets);
 
 }  // namespace stillpoint

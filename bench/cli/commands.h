@@ -13,6 +13,7 @@ namespace stillpoint {
 [[nodiscard]] Command config_command();  ///< `stillpoint config`: resolved configs and the reference page
 [[nodiscard]] Command data_command();    ///< `stillpoint data`: make and inspect sequences
 [[nodiscard]] Command check_command();   ///< `stillpoint data check`: the sequence doctor
+[[nodiscard]] Command detect_command();  ///< `stillpoint detect`: boxes of a network, recorded
 [[nodiscard]] Command synth_command();   ///< `stillpoint data synth`: render a sequence
 
 }  // namespace stillpoint

@@ -5,6 +5,7 @@
 
 int main(int argc, char** argv) {
   using namespace stillpoint;
-  return run_command_line(argc, argv,
-                          {run_command(), eval_command(), bench_command(), config_command(), data_command()});
+  return run_command_line(
+      argc, argv,
+      {run_command(), eval_command(), bench_command(), detect_command(), config_command(), data_command()});
 }

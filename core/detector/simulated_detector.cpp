@@ -2,11 +2,13 @@
 #include "core/detector/simulated_detector.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
 
+#include "core/base/error.h"
 #include "core/detector/usable_boxes.h"
 
 namespace stillpoint {
@@ -15,8 +17,8 @@ namespace {
 /// What random numbers are for; each purpose has its own.
 enum class Purpose : std::uint32_t { kMiss = 1, kPhase, kJitter, kFalsePositive };
 
-/// Numbers that depend on what is named alone. Engine and mapping are fixed by the standard and by us, so
-/// every machine draws the same.
+/// Numbers that depend on what is named alone. The standard fixes what a seed sequence generates, so every
+/// machine draws the same.
 class Draw {
  public:
   Draw(int seed, Purpose purpose, const std::string& object, std::int64_t count) {
@@ -24,11 +26,15 @@ class Draw {
                                       static_cast<std::uint32_t>(count),
                                       static_cast<std::uint32_t>(count >> 32)};
     for (const char letter : object) key.push_back(static_cast<unsigned char>(letter));
-    std::seed_seq sequence(key.begin(), key.end());
-    engine_.seed(sequence);
+    std::seed_seq(key.begin(), key.end()).generate(words_.begin(), words_.end());
   }
-  /// In [0, 1).
-  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+  /// In [0, 1); eight of them to a draw.
+  double uniform() {
+    STILLPOINT_CHECK(next_ + 2 <= words_.size());
+    const std::uint64_t high = words_[next_], low = words_[next_ + 1];
+    next_ += 2;
+    return static_cast<double>((high << 32 | low) >> 11) * 0x1.0p-53;
+  }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Zero mean, unit variance (Box and Muller 1958).
   double normal() {
@@ -37,7 +43,8 @@ class Draw {
   }
 
  private:
-  std::mt19937_64 engine_;
+  std::array<std::uint32_t, 16> words_{};
+  std::size_t next_ = 0;
 };
 
 Box shaken(const Box& box, double sigma_px, Draw draw) {

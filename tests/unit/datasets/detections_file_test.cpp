@@ -55,5 +55,27 @@ TEST(DetectionsFile, RefusesStampsOutOfOrder) {
                  {"detections.txt:2", "before the row before"});
 }
 
+TEST(DetectionsFile, ReadsBackWhatWasWritten) {
+  const Detection person{.class_name = "person",
+                         .score = 0.1234,
+                         .box = {.x_min = -5.25, .y_min = 0.5, .x_max = 10, .y_max = 20}};
+  Detection light = person;
+  light.class_name = "traffic light";
+  const Timestamp exact{1'700'000'000'000'000'001};
+  const std::vector<DetectionSet> written = {
+      {.t = exact, .state = DetectionState::kPresent, .detections = {person, light}},
+      {.t = after(exact, 0.1), .state = DetectionState::kPresent, .detections = {}},
+      {.t = after(exact, 0.2), .state = DetectionState::kNone, .detections = {}},
+      {.t = after(exact, 0.3), .state = DetectionState::kLate, .detections = {person}}};
+  const auto sets = read(detections_text(written));
+  ASSERT_EQ(sets.size(), 2U);  // nobody looked at the last two
+  EXPECT_EQ(sets[0].t, exact);
+  ASSERT_EQ(sets[0].detections.size(), 2U);
+  EXPECT_EQ(sets[0].detections[0].box, person.box);
+  EXPECT_EQ(sets[0].detections[0].score, 0.1234);
+  EXPECT_EQ(sets[0].detections[1].class_name, "traffic light");
+  EXPECT_TRUE(sets[1].detections.empty());
+}
+
 }  // namespace
 }  // namespace stillpoint
