@@ -69,11 +69,8 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
 }
 
 MotionPrior Estimator::motion_prior(Timestamp from, Timestamp to) {
-  if (window_.frames.empty()) return {};
-  if (window_.inertial || !uses_imu()) {
-    const bool moved = window_.inertial || window_.newest() > 0;
-    return moved ? full_prior(extrapolate(from).T_w_b, extrapolate(to).T_w_b, window_.T_b_c) : MotionPrior{};
-  }
+  if (window_.frames.empty() || !uses_imu()) return {};
+  if (window_.inertial) return full_prior(extrapolate(from).T_w_b, extrapolate(to).T_w_b, window_.T_b_c);
   const double offset = window_.time_offset_s;
   return rotation_prior(imu_.samples_up_to(after(from, offset), after(to, offset)), newest_.gyro_bias,
                         window_.T_b_c);

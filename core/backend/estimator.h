@@ -27,6 +27,8 @@ class Estimator {
   void add_imu(const ImuSample& sample) { imu_.add(sample); }
 
   /// How the camera moved between two pictures, for the tracker; the newest state is not after `from`.
+  /// Inertial data only: a tracker that starts where constant velocity puts weak features finds them there,
+  /// and the estimate follows itself.
   [[nodiscard]] MotionPrior motion_prior(Timestamp from, Timestamp to);
 
   /// Takes a picture into the window and refines it.
