@@ -40,9 +40,17 @@ TEST(ConfigOverlays, VoUsesNoImu) {
 
 TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
   EXPECT_EQ(config_difference(base("dynamic_vins"), base("stillpoint")),
-            (Entries{{"frontend.prediction", "\"full\""},
+            (Entries{{"imu.noise_scale", "2.0"},
+                     {"frontend.min_distance_px", "20"},
+                     {"frontend.unstable_radius_px", "20"},
+                     {"frontend.prediction", "\"full\""},
                      {"frontend.outlier_model", "\"rigid\""},
+                     {"frontend.ransac_threshold_px", "2.0"},
+                     {"backend.rate_hz", "0.0"},
+                     {"backend.max_iterations", "5"},
+                     {"backend.keyframe_max_interval_s", "0.5"},
                      {"backend.depth.usage", "\"weighted\""},
+                     {"backend.depth.outlier_sigmas", "5.0"},
                      {"backend.initializer.kind", "\"instant\""}}));
 }
 
