@@ -26,8 +26,8 @@ struct Command {
   std::string summary;  ///< one line
   std::string example;  ///< a command line that works, without the program's name
   std::vector<Option> options;
-  std::function<int()>
-      action;  ///< runs after parsing, unless a subcommand was named; returns the exit code; may be empty then
+  std::function<int()> action;  ///< runs after parsing, unless a subcommand was named; returns the exit code;
+                                ///< may be empty then
   std::vector<Command> subcommands;
 };
 

@@ -47,7 +47,7 @@ TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
                      {"frontend.outlier_model", "\"rigid\""},
                      {"frontend.ransac_threshold_px", "2.0"},
                      {"backend.rate_hz", "0.0"},
-                     {"backend.max_iterations", "5"},
+                     {"backend.max_iterations", "4"},
                      {"backend.keyframe_max_interval_s", "0.5"},
                      {"backend.depth.usage", "\"weighted\""},
                      {"backend.depth.outlier_sigmas", "5.0"},
