@@ -34,6 +34,11 @@ TEST(ConfigOverlays, WithoutGridDetectionUsesShiTomasi) {
   EXPECT_EQ(changes("stillpoint", "wo_grid_detection"), (Entries{{"frontend.detector", "\"shi_tomasi\""}}));
 }
 
+TEST(ConfigOverlays, WithoutDepthWeightHoldsMeasuredDepthFixedAsTheParentDoes) {
+  EXPECT_EQ(changes("stillpoint", "wo_depth_weight"), (Entries{{"backend.depth.usage", "\"fixed\""}}));
+  EXPECT_EQ(changes("dynamic_vins", "wo_depth_weight"), Entries{});
+}
+
 TEST(ConfigOverlays, VoUsesNoImu) {
   EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"}}));
 }
@@ -59,6 +64,10 @@ TEST(ConfigOverlays, VinsRgbdIsDynamicVinsWithoutItsInventions) {
             (Entries{{"frontend.unstable_radius_px", "0"},
                      {"frontend.detector", "\"shi_tomasi\""},
                      {"frontend.prediction", "\"none\""},
+                     {"detector.kind", "\"none\""},
+                     {"dynamic.mask", "\"off\""},
+                     {"dynamic.missed_detection", "false"},
+                     {"dynamic.moving_consistency", "false"},
                      {"backend.depth.min_m", "0.1"},
                      {"backend.depth.max_m", "3.0"}}));
 }
