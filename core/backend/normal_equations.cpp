@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/normal_equations.h"
 
-#include <cmath>
+#include "core/base/error.h"
 
 #include <Eigen/Eigenvalues>
+
+#include <cmath>
 
 namespace stillpoint {
 namespace {
@@ -27,10 +29,7 @@ Linearized linearize(const Residual& source, ParameterBlocks& blocks) {
   std::vector<double*> pointers;
   for (const int size : sizes) out.jacobians.emplace_back(source.cost->num_residuals(), size);
   for (RowMajorMatrix& jacobian : out.jacobians) pointers.push_back(jacobian.data());
-  if (!source.cost->Evaluate(addresses.data(), out.residual.data(), pointers.data())) {
-    out.residual.setZero();  // a landmark behind a camera says nothing
-    for (RowMajorMatrix& jacobian : out.jacobians) jacobian.setZero();
-  }
+  STILLPOINT_CHECK(source.cost->Evaluate(addresses.data(), out.residual.data(), pointers.data()));
 
   double weight = 1.0;
   if (source.loss != nullptr) {

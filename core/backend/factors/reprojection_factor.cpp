@@ -22,26 +22,33 @@ Bounded bound(double d, double c) {
   return {d / root, 1.0 / (inner * root)};
 }
 
-/// The landmark on its way from camera i to camera j, and the rotations on that way.
+/// Ratio of the depths in j and in the host below which the point counts as in the plane of camera j: nearer
+/// ones, and those behind it, are read as if they lay there.
+constexpr double kMinDepthRatio = 0.01;
+
+/// The landmark on its way from camera i to camera j, times its inverse depth lambda: so it has no pole at
+/// infinity, and goes on smoothly to negative lambda. Letters p as points are called in their frames.
 struct Transfer {
   Pose T_w_bi, T_w_bj, T_b_c;
+  double lambda;
   Eigen::Matrix3d R_cj_w;  ///< R_b_c^T R_w_bj^T
   Eigen::Matrix3d R_cj_bi;
-  Eigen::Vector3d ray_i;  ///< bearing at the state's time, z = 1
-  Eigen::Vector3d p_ci, p_bi, p_bj, p_cj;
+  Eigen::Vector3d ray_i;             ///< bearing at the state's time, z = 1
+  Eigen::Vector3d p_bi, p_bj, p_cj;  ///< each times lambda
+  Eigen::Vector3d p_cj_ci;           ///< where j sees the camera i; not scaled
 
   Transfer(double const* const* x, const Eigen::Vector2d& bearing_i)
-      : T_w_bi(pose_of(x[0])), T_w_bj(pose_of(x[1])), T_b_c(pose_of(x[2])) {
+      : T_w_bi(pose_of(x[0])), T_w_bj(pose_of(x[1])), T_b_c(pose_of(x[2])), lambda(x[4][0]) {
     const Eigen::Matrix3d R_bi = T_w_bi.R();
     const Eigen::Matrix3d R_bj_t = T_w_bj.R().transpose();
     const Eigen::Matrix3d R_bc_t = T_b_c.R().transpose();
     R_cj_w = R_bc_t * R_bj_t;
     R_cj_bi = R_cj_w * R_bi;
     ray_i = bearing_i.homogeneous();
-    p_ci = ray_i / x[4][0];
-    p_bi = T_b_c * p_ci;
-    p_bj = R_bj_t * (R_bi * p_bi + T_w_bi.p - T_w_bj.p);
-    p_cj = R_bc_t * (p_bj - T_b_c.p);
+    p_bi = T_b_c.q * ray_i + lambda * T_b_c.p;
+    p_bj = R_bj_t * (R_bi * p_bi + lambda * (T_w_bi.p - T_w_bj.p));
+    p_cj = R_bc_t * (p_bj - lambda * T_b_c.p);
+    p_cj_ci = R_cj_bi * T_b_c.p + R_cj_w * (T_w_bi.p - T_w_bj.p) - R_bc_t * T_b_c.p;
   }
 };
 
@@ -49,20 +56,20 @@ using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
 Matrix36 point_by_pose_i(const Transfer& t) {
   Matrix36 J;
-  J << t.R_cj_w, -t.R_cj_bi * skew(t.p_bi);
+  J << t.lambda * t.R_cj_w, -t.R_cj_bi * skew(t.p_bi);
   return J;
 }
 
 Matrix36 point_by_pose_j(const Transfer& t) {
   Matrix36 J;
-  J << -t.R_cj_w, t.T_b_c.R().transpose() * skew(t.p_bj);
+  J << -t.lambda * t.R_cj_w, t.T_b_c.R().transpose() * skew(t.p_bj);
   return J;
 }
 
 Matrix36 point_by_extrinsics(const Transfer& t) {
   const Eigen::Matrix3d R_bc = t.T_b_c.R();
   Matrix36 J;
-  J << t.R_cj_bi - R_bc.transpose(), -t.R_cj_bi * R_bc * skew(t.p_ci) + skew(t.p_cj);
+  J << t.lambda * (t.R_cj_bi - R_bc.transpose()), -t.R_cj_bi * R_bc * skew(t.ray_i) + skew(t.p_cj);
   return J;
 }
 
@@ -84,36 +91,43 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   const Eigen::Vector2d bearing_i = m.bearing_i - (time_offset + m.exposure_i_s) * m.velocity_i;
   const Eigen::Vector2d bearing_j = m.bearing_j - (time_offset + m.exposure_j_s) * m.velocity_j;
   const Transfer t(x, bearing_i);
-  if (t.p_cj.z() < 1e-3) return false;  // behind the camera: the step that led here is refused
+  const bool before_camera = t.p_cj.z() > kMinDepthRatio;
+  const double inverse_z = 1.0 / (before_camera ? t.p_cj.z() : kMinDepthRatio);
+  const double by_z = before_camera ? -inverse_z : 0.0;  // d log(1/z) / dz
 
-  const double inverse_z = 1.0 / t.p_cj.z();
   const double weight = 1.0 / noise_.bearing;
   const Eigen::Vector2d seen = t.p_cj.head<2>() * inverse_z;
   Eigen::Map<Eigen::Matrix<double, Rows, 1>> r(residuals);
   r.template head<2>() = weight * (seen - bearing_j);
 
   Eigen::Matrix<double, Rows, 3> by_point;
-  by_point.template topRows<2>() << weight * inverse_z, 0.0, -weight * seen.x() * inverse_z,  //
-      0.0, weight * inverse_z, -weight * seen.y() * inverse_z;
+  by_point.template topRows<2>() << weight * inverse_z, 0.0, weight * seen.x() * by_z,  //
+      0.0, weight * inverse_z, weight * seen.y() * by_z;
+  double depth_by_lambda = 0.0;  // beyond what the point itself tells
   if constexpr (Rows == 3) {
-    const Bounded depth = bound((inverse_z - m.inverse_depth_j) / noise_.inverse_depth, noise_.depth_outlier);
+    const double inverse_depth = t.lambda * inverse_z;
+    const Bounded depth =
+        bound((inverse_depth - m.inverse_depth_j) / noise_.inverse_depth, noise_.depth_outlier);
+    const double slope = depth.slope / noise_.inverse_depth;
     r[2] = depth.value;
-    by_point.row(2) << 0.0, 0.0, -depth.slope * inverse_z * inverse_z / noise_.inverse_depth;
+    by_point.row(2) << 0.0, 0.0, slope * inverse_depth * by_z;
+    depth_by_lambda = slope * inverse_z;
   }
   if (jacobians == nullptr) return true;
 
   if (jacobians[0] != nullptr) write_pose_jacobian<Rows>(jacobians[0], by_point, point_by_pose_i(t));
   if (jacobians[1] != nullptr) write_pose_jacobian<Rows>(jacobians[1], by_point, point_by_pose_j(t));
   if (jacobians[2] != nullptr) write_pose_jacobian<Rows>(jacobians[2], by_point, point_by_extrinsics(t));
-  if (jacobians[3] == nullptr && jacobians[4] == nullptr) return true;
-  const Eigen::Matrix<double, Rows, 3> by_ray = by_point * t.R_cj_bi * t.T_b_c.R();
   if (jacobians[3] != nullptr) {
+    const Eigen::Matrix<double, Rows, 3> by_ray = by_point * t.R_cj_bi * t.T_b_c.R();
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[3]);
-    J = by_ray.template leftCols<2>() * m.velocity_i / -x[4][0];
+    J = by_ray.template leftCols<2>() * -m.velocity_i;
     J.template head<2>() += weight * m.velocity_j;
   }
   if (jacobians[4] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, Rows, 1>>{jacobians[4]} = by_ray * t.p_ci / -x[4][0];
+    Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[4]);
+    J = by_point * t.p_cj_ci;
+    if constexpr (Rows == 3) J[2] += depth_by_lambda;
   }
   return true;
 }

@@ -31,6 +31,9 @@ struct ReprojectionNoise {
 ///
 /// The depth row is bounded, d / sqrt(1 + (d/c)^2) (Geman & McClure 1985): one depth on an object's edge must
 /// not cost the landmark its good bearing.
+///
+/// Defined for every inverse depth, zero and negative ones too, and for points behind camera j: a step of the
+/// solver that throws one bad point beyond infinity must not be refused for all the others.
 template <int Rows>
 class ReprojectionFactor final : public ceres::SizedCostFunction<Rows, 7, 7, 7, 1, 1> {
   static_assert(Rows == 2 || Rows == 3);

@@ -42,6 +42,24 @@ TEST(ReprojectionFactor, JacobiansEqualNumericOnesWithDepth) {
   EXPECT_LT(jacobian_error(ReprojectionFactor<3>(measurement(), kNoise), blocks_at(0.002)), 1e-6);
 }
 
+TEST(ReprojectionFactor, GoesOnSmoothlyBeyondInfinity) {
+  for (const double inverse_depth : {0.0, -0.2}) {
+    Blocks blocks = blocks_at(0.002);
+    blocks.back() = {inverse_depth};
+    EXPECT_LT(jacobian_error(ReprojectionFactor<3>(measurement(), kNoise), blocks), 1e-6) << inverse_depth;
+  }
+}
+
+TEST(ReprojectionFactor, IsFiniteForAPointBehindTheCamera) {
+  Blocks blocks = blocks_at(0.0);
+  blocks.back() = {20.0};  // 5 cm before the host, and j stands 20 cm further on
+  const ReprojectionFactor<3> factor(measurement(), kNoise);
+  double residual[3];
+  EXPECT_TRUE(factor.Evaluate(addresses(blocks).data(), residual, nullptr));
+  EXPECT_TRUE(Eigen::Vector3d(residual).allFinite());
+  EXPECT_LT(jacobian_error(factor, blocks), 1e-6);
+}
+
 TEST(ReprojectionFactor, IsZeroWhereTheLandmarkReallyIs) {
   ReprojectionMeasurement m = measurement();
   m.velocity_i = m.velocity_j = Eigen::Vector2d::Zero();
