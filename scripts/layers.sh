@@ -35,7 +35,7 @@ libraries=(
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/(backend|loop)/'
   '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/raster_drawing\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
-  '<sqlite3           ^bench/'
+  '<(sqlite3|zstd)    ^bench/store/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
   '<spdlog/           ^bench/'
   '<toml\+\+/         ^(bench|datasets)/'

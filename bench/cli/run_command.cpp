@@ -15,6 +15,7 @@
 #include "bench/record/output_folder.h"
 #include "bench/record/run_files.h"
 #include "bench/record/sequence_checksum.h"
+#include "bench/record/utc_time.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 

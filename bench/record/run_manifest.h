@@ -23,7 +23,4 @@ struct RunManifest {
   std::string started;  ///< UTC, ISO 8601
 };
 
-/// Now, as `RunManifest::started` has it.
-[[nodiscard]] std::string utc_now();
-
 }  // namespace stillpoint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/record/run_manifest.h"
+#include "bench/record/utc_time.h"
 
 #include <chrono>
 

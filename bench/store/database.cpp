@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/database.h"
+
+#include <sqlite3.h>
+
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBusyTimeoutMs = 60'000;
+
+/// What a user can do about a failure.
+std::string remedy(int result) {
+  switch (result & 0xff) {
+    case SQLITE_FULL:
+    case SQLITE_IOERR:
+      return "free space on the disk and call again; everything stored so far is kept";
+    case SQLITE_READONLY:
+      return "it may only be read; give another file with --store, or make it writable";
+    case SQLITE_CORRUPT:
+      return "it is damaged; look with `stillpoint store verify`, and save what is readable with "
+             "`stillpoint store export`";
+    case SQLITE_NOTADB:
+      return "give the file of a store, or the name of a new one";
+    case SQLITE_BUSY:
+      return "another program has been writing for a minute; call again later";
+    default:
+      return "check that its folder exists and its permissions";
+  }
+}
+
+[[noreturn]] void fail(const fs::path& file, sqlite3* connection, int result) {
+  const std::string what = connection != nullptr ? sqlite3_errmsg(connection) : sqlite3_errstr(result);
+  throw InputError(file.string(), what + "; " + remedy(result));
+}
+
+/// In a folder without write permission a log in shared memory cannot be made: then the file is read as one
+/// that does not change.
+int open_read_only(const fs::path& file, sqlite3** connection) {
+  int result = sqlite3_open_v2(file.c_str(), connection, SQLITE_OPEN_READONLY, nullptr);
+  if (result == SQLITE_OK)
+    result = sqlite3_exec(*connection, "SELECT 1 FROM sqlite_master", nullptr, nullptr, nullptr);
+  const int kind = result & 0xff;
+  if (kind != SQLITE_CANTOPEN && kind != SQLITE_READONLY) return result;
+  sqlite3_close(*connection);
+  const std::string uri = "file:" + fs::absolute(file).string() + "?immutable=1";
+  return sqlite3_open_v2(uri.c_str(), connection, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+}
+
+sqlite3* open_file(const fs::path& file, DatabaseAccess access) {
+  if (access == DatabaseAccess::kRead && !fs::is_regular_file(file)) {
+    throw InputError(file.string(),
+                     "there is no such store; make one with `stillpoint bench PLAN --store FILE`");
+  }
+  sqlite3* connection = nullptr;
+  const int result =
+      access == DatabaseAccess::kRead
+          ? open_read_only(file, &connection)
+          : sqlite3_open_v2(file.c_str(), &connection, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+  if (result == SQLITE_OK) return connection;
+  const std::unique_ptr<sqlite3, int (*)(sqlite3*)> closer(connection, sqlite3_close);
+  fail(file, connection, result);
+}
+
+}  // namespace
+
+Statement::Statement(const fs::path& file, sqlite3* connection, std::string_view sql)
+    : file_(file), connection_(connection), statement_(nullptr, sqlite3_finalize) {
+  sqlite3_stmt* statement = nullptr;
+  const int result =
+      sqlite3_prepare_v2(connection, sql.data(), static_cast<int>(sql.size()), &statement, nullptr);
+  statement_.reset(statement);
+  if (result != SQLITE_OK) fail(file_, connection_, result);
+}
+
+void Statement::check_bound(int result) {
+  if (result != SQLITE_OK) fail(file_, connection_, result);
+}
+
+Statement& Statement::bind(std::string_view text) {
+  check_bound(sqlite3_bind_text(statement_.get(), ++bound_, text.data(), static_cast<int>(text.size()),
+                                SQLITE_TRANSIENT));
+  return *this;
+}
+
+Statement& Statement::bind(std::int64_t number) {
+  check_bound(sqlite3_bind_int64(statement_.get(), ++bound_, number));
+  return *this;
+}
+
+Statement& Statement::bind(double number) {
+  check_bound(sqlite3_bind_double(statement_.get(), ++bound_, number));
+  return *this;
+}
+
+bool Statement::step() {
+  const int result = sqlite3_step(statement_.get());
+  if (result != SQLITE_ROW && result != SQLITE_DONE) fail(file_, connection_, result);
+  return result == SQLITE_ROW;
+}
+
+std::string Statement::text(int column) const {
+  const unsigned char* text = sqlite3_column_text(statement_.get(), column);
+  if (text == nullptr) return "";
+  const auto bytes = static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column));
+  return {reinterpret_cast<const char*>(text), bytes};
+}
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+double Statement::real(int column) const { return sqlite3_column_double(statement_.get(), column); }
+
+Database::Database(const fs::path& file, DatabaseAccess access)
+    : file_(file), connection_(open_file(file, access), sqlite3_close) {
+  sqlite3_extended_result_codes(connection_.get(), 1);
+  sqlite3_busy_timeout(connection_.get(), kBusyTimeoutMs);
+  execute("PRAGMA foreign_keys = ON");
+  static_cast<void>(integer("SELECT count(*) FROM sqlite_master"));  // reads the header: is it a database?
+}
+
+Statement Database::prepare(std::string_view sql) const { return {file_, connection_.get(), sql}; }
+
+void Database::execute(const std::string& sql) const {
+  const int result = sqlite3_exec(connection_.get(), sql.c_str(), nullptr, nullptr, nullptr);
+  if (result != SQLITE_OK) fail(file_, connection_.get(), result);
+}
+
+std::int64_t Database::integer(std::string_view sql) const {
+  Statement statement = prepare(sql);
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+Transaction::Transaction(const Database& database) : database_(database) {
+  database_.execute("BEGIN IMMEDIATE");
+}
+
+Transaction::~Transaction() {
+  if (!open_) return;
+  try {
+    database_.execute("ROLLBACK");
+  } catch (const InputError&) {
+    // An error may have ended the transaction already; the error itself is on its way to the user.
+  }
+}
+
+void Transaction::commit() {
+  database_.execute("COMMIT");
+  open_ = false;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// SQLite behind a few calls: one connection, statements, transactions, and errors that say what to do.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace stillpoint {
+
+enum class DatabaseAccess { kRead, kWrite };
+
+/// One statement with its parameters bound, stepped row by row. Belongs to the database that made it.
+class Statement {
+ public:
+  Statement(const std::filesystem::path& file, sqlite3* connection, std::string_view sql);
+
+  /// Binds the next parameter, from left to right.
+  Statement& bind(std::string_view text);
+  Statement& bind(std::int64_t number);
+  Statement& bind(double number);
+
+  /// Goes to the next row. @return false after the last one
+  bool step();
+
+  [[nodiscard]] std::string text(int column) const;  ///< empty for null
+  [[nodiscard]] std::int64_t integer(int column) const;
+  [[nodiscard]] double real(int column) const;
+
+ private:
+  void check_bound(int result);
+
+  std::filesystem::path file_;
+  sqlite3* connection_;
+  std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> statement_;
+  int bound_ = 0;
+};
+
+/// A connection to one file. Waits up to a minute for others that write.
+class Database {
+ public:
+  /// For writing the file is made when it is missing; for reading it must exist, and may lie where nothing
+  /// can be written.
+  /// @throws InputError if the file cannot be opened or is no SQLite database
+  Database(const std::filesystem::path& file, DatabaseAccess access);
+
+  [[nodiscard]] Statement prepare(std::string_view sql) const;
+  /// Runs statements that give no rows.
+  void execute(const std::string& sql) const;
+  /// First column of the first row.
+  [[nodiscard]] std::int64_t integer(std::string_view sql) const;
+
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+  std::unique_ptr<sqlite3, int (*)(sqlite3*)> connection_;
+};
+
+/// Holds the right to write from construction to its end; what was not committed is taken back.
+class Transaction {
+ public:
+  explicit Transaction(const Database& database);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+
+  void commit();
+
+ private:
+  const Database& database_;
+  bool open_ = true;
+};
+
+}  // namespace stillpoint

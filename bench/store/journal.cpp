@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/journal.h"
+
+#include <algorithm>
+
+#include "bench/record/utc_time.h"
+#include "bench/store/schema.h"
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kBegin =
+    "INSERT INTO run (key, system, variant, sequence, sequence_id, config_hash, build, mode, kind, cores, "
+    "seed, "
+    "repetition, axis, axis_value, state, driver, started) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'running', ?, ?)";
+
+Database open_for_writing(const fs::path& file) {
+  std::error_code ignored;  // the database tells what is wrong with the folder
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), ignored);
+  Database database(file, DatabaseAccess::kWrite);
+  migrate(database);
+  Statement check = database.prepare("PRAGMA quick_check(1)");
+  if (!check.step() || check.text(0) != "ok") {
+    throw InputError(file.string(), "is damaged (" + check.text(0) +
+                                        "); save what is readable with `stillpoint store export`, and go on "
+                                        "with a new store");
+  }
+  return database;
+}
+
+}  // namespace
+
+Journal::Journal(const fs::path& file)
+    : database_(open_for_writing(file)),
+      blobs_(files_folder(file) / "blobs"),
+      driver_(files_folder(file) / "drivers") {
+  driver_.remove_dead();
+}
+
+void Journal::record_plan(const StoredPlan& plan) {
+  Transaction transaction(database_);
+  database_.prepare("DELETE FROM plan WHERE name = ?").bind(plan.name).step();
+  database_.prepare("INSERT INTO plan (name, title, text) VALUES (?, ?, ?)")
+      .bind(plan.name)
+      .bind(plan.title)
+      .bind(plan.text)
+      .step();
+  for (std::size_t i = 0; i < plan.run_keys.size(); ++i) {
+    database_.prepare("INSERT INTO plan_entry (plan, position, run_key) VALUES (?, ?, ?)")
+        .bind(plan.name)
+        .bind(static_cast<std::int64_t>(i))
+        .bind(plan.run_keys[i])
+        .step();
+  }
+  transaction.commit();
+}
+
+Claim Journal::claim(const RunIdentity& identity) {
+  const std::string key = run_key(identity);
+  Transaction transaction(database_);
+  Statement present = database_.prepare("SELECT state, driver FROM run WHERE key = ?");
+  present.bind(key);
+  if (present.step()) {
+    if (present.text(0) == "ended") return Claim::kDone;
+    if (driver_.is_alive(present.text(1))) return Claim::kElsewhere;
+    database_.prepare("DELETE FROM run WHERE key = ?").bind(key).step();
+  }
+  database_.prepare(kBegin)
+      .bind(key)
+      .bind(identity.system)
+      .bind(identity.variant)
+      .bind(identity.sequence)
+      .bind(identity.sequence_id)
+      .bind(identity.config_hash)
+      .bind(identity.build)
+      .bind(identity.mode)
+      .bind(identity.kind)
+      .bind(identity.cores)
+      .bind(identity.seed)
+      .bind(identity.repetition)
+      .bind(identity.axis)
+      .bind(identity.axis_value)
+      .bind(driver_.name())
+      .bind(utc_now())
+      .step();
+  transaction.commit();
+  return Claim::kGranted;
+}
+
+void Journal::finish(const RunIdentity& identity, const RunOutcome& outcome) {
+  const std::string key = run_key(identity);
+  Transaction transaction(
+      database_);  // also keeps the collector of unused files away until the row names them
+  Statement row = database_.prepare("SELECT id FROM run WHERE key = ? AND state = 'running' AND driver = ?");
+  row.bind(key).bind(driver_.name());
+  STILLPOINT_CHECK(row.step());
+  const std::int64_t id = row.integer(0);
+  write_details(id, outcome);
+  database_.prepare("UPDATE run SET state = 'ended', ended = ?, outcome = ?, detail = ? WHERE id = ?")
+      .bind(utc_now())
+      .bind(outcome_name(outcome.outcome))
+      .bind(outcome.detail)
+      .bind(id)
+      .step();
+  transaction.commit();
+}
+
+void Journal::write_details(std::int64_t run, const RunOutcome& outcome) {
+  for (const Metric& metric : outcome.metrics) {
+    database_.prepare("INSERT INTO metric (run, name, recipe, unit, value) VALUES (?, ?, ?, ?, ?)")
+        .bind(run)
+        .bind(metric.name)
+        .bind(metric.recipe)
+        .bind(metric.unit)
+        .bind(metric.value)
+        .step();
+  }
+  for (const ModuleCost& cost : outcome.costs) {
+    database_
+        .prepare(
+            "INSERT INTO timing (run, module, per, calls, mean_ms, median_ms, p95_ms, max_ms) "
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(run)
+        .bind(cost.module)
+        .bind(cost.per)
+        .bind(cost.calls)
+        .bind(cost.mean_ms)
+        .bind(cost.median_ms)
+        .bind(cost.p95_ms)
+        .bind(cost.max_ms)
+        .step();
+  }
+  for (const auto& [kind, content] : outcome.attachments) {
+    database_.prepare("INSERT INTO attachment (run, kind, blob) VALUES (?, ?, ?)")
+        .bind(run)
+        .bind(kind)
+        .bind(blobs_.put(content))
+        .step();
+  }
+  if (outcome.manifest.empty()) return;
+  const std::string hash = blob_name(outcome.manifest);
+  database_.prepare("INSERT OR IGNORE INTO manifest (hash, json) VALUES (?, ?)")
+      .bind(hash)
+      .bind(outcome.manifest)
+      .step();
+  database_.prepare("UPDATE run SET manifest = ? WHERE id = ?").bind(hash).bind(run).step();
+}
+
+void Journal::release(const RunIdentity& identity) {
+  database_.prepare("DELETE FROM run WHERE key = ? AND state = 'running' AND driver = ?")
+      .bind(run_key(identity))
+      .bind(driver_.name())
+      .step();
+}
+
+void Journal::forget(const std::vector<std::string>& keys, const std::vector<Outcome>& outcomes) {
+  Transaction transaction(database_);
+  for (const std::string& key : keys) {
+    for (const Outcome outcome : outcomes) {
+      database_.prepare("DELETE FROM run WHERE key = ? AND outcome = ?")
+          .bind(key)
+          .bind(outcome_name(outcome))
+          .step();
+    }
+  }
+  transaction.commit();
+}
+
+bool Journal::is_done(const std::string& key) const {
+  Statement row = database_.prepare("SELECT 1 FROM run WHERE key = ? AND state = 'ended'");
+  return row.bind(key).step();
+}
+
+fs::path Journal::work_folder(const RunIdentity& identity) const {
+  const fs::path folder = driver_.folder() / run_key(identity);
+  fs::create_directories(folder);
+  return folder;
+}
+
+}  // namespace stillpoint

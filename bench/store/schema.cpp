@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/schema.h"
+
+#include <array>
+#include <string>
+
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::int64_t kApplicationId = 0x53746c70;  // "Stlp", so that `file` and we know a store
+
+/// One step from each version to the next. Steps that were published are never changed.
+constexpr std::array<const char*, 1> kSteps = {R"sql(
+-- What does not differ from run to run, or seldom: configs, machines, builds.
+CREATE TABLE manifest (
+  hash TEXT PRIMARY KEY,
+  json TEXT NOT NULL
+) WITHOUT ROWID;
+
+-- The journal: a row is written before a run starts ('running') and completed when it has ended.
+CREATE TABLE run (
+  id INTEGER PRIMARY KEY,
+  key TEXT NOT NULL UNIQUE,       -- hash of everything below that makes two runs the same run
+  system TEXT NOT NULL,
+  variant TEXT NOT NULL,
+  sequence TEXT NOT NULL,
+  sequence_id TEXT NOT NULL,      -- checksum of its files, or the key of a rendering
+  config_hash TEXT NOT NULL,
+  build TEXT NOT NULL,            -- git commit, "+" and a hash of the changes when there are any
+  mode TEXT NOT NULL,
+  kind TEXT NOT NULL,             -- accuracy or timing
+  cores TEXT NOT NULL,
+  seed INTEGER NOT NULL,
+  repetition INTEGER NOT NULL,
+  axis TEXT NOT NULL,             -- key of a sweep; empty outside one
+  axis_value REAL NOT NULL,
+  state TEXT NOT NULL CHECK (state IN ('running', 'ended')),
+  driver TEXT NOT NULL,           -- who makes or made it
+  started TEXT NOT NULL,          -- UTC
+  ended TEXT,
+  outcome TEXT CHECK (outcome IN ('ok', 'lost', 'crashed', 'timed_out', 'out_of_memory', 'bad_data')),
+  detail TEXT,                    -- why it is not ok
+  manifest TEXT REFERENCES manifest(hash),
+  CHECK ((state = 'ended') = (outcome IS NOT NULL))
+);
+CREATE INDEX run_by_subject ON run(sequence, variant, seed, repetition);
+
+CREATE TABLE metric (
+  run INTEGER NOT NULL REFERENCES run(id) ON DELETE CASCADE,
+  name TEXT NOT NULL,
+  recipe TEXT NOT NULL,           -- how the number was made
+  unit TEXT NOT NULL,
+  value REAL NOT NULL,            -- a number without data has no row
+  PRIMARY KEY (run, name, recipe)
+) WITHOUT ROWID;
+
+CREATE TABLE timing (
+  run INTEGER NOT NULL REFERENCES run(id) ON DELETE CASCADE,
+  module TEXT NOT NULL,
+  per TEXT NOT NULL CHECK (per IN ('call', 'frame')),
+  calls INTEGER NOT NULL,
+  mean_ms REAL NOT NULL,
+  median_ms REAL NOT NULL,
+  p95_ms REAL NOT NULL,
+  max_ms REAL NOT NULL,
+  PRIMARY KEY (run, module)
+) WITHOUT ROWID;
+
+CREATE TABLE attachment (
+  run INTEGER NOT NULL REFERENCES run(id) ON DELETE CASCADE,
+  kind TEXT NOT NULL,             -- trajectory, frames, timings, result, log
+  blob TEXT NOT NULL,             -- name of the file beside the store
+  PRIMARY KEY (run, kind)
+) WITHOUT ROWID;
+
+-- What was asked for, so that a table can be made again in its order.
+CREATE TABLE plan (
+  name TEXT PRIMARY KEY,
+  title TEXT NOT NULL,
+  text TEXT NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE plan_entry (
+  plan TEXT NOT NULL REFERENCES plan(name) ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  run_key TEXT NOT NULL,          -- the run may not be made yet
+  PRIMARY KEY (plan, position)
+) WITHOUT ROWID;
+)sql"};
+
+std::string version_text(std::int64_t version) { return std::to_string(version); }
+
+/// @return its schema version; 0 for an empty file
+std::int64_t version_of(const Database& database) {
+  const std::int64_t version = database.integer("PRAGMA user_version");
+  const bool empty = database.integer("SELECT count(*) FROM sqlite_master") == 0;
+  if (!empty && database.integer("PRAGMA application_id") != kApplicationId) {
+    throw InputError(database.file().string(),
+                     "is another program's database; give the file of a store, or the name of a new one");
+  }
+  if (version > schema_version()) {
+    throw InputError(database.file().string(), "was written by a newer version (schema " +
+                                                   version_text(version) + ", this program knows " +
+                                                   version_text(schema_version()) +
+                                                   "); use that version, or give another --store");
+  }
+  return version;
+}
+
+}  // namespace
+
+int schema_version() { return static_cast<int>(kSteps.size()); }
+
+void migrate(const Database& database) {
+  if (version_of(database) == schema_version()) return;
+  database.execute("PRAGMA journal_mode = WAL");
+  Transaction transaction(database);
+  // Asked again: another driver may have migrated while this one waited.
+  for (std::int64_t version = version_of(database); version < schema_version(); ++version) {
+    database.execute(kSteps[static_cast<std::size_t>(version)]);
+    database.execute("PRAGMA user_version = " + version_text(version + 1));
+  }
+  database.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
+  transaction.commit();
+}
+
+void require_current_schema(const Database& database) {
+  const std::int64_t version = version_of(database);
+  if (version == schema_version()) return;
+  throw InputError(database.file().string(),
+                   version == 0 ? "is empty; fill it with `stillpoint bench PLAN --store FILE`"
+                                : "has the older schema " + version_text(version) +
+                                      "; the next `stillpoint bench` into it brings it up to date");
+}
+
+}  // namespace stillpoint

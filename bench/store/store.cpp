@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/store.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "bench/store/schema.h"
+#include "bench/store/timing_text.h"
+#include "core/base/error.h"
+#include "eval/io/trajectory_file.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRuns =
+    "SELECT id, key, system, variant, sequence, sequence_id, config_hash, build, mode, kind, cores, seed, "
+    "repetition, axis, axis_value, outcome, detail, started, ended, manifest FROM run "
+    "WHERE state = 'ended' AND ?1 IN ('', system) AND ?2 IN ('', variant) AND ?3 IN ('', sequence) "
+    "AND build >= ?4 AND substr(build, 1, length(?4)) = ?4 AND ?5 IN ('', kind) ORDER BY id";
+
+StoredRun run_of(const Statement& row) {
+  StoredRun run;
+  run.id = row.integer(0);
+  run.key = row.text(1);
+  run.identity = {.system = row.text(2),
+                  .variant = row.text(3),
+                  .sequence = row.text(4),
+                  .sequence_id = row.text(5),
+                  .config_hash = row.text(6),
+                  .build = row.text(7),
+                  .mode = row.text(8),
+                  .kind = row.text(9),
+                  .cores = row.text(10),
+                  .seed = row.integer(11),
+                  .repetition = row.integer(12),
+                  .axis = row.text(13),
+                  .axis_value = row.real(14)};
+  run.outcome = outcome_of(row.text(15));
+  run.detail = row.text(16);
+  run.started = row.text(17);
+  run.ended = row.text(18);
+  run.manifest_hash = row.text(19);
+  return run;
+}
+
+/// Reads the tables that hang on runs, each in one pass.
+void read_details(const Database& database, std::vector<StoredRun>& runs) {
+  std::unordered_map<std::int64_t, StoredRun*> by_id;
+  for (StoredRun& run : runs) by_id[run.id] = &run;
+  const auto run_at = [&](const Statement& row) {
+    const auto found = by_id.find(row.integer(0));
+    return found == by_id.end() ? nullptr : found->second;
+  };
+  Statement metrics =
+      database.prepare("SELECT run, name, recipe, unit, value FROM metric ORDER BY run, name, recipe");
+  while (metrics.step()) {
+    if (StoredRun* run = run_at(metrics))
+      run->metrics.push_back({metrics.text(1), metrics.text(2), metrics.text(3), metrics.real(4)});
+  }
+  Statement costs = database.prepare(
+      "SELECT run, module, per, calls, mean_ms, median_ms, p95_ms, max_ms FROM timing ORDER BY run, module");
+  while (costs.step()) {
+    if (StoredRun* run = run_at(costs))
+      run->costs.push_back({costs.text(1), costs.text(2), costs.integer(3), costs.real(4), costs.real(5),
+                            costs.real(6), costs.real(7)});
+  }
+  Statement blobs = database.prepare("SELECT run, kind, blob FROM attachment ORDER BY run, kind");
+  while (blobs.step()) {
+    if (StoredRun* run = run_at(blobs)) run->blobs[blobs.text(1)] = blobs.text(2);
+  }
+}
+
+}  // namespace
+
+fs::path files_folder(const fs::path& store_file) { return store_file.string() + ".files"; }
+
+Store::Store(const fs::path& file)
+    : database_(file, DatabaseAccess::kRead), blobs_(files_folder(file) / "blobs") {
+  require_current_schema(database_);
+}
+
+std::vector<StoredRun> Store::runs(const RunFilter& filter) const {
+  database_.execute("BEGIN");  // all tables as of one moment
+  std::vector<StoredRun> runs;
+  Statement rows = database_.prepare(kRuns);
+  rows.bind(filter.system).bind(filter.variant).bind(filter.sequence).bind(filter.build).bind(filter.kind);
+  while (rows.step()) runs.push_back(run_of(rows));
+  read_details(database_, runs);
+  database_.execute("COMMIT");
+  return runs;
+}
+
+std::vector<StoredPlan> Store::plans() const {
+  std::vector<StoredPlan> plans;
+  Statement rows = database_.prepare("SELECT name, title, text FROM plan ORDER BY name");
+  while (rows.step()) {
+    plans.push_back({rows.text(0), rows.text(1), rows.text(2), {}});
+    Statement entries = database_.prepare("SELECT run_key FROM plan_entry WHERE plan = ? ORDER BY position");
+    entries.bind(plans.back().name);
+    while (entries.step()) plans.back().run_keys.push_back(entries.text(0));
+  }
+  return plans;
+}
+
+std::vector<StoredRun> Store::plan_runs(const std::string& plan) const {
+  std::string known;
+  for (const StoredPlan& stored : plans()) {
+    known += (known.empty() ? "" : ", ") + stored.name;
+    if (stored.name != plan) continue;
+    std::unordered_map<std::string, StoredRun> by_key;
+    for (StoredRun& run : runs()) by_key[run.key] = std::move(run);
+    std::vector<StoredRun> ordered;
+    for (const std::string& key : stored.run_keys) {
+      if (const auto found = by_key.find(key); found != by_key.end()) ordered.push_back(found->second);
+    }
+    return ordered;
+  }
+  throw InputError(file().string(),
+                   "holds no plan \"" + plan + "\"; it holds: " + (known.empty() ? "none" : known));
+}
+
+std::int64_t Store::unfinished() const {
+  return database_.integer("SELECT count(*) FROM run WHERE state = 'running'");
+}
+
+std::string Store::manifest(const StoredRun& run) const {
+  Statement row = database_.prepare("SELECT json FROM manifest WHERE hash = ?");
+  row.bind(run.manifest_hash);
+  return row.step() ? row.text(0) : "";
+}
+
+std::string Store::attachment(const StoredRun& run, const std::string& kind) const {
+  const auto found = run.blobs.find(kind);
+  return found == run.blobs.end() ? "" : blobs_.get(found->second);
+}
+
+Trajectory Store::trajectory(const StoredRun& run) const {
+  const std::string text = attachment(run, "trajectory");
+  if (text.empty()) return {.frame = "camera", .poses = {}};
+  return parse_tum(text, file().string() + ", run " + run.key, "camera").trajectory;
+}
+
+std::vector<TimingSample> Store::timing_samples(const StoredRun& run) const {
+  const std::string text = attachment(run, "timings");
+  if (text.empty()) return {};
+  return parse_timings(text, file().string() + ", run " + run.key);
+}
+
+}  // namespace stillpoint
