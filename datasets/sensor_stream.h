@@ -32,6 +32,7 @@ struct SequenceInfo {
   std::vector<ImuSample> imu;          ///< strictly rising; empty without an IMU
   GroundTruth ground_truth;
   std::vector<DetectionSet> detections;  ///< recorded boxes in order of time; empty when there are none
+  std::vector<DetectionSet> true_boxes;  ///< of everything that moves, in order of time; rendered sequences
   std::vector<std::string> notes;        ///< what the reader assumed, a sentence each, for the user to see
 };
 

@@ -112,6 +112,10 @@ class FolderStream : public SensorStream {
   SequenceContent content_;
 };
 
+std::vector<DetectionSet> boxes_if_there(const std::filesystem::path& file, FaultLog& faults) {
+  return std::filesystem::exists(file) ? read_detections(file, faults) : std::vector<DetectionSet>{};
+}
+
 }  // namespace
 
 SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOptions& options,
@@ -120,9 +124,8 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   const SequenceFormat& format = find_format(whole, options.format);
   SequenceContent content = format.read(whole, faults);
   content.info.format = format.name;
-  if (std::filesystem::exists(whole / "detections.txt")) {
-    content.info.detections = read_detections(whole / "detections.txt", faults);
-  }
+  content.info.detections = boxes_if_there(whole / "detections.txt", faults);
+  content.info.true_boxes = boxes_if_there(whole / "true_boxes.txt", faults);
   override_rig(content, options.rig_file);
   check_rig(content);
   check_overlap(content.info, faults);

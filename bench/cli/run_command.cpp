@@ -35,6 +35,7 @@ struct RunArguments {
   std::string format;
   std::string rig;
   int max_frames = 0;
+  double speed = 1.0;
 };
 
 /// One run of possibly several.
@@ -53,6 +54,7 @@ std::vector<PlannedRun> plan_runs(const RunArguments& arguments) {
     runs.push_back({.variant = variant.empty() ? arguments.base : variant,
                     .spec = {.config = load_config({arguments.base, variant, arguments.settings}),
                              .mode = arguments.mode,
+                             .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames)},
                     .folder = {}});
   }
@@ -177,7 +179,8 @@ Command run_command() {
                   {"--variant", "Overlays joined by +; each further --variant is a further run",
                    &arguments->variants},
                   {"--set", "Change one key: key=value, may be repeated", &arguments->settings},
-                  {"--mode", "How the stages are run: sequential", &arguments->mode},
+                  {"--mode", "How the stages are run: sequential, pipelined or realtime", &arguments->mode},
+                  {"--speed", "Of the clock in realtime mode; 1 = as recorded", &arguments->speed},
                   {"--out", "Folder for the results [build/runs/SEQ/VARIANT]", &arguments->out},
                   {"--format", "Layout of the folder: tum, openloris, euroc, 7scenes, folder [recognised]",
                    &arguments->format},

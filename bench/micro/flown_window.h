@@ -2,8 +2,8 @@
 /// A full inertial window as the estimator has it in flight, for benchmarks of the backend.
 #pragma once
 
-#include "core/backend/estimator.h"
 #include "tests/support/simulated_flight.h"
+#include "tests/support/take_in.h"
 
 namespace stillpoint {
 
@@ -25,7 +25,7 @@ inline Window flown_window() {
   const SimulatedFlight flight{.pixel_noise_px = 0.3, .depth_noise = 0.003, .noisy_imu = true};
   Estimator estimator(flown_config(), ImuConfig{}, SimulatedFlight::rig(), 1);
   for (const ImuSample& sample : flight.imu(3.0)) estimator.add_imu(sample);
-  for (int i = 0; i < 20; ++i) static_cast<void>(estimator.process(flight.picture(i, 0.1 + 0.1 * i)));
+  for (int i = 0; i < 20; ++i) static_cast<void>(take_in(estimator, flight.picture(i, 0.1 + 0.1 * i)));
   Window window = estimator.window();
   window.frames.back().state.T_w_b.p += Eigen::Vector3d(0.01, -0.005, 0.01);
   return window;

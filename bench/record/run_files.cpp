@@ -7,6 +7,7 @@
 #include "bench/record/output_folder.h"
 #include "bench/record/score_text.h"
 #include "eval/io/trajectory_file.h"
+#include "eval/metrics/statistics.h"
 
 namespace stillpoint {
 namespace {
@@ -37,6 +38,23 @@ Json timing_json(const TimingSamples& samples, bool threads) {
   return table;
 }
 
+Json detector_json(const RunSummary& summary) {
+  const DetectorCounters& counters = summary.detector_counters;
+  return {{"description", summary.detector}, {"looked", counters.looked},   {"unlooked", counters.unlooked},
+          {"boxes", counters.boxes},         {"clipped", counters.clipped}, {"unusable", counters.unusable}};
+}
+
+Json realtime_json(const RunSummary& summary) {
+  if (!summary.realtime) return nullptr;
+  const RealtimeReport& report = *summary.realtime;
+  const auto latency = [&](double share) { return percentile(report.latencies_ms, share).value_or(0.0); };
+  return {{"deadline_ms", report.deadline_ms},
+          {"dropped_frames", report.dropped},
+          {"late_detections", report.late_detections},
+          {"deadline_misses", report.deadline_misses()},
+          {"latency_ms", {{"p50", latency(0.5)}, {"p95", latency(0.95)}, {"p99", latency(0.99)}}}};
+}
+
 }  // namespace
 
 std::string result_json(const RunResult& result) {
@@ -56,6 +74,9 @@ std::string result_json(const RunResult& result) {
   json["skipped_frames"] = skipped_json(summary.skipped);
   json["imu_health"] = {{"rejected_samples", summary.imu_health.rejected_samples},
                         {"gaps", summary.imu_health.gaps}};
+  json["detector"] = detector_json(summary);
+  json["dynamic_features"] = result.run.dynamic_features;
+  json["realtime"] = realtime_json(summary);
   json["notes"] = result.notes;
   json["wall_s"] = result.run.wall_s;
   json["timings"] = {{"unit", "ms"},

@@ -22,6 +22,7 @@ SensorInput input_of(const SequenceInfo& info, std::size_t frames, FramePrefetch
           .frame_times = std::span(info.frame_times).first(frames),
           .imu = info.imu,
           .detections = info.detections,
+          .true_boxes = info.true_boxes,
           .load_frame = [&prefetcher](std::size_t index) { return prefetcher.take(index); }};
 }
 
@@ -32,6 +33,7 @@ void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& 
     const auto module = static_cast<Module>(i);
     if (module != Module::kImageDecoding) run.timings.add(module, update.timings[module]);
   }
+  run.dynamic_features += update.counters.dynamic_features;
   if (update.status != OdometryStatus::kTracking) return;
   const Timestamp t = info.frame_times[static_cast<std::size_t>(update.frame_id)];
   run.trajectory.poses.push_back({t, update.T_w_c});
@@ -43,12 +45,17 @@ void record_decoding(OdometryRun& run, const FramePrefetcher& prefetcher) {
   }
 }
 
+RunSummary run_in_mode(const RunSpec& spec, const SensorInput& input, const RunControl& control) {
+  if (spec.mode == "sequential") return run_sequential(input, spec.config, control);
+  if (spec.mode == "pipelined") return run_pipelined(input, spec.config, control);
+  if (spec.mode == "realtime") return run_realtime(input, spec.config, control, spec.speed);
+  throw InputError("--mode",
+                   "\"" + spec.mode + "\" is not known; use \"sequential\", \"pipelined\" or \"realtime\"");
+}
+
 }  // namespace
 
 OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const RunControl& control) {
-  if (spec.mode != "sequential") {
-    throw InputError("--mode", "\"" + spec.mode + "\" is not known; use \"sequential\"");
-  }
   const SequenceInfo& info = stream.info();
   OdometryRun run;
   run.trajectory.frame = "camera";
@@ -60,8 +67,9 @@ OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const 
     if (control.on_update) control.on_update(update);
   };
   const auto start = std::chrono::steady_clock::now();
-  run.summary = run_sequential(input_of(info, run.frames_planned, prefetcher), spec.config,
-                               {.on_update = on_update, .stop_requested = control.stop_requested});
+  run.summary = run_in_mode(
+      spec, input_of(info, run.frames_planned, prefetcher),
+      {.on_update = on_update, .on_picture = control.on_picture, .stop_requested = control.stop_requested});
   run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record_decoding(run, prefetcher);
   return run;

@@ -16,8 +16,9 @@ namespace stillpoint {
 /// What to run.
 struct RunSpec {
   OdometryConfig config;
-  std::string mode = "sequential";
-  std::size_t max_frames = 0;  ///< pictures from the start; 0 = all
+  std::string mode = "sequential";  ///< or "pipelined" or "realtime"
+  double speed = 1.0;               ///< of the clock of "realtime"
+  std::size_t max_frames = 0;       ///< pictures from the start; 0 = all
 };
 
 /// What came of it.
@@ -25,6 +26,7 @@ struct OdometryRun {
   Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose for each picture that was tracked
   RunSummary summary;
   TimingSamples timings;
+  std::int64_t dynamic_features = 0;  ///< verdicts of a mover, summed over the pictures
   std::size_t frames_planned = 0;
   double wall_s = 0.0;  ///< from the first picture asked for to the last update
 };

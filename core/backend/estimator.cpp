@@ -9,8 +9,6 @@
 #include "core/backend/landmark_tracks.h"
 #include "core/backend/marginalization.h"
 #include "core/base/error.h"
-#include "core/geometry/so3.h"
-#include "core/imu/propagation.h"
 
 namespace stillpoint {
 namespace {
@@ -68,35 +66,19 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
   window_.time_offset_s = rig.time_offset_s;
 }
 
-MotionPrior Estimator::motion_prior(Timestamp from, Timestamp to) {
-  if (window_.frames.empty() || !uses_imu()) return {};
-  if (window_.inertial) return full_prior(extrapolate(from).T_w_b, extrapolate(to).T_w_b, window_.T_b_c);
-  const double offset = window_.time_offset_s;
-  return rotation_prior(imu_.samples_up_to(after(from, offset), after(to, offset)), newest_.gyro_bias,
-                        window_.T_b_c);
-}
-
-/// State at an image stamp: inertial propagation, or constant velocity.
-NavState Estimator::extrapolate(Timestamp t) {
-  if (t == newest_.t) return newest_;
-  NavState state = newest_;
-  const double offset = window_.time_offset_s;
-  if (window_.inertial) {
-    NavState start = newest_;
-    start.t = after(newest_.t, offset);
-    const std::vector<NavState> path =
-        propagate(start, imu_.samples_up_to(start.t, after(t, offset)), window_.gravity_w);
-    if (!path.empty()) state = path.back();
-  } else if (previous_.t < newest_.t) {
-    const double share = seconds_between(newest_.t, t) / seconds_between(previous_.t, newest_.t);
-    const Pose step = previous_.T_w_b.inverse() * newest_.T_w_b;
-    state.T_w_b = newest_.T_w_b * Pose{exp_so3(share * log_so3(step.q)), share * step.p};
-  }
-  state.t = t;
-  return state;
+MotionKnowledge Estimator::knowledge() const {
+  return {.newest = newest_,
+          .previous = previous_,
+          .T_b_c = window_.T_b_c,
+          .gravity_w = window_.gravity_w,
+          .time_offset_s = window_.time_offset_s,
+          .begun = !window_.frames.empty(),
+          .uses_imu = uses_imu(),
+          .inertial = window_.inertial};
 }
 
 void Estimator::push_frame(const TrackedFrame& frame) {
+  begun_ = true;
   WindowFrame next;
   next.id = frame.id;
   next.time_offset_s = window_.time_offset_s;
@@ -109,7 +91,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
     return;
   }
   const WindowFrame& last = window_.frames.back();
-  next.state = extrapolate(frame.t);
+  next.state = extrapolate(knowledge(), imu_, frame.t);
   if (uses_imu()) {
     const std::vector<ImuSample> samples =
         imu_.samples_up_to(after(last.state.t, last.time_offset_s), after(frame.t, next.time_offset_s));
@@ -194,57 +176,78 @@ void Estimator::slide(bool keyframe) {
 }
 
 OdometryStatus Estimator::status() const {
+  if (window_.frames.empty()) return begun_ ? OdometryStatus::kLost : OdometryStatus::kInitialising;
   if (uses_imu() && !window_.inertial) return OdometryStatus::kInitialising;
   return located_ ? OdometryStatus::kTracking : OdometryStatus::kLost;
 }
 
-OdometryUpdate Estimator::process(const TrackedFrame& frame) {
-  OdometryUpdate update{.frame_id = frame.id};
-  const ScopedTimer thread_timer(update.timings, Module::kOptimizationThread);
+void Estimator::add(const TrackedFrame& frame, OdometryUpdate& update) {
+  update.frame_id = frame.id;
+  update.counters.tracked_features = static_cast<int>(frame.features.size());
   push_frame(frame);
-  {
-    const ScopedTimer timer(update.timings, Module::kStateOptimization);
-    add_observations(frame, rig_, backend_.depth, window_);
-    const bool keyframe = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
-    located_ = locate_newest();
-    try_to_become_inertial();
-    refresh_preintegrations();
-    initialize_depths(backend_, rig_.camera.focal_px(), window_);
-    const NavState before = newest_;
-    SolveReport report;
-    {
-      const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
-      report = solve_window(window_, backend_, rig_.camera.focal_px());
-    }
-    update.counters = {.tracked_features = static_cast<int>(frame.features.size()),
-                       .window_landmarks = report.landmarks,
-                       .depth_landmarks = report.depth_landmarks,
-                       .solver_iterations = report.iterations,
-                       .keyframe = keyframe};
-    if (has_failed(before)) {
-      update.counters.reset = true;
-      restart();
-    } else {
-      previous_ = newest_;
-      newest_ = window_.frames.back().state;
-      const ScopedTimer slide_timer(update.timings, Module::kMarginalization);
-      slide(keyframe);
-    }
-  }
-  update.status = window_.frames.empty() ? OdometryStatus::kLost : status();
-  update.state = newest_;
-  update.T_w_c = newest_.T_w_b * window_.T_b_c;
-  update.time_offset_s = window_.time_offset_s;
-  return update;
+  const ScopedTimer timer(update.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
+  add_observations(frame, rig_, backend_.depth, window_);
 }
 
-OdometryUpdate Estimator::predict(std::int64_t frame_id, Timestamp t) {
-  OdometryUpdate update{.frame_id = frame_id};
-  update.state = extrapolate(t);
-  update.T_w_c = update.state.T_w_b * window_.T_b_c;
-  update.status = window_.frames.empty() ? OdometryStatus::kInitialising : status();
+void Estimator::mark_dynamic(std::span<const FeatureVerdict> verdicts) {
+  auto landmark = window_.landmarks.begin();
+  for (const FeatureVerdict& verdict : verdicts) {
+    while (landmark != window_.landmarks.end() && landmark->id < verdict.id) ++landmark;
+    if (landmark == window_.landmarks.end()) return;
+    if (landmark->id != verdict.id) continue;
+    const bool cleared = landmark->dynamic && verdict.verdict == Verdict::kStable;
+    landmark->dynamic = verdict.verdict != Verdict::kStable;
+    if (!cleared) continue;
+    landmark->inverse_depth = 0.0;  // what was known is of a place that the point has left
+    landmark->source = DepthSource::kNone;
+  }
+}
+
+bool Estimator::refine(OdometryUpdate& update) {
+  const ScopedTimer timer(update.timings, Module::kStateOptimization);
+  keyframe_ = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
+  located_ = locate_newest();
+  try_to_become_inertial();
+  refresh_preintegrations();
+  initialize_depths(backend_, rig_.camera.focal_px(), window_);
+  const NavState before = newest_;
+  {
+    const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
+    const SolveReport report = solve_window(window_, backend_, rig_.camera.focal_px());
+    update.counters.window_landmarks = report.landmarks;
+    update.counters.depth_landmarks = report.depth_landmarks;
+    update.counters.solver_iterations = report.iterations;
+    update.counters.keyframe = keyframe_;
+  }
+  if (has_failed(before)) {
+    update.counters.reset = true;
+    restart();
+    return false;
+  }
+  previous_ = newest_;
+  newest_ = window_.frames.back().state;
+  return true;
+}
+
+void Estimator::finish(OdometryUpdate& update) {
+  if (!window_.frames.empty()) {
+    const ScopedTimer timer(update.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
+    const ScopedTimer slide_timer(update.timings, Module::kMarginalization);
+    slide(keyframe_);
+  }
+  report(newest_, update);
+}
+
+void Estimator::predict(std::int64_t frame_id, Timestamp t, OdometryUpdate& update) {
+  update.frame_id = frame_id;
+  report(extrapolate(knowledge(), imu_, t), update);
+}
+
+void Estimator::report(const NavState& state, OdometryUpdate& update) const {
+  update.state = state;
+  update.T_w_c = state.T_w_b * window_.T_b_c;
+  update.status = status();
   update.time_offset_s = window_.time_offset_s;
-  return update;
 }
 
 }  // namespace stillpoint

@@ -3,13 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/backend/backend_config.h"
+#include "core/backend/state_prediction.h"
 #include "core/backend/window.h"
 #include "core/backend/window_solver.h"
 #include "core/imu/imu_buffer.h"
 #include "core/imu/imu_config.h"
-#include "core/types/motion_prior.h"
+#include "core/types/feature_verdict.h"
 #include "core/types/odometry_update.h"
 #include "core/types/rig.h"
 #include "core/types/tracked_frame.h"
@@ -26,16 +28,29 @@ class Estimator {
   /// Samples in order of time; those up to a picture's exposure come before the picture.
   void add_imu(const ImuSample& sample) { imu_.add(sample); }
 
-  /// How the camera moved between two pictures, for the tracker; the newest state is not after `from`.
-  /// Inertial data only: a tracker that starts where constant velocity puts weak features finds them there,
-  /// and the estimate follows itself.
-  [[nodiscard]] MotionPrior motion_prior(Timestamp from, Timestamp to);
+  /// Takes a picture into the window, where it was most likely taken.
+  ///
+  /// A picture is `add`ed, its movers are marked, it is `refine`d, what shows itself as a mover by the
+  /// refined poses is marked, and `finish` closes it. Each step adds its part to the picture's update.
+  /// @param frame features by rising id
+  void add(const TrackedFrame& frame, OdometryUpdate& update);
 
-  /// Takes a picture into the window and refines it.
-  [[nodiscard]] OdometryUpdate process(const TrackedFrame& frame);
+  /// Keeps what moves out of all that follows, and takes what was cleared back in.
+  /// @param verdicts by rising id; landmarks without one stay as they are
+  void mark_dynamic(std::span<const FeatureVerdict> verdicts);
 
-  /// The pose at a picture that does not enter the window, propagated from the newest state.
-  [[nodiscard]] OdometryUpdate predict(std::int64_t frame_id, Timestamp t);
+  /// Finds the picture's pose and refines the window.
+  /// @return false if the estimate is lost: the window is empty, the next picture begins anew
+  [[nodiscard]] bool refine(OdometryUpdate& update);
+
+  /// Makes room for the next picture and reports the state.
+  void finish(OdometryUpdate& update);
+
+  /// Reports the pose at a picture that does not enter the window, propagated from the newest state.
+  void predict(std::int64_t frame_id, Timestamp t, OdometryUpdate& update);
+
+  /// What the tracker needs to predict the next picture.
+  [[nodiscard]] MotionKnowledge knowledge() const;
 
   [[nodiscard]] const ImuHealth& imu_health() const { return imu_.health(); }
   [[nodiscard]] const Window& window() const { return window_; }
@@ -43,7 +58,6 @@ class Estimator {
  private:
   [[nodiscard]] bool uses_imu() const { return imu_config_.enabled; }
   [[nodiscard]] bool is_full() const { return window_.newest() == backend_.window_size; }
-  [[nodiscard]] NavState extrapolate(Timestamp t);
   void push_frame(const TrackedFrame& frame);
   [[nodiscard]] bool locate_newest();
   void refresh_preintegrations();
@@ -52,6 +66,7 @@ class Estimator {
   void restart();
   void slide(bool keyframe);
   [[nodiscard]] OdometryStatus status() const;
+  void report(const NavState& state, OdometryUpdate& update) const;
 
   BackendConfig backend_;
   ImuConfig imu_config_;
@@ -62,6 +77,8 @@ class Estimator {
   NavState newest_;    ///< last state handed out
   NavState previous_;  ///< the one before: constant velocity where there is no IMU
   bool located_ = true;
+  bool keyframe_ = true;  ///< whether the picture before the newest stays
+  bool begun_ = false;    ///< a picture has come
 };
 
 }  // namespace stillpoint

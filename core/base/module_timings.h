@@ -39,10 +39,10 @@ struct ModuleTime {
 /// What one frame spent, module by module; carried in the messages, so no locks and no globals.
 class ModuleTimings {
  public:
-  void add(Module module, std::chrono::nanoseconds elapsed) {
+  void add(Module module, std::chrono::nanoseconds elapsed, int calls = 1) {
     ModuleTime& entry = times_[static_cast<std::size_t>(module)];
     entry.ns += elapsed.count();
-    ++entry.calls;
+    entry.calls += calls;
   }
   void add(const ModuleTimings& other) {
     for (std::size_t i = 0; i < kModuleCount; ++i) {
@@ -61,15 +61,21 @@ class ModuleTimings {
 /// Adds the time from its construction to its destruction to one module.
 class ScopedTimer {
  public:
-  ScopedTimer(ModuleTimings& timings, Module module)
-      : timings_(timings), module_(module), start_(std::chrono::steady_clock::now()) {}
-  ~ScopedTimer() { timings_.add(module_, std::chrono::steady_clock::now() - start_); }
+  /// A module that is left and entered again for one picture is one call: all but one of its spans are parts.
+  enum class Kind { kCall, kPart };
+
+  ScopedTimer(ModuleTimings& timings, Module module, Kind kind = Kind::kCall)
+      : timings_(timings), module_(module), kind_(kind), start_(std::chrono::steady_clock::now()) {}
+  ~ScopedTimer() {
+    timings_.add(module_, std::chrono::steady_clock::now() - start_, kind_ == Kind::kCall ? 1 : 0);
+  }
   ScopedTimer(const ScopedTimer&) = delete;
   ScopedTimer& operator=(const ScopedTimer&) = delete;
 
  private:
   ModuleTimings& timings_;
   Module module_;
+  Kind kind_;
   std::chrono::steady_clock::time_point start_;
 };
 

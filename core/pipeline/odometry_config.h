@@ -10,6 +10,7 @@
 #include "core/dynamic/dynamic_config.h"
 #include "core/frontend/frontend_config.h"
 #include "core/imu/imu_config.h"
+#include "core/pipeline/pipeline_config.h"
 
 namespace stillpoint {
 
@@ -20,6 +21,7 @@ struct OdometryConfig {
   DetectorConfig detector;
   DynamicConfig dynamic;
   BackendConfig backend;
+  PipelineConfig pipeline;
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, OdometryConfig>
@@ -30,6 +32,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("detector", config.detector);
   field("dynamic", config.dynamic);
   field("backend", config.backend);
+  field("pipeline", config.pipeline);
 }
 
 }  // namespace stillpoint

@@ -1,50 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/runner.h"
 
-#include "core/base/error.h"
-#include "core/pipeline/odometry.h"
+#include <algorithm>
+#include <deque>
+
+#include "core/pipeline/runner_parts.h"
 
 namespace stillpoint {
-namespace {
 
-/// Samples up to this long after an exposure are handed over before it: the cut at the exposure is
-/// interpolated, and the time offset may grow.
-constexpr double kImuLead_s = 0.02;
-
-/// Hands the odometry the samples that a picture needs.
-class ImuFeed {
- public:
-  ImuFeed(std::span<const ImuSample> samples, double time_offset_s)
-      : samples_(samples), offset_s_(time_offset_s) {}
-
-  void up_to(Timestamp picture, Odometry& odometry) {
-    const Timestamp end = after(picture, offset_s_ + kImuLead_s);
-    for (; next_ < samples_.size() && samples_[next_].t <= end; ++next_) odometry.add_imu(samples_[next_]);
-  }
-
- private:
-  std::span<const ImuSample> samples_;
-  double offset_s_;
-  std::size_t next_ = 0;
-};
-
-/// The picture, or nothing and the reason in `summary`.
-std::optional<Frame> load(const SensorInput& input, std::size_t index, ModuleTimings& timings,
-                          RunSummary& summary) {
-  const ScopedTimer timer(timings, Module::kImageDecoding);
-  try {
-    return input.load_frame(index);
-  } catch (const InputError& error) {
-    summary.skipped.push_back({index, error.what()});
-    return std::nullopt;
-  }
+int RealtimeReport::deadline_misses() const {
+  return static_cast<int>(
+      std::ranges::count_if(latencies_ms, [this](double latency) { return latency > deadline_ms; }));
 }
 
-}  // namespace
-
 RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config, const RunControl& control) {
-  Odometry odometry(config, input.rig);
-  ImuFeed imu(input.imu, input.rig.time_offset_s);
+  Stages stages = assemble(input, config);
+  ImuFeed imu_of_tracker(input.imu), imu_of_estimator(input.imu);
+  std::deque<MotionKnowledge> feedback(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1,
+                                       stages.optimization.knowledge());
   RunSummary summary;
   for (std::size_t i = 0; i < input.frame_times.size(); ++i) {
     if (control.stop_requested && control.stop_requested()) {
@@ -52,20 +25,21 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
       break;
     }
     ++summary.frames;
-    ModuleTimings decoding;
-    const std::optional<Frame> frame = load(input, i, decoding, summary);
-    if (!frame) continue;
-    imu.up_to(frame->t, odometry);
-    OdometryUpdate update = odometry.process(*frame);
-    update.timings.add(decoding);
-    summary.resets += update.counters.reset;
-    control.on_update(update);
+    std::optional<PictureOnWay> picture = load_picture(input, i, summary.skipped);
+    if (!picture) continue;
+    const Timestamp imu_end = after(picture->frame.t, input.rig.time_offset_s + kImuLead_s);
+    imu_of_tracker.up_to(imu_end, stages.tracking);
+    imu_of_estimator.up_to(imu_end, stages.optimization);
+
+    picture->full = stages.rate.admits(picture->frame.t);
+    picture->tracked = stages.tracking.process(picture->frame, picture->full, feedback.front());
+    feedback.pop_front();
+    std::optional<DetectionOnWay> detections;
+    if (picture->full) detections = detect_objects(*stages.detector, picture->frame);
+    close_picture(*picture, detections, stages.optimization, control, summary);
+    feedback.push_back(stages.optimization.knowledge());
   }
-  summary.imu_health = odometry.imu_health();
-  if (summary.frames > 0 && summary.skipped.size() == summary.frames) {
-    throw InputError("no picture of the sequence could be read; the first: " +
-                     summary.skipped.front().reason);
-  }
+  close_run(stages, summary);
   return summary;
 }
 

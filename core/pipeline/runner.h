@@ -3,31 +3,29 @@
 #pragma once
 
 #include <functional>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/imu/imu_buffer.h"
-#include "core/pipeline/odometry_config.h"
-#include "core/types/detection.h"
-#include "core/types/frame.h"
+#include "core/pipeline/assembly.h"
 #include "core/types/odometry_update.h"
-#include "core/types/rig.h"
 
 namespace stillpoint {
 
-/// A sequence as the runners see it; the spans outlive the run.
-struct SensorInput {
-  Rig rig;
-  std::span<const Timestamp> frame_times;              ///< rising
-  std::span<const ImuSample> imu;                      ///< rising; may be empty
-  std::span<const DetectionSet> detections;            ///< recorded boxes; may be empty
-  std::function<Frame(std::size_t index)> load_frame;  ///< throws InputError for a picture that cannot be had
+/// Everything about one picture, for dumps and videos; valid during the call.
+struct PictureReport {
+  const Frame& frame;
+  const TrackedFrame& tracked;
+  const DynamicReport& dynamic;  ///< empty at a picture that does not enter the window
+  const OdometryUpdate& update;
 };
 
+/// Both callbacks are called on the thread that called the runner, in order of the pictures; any may be
+/// empty.
 struct RunControl {
-  std::function<void(const OdometryUpdate&)> on_update;  ///< called once per picture, in order
-  std::function<bool()> stop_requested;                  ///< asked before each picture; may be empty
+  std::function<void(const OdometryUpdate&)> on_update;
+  std::function<void(const PictureReport&)> on_picture;
+  std::function<bool()> stop_requested;  ///< asked before each picture, from any thread
 };
 
 /// A picture that was skipped, and why.
@@ -36,18 +34,42 @@ struct SkippedFrame {
   std::string reason;
 };
 
+/// How a run kept up with the clock.
+struct RealtimeReport {
+  double deadline_ms = 0.0;          ///< interval of the pictures
+  int dropped = 0;                   ///< pictures that made room for newer ones
+  int late_detections = 0;           ///< pictures in the window whose boxes did not come in time
+  std::vector<double> latencies_ms;  ///< from exposure to pose, one for each picture that got one
+  [[nodiscard]] int deadline_misses() const;
+};
+
 struct RunSummary {
   std::size_t frames = 0;             ///< pictures asked for
   std::vector<SkippedFrame> skipped;  ///< of those, the ones that could not be read
   int resets = 0;                     ///< failures detected by the estimator
   ImuHealth imu_health;
   bool interrupted = false;  ///< stop was requested before the end
+  std::string detector;      ///< what really looked for objects
+  DetectorCounters detector_counters;
+  std::optional<RealtimeReport> realtime;  ///< of `run_realtime`
 };
 
 /// One thread, picture by picture; the same input and config give the same bits.
-/// @throws InputError if the config asks for what the input lacks (e.g. an IMU), or more pictures fail than
-/// the config allows
+/// @throws InputError if the config asks for what the input lacks (e.g. an IMU), or no picture can be read
 [[nodiscard]] RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config,
                                         const RunControl& control);
+
+/// A thread each for tracking, detection and optimisation. The feedback to the tracker has the config's lag,
+/// so that the result equals that of `run_sequential` to the bit.
+/// @throws InputError as `run_sequential`
+[[nodiscard]] RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config,
+                                       const RunControl& control);
+
+/// The same threads, and pictures that come when their stamps say: what is not ready in time is dropped or
+/// late, and counted.
+/// @param speed of the clock; 1 = as recorded, > 0
+/// @throws InputError as `run_sequential`
+[[nodiscard]] RunSummary run_realtime(const SensorInput& input, const OdometryConfig& config,
+                                      const RunControl& control, double speed);
 
 }  // namespace stillpoint

@@ -144,8 +144,8 @@ void write_boxes(const SynthRequest& request, const Stage& stage, const std::vec
     truth.push_back({times[i], DetectionState::kPresent, true_detections(seen[i], stage.actors)});
     detections.push_back({times[i], DetectionState::kPresent, reports[i]});
   }
-  writer.write_boxes("true_boxes.txt", "what is seen of each thing that moves", truth);
-  writer.write_boxes("detections.txt", "a simulated detector of people", detections);
+  writer.write_boxes("true_boxes.txt", truth);
+  writer.write_boxes("detections.txt", detections);
 }
 
 }  // namespace

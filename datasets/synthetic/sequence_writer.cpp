@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "datasets/detections_file.h"
 #include "datasets/image_io.h"
 #include "datasets/synthetic/request_text.h"
 
@@ -156,17 +157,8 @@ void SequenceWriter::write_request(const SynthRequest& request) const {
   write_text(folder_ / "request.toml", request_text(request));
 }
 
-void SequenceWriter::write_boxes(const std::string& file, const std::string& comment,
-                                 const std::vector<DetectionSet>& sets) const {
-  std::string text = "# " + comment + "\n# timestamp class score x_min y_min x_max y_max\n";
-  for (const DetectionSet& set : sets) {
-    for (const Detection& found : set.detections) {
-      text +=
-          fmt::format("{} {} {:.3f} {:.2f} {:.2f} {:.2f} {:.2f}\n", picture_stamp(set.t), found.class_name,
-                      found.score, found.box.x_min, found.box.y_min, found.box.x_max, found.box.y_max);
-    }
-  }
-  write_text(folder_ / file, text);
+void SequenceWriter::write_boxes(const std::string& file, const std::vector<DetectionSet>& sets) const {
+  write_text(folder_ / file, detections_text(sets));
 }
 
 }  // namespace stillpoint

@@ -34,9 +34,8 @@ class SequenceWriter {
   void write_ground_truth(const Trajectory& camera_path) const;
   /// What was asked for, as `request.toml`.
   void write_request(const SynthRequest& request) const;
-  /// One line per box; see the reader's `detections.txt`.
-  void write_boxes(const std::string& file, const std::string& comment,
-                   const std::vector<DetectionSet>& sets) const;
+  /// As `read_detections` reads it.
+  void write_boxes(const std::string& file, const std::vector<DetectionSet>& sets) const;
 
  private:
   std::filesystem::path folder_;

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/simulated_flight.h"
+#include "tests/support/take_in.h"
 
 namespace stillpoint {
 namespace {
@@ -35,7 +36,7 @@ Flown fly(const SimulatedFlight& flight, const BackendConfig& backend, const Imu
   for (int i = 0; i < static_cast<int>(seconds * kRate_hz); ++i) {
     const double t = 0.1 + i / kRate_hz;
     for (; next < imu.size() && to_seconds(imu[next].t) < t + 0.05; ++next) estimator.add_imu(imu[next]);
-    const OdometryUpdate update = estimator.process(flight.picture(i, t));
+    const OdometryUpdate update = take_in(estimator, flight.picture(i, t));
     if (update.status != OdometryStatus::kTracking) continue;
     const Pose truth = SimulatedFlight::state(t + flight.time_offset_s).T_w_b;
     if (!T_first) {

@@ -39,6 +39,19 @@ TEST(ConfigOverlays, WithoutDepthWeightHoldsMeasuredDepthFixedAsTheParentDoes) {
   EXPECT_EQ(changes("dynamic_vins", "wo_depth_weight"), Entries{});
 }
 
+/// The paper's ablations and ours change the same key of both systems.
+void expect_one_change(const std::string& overlay, const ConfigEntry& change) {
+  EXPECT_EQ(changes("stillpoint", overlay), Entries{change});
+  EXPECT_EQ(changes("dynamic_vins", overlay), Entries{change});
+}
+
+TEST(ConfigOverlays, AblationsOfTheRecognitionChangeOneKeyEach) {
+  expect_one_change("wo_object_detection", {"detector.kind", "\"none\""});
+  expect_one_change("wo_seg_like_mask", {"dynamic.mask", "\"whole_box\""});
+  expect_one_change("wo_mcc", {"dynamic.moving_consistency", "false"});
+  expect_one_change("wo_missed_detection", {"dynamic.missed_detection", "false"});
+}
+
 TEST(ConfigOverlays, VoUsesNoImu) {
   EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"}}));
 }

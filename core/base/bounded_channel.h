@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A queue of limited length between two threads.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace stillpoint {
+
+/// Any number of threads may push and pop; what is pushed comes out once, in order.
+template <class T>
+class BoundedChannel {
+ public:
+  /// @param capacity at least 1
+  explicit BoundedChannel(std::size_t capacity) : capacity_(capacity) {}
+
+  /// Waits for room. @return false if the channel is closed: the value is gone
+  bool push(T value) {
+    std::unique_lock lock(mutex_);
+    has_room_.wait(lock, [this] { return closed_ || items_.size() < capacity_; });
+    if (closed_) return false;
+    items_.push_back(std::move(value));
+    has_items_.notify_one();
+    return true;
+  }
+
+  /// Never waits: the oldest item makes room. @return the item that was dropped, if there was one
+  std::optional<T> push_dropping_oldest(T value) {
+    const std::scoped_lock lock(mutex_);
+    std::optional<T> dropped;
+    if (closed_) return dropped;
+    if (items_.size() == capacity_) {
+      dropped = std::move(items_.front());
+      items_.pop_front();
+    }
+    items_.push_back(std::move(value));
+    has_items_.notify_one();
+    return dropped;
+  }
+
+  /// Waits for an item. @return nothing once the channel is closed and empty
+  std::optional<T> pop() {
+    std::unique_lock lock(mutex_);
+    has_items_.wait(lock, [this] { return closed_ || !items_.empty(); });
+    return take_front();
+  }
+
+  /// Waits no longer than `limit`. @return nothing if no item came
+  std::optional<T> pop_for(std::chrono::nanoseconds limit) {
+    std::unique_lock lock(mutex_);
+    has_items_.wait_for(lock, limit, [this] { return closed_ || !items_.empty(); });
+    return take_front();
+  }
+
+  /// Nothing can be pushed any more; what is inside can still be popped. May be called again.
+  void close() {
+    const std::scoped_lock lock(mutex_);
+    closed_ = true;
+    has_room_.notify_all();
+    has_items_.notify_all();
+  }
+
+ private:
+  std::optional<T> take_front() {
+    if (items_.empty()) return std::nullopt;
+    std::optional<T> item = std::move(items_.front());
+    items_.pop_front();
+    has_room_.notify_one();
+    return item;
+  }
+
+  std::size_t capacity_;
+  std::mutex mutex_;
+  std::condition_variable has_room_;
+  std::condition_variable has_items_;
+  std::deque<T> items_;  ///< guarded by mutex_
+  bool closed_ = false;  ///< guarded by mutex_
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/assembly.h"
+
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+/// Nobody looks for objects that nobody masks.
+std::unique_ptr<ObjectDetector> detector_for(const SensorInput& input, const OdometryConfig& config) {
+  DetectorConfig detector = config.detector;
+  if (config.dynamic.mask == DynamicMask::kOff) detector.kind = DetectorKind::kNone;
+  const bool simulated = detector.kind == DetectorKind::kSimulated;
+  if (simulated && input.true_boxes.empty()) {
+    throw InputError(
+        "detector.kind",
+        "\"simulated\" needs true boxes, which only rendered sequences have (true_boxes.txt); use "
+        "\"recorded\", \"network\" or \"none\"");
+  }
+  return make_object_detector(detector, {.boxes = simulated ? input.true_boxes : input.detections,
+                                         .dynamic_classes = config.dynamic.classes,
+                                         .seed = config.seed});
+}
+
+}  // namespace
+
+Stages assemble(const SensorInput& input, const OdometryConfig& config) {
+  return {.rate = WindowRate(config.backend.rate_hz),
+          .tracking = TrackingStage(config, input.rig),
+          .detector = detector_for(input, config),
+          .optimization = OptimizationStage(config, input.rig)};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/optimization_stage.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/pipeline/consistency_view.h"
+
+namespace stillpoint {
+namespace {
+
+using Kind = ScopedTimer::Kind;
+
+std::vector<Box> boxes_of(const std::vector<TrackedBox>& tracked) {
+  std::vector<Box> boxes;
+  boxes.reserve(tracked.size());
+  for (const TrackedBox& object : tracked) boxes.push_back(object.box);
+  return boxes;
+}
+
+int count_dynamic(const std::vector<FeatureVerdict>& verdicts) {
+  return static_cast<int>(std::ranges::count_if(
+      verdicts, [](const FeatureVerdict& verdict) { return verdict.verdict != Verdict::kStable; }));
+}
+
+}  // namespace
+
+OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& rig)
+    : config_(config.dynamic),
+      camera_(rig.camera),
+      estimator_(config.backend, config.imu, rig, config.seed),
+      objects_(config.dynamic),
+      recognition_(config.dynamic) {}
+
+OdometryUpdate OptimizationStage::process(const TrackedFrame& frame, const DetectionSet& detections) {
+  OdometryUpdate update;
+  {
+    const ScopedTimer timer(update.timings, Module::kOptimizationThread);
+    estimator_.add(frame, update);
+    look_for_objects(frame, detections, update.timings);
+    look_for_motion_before(update.timings);
+    if (estimator_.refine(update)) {
+      look_for_motion_after(update.timings);
+    } else {
+      forget();
+    }
+    estimator_.finish(update);
+  }
+  update.counters.dynamic_features = count_dynamic(dynamic_.verdicts);
+  return update;
+}
+
+OdometryUpdate OptimizationStage::predict(const TrackedFrame& frame) {
+  OdometryUpdate update;
+  dynamic_ = {};
+  estimator_.predict(frame.id, frame.t, update);
+  return update;
+}
+
+/// Sec. III-C and III-D.
+void OptimizationStage::look_for_objects(const TrackedFrame& frame, const DetectionSet& detections,
+                                         ModuleTimings& timings) {
+  const ScopedTimer timer(timings, Module::kDynamicRecognition);
+  dynamic_ = {};
+  if (config_.mask != DynamicMask::kOff) {
+    dynamic_.boxes = objects_.update(detections);
+    dynamic_.mask = SemanticMask(boxes_of(dynamic_.boxes),
+                                 {.pixels = frame.depth, .units_per_m = frame.depth_units_per_m},
+                                 {camera_.width, camera_.height}, config_);
+  }
+  take(recognition_.judge(frame, dynamic_.mask));
+}
+
+/// Sec. III-E at the predicted pose, which only inertial data know before the solve.
+void OptimizationStage::look_for_motion_before(ModuleTimings& timings) {
+  if (!config_.moving_consistency || !config_.gate_before_solve || !estimator_.window().inertial) return;
+  const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
+  take(recognition_.gate(gate_on_prediction(consistency_view(estimator_.window(), camera_.focal_px()))));
+}
+
+/// Sec. III-E at the refined poses.
+void OptimizationStage::look_for_motion_after(ModuleTimings& timings) {
+  if (!config_.moving_consistency) return;
+  const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
+  take(recognition_.check(consistency_residuals(consistency_view(estimator_.window(), camera_.focal_px()))));
+}
+
+void OptimizationStage::take(std::vector<FeatureVerdict> verdicts) {
+  dynamic_.verdicts = std::move(verdicts);
+  estimator_.mark_dynamic(dynamic_.verdicts);
+}
+
+/// After a failure nothing is known of anything.
+void OptimizationStage::forget() {
+  objects_.reset();
+  recognition_.reset();
+}
+
+}  // namespace stillpoint

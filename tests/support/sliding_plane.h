@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A camera that slides sideways before a printed wall: true pictures without a renderer.
+#pragma once
+
+#include <vector>
+
+#include "core/pipeline/sensor_input.h"
+#include "tests/support/random.h"
+
+namespace stillpoint {
+
+/// Pictures of 160x120 px at 30 Hz; each shows the wall, 2 m away, `kStep_px` further left than the one
+/// before.
+class SlidingPlane {
+ public:
+  static constexpr double kDepth_m = 2.0;
+  static constexpr double kFocal_px = 150.0;
+  static constexpr int kStep_px = 2;
+
+  explicit SlidingPlane(int pictures) : wall_(kHeight, kWidth + kStep_px * pictures, CV_8UC1) {
+    Random random(3);
+    for (int row = 0; row < wall_.rows; row += kBlock_px) {
+      for (int column = 0; column < wall_.cols; column += kBlock_px) {
+        const cv::Rect block(column, row, kBlock_px, kBlock_px);
+        wall_(block & cv::Rect(0, 0, wall_.cols, wall_.rows)) = random.uniform(20.0, 235.0);
+      }
+    }
+    for (int i = 0; i < pictures; ++i) times_.push_back(Timestamp{1'000'000'000 + i * 33'333'333LL});
+  }
+
+  /// How far the camera has moved along its x axis at a picture [m].
+  static double moved_m(std::int64_t picture) {
+    return static_cast<double>(picture) * kStep_px * kDepth_m / kFocal_px;
+  }
+
+  [[nodiscard]] Frame picture(std::size_t index) const {
+    Frame frame{.id = static_cast<std::int64_t>(index), .t = times_[index]};
+    frame.gray = wall_(cv::Rect(kStep_px * static_cast<int>(index), 0, kWidth, kHeight)).clone();
+    frame.depth = cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(1000.0 * kDepth_m));
+    return frame;
+  }
+
+  /// Valid while this lives.
+  [[nodiscard]] SensorInput input() const {
+    SensorInput input;
+    input.rig.camera = {.width = kWidth,
+                        .height = kHeight,
+                        .fx = kFocal_px,
+                        .fy = kFocal_px,
+                        .cx = 0.5 * (kWidth - 1),
+                        .cy = 0.5 * (kHeight - 1)};
+    input.frame_times = times_;
+    input.load_frame = [this](std::size_t index) { return picture(index); };
+    return input;
+  }
+
+ private:
+  static constexpr int kWidth = 160;
+  static constexpr int kHeight = 120;
+  static constexpr int kBlock_px = 8;
+
+  cv::Mat wall_;
+  std::vector<Timestamp> times_;
+};
+
+}  // namespace stillpoint

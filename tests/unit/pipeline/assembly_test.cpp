@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/assembly.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/sliding_plane.h"
+
+namespace stillpoint {
+namespace {
+
+OdometryConfig visual() {
+  OdometryConfig config;
+  config.imu.enabled = false;
+  return config;
+}
+
+TEST(Assembly, NobodyLooksForObjectsThatNobodyMasks) {
+  const SlidingPlane plane(1);
+  OdometryConfig config = visual();
+  config.dynamic.mask = DynamicMask::kOff;
+  EXPECT_EQ(assemble(plane.input(), config).detector->description(), "none");
+}
+
+TEST(Assembly, ASimulatedDetectorNeedsTrueBoxes) {
+  const SlidingPlane plane(1);
+  OdometryConfig config = visual();
+  config.detector.kind = DetectorKind::kSimulated;
+  expect_input_error([&] { static_cast<void>(assemble(plane.input(), config)); },
+                     {"detector.kind", "true boxes"});
+}
+
+TEST(Assembly, InertialOdometryNeedsAnImu) {
+  const SlidingPlane plane(1);
+  expect_input_error([&] { static_cast<void>(assemble(plane.input(), OdometryConfig{})); },
+                     {"imu.enabled", "--variant vo"});
+}
+
+TEST(WindowRate, AdmitsAThirdOfPicturesAt10Of30Hz) {
+  WindowRate rate(10.0);
+  int admitted = 0;
+  for (int i = 0; i < 300; ++i) admitted += rate.admits(Timestamp{i * 33'333'333LL});
+  EXPECT_EQ(admitted, 100);  // every third: three intervals are 1 ns short of 0.1 s, which the slack forgives
+}
+
+}  // namespace
+}  // namespace stillpoint
