@@ -41,6 +41,13 @@ struct View {
 
 View view_of(const Pose& T_w_c) { return {T_w_c.R().cast<float>(), T_w_c.p.cast<float>()}; }
 
+/// How far the middle of a triangle moves from one end of the span to the other [m].
+float step_m(const MovingMesh& mesh, std::size_t triangle) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const std::uint32_t corner : mesh.triangles[triangle]) sum += mesh.end[corner] - mesh.start[corner];
+  return sum.norm() / 3.0F;
+}
+
 }  // namespace
 
 /// The pixels of one packet; those beyond the picture are off.
@@ -91,8 +98,12 @@ RenderedFrame FrameRenderer::render(const Shot& shot, const MoverFrame* movers) 
     }
   }
   const auto pixels = static_cast<std::size_t>(camera_.width * camera_.height);
-  RenderedFrame frame{camera_.width, camera_.height, std::vector<Float4>(pixels), std::vector<float>(pixels),
-                      std::vector<std::uint16_t>(pixels)};
+  RenderedFrame frame{camera_.width,
+                      camera_.height,
+                      std::vector<Float4>(pixels),
+                      std::vector<float>(pixels),
+                      std::vector<std::uint16_t>(pixels),
+                      std::vector<float>(pixels)};
   for (int row = 0; row < camera_.height; row += kBlockRows) {
     for (int column = 0; column < camera_.width; column += kBlockColumns)
       render_block(job, row, column, frame);
@@ -155,8 +166,9 @@ void FrameRenderer::record_geometry(const Job& job, const Block& block, const Ra
     const auto pixel = static_cast<std::size_t>(row * camera_.width + column);
     const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
     frame.depth_m[pixel] = packet.far[lane];  // the direction has length 1 along the optical axis
-    if (packet.moving[lane])
-      frame.object[pixel] = static_cast<std::uint16_t>(job.looks->looks[primitive].object);
+    if (!packet.moving[lane]) continue;
+    frame.object[pixel] = static_cast<std::uint16_t>(job.looks->looks[primitive].object);
+    frame.speed_m_per_s[pixel] = step_m(job.looks->mesh, primitive) / job.shot->span_s;
   }
 }
 

@@ -41,6 +41,7 @@ struct Shot {
   std::vector<std::array<Pose, kLightSamples>> poses;  ///< per row
   std::vector<float> mid_times;         ///< per row: mid-exposure as a share of the movers' span of time
   float exposure_share_of_span = 0.0F;  ///< length of the exposure as a share of that span
+  float span_s = 1.0F;                  ///< length of that span
 };
 
 /// What an ideal camera sees; row by row.
@@ -50,6 +51,7 @@ struct RenderedFrame {
   std::vector<Float4> radiance;  ///< linear, 1 = white paper in good light
   std::vector<float> depth_m;    ///< along the optical axis through the pixel's centre; 0 = nothing there
   std::vector<std::uint16_t> object;  ///< instance number; 0 = the standing world
+  std::vector<float> speed_m_per_s;   ///< of what is seen, in the world; 0 = stands still
 };
 
 /// Draws a world through one camera. Rendering is safe from several threads at once.

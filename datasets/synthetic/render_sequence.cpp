@@ -102,7 +102,7 @@ class FrameWork {
     writer_.write_pictures(
         t, develop(frame, stage_.rig.camera, request_.color, gain, color_key),
         measure_depth(frame.depth_m, frame.width, frame.height, request_.depth, depth_key));
-    if (request_.labels) writer_.write_labels(t, label_picture(frame));
+    if (request_.labels) writer_.write_labels(t, label_picture(frame), motion_picture(frame));
     seen_[index] = seen_objects(frame);
   }
 
@@ -125,6 +125,14 @@ class FrameWork {
     std::transform(frame.object.begin(), frame.object.end(), labels.begin<std::uint8_t>(),
                    [](std::uint16_t object) { return static_cast<std::uint8_t>(object); });
     return labels;
+  }
+
+  /// Speeds [cm/s], cut at 255.
+  static cv::Mat motion_picture(const RenderedFrame& frame) {
+    cv::Mat motion(frame.height, frame.width, CV_8UC1);
+    std::transform(frame.speed_m_per_s.begin(), frame.speed_m_per_s.end(), motion.begin<std::uint8_t>(),
+                   [](float speed) { return cv::saturate_cast<std::uint8_t>(100.0F * speed); });
+    return motion;
   }
 
   const SynthRequest& request_;

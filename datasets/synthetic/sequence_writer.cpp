@@ -84,7 +84,7 @@ std::string picture_stamp(Timestamp t) {
 SequenceWriter::SequenceWriter(const fs::path& folder, SequenceLayout layout, bool labels)
     : folder_(folder), layout_(layout) {
   std::vector<fs::path> needed{folder / color_folder(layout), folder / depth_folder(layout)};
-  if (labels) needed.push_back(folder / "labels");
+  if (labels) needed.insert(needed.end(), {folder / "labels", folder / "motion"});
   for (const fs::path& path : needed) {
     std::error_code error;
     fs::create_directories(path, error);
@@ -99,8 +99,10 @@ void SequenceWriter::write_pictures(Timestamp t, const cv::Mat& color, const cv:
   write_png(folder_ / depth_folder(layout_) / name, depth);
 }
 
-void SequenceWriter::write_labels(Timestamp t, const cv::Mat& labels) const {
-  write_png(folder_ / "labels" / (picture_stamp(t) + ".png"), labels);
+void SequenceWriter::write_labels(Timestamp t, const cv::Mat& labels, const cv::Mat& motion) const {
+  const std::string name = picture_stamp(t) + ".png";
+  write_png(folder_ / "labels" / name, labels);
+  write_png(folder_ / "motion" / name, motion);
 }
 
 void SequenceWriter::write_lists(const std::vector<Timestamp>& frames) const {

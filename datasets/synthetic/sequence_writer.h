@@ -25,7 +25,7 @@ class SequenceWriter {
 
   /// Safe to call from several threads at once.
   void write_pictures(Timestamp t, const cv::Mat& color, const cv::Mat& depth) const;
-  void write_labels(Timestamp t, const cv::Mat& labels) const;
+  void write_labels(Timestamp t, const cv::Mat& labels, const cv::Mat& motion) const;
 
   void write_lists(const std::vector<Timestamp>& frames) const;
   void write_rig(const Rig& rig, const SynthRequest& request) const;

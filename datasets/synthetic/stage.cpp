@@ -111,6 +111,7 @@ Shot shot_at(const SynthRequest& request, const Stage& stage, Timestamp t, doubl
   const double middle_s = seconds_between(stage.epoch, t);
   const int rows = request.rolling_shutter_s > 0.0 ? request.height : 1;
   Shot shot;
+  shot.span_s = static_cast<float>(span_s);
   shot.exposure_share_of_span = static_cast<float>(request.color.exposure_s / span_s);
   for (int row = 0; row < rows; ++row) {
     const double delay_s = rows > 1 ? request.rolling_shutter_s * (row / (rows - 1.0) - 0.5) : 0.0;

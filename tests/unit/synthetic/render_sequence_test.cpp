@@ -108,8 +108,11 @@ TEST(RenderSequence, TrueBoxesEncloseTheLabels) {
     std::istringstream fields(line);
     std::string stamp, name;
     double score = 0.0, x_min = 0.0, y_min = 0.0, x_max = 0.0, y_max = 0.0;
-    fields >> stamp >> name >> score >> x_min >> y_min >> x_max >> y_max;
-    const cv::Mat labels = read_picture(folder / "labels" / (stamp + ".png"));
+    if (!(fields >> stamp >> name >> score >> x_min >> y_min >> x_max >> y_max)) continue;  // nothing seen
+    const std::string picture = stamp.substr(0, stamp.size() - 3) + ".png";  // named in microseconds
+    const cv::Mat labels = read_picture(folder / "labels" / picture);
+    const cv::Mat motion = read_picture(folder / "motion" / picture);
+    EXPECT_EQ(cv::countNonZero(motion & (labels == 0)), 0) << line;  // the standing world stands
     const cv::Rect box(cv::Point(cvRound(x_min + 0.5), cvRound(y_min + 0.5)),
                        cv::Point(cvRound(x_max + 0.5), cvRound(y_max + 0.5)));
     const cv::Mat inside = labels(box);
