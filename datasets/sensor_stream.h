@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,13 @@ struct SequenceInfo {
   std::vector<std::string> notes;        ///< what the reader assumed, a sentence each, for the user to see
 };
 
+/// What a renderer knows of every pixel of a frame.
+struct MotionLabels {
+  cv::Mat object;  ///< CV_8UC1: 0 = the standing world, 1..127 = a person, 128.. = a mover no detector knows
+  cv::Mat speed_cm_per_s;  ///< CV_8UC1: of what is seen, in the world; cut at 255
+};
+constexpr int kFirstUnknownMover = 128;
+
 /// A sequence opened for reading. Implementations hold no picture longer than a call.
 class SensorStream {
  public:
@@ -47,6 +55,9 @@ class SensorStream {
   /// @throws InputError with the file's name if a picture is missing, truncated, or of another size than the
   /// rig says
   [[nodiscard]] virtual Frame load_frame(std::size_t index) const = 0;
+
+  /// Decodes the labels of one frame, if the sequence was rendered with them. As `load_frame` otherwise.
+  [[nodiscard]] virtual std::optional<MotionLabels> load_labels(std::size_t index) const = 0;
 };
 
 /// How to open a folder; empty fields mean "find out".

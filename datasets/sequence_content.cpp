@@ -107,6 +107,15 @@ class FolderStream : public SensorStream {
   explicit FolderStream(SequenceContent content) : content_(std::move(content)) {}
   [[nodiscard]] const SequenceInfo& info() const override { return content_.info; }
   [[nodiscard]] Frame load_frame(std::size_t index) const override { return decode_frame(content_, index); }
+  [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t index) const override {
+    const std::filesystem::path& folder = content_.info.folder;
+    const std::filesystem::path picture = content_.pictures[index].color.filename();
+    for (const char* kind : {"labels", "motion"}) {
+      if (!std::filesystem::exists(folder / kind / picture)) return std::nullopt;
+    }
+    return MotionLabels{.object = read_picture(folder / "labels" / picture),
+                        .speed_cm_per_s = read_picture(folder / "motion" / picture)};
+  }
 
  private:
   SequenceContent content_;

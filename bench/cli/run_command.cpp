@@ -16,6 +16,7 @@
 #include "bench/record/run_files.h"
 #include "bench/record/sequence_checksum.h"
 #include "bench/record/utc_time.h"
+#include "bench/record/verdict_dump.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 
@@ -36,6 +37,7 @@ struct RunArguments {
   std::string rig;
   int max_frames = 0;
   double speed = 1.0;
+  std::vector<std::string> dumps;
 };
 
 /// One run of possibly several.
@@ -81,19 +83,28 @@ void log_update(const OdometryUpdate& update) {
     spdlog::warn("frame {}: tracking failed, the estimator begins anew", update.frame_id);
 }
 
-RunResult execute(const SensorStream& stream, const PlannedRun& planned) {
+/// What a run leaves behind.
+struct Executed {
+  RunResult result;
+  std::vector<OutputFile> dumps;
+};
+
+Executed execute(const SensorStream& stream, const RunArguments& arguments, const PlannedRun& planned) {
   const std::size_t total = stream.info().frame_times.size();
   ProgressLine progress(stream.info().name + " " + planned.variant, total, "frames");
   const auto on_update = [&](const OdometryUpdate& update) {
     log_update(update);
     progress.update(static_cast<std::size_t>(update.frame_id) + 1);
   };
-  RunResult result = score_run(
-      stream.info(),
-      run_odometry(stream, planned.spec, {.on_update = on_update, .stop_requested = interrupt_requested}));
-  result.variant = planned.variant;
-  result.mode = planned.spec.mode;
-  return result;
+  VerdictDump verdicts;
+  RunControl control{.on_update = on_update, .on_picture = {}, .stop_requested = interrupt_requested};
+  const bool dumps = !arguments.dumps.empty();
+  if (dumps) control.on_picture = [&](const PictureReport& report) { verdicts.add(report); };
+  Executed run{.result = score_run(stream.info(), run_odometry(stream, planned.spec, control)), .dumps = {}};
+  run.result.variant = planned.variant;
+  run.result.mode = planned.spec.mode;
+  if (dumps) run.dumps.push_back({"verdicts.csv", verdicts.text()});
+  return run;
 }
 
 RunManifest manifest_of(const SequenceInfo& info, const RunArguments& arguments, const PlannedRun& planned) {
@@ -150,6 +161,9 @@ std::unique_ptr<SensorStream> open(const RunArguments& arguments) {
 
 int run(const RunArguments& arguments) {
   if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
+  for (const std::string& dump : arguments.dumps) {
+    if (dump != "verdicts") throw InputError("--dump", "\"" + dump + "\" is not known; use \"verdicts\"");
+  }
   watch_interrupts();
   const std::vector<PlannedRun> runs = plan_runs(arguments);
   const std::unique_ptr<SensorStream> stream = open(arguments);
@@ -158,10 +172,11 @@ int run(const RunArguments& arguments) {
   int code = kExitOk;
   for (const PlannedRun& planned : with_folders(runs, arguments.out, stream->info().name)) {
     if (interrupt_requested()) return kExitInterrupted;
-    const RunResult result = execute(*stream, planned);
-    write_run(planned.folder, result, manifest_of(stream->info(), arguments, planned));
-    print_result(result, planned.folder);
-    code = std::max(code, exit_code(result.status));
+    Executed run = execute(*stream, arguments, planned);
+    write_run(planned.folder, run.result, manifest_of(stream->info(), arguments, planned),
+              std::move(run.dumps));
+    print_result(run.result, planned.folder);
+    code = std::max(code, exit_code(run.result.status));
   }
   return code;
 }
@@ -185,6 +200,8 @@ Command run_command() {
                   {"--format", "Layout of the folder: tum, openloris, euroc, 7scenes, folder [recognised]",
                    &arguments->format},
                   {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
+                  {"--dump", "Also write verdicts.csv, every verdict on every feature: verdicts",
+                   &arguments->dumps},
                   {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
       .action = [arguments] { return run(*arguments); },
       .subcommands = {}};

@@ -55,6 +55,19 @@ Json realtime_json(const RunSummary& summary) {
           {"latency_ms", {{"p50", latency(0.5)}, {"p95", latency(0.95)}, {"p99", latency(0.99)}}}};
 }
 
+Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
+Json verdicts_json(const OdometryRun& run) {
+  if (!run.verdicts) return nullptr;
+  const auto share = [](const VerdictScore::Share& of) -> Json {
+    return {{"features", of.all}, {"flagged", of.flagged}, {"share", number_or_null(of.share())}};
+  };
+  return {{"precision", number_or_null(run.verdicts->precision())},
+          {"people", share(run.verdicts->people)},
+          {"unknown_movers", share(run.verdicts->unknown_movers)},
+          {"background", share(run.verdicts->background)}};
+}
+
 }  // namespace
 
 std::string result_json(const RunResult& result) {
@@ -76,6 +89,7 @@ std::string result_json(const RunResult& result) {
                         {"gaps", summary.imu_health.gaps}};
   json["detector"] = detector_json(summary);
   json["dynamic_features"] = result.run.dynamic_features;
+  json["verdicts"] = verdicts_json(result.run);
   json["realtime"] = realtime_json(summary);
   json["notes"] = result.notes;
   json["wall_s"] = result.run.wall_s;
@@ -120,10 +134,13 @@ std::string trajectory_text(const RunResult& result) {
   return result.status == RunStatus::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
 }
 
-void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest) {
-  write_files(folder, {{"trajectory.tum", trajectory_text(result)},
-                       {"result.json", result_json(result)},
-                       {"manifest.json", manifest_json(manifest)}});
+void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest,
+               std::vector<OutputFile> dumps) {
+  std::vector<OutputFile> files = std::move(dumps);
+  files.push_back({"trajectory.tum", trajectory_text(result)});
+  files.push_back({"result.json", result_json(result)});
+  files.push_back({"manifest.json", manifest_json(manifest)});
+  write_files(folder, files);
 }
 
 }  // namespace stillpoint

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "bench/record/output_folder.h"
 #include "bench/record/run_manifest.h"
 #include "bench/run/run_result.h"
 
@@ -19,8 +20,9 @@ namespace stillpoint {
 /// Text of trajectory.tum; the first line of an unfinished one says so.
 [[nodiscard]] std::string trajectory_text(const RunResult& result);
 
-/// Writes the three files together or not at all.
+/// Writes the three files and the dumps that were asked for, together or not at all.
 /// @throws InputError if the folder cannot be written
-void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest);
+void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest,
+               std::vector<OutputFile> dumps = {});
 
 }  // namespace stillpoint

@@ -39,6 +39,14 @@ void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& 
   run.trajectory.poses.push_back({t, update.T_w_c});
 }
 
+void score_verdicts(OdometryRun& run, const PictureReport& report, const SensorStream& stream) {
+  if (report.dynamic.verdicts.empty()) return;
+  const std::optional<MotionLabels> labels = stream.load_labels(static_cast<std::size_t>(report.frame.id));
+  if (!labels) return;
+  if (!run.verdicts) run.verdicts.emplace();
+  run.verdicts->add(report.tracked.features, report.dynamic.verdicts, *labels);
+}
+
 void record_decoding(OdometryRun& run, const FramePrefetcher& prefetcher) {
   for (const std::chrono::nanoseconds elapsed : prefetcher.decoding_times()) {
     run.timings.add(Module::kImageDecoding, {.ns = elapsed.count(), .calls = 1});
@@ -66,10 +74,15 @@ OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const 
     record(run, update, info);
     if (control.on_update) control.on_update(update);
   };
+  const auto on_picture = [&](const PictureReport& report) {
+    // Decoding labels beside a run against the clock would slow it.
+    if (spec.mode != "realtime") score_verdicts(run, report, stream);
+    if (control.on_picture) control.on_picture(report);
+  };
   const auto start = std::chrono::steady_clock::now();
   run.summary = run_in_mode(
       spec, input_of(info, run.frames_planned, prefetcher),
-      {.on_update = on_update, .on_picture = control.on_picture, .stop_requested = control.stop_requested});
+      {.on_update = on_update, .on_picture = on_picture, .stop_requested = control.stop_requested});
   run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record_decoding(run, prefetcher);
   return run;

@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "bench/run/timing_statistics.h"
+#include "bench/run/verdict_score.h"
 #include "core/pipeline/runner.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
@@ -26,7 +28,8 @@ struct OdometryRun {
   Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose for each picture that was tracked
   RunSummary summary;
   TimingSamples timings;
-  std::int64_t dynamic_features = 0;  ///< verdicts of a mover, summed over the pictures
+  std::int64_t dynamic_features = 0;     ///< verdicts of a mover, summed over the pictures
+  std::optional<VerdictScore> verdicts;  ///< where the sequence has labels; not of "realtime"
   std::size_t frames_planned = 0;
   double wall_s = 0.0;  ///< from the first picture asked for to the last update
 };

@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "core/geometry/pose.h"
+#include "datasets/sensor_stream.h"
 #include "datasets/synthetic/frame_renderer.h"
 #include "datasets/synthetic/rigid_part.h"
 
 namespace stillpoint {
-
-/// Instance numbers in label pictures: people count from 1, movers that no detector knows from here.
-inline constexpr int kFirstUnknownObject = 128;
 
 struct Actor {
   int object = 1;                     ///< instance number

@@ -66,8 +66,8 @@ std::vector<Actor> cast_actors(const SynthRequest& request, Scene& scene,
     const WalkStyle style{.speed = 0.55, .stops_per_minute = 6.0, .stop_s = 3.0};
     const Walk walk = walk_along(way, style, around, key());
     const bool chair = office && i % 2 == 0;
-    actors.push_back(chair ? make_rolling_chair(scene.palette, kFirstUnknownObject + i, walk, key())
-                           : make_cart(scene.palette, kFirstUnknownObject + i, walk, key()));
+    actors.push_back(chair ? make_rolling_chair(scene.palette, kFirstUnknownMover + i, walk, key())
+                           : make_cart(scene.palette, kFirstUnknownMover + i, walk, key()));
   }
   return actors;
 }

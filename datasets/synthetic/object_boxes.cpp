@@ -88,7 +88,7 @@ std::vector<std::vector<Detection>> simulate_detector(std::span<const std::vecto
   for (const std::vector<SeenObject>& seen : frames) {
     std::vector<Detection>& report = reports.emplace_back();
     for (const SeenObject& one : seen) {
-      const bool known = one.object < kFirstUnknownObject;
+      const bool known = one.object < kFirstUnknownMover;
       if (!known || one.box.y_max - one.box.y_min < model.min_height_px) continue;
       if (chain.misses(one.object, random)) continue;
       report.push_back({"person", random.uniform(0.5, 0.95), jittered(one.box, model, picture, random)});

@@ -77,6 +77,40 @@ TEST(RunCommand, IsTheSameToTheBitTwiceAndWithTwoPoolThreads) {
   EXPECT_EQ(first, text_of(out.path() / "pool" / "trajectory.tum"));
 }
 
+TEST(RunCommand, PipelinedWritesTheFileThatSequentialWrites) {
+  const TemporaryFolder out;
+  for (const char* mode : {"sequential", "pipelined"}) {
+    ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path() / mode,
+                                 {"--mode", mode, "--set", "pipeline.feedback_lag=1"}))
+                  .exit_code,
+              0);
+  }
+  EXPECT_EQ(text_of(out.path() / "sequential" / "trajectory.tum"),
+            text_of(out.path() / "pipelined" / "trajectory.tum"));
+}
+
+TEST(RunCommand, RealtimeReportsHowItKeptUpWithTheClock) {
+  const TemporaryFolder out;
+  ASSERT_EQ(
+      run_program(run_of(rendered_sequence(), out.path(), {"--mode", "realtime", "--speed", "4"})).exit_code,
+      0);
+  const nlohmann::json clock = json_of(out.path() / "result.json")["realtime"];
+  EXPECT_NEAR(clock["deadline_ms"], 1e3 / 30.0 / 4.0, 0.01);
+  EXPECT_GT(clock["latency_ms"]["p50"], 0.0);
+  EXPECT_LE(clock["latency_ms"]["p50"], clock["latency_ms"]["p99"]);
+}
+
+TEST(RunCommand, DumpsEveryVerdict) {
+  const TemporaryFolder out;
+  ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path(), {"--dump", "verdicts", "--max-frames", "20"}))
+                .exit_code,
+            0);
+  const std::string dump = text_of(out.path() / "verdicts.csv");
+  EXPECT_TRUE(dump.starts_with("frame,t,id,u_px,v_px,depth_m,age,verdict,reason,residual_px\n"));
+  EXPECT_GT(std::count(dump.begin(), dump.end(), '\n'), 20 * 20);  // more than 20 features in each picture
+  EXPECT_NE(dump.find(",stable,nothing_suspect,"), std::string::npos);
+}
+
 TEST(RunCommand, EachVariantHasItsFolder) {
   const TemporaryFolder out;
   const ProgramResult result = run_program(

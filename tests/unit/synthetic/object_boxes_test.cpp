@@ -13,7 +13,7 @@ TEST(SeenObjects, BoxesEncloseExactlyTheLabelledPixels) {
   for (const auto& [row, column] : {std::pair{1, 2}, {3, 5}, {2, 4}}) {
     frame.object[static_cast<std::size_t>(row * 8 + column)] = 3;
   }
-  frame.object[5 * 8] = kFirstUnknownObject;
+  frame.object[5 * 8] = kFirstUnknownMover;
   const std::vector<SeenObject> seen = seen_objects(frame);
   ASSERT_EQ(seen.size(), 2U);
   EXPECT_EQ(seen[0].object, 3);
@@ -22,7 +22,7 @@ TEST(SeenObjects, BoxesEncloseExactlyTheLabelledPixels) {
   EXPECT_DOUBLE_EQ(seen[0].box.x_max, 5.5);
   EXPECT_DOUBLE_EQ(seen[0].box.y_min, 0.5);
   EXPECT_DOUBLE_EQ(seen[0].box.y_max, 3.5);
-  EXPECT_EQ(seen[1].object, kFirstUnknownObject);
+  EXPECT_EQ(seen[1].object, kFirstUnknownMover);
 }
 
 std::vector<std::vector<SeenObject>> one_person(int frames, int object) {
@@ -55,7 +55,7 @@ TEST(SimulatedDetector, EdgesJitterWithTheBoxSize) {
 
 TEST(SimulatedDetector, NeverFindsWhatItDoesNotKnow) {
   const DetectorModel model{.miss_share = 0.0, .false_share = 0.0};
-  for (const auto& report : simulate_detector(one_person(50, kFirstUnknownObject), model, 640, 480, 9)) {
+  for (const auto& report : simulate_detector(one_person(50, kFirstUnknownMover), model, 640, 480, 9)) {
     EXPECT_TRUE(report.empty());
   }
 }
