@@ -34,6 +34,7 @@ libraries=(
   '<ceres/            ^core/(backend|loop)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/(backend|loop)/'
   '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/raster_drawing\.cpp$'
+  '<opencv2/calib3d[./]  ^core/(frontend|dynamic|detector|loop)/|^core/backend/relative_pose\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
   '<(sqlite3|zstd)    ^bench/store/'
   '<CLI/              ^bench/cli/command_line\.cpp$'

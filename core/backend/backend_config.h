@@ -14,10 +14,11 @@ constexpr auto enum_names(DepthUsage) {
       {{DepthUsage::kOff, "off"}, {DepthUsage::kFixed, "fixed"}, {DepthUsage::kWeighted, "weighted"}}};
 }
 
-enum class InitializerKind { kWindow, kInstant };
+enum class InitializerKind { kWindow, kInstant, kMonocular };
 constexpr auto enum_names(InitializerKind) {
-  return EnumNames<InitializerKind, 2>{
-      {{InitializerKind::kWindow, "window"}, {InitializerKind::kInstant, "instant"}}};
+  return EnumNames<InitializerKind, 3>{{{InitializerKind::kWindow, "window"},
+                                        {InitializerKind::kInstant, "instant"},
+                                        {InitializerKind::kMonocular, "monocular"}}};
 }
 
 /// How measured depth enters the estimate.
@@ -49,6 +50,10 @@ struct InitializerConfig {
   double gyro_bias_sigma = 0.02;   ///< [rad/s]
   double accel_bias_sigma = 0.1;   ///< [m/s^2]
   double gravity_tolerance = 1.0;  ///< a gravity that is off by more is refused [m/s^2]
+  int min_common_features = 30;   ///< monocular: seen by the two frames that start. Qin et al. 2018, Sec. V-A
+  double min_parallax_px = 20.0;  ///< monocular: between them, without rotation; same source
+  double max_scale_sigma =
+      0.1;  ///< monocular: relative standard deviation of a scale that is still taken; own choice
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, InitializerConfig>
@@ -58,6 +63,9 @@ void visit_fields(Visitor&& field, Config& config) {
   field("gyro_bias_sigma", config.gyro_bias_sigma, 1e-5, 10.0);
   field("accel_bias_sigma", config.accel_bias_sigma, 1e-5, 10.0);
   field("gravity_tolerance", config.gravity_tolerance, 0.01, 9.0);
+  field("min_common_features", config.min_common_features, 10, 1000);
+  field("min_parallax_px", config.min_parallax_px, 1.0, 200.0);
+  field("max_scale_sigma", config.max_scale_sigma, 1e-3, 10.0);
 }
 
 struct BackendConfig {

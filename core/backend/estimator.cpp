@@ -8,6 +8,7 @@
 #include "core/backend/initializer.h"
 #include "core/backend/landmark_tracks.h"
 #include "core/backend/marginalization.h"
+#include "core/backend/monocular_structure.h"
 #include "core/base/error.h"
 
 namespace stillpoint {
@@ -46,6 +47,27 @@ std::vector<PointSighting> known_points(const Window& window, const DepthConfig&
   return sightings;
 }
 
+/// Something must give the scale, and it must be asked.
+void check_scale(const BackendConfig& backend, const ImuConfig& imu) {
+  const bool monocular = backend.initializer.kind == InitializerKind::kMonocular;
+  const bool no_depth = backend.depth.usage == DepthUsage::kOff;
+  if (no_depth && !imu.enabled) {
+    throw InputError("backend.depth.usage",
+                     "\"off\" without an IMU leaves the scale unknown; use \"fixed\" or \"weighted\"");
+  }
+  if (no_depth && !monocular) {
+    throw InputError("backend.depth.usage",
+                     "\"off\" leaves the scale unknown; use \"fixed\" or \"weighted\", or "
+                     "backend.initializer.kind = \"monocular\"");
+  }
+  if (monocular && !no_depth) {
+    throw InputError(
+        "backend.initializer.kind",
+        "\"monocular\" starts without depth; set backend.depth.usage = \"off\", or use \"window\" or "
+        "\"instant\"");
+  }
+}
+
 }  // namespace
 
 Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed)
@@ -57,10 +79,7 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
   if (imu.enabled && !rig.has_imu) {
     throw InputError("imu.enabled", "the sequence has no inertial data; run with --variant vo");
   }
-  if (backend.depth.usage == DepthUsage::kOff) {
-    throw InputError("backend.depth.usage",
-                     "\"off\" leaves the scale unknown; use \"fixed\" or \"weighted\"");
-  }
+  check_scale(backend, imu);
   rig_.imu_noise = scaled(rig.imu_noise, imu.noise_scale);
   window_.T_b_c = rig.T_b_c;
   window_.time_offset_s = rig.time_offset_s;
@@ -108,7 +127,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
 bool Estimator::locate_newest() {
   WindowFrame& newest = window_.frames.back();
   if (window_.inertial) return newest.from_previous.has_value();
-  if (window_.newest() == 0) return true;
+  if (window_.newest() == 0 || !knows_scale()) return true;
   Pose prediction = newest.state.T_w_b;
   if (newest.from_previous) {
     const NavState& before = window_.frames[window_.frames.size() - 2].state;
@@ -138,10 +157,14 @@ void Estimator::try_to_become_inertial() {
   const double span = seconds_between(window_.frames.front().state.t, window_.frames.back().state.t);
   const bool instant = backend_.initializer.kind == InitializerKind::kInstant && window_.newest() >= 4;
   if (!is_full() && !(instant && span >= backend_.initializer.min_span_s)) return;
+  std::optional<Window> visual =
+      knows_scale() ? window_ : reconstruct_window(window_, backend_, rig_.camera.focal_px());
+  if (!visual) return;
   const std::optional<InertialAlignment> alignment =
-      align_with_imu(window_, imu_config_.gravity, backend_.initializer);
+      align_with_imu(*visual, imu_config_.gravity, backend_.initializer);
   if (!alignment) return;
-  make_inertial(*alignment, window_.frames.front().state.T_w_b, window_);
+  make_inertial(*alignment, window_.frames.front().state.T_w_b, *visual);
+  window_ = std::move(*visual);
   window_.prior = first_prior(window_, backend_.initializer);
 }
 
@@ -165,7 +188,10 @@ void Estimator::restart() {
 
 void Estimator::slide(bool keyframe) {
   if (!is_full()) return;
-  if (keyframe) {
+  if (!knows_scale()) {
+    keyframe ? remove_oldest_frame(window_) : remove_second_newest_frame(window_);
+    window_.prior = first_prior(window_, backend_.initializer);
+  } else if (keyframe) {
     LinearPrior prior = marginalize_oldest(window_, backend_, rig_.camera.focal_px());
     remove_oldest_frame(window_);
     window_.prior = std::move(prior);
@@ -209,16 +235,16 @@ bool Estimator::refine(OdometryUpdate& update) {
   located_ = locate_newest();
   try_to_become_inertial();
   refresh_preintegrations();
-  initialize_depths(backend_, rig_.camera.focal_px(), window_);
   const NavState before = newest_;
-  {
+  if (knows_scale()) {
+    initialize_depths(backend_, rig_.camera.focal_px(), window_);
     const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
     const SolveReport report = solve_window(window_, backend_, rig_.camera.focal_px());
     update.counters.window_landmarks = report.landmarks;
     update.counters.depth_landmarks = report.depth_landmarks;
     update.counters.solver_iterations = report.iterations;
-    update.counters.keyframe = keyframe_;
   }
+  update.counters.keyframe = keyframe_;
   if (has_failed(before)) {
     update.counters.reset = true;
     restart();

@@ -19,10 +19,13 @@
 namespace stillpoint {
 
 /// A sliding window over the last pictures. It starts as visual odometry of metric scale; with an IMU it
-/// turns inertial as soon as gravity and speeds are known, and reports poses from then on.
+/// turns inertial as soon as gravity and speeds are known, and reports poses from then on. Without depth
+/// there is no visual odometry before: it collects a window until structure from motion and the IMU give its
+/// scale.
 class Estimator {
  public:
-  /// @throws InputError if depth is off (no scale) or inertial data are asked of a rig without an IMU
+  /// @throws InputError if inertial data are asked of a rig without an IMU, or nothing gives the scale: depth
+  /// is off and there is no IMU or no monocular initialiser
   Estimator(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed);
 
   /// Samples in order of time; those up to a picture's exposure come before the picture.
@@ -57,6 +60,9 @@ class Estimator {
 
  private:
   [[nodiscard]] bool uses_imu() const { return imu_config_.enabled; }
+  [[nodiscard]] bool knows_scale() const {
+    return window_.inertial || backend_.depth.usage != DepthUsage::kOff;
+  }
   [[nodiscard]] bool is_full() const { return window_.newest() == backend_.window_size; }
   void push_frame(const TrackedFrame& frame);
   [[nodiscard]] bool locate_newest();

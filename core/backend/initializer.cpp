@@ -34,16 +34,18 @@ Eigen::Vector3d solve_gyro_bias(const Window& window) {
   return bias + H.ldlt().solve(b);
 }
 
-/// Linear system A [v0, g] = y for "where would the body be without speed and gravity" at each frame after
-/// the first.
+/// Linear system A [v0, g, s - 1] = y for "where would the body be without speed and gravity" at each frame
+/// after the first. The scale s stretches the paths of the camera, not its lever arm to the body; without
+/// that last column it is 1.
 struct MotionSystem {
   Eigen::MatrixXd A;
   Eigen::VectorXd y;
 };
 
-MotionSystem motion_system(const Window& window, const Eigen::Vector3d& gyro_bias) {
+MotionSystem motion_system(const Window& window, const Eigen::Vector3d& gyro_bias, bool metric) {
   const int frames = static_cast<int>(window.frames.size());
-  MotionSystem system{Eigen::MatrixXd::Zero(3 * (frames - 1), 6), Eigen::VectorXd::Zero(3 * (frames - 1))};
+  MotionSystem system{Eigen::MatrixXd::Zero(3 * (frames - 1), metric ? 6 : 7),
+                      Eigen::VectorXd::Zero(3 * (frames - 1))};
   const Eigen::Vector3d p_0 = window.frames[0].state.T_w_b.p;
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();    // displacement by specific force alone
   Eigen::Vector3d speeded = Eigen::Vector3d::Zero();  // speed by specific force alone
@@ -57,6 +59,7 @@ MotionSystem motion_system(const Window& window, const Eigen::Vector3d& gyro_bia
     time += imu.duration_s();
     system.A.block<3, 3>(3 * (k - 1), 0) = Eigen::Matrix3d::Identity() * time;
     system.A.block<3, 3>(3 * (k - 1), 3) = Eigen::Matrix3d::Identity() * (0.5 * time * time);
+    if (!metric) system.A.block<3, 1>(3 * (k - 1), 6) = window.T_w_c(0).p - window.T_w_c(k).p;
     system.y.segment<3>(3 * (k - 1)) = window.frames[static_cast<std::size_t>(k)].state.T_w_b.p - p_0 - moved;
   }
   return system;
@@ -68,6 +71,47 @@ Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& direction) {
   Eigen::Matrix<double, 3, 2> basis;
   basis << first, direction.normalized().cross(first);
   return basis;
+}
+
+/// The motion system's solution under gravity of the right length.
+struct HeldGravity {
+  Eigen::Vector3d gravity_w;
+  Eigen::VectorXd motion;  ///< v0, two steps of gravity that have come to rest, and s - 1 if it is asked
+  bool scale_is_known = true;
+};
+
+/// Steps in the plane that touches the sphere of the right radius.
+/// @param gravity_w start, of the right length
+HeldGravity hold_gravity(const MotionSystem& system, const Eigen::Vector3d& gravity_w,
+                         double max_scale_sigma) {
+  const Eigen::MatrixXd A_gravity = system.A.middleCols<3>(3);
+  const Eigen::Index scale_columns = system.A.cols() - 6;
+  HeldGravity held{.gravity_w = gravity_w};
+  Eigen::MatrixXd A(system.A.rows(), 5 + scale_columns);
+  Eigen::VectorXd misfit;
+  for (int i = 0; i < kGravitySteps; ++i) {
+    const Eigen::Matrix<double, 3, 2> basis = tangent_basis(held.gravity_w);
+    A << system.A.leftCols<3>(), A_gravity * basis, system.A.rightCols(scale_columns);
+    const Eigen::VectorXd y = system.y - A_gravity * held.gravity_w;
+    held.motion = A.colPivHouseholderQr().solve(y);
+    misfit = y - A * held.motion;
+    held.gravity_w = gravity_w.norm() * (held.gravity_w + basis * held.motion.segment<2>(3)).normalized();
+  }
+  if (scale_columns == 0) return held;
+  const double variance = misfit.squaredNorm() / static_cast<double>(A.rows() - A.cols());
+  const Eigen::MatrixXd covariance = variance * (A.transpose() * A).inverse();
+  const double scale = 1.0 + held.motion[5];
+  held.scale_is_known = std::sqrt(covariance(5, 5)) <= max_scale_sigma * scale;
+  return held;
+}
+
+/// Makes the paths of the camera `scale` times as long, and the landmarks as much farther.
+void stretch(double scale, Window& window) {
+  const Eigen::Vector3d p_0 = window.T_w_c(0).p;
+  for (int i = 0; i <= window.newest(); ++i) {
+    window.frames[static_cast<std::size_t>(i)].state.T_w_b.p += (scale - 1.0) * (window.T_w_c(i).p - p_0);
+  }
+  for (Landmark& landmark : window.landmarks) landmark.inverse_depth /= scale;
 }
 
 PriorBlock prior_block(const Window& window, BlockKind kind, int frame) {
@@ -91,26 +135,23 @@ std::optional<InertialAlignment> align_with_imu(const Window& window, double gra
   }
   InertialAlignment alignment;
   alignment.gyro_bias = solve_gyro_bias(window);
-  const MotionSystem system = motion_system(window, alignment.gyro_bias);
+  const bool metric = config.kind != InitializerKind::kMonocular;
+  const MotionSystem system = motion_system(window, alignment.gyro_bias, metric);
   const Eigen::VectorXd free = system.A.colPivHouseholderQr().solve(system.y);
-  alignment.free_gravity = free.tail<3>().norm();
+  alignment.free_gravity = free.segment<3>(3).norm();
   if (!(std::abs(alignment.free_gravity - gravity) <= config.gravity_tolerance)) return std::nullopt;
 
-  // Hold the length: step in the plane that touches the sphere of the right radius.
-  Eigen::Vector3d g = gravity * free.tail<3>().normalized();
-  for (int i = 0; i < kGravitySteps; ++i) {
-    const Eigen::Matrix<double, 3, 2> basis = tangent_basis(g);
-    Eigen::MatrixXd A(system.A.rows(), 5);
-    A << system.A.leftCols<3>(), system.A.rightCols<3>() * basis;
-    const Eigen::VectorXd x = A.colPivHouseholderQr().solve(system.y - system.A.rightCols<3>() * g);
-    g = gravity * (g + basis * x.tail<2>()).normalized();
-    alignment.first_velocity_w = x.head<3>();
-  }
-  alignment.gravity_w = g;
+  const HeldGravity held =
+      hold_gravity(system, gravity * free.segment<3>(3).normalized(), config.max_scale_sigma);
+  if (!held.scale_is_known) return std::nullopt;
+  alignment.gravity_w = held.gravity_w;
+  alignment.first_velocity_w = held.motion.head<3>();
+  if (!metric) alignment.scale = 1.0 + held.motion[5];
   return alignment;
 }
 
 void make_inertial(const InertialAlignment& alignment, const Pose& anchor, Window& window) {
+  stretch(alignment.scale, window);
   const Eigen::Quaterniond q_level =
       Eigen::Quaterniond::FromTwoVectors(alignment.gravity_w, -Eigen::Vector3d::UnitZ());
   const Eigen::Matrix3d R_0 = (q_level * window.frames[0].state.T_w_b.q).toRotationMatrix();

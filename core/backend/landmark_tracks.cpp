@@ -8,9 +8,10 @@ namespace {
 
 Observation observe(const TrackedFeature& feature, const Rig& rig, const DepthConfig& config) {
   const double row = feature.pixel.y() / rig.camera.height - 0.5;
+  const bool believed = config.usage != DepthUsage::kOff && feature.depth >= config.min_m;
   return Observation{.bearing = feature.bearing,
                      .velocity = feature.velocity,
-                     .depth = feature.depth >= config.min_m ? feature.depth : 0.0,
+                     .depth = believed ? feature.depth : 0.0,
                      .read_out_s = row * rig.rolling_shutter_s};
 }
 

@@ -15,7 +15,8 @@ namespace stillpoint {
 
 struct SimulatedFlight {
   double pixel_noise_px = 0.0;
-  double depth_noise = 0.0;  ///< standard deviation of 1/depth [1/m]
+  double depth_noise = 0.0;   ///< standard deviation of 1/depth [1/m]
+  double depth_factor = 1.0;  ///< measured over true depth
   ImuNoise imu_noise{};
   bool noisy_imu = false;
   double time_offset_s = 0.0;  ///< IMU time of a picture minus its stamp
@@ -85,7 +86,7 @@ struct SimulatedFlight {
       if (!calibration.camera.contains(pixel)) continue;
       pixel += pixel_noise_px * Eigen::Vector2d(random.normal(), random.normal());
       TrackedFeature feature{.id = k, .pixel = pixel, .bearing = calibration.camera.unproject(pixel)};
-      feature.depth = 1.0 / (1.0 / p_c.z() + depth_noise * random.normal());
+      feature.depth = depth_factor / (1.0 / p_c.z() + depth_noise * random.normal());
       frame.features.push_back(feature);
     }
     return frame;

@@ -106,6 +106,46 @@ TEST(Estimator, IsTheSameTwice) {
   EXPECT_EQ(first.last.T_w_b.q.coeffs(), second.last.T_w_b.q.coeffs());
 }
 
+BackendConfig monocular() {
+  BackendConfig config = every_picture();
+  config.rate_hz = 10.0;
+  config.depth.usage = DepthUsage::kOff;
+  config.initializer.kind = InitializerKind::kMonocular;
+  return config;
+}
+
+TEST(Estimator, FollowsWithoutDepthAndFindsTheScale) {
+  const SimulatedFlight flight{.pixel_noise_px = 0.3};
+  const Flown flown = fly(flight, monocular(), {}, 8.0);
+  EXPECT_LT(flown.first_pose_s, 2.0);
+  // The flight swings through 0.8 m: 0.03 m are what is allowed with noisy depth.
+  EXPECT_LT(flown.position_rmse_m, 0.03);
+}
+
+TEST(Estimator, ReadsNoDepthWhenItIsOff) {
+  // Depths that are wrong by a factor of about two change nothing, to the bit.
+  const Flown right = fly({.pixel_noise_px = 0.3}, monocular(), {}, 3.0);
+  const Flown wrong =
+      fly({.pixel_noise_px = 0.3, .depth_noise = 0.0, .depth_factor = 2.0}, monocular(), {}, 3.0);
+  EXPECT_EQ(right.last.T_w_b.p, wrong.last.T_w_b.p);
+  EXPECT_GT(right.poses, 0);
+}
+
+TEST(Estimator, RefusesConfigurationsThatLeaveTheScaleUnknown) {
+  BackendConfig no_depth = every_picture();
+  no_depth.depth.usage = DepthUsage::kOff;
+  EXPECT_THROW(Estimator(no_depth, {}, SimulatedFlight::rig(), 1), InputError);
+  ImuConfig no_imu;
+  no_imu.enabled = false;
+  EXPECT_THROW(Estimator(monocular(), no_imu, SimulatedFlight::rig(), 1), InputError);
+}
+
+TEST(Estimator, RefusesAMonocularStartWithDepth) {
+  BackendConfig config = monocular();
+  config.depth.usage = DepthUsage::kWeighted;
+  EXPECT_THROW(Estimator(config, {}, SimulatedFlight::rig(), 1), InputError);
+}
+
 TEST(Estimator, RefusesARigWithoutTheImuItNeeds) {
   Rig rig = SimulatedFlight::rig();
   rig.has_imu = false;

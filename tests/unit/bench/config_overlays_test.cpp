@@ -85,6 +85,13 @@ TEST(ConfigOverlays, VinsRgbdIsDynamicVinsWithoutItsInventions) {
                      {"backend.depth.max_m", "3.0"}}));
 }
 
+TEST(ConfigOverlays, VinsMonoIsVinsRgbdWithoutDepth) {
+  EXPECT_EQ(config_difference(base("baselines/vins_rgbd"), base("baselines/vins_mono")),
+            (Entries{{"backend.depth.usage", "\"off\""},
+                     {"backend.initializer.kind", "\"monocular\""},
+                     {"backend.initializer.min_parallax_px", "10.0"}}));
+}
+
 TEST(ConfigOverlays, DynamicVinsIsTheDefaultOfTheCode) {
   EXPECT_EQ(config_difference(OdometryConfig{}, base("dynamic_vins")), Entries{});
 }
