@@ -2,18 +2,26 @@
 /// Cost of taking one frame out of a full inertial window.
 #include <benchmark/benchmark.h>
 
-#include "bench/micro/flown_window.h"
 #include "core/backend/marginalization.h"
+#include "core/backend/schur/schur_solver.h"
+#include "tests/support/flown_window.h"
 
 namespace stillpoint {
 namespace {
 
+/// @param state range: solver
 void marginalize_oldest_frame(benchmark::State& state) {
   const Window window = flown_window();
-  const BackendConfig config = flown_config();
-  for (auto _ : state) benchmark::DoNotOptimize(marginalize_oldest(window, config, kFlownFocal_px));
+  BackendConfig config = flown_config();
+  config.solver = static_cast<WindowSolverKind>(state.range(0));
+  SchurSolver memory;
+  for (auto _ : state) benchmark::DoNotOptimize(marginalize_oldest(window, config, kFlownFocal_px, memory));
 }
-BENCHMARK(marginalize_oldest_frame)->Unit(benchmark::kMillisecond);
+BENCHMARK(marginalize_oldest_frame)
+    ->ArgName("schur")
+    ->Arg(static_cast<std::int64_t>(WindowSolverKind::kCeres))
+    ->Arg(static_cast<std::int64_t>(WindowSolverKind::kSchur))
+    ->Unit(benchmark::kMillisecond);
 
 void marginalize_second_newest_frame(benchmark::State& state) {
   const Window window = flown_window();

@@ -21,6 +21,12 @@ constexpr auto enum_names(InitializerKind) {
                                         {InitializerKind::kMonocular, "monocular"}}};
 }
 
+enum class WindowSolverKind { kCeres, kSchur };
+constexpr auto enum_names(WindowSolverKind) {
+  return EnumNames<WindowSolverKind, 2>{
+      {{WindowSolverKind::kCeres, "ceres"}, {WindowSolverKind::kSchur, "schur"}}};
+}
+
 /// How measured depth enters the estimate.
 struct DepthConfig {
   DepthUsage usage = DepthUsage::kFixed;
@@ -75,6 +81,7 @@ struct BackendConfig {
   int keyframe_min_tracked = 20;       ///< fewer known features make a keyframe
   double pixel_sigma_px = 1.5;         ///< standard deviation of a feature's position
   double cauchy_scale = 1.0;           ///< of the robust loss, in standard deviations
+  WindowSolverKind solver = WindowSolverKind::kCeres;  ///< who minimises and marginalises; same residuals
   int max_iterations = 8;
   double function_tolerance = 1e-6;      ///< relative change of the cost that ends the solve
   double keyframe_max_interval_s = 5.0;  ///< a keyframe at least this often: inertial spans must stay short
@@ -95,6 +102,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("keyframe_min_tracked", config.keyframe_min_tracked, 0, 1000);
   field("pixel_sigma_px", config.pixel_sigma_px, 0.05, 20.0);
   field("cauchy_scale", config.cauchy_scale, 0.01, 100.0);
+  field("solver", config.solver);
   field("max_iterations", config.max_iterations, 1, 100);
   field("function_tolerance", config.function_tolerance, 1e-12, 0.1);
   field("keyframe_max_interval_s", config.keyframe_max_interval_s, 0.05, 10.0);

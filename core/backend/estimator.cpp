@@ -192,7 +192,7 @@ void Estimator::slide(bool keyframe) {
     keyframe ? remove_oldest_frame(window_) : remove_second_newest_frame(window_);
     window_.prior = first_prior(window_, backend_.initializer);
   } else if (keyframe) {
-    LinearPrior prior = marginalize_oldest(window_, backend_, rig_.camera.focal_px());
+    LinearPrior prior = marginalize_oldest(window_, backend_, rig_.camera.focal_px(), solver_);
     remove_oldest_frame(window_);
     window_.prior = std::move(prior);
   } else {
@@ -239,7 +239,7 @@ bool Estimator::refine(OdometryUpdate& update) {
   if (knows_scale()) {
     initialize_depths(backend_, rig_.camera.focal_px(), window_);
     const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
-    const SolveReport report = solve_window(window_, backend_, rig_.camera.focal_px());
+    const SolveReport report = solve_window(window_, backend_, rig_.camera.focal_px(), solver_);
     update.counters.window_landmarks = report.landmarks;
     update.counters.depth_landmarks = report.depth_landmarks;
     update.counters.solver_iterations = report.iterations;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/backend/backend_config.h"
+#include "core/backend/schur/schur_solver.h"
 #include "core/backend/state_prediction.h"
 #include "core/backend/window.h"
 #include "core/backend/window_solver.h"
@@ -79,6 +80,7 @@ class Estimator {
   Rig rig_;
   std::uint32_t seed_;
   ImuBuffer imu_;
+  SchurSolver solver_;  ///< its memory only, whoever solves
   Window window_;
   NavState newest_;    ///< last state handed out
   NavState previous_;  ///< the one before: constant velocity where there is no IMU

@@ -115,7 +115,7 @@ void stretch(double scale, Window& window) {
 }
 
 PriorBlock prior_block(const Window& window, BlockKind kind, int frame) {
-  ParameterBlocks blocks = pack(window);
+  ParameterBlocks blocks(window);
   const double* now = block_address(blocks, {kind, frame});
   return {kind, frame, Eigen::Map<const Eigen::VectorXd>(now, global_size(kind))};
 }

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include <Eigen/QR>
+
 #include "core/backend/normal_equations.h"
+#include "core/backend/schur/schur_solver.h"
 
 namespace stillpoint {
 namespace {
@@ -16,16 +19,6 @@ std::vector<int> columns_of(int first, int size) {
 
 void append(std::vector<int>& to, const std::vector<int>& from) {
   to.insert(to.end(), from.begin(), from.end());
-}
-
-/// All blocks that a prior over this window may speak of: the states after the oldest. Calibration is taken
-/// as known: an early, wrong time offset would be frozen into the prior, sure of itself.
-std::vector<BlockRef> candidate_blocks(const Window& window) {
-  std::vector<BlockRef> blocks;
-  for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
-  if (!window.inertial) return blocks;
-  for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
-  return blocks;
 }
 
 NormalEquations linearize_oldest(const Window& window, const BackendConfig& config, double focal_px,
@@ -41,16 +34,30 @@ NormalEquations linearize_oldest(const Window& window, const BackendConfig& conf
     if (landmark.host != 0 || !is_usable(landmark)) continue;
     group.clear();
     builder.add_landmark(static_cast<int>(i), group);
-    const bool fixed = config.depth.usage == DepthUsage::kFixed && landmark.source == DepthSource::kMeasured;
-    equations.add(group, blocks, fixed);
+    equations.add(group, blocks, is_held(landmark, config));
   }
   return equations;
 }
 
 }  // namespace
 
+std::vector<BlockRef> candidate_blocks(const Window& window) {
+  std::vector<BlockRef> blocks;
+  for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
+  if (!window.inertial) return blocks;
+  for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
+  return blocks;
+}
+
 LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config, double focal_px) {
-  ParameterBlocks blocks = pack(window);
+  SchurSolver solver;
+  return marginalize_oldest(window, config, focal_px, solver);
+}
+
+LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config, double focal_px,
+                               SchurSolver& solver) {
+  if (config.solver == WindowSolverKind::kSchur) return solver.marginalize_oldest(window, config, focal_px);
+  ParameterBlocks blocks(window);
   const NormalEquations equations = linearize_oldest(window, config, focal_px, blocks);
   const StateLayout& layout = equations.layout;
 
@@ -92,11 +99,15 @@ LinearPrior marginalize_frame(const LinearPrior& prior, int frame) {
     left.residual = prior.residual;
     return left;
   }
-  const Eigen::MatrixXd H = prior.jacobian.transpose() * prior.jacobian;
-  const Eigen::VectorXd b = prior.jacobian.transpose() * prior.residual;
-  SquareRoot root = eliminate(H, b, gone, kept);
-  left.jacobian = std::move(root.jacobian);
-  left.residual = std::move(root.residual);
+  // Rows turned so that the first few carry all that is said of the gone columns; the others are what is
+  // left.
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(prior.jacobian(Eigen::all, gone));
+  Eigen::MatrixXd rest(prior.jacobian.rows(), static_cast<Eigen::Index>(kept.size()) + 1);
+  rest << prior.jacobian(Eigen::all, kept), prior.residual;
+  rest.applyOnTheLeft(qr.householderQ().adjoint());
+  const Eigen::Index rows = rest.rows() - qr.rank();
+  left.jacobian = rest.bottomLeftCorner(rows, rest.cols() - 1);
+  left.residual = rest.col(rest.cols() - 1).tail(rows);
   return left;
 }
 

@@ -9,6 +9,9 @@
 namespace stillpoint {
 namespace {
 
+/// Below this speed the picture does not move enough to show its own delay.
+constexpr double kMinSpeedForCalibration = 0.2;  // [m/s]
+
 void pack_pose(const Pose& pose, double* values) {
   Eigen::Map<Eigen::Vector3d>{values} = pose.p;
   Eigen::Map<Eigen::Vector4d>{values + 3} = pose.q.coeffs();
@@ -26,20 +29,19 @@ Residual prior_residual(const LinearPrior& prior) {
 
 }  // namespace
 
-ParameterBlocks pack(const Window& window) {
-  ParameterBlocks blocks(window.frames.size(), window.landmarks.size());
+void ParameterBlocks::assign(const Window& window) {
+  frames_ = window.frames.size();
+  values_.resize(16 * frames_ + 8 + window.landmarks.size());
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     const NavState& state = window.frames[i].state;
-    pack_pose(state.T_w_b, blocks.pose(i));
-    Eigen::Map<Eigen::Matrix<double, 9, 1>>{blocks.speed_bias(i)} << state.v_w, state.gyro_bias,
-        state.accel_bias;
+    pack_pose(state.T_w_b, pose(i));
+    Eigen::Map<Eigen::Matrix<double, 9, 1>>{speed_bias(i)} << state.v_w, state.gyro_bias, state.accel_bias;
   }
-  pack_pose(window.T_b_c, blocks.extrinsics());
-  *blocks.time_offset() = window.time_offset_s;
+  pack_pose(window.T_b_c, extrinsics());
+  *time_offset() = window.time_offset_s;
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
-    *blocks.inverse_depth(i) = window.landmarks[i].inverse_depth;
+    *inverse_depth(i) = window.landmarks[i].inverse_depth;
   }
-  return blocks;
 }
 
 void unpack(ParameterBlocks& blocks, Window& window) {
@@ -80,59 +82,57 @@ std::vector<double*> parameter_addresses(const Residual& residual, ParameterBloc
   return addresses;
 }
 
+ReprojectionNoise reprojection_noise(const BackendConfig& config, double focal_px) {
+  return {.bearing = config.pixel_sigma_px / focal_px,
+          .inverse_depth = config.depth.inverse_sigma,
+          .depth_outlier = config.depth.outlier_sigmas};
+}
+
+bool is_held(const Landmark& landmark, const BackendConfig& config) {
+  return config.depth.usage == DepthUsage::kFixed && landmark.source == DepthSource::kMeasured;
+}
+
+bool uses_depth(const Observation& observation, const BackendConfig& config) {
+  return config.depth.usage == DepthUsage::kWeighted && observation.depth > 0.0;
+}
+
+FreeCalibration free_calibration(const Window& window, const BackendConfig& config) {
+  const bool moving = window.inertial && window.frames.back().state.v_w.norm() > kMinSpeedForCalibration;
+  return {.extrinsics = config.estimate_extrinsics && moving,
+          .time_offset = config.estimate_time_offset && moving};
+}
+
 ResidualBuilder::ResidualBuilder(const Window& window, const BackendConfig& config, double focal_px)
     : window_(window),
       config_(config),
-      bearing_sigma_(config.pixel_sigma_px / focal_px),
-      loss_(std::make_unique<ceres::CauchyLoss>(config.cauchy_scale)) {}
-
-/// With an IMU the bearing's velocity follows from the state: differences of tracked bearings share their
-/// noise with the residual and pull the time offset.
-Eigen::Vector2d ResidualBuilder::bearing_velocity(const Landmark& landmark, int frame) const {
-  const Observation& observation = landmark.in(frame);
-  if (!window_.inertial) return observation.velocity;
-
-  const WindowFrame& at = window_.frames[static_cast<std::size_t>(frame)];
-  const Eigen::Vector3d p_b = at.state.T_w_b.inverse() * window_.position(landmark);
-  const Eigen::Vector3d rate_b = at.gyro_b - at.state.gyro_bias;
-  const Eigen::Vector3d velocity_b = -(at.state.T_w_b.q.conjugate() * at.state.v_w) - rate_b.cross(p_b);
-  const Eigen::Vector3d p_c = window_.T_b_c.inverse() * p_b;
-  const Eigen::Vector3d velocity_c = window_.T_b_c.q.conjugate() * velocity_b;
-  return (velocity_c.head<2>() - p_c.head<2>() / p_c.z() * velocity_c.z()) / p_c.z();
-}
-
-double ResidualBuilder::exposure_s(const Landmark& landmark, int frame) const {
-  return landmark.in(frame).read_out_s - window_.frames[static_cast<std::size_t>(frame)].time_offset_s;
-}
-
-bool ResidualBuilder::uses_depth(const Observation& observation) const {
-  return config_.depth.usage == DepthUsage::kWeighted && observation.depth > 0.0;
+      noise_(reprojection_noise(config, focal_px)),
+      loss_(std::make_unique<ceres::CauchyLoss>(config.cauchy_scale)) {
+  observations_.read(window);
 }
 
 void ResidualBuilder::add_landmark(int index, std::vector<Residual>& out) {
   const Landmark& landmark = window_.landmarks[static_cast<std::size_t>(index)];
-  const ReprojectionNoise noise{.bearing = bearing_sigma_,
-                                .inverse_depth = config_.depth.inverse_sigma,
-                                .depth_outlier = config_.depth.outlier_sigmas};
   const Observation& host = landmark.observations.front();
-  if (uses_depth(host)) {
-    out.push_back({std::make_unique<HostDepthFactor>(1.0 / host.depth, noise), nullptr, {}, index});
+  if (uses_depth(host, config_)) {
+    out.push_back({std::make_unique<HostDepthFactor>(1.0 / host.depth, noise_), nullptr, {}, index});
   }
 
-  ReprojectionMeasurement m{.bearing_i = host.bearing,
-                            .velocity_i = bearing_velocity(landmark, landmark.host),
-                            .exposure_i_s = exposure_s(landmark, landmark.host)};
+  const Eigen::Vector3d position_w = observations_.position(landmark);
+  const TimedBearing in_host = observations_.at(landmark, landmark.host, position_w);
+  ReprojectionMeasurement m{
+      .bearing_i = in_host.bearing, .velocity_i = in_host.velocity, .exposure_i_s = in_host.exposure_s};
   for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
     const Observation& seen = landmark.in(frame);
-    m.bearing_j = seen.bearing;
-    m.velocity_j = bearing_velocity(landmark, frame);
-    m.exposure_j_s = exposure_s(landmark, frame);
+    const TimedBearing timed = observations_.at(landmark, frame, position_w);
+    m.bearing_j = timed.bearing;
+    m.velocity_j = timed.velocity;
+    m.exposure_j_s = timed.exposure_s;
     std::unique_ptr<ceres::CostFunction> cost;
-    if (uses_depth(seen)) {
+    if (uses_depth(seen, config_)) {
       m.inverse_depth_j = 1.0 / seen.depth;
-      cost = std::make_unique<ReprojectionFactor<3>>(m, noise);
+      cost = std::make_unique<ReprojectionFactor<3>>(m, noise_);
     } else {
-      cost = std::make_unique<ReprojectionFactor<2>>(m, noise);
+      cost = std::make_unique<ReprojectionFactor<2>>(m, noise_);
     }
     out.push_back({std::move(cost),
                    loss_.get(),

@@ -9,6 +9,8 @@
 #include <ceres/loss_function.h>
 
 #include "core/backend/backend_config.h"
+#include "core/backend/factors/reprojection_rows.h"
+#include "core/backend/observation_model.h"
 #include "core/backend/window.h"
 
 namespace stillpoint {
@@ -21,8 +23,11 @@ namespace stillpoint {
 /// elimination, and with it the last bits of the result, a matter of the allocator's mood.
 class ParameterBlocks {
  public:
-  ParameterBlocks(std::size_t frames, std::size_t landmarks)
-      : frames_(frames), values_(16 * frames + 8 + landmarks) {}
+  ParameterBlocks() = default;
+  explicit ParameterBlocks(const Window& window) { assign(window); }
+
+  /// Takes over the states of a window; no allocation once one as large has been held.
+  void assign(const Window& window);
   [[nodiscard]] double* pose(std::size_t frame) { return &values_[7 * frame]; }
   [[nodiscard]] double* speed_bias(std::size_t frame) { return &values_[7 * frames_ + 9 * frame]; }
   [[nodiscard]] double* extrinsics() { return &values_[16 * frames_]; }
@@ -30,11 +35,10 @@ class ParameterBlocks {
   [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 8 + landmark]; }
 
  private:
-  std::size_t frames_;
+  std::size_t frames_ = 0;
   std::vector<double> values_;
 };
 
-[[nodiscard]] ParameterBlocks pack(const Window& window);
 void unpack(ParameterBlocks& blocks, Window& window);
 
 /// One block of the window's states; `frame` is -1 for calibration.
@@ -52,6 +56,22 @@ struct Residual {
   std::vector<BlockRef> states;
   int landmark = -1;
 };
+
+/// Standard deviations of the residuals of landmarks.
+[[nodiscard]] ReprojectionNoise reprojection_noise(const BackendConfig& config, double focal_px);
+
+/// Whether a landmark's depth is held where it was measured (the published system's choice).
+[[nodiscard]] bool is_held(const Landmark& landmark, const BackendConfig& config);
+
+/// Whether a measured depth is a residual.
+[[nodiscard]] bool uses_depth(const Observation& observation, const BackendConfig& config);
+
+/// Which of the calibration the solve may move.
+struct FreeCalibration {
+  bool extrinsics = false;
+  bool time_offset = false;
+};
+[[nodiscard]] FreeCalibration free_calibration(const Window& window, const BackendConfig& config);
 
 /// The addresses of all blocks of a residual in the order its cost function reads them.
 [[nodiscard]] std::vector<double*> parameter_addresses(const Residual& residual, ParameterBlocks& blocks);
@@ -71,13 +91,10 @@ class ResidualBuilder {
   void add_calibration(std::vector<Residual>& out);
 
  private:
-  [[nodiscard]] Eigen::Vector2d bearing_velocity(const Landmark& landmark, int frame) const;
-  [[nodiscard]] double exposure_s(const Landmark& landmark, int frame) const;
-  [[nodiscard]] bool uses_depth(const Observation& observation) const;
-
   const Window& window_;
   const BackendConfig& config_;
-  double bearing_sigma_;
+  ObservationModel observations_;
+  ReprojectionNoise noise_;
   std::unique_ptr<ceres::LossFunction> loss_;
 };
 

@@ -5,14 +5,12 @@
 #include <ceres/solver.h>
 
 #include "core/backend/factors/pose_manifold.h"
+#include "core/backend/schur/schur_solver.h"
 #include "core/backend/window_problem.h"
 #include "core/base/error.h"
 
 namespace stillpoint {
 namespace {
-
-/// Below this speed the picture does not move enough to show its own delay.
-constexpr double kMinSpeedForCalibration = 0.2;  // [m/s]
 
 /// Elimination groups of the Schur complement.
 constexpr int kLandmarkGroup = 0;
@@ -36,7 +34,7 @@ std::vector<Residual> make_residuals(const Window& window, ResidualBuilder& buil
 class WindowProblem {
  public:
   WindowProblem(const Window& window, const BackendConfig& config, double focal_px, SolveReport& report)
-      : blocks_(pack(window)),
+      : blocks_(window),
         builder_(window, config, focal_px),
         residuals_(make_residuals(window, builder_, report)),
         problem_(options()) {
@@ -90,23 +88,21 @@ class WindowProblem {
     ordering_->AddElementToGroup(block, kStateGroup);
   }
 
-  /// Measured depth is held fixed where the configuration says so (the published system's choice).
   void order_landmarks(const Window& window, const BackendConfig& config) {
     for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
       if (!is_usable(window.landmarks[i])) continue;
       double* block = blocks_.inverse_depth(i);
       ordering_->AddElementToGroup(block, kLandmarkGroup);
-      const bool measured = window.landmarks[i].source == DepthSource::kMeasured;
-      const bool held = config.depth.usage == DepthUsage::kFixed && measured;
+      const bool held = is_held(window.landmarks[i], config);
       if (held) problem_.SetParameterBlockConstant(block);
       landmarks_are_free_ |= !held;
     }
   }
 
   void hold_calibration(const Window& window, const BackendConfig& config) {
-    const bool moving = window.inertial && window.frames.back().state.v_w.norm() > kMinSpeedForCalibration;
-    if (!config.estimate_extrinsics || !moving) problem_.SetParameterBlockConstant(blocks_.extrinsics());
-    if (!config.estimate_time_offset || !moving) problem_.SetParameterBlockConstant(blocks_.time_offset());
+    const FreeCalibration free = free_calibration(window, config);
+    if (!free.extrinsics) problem_.SetParameterBlockConstant(blocks_.extrinsics());
+    if (!free.time_offset) problem_.SetParameterBlockConstant(blocks_.time_offset());
   }
 
   PoseManifold manifold_;
@@ -126,9 +122,7 @@ void forget_lost_depths(const DepthConfig& config, Window& window) {
   }
 }
 
-}  // namespace
-
-SolveReport solve_window(Window& window, const BackendConfig& config, double focal_px) {
+SolveReport solve_by_ceres(Window& window, const BackendConfig& config, double focal_px) {
   STILLPOINT_CHECK(!window.prior.empty());
   SolveReport report;
   WindowProblem problem(window, config, focal_px, report);
@@ -137,10 +131,22 @@ SolveReport solve_window(Window& window, const BackendConfig& config, double foc
   report.initial_cost = summary.initial_cost;
   report.final_cost = summary.final_cost;
   report.usable = summary.IsSolutionUsable();
-  if (report.usable) {
-    unpack(problem.blocks(), window);
-    forget_lost_depths(config.depth, window);
-  }
+  if (report.usable) unpack(problem.blocks(), window);
+  return report;
+}
+
+}  // namespace
+
+SolveReport solve_window(Window& window, const BackendConfig& config, double focal_px) {
+  SchurSolver solver;
+  return solve_window(window, config, focal_px, solver);
+}
+
+SolveReport solve_window(Window& window, const BackendConfig& config, double focal_px, SchurSolver& solver) {
+  const SolveReport report = config.solver == WindowSolverKind::kSchur
+                                 ? solver.solve(window, config, focal_px)
+                                 : solve_by_ceres(window, config, focal_px);
+  if (report.usable) forget_lost_depths(config.depth, window);
   return report;
 }
 

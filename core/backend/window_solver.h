@@ -21,4 +21,10 @@ struct SolveReport {
 /// @param focal_px the camera's focal length, by which pixels become bearings
 [[nodiscard]] SolveReport solve_window(Window& window, const BackendConfig& config, double focal_px);
 
+class SchurSolver;
+
+/// The same in memory kept from the last solve; the result does not depend on it.
+[[nodiscard]] SolveReport solve_window(Window& window, const BackendConfig& config, double focal_px,
+                                       SchurSolver& solver);
+
 }  // namespace stillpoint

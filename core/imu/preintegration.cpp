@@ -5,6 +5,8 @@
 #include "core/geometry/so3.h"
 #include "core/imu/midpoint.h"
 
+#include <Eigen/Cholesky>
+
 namespace stillpoint {
 namespace {
 
@@ -104,13 +106,13 @@ void Preintegration::integrate(const std::vector<ImuSample>& samples) {
     step(samples_.back(), samples[i]);
     samples_.push_back(samples[i]);
   }
-  complete_jacobian();
+  complete();
 }
 
 void Preintegration::repropagate(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {
   reset(gyro_bias, accel_bias);
   for (std::size_t i = 1; i < samples_.size(); ++i) step(samples_[i - 1], samples_[i]);
-  complete_jacobian();
+  complete();
 }
 
 void Preintegration::reset(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {
@@ -142,11 +144,14 @@ void Preintegration::step(const ImuSample& from, const ImuSample& to) {
 
 /// The columns of p, theta and v need no accumulation: an error at i moves or turns the deltas as a whole,
 /// delta_p -> Exp(theta) delta_p + p + v T.
-void Preintegration::complete_jacobian() {
+void Preintegration::complete() {
   jacobian_.block<3, 3>(Index::kPosition, Index::kRotation) = -skew(delta_p_);
   jacobian_.block<3, 3>(Index::kVelocity, Index::kRotation) = -skew(delta_v_);
   jacobian_.block<3, 3>(Index::kRotation, Index::kRotation) = delta_q_.conjugate().toRotationMatrix();
   jacobian_.block<3, 3>(Index::kPosition, Index::kVelocity) = duration_s_ * Eigen::Matrix3d::Identity();
+  if (duration_s_ <= 0.0) return;
+  const Eigen::LLT<Matrix15> root(covariance_);
+  sqrt_information_ = root.matrixL().solve(Matrix15::Identity());
 }
 
 Eigen::Vector3d Preintegration::delta_p(const Eigen::Vector3d& gyro_bias,

@@ -44,6 +44,8 @@ class Preintegration {
   [[nodiscard]] const Eigen::Vector3d& gyro_bias() const { return gyro_bias_; }    ///< linearisation point
   [[nodiscard]] const Eigen::Vector3d& accel_bias() const { return accel_bias_; }  ///< linearisation point
   [[nodiscard]] const Matrix15& covariance() const { return covariance_; }  ///< of (p, theta, v, bg, ba)
+  /// Lower triangular W with W^T W = inverse of the covariance; valid once a positive time has passed.
+  [[nodiscard]] const Matrix15& sqrt_information() const { return sqrt_information_; }
   /// d (p, theta, v, bg, ba) at j / d the same at i, first order; columns 9..14 correct the deltas for
   /// biases.
   [[nodiscard]] const Matrix15& jacobian() const { return jacobian_; }
@@ -61,7 +63,7 @@ class Preintegration {
  private:
   void reset(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias);
   void step(const ImuSample& from, const ImuSample& to);
-  void complete_jacobian();
+  void complete();
 
   ImuNoise noise_;
   std::vector<ImuSample> samples_;
@@ -73,6 +75,7 @@ class Preintegration {
   Eigen::Quaterniond delta_q_ = Eigen::Quaterniond::Identity();
   Matrix15 covariance_ = Matrix15::Zero();
   Matrix15 jacobian_ = Matrix15::Identity();
+  Matrix15 sqrt_information_ = Matrix15::Zero();
 };
 
 }  // namespace stillpoint

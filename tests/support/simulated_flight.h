@@ -20,6 +20,7 @@ struct SimulatedFlight {
   ImuNoise imu_noise{};
   bool noisy_imu = false;
   double time_offset_s = 0.0;  ///< IMU time of a picture minus its stamp
+  int points = 200;            ///< about half of them are in view
 
   static Rig rig() {
     Rig rig;
@@ -72,14 +73,14 @@ struct SimulatedFlight {
 
   /// The picture stamped `t`; ids are those of the points, so tracks never break while a point is in view.
   [[nodiscard]] TrackedFrame picture(std::int64_t id, double t) const {
-    Random points(5);
+    Random places(5);
     Random random(static_cast<std::uint32_t>(1000 + id));
     const Rig calibration = rig();
     const Pose T_c_w = (state(t + time_offset_s).T_w_b * calibration.T_b_c).inverse();
     TrackedFrame frame{.id = id, .t = from_seconds(t)};
-    for (int k = 0; k < 200; ++k) {
-      const Eigen::Vector3d p_w(points.uniform(2.0, 5.0), points.uniform(-2.5, 2.5),
-                                points.uniform(-2.0, 2.0));
+    for (int k = 0; k < points; ++k) {
+      const Eigen::Vector3d p_w(places.uniform(2.0, 5.0), places.uniform(-2.5, 2.5),
+                                places.uniform(-2.0, 2.0));
       const Eigen::Vector3d p_c = T_c_w * p_w;
       if (p_c.z() < 0.5) continue;
       Eigen::Vector2d pixel = calibration.camera.project(p_c);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/factors/imu_factor.h"
 
-#include <Eigen/Cholesky>
-
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -89,29 +87,28 @@ SpeedBiasJacobian jacobian_speed_bias_j(const States& s) {
 
 }  // namespace
 
-ImuFactor::ImuFactor(const Preintegration& imu, const Eigen::Vector3d& gravity_w)
-    : imu_(imu), gravity_w_(gravity_w) {
-  const Matrix15 information = imu.covariance().llt().solve(Matrix15::Identity());
-  sqrt_information_ = information.llt().matrixU();
+void evaluate_imu_residual(const Preintegration& imu, const Eigen::Vector3d& gravity_w,
+                           double const* const* parameters, double* residuals, double** jacobians) {
+  const States s(parameters, imu, gravity_w);
+  Vector15 r;
+  r.segment<3>(kP) = s.moved_bi - imu.delta_p(s.bg_i, s.ba_i);
+  r.segment<3>(kR) = s.rotation;
+  r.segment<3>(kV) = s.speeded_bi - imu.delta_v(s.bg_i, s.ba_i);
+  r.segment<3>(kBg) = s.bg_j - s.bg_i;
+  r.segment<3>(kBa) = s.ba_j - s.ba_i;
+  const Matrix15& W = imu.sqrt_information();
+  Eigen::Map<Vector15>{residuals} = W * r;
+
+  if (jacobians == nullptr) return;
+  if (jacobians[0] != nullptr) Eigen::Map<PoseJacobian>{jacobians[0]} = W * jacobian_pose_i(s);
+  if (jacobians[1] != nullptr)
+    Eigen::Map<SpeedBiasJacobian>{jacobians[1]} = W * jacobian_speed_bias_i(s, imu);
+  if (jacobians[2] != nullptr) Eigen::Map<PoseJacobian>{jacobians[2]} = W * jacobian_pose_j(s);
+  if (jacobians[3] != nullptr) Eigen::Map<SpeedBiasJacobian>{jacobians[3]} = W * jacobian_speed_bias_j(s);
 }
 
 bool ImuFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  const States s(parameters, imu_, gravity_w_);
-  Vector15 r;
-  r.segment<3>(kP) = s.moved_bi - imu_.delta_p(s.bg_i, s.ba_i);
-  r.segment<3>(kR) = s.rotation;
-  r.segment<3>(kV) = s.speeded_bi - imu_.delta_v(s.bg_i, s.ba_i);
-  r.segment<3>(kBg) = s.bg_j - s.bg_i;
-  r.segment<3>(kBa) = s.ba_j - s.ba_i;
-  const auto U = sqrt_information_.triangularView<Eigen::Upper>();
-  Eigen::Map<Vector15>{residuals} = U * r;
-
-  if (jacobians == nullptr) return true;
-  if (jacobians[0] != nullptr) Eigen::Map<PoseJacobian>{jacobians[0]} = U * jacobian_pose_i(s);
-  if (jacobians[1] != nullptr)
-    Eigen::Map<SpeedBiasJacobian>{jacobians[1]} = U * jacobian_speed_bias_i(s, imu_);
-  if (jacobians[2] != nullptr) Eigen::Map<PoseJacobian>{jacobians[2]} = U * jacobian_pose_j(s);
-  if (jacobians[3] != nullptr) Eigen::Map<SpeedBiasJacobian>{jacobians[3]} = U * jacobian_speed_bias_j(s);
+  evaluate_imu_residual(imu_, gravity_w_, parameters, residuals, jacobians);
   return true;
 }
 

@@ -18,11 +18,14 @@ enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset };
   return kind == BlockKind::kSpeedBias ? 9 : kind == BlockKind::kTimeOffset ? 1 : 6;
 }
 
+/// Values of one block, or its tangent vector: at most nine, held in place.
+using BlockVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
+
 /// One state that the prior speaks of, and where it was linearised.
 struct PriorBlock {
   BlockKind kind = BlockKind::kPose;
-  int frame = -1;                 ///< index in the window; -1 for calibration
-  Eigen::VectorXd linearization;  ///< `global_size(kind)` values
+  int frame = -1;             ///< index in the window; -1 for calibration
+  BlockVector linearization;  ///< `global_size(kind)` values
 };
 
 /// residual(x) = residual + jacobian * (x [-] linearization), blocks side by side in the order of `blocks`.
@@ -35,7 +38,6 @@ struct LinearPrior {
 };
 
 /// x [-] origin in the tangent space at origin; poses as (p, q xyzw) with the rotation on the right.
-[[nodiscard]] Eigen::VectorXd block_difference(BlockKind kind, const double* x,
-                                               const Eigen::VectorXd& origin);
+[[nodiscard]] BlockVector block_difference(BlockKind kind, const double* x, const BlockVector& origin);
 
 }  // namespace stillpoint

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/factors/reprojection_factor.h"
 
-#include <cmath>
-
 #include "core/geometry/pose.h"
 #include "core/geometry/so3.h"
 
@@ -10,21 +8,6 @@ namespace stillpoint {
 namespace {
 
 Pose pose_of(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Vector3d(x)}; }
-
-/// A whitened depth error, bounded at `c`, and the slope of the bound.
-struct Bounded {
-  double value;
-  double slope;
-};
-Bounded bound(double d, double c) {
-  const double inner = 1.0 + d * d / (c * c);
-  const double root = std::sqrt(inner);
-  return {d / root, 1.0 / (inner * root)};
-}
-
-/// Ratio of the depths in j and in the host below which the point counts as in the plane of camera j: nearer
-/// ones, and those behind it, are read as if they lay there.
-constexpr double kMinDepthRatio = 0.01;
 
 /// The landmark on its way from camera i to camera j, times its inverse depth lambda: so it has no pole at
 /// infinity, and goes on smoothly to negative lambda. Letters p as points are called in their frames.
@@ -91,28 +74,11 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   const Eigen::Vector2d bearing_i = m.bearing_i - (time_offset + m.exposure_i_s) * m.velocity_i;
   const Eigen::Vector2d bearing_j = m.bearing_j - (time_offset + m.exposure_j_s) * m.velocity_j;
   const Transfer t(x, bearing_i);
-  const bool before_camera = t.p_cj.z() > kMinDepthRatio;
-  const double inverse_z = 1.0 / (before_camera ? t.p_cj.z() : kMinDepthRatio);
-  const double by_z = before_camera ? -inverse_z : 0.0;  // d log(1/z) / dz
-
-  const double weight = 1.0 / noise_.bearing;
-  const Eigen::Vector2d seen = t.p_cj.head<2>() * inverse_z;
-  Eigen::Map<Eigen::Matrix<double, Rows, 1>> r(residuals);
-  r.template head<2>() = weight * (seen - bearing_j);
-
-  Eigen::Matrix<double, Rows, 3> by_point;
-  by_point.template topRows<2>() << weight * inverse_z, 0.0, weight * seen.x() * by_z,  //
-      0.0, weight * inverse_z, weight * seen.y() * by_z;
-  double depth_by_lambda = 0.0;  // beyond what the point itself tells
-  if constexpr (Rows == 3) {
-    const double inverse_depth = t.lambda * inverse_z;
-    const Bounded depth =
-        bound((inverse_depth - m.inverse_depth_j) / noise_.inverse_depth, noise_.depth_outlier);
-    const double slope = depth.slope / noise_.inverse_depth;
-    r[2] = depth.value;
-    by_point.row(2) << 0.0, 0.0, slope * inverse_depth * by_z;
-    depth_by_lambda = slope * inverse_z;
-  }
+  const ReprojectionRows rows = reprojection_rows(
+      t.p_cj, t.lambda, {.bearing = bearing_j, .inverse_depth = m.inverse_depth_j, .has_depth = Rows == 3},
+      noise_);
+  Eigen::Map<Eigen::Matrix<double, Rows, 1>>{residuals} = rows.residual.template head<Rows>();
+  const Eigen::Matrix<double, Rows, 3> by_point = rows.by_point.template topRows<Rows>();
   if (jacobians == nullptr) return true;
 
   if (jacobians[0] != nullptr) write_pose_jacobian<Rows>(jacobians[0], by_point, point_by_pose_i(t));
@@ -122,12 +88,12 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
     const Eigen::Matrix<double, Rows, 3> by_ray = by_point * t.R_cj_bi * t.T_b_c.R();
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[3]);
     J = by_ray.template leftCols<2>() * -m.velocity_i;
-    J.template head<2>() += weight * m.velocity_j;
+    J.template head<2>() += m.velocity_j / noise_.bearing;
   }
   if (jacobians[4] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[4]);
     J = by_point * t.p_cj_ci;
-    if constexpr (Rows == 3) J[2] += depth_by_lambda;
+    if constexpr (Rows == 3) J[2] += rows.depth_by_lambda;
   }
   return true;
 }
@@ -136,7 +102,8 @@ template class ReprojectionFactor<2>;
 template class ReprojectionFactor<3>;
 
 bool HostDepthFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
-  const Bounded depth = bound((x[0][0] - measured_) / noise_.inverse_depth, noise_.depth_outlier);
+  const BoundedError depth =
+      bounded_error((x[0][0] - measured_) / noise_.inverse_depth, noise_.depth_outlier);
   residuals[0] = depth.value;
   if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = depth.slope / noise_.inverse_depth;
   return true;

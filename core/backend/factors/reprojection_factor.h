@@ -5,6 +5,8 @@
 #include <ceres/sized_cost_function.h>
 #include <Eigen/Core>
 
+#include "core/backend/factors/reprojection_rows.h"
+
 namespace stillpoint {
 
 /// One landmark seen by its host i and by frame j.
@@ -16,13 +18,6 @@ struct ReprojectionMeasurement {
   double exposure_i_s = 0.0;  ///< exposure of the observation minus the time of state i, less the time offset
   double exposure_j_s = 0.0;
   double inverse_depth_j = 0.0;  ///< measured in j [1/m]; read by the depth row only
-};
-
-/// Standard deviations that scale the rows.
-struct ReprojectionNoise {
-  double bearing = 1.0;        ///< of a bearing [normalised plane]
-  double inverse_depth = 1.0;  ///< of a measured inverse depth [1/m]
-  double depth_outlier = 2.0;  ///< the depth row saturates at this many standard deviations
 };
 
 /// Two rows of bearing error and, with `Rows == 3`, one of inverse depth. Blocks: pose i, pose j, camera in

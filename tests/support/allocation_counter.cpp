@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/allocation_counter.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<std::size_t> count{0};
+
+}  // namespace
+
+// The linker's --wrap turns calls of f into calls of __wrap_f, and __real_f is the old one. Eigen allocates
+// by malloc, the standard containers by operator new. NOLINTBEGIN(bugprone-reserved-identifier)
+extern "C" {
+void* __real_malloc(std::size_t size);
+void* __real_calloc(std::size_t number, std::size_t size);
+void* __real_realloc(void* old, std::size_t size);
+void* __wrap_malloc(std::size_t size);
+void* __wrap_calloc(std::size_t number, std::size_t size);
+void* __wrap_realloc(void* old, std::size_t size);
+
+void* __wrap_malloc(std::size_t size) {
+  ++count;
+  return __real_malloc(size);
+}
+void* __wrap_calloc(std::size_t number, std::size_t size) {
+  ++count;
+  return __real_calloc(number, size);
+}
+void* __wrap_realloc(void* old, std::size_t size) {
+  ++count;
+  return __real_realloc(old, size);
+}
+}
+// NOLINTEND(bugprone-reserved-identifier)
+
+void* operator new(std::size_t size) {
+  ++count;
+  void* const memory = __real_malloc(size > 0 ? size : 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace stillpoint {
+
+std::size_t allocation_count() { return count; }
+
+}  // namespace stillpoint

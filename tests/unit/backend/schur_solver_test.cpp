@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The Schur solver is held against Ceres and its cost functions, which have tests of their own.
+#include "core/backend/schur/schur_solver.h"
+
+#include <gtest/gtest.h>
+
+#include "core/backend/marginalization.h"
+#include "core/backend/normal_equations.h"
+#include "tests/support/flown_window.h"
+
+namespace stillpoint {
+namespace {
+
+/// A kind of window that the solver must serve.
+struct Case {
+  const char* name;
+  FlownOptions flown;
+  double read_out_s = 0.0;  // of a rolling shutter, top to bottom
+
+  [[nodiscard]] Window window() const {
+    Window made = flown_window(flown);
+    for (Landmark& landmark : made.landmarks) {
+      for (Observation& o : landmark.observations) o.read_out_s = read_out_s * o.bearing.y();
+    }
+    return made;
+  }
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+Case make_case(const char* name, const std::function<void(FlownOptions&)>& change, double read_out_s = 0.0) {
+  Case made{.name = name, .flown = {.pictures = 14, .points = 80}, .read_out_s = read_out_s};
+  made.flown.config.solver = WindowSolverKind::kSchur;
+  change(made.flown);
+  return made;
+}
+
+const std::vector<Case> kCases = {
+    make_case("WeightedDepth", [](FlownOptions&) {}),
+    make_case("FixedDepth", [](FlownOptions& o) { o.config.depth.usage = DepthUsage::kFixed; }),
+    make_case("FarDepthUnknown", [](FlownOptions& o) { o.config.depth.max_m = 3.5; }),
+    make_case("VisualOnly", [](FlownOptions& o) { o.inertial = false; }),
+    make_case("WithoutTimeOffset", [](FlownOptions& o) { o.config.estimate_time_offset = false; }),
+    make_case("WithExtrinsics", [](FlownOptions& o) { o.config.estimate_extrinsics = true; }),
+    make_case(
+        "RollingShutter", [](FlownOptions&) {}, 0.02),
+    make_case("FewFrames", [](FlownOptions& o) { o.pictures = 6; })};
+
+class SchurSolverOn : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Windows, SchurSolverOn, testing::ValuesIn(kCases),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// All residuals of a window summed by the cost functions that Ceres is given, landmarks eliminated.
+NormalEquations reference_system(const Window& window, const BackendConfig& config, ParameterBlocks& blocks) {
+  NormalEquations equations(static_cast<int>(window.frames.size()));
+  ResidualBuilder builder(window, config, kFlownFocal_px);
+  std::vector<Residual> group;
+  builder.add_prior(group);
+  builder.add_calibration(group);
+  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame, group);
+  equations.add(group, blocks, false);
+  for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
+    if (!is_usable(window.landmarks[i])) continue;
+    group.clear();
+    builder.add_landmark(static_cast<int>(i), group);
+    equations.add(group, blocks, is_held(window.landmarks[i], config));
+  }
+  return equations;
+}
+
+/// The same by the terms of the Schur solver.
+ReducedSystem reduced_system(const Window& window, const BackendConfig& config, ParameterBlocks& blocks) {
+  VisualTerms visual;
+  PriorTerm prior;
+  PriorTerm calibration;
+  ReducedSystem system;
+  visual.read(window, config, kFlownFocal_px, LandmarkPart::kAll);
+  prior.read(window.prior);
+  calibration.read(window.calibration);
+  system.reset(ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
+                             free_calibration(window, config)));
+  prior.add_to(system, blocks);
+  calibration.add_to(system, blocks);
+  for (int frame = 1; frame <= window.newest(); ++frame) {
+    if (has_imu_term(window, frame)) add_imu_term(window, frame, blocks, system);
+  }
+  visual.add_to(system, blocks);
+  Eigen::VectorXd rhs = -system.g;
+  visual.eliminate(0.0, system.H, rhs);
+  system.g = -rhs;
+  return system;
+}
+
+/// Columns of every free state in both layouts, side by side.
+struct ColumnPairs {
+  std::vector<int> reference;
+  std::vector<int> reduced;
+};
+
+ColumnPairs matching_columns(const Window& window, const ReducedLayout& reduced) {
+  const StateLayout reference(static_cast<int>(window.frames.size()));
+  std::vector<BlockRef> blocks = {{BlockKind::kExtrinsics}, {BlockKind::kTimeOffset}};
+  for (int frame = 0; frame <= window.newest(); ++frame) {
+    blocks.push_back({BlockKind::kPose, frame});
+    blocks.push_back({BlockKind::kSpeedBias, frame});
+  }
+  ColumnPairs pairs;
+  for (const BlockRef block : blocks) {
+    for (int i = 0; i < local_size(block.kind) && reduced.column(block) >= 0; ++i) {
+      pairs.reference.push_back(reference.column(block) + i);
+      pairs.reduced.push_back(reduced.column(block) + i);
+    }
+  }
+  return pairs;
+}
+
+TEST_P(SchurSolverOn, NormalEquationsAreThoseOfTheCostFunctions) {
+  const Window window = GetParam().window();
+  const BackendConfig& config = GetParam().flown.config;
+  ParameterBlocks blocks(window);
+  const NormalEquations reference = reference_system(window, config, blocks);
+  const ReducedSystem reduced = reduced_system(window, config, blocks);
+  const ColumnPairs columns = matching_columns(window, reduced.layout);
+
+  const Eigen::MatrixXd full = reduced.H.selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd H = full(columns.reduced, columns.reduced);
+  const Eigen::MatrixXd H_reference = reference.H(columns.reference, columns.reference);
+  const Eigen::VectorXd axis = H_reference.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+  // each entry as a share of the root of its row's and column's diagonals
+  EXPECT_LT((axis.asDiagonal() * (H - H_reference) * axis.asDiagonal()).cwiseAbs().maxCoeff(), 1e-9);
+  const Eigen::VectorXd g = axis.cwiseProduct(reduced.g(columns.reduced));
+  const Eigen::VectorXd g_reference = axis.cwiseProduct(reference.b(columns.reference));
+  EXPECT_LT((g - g_reference).norm(), 1e-9 * g_reference.norm());
+}
+
+TEST_P(SchurSolverOn, ReachesTheCostThatCeresReaches) {
+  BackendConfig config = GetParam().flown.config;
+  Window by_schur = GetParam().window();
+  Window by_ceres = by_schur;
+  const SolveReport schur = solve_window(by_schur, config, kFlownFocal_px);
+  config.solver = WindowSolverKind::kCeres;
+  const SolveReport ceres = solve_window(by_ceres, config, kFlownFocal_px);
+  ASSERT_TRUE(schur.usable && ceres.usable);
+  EXPECT_EQ(schur.landmarks, ceres.landmarks);
+  EXPECT_EQ(schur.depth_landmarks, ceres.depth_landmarks);
+  EXPECT_NEAR(schur.initial_cost, ceres.initial_cost, 1e-9 * ceres.initial_cost);
+  EXPECT_LT(schur.final_cost, 0.9 * schur.initial_cost);
+  EXPECT_NEAR(schur.final_cost, ceres.final_cost, 1e-3 * ceres.final_cost);
+  for (std::size_t i = 0; i < by_schur.frames.size(); ++i) {
+    EXPECT_LT((by_schur.frames[i].state.T_w_b.p - by_ceres.frames[i].state.T_w_b.p).norm(), 1e-4);
+  }
+}
+
+TEST_P(SchurSolverOn, MarginalisationKeepsTheSameInformation) {
+  const Window window = GetParam().window();
+  BackendConfig config = GetParam().flown.config;
+  const LinearPrior root = marginalize_oldest(window, config, kFlownFocal_px);
+  config.solver = WindowSolverKind::kCeres;
+  const LinearPrior reference = marginalize_oldest(window, config, kFlownFocal_px);
+  ASSERT_EQ(root.blocks.size(), reference.blocks.size());
+  for (std::size_t i = 0; i < root.blocks.size(); ++i) {
+    EXPECT_EQ(root.blocks[i].kind, reference.blocks[i].kind);
+    EXPECT_EQ(root.blocks[i].frame, reference.blocks[i].frame);
+    EXPECT_EQ(root.blocks[i].linearization, reference.blocks[i].linearization);
+  }
+  const Eigen::MatrixXd H = root.jacobian.transpose() * root.jacobian;
+  const Eigen::MatrixXd H_reference = reference.jacobian.transpose() * reference.jacobian;
+  EXPECT_LT((H - H_reference).norm(), 1e-9 * H_reference.norm());
+  const Eigen::VectorXd g = root.jacobian.transpose() * root.residual;
+  const Eigen::VectorXd g_reference = reference.jacobian.transpose() * reference.residual;
+  EXPECT_LT((g - g_reference).norm(), 1e-6 * g_reference.norm());
+}
+
+TEST(SchurSolver, TheResultDoesNotDependOnWhatWasSolvedBefore) {
+  const Window start = kCases[0].window();
+  const BackendConfig& config = kCases[0].flown.config;
+  Window fresh = start;
+  SchurSolver solver;
+  static_cast<void>(solver.solve(fresh, config, kFlownFocal_px));
+  Window other = kCases[3].window();
+  static_cast<void>(solver.solve(other, kCases[3].flown.config, kFlownFocal_px));
+  Window again = start;
+  static_cast<void>(solver.solve(again, config, kFlownFocal_px));
+  for (std::size_t i = 0; i < fresh.frames.size(); ++i) {  // to the bit
+    EXPECT_EQ(fresh.frames[i].state.T_w_b.p, again.frames[i].state.T_w_b.p);
+    EXPECT_EQ(fresh.frames[i].state.T_w_b.q.coeffs(), again.frames[i].state.T_w_b.q.coeffs());
+    EXPECT_EQ(fresh.frames[i].state.v_w, again.frames[i].state.v_w);
+  }
+}
+
+TEST(SchurSolver, AStepThatMakesThingsWorseIsTakenBackAndShortened) {
+  // Turned by 70 degrees the newest camera sees every point far off: Newton steps overshoot.
+  const Case& c = kCases[3];
+  Window window = c.window();
+  window.frames.back().state.T_w_b.q = window.frames.back().state.T_w_b.q * exp_so3({0.0, 0.0, 1.2});
+  BackendConfig config = c.flown.config;
+  config.cauchy_scale = 100.0;  // nearly squares: a Cauchy loss this far out has no pull
+  config.max_iterations = 40;
+  SchurSolver solver;
+  const SolveReport report = solver.solve(window, config, kFlownFocal_px);
+  EXPECT_TRUE(report.usable);
+  EXPECT_LT(report.final_cost, 0.01 * report.initial_cost);
+}
+
+TEST(SchurSolver, LeavesTheWindowAsItWasWhenTheCostIsNotANumber) {
+  Window window = kCases[0].window();
+  window.frames.back().state.T_w_b.p.x() = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Vector3d before = window.frames.front().state.T_w_b.p;
+  SchurSolver solver;
+  EXPECT_FALSE(solver.solve(window, kCases[0].flown.config, kFlownFocal_px).usable);
+  EXPECT_EQ(window.frames.front().state.T_w_b.p, before);
+}
+
+}  // namespace
+}  // namespace stillpoint
