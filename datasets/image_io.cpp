@@ -85,26 +85,39 @@ OIIO::ImageSpec spec_of(const cv::Mat& picture) {
   const bool known = picture.type() == CV_8UC1 || picture.type() == CV_8UC3 || picture.type() == CV_16UC1;
   STILLPOINT_CHECK(known && !picture.empty());
   const OIIO::TypeDesc type(picture.depth() == CV_16U ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
-  OIIO::ImageSpec spec(picture.cols, picture.rows, picture.channels(), type);
-  spec.attribute("png:compressionLevel", kFastCompression);
-  spec.attribute("png:filter", kUpFilter);
-  spec.attribute("compression", "rle");
-  return spec;
+  return {picture.cols, picture.rows, picture.channels(), type};
 }
 
+using Bytes = std::vector<unsigned char>;
+
 /// Encoded in memory first, because OpenImageIO's PNG writer does not notice a full disk.
-std::vector<unsigned char> encode_png(const std::filesystem::path& file, const cv::Mat& picture) {
-  const OIIO::ImageSpec spec = spec_of(picture);
-  std::vector<unsigned char> bytes;
+/// @param format "png" or "jpg"
+Bytes encode(const std::filesystem::path& file, const std::string& format, const OIIO::ImageSpec& spec,
+             const cv::Mat& picture) {
+  Bytes bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png", &memory);
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format, &memory);
   STILLPOINT_CHECK(output != nullptr);
   const auto row_bytes = static_cast<OIIO::stride_t>(picture.step[0]);
-  const bool encoded = output->open("memory.png", spec) &&
+  const bool encoded = output->open("memory." + format, spec) &&
                        output->write_image(spec.format, picture.data, OIIO::AutoStride, row_bytes) &&
                        output->close();
   if (!encoded) throw InputError(file.string(), "cannot be encoded (" + reason(output->geterror()) + ")");
   return bytes;
+}
+
+/// Under another name first, so that nothing half-written is left behind.
+void write_whole(const std::filesystem::path& file, const Bytes& bytes) {
+  const std::filesystem::path unfinished = file.string() + ".part";
+  std::ofstream out(unfinished, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  std::error_code problem;
+  if (out) std::filesystem::rename(unfinished, file, problem);
+  if (out && !problem) return;
+  std::error_code ignored;
+  std::filesystem::remove(unfinished, ignored);
+  throw InputError(file.string(), "cannot be written; is the folder there, writable, and the disk not full?");
 }
 
 }  // namespace
@@ -148,17 +161,19 @@ cv::Mat to_gray(const cv::Mat& picture) {
 
 void write_png(const std::filesystem::path& file, const cv::Mat& picture) {
   keep_to_one_thread();
-  const std::vector<unsigned char> bytes = encode_png(file, picture);
-  const std::filesystem::path unfinished = file.string() + ".part";
-  std::ofstream out(unfinished, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  std::error_code problem;
-  if (out) std::filesystem::rename(unfinished, file, problem);
-  if (out && !problem) return;
-  std::error_code ignored;
-  std::filesystem::remove(unfinished, ignored);
-  throw InputError(file.string(), "cannot be written; is the folder there, writable, and the disk not full?");
+  OIIO::ImageSpec spec = spec_of(picture);
+  spec.attribute("png:compressionLevel", kFastCompression);
+  spec.attribute("png:filter", kUpFilter);
+  spec.attribute("compression", "rle");
+  write_whole(file, encode(file, "png", spec, picture));
+}
+
+void write_jpeg(const std::filesystem::path& file, const cv::Mat& picture) {
+  keep_to_one_thread();
+  STILLPOINT_CHECK(picture.depth() == CV_8U);
+  OIIO::ImageSpec spec = spec_of(picture);
+  spec.attribute("compression", "jpeg:90");
+  write_whole(file, encode(file, "jpg", spec, picture));
 }
 
 }  // namespace stillpoint

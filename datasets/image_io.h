@@ -29,4 +29,9 @@ namespace stillpoint {
 /// @throws InputError if the file cannot be written completely; nothing half-written is left behind
 void write_png(const std::filesystem::path& file, const cv::Mat& picture);
 
+/// Writes a JPEG of quality 90: small, and not what was there before to the bit.
+/// @param picture CV_8UC1 or CV_8UC3 (R, G, B), not empty
+/// @throws InputError as `write_png`
+void write_jpeg(const std::filesystem::path& file, const cv::Mat& picture);
+
 }  // namespace stillpoint

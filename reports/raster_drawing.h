@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Drawings as pixels. The one file pair of reports/ that knows OpenCV: it has lines, discs and stroke fonts.
+/// Drawings as pixels, by OpenCV: it has lines, discs and stroke fonts.
 #pragma once
 
 #include <filesystem>

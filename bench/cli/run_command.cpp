@@ -19,6 +19,7 @@
 #include "bench/record/verdict_dump.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
+#include "reports/run_video.h"
 
 namespace stillpoint {
 namespace {
@@ -38,6 +39,7 @@ struct RunArguments {
   int max_frames = 0;
   double speed = 1.0;
   std::vector<std::string> dumps;
+  std::string video;
 };
 
 /// One run of possibly several.
@@ -45,6 +47,7 @@ struct PlannedRun {
   std::string variant;
   RunSpec spec;
   fs::path folder;
+  fs::path video;  ///< folder of annotated pictures; empty = none
 };
 
 /// Reads every config, so that a fault in the last one ends the program before the first run.
@@ -58,7 +61,8 @@ std::vector<PlannedRun> plan_runs(const RunArguments& arguments) {
                              .mode = arguments.mode,
                              .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames)},
-                    .folder = {}});
+                    .folder = {},
+                    .video = arguments.video});
   }
   return runs;
 }
@@ -69,6 +73,7 @@ std::vector<PlannedRun> with_folders(std::vector<PlannedRun> runs, const std::st
   const fs::path root = out.empty() ? fs::path("build/runs") / sequence : fs::path(out);
   const bool shared_root = out.empty() || runs.size() > 1;
   for (PlannedRun& run : runs) {
+    if (!run.video.empty() && runs.size() > 1) run.video /= folder_name(run.variant);
     run.folder = shared_root ? root / folder_name(run.variant) : root;
     require_writable(run.folder);
   }
@@ -81,6 +86,15 @@ void log_update(const OdometryUpdate& update) {
                 update.counters.solver_iterations, update.counters.keyframe ? ", keyframe" : "");
   if (update.counters.reset)
     spdlog::warn("frame {}: tracking failed, the estimator begins anew", update.frame_id);
+}
+
+/// The video that was asked for, with the circles that the tracker of this run keeps.
+std::optional<RunVideo> start_video(const SequenceInfo& info, const PlannedRun& planned) {
+  if (planned.video.empty()) return std::nullopt;
+  const FrontendConfig& frontend = planned.spec.config.frontend;
+  const AnnotationStyle style{.stable_radius_px = frontend.circular_mask ? frontend.min_distance_px : 0,
+                              .unstable_radius_px = frontend.circular_mask ? frontend.unstable_radius_px : 0};
+  return std::optional<RunVideo>(std::in_place, planned.video, style, mean_rate_hz(info.frame_times));
 }
 
 /// What a run leaves behind.
@@ -99,10 +113,17 @@ Executed execute(const SensorStream& stream, const RunArguments& arguments, cons
   VerdictDump verdicts;
   RunControl control{.on_update = on_update, .on_picture = {}, .stop_requested = interrupt_requested};
   const bool dumps = !arguments.dumps.empty();
-  if (dumps) control.on_picture = [&](const PictureReport& report) { verdicts.add(report); };
+  std::optional<RunVideo> video = start_video(stream.info(), planned);
+  if (dumps || video) {
+    control.on_picture = [&](const PictureReport& report) {
+      if (dumps) verdicts.add(report);
+      if (video) video->add(report);
+    };
+  }
   Executed run{.result = score_run(stream.info(), run_odometry(stream, planned.spec, control)), .dumps = {}};
   run.result.variant = planned.variant;
   run.result.mode = planned.spec.mode;
+  if (video) video->finish();
   if (dumps) run.dumps.push_back({"verdicts.csv", verdicts.text()});
   return run;
 }
@@ -202,6 +223,8 @@ Command run_command() {
                   {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
                   {"--dump", "Also write verdicts.csv, every verdict on every feature: verdicts",
                    &arguments->dumps},
+                  {"--video", "Also write annotated pictures and video.mp4 into this folder",
+                   &arguments->video},
                   {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
       .action = [arguments] { return run(*arguments); },
       .subcommands = {}};

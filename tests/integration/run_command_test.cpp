@@ -111,6 +111,17 @@ TEST(RunCommand, DumpsEveryVerdict) {
   EXPECT_NE(dump.find(",stable,nothing_suspect,"), std::string::npos);
 }
 
+TEST(RunCommand, WritesAnnotatedPicturesAndAVideo) {
+  const TemporaryFolder out;
+  const std::string video = (out.path() / "video").string();
+  ASSERT_EQ(
+      run_program(run_of(rendered_sequence(), out.path() / "run", {"--video", video, "--max-frames", "20"}))
+          .exit_code,
+      0);
+  EXPECT_EQ(names_in(out.path() / "video"), (std::vector<std::string>{"frames", "video.mp4"}));
+  EXPECT_EQ(names_in(out.path() / "video" / "frames").size(), 20u);
+}
+
 TEST(RunCommand, EachVariantHasItsFolder) {
   const TemporaryFolder out;
   const ProgramResult result = run_program(

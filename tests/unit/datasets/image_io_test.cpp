@@ -47,6 +47,22 @@ TEST(ImageIo, WritesAViewWithGapsBetweenItsRows) {
   EXPECT_TRUE(equal(read_depth(folder.path() / "view.png"), view.clone()));
 }
 
+TEST(ImageIo, JpegKeepsAPlainColourNearlyAndSmall) {
+  const TemporaryFolder folder;
+  const cv::Mat plain(48, 64, CV_8UC3, cv::Scalar(200, 120, 40));
+  write_jpeg(folder.path() / "plain.jpg", plain);
+  const cv::Vec3b pixel = read_picture(folder.path() / "plain.jpg").at<cv::Vec3b>(20, 30);
+  EXPECT_NEAR(pixel[0], 200, 3);  // rounding of the colour transform and of one coefficient
+  EXPECT_NEAR(pixel[1], 120, 3);
+  EXPECT_NEAR(pixel[2], 40, 3);
+  EXPECT_LT(std::filesystem::file_size(folder.path() / "plain.jpg"), 48u * 64u);
+}
+
+TEST(ImageIo, JpegIntoAMissingFolderIsAnError) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_jpeg(folder.path() / "missing" / "a.jpg", cv::Mat(8, 8, CV_8UC3)), InputError);
+}
+
 TEST(ImageIo, GrayIsTheRoundedLuma) {
   cv::Mat rgb(1, 3, CV_8UC3);
   rgb.at<cv::Vec3b>(0, 0) = {255, 0, 0};
