@@ -39,12 +39,14 @@ void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& 
   run.trajectory.poses.push_back({t, update.T_w_c});
 }
 
-void score_verdicts(OdometryRun& run, const PictureReport& report, const SensorStream& stream) {
+void score_verdicts(OdometryRun& run, const PictureReport& report, const SensorStream& stream,
+                    SlidTracks& slid) {
+  slid.add(report.tracked);
   if (report.dynamic.verdicts.empty()) return;
   const std::optional<MotionLabels> labels = stream.load_labels(static_cast<std::size_t>(report.frame.id));
   if (!labels) return;
   if (!run.verdicts) run.verdicts.emplace();
-  run.verdicts->add(report.tracked.features, report.dynamic.verdicts, *labels);
+  run.verdicts->add(report.tracked.features, report.dynamic.verdicts, *labels, slid);
 }
 
 void record_decoding(OdometryRun& run, const FramePrefetcher& prefetcher) {
@@ -74,9 +76,10 @@ OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const 
     record(run, update, info);
     if (control.on_update) control.on_update(update);
   };
+  SlidTracks slid(info);
   const auto on_picture = [&](const PictureReport& report) {
     // Decoding labels beside a run against the clock would slow it.
-    if (spec.mode != "realtime") score_verdicts(run, report, stream);
+    if (spec.mode != "realtime") score_verdicts(run, report, stream, slid);
     if (control.on_picture) control.on_picture(report);
   };
   const auto start = std::chrono::steady_clock::now();

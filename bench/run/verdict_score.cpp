@@ -40,7 +40,7 @@ std::optional<double> VerdictScore::precision() const {
 }
 
 void VerdictScore::add(std::span<const TrackedFeature> features, std::span<const FeatureVerdict> verdicts,
-                       const MotionLabels& labels) {
+                       const MotionLabels& labels, const SlidTracks& slid) {
   auto verdict = verdicts.begin();
   for (const TrackedFeature& feature : features) {
     while (verdict != verdicts.end() && verdict->id < feature.id) ++verdict;
@@ -50,6 +50,7 @@ void VerdictScore::add(std::span<const TrackedFeature> features, std::span<const
     if (!place) continue;
     const bool unknown = place->object >= kFirstUnknownMover;
     if (unknown && place->speed_cm_per_s < kRests_cm_per_s) continue;
+    if (place->object == 0 && slid.contains(feature.id)) continue;
     Share& share = unknown ? unknown_movers : place->object > 0 ? people : background;
     ++share.all;
     share.flagged += verdict->verdict != Verdict::kStable;

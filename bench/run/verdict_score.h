@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "bench/run/slid_tracks.h"
 #include "core/types/feature_verdict.h"
 #include "core/types/tracked_frame.h"
 #include "datasets/sensor_stream.h"
@@ -35,8 +36,9 @@ struct VerdictScore {
   [[nodiscard]] std::optional<double> precision() const;
 
   /// @param features of the picture; `verdicts` of the same, both by rising id
+  /// @param slid     has seen the picture
   void add(std::span<const TrackedFeature> features, std::span<const FeatureVerdict> verdicts,
-           const MotionLabels& labels);
+           const MotionLabels& labels, const SlidTracks& slid);
 };
 
 }  // namespace stillpoint

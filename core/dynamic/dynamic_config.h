@@ -14,17 +14,20 @@
 namespace stillpoint {
 
 /// Which part of a detected box is the object.
-enum class DynamicMask { kDepthThreshold, kWholeBox, kOff };
+enum class DynamicMask { kDepthThreshold, kDepthBand, kWholeBox, kOff };
 constexpr auto enum_names(DynamicMask) {
-  return EnumNames<DynamicMask, 3>{{{DynamicMask::kDepthThreshold, "depth_threshold"},
+  return EnumNames<DynamicMask, 4>{{{DynamicMask::kDepthThreshold, "depth_threshold"},
+                                    {DynamicMask::kDepthBand, "depth_band"},
                                     {DynamicMask::kWholeBox, "whole_box"},
                                     {DynamicMask::kOff, "off"}}};
 }
 
 struct DynamicConfig {
-  DynamicMask mask = DynamicMask::kDepthThreshold;  ///< Eq. (2), the whole box, or no masks
-  double epsilon_m = 1.0;     ///< depth extent of a dynamic object [m], epsilon of Eq. (2)
-  int depth_window_px = 1;    ///< side of the window whose median is read as depth; odd, 1 = one pixel
+  DynamicMask mask = DynamicMask::kDepthThreshold;  ///< Eq. (2), the object's most frequent depths, the whole
+                                                    ///< box, or no masks
+  double epsilon_m = 1.0;   ///< depth extent of a dynamic object [m], epsilon of Eq. (2)
+  int depth_window_px = 1;  ///< side of the window whose median is read as depth, also of a feature that has
+                            ///< none of its own; odd, 1 = one pixel
   double box_margin_px = 10;  ///< boxes are taken this much larger on every side; not in the paper
   std::vector<std::string> classes = {"person", "cat", "dog", "bicycle", "car", "bus"};  ///< that may move
   /// A feature without depth inside a box is dynamic: Sec. III-C to the letter, since 0 < threshold. The

@@ -38,14 +38,18 @@ void flag(FeatureVerdict& verdict, VerdictReason reason) {
 
 }  // namespace
 
-bool FeatureRecognition::is_inside(const TrackedFeature& feature, const SemanticMask& mask) const {
+bool FeatureRecognition::is_inside(const TrackedFeature& feature, const DepthView& depth,
+                                   const SemanticMask& mask) const {
   const double threshold = mask.threshold_at(feature.pixel);
   if (threshold <= 0.0) return false;
-  if (feature.depth > 0.0) return feature.depth < threshold;
+  const double meters =
+      feature.depth > 0.0 ? feature.depth : robust_depth(depth, feature.pixel, config_.depth_window_px);
+  if (meters > 0.0) return mask.covers(feature.pixel, meters);
   return config_.unmeasured_is_dynamic || std::isinf(threshold);
 }
 
 std::vector<FeatureVerdict> FeatureRecognition::judge(const TrackedFrame& frame, const SemanticMask& mask) {
+  const DepthView depth{.pixels = frame.depth, .units_per_m = frame.depth_units_per_m};
   std::vector<Feature> present;
   present.reserve(frame.features.size());
   auto known = features_.begin();
@@ -53,7 +57,7 @@ std::vector<FeatureVerdict> FeatureRecognition::judge(const TrackedFrame& frame,
     while (known != features_.end() && known->verdict.id < tracked.id) ++known;
     const bool is_known = known != features_.end() && known->verdict.id == tracked.id;
     Feature feature{.verdict = is_known ? carried_over(known->verdict) : FeatureVerdict{.id = tracked.id}};
-    feature.inside_mask = is_inside(tracked, mask);
+    feature.inside_mask = is_inside(tracked, depth, mask);
     if (feature.inside_mask) {
       feature.verdict.verdict = Verdict::kDynamicObject;
       feature.verdict.reason = VerdictReason::kInsideMask;

@@ -46,7 +46,8 @@ class FeatureRecognition {
     bool inside_mask = false;
   };
 
-  [[nodiscard]] bool is_inside(const TrackedFeature& feature, const SemanticMask& mask) const;
+  [[nodiscard]] bool is_inside(const TrackedFeature& feature, const DepthView& depth,
+                               const SemanticMask& mask) const;
   [[nodiscard]] std::vector<FeatureVerdict> verdicts() const;
 
   DynamicConfig config_;

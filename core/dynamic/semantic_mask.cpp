@@ -2,10 +2,10 @@
 #include "core/dynamic/semantic_mask.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/dynamic/object_depth_band.h"
 #include "core/types/box_geometry.h"
 
 namespace stillpoint {
@@ -17,6 +17,14 @@ BoxDepths depths_on(const Box& box, const DepthView& depth, int window_px) {
   return {.corners = {at(box.x_min, box.y_min), at(box.x_max, box.y_min), at(box.x_min, box.y_max),
                       at(box.x_max, box.y_max)},
           .center = at(center.x(), center.y())};
+}
+
+/// @param box the detected one with its margin, within the picture
+DepthBand depths_of(const Box& detected, const Box& box, const DepthView& depth,
+                    const DynamicConfig& config) {
+  if (config.mask == DynamicMask::kWholeBox) return {};
+  if (config.mask == DynamicMask::kDepthBand) return object_depth_band(depth, detected, config.epsilon_m);
+  return {.far_m = object_depth_threshold(depths_on(box, depth, config.depth_window_px), config.epsilon_m)};
 }
 
 }  // namespace
@@ -32,24 +40,6 @@ double object_depth_threshold(const BoxDepths& depths, double epsilon_m) {
   return background > 0.0 ? background : std::numeric_limits<double>::infinity();
 }
 
-double robust_depth(const DepthView& depth, const Eigen::Vector2d& pixel, int window_px) {
-  const int half = window_px / 2;
-  const int column = static_cast<int>(std::lround(pixel.x()));
-  const int row = static_cast<int>(std::lround(pixel.y()));
-  std::vector<std::uint16_t> measured;
-  measured.reserve(static_cast<std::size_t>(window_px * window_px));
-  for (int v = std::max(row - half, 0); v <= std::min(row + half, depth.pixels.rows - 1); ++v) {
-    for (int u = std::max(column - half, 0); u <= std::min(column + half, depth.pixels.cols - 1); ++u) {
-      const std::uint16_t value = depth.pixels.at<std::uint16_t>(v, u);
-      if (value > 0) measured.push_back(value);
-    }
-  }
-  if (measured.empty()) return 0.0;
-  const auto middle = measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2);
-  std::nth_element(measured.begin(), middle, measured.end());
-  return *middle / depth.units_per_m;
-}
-
 SemanticMask::SemanticMask(std::span<const Box> boxes, const DepthView& depth, cv::Size size,
                            const DynamicConfig& config) {
   if (config.mask == DynamicMask::kOff) return;
@@ -57,11 +47,8 @@ SemanticMask::SemanticMask(std::span<const Box> boxes, const DepthView& depth, c
   for (const Box& detected : boxes) {
     const Box box = common_part(grown(detected, config.box_margin_px), picture);
     if (!has_area(detected) || !has_area(box)) continue;
-    const double threshold =
-        config.mask == DynamicMask::kWholeBox
-            ? std::numeric_limits<double>::infinity()
-            : object_depth_threshold(depths_on(box, depth, config.depth_window_px), config.epsilon_m);
-    boxes_.push_back({.box = box, .threshold_m = threshold});
+    const DepthBand band = depths_of(detected, box, depth, config);
+    boxes_.push_back({.box = box, .threshold_m = band.far_m, .near_m = band.near_m});
   }
 }
 
@@ -71,6 +58,12 @@ double SemanticMask::threshold_at(const Eigen::Vector2d& pixel) const {
     if (contains(masked.box, pixel)) threshold = std::max(threshold, masked.threshold_m);
   }
   return threshold;
+}
+
+bool SemanticMask::covers(const Eigen::Vector2d& pixel, double depth_m) const {
+  return std::ranges::any_of(boxes_, [&](const MaskedBox& masked) {
+    return contains(masked.box, pixel) && depth_m >= masked.near_m && depth_m < masked.threshold_m;
+  });
 }
 
 }  // namespace stillpoint

@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <opencv2/core/mat.hpp>
 #include <span>
 #include <vector>
 
+#include "core/dynamic/depth_view.h"
 #include "core/dynamic/dynamic_config.h"
 #include "core/types/detection.h"
 
@@ -29,23 +29,13 @@ struct BoxDepths {
 /// measured centre before unmeasured corners (d_max = 0) satisfies the second case as it stands.
 [[nodiscard]] double object_depth_threshold(const BoxDepths& depths, double epsilon_m);
 
-/// A registered raw depth picture.
-struct DepthView {
-  cv::Mat pixels;  ///< CV_16UC1, 0 = not measured; may be empty
-  double units_per_m = 1000.0;
-};
-
-/// Median of the measured depths in a square window around a pixel, the upper one of an even number [m]; 0
-/// where none is measured. The window ends at the edge of the picture.
-/// @param window_px side of the window, odd
-[[nodiscard]] double robust_depth(const DepthView& depth, const Eigen::Vector2d& pixel, int window_px);
-
 /// The boxes of one picture, each with its depth threshold: the paper's mask picture, never drawn.
 class SemanticMask {
  public:
   struct MaskedBox {
     Box box;                   ///< margin included, ends at the picture's edges
-    double threshold_m = 0.0;  ///< in (0, +inf]
+    double threshold_m = 0.0;  ///< nearer features belong to the object; in (0, +inf]
+    double near_m = 0.0;       ///< but not those nearer than this: they stand before it
   };
 
   /// The mask without objects.
@@ -58,6 +48,10 @@ class SemanticMask {
 
   /// Threshold at a pixel [m]; the largest where boxes overlap; 0 = no object.
   [[nodiscard]] double threshold_at(const Eigen::Vector2d& pixel) const;
+
+  /// Whether a point at this pixel and depth belongs to an object.
+  /// @param depth_m > 0
+  [[nodiscard]] bool covers(const Eigen::Vector2d& pixel, double depth_m) const;
 
   [[nodiscard]] const std::vector<MaskedBox>& boxes() const { return boxes_; }
 

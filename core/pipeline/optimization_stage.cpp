@@ -27,6 +27,7 @@ int count_dynamic(const std::vector<FeatureVerdict>& verdicts) {
 
 OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& rig)
     : config_(config.dynamic),
+      pixel_sigma_px_(config.backend.pixel_sigma_px),
       camera_(rig.camera),
       estimator_(config.backend, config.imu, rig, config.seed),
       objects_(config.dynamic),
@@ -75,14 +76,18 @@ void OptimizationStage::look_for_objects(const TrackedFrame& frame, const Detect
 void OptimizationStage::look_for_motion_before(ModuleTimings& timings) {
   if (!config_.moving_consistency || !config_.gate_before_solve || !estimator_.window().inertial) return;
   const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
-  take(recognition_.gate(gate_on_prediction(consistency_view(estimator_.window(), camera_.focal_px()))));
+  take(recognition_.gate(gate_on_prediction(view())));
 }
 
 /// Sec. III-E at the refined poses.
 void OptimizationStage::look_for_motion_after(ModuleTimings& timings) {
   if (!config_.moving_consistency) return;
   const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
-  take(recognition_.check(consistency_residuals(consistency_view(estimator_.window(), camera_.focal_px()))));
+  take(recognition_.check(consistency_residuals(view())));
+}
+
+ConsistencyView OptimizationStage::view() const {
+  return consistency_view(estimator_.window(), camera_.focal_px(), pixel_sigma_px_);
 }
 
 void OptimizationStage::take(std::vector<FeatureVerdict> verdicts) {

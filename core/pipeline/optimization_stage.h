@@ -43,10 +43,12 @@ class OptimizationStage {
   void look_for_objects(const TrackedFrame& frame, const DetectionSet& detections, ModuleTimings& timings);
   void look_for_motion_before(ModuleTimings& timings);
   void look_for_motion_after(ModuleTimings& timings);
+  [[nodiscard]] ConsistencyView view() const;
   void take(std::vector<FeatureVerdict> verdicts);
   void forget();
 
   DynamicConfig config_;
+  double pixel_sigma_px_;
   Camera camera_;
   Estimator estimator_;
   MissedDetectionCompensation objects_;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run/slid_tracks.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace stillpoint {
+namespace {
+
+constexpr double kSlid_px = 4.0;
+
+std::optional<Pose> true_T_w_c(const GroundTruth& truth, Timestamp t) {
+  const std::vector<StampedPose>& poses = truth.trajectory.poses;
+  const auto later = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
+  if (later == poses.end()) return std::nullopt;
+  const Pose T_f_c = truth.T_c_f.inverse();
+  if (later->t == t) return later->T_w_f * T_f_c;
+  if (later == poses.begin()) return std::nullopt;
+  const StampedPose& before = *std::prev(later);
+  const double share = seconds_between(before.t, t) / seconds_between(before.t, later->t);
+  return interpolate(before.T_w_f, later->T_w_f, share) * T_f_c;
+}
+
+}  // namespace
+
+void SlidTracks::add(const TrackedFrame& frame) {
+  const std::optional<Pose> T_w_c = true_T_w_c(info_.ground_truth, frame.t);
+  std::map<std::int64_t, Track> present;
+  for (const TrackedFeature& feature : frame.features) {
+    const auto known = tracks_.find(feature.id);
+    if (known != tracks_.end()) {
+      Track track = known->second;
+      const Eigen::Vector3d p_c = T_w_c ? T_w_c->inverse() * track.p_w : Eigen::Vector3d::Zero();
+      track.slid = p_c.z() > 0.0 && (info_.rig.camera.project(p_c) - feature.pixel).norm() > kSlid_px;
+      present.emplace(feature.id, track);
+    } else if (T_w_c && feature.depth > 0.0) {
+      present.emplace(feature.id,
+                      Track{.p_w = *T_w_c * Eigen::Vector3d(feature.depth * feature.bearing.homogeneous())});
+    }
+  }
+  tracks_ = std::move(present);
+}
+
+bool SlidTracks::contains(std::int64_t id) const {
+  const auto track = tracks_.find(id);
+  return track != tracks_.end() && track->second.slid;
+}
+
+}  // namespace stillpoint

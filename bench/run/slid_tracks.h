@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Which tracks have left the point of the standing world where they began, held against the true camera
+/// path.
+#pragma once
+
+#include <map>
+
+#include "core/types/rig.h"
+#include "core/types/tracked_frame.h"
+#include "datasets/sensor_stream.h"
+
+namespace stillpoint {
+
+/// A tracker that follows a T-junction of two edges, or is dragged along by somebody who passes, slides off:
+/// its feature then moves though nothing moves there, and both verdicts have their reasons.
+class SlidTracks {
+ public:
+  /// Keeps a reference to `info`.
+  explicit SlidTracks(const SequenceInfo& info) : info_(info) {}
+
+  /// Takes up a picture, and forgets the tracks that it no longer has.
+  void add(const TrackedFrame& frame);
+
+  /// Whether the track is more than a few pixels away from where its first measured point should be now.
+  /// False for tracks without any measured depth, and without ground truth.
+  [[nodiscard]] bool contains(std::int64_t id) const;
+
+ private:
+  struct Track {
+    Eigen::Vector3d p_w = Eigen::Vector3d::Zero();  ///< where it was when its depth was first measured
+    bool slid = false;
+  };
+  const SequenceInfo& info_;
+  std::map<std::int64_t, Track> tracks_;
+};
+
+}  // namespace stillpoint
