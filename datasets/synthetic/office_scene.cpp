@@ -12,7 +12,7 @@ constexpr double kPi = std::numbers::pi;
 
 /// Chairs at the desks; people take them in this order.
 const std::vector<Place> kSeats{
-    {{-0.95, -1.0, 0.0}, kPi + 0.3}, {{0.75, 1.2, 0.0}, -0.2}, {{-0.8, 1.25, 0.0}, 0.35}};
+    {{-0.62, -0.98, 0.0}, kPi + 0.3}, {{0.75, 1.2, 0.0}, -0.2}, {{-0.8, 1.25, 0.0}, 0.35}};
 
 void add_workplaces(Builder& builder, const Palette& palette, RandomSequence& random) {
   for (const double x : {-0.82, 0.82}) {
@@ -57,12 +57,13 @@ Scene build_office(std::uint64_t seed) {
   scene.viewpoint = Viewpoint{{0.1, -2.55, 1.6}, {0.0, 0.1, 0.95}};
   scene.gain = 1.5;
   scene.seats = kSeats;
-  // The first ways pass close before the camera, as people do in the TUM walking sequences.
-  scene.walkways = {{{-1.6, -1.5}, {1.6, -1.5}, {1.6, -1.75}, {-1.6, -1.75}},
-                    {{-2.3, -1.6}, {2.2, -1.6}, {2.4, 2.2}, {-2.4, 2.3}},
+  // The first ways pass to and fro close before the camera, as people do in the TUM walking sequences: there
+  // they fill a third of the picture most of the time.
+  scene.walkways = {{{-0.9, -1.4}, {0.9, -1.4}, {0.9, -1.65}, {-0.9, -1.65}},
+                    {{-0.3, -1.15}, {1.4, -1.15}, {1.4, -0.95}, {-0.3, -0.95}},
                     {{2.4, 2.0}, {-2.2, 2.1}, {-2.6, 2.8}, {2.3, 2.6}},
                     {{2.2, -1.5}, {2.2, 2.4}, {2.6, 2.4}, {2.6, -1.6}}};
-  scene.cartways = {{{-0.3, -1.3}, {1.5, -1.3}, {1.5, -1.7}, {-0.3, -1.7}},
+  scene.cartways = {{{-0.8, -1.1}, {0.9, -1.1}, {0.9, -1.3}, {-0.8, -1.3}},
                     {{-2.4, 1.8}, {2.2, 1.9}, {2.2, 2.4}, {-2.4, 2.3}}};
   Builder builder(scene.world);
   const Palette& palette = scene.palette = make_palette(builder, seed);

@@ -9,7 +9,7 @@
 namespace stillpoint {
 
 /// Raised whenever the same request gives other bits than before.
-inline constexpr int kRendererVersion = 5;
+inline constexpr int kRendererVersion = 6;
 
 /// Every field that decides about the sequence, a TOML line each, and the renderer's version.
 [[nodiscard]] std::string request_text(const SynthRequest& request);
