@@ -74,6 +74,7 @@ TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
                      {"dynamic.gate_before_solve", "true"},
                      {"dynamic.min_stable_features", "20"},
                      {"backend.rate_hz", "0.0"},
+                     {"backend.solver", "\"schur\""},
                      {"backend.max_iterations", "4"},
                      {"backend.keyframe_max_interval_s", "0.5"},
                      {"backend.depth.usage", "\"weighted\""},
