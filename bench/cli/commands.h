@@ -10,10 +10,16 @@ namespace stillpoint {
 [[nodiscard]] Command eval_command();            ///< `stillpoint eval`: scores of a trajectory file
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: result files by scene
 [[nodiscard]] Command bench_command();           ///< `stillpoint bench`: sequences x variants, one table
-[[nodiscard]] Command config_command();  ///< `stillpoint config`: resolved configs and the reference page
-[[nodiscard]] Command data_command();    ///< `stillpoint data`: make and inspect sequences
-[[nodiscard]] Command check_command();   ///< `stillpoint data check`: the sequence doctor
-[[nodiscard]] Command detect_command();  ///< `stillpoint detect`: boxes of a network, recorded
-[[nodiscard]] Command synth_command();   ///< `stillpoint data synth`: render a sequence
+[[nodiscard]] Command plan_command();            ///< `stillpoint plan`: what plans ask for
+[[nodiscard]] Command store_command();           ///< `stillpoint store`: looking after stores of runs
+[[nodiscard]] Command stats_command();           ///< `stillpoint stats`: what runs say together
+[[nodiscard]] Command compare_command();         ///< `stillpoint compare`: the gate for commits
+[[nodiscard]] Command config_command();     ///< `stillpoint config`: resolved configs and the reference page
+[[nodiscard]] Command data_command();       ///< `stillpoint data`: make and inspect sequences
+[[nodiscard]] Command check_command();      ///< `stillpoint data check`: the sequence doctor
+[[nodiscard]] Command data_add_command();   ///< `stillpoint data add`: names for recorded sequences
+[[nodiscard]] Command data_list_command();  ///< `stillpoint data list`
+[[nodiscard]] Command detect_command();     ///< `stillpoint detect`: boxes of a network, recorded
+[[nodiscard]] Command synth_command();      ///< `stillpoint data synth`: render a sequence
 
 }  // namespace stillpoint

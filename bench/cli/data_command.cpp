@@ -9,7 +9,7 @@ Command data_command() {
           .example = "data synth walking_xyz --out build/walking_xyz",
           .options = {},
           .action = {},
-          .subcommands = {check_command(), synth_command()}};
+          .subcommands = {check_command(), synth_command(), data_add_command(), data_list_command()}};
 }
 
 }  // namespace stillpoint

@@ -7,5 +7,6 @@ int main(int argc, char** argv) {
   using namespace stillpoint;
   return run_command_line(
       argc, argv,
-      {run_command(), eval_command(), bench_command(), detect_command(), config_command(), data_command()});
+      {run_command(), eval_command(), bench_command(), plan_command(), store_command(), stats_command(),
+       compare_command(), detect_command(), config_command(), data_command()});
 }

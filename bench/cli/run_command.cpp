@@ -11,12 +11,12 @@
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
 #include "bench/config/config_file.h"
-#include "bench/plan/plan_runner.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/run_files.h"
 #include "bench/record/sequence_checksum.h"
 #include "bench/record/utc_time.h"
 #include "bench/record/verdict_dump.h"
+#include "bench/run/heartbeat.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "reports/run_video.h"
@@ -36,6 +36,7 @@ struct RunArguments {
   std::string out;
   std::string format;
   std::string rig;
+  std::string heartbeat;
   int max_frames = 0;
   double speed = 1.0;
   std::vector<std::string> dumps;
@@ -105,9 +106,12 @@ struct Executed {
 
 Executed execute(const SensorStream& stream, const RunArguments& arguments, const PlannedRun& planned) {
   const std::size_t total = stream.info().frame_times.size();
+  const std::optional<Heartbeat> heartbeat =
+      arguments.heartbeat.empty() ? std::nullopt : std::make_optional<Heartbeat>(arguments.heartbeat);
   ProgressLine progress(stream.info().name + " " + planned.variant, total, "frames");
   const auto on_update = [&](const OdometryUpdate& update) {
     log_update(update);
+    if (heartbeat) heartbeat->beat(update.frame_id);
     progress.update(static_cast<std::size_t>(update.frame_id) + 1);
   };
   VerdictDump verdicts;
@@ -225,6 +229,8 @@ Command run_command() {
                    &arguments->dumps},
                   {"--video", "Also write annotated pictures and video.mp4 into this folder",
                    &arguments->video},
+                  {"--heartbeat", "File that holds the number of the last finished frame",
+                   &arguments->heartbeat},
                   {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
       .action = [arguments] { return run(*arguments); },
       .subcommands = {}};

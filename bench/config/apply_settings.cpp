@@ -2,12 +2,14 @@
 #include "bench/config/apply_settings.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "bench/config/field_walk.h"
 #include "bench/config/spelling.h"
 #include "bench/plan/bench_plan.h"
+#include "bench/systems/external_system.h"
 #include "core/base/error.h"
 #include "core/pipeline/odometry_config.h"
 
@@ -61,6 +63,14 @@ struct Assign {
     member = value_as<std::vector<std::string>>(setting, "a list of strings");
   }
 
+  void operator()(std::vector<int>& member) const {
+    member.clear();
+    for (const double number : value_as<std::vector<double>>(setting, "a list of whole numbers")) {
+      if (number != std::floor(number)) throw bad_value(setting, "must be a list of whole numbers");
+      member.push_back(static_cast<int>(number_within(number, setting, bounds)));
+    }
+  }
+
   template <ConfigEnum Enum>
   void operator()(Enum& member) const {
     std::string choices;
@@ -111,5 +121,6 @@ Config with_settings(Config config, std::span<const Setting> settings) {
 
 template OdometryConfig with_settings(OdometryConfig config, std::span<const Setting> settings);
 template BenchPlan with_settings(BenchPlan config, std::span<const Setting> settings);
+template ExternalSystem with_settings(ExternalSystem config, std::span<const Setting> settings);
 
 }  // namespace stillpoint

@@ -22,8 +22,8 @@ template <class T>
 concept ConfigEnum = std::is_enum_v<T>;
 
 template <class T>
-concept ConfigSection =
-    std::is_class_v<T> && !std::is_same_v<T, std::string> && !std::is_same_v<T, std::vector<std::string>>;
+concept ConfigSection = std::is_class_v<T> && !std::is_same_v<T, std::string> &&
+                        !std::is_same_v<T, std::vector<std::string>> && !std::is_same_v<T, std::vector<int>>;
 
 /// Calls `leaf(key, member, bounds)` for every member that is no section, in the order of the field lists.
 template <class Config, class Leaf>

@@ -24,7 +24,7 @@ struct SettingReader {
   [[nodiscard]] InputError unsupported(const std::string& key, const toml::node& node) const {
     return {file, static_cast<long>(node.source().begin.line),
             "\"" + key + "\" is of type " + type_name(node) +
-                "; use true or false, a number, a string or a list of strings"};
+                "; use true or false, a number, a string, or a list of strings or of numbers"};
   }
 
   [[nodiscard]] std::vector<std::string> strings_of(const std::string& key, const toml::array& array) const {
@@ -36,12 +36,23 @@ struct SettingReader {
     return strings;
   }
 
+  [[nodiscard]] std::vector<double> numbers_of(const std::string& key, const toml::array& array) const {
+    std::vector<double> numbers;
+    for (const toml::node& element : array) {
+      if (!element.is_number()) throw unsupported(key, element);
+      numbers.push_back(element.value<double>().value());
+    }
+    return numbers;
+  }
+
   [[nodiscard]] SettingValue value_of(const std::string& key, const toml::node& node) const {
     if (const auto* boolean = node.as_boolean()) return boolean->get();
     if (const auto* integer = node.as_integer()) return integer->get();
     if (const auto* number = node.as_floating_point()) return number->get();
     if (const auto* text = node.as_string()) return text->get();
-    if (const auto* array = node.as_array()) return strings_of(key, *array);
+    const auto* array = node.as_array();
+    if (array != nullptr && !array->empty() && array->front().is_number()) return numbers_of(key, *array);
+    if (array != nullptr) return strings_of(key, *array);
     throw unsupported(key, node);
   }
 

@@ -10,7 +10,8 @@
 
 namespace stillpoint {
 
-using SettingValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
+using SettingValue =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>, std::vector<double>>;
 
 /// One `key = value`, and where it was written.
 struct Setting {
@@ -23,6 +24,7 @@ struct Setting {
 /// Takes a TOML text apart, in the order of its lines.
 /// @param file name of the text in messages
 /// @throws InputError if the text is no TOML, or a value is neither bool, number, string nor list of strings
+/// or of numbers
 [[nodiscard]] std::vector<Setting> parse_settings(std::string_view text, const std::string& file);
 
 /// Takes `key=value` from a command line apart; a value that is no TOML is taken as a bare string.

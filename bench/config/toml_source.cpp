@@ -15,11 +15,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string root_of(TomlFamily family) {
-  return family == TomlFamily::kConfig ? "bench/configs/" : "bench/plans/";
-}
+/// Where the files of a family lie, and what one is called.
+struct FamilyPlace {
+  std::string root;
+  std::string kind;
+};
 
-std::string kind_of(TomlFamily family) { return family == TomlFamily::kConfig ? "config" : "plan"; }
+FamilyPlace place_of(TomlFamily family) {
+  switch (family) {
+    case TomlFamily::kConfig:
+      return {"bench/configs/", "config"};
+    case TomlFamily::kPlan:
+      return {"bench/plans/", "plan"};
+    case TomlFamily::kSystem:
+      return {"bench/systems/", "system"};
+    case TomlFamily::kPublished:
+      return {"reports/published/", "published table"};
+  }
+  return {};
+}
 
 TomlSource read_file(const fs::path& path) {
   std::ifstream file(path);
@@ -46,7 +60,7 @@ bool names(const std::string& name, const std::string& embedded) {
 }  // namespace
 
 std::vector<std::string> embedded_names(TomlFamily family) {
-  const std::string root = root_of(family);
+  const std::string root = place_of(family).root;
   std::vector<std::string> result;
   for (const EmbeddedFile& file : embedded_files()) {
     if (!file.path.starts_with(root)) continue;
@@ -59,9 +73,9 @@ TomlSource find_toml(const std::string& name, TomlFamily family) {
   if (name.ends_with(".toml")) return read_file(name);
   const std::vector<std::string> known = embedded_names(family);
   for (const std::string& candidate : known) {
-    if (names(name, candidate)) return *embedded_at(root_of(family) + candidate + ".toml");
+    if (names(name, candidate)) return *embedded_at(place_of(family).root + candidate + ".toml");
   }
-  throw InputError(kind_of(family) + " \"" + name + "\"",
+  throw InputError(place_of(family).kind + " \"" + name + "\"",
                    "there is none of this name" + suggestion(name, known));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Finds configs and plans by name among the embedded files, or by path on disk.
+/// Finds configs, plans, systems and published tables by name among the embedded files, or by path on disk.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ struct TomlSource {
   bool embedded = false;
 };
 
-/// The two families of files, by the folder they live in.
-enum class TomlFamily { kConfig, kPlan };
+/// The families of files, by the folder they live in.
+enum class TomlFamily { kConfig, kPlan, kSystem, kPublished };
 
 /// A name that ends in ".toml" is a file on disk; any other is embedded, with or without its folder
 /// ("wo_circular_mask" and "ablations/wo_circular_mask" are the same).

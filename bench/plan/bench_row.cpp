@@ -1,50 +1,110 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/plan/bench_row.h"
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <unordered_map>
 
-#include "core/base/error.h"
-#include "eval/io/text_reader.h"
+#include <fmt/format.h>
+
+#include "eval/metrics/statistics.h"
 
 namespace stillpoint {
 namespace {
 
-using Json = nlohmann::json;
+/// The runs that a row is made of.
+struct Group {
+  const PlannedRun* first = nullptr;
+  std::vector<const StoredRun*> runs;
+};
 
-std::optional<double> number(const Json& json, std::string_view key) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_number()) return std::nullopt;
-  return found->get<double>();
+using GroupKey = std::tuple<std::string, std::string, std::string, double>;
+
+/// Groups in the order of their first runs.
+std::vector<Group> groups_of(const PlanMatrix& matrix,
+                             const std::unordered_map<std::string, StoredRun>& stored) {
+  std::vector<Group> groups;
+  std::map<GroupKey, std::size_t> index;
+  for (const PlannedRun& run : matrix.runs) {
+    const RunIdentity& identity = run.identity;
+    const GroupKey key{identity.sequence, identity.variant, identity.axis, identity.axis_value};
+    const auto [place, is_new] = index.insert({key, groups.size()});
+    if (is_new) groups.push_back({.first = &run, .runs = {}});
+    const auto found = stored.find(run_key(identity));
+    if (found != stored.end()) groups[place->second].runs.push_back(&found->second);
+  }
+  return groups;
 }
 
-void read_timings(BenchRow& row, const Json& timings) {
-  for (std::size_t i = 0; i < kModuleCount; ++i) {
-    const std::string name(module_name(static_cast<Module>(i)));
-    for (const char* group : {"modules", "threads"}) {
-      const Json& table = timings.at(group);
-      if (table.contains(name)) row.mean_ms[i] = number(table.at(name), "mean");
+std::optional<double> median_of(const std::vector<const StoredRun*>& runs, std::string_view metric) {
+  std::vector<double> values;
+  for (const StoredRun* run : runs) {
+    if (const std::optional<double> value = metric_value(*run, metric)) values.push_back(*value);
+  }
+  return percentile(values, 0.5);
+}
+
+std::optional<double> median_cost(const std::vector<const StoredRun*>& runs, std::string_view module) {
+  std::vector<double> values;
+  for (const StoredRun* run : runs) {
+    for (const ModuleCost& cost : run->costs) {
+      if (cost.module == module) values.push_back(cost.mean_ms);
     }
   }
+  return percentile(values, 0.5);
+}
+
+/// What the reader must know besides the numbers.
+void set_status(BenchRow& row, const std::vector<const StoredRun*>& runs, const std::string& missing) {
+  row.status = !missing.empty() ? "skipped" : runs.empty() ? "not made" : "ok";
+  row.reason = missing;
+  for (const StoredRun* run : runs) {
+    if (run->outcome != Outcome::kOk && row.reason.empty()) {
+      row.status = outcome_name(run->outcome);
+      row.reason = run->detail;
+    }
+  }
+  const std::optional<double> load = median_of(runs, "other_load");
+  if (row.reason.empty() && median_of(runs, "quiet") == 0.0 && load) {
+    row.reason = fmt::format("the machine was not quiet: {:.0f} % of it went to others", 100.0 * *load);
+  }
+}
+
+BenchRow row_of(const Group& group, const std::string& missing) {
+  const RunIdentity& identity = group.first->identity;
+  BenchRow row;
+  row.sequence = identity.sequence;
+  row.variant = identity.variant;
+  if (!identity.axis.empty()) row.sweep = fmt::format("{} = {}", identity.axis, identity.axis_value);
+  set_status(row, group.runs, missing);
+  std::vector<const StoredRun*> good;
+  std::copy_if(group.runs.begin(), group.runs.end(), std::back_inserter(good),
+               [](const StoredRun* run) { return run->outcome == Outcome::kOk; });
+  row.runs = group.runs.size();
+  row.good_runs = good.size();
+  row.ate_rmse_m = median_of(good, "ate_rmse_m");
+  row.rpe_trans_rmse_m_per_s = median_of(good, "rpe_trans_rmse_m_per_s");
+  row.rpe_rot_rmse_deg_per_s = median_of(good, "rpe_rot_rmse_deg_per_s");
+  row.correct_rate = median_of(good, "correct_rate");
+  row.coverage = median_of(good, "coverage");
+  row.first_pose_s = median_of(good, "first_pose_s");
+  for (std::size_t i = 0; i < kModuleCount; ++i) {
+    row.mean_ms[i] = median_cost(good, module_name(static_cast<Module>(i)));
+  }
+  return row;
 }
 
 }  // namespace
 
-BenchRow read_result(const std::filesystem::path& result_file, BenchRow row) {
-  try {
-    const Json json = Json::parse(read_text_file(result_file));
-    row.status = json.at("status").get<std::string>();
-    if (json.at("failure").is_string()) row.reason = json.at("failure").get<std::string>();
-    row.ate_rmse_m = number(json, "ate_rmse_m");
-    row.rpe_trans_rmse_m_per_s = number(json, "rpe_trans_rmse_m_per_s");
-    row.rpe_rot_rmse_deg_per_s = number(json, "rpe_rot_rmse_deg_per_s");
-    row.correct_rate = number(json, "correct_rate");
-    row.coverage = number(json, "coverage");
-    row.first_pose_s = number(json, "first_pose_s");
-    read_timings(row, json.at("timings"));
-    return row;
-  } catch (const Json::exception& error) {
-    throw InputError(result_file.string(), std::string("is no result file: ") + error.what());
+std::vector<BenchRow> plan_rows(const PlanMatrix& matrix, const Store& store) {
+  std::unordered_map<std::string, StoredRun> stored;
+  for (StoredRun& run : store.runs()) stored[run.key] = std::move(run);
+  std::vector<BenchRow> rows;
+  for (const Group& group : groups_of(matrix, stored)) {
+    rows.push_back(row_of(group, matrix.sequences[group.first->sequence].missing));
   }
+  return rows;
 }
 
 }  // namespace stillpoint

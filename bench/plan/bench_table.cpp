@@ -39,45 +39,69 @@ std::vector<TimedColumn> present_columns(std::span<const BenchRow> rows) {
   return present;
 }
 
-Cells header(const std::vector<TimedColumn>& columns) {
-  Cells cells = {"sequence",    "variant", "status",   "ATE m",       "T.RPE m/s",
-                 "R.RPE deg/s", "CR",      "coverage", "first pose s"};
-  for (const TimedColumn& column : columns) cells.push_back(std::string(column.title) + " ms");
+/// Which columns a table has.
+struct Columns {
+  bool sweep = false;  ///< a point of a sweep
+  bool runs = false;   ///< how many runs a number is the median of
+  std::vector<TimedColumn> timed;
+
+  /// Names stand on the left.
+  [[nodiscard]] std::size_t names() const { return sweep ? 4 : 3; }
+};
+
+Columns columns_of(std::span<const BenchRow> rows) {
+  Columns columns{.timed = present_columns(rows)};
+  for (const BenchRow& row : rows) {
+    columns.sweep |= !row.sweep.empty();
+    columns.runs |= row.runs > 1;
+  }
+  return columns;
+}
+
+Cells header(const Columns& columns) {
+  Cells cells = {"sequence", "variant"};
+  if (columns.sweep) cells.emplace_back("sweep");
+  cells.emplace_back("status");
+  if (columns.runs) cells.emplace_back("good runs");
+  for (const char* title : {"ATE m", "T.RPE m/s", "R.RPE deg/s", "CR", "coverage", "first pose s"}) {
+    cells.emplace_back(title);
+  }
+  for (const TimedColumn& column : columns.timed) cells.push_back(std::string(column.title) + " ms");
   return cells;
 }
 
-Cells cells_of(const BenchRow& row, const std::vector<TimedColumn>& columns) {
-  Cells cells = {row.sequence,
-                 row.variant,
-                 row.status,
-                 cell(row.ate_rmse_m, 4),
-                 cell(row.rpe_trans_rmse_m_per_s, 4),
-                 cell(row.rpe_rot_rmse_deg_per_s, 3),
-                 cell(row.correct_rate, 3),
-                 cell(row.coverage, 3),
-                 cell(row.first_pose_s, 2)};
-  for (const TimedColumn& column : columns) {
+Cells cells_of(const BenchRow& row, const Columns& columns) {
+  Cells cells = {row.sequence, row.variant};
+  if (columns.sweep) cells.push_back(row.sweep);
+  cells.push_back(row.status);
+  if (columns.runs) cells.push_back(fmt::format("{} of {}", row.good_runs, row.runs));
+  const Cells numbers = {cell(row.ate_rmse_m, 4),
+                         cell(row.rpe_trans_rmse_m_per_s, 4),
+                         cell(row.rpe_rot_rmse_deg_per_s, 3),
+                         cell(row.correct_rate, 3),
+                         cell(row.coverage, 3),
+                         cell(row.first_pose_s, 2)};
+  cells.insert(cells.end(), numbers.begin(), numbers.end());
+  for (const TimedColumn& column : columns.timed) {
     cells.push_back(cell(row.mean_ms[static_cast<std::size_t>(column.module)], 2));
   }
   return cells;
 }
 
 /// Names to the left, numbers to the right.
-constexpr std::size_t kNameColumns = 3;
-
-std::string line(const Cells& cells, const std::vector<std::size_t>& widths) {
+std::string line(const Cells& cells, const std::vector<std::size_t>& widths, std::size_t names) {
   std::string text = "|";
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    text += i < kNameColumns ? fmt::format(" {:<{}} |", cells[i], widths[i])
-                             : fmt::format(" {:>{}} |", cells[i], widths[i]);
+    text += i < names ? fmt::format(" {:<{}} |", cells[i], widths[i])
+                      : fmt::format(" {:>{}} |", cells[i], widths[i]);
   }
   return text + "\n";
 }
 
-std::string rule(const std::vector<std::size_t>& widths) {
+std::string rule(const std::vector<std::size_t>& widths, std::size_t names) {
   std::string text = "|";
   for (std::size_t i = 0; i < widths.size(); ++i) {
-    text += std::string(widths[i] + 1, '-') + (i < kNameColumns ? "-|" : ":|");
+    text += std::string(widths[i] + 1, '-') + (i < names ? "-|" : ":|");
   }
   return text + "\n";
 }
@@ -93,8 +117,11 @@ nlohmann::ordered_json row_json(const BenchRow& row) {
   }
   return {{"sequence", row.sequence},
           {"variant", row.variant},
+          {"sweep", row.sweep},
           {"status", row.status},
           {"reason", row.reason},
+          {"runs", row.runs},
+          {"good_runs", row.good_runs},
           {"ate_rmse_m", number_or_null(row.ate_rmse_m)},
           {"rpe_trans_rmse_m_per_s", number_or_null(row.rpe_trans_rmse_m_per_s)},
           {"rpe_rot_rmse_deg_per_s", number_or_null(row.rpe_rot_rmse_deg_per_s)},
@@ -107,18 +134,19 @@ nlohmann::ordered_json row_json(const BenchRow& row) {
 }  // namespace
 
 std::string markdown_table(std::span<const BenchRow> rows) {
-  const std::vector<TimedColumn> columns = present_columns(rows);
+  const Columns columns = columns_of(rows);
   std::vector<Cells> lines = {header(columns)};
   for (const BenchRow& row : rows) lines.push_back(cells_of(row, columns));
   std::vector<std::size_t> widths(lines.front().size(), 0);
   for (const Cells& cells : lines) {
     for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
   }
-  std::string text = line(lines.front(), widths) + rule(widths);
-  for (std::size_t i = 1; i < lines.size(); ++i) text += line(lines[i], widths);
+  std::string text = line(lines.front(), widths, columns.names()) + rule(widths, columns.names());
+  for (std::size_t i = 1; i < lines.size(); ++i) text += line(lines[i], widths, columns.names());
   for (const BenchRow& row : rows) {
     if (!row.reason.empty())
-      text += fmt::format("\n{} {} {}: {}\n", row.sequence, row.variant, row.status, row.reason);
+      text += fmt::format("\n{} {}{}{} {}: {}\n", row.sequence, row.variant, row.sweep.empty() ? "" : " ",
+                          row.sweep, row.status, row.reason);
   }
   return text;
 }

@@ -2,107 +2,196 @@
 #include "bench/plan/plan_runner.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <deque>
+#include <map>
+#include <set>
 
-#include "bench/plan/child_process.h"
+#include <poll.h>
+
+#include "bench/plan/run_outcome.h"
+#include "bench/process/machine_load.h"
+#include "bench/process/process_pool.h"
+#include "bench/systems/external_run.h"
+#include "bench/systems/own_odometry.h"
 #include "core/base/error.h"
-#include "datasets/synthetic/sequence_cache.h"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFirstSignalCode = 128;
-constexpr std::string_view kErrorPrefix = "stillpoint: error: ";
+constexpr int kElsewherePatienceMs = 200;
 
-BenchRow failed_row(BenchRow row, const std::string& status, const std::string& reason) {
-  row.status = status;
-  row.reason = reason;
-  return row;
-}
-
-std::string reason_of(const ChildResult& child) {
-  if (child.exit_code > kFirstSignalCode) {
-    return "ended by signal " + std::to_string(child.exit_code - kFirstSignalCode);
+/// One call of `run_plan`.
+class PlanRunner {
+ public:
+  PlanRunner(const PlanMatrix& matrix, Journal& journal, const PlanOptions& options, const PlanHooks& hooks)
+      : matrix_(matrix),
+        journal_(journal),
+        hooks_(hooks),
+        pool_(hooks.stop_requested),
+        jobs_(matrix.plan.kind == RunKind::kTiming ? 1 : std::max(1, options.jobs)) {
+    for (const ExternalSystem& system : matrix.systems) external_.emplace_back(system);
+    for (std::size_t i = 0; i < matrix.runs.size(); ++i) {
+      const bool missing = !sequence_of(i).missing.empty();
+      missing ? static_cast<void>(++report_.missing) : queue_.push_back(i);
+    }
   }
-  const bool is_error = child.last_message.starts_with(kErrorPrefix);
-  return is_error ? child.last_message.substr(kErrorPrefix.size()) : child.last_message;
-}
 
-bool stopped(const PlanHooks& hooks) { return hooks.stop_requested && hooks.stop_requested(); }
+  PlanReport run() {
+    while (true) {
+      while (!stopped() && !queue_.empty() && pool_.running() < static_cast<std::size_t>(jobs_)) begin_next();
+      if (const auto ended = pool_.wait_next()) {
+        complete(ended->first, ended->second);
+      } else if (stopped() || (queue_.empty() && elsewhere_.empty())) {
+        break;
+      } else if (queue_.empty()) {
+        poll(nullptr, 0, kElsewherePatienceMs);
+        queue_.swap(elsewhere_);
+      }
+    }
+    report_.interrupted = stopped();
+    return report_;
+  }
 
-/// Runs one variant on a sequence folder in a child process.
-BenchRow run_one(const fs::path& sequence, const BenchRow& row, const fs::path& out, const PlanHooks& hooks) {
-  hooks.on_step("run " + row.sequence + " " + row.variant);
-  const fs::path folder = out / row.sequence / folder_name(row.variant);
-  fs::remove(folder / "result.json");
-  const ChildResult child = run_self(
-      {"run", sequence.string(), "--variant", row.variant, "--out", folder.string()}, hooks.stop_requested);
-  if (fs::exists(folder / "result.json")) return read_result(folder / "result.json", row);
-  return failed_row(row, "failed", reason_of(child));
-}
+ private:
+  [[nodiscard]] bool stopped() const { return hooks_.stop_requested && hooks_.stop_requested(); }
+  [[nodiscard]] const RunIdentity& identity_of(std::size_t run) const { return matrix_.runs[run].identity; }
+  [[nodiscard]] const PlanSequence& sequence_of(std::size_t run) const {
+    return matrix_.sequences[matrix_.runs[run].sequence];
+  }
+  [[nodiscard]] const SlamSystem& system_of(std::size_t run) const {
+    if (identity_of(run).mode == "external") return external_[matrix_.runs[run].system];
+    return own_;
+  }
 
-/// Where a sequence lies, or why it takes no part.
-struct Located {
-  std::string name;
-  fs::path folder;
-  std::string missing_status;  ///< of its rows, when the folder is empty
-  std::string missing_reason;
+  void count(std::size_t& counter) {
+    ++counter;
+    if (hooks_.on_progress)
+      hooks_.on_progress(report_.made + report_.kept, matrix_.runs.size() - report_.missing);
+  }
+
+  void begin_next() {
+    const std::size_t run = queue_.front();
+    queue_.pop_front();
+    if (journal_.is_done(run_key(identity_of(run)))) return count(report_.kept);
+    try {
+      const fs::path folder = folder_of(run);
+      if (folder.empty()) return;  // the rendering was stopped
+      warm_up(run, folder);
+      if (claim(run)) start(run, folder);
+    } catch (const InputError& error) {
+      enter_bad_data(run, error);
+    }
+  }
+
+  /// Claims a run if no one else has; tells why not otherwise.
+  bool claim(std::size_t run) {
+    const Claim claim = journal_.claim(identity_of(run));
+    if (claim == Claim::kDone) count(report_.kept);
+    if (claim == Claim::kElsewhere) elsewhere_.push_back(run);
+    if (claim == Claim::kGranted) claimed_.insert(run);
+    return claim == Claim::kGranted;
+  }
+
+  /// The run cannot even begin. An error of the store itself is the whole call's.
+  void enter_bad_data(std::size_t run, const InputError& error) {
+    if (!claimed_.contains(run) && !claim(run)) return;
+    journal_.finish(identity_of(run), {.outcome = Outcome::kBadData, .detail = error.what()});
+    claimed_.erase(run);
+    count(report_.made);
+  }
+
+  fs::path folder_of(std::size_t run) {
+    const std::size_t index = matrix_.runs[run].sequence;
+    if (const auto found = folders_.find(index); found != folders_.end()) return found->second;
+    const PlanSequence& sequence = sequence_of(run);
+    if (sequence.rendering && hooks_.on_step) hooks_.on_step("render " + sequence.name);
+    const fs::path folder =
+        sequence_folder(sequence, {.progress = hooks_.on_rendered, .stop_requested = hooks_.stop_requested});
+    if (!folder.empty()) folders_[index] = folder;
+    return folder;
+  }
+
+  [[nodiscard]] RunRequest request_of(std::size_t run, const fs::path& folder) const {
+    return {.run = matrix_.runs[run], .sequence = folder, .work = journal_.work_folder(identity_of(run))};
+  }
+
+  [[nodiscard]] ProcessSpec spec_of(std::size_t run, const fs::path& folder) const {
+    const BenchPlan& plan = matrix_.plan;
+    ProcessSpec spec = system_of(run).command(request_of(run, folder));
+    spec.time_limit_s = plan.time_limit_s;
+    if (plan.memory_limit_mb > 0) spec.memory_limit_bytes = std::int64_t{plan.memory_limit_mb} << 20;
+    spec.cores = processors_of(plan.cores);
+    return spec;
+  }
+
+  /// Runs that are thrown away: they bring files into memory and the processor to its clock.
+  void warm_up(std::size_t run, const fs::path& folder) {
+    if (matrix_.plan.kind != RunKind::kTiming || !warmed_up_.insert(matrix_.runs[run].sequence).second)
+      return;
+    for (int i = 0; i < matrix_.plan.warm_up && !stopped(); ++i) {
+      if (hooks_.on_step) hooks_.on_step("warm up " + sequence_of(run).name);
+      static_cast<void>(run_process(spec_of(run, folder)));
+      fs::remove_all(journal_.work_folder(identity_of(run)));
+    }
+  }
+
+  void start(std::size_t run, const fs::path& folder) {
+    if (hooks_.on_step) hooks_.on_step("run " + run_label(matrix_.plan, identity_of(run)));
+    const ProcessSpec spec = spec_of(run, folder);
+    load_before_ = machine_load();
+    pool_.start(run, spec);
+  }
+
+  void complete(std::size_t run, const ProcessEnd& end) {
+    claimed_.erase(run);
+    const RunRequest request = request_of(run, folders_.at(matrix_.runs[run].sequence));
+    if (stopped() && (end.signal != 0 || end.exit_code == kInterruptedCode)) {
+      journal_.release(identity_of(run));
+    } else {
+      RunOutcome outcome = outcome_of_run(system_of(run), request, end, matrix_.plan);
+      if (matrix_.plan.kind == RunKind::kTiming) {
+        append_load(outcome.metrics, load_before_, machine_load(), end.user_s + end.system_s);
+      }
+      journal_.finish(identity_of(run), outcome);
+      count(report_.made);
+    }
+    fs::remove_all(request.work);
+  }
+
+  static constexpr int kInterruptedCode = 130;  // of `stillpoint run`
+
+  const PlanMatrix& matrix_;
+  Journal& journal_;
+  const PlanHooks& hooks_;
+  ProcessPool pool_;
+  OwnOdometry own_;
+  std::vector<ExternalRun> external_;
+  int jobs_;
+  std::deque<std::size_t> queue_;
+  std::deque<std::size_t> elsewhere_;  ///< runs that another driver has begun
+  std::set<std::size_t> claimed_;
+  std::set<std::size_t> warmed_up_;          ///< sequences
+  std::map<std::size_t, fs::path> folders_;  ///< of sequences
+  MachineLoad load_before_;
+  PlanReport report_;
 };
-
-Located locate_rendered(const std::string& name, const RenderedGroup& group, const PlanHooks& hooks) {
-  hooks.on_step("render " + name);
-  try {
-    SynthRequest request = preset_request(name);
-    request.seconds = group.seconds;
-    request.seed = static_cast<std::uint64_t>(group.seed);
-    return {name,
-            cached_sequence(request, {.progress = hooks.on_rendered, .stop_requested = hooks.stop_requested}),
-            "interrupted", "the rendering was stopped"};
-  } catch (const InputError& error) {
-    return {name, {}, "failed", error.what()};
-  }
-}
-
-Located locate_recorded(const std::string& name) {
-  const fs::path folder = data_folder() / name;
-  if (fs::is_directory(folder)) return {name, folder, "", ""};
-  return {name, {}, "skipped", "no folder " + folder.string() + "; set STILLPOINT_DATA to where it is"};
-}
 
 }  // namespace
 
-fs::path data_folder() {
-  const char* set = std::getenv("STILLPOINT_DATA");
-  return set != nullptr ? fs::path(set) : fs::path("../shared/data");
-}
-
-std::string folder_name(std::string variant) {
-  std::replace(variant.begin(), variant.end(), '/', '-');
-  return variant;
-}
-
-std::vector<BenchRow> run_plan(const BenchPlan& plan, const fs::path& out, const PlanHooks& hooks) {
-  std::vector<BenchRow> rows;
-  const auto run_variants = [&](const Located& located, const std::vector<std::string>& variants) {
-    for (const std::string& variant : variants) {
-      if (stopped(hooks)) return;
-      BenchRow row;
-      row.sequence = located.name;
-      row.variant = variant;
-      rows.push_back(located.folder.empty() ? failed_row(row, located.missing_status, located.missing_reason)
-                                            : run_one(located.folder, row, out, hooks));
-    }
-  };
-  for (const std::string& name : plan.rendered.sequences) {
-    if (stopped(hooks)) return rows;
-    run_variants(locate_rendered(name, plan.rendered, hooks), plan.rendered.variants);
+PlanReport run_plan(const PlanMatrix& matrix, Journal& journal, const PlanOptions& options,
+                    const PlanHooks& hooks) {
+  std::vector<Outcome> again = {Outcome::kBadData};
+  if (options.retry) {
+    again = {Outcome::kLost, Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory, Outcome::kBadData};
   }
-  for (const std::string& name : plan.recorded.sequences) {
-    run_variants(locate_recorded(name), plan.recorded.variants);
-  }
-  return rows;
+  journal.forget(matrix.keys, again);
+  journal.record_plan({.name = matrix.plan.name,
+                       .title = matrix.plan.title,
+                       .text = matrix.plan.text,
+                       .run_keys = matrix.keys});
+  return PlanRunner(matrix, journal, options, hooks).run();
 }
 
 }  // namespace stillpoint

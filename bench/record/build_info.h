@@ -8,9 +8,10 @@
 namespace stillpoint {
 
 struct BuildInfo {
-  std::string version;     ///< of the project
-  std::string git_commit;  ///< of the sources; "unknown" outside a repository
-  bool git_dirty = false;  ///< the sources differed from the commit
+  std::string version;      ///< of the project
+  std::string git_commit;   ///< of the sources; "unknown" outside a repository
+  bool git_dirty = false;   ///< the sources differed from the commit
+  std::string git_changes;  ///< hash of these differences; empty without any
   std::string build_type;
   std::string compiler;
   std::string flags;

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include <sys/utsname.h>
+#include <nlohmann/json.hpp>
 
 namespace stillpoint {
 namespace {
@@ -36,6 +37,13 @@ HostInfo host_info() {
           .logical_cpus = std::thread::hardware_concurrency(),
           .kernel = kernel_release(),
           .governor = clock_governor()};
+}
+
+nlohmann::ordered_json host_json(const HostInfo& host) {
+  nlohmann::ordered_json json = {
+      {"cpu", host.cpu}, {"logical_cpus", host.logical_cpus}, {"kernel", host.kernel}};
+  json["governor"] = host.governor ? nlohmann::ordered_json(*host.governor) : nlohmann::ordered_json(nullptr);
+  return json;
 }
 
 }  // namespace stillpoint

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace stillpoint {
 
 struct HostInfo {
@@ -15,5 +17,8 @@ struct HostInfo {
 };
 
 [[nodiscard]] HostInfo host_info();
+
+/// As manifests have it.
+[[nodiscard]] nlohmann::ordered_json host_json(const HostInfo& host);
 
 }  // namespace stillpoint

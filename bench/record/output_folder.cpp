@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/record/output_folder.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -69,6 +70,11 @@ void require_writable(const fs::path& folder) {
   if (!fs::is_directory(existing))
     throw cannot_make(folder, std::make_error_code(std::errc::not_a_directory));
   TemporaryFiles(existing).write({"probe", "x"});
+}
+
+std::string folder_name(std::string variant) {
+  std::replace(variant.begin(), variant.end(), '/', '-');
+  return variant;
 }
 
 void write_files(const fs::path& folder, const std::vector<OutputFile>& files) {

@@ -18,6 +18,9 @@ struct OutputFile {
 /// @throws InputError if it cannot
 void require_writable(const std::filesystem::path& folder);
 
+/// A variant's name as the name of a folder.
+[[nodiscard]] std::string folder_name(std::string variant);
+
 /// Writes all files under temporary names and renames them when every one is complete.
 /// @throws InputError if the folder cannot be written or the disk is full; nothing new is left then
 void write_files(const std::filesystem::path& folder, const std::vector<OutputFile>& files);

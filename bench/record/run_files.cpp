@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_text.h"
+#include "bench/record/content_hash.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/score_text.h"
+#include "bench/store/timing_text.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/statistics.h"
 
@@ -119,14 +121,37 @@ std::string manifest_json(const RunManifest& manifest) {
   json["threads"] = {
       {"odometry", 1}, {"detection_pool", manifest.config.frontend.grid.threads}, {"decoding", 1}};
   json["build"] = {{"version", manifest.build.version},     {"git_commit", manifest.build.git_commit},
-                   {"git_dirty", manifest.build.git_dirty}, {"type", manifest.build.build_type},
-                   {"compiler", manifest.build.compiler},   {"flags", manifest.build.flags},
-                   {"packages", manifest.build.packages}};
-  json["host"] = {{"cpu", manifest.host.cpu},
-                  {"logical_cpus", manifest.host.logical_cpus},
-                  {"kernel", manifest.host.kernel},
-                  {"governor", manifest.host.governor ? Json(*manifest.host.governor) : Json(nullptr)}};
+                   {"git_dirty", manifest.build.git_dirty}, {"git_changes", manifest.build.git_changes},
+                   {"type", manifest.build.build_type},     {"compiler", manifest.build.compiler},
+                   {"flags", manifest.build.flags},         {"packages", manifest.build.packages}};
+  json["host"] = host_json(manifest.host);
   return json.dump(kIndent) + "\n";
+}
+
+std::string timings_csv(const OdometryRun& run) {
+  std::vector<TimingSample> samples;
+  for (std::size_t frame = 0; frame < run.frame_timings.size(); ++frame) {
+    for (std::size_t i = 0; i < kModuleCount; ++i) {
+      const auto module = static_cast<Module>(i);
+      const ModuleTime& time = run.frame_timings[frame][module];
+      if (time.calls == 0 || module == Module::kImageDecoding) continue;
+      samples.push_back({.frame = static_cast<std::int64_t>(frame),
+                         .module = std::string(module_name(module)),
+                         .ns = time.ns,
+                         .calls = time.calls});
+    }
+  }
+  return timing_text(samples);
+}
+
+std::string frames_csv(const OdometryRun& run) {
+  std::string text = "frame,tracking,dynamic,optimization\n";
+  for (std::size_t frame = 0; frame < run.frame_hashes.size(); ++frame) {
+    const StateHashes& hashes = run.frame_hashes[frame];
+    text += std::to_string(frame) + "," + hash_text(hashes.tracking) + "," + hash_text(hashes.dynamic) + "," +
+            hash_text(hashes.optimization) + "\n";
+  }
+  return text;
 }
 
 std::string trajectory_text(const RunResult& result) {
@@ -139,6 +164,8 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   std::vector<OutputFile> files = std::move(dumps);
   files.push_back({"trajectory.tum", trajectory_text(result)});
   files.push_back({"result.json", result_json(result)});
+  files.push_back({"timings.csv", timings_csv(result.run)});
+  files.push_back({"frames.csv", frames_csv(result.run)});
   files.push_back({"manifest.json", manifest_json(manifest)});
   write_files(folder, files);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The three files of a run: trajectory.tum, result.json, manifest.json.
+/// The files of a run: trajectory.tum, result.json, timings.csv, frames.csv, manifest.json.
 #pragma once
 
 #include <filesystem>
@@ -17,10 +17,17 @@ namespace stillpoint {
 /// Text of manifest.json.
 [[nodiscard]] std::string manifest_json(const RunManifest& manifest);
 
+/// Text of timings.csv: time that each picture spent in each module of the odometry, see
+/// bench/store/timing_text.h.
+[[nodiscard]] std::string timings_csv(const OdometryRun& run);
+
+/// Text of frames.csv: fingerprint of each module's state after each picture.
+[[nodiscard]] std::string frames_csv(const OdometryRun& run);
+
 /// Text of trajectory.tum; the first line of an unfinished one says so.
 [[nodiscard]] std::string trajectory_text(const RunResult& result);
 
-/// Writes the three files and the dumps that were asked for, together or not at all.
+/// Writes the files and the dumps that were asked for, together or not at all.
 /// @throws InputError if the folder cannot be written
 void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest,
                std::vector<OutputFile> dumps = {});

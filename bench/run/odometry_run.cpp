@@ -34,6 +34,8 @@ void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& 
     if (module != Module::kImageDecoding) run.timings.add(module, update.timings[module]);
   }
   run.dynamic_features += update.counters.dynamic_features;
+  run.frame_timings.push_back(update.timings);
+  run.frame_hashes.push_back(update.hashes);
   if (update.status != OdometryStatus::kTracking) return;
   const Timestamp t = info.frame_times[static_cast<std::size_t>(update.frame_id)];
   run.trajectory.poses.push_back({t, update.T_w_c});

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/run/timing_statistics.h"
 #include "bench/run/verdict_score.h"
@@ -28,8 +29,10 @@ struct OdometryRun {
   Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose for each picture that was tracked
   RunSummary summary;
   TimingSamples timings;
-  std::int64_t dynamic_features = 0;     ///< verdicts of a mover, summed over the pictures
-  std::optional<VerdictScore> verdicts;  ///< where the sequence has labels; not of "realtime"
+  std::int64_t dynamic_features = 0;         ///< verdicts of a mover, summed over the pictures
+  std::optional<VerdictScore> verdicts;      ///< where the sequence has labels; not of "realtime"
+  std::vector<ModuleTimings> frame_timings;  ///< of each picture that was asked for
+  std::vector<StateHashes> frame_hashes;     ///< likewise
   std::size_t frames_planned = 0;
   double wall_s = 0.0;  ///< from the first picture asked for to the last update
 };

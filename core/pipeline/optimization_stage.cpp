@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/pipeline/consistency_view.h"
+#include "core/pipeline/state_hash.h"
 
 namespace stillpoint {
 namespace {
@@ -48,6 +49,9 @@ OdometryUpdate OptimizationStage::process(const TrackedFrame& frame, const Detec
     estimator_.finish(update);
   }
   update.counters.dynamic_features = count_dynamic(dynamic_.verdicts);
+  update.hashes = {.tracking = state_hash(frame.features),
+                   .dynamic = state_hash(dynamic_.verdicts),
+                   .optimization = state_hash(update.state)};
   return update;
 }
 
@@ -55,6 +59,7 @@ OdometryUpdate OptimizationStage::predict(const TrackedFrame& frame) {
   OdometryUpdate update;
   dynamic_ = {};
   estimator_.predict(frame.id, frame.t, update);
+  update.hashes = {.tracking = state_hash(frame.features), .optimization = state_hash(update.state)};
   return update;
 }
 

@@ -21,6 +21,13 @@ struct OdometryCounters {
   bool reset = false;  ///< a failure was detected at this picture and the estimator begins anew
 };
 
+/// Fingerprints of what the modules hold after a picture, see core/pipeline/state_hash.h.
+struct StateHashes {
+  std::uint64_t tracking = 0;      ///< features
+  std::uint64_t dynamic = 0;       ///< verdicts
+  std::uint64_t optimization = 0;  ///< state
+};
+
 /// `state` is valid only while `status == kTracking`.
 struct OdometryUpdate {
   std::int64_t frame_id = 0;
@@ -29,6 +36,7 @@ struct OdometryUpdate {
   OdometryStatus status = OdometryStatus::kInitialising;
   double time_offset_s = 0.0;  ///< present estimate
   OdometryCounters counters;
+  StateHashes hashes;
   ModuleTimings timings;
 };
 

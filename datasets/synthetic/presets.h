@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/fields.h"
@@ -48,9 +49,11 @@ struct SynthRequest {
   std::filesystem::path imu_file;         ///< preset flight: its readings (EuRoC csv)
 };
 
-/// The list that printing and hashing walk: every field in a fixed order.
-template <class Visitor>
-void visit_fields(Visitor&& field, const ColorSensor& sensor) {
+/// The list that printing, hashing and changing walk: every field in a fixed order; the two file names are
+/// texts made on the way.
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, ColorSensor>
+void visit_fields(Visitor&& field, Config& sensor) {
   field("exposure_s", sensor.exposure_s);
   field("read_noise", sensor.read_noise);
   field("shot_noise", sensor.shot_noise);
@@ -58,8 +61,9 @@ void visit_fields(Visitor&& field, const ColorSensor& sensor) {
   field("exposure_swing", sensor.exposure_swing);
   field("exposure_period_s", sensor.exposure_period_s);
 }
-template <class Visitor>
-void visit_fields(Visitor&& field, const DepthSensor& sensor) {
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, DepthSensor>
+void visit_fields(Visitor&& field, Config& sensor) {
   field("noise_per_m", sensor.noise_per_m);
   field("correlated_share", sensor.correlated_share);
   field("correlation_px", sensor.correlation_px);
@@ -70,15 +74,17 @@ void visit_fields(Visitor&& field, const DepthSensor& sensor) {
   field("edge_dropout", sensor.edge_dropout);
   field("units_per_m", sensor.units_per_m);
 }
-template <class Visitor>
-void visit_fields(Visitor&& field, const ImuNoise& noise) {
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, ImuNoise>
+void visit_fields(Visitor&& field, Config& noise) {
   field("gyro_noise", noise.gyro_noise);
   field("accel_noise", noise.accel_noise);
   field("gyro_walk", noise.gyro_walk);
   field("accel_walk", noise.accel_walk);
 }
-template <class Visitor>
-void visit_fields(Visitor&& field, const ImuSensor& sensor) {
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, ImuSensor>
+void visit_fields(Visitor&& field, Config& sensor) {
   field("gyro_rate_hz", sensor.gyro_rate_hz);
   field("accel_rate_hz", sensor.accel_rate_hz);
   field("noise", sensor.noise);
@@ -86,16 +92,18 @@ void visit_fields(Visitor&& field, const ImuSensor& sensor) {
   field("accel_bias", sensor.accel_bias);
   field("time_offset_s", sensor.time_offset_s);
 }
-template <class Visitor>
-void visit_fields(Visitor&& field, const DetectorModel& model) {
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, DetectorModel>
+void visit_fields(Visitor&& field, Config& model) {
   field("miss_share", model.miss_share);
   field("burst_frames", model.burst_frames);
   field("jitter_share", model.jitter_share);
   field("false_share", model.false_share);
   field("min_height_px", model.min_height_px);
 }
-template <class Visitor>
-void visit_fields(Visitor&& field, const SynthRequest& request) {
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, SynthRequest>
+void visit_fields(Visitor&& field, Config& request) {
   field("preset", request.preset);
   field("seed", request.seed);
   field("seconds", request.seconds);

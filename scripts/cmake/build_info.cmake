@@ -3,6 +3,7 @@
 # Run at every build by: cmake -DROOT=... -DTEMPLATE=... -DOUTPUT=... -P build_info.cmake
 set(GIT_COMMIT "unknown")
 set(GIT_DIRTY "false")
+set(GIT_CHANGES "")
 find_program(GIT_PROGRAM git)
 if(GIT_PROGRAM)
   execute_process(COMMAND ${GIT_PROGRAM} -C ${ROOT} rev-parse HEAD
@@ -13,6 +14,9 @@ if(GIT_PROGRAM)
                     OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     if(changes)
       set(GIT_DIRTY "true")
+      execute_process(COMMAND ${GIT_PROGRAM} -C ${ROOT} diff HEAD OUTPUT_VARIABLE difference ERROR_QUIET)
+      string(SHA1 GIT_CHANGES "${changes}${difference}")
+      string(SUBSTRING "${GIT_CHANGES}" 0 12 GIT_CHANGES)
     endif()
   endif()
 endif()

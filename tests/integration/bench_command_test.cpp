@@ -14,13 +14,15 @@ namespace fs = std::filesystem;
 /// A plan over the rendered sequence, which stands in for a recorded one.
 std::string plan_text(const std::string& variants) {
   return "title = \"Test\"\n[recorded]\nsequences = [\"" + rendered_sequence().filename().string() +
-         "\", \"not_at_hand\"]\nvariants = [" + variants + "]\n";
+         "\", \"not_at_hand\"]\nvariants = [" + variants + "]\nrequired = false\n";
 }
 
 ProgramResult bench(const TemporaryFolder& folder, const std::string& variants, ProgramOptions options = {}) {
   const fs::path plan = folder.write("plan.toml", plan_text(variants));
   options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()};
-  return run_program({"bench", plan.string(), "--out", (folder.path() / "out").string()}, options);
+  return run_program({"bench", plan.string(), "--out", (folder.path() / "out").string(), "--store",
+                      (folder.path() / "store.sqlite").string()},
+                     options);
 }
 
 nlohmann::json rows_of(const TemporaryFolder& folder) {
@@ -53,13 +55,14 @@ TEST(BenchCommand, ShowsAFailedRunWithItsReason) {
       folder.write("plan.toml", "[recorded]\nsequences = [\"copy\"]\nvariants = [\"stillpoint\"]");
   ProgramOptions options;
   options.environment = {"STILLPOINT_DATA=" + folder.path().string()};
-  const ProgramResult result =
-      run_program({"bench", plan.string(), "--out", (folder.path() / "out").string()}, options);
+  const ProgramResult result = run_program({"bench", plan.string(), "--out", (folder.path() / "out").string(),
+                                            "--store", (folder.path() / "store.sqlite").string()},
+                                           options);
   EXPECT_EQ(result.exit_code, 1);
   const nlohmann::json rows = rows_of(folder);
-  EXPECT_EQ(rows[0]["status"], "failed");
+  EXPECT_EQ(rows[0]["status"], "bad_data");
   EXPECT_NE(rows[0]["reason"].get<std::string>().find("d400_gyroscope.txt"), std::string::npos);
-  EXPECT_NE(result.out.find("copy stillpoint failed: "), std::string::npos);
+  EXPECT_NE(result.out.find("copy stillpoint bad_data: "), std::string::npos);
 }
 
 TEST(BenchCommand, CtrlCLeavesAMarkedTableOfTheRunsSoFar) {
@@ -69,7 +72,7 @@ TEST(BenchCommand, CtrlCLeavesAMarkedTableOfTheRunsSoFar) {
   const ProgramResult result = bench(folder, "\"stillpoint\", \"vo\"", options);
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_NE(result.out.find("Test (interrupted: not every run was made)"), std::string::npos) << result.out;
-  EXPECT_EQ(rows_of(folder).size(), 1u);  // the run that was going on; those after it were not begun
+  EXPECT_NE(rows_of(folder)[1]["status"], "ok");  // the second run was not made
 }
 
 TEST(BenchCommand, RefusesAnUnknownPlan) {

@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(CommandLine, WrongUsage,
                          testing::Values(std::vector<std::string>{}, std::vector<std::string>{"walk"},
                                          std::vector<std::string>{"run"},
                                          std::vector<std::string>{"run", "a", "b"},
-                                         std::vector<std::string>{"run", "a", "--speed", "3"},
+                                         std::vector<std::string>{"run", "a", "--sped", "3"},
                                          std::vector<std::string>{"run", "a", "--max-frames", "many"}));
 
 TEST(ConfigCommand, ShowsTheResolvedValuesOfAVariant) {

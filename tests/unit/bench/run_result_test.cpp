@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/plan/bench_row.h"
+#include <nlohmann/json.hpp>
+
+#include "bench/record/result_values.h"
 #include "bench/record/run_files.h"
-#include "tests/support/temporary_folder.h"
 
 namespace stillpoint {
 namespace {
@@ -75,22 +76,23 @@ TEST(RunResult, ARunWithoutPosesFailedAndSaysWhy) {
   EXPECT_FALSE(result.score.ate_rmse_m.has_value());
 }
 
-TEST(RunResult, IsReadBackFromItsFileAsARow) {
+TEST(RunResult, IsReadBackFromItsFileAsMetricsAndCosts) {
   const SequenceInfo info = straight_sequence();
   OdometryRun run = perfect_run(info, kFrames);
   run.trajectory.poses.erase(run.trajectory.poses.begin(), run.trajectory.poses.begin() + 15);
   run.timings.add(Module::kWindowSolve, {.ns = 2'500'000, .calls = 1});
   run.timings.add(Module::kTrackingThread, {.ns = 1'500'000, .calls = 1});
-  const TemporaryFolder folder;
-  const auto file = folder.write("result.json", result_json(score_run(info, std::move(run))));
-  const BenchRow row = read_result(file, {});
-  EXPECT_EQ(row.status, "ok");
-  EXPECT_EQ(row.reason, "");
-  EXPECT_DOUBLE_EQ(row.coverage.value(), 0.75);      // 45 of 60
-  EXPECT_NEAR(row.first_pose_s.value(), 1.5, 1e-9);  // 15 frames of 0.1 s
-  EXPECT_DOUBLE_EQ(row.mean_ms[static_cast<std::size_t>(Module::kWindowSolve)].value(), 2.5);
-  EXPECT_DOUBLE_EQ(row.mean_ms[static_cast<std::size_t>(Module::kTrackingThread)].value(), 1.5);
-  EXPECT_FALSE(row.mean_ms[static_cast<std::size_t>(Module::kObjectDetection)].has_value());
+  const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, std::move(run))));
+  const StoredRun read{.metrics = score_metrics(json), .costs = module_costs(json["timings"])};
+  EXPECT_DOUBLE_EQ(metric_value(read, "coverage").value(), 0.75);      // 45 of 60
+  EXPECT_NEAR(metric_value(read, "first_pose_s").value(), 1.5, 1e-9);  // 15 frames of 0.1 s
+  EXPECT_FALSE(metric_value(read, "no_such_number").has_value());
+  ASSERT_EQ(read.costs.size(), 2u);
+  EXPECT_EQ(read.costs[0].module, "window_solve");
+  EXPECT_EQ(read.costs[0].per, "call");
+  EXPECT_DOUBLE_EQ(read.costs[0].mean_ms, 2.5);
+  EXPECT_EQ(read.costs[1].module, "tracking_thread");
+  EXPECT_EQ(read.costs[1].per, "frame");
 }
 
 }  // namespace

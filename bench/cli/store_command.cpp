@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/record/output_folder.h"
+#include "bench/store/maintenance.h"
+#include "bench/store/store.h"
+#include "core/base/error.h"
+#include "eval/io/text_reader.h"
+
+namespace stillpoint {
+namespace {
+
+struct StoreArguments {
+  std::string store = "build/bench/store.sqlite";
+  std::string run;
+  std::string file;
+};
+
+int list(const StoreArguments& arguments) {
+  const Store store(arguments.store);
+  for (const StoredRun& run : store.runs()) {
+    const RunIdentity& identity = run.identity;
+    const std::optional<double> ate = metric_value(run, "ate_rmse_m");
+    std::cout << fmt::format(
+        "{}  {}  {:<20} {:<24} seed {} repetition {}{}  {:<9} {}\n", run.key, identity.build.substr(0, 10),
+        identity.sequence, identity.variant, identity.seed, identity.repetition,
+        identity.axis.empty() ? "" : fmt::format(" {} = {}", identity.axis, identity.axis_value),
+        outcome_name(run.outcome), ate ? fmt::format("ATE {:.4f} m", *ate) : run.detail);
+  }
+  for (const StoredPlan& plan : store.plans()) {
+    std::cout << fmt::format("plan {}: {} runs\n", plan.name, plan.run_keys.size());
+  }
+  return kExitOk;
+}
+
+/// @param key or its beginning
+StoredRun find_run(const Store& store, const std::string& key) {
+  for (const StoredRun& run : store.runs()) {
+    if (run.key.starts_with(key)) return run;
+  }
+  throw InputError("run \"" + key + "\"",
+                   "is not in " + store.file().string() + "; see `stillpoint store list`");
+}
+
+int show(const StoreArguments& arguments) {
+  const Store store(arguments.store);
+  const StoredRun run = find_run(store, arguments.run);
+  std::cout << fmt::format("{} {} {}: {} {}\n{} to {}\n", run.key, run.identity.sequence,
+                           run.identity.variant, outcome_name(run.outcome), run.detail, run.started,
+                           run.ended);
+  for (const Metric& metric : run.metrics) {
+    std::cout << fmt::format("{:<28} {:.6g} {}  ({})\n", metric.name, metric.value, metric.unit,
+                             metric.recipe);
+  }
+  for (const ModuleCost& cost : run.costs) {
+    std::cout << fmt::format("{:<28} {:.3f} ms per {}, median {:.3f}, 95 % {:.3f}, max {:.3f}, {} calls\n",
+                             cost.module, cost.mean_ms, cost.per, cost.median_ms, cost.p95_ms, cost.max_ms,
+                             cost.calls);
+  }
+  for (const auto& [kind, blob] : run.blobs) std::cout << fmt::format("{:<28} {}\n", kind, blob);
+  std::cout << store.manifest(run);
+  return kExitOk;
+}
+
+/// Names of attachments as files; a kind without one is text.
+std::string file_name(const std::string& kind) {
+  if (kind == "trajectory") return "trajectory.tum";
+  if (kind == "timings" || kind == "frames") return kind + ".csv";
+  return kind + (kind == "result" ? ".json" : ".txt");
+}
+
+int extract(const StoreArguments& arguments) {
+  const Store store(arguments.store);
+  const StoredRun run = find_run(store, arguments.run);
+  std::vector<OutputFile> files = {{"manifest.json", store.manifest(run)}};
+  for (const auto& [kind, blob] : run.blobs) files.push_back({file_name(kind), store.attachment(run, kind)});
+  write_files(arguments.file, files);
+  for (const OutputFile& file : files)
+    std::cout << (std::filesystem::path(arguments.file) / file.name).string() << '\n';
+  return kExitOk;
+}
+
+int verify(const StoreArguments& arguments) {
+  const std::vector<std::string> faults = verify_store(arguments.store);
+  for (const std::string& fault : faults) std::cout << fault << '\n';
+  std::cout << (faults.empty() ? "the store is whole\n" : fmt::format("{} faults\n", faults.size()));
+  return faults.empty() ? kExitOk : kExitFindings;
+}
+
+int collect(const StoreArguments& arguments) {
+  const GarbageReport report = collect_garbage(arguments.store);
+  std::cout << fmt::format("{} files of {} bytes and {} manifests removed\n", report.files, report.bytes,
+                           report.manifests);
+  return kExitOk;
+}
+
+void print_merge(const MergeReport& report) {
+  std::cout << fmt::format("{} runs added, {} were there\n", report.added, report.present);
+}
+
+int merge(const StoreArguments& arguments) {
+  print_merge(merge_stores(arguments.file, arguments.store));
+  return kExitOk;
+}
+
+int export_to(const StoreArguments& arguments) {
+  const std::filesystem::path file = std::filesystem::absolute(arguments.file);
+  write_files(file.parent_path(), {{file.filename().string(), export_store(arguments.store)}});
+  return kExitOk;
+}
+
+int import_from(const StoreArguments& arguments) {
+  print_merge(import_store(read_text_file(arguments.file), arguments.file, arguments.store));
+  return kExitOk;
+}
+
+}  // namespace
+
+Command store_command() {
+  const auto arguments = std::make_shared<StoreArguments>();
+  const Option store{"--store", "The store [build/bench/store.sqlite]", &arguments->store};
+  const auto subcommand = [&](const std::string& name, const std::string& summary, const std::string& example,
+                              std::vector<Option> options, int (*action)(const StoreArguments&)) {
+    options.push_back(store);
+    return Command{.name = name,
+                   .summary = summary,
+                   .example = "store " + example,
+                   .options = std::move(options),
+                   .action = [arguments, action] { return action(*arguments); },
+                   .subcommands = {}};
+  };
+  return {.name = "store",
+          .summary = "Look into stores of runs, check them, and move runs between them",
+          .example = "store list --store build/bench/store.sqlite",
+          .options = {},
+          .action = {},
+          .subcommands = {
+              subcommand("list", "One line for each run", "list", {}, list),
+              subcommand("show", "Everything about one run", "show 8f18e31477d2f9b7",
+                         {{"KEY", "Key of the run, or its beginning", &arguments->run}}, show),
+              subcommand("extract", "Write trajectory, timings, result and manifest of one run as files",
+                         "extract 8f18e31477d2f9b7 /tmp/run",
+                         {{"KEY", "Key of the run, or its beginning", &arguments->run},
+                          {"DIR", "Folder to write into", &arguments->file}},
+                         extract),
+              subcommand("verify", "Check the database and every file; exit 1 if anything is wrong", "verify",
+                         {}, verify),
+              subcommand("gc", "Remove files that no run names any more", "gc", {}, collect),
+              subcommand("merge", "Add the runs of another store", "merge other.sqlite --store all.sqlite",
+                         {{"FROM", "The other store", &arguments->file}}, merge),
+              subcommand("export", "Write everything as one JSON file", "export runs.json",
+                         {{"FILE", "File to write", &arguments->file}}, export_to),
+              subcommand("import", "Add the runs of an exported file", "import runs.json",
+                         {{"FILE", "File to read", &arguments->file}}, import_from)}};
+}
+
+}  // namespace stillpoint

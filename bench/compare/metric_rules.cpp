@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/compare/metric_rules.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace stillpoint {
+namespace {
+
+// Margins: of accuracy, what a reader of a table would not call a difference; of costs, below what ten to
+// twenty pairs on a shared machine can tell. Floors: ground truth is no better.
+constexpr MetricRule kRules[] = {
+    {"ate_rmse_m", MetricFamily::kAccuracy, false, 0.05, 2e-4},
+    {"rpe_trans_rmse_m_per_s", MetricFamily::kAccuracy, false, 0.05, 2e-4},
+    {"rpe_rot_rmse_deg_per_s", MetricFamily::kAccuracy, false, 0.05, 5e-3},
+    {"correct_rate", MetricFamily::kAccuracy, true, 0.01, 0.0},
+    {"coverage", MetricFamily::kAccuracy, true, 0.01, 0.0},
+    {"ms", MetricFamily::kCost, false, 0.03, 0.01},
+    {"process_cpu_s", MetricFamily::kCost, false, 0.03, 0.02},
+    {"peak_memory_mb", MetricFamily::kCost, false, 0.05, 2.0},
+};
+
+}  // namespace
+
+std::optional<MetricRule> metric_rule(std::string_view name) {
+  const auto* found = std::find_if(std::begin(kRules), std::end(kRules),
+                                   [&](const MetricRule& rule) { return rule.name == name; });
+  return found == std::end(kRules) ? std::nullopt : std::optional(*found);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/plan/plan_matrix.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include "bench/config/config_text.h"
+
+namespace stillpoint {
+namespace {
+
+/// Builds the matrix sequence by sequence.
+class Expansion {
+ public:
+  Expansion(const BenchPlan& plan, std::string build) : build_(std::move(build)) {
+    matrix_.plan = plan;
+    for (const std::string& name : plan.systems) matrix_.systems.push_back(load_external_system(name));
+    for (const SweepAxis& axis : plan.sweep) {
+      for (const double value : axis.values) points_.push_back({axis.key, {value}});
+    }
+    if (points_.empty()) points_.push_back({});
+  }
+
+  PlanMatrix expand() && {
+    const BenchPlan& plan = matrix_.plan;
+    for (const std::string& preset : matching_presets(plan.rendered.sequences)) {
+      for (const int seed : plan.seeds) add_rendered(preset, seed);
+    }
+    for (const PlanSequence& sequence : recorded_sequences(plan.recorded)) {
+      matrix_.sequences.push_back(sequence);
+      for (const int seed : plan.seeds) add_recorded(seed);
+    }
+    return std::move(matrix_);
+  }
+
+ private:
+  /// Points of an axis of the rendering are sequences of their own; the others share one.
+  void add_rendered(const std::string& preset, int seed) {
+    std::string id;
+    for (const SweepAxis& point : points_) {
+      const bool of_rendering = point.key.starts_with("synth.");
+      PlanSequence sequence =
+          rendered_sequence(matrix_.plan, preset, seed, of_rendering ? point : SweepAxis{});
+      if (sequence.id != id) matrix_.sequences.push_back(sequence);
+      id = sequence.id;
+      add_repetitions(matrix_.plan.rendered.variants, seed, point);
+    }
+  }
+
+  void add_recorded(int seed) {
+    for (const SweepAxis& point : points_) {
+      if (!point.key.starts_with("synth.")) add_repetitions(matrix_.plan.recorded.variants, seed, point);
+    }
+  }
+
+  void add_repetitions(const std::vector<std::string>& own_variants, int seed, const SweepAxis& point) {
+    const std::vector<std::string>& variants = own_variants.empty() ? matrix_.plan.variants : own_variants;
+    for (int repetition = 1; repetition <= matrix_.plan.repetitions; ++repetition) {
+      RunIdentity identity = identity_of(seed, repetition, point);
+      for (const std::string& variant : variants) add_own(identity, variant);
+      const bool config_point = !point.key.empty() && !point.key.starts_with("synth.");
+      for (std::size_t i = 0; i < matrix_.systems.size() && !config_point; ++i) add_external(identity, i);
+    }
+  }
+
+  [[nodiscard]] RunIdentity identity_of(int seed, int repetition, const SweepAxis& point) const {
+    const PlanSequence& sequence = matrix_.sequences.back();
+    return {.sequence = sequence.name,
+            .sequence_id = sequence.id,
+            .mode = matrix_.plan.mode,
+            .kind = matrix_.plan.kind == RunKind::kTiming ? "timing" : "accuracy",
+            .cores = matrix_.plan.cores,
+            .seed = seed,
+            .repetition = repetition,
+            .axis = point.key,
+            .axis_value = point.key.empty() ? 0.0 : point.values.front()};
+  }
+
+  void add_own(RunIdentity identity, const std::string& variant) {
+    std::vector<std::string> settings = matrix_.plan.config_settings;
+    settings.push_back(fmt::format("seed={}", identity.seed));
+    if (!identity.axis.empty() && !identity.axis.starts_with("synth.")) {
+      settings.push_back(fmt::format("{}={}", identity.axis, identity.axis_value));
+    }
+    ConfigRequest config{matrix_.plan.base, variant, settings};
+    identity.variant = variant;
+    identity.build = build_;
+    identity.config_hash = config_hash(load_config(config));
+    matrix_.runs.push_back({.sequence = matrix_.sequences.size() - 1,
+                            .identity = std::move(identity),
+                            .config = std::move(config),
+                            .system = 0});
+  }
+
+  void add_external(RunIdentity identity, std::size_t system) {
+    identity.system = matrix_.systems[system].name;
+    identity.variant = identity.system;
+    identity.build = matrix_.systems[system].version;
+    identity.config_hash = matrix_.systems[system].hash;
+    identity.mode = "external";
+    matrix_.runs.push_back({.sequence = matrix_.sequences.size() - 1,
+                            .identity = std::move(identity),
+                            .config = {},
+                            .system = system});
+  }
+
+  std::string build_;
+  PlanMatrix matrix_;
+  std::vector<SweepAxis> points_;
+};
+
+bool passes(const RunIdentity& identity, const std::vector<std::string>& filters) {
+  return std::all_of(filters.begin(), filters.end(), [&](const std::string& filter) {
+    const auto matches = [&](const std::string& name) {
+      return fnmatch(filter.c_str(), name.c_str(), 0) == 0;
+    };
+    return matches(identity.sequence) || matches(identity.variant) || matches(identity.system);
+  });
+}
+
+}  // namespace
+
+PlanMatrix expand_plan(const BenchPlan& plan, const std::string& build,
+                       const std::vector<std::string>& filters) {
+  PlanMatrix matrix = Expansion(plan, build).expand();
+  for (const PlannedRun& run : matrix.runs) matrix.keys.push_back(run_key(run.identity));
+  std::erase_if(matrix.runs, [&](const PlannedRun& run) { return !passes(run.identity, filters); });
+  return matrix;
+}
+
+std::string run_label(const BenchPlan& plan, const RunIdentity& identity) {
+  std::string label = identity.sequence + " " + identity.variant;
+  if (plan.seeds.size() > 1) label += fmt::format(" seed {}", identity.seed);
+  if (plan.repetitions > 1) label += fmt::format(" repetition {}", identity.repetition);
+  if (!identity.axis.empty()) label += fmt::format(" {} = {}", identity.axis, identity.axis_value);
+  return label;
+}
+
+}  // namespace stillpoint

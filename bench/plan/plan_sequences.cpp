@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/plan/plan_sequences.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+
+#include <fnmatch.h>
+
+#include "bench/config/spelling.h"
+#include "bench/plan/sequence_registry.h"
+#include "bench/plan/synth_settings.h"
+#include "bench/record/sequence_checksum.h"
+#include "core/base/error.h"
+#include "datasets/synthetic/request_text.h"
+#include "datasets/synthetic/sequence_cache.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kSynthPrefixLength = 6;  // "synth."
+
+bool is_glob(const std::string& pattern) { return pattern.find_first_of("*?[") != std::string::npos; }
+
+bool matches(const std::string& pattern, const std::string& name) {
+  return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+}
+
+/// Recorded sequences by name. Registered ones take precedence over folders of the same name.
+std::map<std::string, RegisteredSequence> known_sequences() {
+  std::map<std::string, RegisteredSequence> known;
+  for (const RegisteredSequence& sequence : read_registry(registry_file())) known[sequence.name] = sequence;
+  if (!fs::is_directory(data_folder())) return known;
+  for (const fs::directory_entry& entry : fs::directory_iterator(data_folder())) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_directory())
+      known.insert({name, {.name = name, .folder = entry.path(), .checksum = "", .format = ""}});
+  }
+  return known;
+}
+
+PlanSequence checked(const RegisteredSequence& registered) {
+  if (!fs::is_directory(registered.folder)) {
+    throw InputError("sequence \"" + registered.name + "\"",
+                     "its folder " + registered.folder.string() +
+                         " has vanished; bring it back, or name it anew with `stillpoint data add`");
+  }
+  const std::string checksum = sequence_checksum(registered.folder);
+  if (!registered.checksum.empty() && registered.checksum != checksum) {
+    throw InputError("sequence \"" + registered.name + "\"",
+                     "its files have the checksum " + checksum + " and had " + registered.checksum +
+                         " when it was registered; restore them, or accept them with `stillpoint data add`");
+  }
+  return {
+      .name = registered.name, .id = checksum, .rendering = {}, .folder = registered.folder, .missing = ""};
+}
+
+[[noreturn]] void throw_unknown(const std::string& pattern,
+                                const std::map<std::string, RegisteredSequence>& known) {
+  std::vector<std::string> names;
+  for (const auto& [name, sequence] : known) names.push_back(name);
+  throw InputError("sequence \"" + pattern + "\"",
+                   "is not registered, nor a folder below " + data_folder().string() +
+                       suggestion(pattern, names) +
+                       "; name it with `stillpoint data add NAME DIR`, or set STILLPOINT_DATA");
+}
+
+}  // namespace
+
+fs::path data_folder() {
+  const char* set = std::getenv("STILLPOINT_DATA");
+  return set != nullptr ? fs::path(set) : fs::path("../shared/data");
+}
+
+std::vector<std::string> matching_presets(const std::vector<std::string>& patterns) {
+  std::vector<std::string> found;
+  const std::vector<std::string> presets = preset_names();
+  for (const std::string& pattern : patterns) {
+    const std::size_t before = found.size();
+    std::copy_if(presets.begin(), presets.end(), std::back_inserter(found),
+                 [&](const std::string& name) { return matches(pattern, name); });
+    if (found.size() > before) continue;
+    throw InputError("sequence \"" + pattern + "\"", "matches no preset" + suggestion(pattern, presets));
+  }
+  return found;
+}
+
+PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset, int seed,
+                               const SweepAxis& axis) {
+  SynthRequest request = preset_request(preset);
+  request.seconds = plan.rendered.seconds;
+  request.seed = static_cast<std::uint64_t>(seed);
+  for (const SweepAxis& setting : plan.synth_settings) {
+    request = with_number(request, setting.key, setting.values.front());
+  }
+  if (!axis.key.empty())
+    request = with_number(request, axis.key.substr(kSynthPrefixLength), axis.values.front());
+  return {.name = preset,
+          .id = "synth-" + request_key(request),
+          .rendering = request,
+          .folder = {},
+          .missing = ""};
+}
+
+std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
+  std::vector<PlanSequence> found;
+  const std::map<std::string, RegisteredSequence> known = known_sequences();
+  for (const std::string& pattern : group.sequences) {
+    const std::size_t before = found.size();
+    for (const auto& [name, sequence] : known) {
+      if (matches(pattern, name)) found.push_back(checked(sequence));
+    }
+    if (found.size() > before) continue;
+    if (group.required) throw_unknown(pattern, known);
+    if (is_glob(pattern)) continue;
+    found.push_back(
+        {.name = pattern,
+         .id = "",
+         .rendering = {},
+         .folder = {},
+         .missing = "no folder " + (data_folder() / pattern).string() +
+                    "; set STILLPOINT_DATA to where it is, or name it with `stillpoint data add`"});
+  }
+  return found;
+}
+
+fs::path sequence_folder(const PlanSequence& sequence, const RenderControl& control) {
+  if (sequence.rendering) return cached_sequence(*sequence.rendering, control);
+  if (fs::is_directory(sequence.folder)) return sequence.folder;
+  throw InputError(sequence.folder.string(), "has vanished; bring the sequence back and call again");
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/plan/sequence_registry.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/record/output_folder.h"
+#include "core/base/error.h"
+#include "eval/io/text_reader.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+void require_plain(const std::string& name) {
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+  if (!name.empty() && name.find_first_not_of(kAllowed) == std::string::npos) return;
+  throw InputError("sequence name \"" + name + "\"", "may have letters, digits, '_', '-' and '.' only");
+}
+
+std::string registry_text(const std::vector<RegisteredSequence>& sequences) {
+  Json json;
+  json["schema"] = 1;
+  json["sequences"] = Json::array();
+  for (const RegisteredSequence& sequence : sequences) {
+    json["sequences"].push_back({{"name", sequence.name},
+                                 {"folder", sequence.folder.string()},
+                                 {"checksum", sequence.checksum},
+                                 {"format", sequence.format}});
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+fs::path registry_file() {
+  if (const char* own = std::getenv("STILLPOINT_REGISTRY")) return own;
+  if (const char* config = std::getenv("XDG_CONFIG_HOME"))
+    return fs::path(config) / "stillpoint" / "sequences.json";
+  const char* home = std::getenv("HOME");
+  return fs::path(home != nullptr ? home : ".") / ".config" / "stillpoint" / "sequences.json";
+}
+
+std::vector<RegisteredSequence> read_registry(const fs::path& file) {
+  std::vector<RegisteredSequence> sequences;
+  if (!fs::exists(file)) return sequences;
+  try {
+    const Json json = Json::parse(read_text_file(file));
+    for (const Json& entry : json.at("sequences")) {
+      sequences.push_back({.name = entry.at("name").get<std::string>(),
+                           .folder = entry.at("folder").get<std::string>(),
+                           .checksum = entry.at("checksum").get<std::string>(),
+                           .format = entry.at("format").get<std::string>()});
+    }
+  } catch (const Json::exception& error) {
+    throw InputError(file.string(),
+                     std::string("is no registry of sequences: ") + error.what() +
+                         "; remove it and name the sequences again with `stillpoint data add`");
+  }
+  return sequences;
+}
+
+void register_sequence(const fs::path& file, const RegisteredSequence& sequence) {
+  require_plain(sequence.name);
+  std::vector<RegisteredSequence> sequences = read_registry(file);
+  std::erase_if(sequences, [&](const RegisteredSequence& known) { return known.name == sequence.name; });
+  sequences.push_back(sequence);
+  std::sort(sequences.begin(), sequences.end(),
+            [](const RegisteredSequence& a, const RegisteredSequence& b) { return a.name < b.name; });
+  write_files(file.parent_path(), {{file.filename().string(), registry_text(sequences)}});
+}
+
+}  // namespace stillpoint

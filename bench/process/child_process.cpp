@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/process/child_process.h"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sched.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace stillpoint {
+namespace {
+
+constexpr int kExecFailed = 127;
+constexpr std::size_t kKeptMessageBytes = 65'536;
+constexpr int kAttendMs = 100;  // how late a limit may be noticed
+constexpr int kEndingMs = 2;    // a child without messages is about to end
+
+[[noreturn]] void throw_errno(const char* what) {
+  throw std::system_error(errno, std::generic_category(), what);
+}
+
+cpu_set_t processor_set(const std::vector<int>& cores) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int core : cores) CPU_SET(static_cast<std::size_t>(core), &set);
+  return set;
+}
+
+/// Everything that the child needs after fork, prepared before it: only few calls are safe then.
+struct Launch {
+  const char* program;
+  char* const* arguments;
+  int message_pipe;
+  pid_t parent;
+  bool pinned;
+  cpu_set_t processors;
+};
+
+/// Becomes the program with stderr in the pipe and stdout nowhere.
+[[noreturn]] void become(const Launch& launch) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != launch.parent) _exit(kExecFailed);  // the parent was killed before that call
+  if (launch.pinned) sched_setaffinity(0, sizeof launch.processors, &launch.processors);
+  dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
+  dup2(open("/dev/null", O_WRONLY | O_CLOEXEC), STDOUT_FILENO);
+  dup2(launch.message_pipe, STDERR_FILENO);
+  execvp(launch.program, launch.arguments);
+  constexpr char kMessage[] = "cannot be started\n";
+  static_cast<void>(!write(STDERR_FILENO, kMessage, sizeof kMessage - 1));
+  _exit(kExecFailed);
+}
+
+std::int64_t resident_bytes(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/statm");
+  std::int64_t total_pages = 0;
+  std::int64_t resident_pages = 0;
+  file >> total_pages >> resident_pages;
+  return resident_pages * sysconf(_SC_PAGESIZE);
+}
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+}  // namespace
+
+std::filesystem::path own_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
+
+std::string last_line(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();
+  const std::size_t newline = text.rfind('\n');
+  return newline == std::string::npos ? text : text.substr(newline + 1);
+}
+
+ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::chrono::steady_clock::now()) {
+  std::vector<std::string> words = {spec.program.filename().string()};
+  words.insert(words.end(), spec.arguments.begin(), spec.arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_errno("pipe");
+  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  const Launch launch{.program = spec.program.c_str(),
+                      .arguments = pointers.data(),
+                      .message_pipe = ends[1],
+                      .parent = getpid(),
+                      .pinned = !spec.cores.empty(),
+                      .processors = processor_set(spec.cores)};
+  pid_ = fork();
+  if (pid_ == 0) become(launch);
+  close(ends[1]);
+  pipe_ = ends[0];
+  if (pid_ < 0) {
+    close(pipe_);
+    throw_errno("fork");
+  }
+}
+
+ChildProcess::~ChildProcess() {
+  if (pid_ > 0) {
+    kill(-pid_, SIGKILL);
+    kill(pid_, SIGKILL);  // it may not have made its group yet
+    while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+  close_pipe();
+}
+
+void ChildProcess::read_messages() {
+  std::array<char, 4096> block{};
+  while (pipe_ >= 0) {
+    const ssize_t got = read(pipe_, block.data(), block.size());
+    if (got > 0) end_.messages.append(block.data(), static_cast<std::size_t>(got));
+    if (got == 0) close_pipe();
+    if (got < 0 && errno != EINTR) break;
+  }
+  if (end_.messages.size() > 2 * kKeptMessageBytes) {
+    end_.messages.erase(0, end_.messages.size() - kKeptMessageBytes);
+  }
+}
+
+void ChildProcess::close_pipe() {
+  if (pipe_ >= 0) close(pipe_);
+  pipe_ = -1;
+}
+
+bool ChildProcess::has_ended() const {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid == pid_;
+}
+
+void ChildProcess::enforce_limits() {
+  const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const bool late = spec_.time_limit_s && elapsed_s > *spec_.time_limit_s;
+  const bool large = spec_.memory_limit_bytes && resident_bytes(pid_) > *spec_.memory_limit_bytes;
+  if ((!late && !large) || end_.timed_out || end_.out_of_memory) return;
+  end_.timed_out = late;
+  end_.out_of_memory = large && !late;
+  kill(-pid_, SIGKILL);
+  kill(pid_, SIGKILL);
+}
+
+bool ChildProcess::attend() {
+  read_messages();
+  if (has_ended()) return false;
+  enforce_limits();
+  return true;
+}
+
+int ChildProcess::patience_ms() const { return pipe_ >= 0 ? kAttendMs : kEndingMs; }
+
+void ChildProcess::ask_to_end() const { kill(pid_, SIGTERM); }
+
+ProcessEnd ChildProcess::wait() {
+  int status = 0;
+  rusage usage{};
+  while (wait4(pid_, &status, 0, &usage) < 0) {
+    if (errno != EINTR) throw_errno("wait4");
+  }
+  end_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  read_messages();
+  kill(-pid_, SIGKILL);  // what it may have left running
+  pid_ = -1;
+  end_.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  end_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+  end_.user_s = seconds(usage.ru_utime);
+  end_.system_s = seconds(usage.ru_stime);
+  end_.peak_memory_bytes = std::int64_t{usage.ru_maxrss} * 1024;
+  return end_;
+}
+
+ProcessEnd run_process(const ProcessSpec& spec) {
+  ChildProcess child(spec);
+  while (child.attend()) {
+    pollfd waited{.fd = child.message_pipe(), .events = POLLIN, .revents = 0};
+    poll(&waited, 1, child.patience_ms());
+  }
+  return child.wait();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/process/machine_load.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <unistd.h>
+
+namespace stillpoint {
+namespace {
+
+constexpr double kQuietShare = 0.05;
+constexpr int kIdle = 3;     // column of /proc/stat, after user, nice, system
+constexpr int kIoWait = 4;   // idle, too
+constexpr int kColumns = 8;  // up to steal
+
+}  // namespace
+
+MachineLoad parse_machine_load(std::string_view stat) {
+  std::istringstream stream{std::string(stat)};
+  std::string label;
+  stream >> label;
+  MachineLoad load;
+  if (label != "cpu") return load;
+  std::int64_t ticks = 0;
+  for (int column = 0; column < kColumns && stream >> ticks; ++column) {
+    load.total += ticks;
+    if (column != kIdle && column != kIoWait) load.busy += ticks;
+  }
+  return load;
+}
+
+MachineLoad machine_load() {
+  std::ostringstream text;
+  text << std::ifstream("/proc/stat").rdbuf();
+  return parse_machine_load(text.str());
+}
+
+void append_load(std::vector<Metric>& metrics, const MachineLoad& before, const MachineLoad& after,
+                 double own_s) {
+  const auto total = static_cast<double>(after.total - before.total);
+  if (total <= 0.0) return;
+  const double own = own_s * static_cast<double>(sysconf(_SC_CLK_TCK));
+  const double share = std::max(0.0, (static_cast<double>(after.busy - before.busy) - own) / total);
+  metrics.push_back({"other_load", "/proc/stat", "", share});
+  metrics.push_back({"quiet", "other_load below 0.05", "", share < kQuietShare ? 1.0 : 0.0});
+}
+
+}  // namespace stillpoint

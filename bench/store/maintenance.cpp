@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/maintenance.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/store/journal.h"
+#include "bench/store/schema.h"
+#include "bench/store/store.h"
+#include "core/base/error.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+void append_rows(std::vector<std::string>& faults, Statement statement, const std::string& what) {
+  while (statement.step()) {
+    if (statement.text(0) != "ok") faults.push_back(what + ": " + statement.text(0));
+  }
+}
+
+std::set<std::string> named_files(const Database& database) {
+  std::set<std::string> names;
+  Statement rows = database.prepare("SELECT DISTINCT blob FROM attachment");
+  while (rows.step()) names.insert(rows.text(0));
+  return names;
+}
+
+RunOutcome outcome_from(const Store& store, const StoredRun& run) {
+  RunOutcome outcome{.outcome = run.outcome,
+                     .detail = run.detail,
+                     .metrics = run.metrics,
+                     .costs = run.costs,
+                     .attachments = {},
+                     .manifest = store.manifest(run)};
+  for (const auto& [kind, blob] : run.blobs) outcome.attachments[kind] = store.attachment(run, kind);
+  return outcome;
+}
+
+/// Adds one run unless it is there.
+void add_run(Journal& journal, const RunIdentity& identity, const RunOutcome& outcome, MergeReport& report) {
+  if (journal.claim(identity) != Claim::kGranted) {
+    ++report.present;
+    return;
+  }
+  journal.finish(identity, outcome);
+  ++report.added;
+}
+
+Json identity_json(const RunIdentity& identity) {
+  return {{"system", identity.system},
+          {"variant", identity.variant},
+          {"sequence", identity.sequence},
+          {"sequence_id", identity.sequence_id},
+          {"config_hash", identity.config_hash},
+          {"build", identity.build},
+          {"mode", identity.mode},
+          {"kind", identity.kind},
+          {"cores", identity.cores},
+          {"seed", identity.seed},
+          {"repetition", identity.repetition},
+          {"axis", identity.axis},
+          {"axis_value", identity.axis_value}};
+}
+
+RunIdentity identity_of(const Json& json) {
+  return {.system = json.at("system"),
+          .variant = json.at("variant"),
+          .sequence = json.at("sequence"),
+          .sequence_id = json.at("sequence_id"),
+          .config_hash = json.at("config_hash"),
+          .build = json.at("build"),
+          .mode = json.at("mode"),
+          .kind = json.at("kind"),
+          .cores = json.at("cores"),
+          .seed = json.at("seed"),
+          .repetition = json.at("repetition"),
+          .axis = json.at("axis"),
+          .axis_value = json.at("axis_value")};
+}
+
+Json run_json(const Store& store, const StoredRun& run) {
+  Json json = {{"key", run.key},
+               {"identity", identity_json(run.identity)},
+               {"outcome", outcome_name(run.outcome)},
+               {"detail", run.detail},
+               {"started", run.started},
+               {"ended", run.ended}};
+  json["metrics"] = Json::array();
+  for (const Metric& metric : run.metrics) {
+    json["metrics"].push_back(
+        {{"name", metric.name}, {"recipe", metric.recipe}, {"unit", metric.unit}, {"value", metric.value}});
+  }
+  json["costs"] = Json::array();
+  for (const ModuleCost& cost : run.costs) {
+    json["costs"].push_back({{"module", cost.module},
+                             {"per", cost.per},
+                             {"calls", cost.calls},
+                             {"mean_ms", cost.mean_ms},
+                             {"median_ms", cost.median_ms},
+                             {"p95_ms", cost.p95_ms},
+                             {"max_ms", cost.max_ms}});
+  }
+  json["attachments"] = Json::object();
+  for (const auto& [kind, blob] : run.blobs) json["attachments"][kind] = store.attachment(run, kind);
+  json["manifest"] = store.manifest(run);
+  return json;
+}
+
+RunOutcome outcome_of_json(const Json& json) {
+  RunOutcome outcome;
+  outcome.outcome = outcome_of(json.at("outcome").get<std::string>());
+  outcome.detail = json.at("detail");
+  for (const Json& metric : json.at("metrics")) {
+    outcome.metrics.push_back(
+        {metric.at("name"), metric.at("recipe"), metric.at("unit"), metric.at("value")});
+  }
+  for (const Json& cost : json.at("costs")) {
+    outcome.costs.push_back({cost.at("module"), cost.at("per"), cost.at("calls"), cost.at("mean_ms"),
+                             cost.at("median_ms"), cost.at("p95_ms"), cost.at("max_ms")});
+  }
+  for (const auto& [kind, content] : json.at("attachments").items()) outcome.attachments[kind] = content;
+  outcome.manifest = json.at("manifest");
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<std::string> verify_store(const fs::path& file) {
+  const Database database(file, DatabaseAccess::kRead);
+  require_current_schema(database);
+  std::vector<std::string> faults;
+  append_rows(faults, database.prepare("PRAGMA integrity_check"), "database");
+  append_rows(faults, database.prepare("PRAGMA foreign_key_check"), "a row names another that is not there");
+  const BlobFiles blobs(files_folder(file) / "blobs");
+  for (const std::string& name : named_files(database)) {
+    try {
+      static_cast<void>(blobs.get(name));
+    } catch (const InputError& error) {
+      faults.emplace_back(error.what());
+    }
+  }
+  return faults;
+}
+
+GarbageReport collect_garbage(const fs::path& file) {
+  if (!fs::exists(file)) throw InputError(file.string(), "there is no such store");
+  const Journal cleared(file);  // removes what dead drivers left
+  const Database database(file, DatabaseAccess::kWrite);
+  const BlobFiles blobs(files_folder(file) / "blobs");
+  Transaction transaction(database);  // nobody enters a run meanwhile
+  GarbageReport report;
+  const std::set<std::string> named = named_files(database);
+  for (const std::string& name : blobs.names()) {
+    if (named.contains(name)) continue;
+    ++report.files;
+    report.bytes += static_cast<std::int64_t>(fs::file_size(blobs.file(name)));
+    blobs.remove(name);
+  }
+  constexpr const char* kUnused =
+      "FROM manifest WHERE hash NOT IN (SELECT manifest FROM run WHERE manifest NOT NULL)";
+  report.manifests = static_cast<std::size_t>(database.integer(std::string("SELECT count(*) ") + kUnused));
+  database.execute(std::string("DELETE ") + kUnused);
+  transaction.commit();
+  return report;
+}
+
+MergeReport merge_stores(const fs::path& from, const fs::path& into) {
+  if (fs::exists(into) && fs::equivalent(from, into)) throw InputError(into.string(), "is the same store");
+  const Store source(from);
+  Journal journal(into);
+  MergeReport report;
+  for (const StoredRun& run : source.runs())
+    add_run(journal, run.identity, outcome_from(source, run), report);
+  for (const StoredPlan& plan : source.plans()) journal.record_plan(plan);
+  return report;
+}
+
+std::string export_store(const fs::path& file) {
+  const Store store(file);
+  Json json;
+  json["stillpoint_store"] = 1;
+  json["plans"] = Json::array();
+  for (const StoredPlan& plan : store.plans()) {
+    json["plans"].push_back(
+        {{"name", plan.name}, {"title", plan.title}, {"text", plan.text}, {"run_keys", plan.run_keys}});
+  }
+  json["runs"] = Json::array();
+  for (const StoredRun& run : store.runs()) json["runs"].push_back(run_json(store, run));
+  // Messages of a program need not be UTF-8; every other text is.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+MergeReport import_store(const std::string& text, const std::string& place, const fs::path& into) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("stillpoint_store") != 1) throw InputError(place, "is of a newer version; use that version");
+    Journal journal(into);
+    MergeReport report;
+    for (const Json& run : json.at("runs")) {
+      add_run(journal, identity_of(run.at("identity")), outcome_of_json(run), report);
+    }
+    for (const Json& plan : json.at("plans")) {
+      journal.record_plan({.name = plan.at("name"),
+                           .title = plan.at("title"),
+                           .text = plan.at("text"),
+                           .run_keys = plan.at("run_keys").get<std::vector<std::string>>()});
+    }
+    return report;
+  } catch (const Json::exception& error) {
+    throw InputError(place, std::string("is no exported store: ") + error.what());
+  }
+}
+
+}  // namespace stillpoint

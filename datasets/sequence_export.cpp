@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/sequence_export.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "datasets/image_io.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string seconds_text(Timestamp t) {
+  return fmt::format("{}.{:09}", t.ns / 1'000'000'000, t.ns % 1'000'000'000);
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw InputError(file.string(), "cannot be written; free space or name another folder");
+}
+
+/// Lets `fill` write into a folder that takes its name when all is there.
+void write_whole(const fs::path& folder, const std::function<void(const fs::path&)>& fill) {
+  const fs::path unfinished = folder.string() + "." + std::to_string(getpid());
+  try {
+    fs::create_directories(unfinished);
+    fill(unfinished);
+    fs::rename(unfinished, folder);
+  } catch (const std::exception& error) {
+    std::error_code ignored;
+    fs::remove_all(unfinished, ignored);
+    if (fs::is_directory(folder)) return;  // another process was faster: its export is the same
+    throw InputError(folder.string(), std::string("cannot be exported: ") + error.what());
+  }
+}
+
+std::string matrix_text(const Pose& pose) {
+  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = pose.matrix();
+  return fmt::format("[{:.17g}]", fmt::join(rows.data(), rows.data() + 16, ", "));
+}
+
+std::string camera_list(const Camera& camera) {
+  return fmt::format("[{:.17g}, {:.17g}, {:.17g}, {:.17g}]", camera.fx, camera.fy, camera.cx, camera.cy);
+}
+
+const char* model_text(const Camera& camera) {
+  return camera.model == CameraModel::kKannalaBrandt ? "kannala-brandt" : "radial-tangential";
+}
+
+std::string rig_text(const Rig& rig) {
+  const Camera& camera = rig.camera;
+  std::string text = fmt::format(
+      "[camera]\nwidth = {}\nheight = {}\nfx = {:.17g}\nfy = {:.17g}\ncx = {:.17g}\ncy = {:.17g}\nmodel = "
+      "\"{}\"\n"
+      "distortion = [{:.17g}]\nrolling_shutter_s = {:.17g}\n\n[depth]\nscale = {:.17g}\n",
+      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, model_text(camera),
+      fmt::join(camera.distortion, ", "), rig.rolling_shutter_s, rig.depth_units_per_m);
+  if (!rig.has_imu) return text;
+  return text + fmt::format(
+                    "\n[imu]\nT_b_c = {}\ngyro_noise = {:.17g}\naccel_noise = {:.17g}\ngyro_walk = {:.17g}\n"
+                    "accel_walk = {:.17g}\ntime_offset_s = {:.17g}\n",
+                    matrix_text(rig.T_b_c), rig.imu_noise.gyro_noise, rig.imu_noise.accel_noise,
+                    rig.imu_noise.gyro_walk, rig.imu_noise.accel_walk, rig.time_offset_s);
+}
+
+std::string pose_text(const Pose& pose) {
+  return fmt::format("{:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}", pose.p.x(), pose.p.y(), pose.p.z(),
+                     pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w());
+}
+
+std::string inertial_row(const ImuSample& sample, char separator) {
+  return fmt::format("{0}{6}{1:.17g}{6}{2:.17g}{6}{3:.17g}{6}{4:.17g}{6}{5:.17g}", sample.gyro_b.x(),
+                     sample.gyro_b.y(), sample.gyro_b.z(), sample.accel_b.x(), sample.accel_b.y(),
+                     sample.accel_b.z(), separator);
+}
+
+void write_tum_pictures(const SensorStream& stream, const fs::path& folder) {
+  fs::create_directories(folder / "rgb");
+  fs::create_directories(folder / "depth");
+  std::string colors;
+  std::string depths;
+  for (std::size_t i = 0; i < stream.info().frame_times.size(); ++i) {
+    const Frame frame = stream.load_frame(i);
+    const std::string stamp = seconds_text(frame.t);
+    write_png(folder / "rgb" / (stamp + ".png"), frame.color.empty() ? frame.gray : frame.color);
+    colors += fmt::format("{0} rgb/{0}.png\n", stamp);
+    if (frame.depth.empty()) continue;
+    write_png(folder / "depth" / (stamp + ".png"), frame.depth);
+    depths += fmt::format("{0} depth/{0}.png\n", stamp);
+  }
+  write_text(folder / "rgb.txt", colors);
+  write_text(folder / "depth.txt", depths);
+}
+
+void write_tum_texts(const SequenceInfo& info, const fs::path& folder) {
+  write_text(folder / "rig.toml", rig_text(info.rig));
+  std::string poses = "# timestamp tx ty tz qx qy qz qw (camera in world)\n";
+  const Pose T_f_c = info.ground_truth.T_c_f.inverse();
+  for (const StampedPose& pose : info.ground_truth.trajectory.poses) {
+    poses += seconds_text(pose.t) + " " + pose_text(pose.T_w_f * T_f_c) + "\n";
+  }
+  if (!info.ground_truth.trajectory.poses.empty()) write_text(folder / "groundtruth.txt", poses);
+  if (info.imu.empty()) return;
+  std::string samples = "# timestamp wx wy wz ax ay az\n";
+  for (const ImuSample& sample : info.imu)
+    samples += seconds_text(sample.t) + " " + inertial_row(sample, ' ') + "\n";
+  write_text(folder / "imu.txt", samples);
+}
+
+void write_euroc_pictures(const SensorStream& stream, const fs::path& folder) {
+  fs::create_directories(folder / "data");
+  std::string list = "#timestamp [ns],filename\n";
+  for (std::size_t i = 0; i < stream.info().frame_times.size(); ++i) {
+    const Frame frame = stream.load_frame(i);
+    write_png(folder / "data" / fmt::format("{}.png", frame.t.ns), frame.gray);
+    list += fmt::format("{0},{0}.png\n", frame.t.ns);
+  }
+  write_text(folder / "data.csv", list);
+}
+
+void write_euroc_sensors(const Rig& rig, const fs::path& mav) {
+  const Camera& camera = rig.camera;
+  write_text(mav / "cam0" / "sensor.yaml",
+             fmt::format(
+                 "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: {}\nresolution: [{}, {}]\n"
+                 "camera_model: pinhole\nintrinsics: {}\ndistortion_model: {}\n"
+                 "distortion_coefficients: [{:.17g}]\n",
+                 matrix_text(rig.T_b_c), camera.width, camera.height, camera_list(camera), model_text(camera),
+                 fmt::join(camera.distortion.begin(), camera.distortion.begin() + 4, ", ")));
+  write_text(
+      mav / "imu0" / "sensor.yaml",
+      fmt::format(
+          "sensor_type: imu\nT_BS:\n  cols: 4\n  rows: 4\n  data: {}\ngyroscope_noise_density: {:.17g}\n"
+          "gyroscope_random_walk: {:.17g}\naccelerometer_noise_density: {:.17g}\n"
+          "accelerometer_random_walk: {:.17g}\n",
+          matrix_text(Pose{}), rig.imu_noise.gyro_noise, rig.imu_noise.gyro_walk, rig.imu_noise.accel_noise,
+          rig.imu_noise.accel_walk));
+}
+
+void write_euroc_texts(const SequenceInfo& info, const fs::path& mav) {
+  fs::create_directories(mav / "imu0");
+  write_euroc_sensors(info.rig, mav);
+  std::string samples = "#timestamp [ns],w_x,w_y,w_z [rad s^-1],a_x,a_y,a_z [m s^-2]\n";
+  for (const ImuSample& sample : info.imu)
+    samples += fmt::format("{},{}\n", sample.t.ns, inertial_row(sample, ','));
+  write_text(mav / "imu0" / "data.csv", samples);
+  if (info.ground_truth.trajectory.poses.empty()) return;
+  const fs::path truth = mav / "state_groundtruth_estimate0";
+  fs::create_directories(truth);
+  const Pose T_f_b = info.ground_truth.T_c_f.inverse() * info.rig.T_b_c.inverse();
+  std::string poses = "#timestamp,p_x,p_y,p_z,q_w,q_x,q_y,q_z,v_x,v_y,v_z,bw_x,bw_y,bw_z,ba_x,ba_y,ba_z\n";
+  for (const StampedPose& pose : info.ground_truth.trajectory.poses) {
+    const Pose T_w_b = pose.T_w_f * T_f_b;
+    poses += fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},0,0,0,0,0,0,0,0,0\n", pose.t.ns,
+                         T_w_b.p.x(), T_w_b.p.y(), T_w_b.p.z(), T_w_b.q.w(), T_w_b.q.x(), T_w_b.q.y(),
+                         T_w_b.q.z());
+  }
+  write_text(truth / "data.csv", poses);
+  write_text(truth / "sensor.yaml", "T_BS:\n  cols: 4\n  rows: 4\n  data: " + matrix_text(Pose{}) + "\n");
+}
+
+}  // namespace
+
+void export_tum(const SensorStream& stream, const fs::path& folder) {
+  write_whole(folder, [&](const fs::path& unfinished) {
+    write_tum_pictures(stream, unfinished);
+    write_tum_texts(stream.info(), unfinished);
+  });
+}
+
+void export_euroc(const SensorStream& stream, const fs::path& folder) {
+  if (stream.info().imu.empty()) {
+    throw InputError(stream.info().folder.string(),
+                     "has no IMU, which the EuRoC layout needs; use layout = \"tum\"");
+  }
+  write_whole(folder, [&](const fs::path& unfinished) {
+    write_euroc_pictures(stream, unfinished / "mav0" / "cam0");
+    write_euroc_texts(stream.info(), unfinished / "mav0");
+  });
+}
+
+}  // namespace stillpoint

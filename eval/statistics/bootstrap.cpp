@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/statistics/bootstrap.h"
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "eval/metrics/statistics.h"
+
+namespace stillpoint {
+namespace {
+
+/// A whole number below `count`. The standard's distribution differs between libraries; this does not.
+std::size_t draw(std::mt19937_64& random, std::size_t count) {
+  return static_cast<std::size_t>((static_cast<unsigned __int128>(random()) * count) >> 64);
+}
+
+}  // namespace
+
+std::optional<Interval> median_interval(std::span<const double> values, const BootstrapOptions& options) {
+  if (values.empty()) return std::nullopt;
+  std::mt19937_64 random(options.seed);
+  std::vector<double> medians;
+  medians.reserve(options.resamples);
+  std::vector<double> sample(values.size());
+  for (std::size_t i = 0; i < options.resamples; ++i) {
+    std::generate(sample.begin(), sample.end(), [&] { return values[draw(random, values.size())]; });
+    medians.push_back(*percentile(sample, 0.5));
+  }
+  const double tail = 0.5 * (1.0 - options.confidence);
+  return Interval{.low = *percentile(medians, tail), .high = *percentile(medians, 1.0 - tail)};
+}
+
+std::optional<Spread> spread(std::span<const double> values, const BootstrapOptions& options) {
+  if (values.empty()) return std::nullopt;
+  return Spread{.count = values.size(),
+                .median = *percentile(values, 0.5),
+                .quartiles = {.low = *percentile(values, 0.25), .high = *percentile(values, 0.75)},
+                .worst = *std::max_element(values.begin(), values.end()),
+                .median_interval = *median_interval(values, options)};
+}
+
+}  // namespace stillpoint

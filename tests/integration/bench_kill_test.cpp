@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Benchmarks that are killed, shared, or fed with systems that fail, over the stand-in system.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <random>
+#include <set>
+
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "bench/store/store.h"
+#include "tests/support/fake_sequence.h"
+#include "tests/support/program.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kProgram = STILLPOINT_BINARY_DIR "/stillpoint";
+constexpr const char* kReplay = STILLPOINT_BINARY_DIR "/tests/replay_program";
+constexpr int kRuns = 200;
+constexpr int kKills = 20;
+
+/// A plan of one stand-in system over two sequences.
+fs::path write_plan(const TemporaryFolder& folder, int repetitions, const std::string& flags,
+                    const std::string& limits = "") {
+  fake_sequence(folder, "freiburg1_a");
+  fake_sequence(folder, "freiburg1_b");
+  folder.write(
+      "replay.toml",
+      "name = \"replay\"\nversion = \"1\"\nlayout = \"as_is\"\ntimings = \"result.json\"\ncommand = [\"" +
+          std::string(kReplay) + "\", " + flags +
+          "\"run\", \"{sequence}\", \"--out\", \"{out}\", \"--set\", \"{seed}-{repetition}\"]\n");
+  return folder.write("plan.toml", "title = \"Replays\"\nsystems = [\"" +
+                                       (folder.path() / "replay.toml").string() +
+                                       "\"]\nrepetitions = " + std::to_string(repetitions) + "\n" + limits +
+                                       "[recorded]\nsequences = [\"freiburg1_*\"]\n");
+}
+
+std::vector<std::string> arguments(const TemporaryFolder& folder, const fs::path& plan,
+                                   const fs::path& store) {
+  return {"bench",  plan.string(), "--store", store.string(),
+          "--jobs", "2",           "--out",   (folder.path() / "out").string()};
+}
+
+ProgramResult bench(const TemporaryFolder& folder, const fs::path& plan, const fs::path& store) {
+  ProgramOptions options;
+  options.environment = {"STILLPOINT_DATA=" + folder.path().string(),
+                         "STILLPOINT_REGISTRY=" + (folder.path() / "none.json").string()};
+  return run_program(arguments(folder, plan, store), options);
+}
+
+/// Starts the benchmark, and kills it after a while. @return whether it was still at work
+bool kill_after(const TemporaryFolder& folder, const fs::path& plan, const fs::path& store,
+                int milliseconds) {
+  const pid_t child = fork();
+  if (child == 0) {
+    setenv("STILLPOINT_DATA", folder.path().c_str(), 1);
+    setenv("STILLPOINT_REGISTRY", (folder.path() / "none.json").c_str(), 1);
+    static_cast<void>(!std::freopen("/dev/null", "w", stdout));
+    static_cast<void>(!std::freopen("/dev/null", "w", stderr));
+    std::vector<std::string> words = arguments(folder, plan, store);
+    words.insert(words.begin(), "stillpoint");
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    execv(kProgram, pointers.data());
+    _exit(127);
+  }
+  poll(nullptr, 0, milliseconds);
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status);
+}
+
+/// What of a store must not depend on how often it was interrupted: everything but times, and what the
+/// replays drew as theirs.
+std::map<std::string, std::string> content_of(const fs::path& file) {
+  std::map<std::string, std::string> content;
+  const Store store(file);
+  for (const StoredRun& run : store.runs()) {
+    content[run.key] = run.identity.sequence + " " + std::to_string(run.identity.repetition) + " " +
+                       outcome_name(run.outcome) + " " + run.detail + " " + run.blobs.at("trajectory") + " " +
+                       std::to_string(*metric_value(run, "ate_rmse_m")) + " " + run.manifest_hash + " " +
+                       std::to_string(run.costs.size()) + " " +
+                       std::to_string(store.trajectory(run).poses.size());
+  }
+  return content;
+}
+
+TEST(BenchKill, TwentyKillsLeaveWhatOneUndisturbedBenchmarkLeaves) {
+  const TemporaryFolder folder;
+  const std::string log = (folder.path() / "log").string();
+  const fs::path plan = write_plan(folder, kRuns / 2, "\"--log\", \"" + log + "\", ");
+  const fs::path calm = folder.path() / "calm.sqlite";
+  ASSERT_EQ(bench(folder, plan, calm).exit_code, 0);
+  fs::remove(log);
+
+  const fs::path killed = folder.path() / "killed.sqlite";
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> milliseconds(50, 700);
+  int interrupted = 0;
+  for (int i = 0; i < kKills; ++i)
+    interrupted += kill_after(folder, plan, killed, milliseconds(random)) ? 1 : 0;
+  EXPECT_GE(interrupted, kKills / 2);  // otherwise the benchmark is too short to be disturbed
+  const ProgramResult last = bench(folder, plan, killed);
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+
+  EXPECT_EQ(Store(killed).unfinished(), 0);
+  const std::map<std::string, std::string> content = content_of(calm);
+  EXPECT_EQ(content.size(), static_cast<std::size_t>(kRuns));
+  EXPECT_EQ(content, content_of(killed));
+  std::size_t finished = 0;
+  std::ifstream lines(log);
+  for (std::string line; std::getline(lines, line);) ++finished;
+  EXPECT_GE(finished, static_cast<std::size_t>(kRuns));
+  EXPECT_LE(finished,
+            static_cast<std::size_t>(kRuns + 2 * kKills));  // at most the two in flight were made again
+}
+
+TEST(BenchKill, TheSecondCallMakesNothing) {
+  const TemporaryFolder folder;
+  const fs::path plan = write_plan(folder, 2, "");
+  const fs::path store = folder.path() / "store.sqlite";
+  EXPECT_NE(bench(folder, plan, store).out.find("4 runs made, 0 were there"), std::string::npos);
+  EXPECT_NE(bench(folder, plan, store).out.find("0 runs made, 4 were there"), std::string::npos);
+}
+
+TEST(BenchKill, TwoDriversShareTheWork) {
+  const TemporaryFolder folder;
+  const std::string log = (folder.path() / "log").string();
+  const fs::path plan = write_plan(folder, 20, "\"--log\", \"" + log + "\", ");
+  const fs::path store = folder.path() / "store.sqlite";
+  const pid_t other = fork();
+  if (other == 0) _exit(bench(folder, plan, store).exit_code);
+  EXPECT_EQ(bench(folder, plan, store).exit_code, 0);
+  int status = 0;
+  waitpid(other, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(Store(store).runs().size(), 40u);
+  std::multiset<std::string> finished;
+  std::ifstream lines(log);
+  for (std::string line; std::getline(lines, line);) finished.insert(line);
+  EXPECT_EQ(finished.size(), 40u);  // no run was made twice
+}
+
+StoredRun first_run(const fs::path& store) { return Store(store).runs().front(); }
+
+TEST(BenchKill, TellsHowARunEnded) {
+  const TemporaryFolder folder;
+  const fs::path store = folder.path() / "store.sqlite";
+  EXPECT_EQ(bench(folder, write_plan(folder, 1, "\"--crash-after\", \"7\", "), store).exit_code, 1);
+  EXPECT_EQ(first_run(store).outcome, Outcome::kCrashed);
+  EXPECT_NE(first_run(store).detail.find("signal 11"), std::string::npos);
+}
+
+TEST(BenchKill, EndsARunAtItsTimeLimit) {
+  const TemporaryFolder folder;
+  const fs::path store = folder.path() / "store.sqlite";
+  EXPECT_EQ(bench(folder, write_plan(folder, 1, "\"--hang\", ", "time_limit_s = 0.3\n"), store).exit_code, 1);
+  EXPECT_EQ(first_run(store).outcome, Outcome::kTimedOut);
+}
+
+TEST(BenchKill, EndsARunAtItsMemoryLimit) {
+  const TemporaryFolder folder;
+  const fs::path store = folder.path() / "store.sqlite";
+  EXPECT_EQ(bench(folder, write_plan(folder, 1, "\"--fill\", \"300\", ", "memory_limit_mb = 100\n"), store)
+                .exit_code,
+            1);
+  EXPECT_EQ(first_run(store).outcome, Outcome::kOutOfMemory);
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// TUM folders without pictures, for runs of the stand-in system: they take no time to make or to read.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+
+/// `name` below the folder: 60 frames at 30 Hz along a curved path of about 2 m.
+inline std::filesystem::path fake_sequence(const TemporaryFolder& folder, const std::string& name) {
+  std::string pictures;
+  std::string poses;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 1000.0 + i / 30.0;
+    const std::string stamp = std::to_string(t);
+    pictures += stamp + " rgb/" + stamp + ".png\n";
+    poses += stamp + " " + std::to_string(std::cos(t)) + " " + std::to_string(std::sin(t)) + " 0 0 0 0 1\n";
+  }
+  folder.write(name + "/rgb.txt", pictures);
+  folder.write(name + "/depth.txt", pictures);
+  folder.write(name + "/groundtruth.txt", poses);
+  return folder.path() / name;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A stand-in for a SLAM system: follows the true path of a TUM folder with an error of its own, and says how
+// long it would have taken. It understands the command line of `stillpoint run` as far as benchmarks use it,
+// and before it:
+//   --error M          path error, a wave of this amplitude [m]; default 0.01
+//   --worse SEQ F      multiplies that error by F on the sequence of this name
+//   --slow MODULE F    multiplies the time of a module by F
+//   --noise SHARE      spread of the times, drawn from seed and repetition; default 0.02
+//   --crash-after N    ends by a signal after N poses
+//   --hang             never ends
+//   --fill MB          takes so much memory
+//   --log FILE         adds a line when it ends well
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "eval/io/trajectory_file.h"
+#include "eval/score.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string sequence;
+  fs::path out = ".";
+  double error_m = 0.01;
+  std::string worse_sequence, slow_module;
+  double worse = 1.0, slow = 1.0, noise = 0.02;
+  std::string seed = "1";
+  long crash_after = -1;
+  bool hang = false;
+  std::size_t fill_mb = 0;
+  std::string log;
+};
+
+Options parse(const std::vector<std::string>& words) {
+  Options options;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    const auto next = [&] { return ++i < words.size() ? words[i] : std::string(); };
+    if (word == "run") options.sequence = next();
+    if (word == "--out") options.out = next();
+    if (word == "--error") options.error_m = std::stod(next());
+    if (word == "--worse") {
+      options.worse_sequence = next();
+      options.worse = std::stod(next());
+    }
+    if (word == "--slow") {
+      options.slow_module = next();
+      options.slow = std::stod(next());
+    }
+    if (word == "--noise") options.noise = std::stod(next());
+    if (word == "--set") options.seed = next();
+    if (word == "--crash-after") options.crash_after = std::stol(next());
+    if (word == "--hang") options.hang = true;
+    if (word == "--fill") options.fill_mb = std::stoul(next());
+    if (word == "--log") options.log = next();
+  }
+  return options;
+}
+
+/// The true path with a wave on it: a rigid motion cannot take it away, so the ATE is proportional to it.
+Trajectory replay(const Trajectory& truth, const Options& options) {
+  const bool is_worse = fs::path(options.sequence).filename() == options.worse_sequence;
+  const double amplitude = options.error_m * (is_worse ? options.worse : 1.0);
+  Trajectory path = truth;
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    path.poses[i].T_w_f.p.z() += amplitude * std::sin(0.5 * static_cast<double>(i));
+    if (options.crash_after == static_cast<long>(i)) std::raise(SIGSEGV);
+  }
+  return path;
+}
+
+/// Times of two modules [ms]; the same run of the same program has the same times.
+std::string timings_text(const Options& options) {
+  std::string text;
+  std::mt19937_64 random(std::hash<std::string>{}(options.seed + options.out.filename().string()));
+  for (const char* module : {"feature_tracking", "state_optimization"}) {
+    std::normal_distribution<double> spread(1.0, options.noise);
+    const double ms = 10.0 * spread(random) * (options.slow_module == module ? options.slow : 1.0);
+    text += fmt::format("{}\"{}\": {{\"mean\": {}, \"median\": {}, \"p95\": {}, \"max\": {}, \"calls\": 30}}",
+                        text.empty() ? "" : ", ", module, ms, ms, ms, ms);
+  }
+  return text;
+}
+
+void write_result(const Score& score, const Options& options) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : "null";
+  };
+  std::ofstream(options.out / "manifest.json") << "{\"system\": \"replay\"}\n";
+  std::ofstream(options.out / "result.json") << fmt::format(
+      "{{\"status\": \"ok\", \"failure\": null, \"ate_rmse_m\": {}, \"coverage\": 1.0,\n"
+      " \"timings\": {{\"modules\": {{{}}}, \"threads\": {{}}}}}}\n",
+      number(score.ate_rmse_m), timings_text(options));
+}
+
+int run(const Options& options) {
+  while (options.hang) pause();
+  const std::vector<char> filled(options.fill_mb << 20, 'x');
+  while (!filled.empty() && filled[filled.size() / 2] == 'x') pause();
+  const Trajectory truth = read_tum(fs::path(options.sequence) / "groundtruth.txt", "camera").trajectory;
+  const Trajectory path = replay(truth, options);
+  write_tum(path, options.out / "trajectory.tum");
+  write_result(score(truth, path), options);
+  if (!options.log.empty())
+    std::ofstream(options.log, std::ios::app) << options.out.filename().string() + "\n";
+  return 0;
+}
+
+}  // namespace
+}  // namespace stillpoint
+
+int main(int argc, char** argv) {
+  return stillpoint::run(stillpoint::parse(std::vector<std::string>(argv + 1, argv + argc)));
+}

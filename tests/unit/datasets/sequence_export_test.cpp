@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/sequence_export.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+/// Three frames of 8x6 pixels whose brightness tells their number, an IMU, and a truth told of a frame beside
+/// the camera.
+class SmallStream : public SensorStream {
+ public:
+  SmallStream() {
+    info_.name = "small";
+    info_.folder = "small";
+    info_.format = "openloris";
+    info_.rig.camera = {.width = 8, .height = 6, .fx = 5.0, .fy = 5.5, .cx = 3.5, .cy = 2.5};
+    info_.rig.has_imu = true;
+    info_.rig.T_b_c = {Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX())), {0.1, 0.2, 0.3}};
+    info_.ground_truth.trajectory.frame = "marker";
+    info_.ground_truth.T_c_f = {Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.5}};
+    for (std::int64_t i = 0; i < 3; ++i) {
+      const Timestamp t{1'700'000'000'000'000'000 + i * 33'333'333};
+      info_.frame_times.push_back(t);
+      info_.ground_truth.trajectory.poses.push_back(
+          {t, {Eigen::Quaterniond::Identity(), {static_cast<double>(i), 0.0, 0.0}}});
+      info_.imu.push_back({.t = t, .gyro_b = {0.1, 0.2, 1.0 / 3.0}, .accel_b = {0.0, 0.0, 9.81}});
+    }
+  }
+  [[nodiscard]] const SequenceInfo& info() const override { return info_; }
+  [[nodiscard]] Frame load_frame(std::size_t index) const override {
+    Frame frame;
+    frame.id = static_cast<std::int64_t>(index);
+    frame.t = info_.frame_times[index];
+    frame.gray = cv::Mat(6, 8, CV_8UC1, cv::Scalar(10.0 * static_cast<double>(index)));
+    frame.depth = cv::Mat(6, 8, CV_16UC1, cv::Scalar(1000.0));
+    return frame;
+  }
+
+  [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t) const override { return std::nullopt; }
+
+  SequenceInfo info_;
+};
+
+/// Where the camera truly was at the last frame: 0.5 m behind the marker, which is at x = 2.
+void expect_same_path(const SequenceInfo& info) {
+  ASSERT_EQ(info.ground_truth.trajectory.poses.size(), 3u);
+  const Pose T_w_c = info.ground_truth.trajectory.poses.back().T_w_f * info.ground_truth.T_c_f.inverse();
+  EXPECT_NEAR((T_w_c.p - Eigen::Vector3d(2.0, 0.0, -0.5)).norm(), 0.0, 1e-8);
+}
+
+TEST(SequenceExport, ATumFolderIsReadBackAsItWas) {
+  const TemporaryFolder folder;
+  const SmallStream stream;
+  export_tum(stream, folder.path() / "out");
+  const std::unique_ptr<SensorStream> read = open_sequence(folder.path() / "out");
+  EXPECT_EQ(read->info().format, "tum");
+  EXPECT_EQ(read->info().frame_times, stream.info().frame_times);
+  EXPECT_EQ(read->info().rig.camera.fy, 5.5);
+  EXPECT_EQ(read->info().rig.depth_units_per_m, 1000.0);
+  ASSERT_EQ(read->info().imu.size(), 3u);
+  EXPECT_EQ(read->info().imu[1].gyro_b.z(), 1.0 / 3.0);
+  EXPECT_NEAR((read->info().rig.T_b_c.p - stream.info().rig.T_b_c.p).norm(), 0.0, 1e-12);
+  EXPECT_EQ(read->load_frame(2).gray.at<std::uint8_t>(0, 0), 20);
+  EXPECT_EQ(read->load_frame(2).depth.at<std::uint16_t>(5, 7), 1000);
+  expect_same_path(read->info());
+}
+
+TEST(SequenceExport, AnEurocFolderIsReadBackAsItWas) {
+  const TemporaryFolder folder;
+  const SmallStream stream;
+  export_euroc(stream, folder.path() / "out");
+  const std::unique_ptr<SensorStream> read = open_sequence(folder.path() / "out");
+  EXPECT_EQ(read->info().format, "euroc");
+  EXPECT_EQ(read->info().frame_times, stream.info().frame_times);
+  EXPECT_EQ(read->info().rig.camera.width, 8);
+  EXPECT_NEAR((read->info().rig.T_b_c.p - stream.info().rig.T_b_c.p).norm(), 0.0, 1e-12);
+  EXPECT_EQ(read->load_frame(1).gray.at<std::uint8_t>(0, 0), 10);
+  expect_same_path(read->info());
+}
+
+TEST(SequenceExport, EurocNeedsAnImu) {
+  const TemporaryFolder folder;
+  SmallStream stream;
+  stream.info_.imu.clear();
+  expect_input_error([&] { export_euroc(stream, folder.path() / "out"); }, {"has no IMU"});
+}
+
+TEST(SequenceExport, LeavesNothingBehindWhenItFails) {
+  const TemporaryFolder folder;
+  folder.write("file", "no folder");
+  expect_input_error([&] { export_tum(SmallStream(), folder.path() / "file" / "out"); },
+                     {"cannot be exported"});
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "file" / "out"));
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/maintenance.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "bench/store/journal.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+RunIdentity identity_of(const std::string& variant) { return {.variant = variant, .sequence = "office"}; }
+
+/// A store with one run for each variant.
+fs::path store_of(const TemporaryFolder& folder, const std::string& name,
+                  const std::vector<std::string>& variants) {
+  fs::path file = folder.path() / name;
+  Journal journal(file);
+  for (const std::string& variant : variants) {
+    static_cast<void>(journal.claim(identity_of(variant)));
+    journal.finish(identity_of(variant), {.outcome = Outcome::kOk,
+                                          .metrics = {{"ate_rmse_m", "r", "m", 0.5}},
+                                          .costs = {{"window_solve", "call", 3, 1.0, 1.0, 2.0, 3.0}},
+                                          .attachments = {{"log", "log of " + variant}},
+                                          .manifest = "{}"});
+  }
+  return file;
+}
+
+TEST(StoreMaintenance, AWholeStoreHasNoFaults) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(verify_store(store_of(folder, "s.sqlite", {"a", "b"})).empty());
+}
+
+TEST(StoreMaintenance, NamesEveryFileThatIsDamagedOrMissing) {
+  const TemporaryFolder folder;
+  const fs::path file = store_of(folder, "s.sqlite", {"a", "b", "c"});
+  const BlobFiles blobs(files_folder(file) / "blobs");
+  std::ofstream(blobs.file(blobs.names()[0]), std::ios::trunc) << "x";
+  fs::remove(blobs.file(blobs.names()[1]));
+  EXPECT_EQ(verify_store(file).size(), 2u);
+}
+
+TEST(StoreMaintenance, CollectsOnlyWhatNoRunNames) {
+  const TemporaryFolder folder;
+  const fs::path file = store_of(folder, "s.sqlite", {"a", "b"});
+  Journal(file).forget({run_key(identity_of("a"))}, {Outcome::kOk});
+  const GarbageReport report = collect_garbage(file);
+  EXPECT_EQ(report.files, 1u);
+  EXPECT_GT(report.bytes, 0);
+  EXPECT_EQ(report.manifests, 0u);  // the other run has the same manifest
+  EXPECT_TRUE(verify_store(file).empty());
+  EXPECT_EQ(collect_garbage(file).files, 0u);
+}
+
+TEST(StoreMaintenance, MergesWhatIsNotThereYet) {
+  const TemporaryFolder folder;
+  const fs::path from = store_of(folder, "from.sqlite", {"a", "b"});
+  const fs::path into = store_of(folder, "into.sqlite", {"b", "c"});
+  const MergeReport report = merge_stores(from, into);
+  EXPECT_EQ(report.added, 1u);
+  EXPECT_EQ(report.present, 1u);
+  const Store merged(into);
+  ASSERT_EQ(merged.runs().size(), 3u);
+  EXPECT_EQ(merged.attachment(merged.runs({.variant = "a"}).front(), "log"), "log of a");
+  expect_input_error([&] { merge_stores(into, into); }, {"is the same store"});
+}
+
+TEST(StoreMaintenance, ExportsAndImportsEverything) {
+  const TemporaryFolder folder;
+  const fs::path from = store_of(folder, "from.sqlite", {"a", "b"});
+  Journal(from).record_plan(
+      {.name = "p", .title = "P", .text = "t", .run_keys = {run_key(identity_of("b"))}});
+  const fs::path into = folder.path() / "into.sqlite";
+  EXPECT_EQ(import_store(export_store(from), "runs.json", into).added, 2u);
+  const Store imported(into);
+  const StoredRun run = imported.plan_runs("p").front();
+  EXPECT_EQ(run.identity.variant, "b");
+  EXPECT_EQ(metric_value(run, "ate_rmse_m"), 0.5);
+  EXPECT_EQ(run.costs.front().calls, 3);
+  EXPECT_EQ(imported.attachment(run, "log"), "log of b");
+  EXPECT_EQ(imported.manifest(run), "{}");
+}
+
+TEST(StoreMaintenance, RefusesATextThatIsNoExport) {
+  const TemporaryFolder folder;
+  const fs::path into = folder.path() / "into.sqlite";
+  expect_input_error([&] { import_store("{", "runs.json", into); }, {"runs.json", "no exported store"});
+  expect_input_error([&] { import_store("{\"stillpoint_store\": 2}", "runs.json", into); },
+                     {"newer version"});
+}
+
+}  // namespace
+}  // namespace stillpoint
