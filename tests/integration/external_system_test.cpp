@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Other programs as systems: sequences exported for them, their trajectories and times read back.
+#include <gtest/gtest.h>
+
+#include "bench/store/store.h"
+#include "tests/support/program.h"
+#include "tests/support/rendered_sequence.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kReplay = STILLPOINT_BINARY_DIR "/tests/replay_program";
+
+/// Runs the stand-in over the rendered sequence. @param keys further lines of its template
+ProgramResult bench(const TemporaryFolder& folder, const std::string& keys, const std::string& flags = "") {
+  folder.write("replay.toml", "name = \"replay\"\n" + keys + "command = [\"" + kReplay + "\", " + flags +
+                                  "\"run\", \"{sequence}\", \"--out\", \"{out}\"]\n");
+  const fs::path plan = folder.write("plan.toml", "systems = [\"" + (folder.path() / "replay.toml").string() +
+                                                      "\"]\nrecipes = [\"strict:se3\"]\n" +
+                                                      "[recorded]\nsequences = [\"office\"]\n");
+  ProgramOptions options;
+  options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string(),
+                         "STILLPOINT_REGISTRY=" + (folder.path() / "none.json").string(),
+                         "STILLPOINT_CACHE=" + (folder.path() / "cache").string()};
+  return run_program({"bench", plan.string(), "--store", (folder.path() / "store.sqlite").string(), "--out",
+                      (folder.path() / "out").string()},
+                     options);
+}
+
+StoredRun run_of(const TemporaryFolder& folder) {
+  return Store(folder.path() / "store.sqlite").runs().front();
+}
+
+TEST(ExternalSystem, ReadsAnExportedSequenceAndIsScored) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      bench(folder, "layout = \"tum\"\ntimings = \"result.json\"\n", "\"--error\", \"0.01\", ");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const StoredRun run = run_of(folder);
+  EXPECT_EQ(run.identity.system, "replay");
+  EXPECT_EQ(run.outcome, Outcome::kOk) << run.detail;
+  // A wave of 0.01 m has an RMS of 0.01 / sqrt(2) = 0.0071 m; aligning takes a little of it away.
+  EXPECT_NEAR(*metric_value(run, "ate_rmse_m"), 0.0071, 0.0003);
+  EXPECT_NEAR(*metric_value(run, "strict:se3/ate_rmse_m"), 0.0071, 0.0003);
+  EXPECT_GT(*metric_value(run, "process_wall_s"), 0.0);
+  EXPECT_GT(*metric_value(run, "peak_memory_mb"), 1.0);
+  EXPECT_EQ(run.costs.size(), 2u);
+  EXPECT_TRUE(fs::exists(folder.path() / "cache" / "exports"));
+  EXPECT_NE(result.out.find("| office   | replay"), std::string::npos) << result.out;
+}
+
+TEST(ExternalSystem, ThatLeavesNoTrajectoryIsLost) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(bench(folder, "layout = \"tum\"\ntrajectory = \"elsewhere.txt\"\n").exit_code, 1);
+  EXPECT_EQ(run_of(folder).outcome, Outcome::kLost);
+  EXPECT_EQ(run_of(folder).detail, "left no elsewhere.txt");
+}
+
+TEST(ExternalSystem, IsRefusedWithoutACommand) {
+  const TemporaryFolder folder;
+  const auto system = folder.write("s.toml", "name = \"s\"\n");
+  const auto plan = folder.write(
+      "plan.toml", "systems = [\"" + system.string() + "\"]\n[rendered]\nsequences = [\"market\"]\n");
+  const ProgramResult result = run_program({"plan", "show", plan.string()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("s.toml: has no command"), std::string::npos) << result.err;
+}
+
+TEST(ExternalSystem, BenchRefusesStoresThatItCannotFill) {
+  const TemporaryFolder folder;
+  const auto plan = folder.write("plan.toml", "variants = [\"vo\"]\n[rendered]\nsequences = [\"market\"]\n");
+  const auto notes = folder.write("notes.txt", std::string(3000, 'n'));
+  const ProgramResult result = run_program(
+      {"bench", plan.string(), "--store", notes.string(), "--out", (folder.path() / "out").string()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(result.err.starts_with("stillpoint: error: " + notes.string())) << result.err;
+  EXPECT_EQ(fs::file_size(notes), 3000u);
+}
+
+}  // namespace
+}  // namespace stillpoint
