@@ -32,6 +32,8 @@ int list(const StoreArguments& arguments) {
         identity.axis.empty() ? "" : fmt::format(" {} = {}", identity.axis, identity.axis_value),
         outcome_name(run.outcome), ate ? fmt::format("ATE {:.4f} m", *ate) : run.detail);
   }
+  if (store.unfinished() > 0)
+    std::cout << fmt::format("{} runs are being made or were broken off\n", store.unfinished());
   for (const StoredPlan& plan : store.plans()) {
     std::cout << fmt::format("plan {}: {} runs\n", plan.name, plan.run_keys.size());
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/record/run_files.h"
 
+#include <fstream>
+#include <iterator>
+
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_text.h"
@@ -70,6 +73,14 @@ Json verdicts_json(const OdometryRun& run) {
           {"background", share(run.verdicts->background)}};
 }
 
+/// Hash of the network that looks for objects; null without one.
+Json weights_json(const DetectorConfig& detector) {
+  if (detector.kind != DetectorKind::kNetwork) return nullptr;
+  std::ifstream file(detector.weights, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return hash_text(content_hash(bytes));
+}
+
 }  // namespace
 
 std::string result_json(const RunResult& result) {
@@ -118,6 +129,7 @@ std::string manifest_json(const RunManifest& manifest) {
                     {"resolved", config}};
   json["mode"] = manifest.mode;
   json["seed"] = manifest.config.seed;
+  json["weights"] = weights_json(manifest.config.detector);
   json["threads"] = {
       {"odometry", 1}, {"detection_pool", manifest.config.frontend.grid.threads}, {"decoding", 1}};
   json["build"] = {{"version", manifest.build.version},     {"git_commit", manifest.build.git_commit},

@@ -79,5 +79,21 @@ TEST(ExternalSystem, BenchRefusesStoresThatItCannotFill) {
   EXPECT_EQ(fs::file_size(notes), 3000u);
 }
 
+TEST(RegisteredSequence, IsRefusedOnceItsFilesHaveChanged) {
+  const TemporaryFolder folder;
+  const fs::path copy = copy_of_rendered_sequence(folder);
+  const auto plan = folder.write("plan.toml", "variants = [\"vo\"]\n[recorded]\nsequences = [\"named\"]\n");
+  ProgramOptions options;
+  options.environment = {"STILLPOINT_REGISTRY=" + (folder.path() / "sequences.json").string()};
+  EXPECT_EQ(run_program({"data", "add", "named", copy.string()}, options).exit_code, 0);
+  const std::string list = run_program({"data", "list"}, options).out;
+  EXPECT_TRUE(list.starts_with("named ")) << list;
+  EXPECT_EQ(run_program({"plan", "show", plan.string()}, options).exit_code, 0);
+  std::ofstream(copy / "groundtruth.txt", std::ios::app) << "# one more line\n";
+  const ProgramResult changed = run_program({"plan", "show", plan.string()}, options);
+  EXPECT_EQ(changed.exit_code, 2);
+  EXPECT_NE(changed.err.find("when it was registered"), std::string::npos) << changed.err;
+}
+
 }  // namespace
 }  // namespace stillpoint
