@@ -43,6 +43,9 @@ struct DynamicConfig {
   bool moving_consistency = true;  ///< Eq. (6) over the window. Sec. III-E
   double mcc_threshold_px = 10;    ///< mean residual of a mover, px of the camera's focal length
   int mcc_min_observations = 2;    ///< that must agree before a feature is recycled; the paper: "more"
+  int quiet_pictures = 0;  ///< recycles also after so many in a row; 0 = only by the window, whose pictures
+                           ///< may lie far apart; own addition
+  double quiet_px = 1;     ///< mean residual up to which a picture counts as quiet
   bool gate_before_solve = false;  ///< check the newest picture at its predicted pose first; the paper
                                    ///< names that pose, the published code only uses optimised ones
   double gate_threshold_px = 10;   ///< mean residual of a mover there, px of the camera's focal length
@@ -65,6 +68,8 @@ void visit_fields(Visitor&& field, Config& config) {
   field("moving_consistency", config.moving_consistency);
   field("mcc_threshold_px", config.mcc_threshold_px, 0.1, 1000.0);
   field("mcc_min_observations", config.mcc_min_observations, 2, 40);
+  field("quiet_pictures", config.quiet_pictures, 0, 1000);
+  field("quiet_px", config.quiet_px, 0.01, 1000.0);
   field("gate_before_solve", config.gate_before_solve);
   field("gate_threshold_px", config.gate_threshold_px, 0.1, 1000.0);
   field("min_stable_features", config.min_stable_features, 0, 1000);

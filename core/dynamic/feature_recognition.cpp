@@ -56,9 +56,11 @@ std::vector<FeatureVerdict> FeatureRecognition::judge(const TrackedFrame& frame,
   for (const TrackedFeature& tracked : frame.features) {
     while (known != features_.end() && known->verdict.id < tracked.id) ++known;
     const bool is_known = known != features_.end() && known->verdict.id == tracked.id;
-    Feature feature{.verdict = is_known ? carried_over(known->verdict) : FeatureVerdict{.id = tracked.id}};
+    Feature feature{.verdict = FeatureVerdict{.id = tracked.id}};
+    if (is_known) feature = {.verdict = carried_over(known->verdict), .quiet = known->quiet};
     feature.inside_mask = is_inside(tracked, depth, mask);
     if (feature.inside_mask) {
+      feature.quiet = 0;
       feature.verdict.verdict = Verdict::kDynamicObject;
       feature.verdict.reason = VerdictReason::kInsideMask;
     }
@@ -78,18 +80,28 @@ std::vector<FeatureVerdict> FeatureRecognition::gate(std::span<const Consistency
 }
 
 std::vector<FeatureVerdict> FeatureRecognition::check(std::span<const ConsistencyResidual> residuals) {
+  for (Feature& feature : features_) ++feature.quiet;
   for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
-    FeatureVerdict& verdict = feature.verdict;
-    verdict.residual_px = residual.mean_px;
-    const int observations = residual.compared + 1;
+    feature.verdict.residual_px = residual.mean_px;
+    if (residual.mean_px > config_.quiet_px) feature.quiet = 0;
     if (residual.mean_px > config_.mcc_threshold_px) {
-      flag(verdict, VerdictReason::kResidual);
-    } else if (is_dynamic(verdict) && !feature.inside_mask && observations >= config_.mcc_min_observations) {
-      verdict.verdict = Verdict::kStable;
-      verdict.reason = VerdictReason::kRecycled;
+      flag(feature.verdict, VerdictReason::kResidual);
+    } else if (residual.compared + 1 >= config_.mcc_min_observations) {
+      recycle(feature);
     }
   });
+  if (config_.quiet_pictures > 0) {
+    for (Feature& feature : features_) {
+      if (feature.quiet >= config_.quiet_pictures) recycle(feature);
+    }
+  }
   return apply_floor(verdicts(), config_.min_stable_features);
+}
+
+void FeatureRecognition::recycle(Feature& feature) {
+  if (!is_dynamic(feature.verdict) || feature.inside_mask) return;
+  feature.verdict.verdict = Verdict::kStable;
+  feature.verdict.reason = VerdictReason::kRecycled;
 }
 
 std::vector<FeatureVerdict> FeatureRecognition::verdicts() const {

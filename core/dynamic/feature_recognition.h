@@ -34,7 +34,8 @@ class FeatureRecognition {
   [[nodiscard]] std::vector<FeatureVerdict> gate(std::span<const ConsistencyResidual> residuals);
 
   /// Flags features whose residual is over the threshold, and recycles flagged ones whose residual is not,
-  /// seen often enough. Features without a residual keep their verdict.
+  /// seen often enough in the window, or that were quiet for long enough. A feature without a residual is
+  /// quiet: nothing is known of its depth, and so the estimate does not use it.
   [[nodiscard]] std::vector<FeatureVerdict> check(std::span<const ConsistencyResidual> residuals);
 
   /// Forgets every feature.
@@ -44,10 +45,12 @@ class FeatureRecognition {
   struct Feature {
     FeatureVerdict verdict;
     bool inside_mask = false;
+    int quiet = 0;  ///< pictures in a row, outside of the mask, in which nothing spoke for motion
   };
 
   [[nodiscard]] bool is_inside(const TrackedFeature& feature, const DepthView& depth,
                                const SemanticMask& mask) const;
+  static void recycle(Feature& feature);
   [[nodiscard]] std::vector<FeatureVerdict> verdicts() const;
 
   DynamicConfig config_;

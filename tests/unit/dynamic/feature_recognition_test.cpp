@@ -199,5 +199,30 @@ TEST(FeatureRecognition, TheFloorDoesNotRewriteHistory) {
                  VerdictReason::kHistory);
 }
 
+TEST(FeatureRecognition, RecyclesWhatWasQuietForLongEnough) {
+  DynamicConfig patient = config();
+  patient.quiet_pictures = 2;
+  FeatureRecognition recognition(patient);
+  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  const std::vector<double> residuals_px = {0.5, 1.5, 0.5, 0.5};  // the second one is not quiet: count anew
+  std::vector<std::string_view> verdicts;
+  for (const double residual_px : residuals_px) {
+    static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), {}));
+    verdicts.push_back(verdict_name(check_one(recognition, residual_px, 1).verdict));
+  }
+  EXPECT_EQ(verdicts,
+            (std::vector<std::string_view>{"dynamic_object", "dynamic_object", "dynamic_object", "stable"}));
+}
+
+TEST(FeatureRecognition, CountsAFeatureWithoutResidualAsQuietOutsideTheMaskOnly) {
+  DynamicConfig patient = config();
+  patient.quiet_pictures = 1;
+  FeatureRecognition recognition(patient);
+  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  EXPECT_EQ(recognition.check({}).at(0).verdict, Verdict::kDynamicObject);
+  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), {}));
+  EXPECT_EQ(recognition.check({}).at(0).verdict, Verdict::kStable);
+}
+
 }  // namespace
 }  // namespace stillpoint
