@@ -46,7 +46,7 @@ class PlanRunner {
       } else if (stopped() || (queue_.empty() && elsewhere_.empty())) {
         break;
       } else if (queue_.empty()) {
-        poll(nullptr, 0, kElsewherePatienceMs);
+        wait_for_other_driver();
         queue_.swap(elsewhere_);
       }
     }
@@ -69,6 +69,14 @@ class PlanRunner {
     ++counter;
     if (hooks_.on_progress)
       hooks_.on_progress(report_.made + report_.kept, matrix_.runs.size() - report_.missing);
+  }
+
+  void wait_for_other_driver() {
+    if (!told_of_waiting_ && hooks_.on_step) {
+      hooks_.on_step("wait for " + std::to_string(elsewhere_.size()) + " runs that another driver is making");
+    }
+    told_of_waiting_ = true;
+    poll(nullptr, 0, kElsewherePatienceMs);
   }
 
   void begin_next() {
@@ -107,7 +115,7 @@ class PlanRunner {
     if (const auto found = folders_.find(index); found != folders_.end()) return found->second;
     const PlanSequence& sequence = sequence_of(run);
     if (sequence.rendering && hooks_.on_step) hooks_.on_step("render " + sequence.name);
-    const fs::path folder =
+    fs::path folder =
         sequence_folder(sequence, {.progress = hooks_.on_rendered, .stop_requested = hooks_.stop_requested});
     if (!folder.empty()) folders_[index] = folder;
     return folder;
@@ -175,6 +183,7 @@ class PlanRunner {
   std::set<std::size_t> warmed_up_;          ///< sequences
   std::map<std::size_t, fs::path> folders_;  ///< of sequences
   MachineLoad load_before_;
+  bool told_of_waiting_ = false;
   PlanReport report_;
 };
 

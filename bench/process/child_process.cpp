@@ -86,6 +86,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
   std::vector<std::string> words = {spec.program.filename().string()};
   words.insert(words.end(), spec.arguments.begin(), spec.arguments.end());
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
 

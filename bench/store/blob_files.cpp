@@ -82,7 +82,7 @@ fs::path BlobFiles::file(const std::string& name) const {
 }
 
 std::string BlobFiles::put(std::string_view content) const {
-  const std::string name = blob_name(content);
+  std::string name = blob_name(content);
   const fs::path target = file(name);
   if (fs::exists(target)) return name;
   std::error_code error;

@@ -176,7 +176,7 @@ bool Journal::is_done(const std::string& key) const {
 }
 
 fs::path Journal::work_folder(const RunIdentity& identity) const {
-  const fs::path folder = driver_.folder() / run_key(identity);
+  fs::path folder = driver_.folder() / run_key(identity);
   fs::create_directories(folder);
   return folder;
 }

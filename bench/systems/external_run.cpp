@@ -29,8 +29,8 @@ std::string replaced(std::string text, const std::string& mark, const std::strin
 fs::path exported(const RunRequest& request, ExportLayout layout) {
   if (layout == ExportLayout::kAsIs) return request.sequence;
   const std::string format = layout == ExportLayout::kTum ? "tum" : "euroc";
-  const fs::path folder = cache_folder() / "exports" / (request.run.identity.sequence_id + "-" + format) /
-                          request.sequence.filename();
+  fs::path folder = cache_folder() / "exports" / (request.run.identity.sequence_id + "-" + format) /
+                    request.sequence.filename();
   if (fs::is_directory(folder)) return folder;
   const std::unique_ptr<SensorStream> stream = open_sequence(request.sequence);
   if (stream->info().format == format) return request.sequence;
