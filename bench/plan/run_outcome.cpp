@@ -73,14 +73,17 @@ void append_recipe(std::vector<Metric>& metrics, const Evaluation& evaluation) {
   add("coverage", "", evaluation.coverage);
 }
 
-/// Evaluates the trajectory by the plan's recipes. A recipe that a run does not allow has no numbers.
-void append_recipes(RunOutcome& outcome, const RunRequest& request, const BenchPlan& plan) {
+/// Keeps the true path beside the estimate, and evaluates the estimate by the plan's recipes. A recipe that a
+/// run does not allow has no numbers.
+void append_truth(RunOutcome& outcome, const RunRequest& request, const BenchPlan& plan) {
   const auto text = outcome.attachments.find("trajectory");
-  if (plan.recipes.empty() || text == outcome.attachments.end() || outcome.outcome != Outcome::kOk) return;
+  if (text == outcome.attachments.end() || outcome.outcome != Outcome::kOk) return;
   const Trajectory estimate = parse_tum(text->second, "trajectory", "camera").trajectory;
   const std::unique_ptr<SensorStream> stream = open_sequence(request.sequence);
   const GroundTruth& truth = stream->info().ground_truth;
+  if (truth.trajectory.poses.empty()) return;
   const Trajectory gt = move_to_frame(truth.trajectory, truth.T_c_f.inverse(), "camera");
+  outcome.attachments["truth"] = format_tum(gt);
   for (const std::string& recipe : plan.recipes) {
     try {
       append_recipe(outcome.metrics, evaluate(recipe, {.gt = gt, .est = estimate, .options = {}}));
@@ -97,7 +100,7 @@ RunOutcome outcome_of_run(const SlamSystem& system, const RunRequest& request, c
   const std::optional<RunOutcome> violent = violent_end(request, end, plan);
   RunOutcome outcome = violent ? *violent : own_account(system, request, end);
   if (!end.messages.empty()) outcome.attachments["log"] = end.messages;
-  append_recipes(outcome, request, plan);
+  append_truth(outcome, request, plan);
   append_process(outcome.metrics, end);
   return outcome;
 }

@@ -10,6 +10,7 @@
 #include "bench/record/content_hash.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/score_text.h"
+#include "bench/store/counter_text.h"
 #include "bench/store/timing_text.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/statistics.h"
@@ -178,6 +179,7 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   files.push_back({"result.json", result_json(result)});
   files.push_back({"timings.csv", timings_csv(result.run)});
   files.push_back({"frames.csv", frames_csv(result.run)});
+  files.push_back({"counters.csv", counter_text(result.run.frame_counters)});
   files.push_back({"manifest.json", manifest_json(manifest)});
   write_files(folder, files);
 }

@@ -26,6 +26,32 @@ SensorInput input_of(const SequenceInfo& info, std::size_t frames, FramePrefetch
           .load_frame = [&prefetcher](std::size_t index) { return prefetcher.take(index); }};
 }
 
+std::string status_text(OdometryStatus status) {
+  switch (status) {
+    case OdometryStatus::kInitialising:
+      return "initialising";
+    case OdometryStatus::kTracking:
+      return "tracking";
+    case OdometryStatus::kLost:
+      return "lost";
+  }
+  return "";
+}
+
+FrameCounters counters_of(const OdometryUpdate& update, Timestamp t) {
+  const OdometryCounters& counters = update.counters;
+  return {.frame = update.frame_id,
+          .t_ns = t.ns,
+          .status = status_text(update.status),
+          .tracked_features = counters.tracked_features,
+          .window_landmarks = counters.window_landmarks,
+          .depth_landmarks = counters.depth_landmarks,
+          .dynamic_features = counters.dynamic_features,
+          .solver_iterations = counters.solver_iterations,
+          .keyframe = counters.keyframe,
+          .reset = counters.reset};
+}
+
 /// Collects what the updates of one run say. What the runner takes for decoding is only waiting here: the
 /// prefetcher knows the true times.
 void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& info) {
@@ -36,8 +62,9 @@ void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& 
   run.dynamic_features += update.counters.dynamic_features;
   run.frame_timings.push_back(update.timings);
   run.frame_hashes.push_back(update.hashes);
-  if (update.status != OdometryStatus::kTracking) return;
   const Timestamp t = info.frame_times[static_cast<std::size_t>(update.frame_id)];
+  run.frame_counters.push_back(counters_of(update, t));
+  if (update.status != OdometryStatus::kTracking) return;
   run.trajectory.poses.push_back({t, update.T_w_c});
 }
 

@@ -10,6 +10,7 @@
 
 #include "bench/run/timing_statistics.h"
 #include "bench/run/verdict_score.h"
+#include "bench/store/stored_run.h"
 #include "core/pipeline/runner.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
@@ -29,10 +30,11 @@ struct OdometryRun {
   Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose for each picture that was tracked
   RunSummary summary;
   TimingSamples timings;
-  std::int64_t dynamic_features = 0;         ///< verdicts of a mover, summed over the pictures
-  std::optional<VerdictScore> verdicts;      ///< where the sequence has labels; not of "realtime"
-  std::vector<ModuleTimings> frame_timings;  ///< of each picture that was asked for
-  std::vector<StateHashes> frame_hashes;     ///< likewise
+  std::int64_t dynamic_features = 0;          ///< verdicts of a mover, summed over the pictures
+  std::optional<VerdictScore> verdicts;       ///< where the sequence has labels; not of "realtime"
+  std::vector<ModuleTimings> frame_timings;   ///< of each picture that was asked for
+  std::vector<StateHashes> frame_hashes;      ///< likewise
+  std::vector<FrameCounters> frame_counters;  ///< likewise
   std::size_t frames_planned = 0;
   double wall_s = 0.0;  ///< from the first picture asked for to the last update
 };

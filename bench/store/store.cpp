@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "bench/store/counter_text.h"
 #include "bench/store/schema.h"
 #include "bench/store/timing_text.h"
 #include "core/base/error.h"
@@ -136,8 +137,18 @@ std::string Store::attachment(const StoredRun& run, const std::string& kind) con
   return found == run.blobs.end() ? "" : blobs_.get(found->second);
 }
 
-Trajectory Store::trajectory(const StoredRun& run) const {
-  const std::string text = attachment(run, "trajectory");
+Trajectory Store::trajectory(const StoredRun& run) const { return poses(run, "trajectory"); }
+
+Trajectory Store::truth(const StoredRun& run) const { return poses(run, "truth"); }
+
+std::vector<FrameCounters> Store::frame_counters(const StoredRun& run) const {
+  const std::string text = attachment(run, "counters");
+  if (text.empty()) return {};
+  return parse_counters(text, file().string() + ", run " + run.key);
+}
+
+Trajectory Store::poses(const StoredRun& run, const std::string& kind) const {
+  const std::string text = attachment(run, kind);
   if (text.empty()) return {.frame = "camera", .poses = {}};
   return parse_tum(text, file().string() + ", run " + run.key, "camera").trajectory;
 }

@@ -64,12 +64,20 @@ class Store {
   /// Poses T_w_c; no poses if the run has none.
   [[nodiscard]] Trajectory trajectory(const StoredRun& run) const;
 
+  /// True poses T_w_c; none if the sequence has no ground truth, or an older program made the run.
+  [[nodiscard]] Trajectory truth(const StoredRun& run) const;
+
+  /// In order of frames; empty if they were not recorded.
+  [[nodiscard]] std::vector<FrameCounters> frame_counters(const StoredRun& run) const;
+
   /// Every frame's time in every module, in order of frames; empty if they were not recorded.
   [[nodiscard]] std::vector<TimingSample> timing_samples(const StoredRun& run) const;
 
   [[nodiscard]] const std::filesystem::path& file() const { return database_.file(); }
 
  private:
+  [[nodiscard]] Trajectory poses(const StoredRun& run, const std::string& kind) const;
+
   Database database_;
   BlobFiles blobs_;
 };

@@ -73,14 +73,29 @@ struct TimingSample {
   std::int64_t calls = 0;
 };
 
+/// What the odometry counted at one frame.
+struct FrameCounters {
+  std::int64_t frame = 0;
+  std::int64_t t_ns = 0;  ///< time of the picture
+  std::string status;     ///< "initialising", "tracking" or "lost"
+  std::int64_t tracked_features = 0;
+  std::int64_t window_landmarks = 0;
+  std::int64_t depth_landmarks = 0;
+  std::int64_t dynamic_features = 0;
+  std::int64_t solver_iterations = 0;
+  bool keyframe = false;
+  bool reset = false;
+};
+
 /// What came of a run, as it is put into a store.
 struct RunOutcome {
   Outcome outcome = Outcome::kOk;
   std::string detail;  ///< why it is not ok
   std::vector<Metric> metrics;
   std::vector<ModuleCost> costs;
-  /// Content by kind: "trajectory" (TUM text), "timings" (CSV of `TimingSample`), "frames" (CSV: hash of each
-  /// module's state after each frame), "result" (JSON), "log".
+  /// Content by kind: "trajectory" (TUM text), "truth" (likewise, of the same frame of the robot), "timings"
+  /// (CSV of `TimingSample`), "counters" (CSV of `FrameCounters`), "frames" (CSV: hash of each module's state
+  /// after each frame), "result" (JSON), "log".
   std::map<std::string, std::string> attachments;
   std::string manifest;  ///< JSON; empty when the run did not come to write one
 };

@@ -28,6 +28,7 @@ struct KeptFile {
 constexpr KeptFile kKeptFiles[] = {{"trajectory.tum", "trajectory"},
                                    {"timings.csv", "timings"},
                                    {"frames.csv", "frames"},
+                                   {"counters.csv", "counters"},
                                    {"result.json", "result"}};
 
 std::string message_of(const ProcessEnd& end) {
