@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The TOML files of bench/configs and bench/plans, carried inside the program so that it works anywhere.
+/// Files of the sources, carried inside the program so that it works anywhere.
 #pragma once
 
 #include <span>
@@ -12,7 +12,10 @@ struct EmbeddedFile {
   std::string_view text;
 };
 
-/// In order of their paths.
+/// The TOML files of configs, plans, systems and published tables, in order of their paths.
 [[nodiscard]] std::span<const EmbeddedFile> embedded_files();
+
+/// The files of reports/web; defined in the library of the reports.
+[[nodiscard]] std::span<const EmbeddedFile> web_files();
 
 }  // namespace stillpoint

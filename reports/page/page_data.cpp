@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/page/page_data.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "reports/page/run_series.h"
+#include "reports/page/series_text.h"
+#include "reports/tables/escaping.h"
+#include "reports/tables/run_cells.h"
+
+namespace stillpoint {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxTruthPoints = 2000;  // more than the eye needs
+constexpr const char* kModulePrefix = "ms:";
+
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace);
+}
+
+Json run_json(const StoredRun& run) {
+  const RunIdentity& identity = run.identity;
+  Json json = {{"key", run.key},
+               {"label", clean_line(run_label(identity))},
+               {"sequence", clean_line(identity.sequence)},
+               {"seed", identity.seed},
+               {"repetition", identity.repetition},
+               {"mode", clean_line(identity.mode)},
+               {"kind", clean_line(identity.kind)},
+               {"build", clean_line(identity.build)},
+               {"config", identity.config_hash},
+               {"outcome", outcome_name(run.outcome)},
+               {"detail", clean_line(run.detail)},
+               {"manifest", run.manifest_hash}};
+  if (!identity.axis.empty())
+    json["sweep"] = {{"axis", clean_line(identity.axis)}, {"value", identity.axis_value}};
+  Json metrics = Json::array();
+  for (const Metric& metric : run.metrics) {
+    metrics.push_back(
+        {clean_line(metric.name), metric.value, clean_line(metric.unit), clean_line(metric.recipe)});
+  }
+  json["metrics"] = metrics;
+  const auto truth = run.blobs.find("truth");
+  json["truth"] = truth == run.blobs.end() ? Json(nullptr) : Json(truth->second);
+  return json;
+}
+
+Json truth_json(const Trajectory& truth) {
+  const std::size_t step = truth.poses.size() / kMaxTruthPoints + 1;
+  std::vector<double> t;
+  std::array<std::vector<double>, 3> p;
+  for (std::size_t i = 0; i < truth.poses.size(); i += step) {
+    const StampedPose& pose = truth.poses[i];
+    t.push_back(seconds_between(truth.poses.front().t, pose.t));
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      p[static_cast<std::size_t>(axis)].push_back(pose.T_w_f.p(axis));
+  }
+  return {{"start", to_seconds(truth.poses.front().t)},
+          {"t", packed_series(t)},
+          {"x", packed_series(p[0])},
+          {"y", packed_series(p[1])},
+          {"z", packed_series(p[2])}};
+}
+
+Json series_json(const RunSeries& series) {
+  Json columns = Json::object();
+  for (const SeriesColumn& column : series.columns)
+    columns[clean_line(column.name)] = packed_series(column.values);
+  return {{"start", series.start_s},
+          {"frames", series.t_s.size()},
+          {"t", packed_series(series.t_s)},
+          {"columns", columns}};
+}
+
+/// Times of all frames of a variant in a module.
+using ModuleTimes = std::map<std::pair<std::string, std::string>, std::vector<double>>;
+
+void gather_times(ModuleTimes& times, const RunSeries& series, const std::string& label) {
+  for (const SeriesColumn& column : series.columns) {
+    if (!column.name.starts_with(kModulePrefix)) continue;
+    std::vector<double>& values = times[{column.name.substr(std::string_view(kModulePrefix).size()), label}];
+    std::copy_if(column.values.begin(), column.values.end(), std::back_inserter(values),
+                 [](double value) { return std::isfinite(value); });
+  }
+}
+
+std::vector<Box> boxes_of(const ModuleTimes& times) {
+  std::vector<Box> boxes;
+  for (const auto& [key, values] : times) {
+    if (std::optional<Box> box = box_of(key.first, key.second, values)) boxes.push_back(std::move(*box));
+  }
+  return boxes;
+}
+
+}  // namespace
+
+PageData page_data(const Store& store, std::span<const StoredRun> runs) {
+  PageData data;
+  Json index = {{"runs", Json::array()}, {"truths", Json::object()}, {"manifests", Json::object()}};
+  ModuleTimes times;
+  for (const StoredRun& run : runs) {
+    const RunSeries series = run_series(store, run);
+    Json& entry = index["runs"].emplace_back(run_json(run));
+    entry["frames"] = series.t_s.size();
+    data.series.push_back(dumped(series_json(series)));
+    gather_times(times, series, run_label(run.identity));
+    if (entry["truth"].is_string() && !index["truths"].contains(entry["truth"].get<std::string>())) {
+      index["truths"][entry["truth"].get<std::string>()] = truth_json(store.truth(run));
+    }
+    if (!run.manifest_hash.empty() && !index["manifests"].contains(run.manifest_hash)) {
+      index["manifests"][run.manifest_hash] = Json::parse(store.manifest(run), nullptr, false);
+    }
+  }
+  data.index = dumped(index);
+  data.module_boxes = boxes_of(times);
+  return data;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/page/report_page.h"
+
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/compare/comparison.h"
+#include "reports/page/embedded_web.h"
+#include "reports/page/heat_map.h"
+#include "reports/page/page_data.h"
+#include "reports/page/summary.h"
+#include "reports/tables/escaping.h"
+#include "reports/tables/table_formats.h"
+
+namespace stillpoint {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kScripts[] = {"unpack.js",   "charts.js",    "paths.js",
+                                    "explorer.js", "downloads.js", "page.js"};
+constexpr const char* kHeatMetrics[] = {"ate_rmse_m", "rpe_trans_rmse_m_per_s", "rpe_rot_rmse_deg_per_s"};
+
+/// Replaces each <!--NAME--> of the template.
+std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts) {
+  constexpr std::string_view kOpen = "<!--";
+  constexpr std::string_view kClose = "-->";
+  std::string result;
+  while (true) {
+    const std::size_t begin = text.find(kOpen);
+    result += text.substr(0, begin);
+    if (begin == std::string_view::npos) return result;
+    const std::size_t end = text.find(kClose, begin);
+    const auto found = parts.find(text.substr(begin + kOpen.size(), end - begin - kOpen.size()));
+    if (found != parts.end()) result += found->second;
+    text.remove_prefix(end + kClose.size());
+  }
+}
+
+/// Runs of the latest other build, which a change is told against; empty without one.
+std::vector<StoredRun> previous_runs(const ReportSubject& subject) {
+  if (subject.other_runs.empty()) return {};
+  const std::string build = subject.other_runs.back().identity.build;
+  if (build == subject.runs.back().identity.build) return {};
+  std::vector<StoredRun> runs = subject.other_runs;
+  std::erase_if(runs, [&](const StoredRun& run) { return run.identity.build != build; });
+  return runs;
+}
+
+std::string summary_html(const ReportSubject& subject) {
+  std::vector<std::string> sentences = outcome_sentences(subject.runs);
+  if (const std::string best = best_sentence(subject.runs); !best.empty()) sentences.push_back(best);
+  if (const std::vector<StoredRun> previous = previous_runs(subject); !previous.empty()) {
+    const Comparison comparison = compare_runs(previous, subject.runs);
+    if (comparison.pairs > 0) {
+      for (const std::string& sentence : change_sentences(previous.front().identity.build, comparison))
+        sentences.push_back(sentence);
+    }
+  }
+  std::string text;
+  for (const std::string& sentence : sentences) text += "<li>" + escape_html(sentence) + "</li>";
+  return "<ul class=\"summary\">" + text + "</ul>";
+}
+
+/// The first tables open, the others a click away.
+std::string tables_html(const std::vector<ReportTable>& tables, bool quoted) {
+  constexpr std::size_t kOpen = 1;
+  std::string text;
+  std::size_t shown = 0;
+  for (const ReportTable& table : tables) {
+    if (table.name.starts_with("beside_") != quoted) continue;
+    text += fmt::format("<details{}><summary>{}</summary>{}</details>\n", shown++ < kOpen ? " open" : "",
+                        escape_html(table.title), table_html(table));
+  }
+  return text.empty() ? "<p class=\"none\">No runs here share a sequence with a quoted table.</p>" : text;
+}
+
+std::string heat_html(const ReportSubject& subject) {
+  const std::string base = base_variant(subject.runs);
+  std::string text;
+  for (const char* metric : kHeatMetrics) text += heat_map_html(subject.runs, base, metric);
+  return text.empty() ? "<p class=\"none\">One variant alone has nothing to be compared with.</p>" : text;
+}
+
+/// A pre element keeps the lines that `escape_html` makes spaces.
+std::string preformatted(const std::string& text) {
+  std::string result;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('\n');
+    result += escape_html(rest.substr(0, end)) + "\n";
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  }
+  return result;
+}
+
+std::string plans_html(const Store& store, const ReportSubject& subject) {
+  std::string text;
+  for (const StoredPlan& plan : subject.plans) {
+    text += fmt::format(
+        "<h3>{}</h3><pre class=\"command\">stillpoint bench {} --store {}</pre>"
+        "<details><summary>The plan</summary><pre>{}</pre></details>\n",
+        escape_html(plan.title.empty() ? plan.name : plan.title), escape_html(plan.name),
+        escape_html(store.file().filename().string()), preformatted(plan.text));
+  }
+  return text;
+}
+
+std::string script(const std::string& id, const std::string& json) {
+  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, json_for_script(json));
+}
+
+std::string data_html(const PageData& data, const std::vector<ReportTable>& tables) {
+  Json files = Json::array();
+  for (const ReportTable& table : tables) {
+    for (const OutputFile& file : table_files(table))
+      files.push_back({{"name", file.name}, {"text", file.text}});
+  }
+  std::string text = script("index", data.index);
+  text += script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
+  for (std::size_t i = 0; i < data.series.size(); ++i)
+    text += script(fmt::format("series-{}", i), data.series[i]);
+  return text;
+}
+
+std::string scripts_html() {
+  std::string text = fmt::format("<script>{}</script>\n", web_file("vendor/uPlot.iife.min.js"));
+  for (const char* name : kScripts) text += fmt::format("<script>\n{}</script>\n", web_file(name));
+  return text;
+}
+
+}  // namespace
+
+std::string report_html(const Store& store, const ReportSubject& subject) {
+  const PageData data = page_data(store, subject.runs);
+  const std::vector<ReportTable> tables = report_tables(subject);
+  return filled(
+      web_file("page.html"),
+      {{"title", escape_html(subject.title)},
+       {"styles", std::string(web_file("vendor/uPlot.min.css")) + std::string(web_file("page.css"))},
+       {"summary", summary_html(subject)},
+       {"results", tables_html(tables, false)},
+       {"heat", heat_html(subject)},
+       {"published", tables_html(tables, true)},
+       {"boxes", box_plot_svg(data.module_boxes, "Time of each frame in each module", "ms")},
+       {"plans", plans_html(store, subject)},
+       {"licences", preformatted(std::string(web_file("vendor/LICENSE.uPlot")))},
+       {"data", data_html(data, tables)},
+       {"scripts", scripts_html()}});
+}
+
+}  // namespace stillpoint

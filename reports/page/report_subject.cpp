@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/systems/published_table.h"
+#include "core/base/error.h"
+#include "reports/page/report_page.h"
+#include "reports/tables/result_tables.h"
+#include "reports/tables/table_formats.h"
+
+namespace stillpoint {
+namespace {
+
+std::vector<StoredPlan> chosen_plans(const Store& store, const std::string& plan) {
+  std::vector<StoredPlan> plans = store.plans();
+  if (!plan.empty()) std::erase_if(plans, [&](const StoredPlan& stored) { return stored.name != plan; });
+  return plans;
+}
+
+std::string title_of(const Store& store, const std::vector<StoredPlan>& plans) {
+  std::string title;
+  for (const StoredPlan& plan : plans)
+    title += (title.empty() ? "" : "; ") + (plan.title.empty() ? plan.name : plan.title);
+  return title.empty() ? "Runs of " + store.file().filename().string() : title;
+}
+
+}  // namespace
+
+ReportSubject report_subject(const Store& store, const std::string& plan) {
+  ReportSubject subject;
+  subject.plans = chosen_plans(store, plan);
+  subject.title = title_of(store, subject.plans);
+  if (!plan.empty() && subject.plans.empty())
+    static_cast<void>(store.plan_runs(plan));  // says which there are
+  std::set<std::string> keys;
+  for (const StoredPlan& stored : subject.plans) {
+    for (StoredRun& run : store.plan_runs(stored.name)) {
+      if (keys.insert(run.key).second) subject.runs.push_back(std::move(run));
+    }
+  }
+  for (StoredRun& run : store.runs()) {
+    if (keys.contains(run.key)) continue;
+    (subject.plans.empty() ? subject.runs : subject.other_runs).push_back(std::move(run));
+  }
+  if (subject.runs.empty())
+    throw InputError(store.file().string(),
+                     "holds no ended run; make some with `stillpoint bench PLAN --store FILE`");
+  subject.published = published_names();
+  return subject;
+}
+
+std::vector<ReportTable> report_tables(const ReportSubject& subject) {
+  std::vector<ReportTable> tables = metric_tables(subject.runs);
+  tables.push_back(cost_table(subject.runs));
+  for (const std::string& name : subject.published)
+    tables.push_back(beside_table(subject.runs, load_published(name)));
+  std::erase_if(tables, [](const ReportTable& table) { return table.rows.empty(); });
+  return tables;
+}
+
+std::vector<OutputFile> table_files(const ReportTable& table) {
+  return {{table.name + ".md", table_markdown(table, TableDetail::kSpread)},
+          {table.name + ".tex", table_latex(table)},
+          {table.name + ".csv", table_csv(table)},
+          {table.name + ".json", table_json(table).dump(2) + "\n"}};
+}
+
+}  // namespace stillpoint

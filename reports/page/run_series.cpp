@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/page/run_series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/base/timestamp.h"
+#include "eval/recipes/recipe.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSameStampS = 1e-3;  // files with few decimals round stamps
+/// Scored like the tables: TUM's association and rigid alignment over all pairs.
+constexpr const char* kRecipe = "compat:tum";
+
+/// Stamps of the frames; of a system that does not count frames, those of its poses.
+std::vector<Timestamp> stamps_of(const std::vector<FrameCounters>& counters, const Trajectory& path) {
+  std::vector<Timestamp> stamps;
+  for (const FrameCounters& frame : counters) stamps.push_back({frame.t_ns});
+  if (!stamps.empty()) return stamps;
+  for (const StampedPose& pose : path.poses) stamps.push_back(pose.t);
+  return stamps;
+}
+
+std::optional<std::size_t> index_of(const std::vector<Timestamp>& stamps, Timestamp t) {
+  const auto next = std::lower_bound(stamps.begin(), stamps.end(), after(t, -kSameStampS));
+  if (next == stamps.end() || *next > after(t, kSameStampS)) return std::nullopt;
+  return static_cast<std::size_t>(next - stamps.begin());
+}
+
+/// Columns of one length, filled here and there.
+class SeriesTable {
+ public:
+  explicit SeriesTable(std::size_t frames) : frames_(frames) {}
+
+  void set(const std::string& name, std::size_t frame, double value) {
+    if (frame >= frames_) return;
+    const auto found = std::find_if(columns_.begin(), columns_.end(),
+                                    [&](const SeriesColumn& column) { return column.name == name; });
+    SeriesColumn& column = found != columns_.end()
+                               ? *found
+                               : columns_.emplace_back(SeriesColumn{name, std::vector(frames_, kNone)});
+    column.values[frame] = value;
+  }
+
+  [[nodiscard]] std::vector<SeriesColumn> take() { return std::move(columns_); }
+
+ private:
+  std::size_t frames_;
+  std::vector<SeriesColumn> columns_;
+};
+
+void fill_path(SeriesTable& table, const std::vector<Timestamp>& stamps, const Trajectory& path,
+               const Trajectory& truth) {
+  Similarity S_w_v;
+  Evaluation evaluation;
+  if (!truth.poses.empty() && !path.poses.empty()) {
+    evaluation = evaluate(kRecipe, {.gt = truth, .est = path, .options = {}});
+    S_w_v = evaluation.alignment.S_w_v;
+  }
+  for (const StampedPose& pose : path.poses) {
+    const std::optional<std::size_t> frame = index_of(stamps, pose.t);
+    if (!frame) continue;
+    const Eigen::Vector3d position = S_w_v * pose.T_w_f.p;
+    table.set("x", *frame, position.x());
+    table.set("y", *frame, position.y());
+    table.set("z", *frame, position.z());
+  }
+  for (const PoseError& error : evaluation.per_pose) {
+    const std::optional<std::size_t> frame = index_of(stamps, error.t);
+    if (!frame) continue;
+    table.set("error_m", *frame, error.translation_m);
+    table.set("error_deg", *frame, error.rotation_deg);
+  }
+}
+
+void fill_counters(SeriesTable& table, const std::vector<FrameCounters>& counters) {
+  for (std::size_t i = 0; i < counters.size(); ++i) {
+    const FrameCounters& frame = counters[i];
+    table.set("features", i, static_cast<double>(frame.tracked_features));
+    table.set("landmarks", i, static_cast<double>(frame.window_landmarks));
+    const double all = static_cast<double>(frame.tracked_features);
+    table.set("dynamic", i, all > 0.0 ? static_cast<double>(frame.dynamic_features) / all : kNone);
+  }
+}
+
+}  // namespace
+
+RunSeries run_series(const Store& store, const StoredRun& run) {
+  const std::vector<FrameCounters> counters = store.frame_counters(run);
+  const Trajectory path = store.trajectory(run);
+  const std::vector<Timestamp> stamps = stamps_of(counters, path);
+  RunSeries series;
+  if (stamps.empty()) return series;
+  series.start_s = to_seconds(stamps.front());
+  for (const Timestamp t : stamps) series.t_s.push_back(seconds_between(stamps.front(), t));
+  SeriesTable table(stamps.size());
+  fill_path(table, stamps, path, store.truth(run));
+  fill_counters(table, counters);
+  if (!counters.empty()) {
+    for (const TimingSample& sample : store.timing_samples(run)) {
+      table.set("ms:" + sample.module, static_cast<std::size_t>(sample.frame),
+                static_cast<double>(sample.ns) * 1e-6);
+    }
+  }
+  series.columns = table.take();
+  return series;
+}
+
+}  // namespace stillpoint

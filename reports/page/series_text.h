@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Series as text that a page carries and unpacks only when it shows them.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace stillpoint {
+
+/// RFC 4648, with padding.
+[[nodiscard]] std::string base64(std::span<const unsigned char> bytes);
+
+/// {"low", "step", "data"}: value = low + step * (16-bit little-endian number), 65535 = none. The error is at
+/// most 1/131068 of the range.
+[[nodiscard]] nlohmann::ordered_json packed_series(std::span<const double> values);
+
+}  // namespace stillpoint

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/tables/paper_tables.h"
+
+#include <algorithm>
+#include <array>
+
+#include "bench/systems/published_table.h"
+#include "reports/tables/run_cells.h"
+
+namespace stillpoint {
+namespace {
+
+/// A group of columns: a system of the paper, and the variant that stands for it here.
+struct PaperSystem {
+  const char* heading;
+  const char* published;
+  const char* variant;  ///< empty: not run here
+};
+
+struct PaperMetric {
+  const char* name;
+  const char* unit;
+  PublishedTable published;
+};
+using PaperMetrics = std::array<PaperMetric, 3>;
+
+constexpr std::array<const char*, 4> kSequences = {"walking_xyz", "walking_static", "walking_rpy",
+                                                   "walking_halfsphere"};
+constexpr const char* kCopySlip =
+    "the paper prints the same three numbers for another sequence: a copy slip, not to be used as a target";
+
+const PublishedRow* paper_row(const PublishedTable& table, const std::string& system) {
+  for (const PublishedRow& row : table.rows) {
+    if (row.source == "paper" && row.system == system) return &row;
+  }
+  return nullptr;
+}
+
+std::optional<double> quoted(const PaperMetric& metric, const PaperSystem& system,
+                             const std::string& sequence) {
+  const PublishedRow* row = paper_row(metric.published, system.published);
+  if (row == nullptr) return std::nullopt;
+  const auto found = row->values.find(sequence);
+  return found == row->values.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// Whether another sequence of that system has the same three numbers: no two recordings give that.
+bool is_copy_slip(const PaperMetrics& metrics, const PaperSystem& system, const std::string& sequence) {
+  return std::any_of(kSequences.begin(), kSequences.end(), [&](const std::string& other) {
+    return other != sequence && std::all_of(metrics.begin(), metrics.end(), [&](const PaperMetric& metric) {
+             const std::optional<double> value = quoted(metric, system, sequence);
+             return value && value == quoted(metric, system, other);
+           });
+  });
+}
+
+TableCell published_cell(const PaperMetrics& metrics, std::size_t metric, const PaperSystem& system,
+                         const std::string& sequence) {
+  TableCell cell{.number = quoted(metrics[metric], system, sequence)};
+  if (!cell.number) return cell;
+  cell.state = CellState::kOk;
+  cell.is_suspicious = is_copy_slip(metrics, system, sequence);
+  if (cell.is_suspicious) cell.note = kCopySlip;
+  return cell;
+}
+
+TableCell difference_cell(const TableCell& ours, const TableCell& published) {
+  if (!ours.number || !published.number) return {};
+  TableCell cell{.number = *ours.number - *published.number, .state = ours.state};
+  cell.is_suspicious = published.is_suspicious;
+  cell.note = published.note;
+  return cell;
+}
+
+/// Published, ours and difference of one sequence.
+std::vector<TableRow> sequence_rows(std::span<const StoredRun> runs, const std::string& sequence,
+                                    const PaperMetrics& metrics, std::span<const PaperSystem> systems) {
+  std::vector<TableRow> rows = {
+      {sequence, "published", {}}, {sequence, "ours", {}}, {sequence, "difference", {}}};
+  for (const PaperSystem& system : systems) {
+    const auto own = runs_of(runs, system.variant, sequence);
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+      rows[0].cells.push_back(published_cell(metrics, i, system, sequence));
+      rows[1].cells.push_back(metric_cell(own, metrics[i].published.metric));
+      rows[2].cells.push_back(difference_cell(rows[1].cells.back(), rows[0].cells.back()));
+    }
+  }
+  return rows;
+}
+
+/// Best of each metric among the systems of a row.
+void mark_best_systems(TableRow& row) {
+  constexpr std::size_t kMetrics = std::tuple_size_v<PaperMetrics>;
+  for (std::size_t metric = 0; metric < kMetrics; ++metric) {
+    std::vector<TableCell*> cells;
+    for (std::size_t i = metric; i < row.cells.size(); i += kMetrics) cells.push_back(&row.cells[i]);
+    const auto numbers = std::count_if(cells.begin(), cells.end(),
+                                       [](const TableCell* cell) { return cell->number.has_value(); });
+    if (numbers > 1) mark_best(cells, false);
+  }
+}
+
+ReportTable accuracy_table(ReportTable table, std::span<const StoredRun> runs, const PaperMetrics& metrics,
+                           std::span<const PaperSystem> systems) {
+  table.row_heading = "sequence";
+  for (const PaperSystem& system : systems) {
+    for (const PaperMetric& metric : metrics)
+      table.columns.push_back(
+          {.group = system.heading, .name = metric.name, .unit = metric.unit, .decimals = 4});
+  }
+  for (const char* sequence : kSequences) {
+    for (TableRow& row : sequence_rows(runs, sequence, metrics, systems)) {
+      if (row.from != "difference") mark_best_systems(row);
+      table.rows.push_back(std::move(row));
+    }
+  }
+  table.notes.emplace_back(
+      "Bold: the best of a row. Ours: medians over runs; difference: ours less published.");
+  table.notes.emplace_back(
+      "Where ours was run on rendered sequences, these have the motions of the recordings and not their "
+      "pictures: the numbers stand beside each other and do not compete.");
+  return table;
+}
+
+PaperMetrics metrics_of(const std::string& prefix) {
+  return {{{"ATE", "m", load_published(prefix + "_ate")},
+           {"T.RPE", "m/s", load_published(prefix + "_rpe_trans")},
+           {"R.RPE", "deg/s", load_published(prefix + "_rpe_rot")}}};
+}
+
+ReportTable table1(std::span<const StoredRun> runs) {
+  constexpr PaperSystem kSystems[] = {{"ORB-SLAM2", "ORB-SLAM2", ""},
+                                      {"DS-SLAM", "DS-SLAM", ""},
+                                      {"Ji et al.", "Ji et al. 2021", ""},
+                                      {"Dynamic-VINS", "Dynamic-VINS (VO)", "dynamic_vins+vo"}};
+  return accuracy_table(
+      {.name = "table1", .title = "Table I: RMSE of ATE, T.RPE and R.RPE on TUM RGB-D fr3 walking"}, runs,
+      metrics_of("tum_fr3"), kSystems);
+}
+
+ReportTable table2(std::span<const StoredRun> runs) {
+  constexpr PaperSystem kSystems[] = {
+      {"W/O circular mask", "Dynamic-VINS wo_circular_mask", "vo+wo_circular_mask"},
+      {"W/O object detection", "Dynamic-VINS wo_object_detection", "vo+wo_object_detection"},
+      {"W/O seg-like mask", "Dynamic-VINS wo_seg_like_mask", "vo+wo_seg_like_mask"},
+      {"W/O MCC", "Dynamic-VINS wo_mcc", "vo+wo_mcc"}};
+  return accuracy_table(
+      {.name = "table2",
+       .title = "Table II: ablation, RMSE of ATE, T.RPE and R.RPE on TUM RGB-D fr3 walking"},
+      runs, metrics_of("tum_fr3_ablation"), kSystems);
+}
+
+/// A column of Table III.
+struct PaperModule {
+  const char* module;
+  const char* heading;
+};
+constexpr PaperModule kModules[] = {
+    {"feature_tracking", "Feature Tracking"},     {"feature_detection", "Feature Detection"},
+    {"tracking_thread", "Tracking Thread*"},      {"dynamic_recognition", "Dynamic Feature Recognition"},
+    {"state_optimization", "State Optimization"}, {"optimization_thread", "Optimization Thread*"},
+    {"object_detection", "Object Detection*"}};
+
+ReportTable table3(std::span<const StoredRun> runs) {
+  ReportTable table{
+      .name = "table3",
+      .title = "Table III: average computation time of each module and thread on OpenLORIS market",
+      .row_heading = "method"};
+  for (const PaperModule& module : kModules)
+    table.columns.push_back({.group = "", .name = module.heading, .unit = "ms", .decimals = 4});
+  for (const PublishedRow& quoted : load_published("runtime_market").rows) {
+    TableRow& row = table.rows.emplace_back(TableRow{quoted.system, "published", {}});
+    for (const PaperModule& module : kModules) {
+      TableCell& cell = row.cells.emplace_back();
+      const auto found = quoted.values.find(module.module);
+      if (found == quoted.values.end()) continue;
+      cell.number = found->second;
+      cell.state = CellState::kOk;
+    }
+  }
+  for (const std::string& label : distinct(runs, run_label)) {
+    TableRow& row = table.rows.emplace_back(TableRow{label, "ours", {}});
+    for (const PaperModule& module : kModules)
+      row.cells.push_back(cost_cell(runs_of(runs, label, ""), module.module));
+  }
+  table.notes = {
+      "* a thread of its own, averaged per frame; modules are averaged per call.",
+      "Dynamic Feature Recognition sums up recognition, missed detection compensation and moving "
+      "consistency check.",
+      "Other boards than ours: ratios between rows of one machine can be compared, times cannot; so there "
+      "is no difference."};
+  return table;
+}
+
+}  // namespace
+
+ReportTable paper_table(PaperTable table, std::span<const StoredRun> runs) {
+  switch (table) {
+    case PaperTable::kTable1:
+      return table1(runs);
+    case PaperTable::kTable2:
+      return table2(runs);
+    case PaperTable::kTable3:
+      return table3(runs);
+  }
+  return {};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/tables/report_table.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace stillpoint {
+
+std::string cell_state_name(CellState state) {
+  switch (state) {
+    case CellState::kOk:
+      return "ok";
+    case CellState::kPartial:
+      return "partial";
+    case CellState::kFailed:
+      return "failed";
+    case CellState::kEmpty:
+      return "empty";
+  }
+  return "";
+}
+
+std::string number_text(const TableColumn& column, const TableCell& cell) {
+  if (cell.number) return fmt::format("{:.{}f}", *cell.number, column.decimals);
+  return cell.state == CellState::kFailed ? "failed" : "-";
+}
+
+std::string cell_text(const TableColumn& column, const TableCell& cell, TableDetail detail) {
+  const std::string number = number_text(column, cell);
+  if (detail == TableDetail::kNumbers || cell.count == 0 || !cell.number) return number;
+  if (!cell.interval) return number + fmt::format(" (n {})", cell.count);
+  return number + fmt::format(" (n {}, {:.{}f} to {:.{}f})", cell.count, cell.interval->low, column.decimals,
+                              cell.interval->high, column.decimals);
+}
+
+std::vector<std::string> footnotes(const ReportTable& table) {
+  std::vector<std::string> notes;
+  for (const TableRow& row : table.rows) {
+    for (const TableCell& cell : row.cells) {
+      const bool is_known = std::find(notes.begin(), notes.end(), cell.note) != notes.end();
+      if (!cell.note.empty() && !is_known) notes.push_back(cell.note);
+    }
+  }
+  return notes;
+}
+
+std::size_t footnote_number(const std::vector<std::string>& notes, const TableCell& cell) {
+  if (cell.note.empty()) return 0;
+  const auto found = std::find(notes.begin(), notes.end(), cell.note);
+  return found == notes.end() ? 0 : static_cast<std::size_t>(found - notes.begin()) + 1;
+}
+
+void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better) {
+  std::optional<double> best;
+  const auto counts = [](const TableCell& cell) { return cell.number && !cell.is_suspicious; };
+  for (const TableCell* cell : cells) {
+    if (!counts(*cell)) continue;
+    if (!best || (larger_is_better ? *cell->number > *best : *cell->number < *best)) best = cell->number;
+  }
+  for (TableCell* cell : cells) cell->is_best = counts(*cell) && cell->number == best;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/tables/result_tables.h"
+
+#include <algorithm>
+
+#include "reports/tables/run_cells.h"
+
+namespace stillpoint {
+namespace {
+
+/// A metric as tables show it.
+struct ShownMetric {
+  const char* name;
+  const char* title;
+  const char* unit;
+  int decimals;
+  enum class Best { kSmallest, kLargest, kNone } best;
+};
+constexpr ShownMetric kShown[] = {
+    {"ate_rmse_m", "RMSE of the absolute trajectory error", "m", 4, ShownMetric::Best::kSmallest},
+    {"rpe_trans_rmse_m_per_s", "RMSE of the translational drift", "m/s", 4, ShownMetric::Best::kSmallest},
+    {"rpe_rot_rmse_deg_per_s", "RMSE of the rotational drift", "deg/s", 4, ShownMetric::Best::kSmallest},
+    {"correct_rate", "Correct rate", "", 4, ShownMetric::Best::kLargest},
+    {"coverage", "Share of the pictures with a pose", "", 4, ShownMetric::Best::kLargest},
+    {"first_pose_s", "Time of the first pose", "s", 3, ShownMetric::Best::kSmallest},
+    {"resets", "Resets of the estimator", "", 0, ShownMetric::Best::kNone},
+    {"process_cpu_s", "Processor time of a run", "s", 2, ShownMetric::Best::kNone},
+    {"peak_memory_mb", "Peak memory of a run", "MB", 1, ShownMetric::Best::kNone}};
+
+bool is_outside_sweeps(const StoredRun& run) { return run.identity.axis.empty(); }
+
+bool has_metric(std::span<const StoredRun> runs, const std::string& name) {
+  return std::any_of(runs.begin(), runs.end(), [&](const StoredRun& run) {
+    return is_outside_sweeps(run) && metric_value(run, name).has_value();
+  });
+}
+
+std::vector<std::string> labels_of(std::span<const StoredRun> runs) { return distinct(runs, run_label); }
+std::vector<std::string> sequences_of(std::span<const StoredRun> runs) {
+  return distinct(runs, [](const RunIdentity& identity) { return identity.sequence; });
+}
+
+/// In each column by itself.
+void mark_best_in_columns(ReportTable& table, bool larger_is_better) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    std::vector<TableCell*> cells;
+    for (TableRow& row : table.rows) cells.push_back(&row.cells[i]);
+    mark_best(cells, larger_is_better);
+  }
+}
+
+ReportTable metric_table(std::span<const StoredRun> runs, const ShownMetric& metric) {
+  ReportTable table{.name = metric.name, .title = metric.title, .row_heading = "variant"};
+  const std::vector<std::string> sequences = sequences_of(runs);
+  for (const std::string& sequence : sequences) {
+    table.columns.push_back(
+        {.group = "", .name = sequence, .unit = metric.unit, .decimals = metric.decimals});
+  }
+  for (const std::string& label : labels_of(runs)) {
+    TableRow row{.label = label, .from = "", .cells = {}};
+    for (const std::string& sequence : sequences)
+      row.cells.push_back(metric_cell(runs_of(runs, label, sequence), metric.name));
+    table.rows.push_back(std::move(row));
+  }
+  if (metric.best != ShownMetric::Best::kNone)
+    mark_best_in_columns(table, metric.best == ShownMetric::Best::kLargest);
+  table.notes = {"Medians over the runs that ended well; bold: the best of a column."};
+  return table;
+}
+
+std::vector<std::string> modules_of(std::span<const StoredRun> runs) {
+  std::vector<std::string> modules;
+  for (const StoredRun& run : runs) {
+    for (const ModuleCost& cost : run.costs) {
+      if (std::find(modules.begin(), modules.end(), cost.module) == modules.end())
+        modules.push_back(cost.module);
+    }
+  }
+  return modules;
+}
+
+/// Columns that some quoted row and some run have.
+std::vector<std::string> shared_columns(std::span<const StoredRun> runs, const PublishedTable& published) {
+  std::vector<std::string> names = published.metric == "mean_ms" ? modules_of(runs) : sequences_of(runs);
+  std::erase_if(names, [&](const std::string& name) {
+    return std::none_of(published.rows.begin(), published.rows.end(),
+                        [&](const PublishedRow& row) { return row.values.contains(name); });
+  });
+  return names;
+}
+
+TableRow quoted_row(const PublishedRow& quoted, const std::vector<std::string>& columns) {
+  TableRow row{.label = quoted.system + ", " + quoted.source, .from = "published", .cells = {}};
+  for (const std::string& column : columns) {
+    TableCell& cell = row.cells.emplace_back();
+    const auto found = quoted.values.find(column);
+    if (found == quoted.values.end()) continue;
+    cell.number = found->second;
+    cell.state = CellState::kOk;
+    cell.note = quoted.note;
+  }
+  return row;
+}
+
+}  // namespace
+
+std::vector<ReportTable> metric_tables(std::span<const StoredRun> runs) {
+  std::vector<StoredRun> shown(runs.begin(), runs.end());
+  std::erase_if(shown, [](const StoredRun& run) { return !is_outside_sweeps(run); });
+  std::vector<ReportTable> tables;
+  for (const ShownMetric& metric : kShown) {
+    // The first is there even when every run failed: it says so.
+    if (&metric == &kShown[0] ? !shown.empty() : has_metric(shown, metric.name))
+      tables.push_back(metric_table(shown, metric));
+  }
+  return tables;
+}
+
+ReportTable cost_table(std::span<const StoredRun> runs) {
+  ReportTable table{
+      .name = "module_times", .title = "Mean time of modules and threads", .row_heading = "variant"};
+  const std::vector<std::string> modules = modules_of(runs);
+  for (const std::string& module : modules)
+    table.columns.push_back({.group = "", .name = module, .unit = "ms", .decimals = 3});
+  if (modules.empty()) return table;
+  for (const std::string& label : labels_of(runs)) {
+    TableRow row{.label = label, .from = "", .cells = {}};
+    for (const std::string& module : modules)
+      row.cells.push_back(cost_cell(runs_of(runs, label, ""), module));
+    table.rows.push_back(std::move(row));
+  }
+  table.notes = {"Modules are averaged per call, threads per frame; medians over all runs of a variant."};
+  return table;
+}
+
+ReportTable beside_table(std::span<const StoredRun> runs, const PublishedTable& published) {
+  const bool is_cost = published.metric == "mean_ms";
+  ReportTable table{.name = "beside_" + published.name, .title = published.title, .row_heading = "system"};
+  const std::vector<std::string> columns = shared_columns(runs, published);
+  for (const std::string& column : columns)
+    table.columns.push_back({.group = "", .name = column, .unit = published.unit, .decimals = 4});
+  if (columns.empty()) return table;
+  for (const PublishedRow& quoted : published.rows) {
+    TableRow row = quoted_row(quoted, columns);
+    const bool has_number = std::any_of(row.cells.begin(), row.cells.end(),
+                                        [](const TableCell& cell) { return cell.number.has_value(); });
+    if (has_number) table.rows.push_back(std::move(row));
+  }
+  for (const std::string& label : labels_of(runs)) {
+    TableRow row{.label = label, .from = "ours", .cells = {}};
+    for (const std::string& column : columns) {
+      row.cells.push_back(is_cost ? cost_cell(runs_of(runs, label, ""), column)
+                                  : metric_cell(runs_of(runs, label, column), published.metric));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  table.notes = published.comparability;
+  for (const auto& [name, source] : published.sources) table.notes.push_back(name + ": " + source);
+  return table;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One run at a time: its paths, charts, numbers and manifest, and the frame that everything points at.
+"use strict";
+(function (page) {
+  const WORST = 20;
+  const byId = (id) => document.getElementById(id);
+  const state = { run: -1, frame: null, worst: [], worstAt: -1, charts: null, views: null };
+
+  const name = (run) => run.label + " on " + run.sequence + ", seed " + run.seed + (run.repetition > 1 ? ", repetition " + run.repetition : "")
+    + (run.sweep ? ", " + run.sweep.axis + " = " + run.sweep.value : "") + (run.outcome === "ok" ? "" : " (" + run.outcome + ")");
+
+  // Frames at which the error grew most since the frame before.
+  function worstFrames(series) {
+    const error = series.columns.error_m || [];
+    const growth = error.map((value, i) => (i > 0 && value !== null && error[i - 1] !== null ? value - error[i - 1] : -Infinity));
+    return growth.map((value, i) => [value, i]).filter((pair) => pair[0] > 0).sort((a, b) => b[0] - a[0]).slice(0, WORST).map((pair) => pair[1]);
+  }
+
+  function readout(series, frame) {
+    const place = byId("readout");
+    place.replaceChildren();
+    if (frame === null) return;
+    const add = (label, text) => { const part = page.element("span"); part.append(page.element("b", {}, label + " "), text); place.append(part); };
+    add("frame", String(frame));
+    add("time", series.t[frame].toFixed(3) + " s");
+    const shown = { error_m: "error [m]", error_deg: "error [deg]", features: "features", landmarks: "in the window", dynamic: "dynamic share" };
+    for (const [column, values] of Object.entries(series.columns)) {
+      const label = column.startsWith("ms:") ? column.slice(3) + " [ms]" : shown[column];
+      if (label) add(label, values[frame] === null ? "-" : Number(values[frame].toPrecision(4)).toString());
+    }
+  }
+
+  // Everything points at a frame; the charts follow unless the pointer is in one of them.
+  function point(frame, fromChart) {
+    if (state.moving || state.run < 0) return;
+    state.moving = true;
+    state.frame = frame;
+    readout(page.series(state.run), frame);
+    state.views.point(frame);
+    if (!fromChart && frame !== null) state.charts.point(frame);
+    byId("runs").dataset.frame = frame === null ? "" : frame;
+    state.moving = false;
+  }
+
+  function showMetrics(run) {
+    const table = page.element("table");
+    const head = page.element("tr");
+    for (const title of ["number", "value", "unit", "recipe"]) head.append(page.element("th", { scope: "col" }, title));
+    table.append(head);
+    for (const [metric, value, unit, recipe] of run.metrics) {
+      const row = page.element("tr");
+      row.append(page.element("th", { scope: "row" }, metric), page.element("td", {}, Number(value.toPrecision(6)).toString()),
+        page.element("td", {}, unit), page.element("td", {}, recipe));
+      table.append(row);
+    }
+    byId("metrics").replaceChildren(table);
+  }
+
+  page.selectRun = function (index) {
+    const runs = page.index.runs;
+    state.run = (index + runs.length) % runs.length;
+    const run = runs[state.run], series = page.series(state.run);
+    state.frame = null;
+    state.worst = worstFrames(series);
+    state.worstAt = -1;
+    byId("run").value = state.run;
+    byId("outcome").textContent = run.outcome === "ok" ? (series.frames ? "" : "This run has no frames in the store.") : run.outcome + ": " + run.detail;
+    showMetrics(run);
+    byId("manifest").textContent = JSON.stringify(page.index.manifests[run.manifest] || null, null, 2);
+    state.charts = page.drawCharts(byId("series"), series, (frame) => point(frame, true), (min, max) => {
+      state.views.zoom(min, max);
+      byId("runs").dataset.zoom = min.toFixed(3) + " " + max.toFixed(3);
+    });
+    state.views.show(series, page.truth(state.run, series.start));
+    readout(series, null);
+    byId("runs").dataset.run = run.key;
+  };
+
+  function step(frames) {
+    const series = page.series(state.run);
+    if (series.frames) point(Math.max(0, Math.min(series.frames - 1, (state.frame === null ? -1 : state.frame) + frames)), false);
+  }
+
+  function nextWorst() {
+    if (!state.worst.length) return;
+    state.worstAt = (state.worstAt + 1) % state.worst.length;
+    point(state.worst[state.worstAt], false);
+  }
+
+  const KEYS = {
+    ArrowRight: (event) => step(event.shiftKey ? 10 : 1), ArrowLeft: (event) => step(event.shiftKey ? -10 : -1),
+    n: () => page.selectRun(state.run + 1), p: () => page.selectRun(state.run - 1), w: nextWorst, 0: () => state.charts.whole(),
+  };
+
+  function onKey(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey || /^(SELECT|INPUT|TEXTAREA)$/.test(event.target.tagName)) return;
+    const action = KEYS[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action(event);
+  }
+
+  function fromHash() {
+    const key = /^#run=([0-9a-f]+)$/.exec(location.hash);
+    const index = key ? page.index.runs.findIndex((run) => run.key === key[1]) : -1;
+    if (index < 0) return false;
+    page.selectRun(index);
+    byId("runs").scrollIntoView();
+    return true;
+  }
+
+  page.startExplorer = function () {
+    const list = byId("run");
+    page.index.runs.forEach((run, i) => list.append(page.element("option", { value: i }, name(run))));
+    state.views = page.pathViews(byId("paths"), (frame) => point(frame, false));
+    list.addEventListener("change", () => page.selectRun(Number(list.value)));
+    byId("previous").addEventListener("click", () => page.selectRun(state.run - 1));
+    byId("next").addEventListener("click", () => page.selectRun(state.run + 1));
+    byId("worst").addEventListener("click", nextWorst);
+    byId("whole").addEventListener("click", () => state.charts.whole());
+    document.addEventListener("keydown", onKey);
+    window.addEventListener("hashchange", fromHash);
+    window.addEventListener("resize", () => { state.charts.resize(); state.views.redraw(); });
+    const first = page.index.runs.findIndex((run) => run.outcome === "ok" && run.frames > 0);
+    if (!fromHash()) page.selectRun(Math.max(first, 0));
+  };
+  page.redrawExplorer = () => page.selectRun(state.run);
+  page.selectedRun = () => state.run;
+})(window.stillpoint);

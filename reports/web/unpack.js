@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The data that the page carries, unpacked when it is asked for.
+"use strict";
+window.stillpoint = {};
+(function (page) {
+  const NONE = 65535;
+  const parse = (id) => JSON.parse(document.getElementById(id).textContent);
+
+  page.index = parse("index");
+  page.files = parse("files");
+
+  // {low, step, data} -> numbers, null where there is none.
+  page.unpack = function (packed) {
+    const bytes = Uint8Array.from(atob(packed.data), (letter) => letter.charCodeAt(0));
+    const numbers = new Array(bytes.length / 2);
+    for (let i = 0; i < numbers.length; ++i) {
+      const number = bytes[2 * i] | (bytes[2 * i + 1] << 8);
+      numbers[i] = number === NONE ? null : packed.low + packed.step * number;
+    }
+    return numbers;
+  };
+
+  // Series of a run: {start, frames, t, columns: {name: numbers}}; at most a few are kept.
+  const cache = new Map();
+  page.series = function (run) {
+    if (!cache.has(run)) {
+      if (cache.size > 8) cache.clear();
+      const packed = parse("series-" + run);
+      const columns = {};
+      for (const [name, column] of Object.entries(packed.columns)) columns[name] = page.unpack(column);
+      cache.set(run, { start: packed.start, frames: packed.frames, t: page.unpack(packed.t), columns });
+    }
+    return cache.get(run);
+  };
+
+  // True path of a run, its times counted from the first frame; null if it has none.
+  page.truth = function (run, start) {
+    const packed = page.index.truths[page.index.runs[run].truth];
+    if (!packed) return null;
+    return {
+      t: page.unpack(packed.t).map((t) => t + packed.start - start),
+      x: page.unpack(packed.x), y: page.unpack(packed.y), z: page.unpack(packed.z),
+    };
+  };
+
+  page.color = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  page.element = function (tag, attributes, text) {
+    const element = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes || {})) element.setAttribute(name, value);
+    if (text !== undefined) element.textContent = text;
+    return element;
+  };
+})(window.stillpoint);

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/page/report_page.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/store/journal.h"
+#include "reports/page/run_series.h"
+#include "reports/page/series_text.h"
+#include "reports/page/summary.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+std::string base64_of(const std::string& text) {
+  return base64({reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+TEST(Base64, IsThatOfRfc4648) {
+  EXPECT_EQ(base64_of(""), "");
+  EXPECT_EQ(base64_of("f"), "Zg==");
+  EXPECT_EQ(base64_of("fo"), "Zm8=");
+  EXPECT_EQ(base64_of("foobar"), "Zm9vYmFy");
+}
+
+TEST(PackedSeries, KeepsEndsAndMarksWhatIsMissing) {
+  const std::vector<double> values = {-1.0, std::numeric_limits<double>::quiet_NaN(), 65533.0};
+  const nlohmann::ordered_json packed = packed_series(values);
+  EXPECT_EQ(packed["low"], -1.0);
+  EXPECT_EQ(packed["step"], 1.0);  // (65533 + 1) / 65534
+  // 0, none and 65534 as little-endian pairs of bytes: 00 00 ff ff fe ff.
+  EXPECT_EQ(packed["data"], "AAD///7/");
+}
+
+/// A store with one run of three frames that went 1 m along x; the second has no pose.
+void fill_store(const std::filesystem::path& file, const RunIdentity& identity,
+                const std::string& detail = "") {
+  Journal journal(file);
+  static_cast<void>(journal.claim(identity));
+  RunOutcome outcome;
+  outcome.outcome = detail.empty() ? Outcome::kOk : Outcome::kCrashed;
+  outcome.detail = detail;
+  outcome.metrics = {{"ate_rmse_m", "compat:tum", "m", 0.25}};
+  outcome.attachments["trajectory"] = "1.0 0 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n";
+  outcome.attachments["truth"] = "1.0 0 0 0 0 0 0 1\n1.1 0.5 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n";
+  outcome.attachments["counters"] =
+      "frame,t_ns,status,tracked_features,window_landmarks,depth_landmarks,dynamic_features,solver_"
+      "iterations,"
+      "keyframe,reset\n0,1000000000,tracking,100,50,40,25,3,1,0\n1,1100000000,lost,0,0,0,0,0,0,0\n"
+      "2,1200000000,tracking,80,50,40,0,3,0,0\n";
+  outcome.attachments["timings"] =
+      "frame,module,ns,calls\n0,feature_tracking,2000000,1\n2,feature_tracking,3000000,1\n";
+  outcome.manifest = "{\"host\": {\"cpu\": \"</script><b>\"}}";
+  journal.finish(identity, outcome);
+  journal.record_plan(
+      {.name = "p", .title = "Plan <p>", .text = "title = \"<&>\"\n", .run_keys = {run_key(identity)}});
+}
+
+const std::vector<double>& column(const RunSeries& series, const std::string& name) {
+  for (const SeriesColumn& candidate : series.columns) {
+    if (candidate.name == name) return candidate.values;
+  }
+  throw std::out_of_range(name);
+}
+
+TEST(RunSeries, LinksPosesErrorsCountersAndTimesByFrame) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const Store store(folder.path() / "s");
+  const RunSeries series = run_series(store, store.runs().front());
+  ASSERT_EQ(series.t_s.size(), 3u);
+  EXPECT_NEAR(series.t_s[2], 0.2, 1e-12);
+  EXPECT_TRUE(std::isnan(column(series, "x")[1]));
+  EXPECT_NEAR(column(series, "error_m")[2], 0.0, 1e-6);  // the path lies on the true one
+  EXPECT_EQ(column(series, "dynamic")[0], 0.25);         // 25 of 100 features
+  EXPECT_TRUE(std::isnan(column(series, "dynamic")[1]));
+  EXPECT_EQ(column(series, "ms:feature_tracking")[2], 3.0);
+}
+
+TEST(ReportPage, IsAPureFunctionOfTheStore) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const Store store(folder.path() / "s");
+  const Store again(folder.path() / "s");
+  EXPECT_EQ(report_html(store, report_subject(store, "p")), report_html(again, report_subject(again, "")));
+}
+
+TEST(ReportPage, HostileNamesStayText) {
+  const TemporaryFolder folder;
+  const std::string hostile = "</script><img src=x onerror=alert(1)>\"'\xFF<!--data-->\\";
+  fill_store(folder.path() / "s", {.variant = hostile, .sequence = hostile, .build = hostile}, hostile);
+  const Store store(folder.path() / "s");
+  const std::string page = report_html(store, report_subject(store, ""));
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_EQ(page.find("</script><b>"), std::string::npos);
+  EXPECT_EQ(page.find("<!--"), std::string::npos);
+}
+
+TEST(ReportPage, RefersToNothingOutside) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const Store store(folder.path() / "s");
+  const std::string page = report_html(store, report_subject(store, ""));
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+  for (const char* reference : {"src=\"http", "href=\"http", "url(http", "@import"}) {
+    EXPECT_EQ(page.find(reference), std::string::npos) << reference;
+  }
+}
+
+TEST(ReportPage, WeighsLessThanTheBudgetWithoutData) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const Store store(folder.path() / "s");
+  EXPECT_LT(report_html(store, report_subject(store, "")).size(), 400'000u);
+}
+
+TEST(ReportSubject, NamesThePlansThatThereAre) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const Store store(folder.path() / "s");
+  expect_input_error([&] { static_cast<void>(report_subject(store, "q")); }, {"\"q\"", "p"});
+}
+
+TEST(Summary, SaysWhatFailedAndWhatIsBest) {
+  StoredRun good;
+  good.identity = {.variant = "a", .sequence = "s"};
+  good.metrics = {{"ate_rmse_m", "", "m", 1.0}};
+  StoredRun better = good;
+  better.identity.variant = "b";
+  better.metrics.front().value = 0.5;
+  StoredRun lost = good;
+  lost.identity.variant = "c";
+  lost.outcome = Outcome::kLost;
+  lost.detail = "no frame has a pose";
+  const std::vector<StoredRun> runs = {good, better, lost};
+  const std::vector<std::string> sentences = outcome_sentences(runs);
+  ASSERT_EQ(sentences.size(), 2u);
+  EXPECT_EQ(sentences[0], "3 runs of 3 variants on 1 sequence: 1 run did not end well.");
+  EXPECT_EQ(sentences[1], "c on s: lost, no frame has a pose.");
+  EXPECT_EQ(best_sentence(runs), "b has the smallest trajectory error on 1 of 1 sequences.");
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/tables/result_tables.h"
+
+#include <gtest/gtest.h>
+
+#include "reports/tables/paper_tables.h"
+
+namespace stillpoint {
+namespace {
+
+StoredRun run_of(const std::string& variant, const std::string& sequence, double ate) {
+  StoredRun run;
+  run.key = variant + sequence;
+  run.identity = {.variant = variant, .sequence = sequence};
+  run.metrics = {{"ate_rmse_m", "compat:tum", "m", ate}};
+  run.costs = {{"feature_tracking", "call", 10, 2.0, 2.0, 2.0, 2.0}};
+  return run;
+}
+
+StoredRun crashed_run(const std::string& variant, const std::string& sequence) {
+  StoredRun run;
+  run.identity = {.variant = variant, .sequence = sequence, .repetition = 2};
+  run.outcome = Outcome::kCrashed;
+  run.detail = "ended by signal 11";
+  return run;
+}
+
+TEST(MetricTables, AreMediansWithTheBestOfEachColumnInBold) {
+  const std::vector<StoredRun> runs = {run_of("a", "s", 1.0), run_of("a", "s", 3.0), run_of("b", "s", 1.5)};
+  const std::vector<ReportTable> tables = metric_tables(runs);
+  ASSERT_EQ(tables.size(), 1u);
+  const ReportTable& table = tables.front();
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0].cells[0].number, 2.0);
+  EXPECT_EQ(table.rows[0].cells[0].count, 2u);
+  EXPECT_FALSE(table.rows[0].cells[0].is_best);
+  EXPECT_TRUE(table.rows[1].cells[0].is_best);
+  EXPECT_EQ(table.rows[1].cells[0].run_keys, std::vector<std::string>{"bs"});
+  EXPECT_EQ(table.rows[1].cells[0].recipe, "compat:tum");
+}
+
+TEST(MetricTables, MarkFailedAndPartialCells) {
+  const std::vector<StoredRun> runs = {run_of("a", "s", 1.0), crashed_run("a", "s"), crashed_run("b", "s")};
+  const ReportTable table = metric_tables(runs).front();
+  EXPECT_EQ(table.rows[0].cells[0].state, CellState::kPartial);
+  EXPECT_EQ(table.rows[0].cells[0].note, "1 of 2 runs did not end well: crashed (ended by signal 11)");
+  EXPECT_EQ(table.rows[1].cells[0].state, CellState::kFailed);
+  EXPECT_EQ(number_text(table.columns[0], table.rows[1].cells[0]), "failed");
+}
+
+TEST(MetricTables, AreThereWhenEveryRunFailed) {
+  const std::vector<StoredRun> runs = {crashed_run("a", "s")};
+  ASSERT_EQ(metric_tables(runs).size(), 1u);
+}
+
+TEST(MetricTables, LeaveSweepsOut) {
+  StoredRun swept = run_of("a", "s", 9.0);
+  swept.identity.axis = "synth.walkers";
+  const std::vector<StoredRun> runs = {run_of("a", "s", 1.0), swept};
+  EXPECT_EQ(metric_tables(runs).front().rows[0].cells[0].number, 1.0);
+}
+
+const TableCell& cell_of(const ReportTable& table, const std::string& label, const std::string& from,
+                         std::size_t column) {
+  for (const TableRow& row : table.rows) {
+    if (row.label == label && row.from == from) return row.cells.at(column);
+  }
+  throw std::out_of_range(label + " " + from);
+}
+
+TEST(PaperTables, TableIHasThePapersNumbersAndLayout) {
+  const ReportTable table = paper_table(PaperTable::kTable1, {});
+  ASSERT_EQ(table.columns.size(), 12u);
+  EXPECT_EQ(table.columns[9].group, "Dynamic-VINS");
+  // Paper, Table I: fr3_walking_xyz 0.0486, 0.0578, 1.6932 of Dynamic-VINS; Ji et al. are best with 0.0194.
+  EXPECT_EQ(cell_of(table, "walking_xyz", "published", 9).number, 0.0486);
+  EXPECT_EQ(cell_of(table, "walking_xyz", "published", 10).number, 0.0578);
+  EXPECT_EQ(cell_of(table, "walking_xyz", "published", 11).number, 1.6932);
+  EXPECT_TRUE(cell_of(table, "walking_xyz", "published", 6).is_best);
+  EXPECT_FALSE(cell_of(table, "walking_xyz", "published", 9).is_best);
+  EXPECT_EQ(cell_of(table, "walking_xyz", "ours", 9).state, CellState::kEmpty);
+}
+
+TEST(PaperTables, DifferenceIsOursLessPublished) {
+  const std::vector<StoredRun> runs = {run_of("dynamic_vins+vo", "walking_static", 0.0100)};
+  const ReportTable table = paper_table(PaperTable::kTable1, runs);
+  EXPECT_EQ(cell_of(table, "walking_static", "ours", 9).number, 0.0100);
+  EXPECT_NEAR(*cell_of(table, "walking_static", "difference", 9).number, 0.0100 - 0.0077, 1e-12);
+}
+
+TEST(PaperTables, TableIIFlagsTheIdenticalRowsAndNoOthers) {
+  const ReportTable table = paper_table(PaperTable::kTable2, {});
+  // Paper, Table II: without circular mask walking_static and walking_rpy both read 0.4111 0.4052 9.8985.
+  std::size_t suspicious = 0;
+  for (const TableRow& row : table.rows) {
+    for (const TableCell& cell : row.cells) suspicious += cell.is_suspicious ? 1 : 0;
+  }
+  EXPECT_EQ(suspicious, 6u);
+  EXPECT_TRUE(cell_of(table, "walking_static", "published", 0).is_suspicious);
+  EXPECT_TRUE(cell_of(table, "walking_rpy", "published", 2).is_suspicious);
+  EXPECT_FALSE(cell_of(table, "walking_static", "published", 0).note.empty());
+}
+
+TEST(PaperTables, TableIIIHoldsOurTimesBelowThePublishedOnes) {
+  const std::vector<StoredRun> runs = {run_of("dynamic_vins", "market", 1.0)};
+  const ReportTable table = paper_table(PaperTable::kTable3, runs);
+  EXPECT_EQ(cell_of(table, "Dynamic-VINS on Atlas200 DK", "published", 0).number, 15.535);
+  EXPECT_EQ(cell_of(table, "VINS-Mono on Atlas200 DK", "published", 3).state, CellState::kEmpty);
+  EXPECT_EQ(cell_of(table, "dynamic_vins", "ours", 0).number, 2.0);
+}
+
+}  // namespace
+}  // namespace stillpoint
