@@ -184,12 +184,12 @@ TEST(SevenScenesFormat, RegistersDepthToTheColourCamera) {
   write_seven_scenes_folder(folder);
   const auto stream = open_sequence(folder.path());
   const SequenceInfo& info = stream->info();
-  EXPECT_NEAR(info.rig.camera.fx, 526.0, 1e-9);
-  EXPECT_NEAR(info.ground_truth.T_c_f.p.x(), -0.025, 1e-9);  // the poses are of the depth camera
+  EXPECT_NEAR(info.rig.camera.fx, 527.5, 1e-9);
+  EXPECT_NEAR(info.ground_truth.T_c_f.p.x(), -0.023, 1e-9);  // the poses are of the depth camera
   const cv::Mat depth = stream->load_frame(0).depth;
-  // A wall at 1 m ends at 320 / 585 m to either side; in colour at 526 * (320 / 585 -+ 0.025) px from the
-  // centre, 275 to the right and 301 to the left: at the columns 595 and 19, and a pixel or two further in by
-  // distortion.
+  // A wall at 1 m ends at 320 / 585 m to either side; the camera 23 mm beside it and turned by 8.3 mrad sees
+  // the ends at 0.534 and -0.559, so 527.5 px times that from column 315: at the columns 597 and 20, and two
+  // pixels further in by distortion.
   EXPECT_NEAR(depth.at<std::uint16_t>(240, 320), 1000, 1);
   EXPECT_GT(depth.at<std::uint16_t>(240, 585), 0);
   EXPECT_EQ(depth.at<std::uint16_t>(240, 600), 0);
