@@ -80,7 +80,8 @@ struct BackendConfig {
   double keyframe_parallax_px = 10.0;  ///< mean displacement that makes a keyframe
   int keyframe_min_tracked = 20;       ///< fewer known features make a keyframe
   double pixel_sigma_px = 1.5;         ///< standard deviation of a feature's position
-  double cauchy_scale = 1.0;           ///< of the robust loss, in standard deviations
+  double pixel_misfit_px = 0.0;  ///< median misfit that belongs to pixel_sigma_px: more widens it; 0 = never
+  double cauchy_scale = 1.0;     ///< of the robust loss, in standard deviations
   WindowSolverKind solver = WindowSolverKind::kCeres;  ///< who minimises and marginalises; same residuals
   int max_iterations = 8;
   double function_tolerance = 1e-6;      ///< relative change of the cost that ends the solve
@@ -101,6 +102,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("keyframe_parallax_px", config.keyframe_parallax_px, 0.1, 200.0);
   field("keyframe_min_tracked", config.keyframe_min_tracked, 0, 1000);
   field("pixel_sigma_px", config.pixel_sigma_px, 0.05, 20.0);
+  field("pixel_misfit_px", config.pixel_misfit_px, 0.0, 20.0);
   field("cauchy_scale", config.cauchy_scale, 0.01, 100.0);
   field("solver", config.solver);
   field("max_iterations", config.max_iterations, 1, 100);

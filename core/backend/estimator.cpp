@@ -192,7 +192,8 @@ void Estimator::slide(bool keyframe) {
     keyframe ? remove_oldest_frame(window_) : remove_second_newest_frame(window_);
     window_.prior = first_prior(window_, backend_.initializer);
   } else if (keyframe) {
-    LinearPrior prior = marginalize_oldest(window_, backend_, rig_.camera.focal_px(), solver_);
+    LinearPrior prior =
+        marginalize_oldest(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
     remove_oldest_frame(window_);
     window_.prior = std::move(prior);
   } else {
@@ -239,7 +240,11 @@ bool Estimator::refine(OdometryUpdate& update) {
   if (knows_scale()) {
     initialize_depths(backend_, rig_.camera.focal_px(), window_);
     const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
-    const SolveReport report = solve_window(window_, backend_, rig_.camera.focal_px(), solver_);
+    const SolveReport report =
+        solve_window(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
+    if (backend_.pixel_misfit_px > 0.0) {
+      pixel_noise_.observe(median_misfit_px(window_, rig_.camera.focal_px()), backend_);
+    }
     update.counters.window_landmarks = report.landmarks;
     update.counters.depth_landmarks = report.depth_landmarks;
     update.counters.solver_iterations = report.iterations;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/backend/backend_config.h"
+#include "core/backend/pixel_noise.h"
 #include "core/backend/schur/schur_solver.h"
 #include "core/backend/state_prediction.h"
 #include "core/backend/window.h"
@@ -82,6 +83,7 @@ class Estimator {
   ImuBuffer imu_;
   SchurSolver solver_;  ///< its memory only, whoever solves
   Window window_;
+  PixelNoise pixel_noise_;
   NavState newest_;    ///< last state handed out
   NavState previous_;  ///< the one before: constant velocity where there is no IMU
   bool located_ = true;

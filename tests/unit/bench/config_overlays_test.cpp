@@ -76,6 +76,7 @@ TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
                      {"dynamic.gate_before_solve", "true"},
                      {"dynamic.min_stable_features", "20"},
                      {"backend.rate_hz", "0.0"},
+                     {"backend.pixel_misfit_px", "0.5"},
                      {"backend.solver", "\"schur\""},
                      {"backend.max_iterations", "4"},
                      {"backend.keyframe_max_interval_s", "0.5"},

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/pixel_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kMinSightings = 20;
+constexpr double kMaxFactor = 4.0;
+constexpr double kFollow = 0.1;  // share of the way to each new value: about ten windows
+
+}  // namespace
+
+double median_misfit_px(const Window& window, double focal_px) {
+  std::vector<Pose> T_c_w;
+  for (int frame = 0; frame <= window.newest(); ++frame) T_c_w.push_back(window.T_w_c(frame).inverse());
+  std::vector<double> squared;
+  for (const Landmark& landmark : window.landmarks) {
+    if (!is_usable(landmark)) continue;
+    const Eigen::Vector3d p_w = window.position(landmark);
+    for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
+      const Eigen::Vector3d p_c = T_c_w[static_cast<std::size_t>(frame)] * p_w;
+      squared.push_back((p_c.hnormalized() - landmark.in(frame).bearing).squaredNorm());
+    }
+  }
+  if (squared.size() < kMinSightings) return 0.0;
+  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
+  std::nth_element(squared.begin(), middle, squared.end());
+  return focal_px * std::sqrt(*middle);
+}
+
+void PixelNoise::observe(double misfit_px, const BackendConfig& config) {
+  if (misfit_px <= 0.0 || config.pixel_misfit_px <= 0.0) return;
+  const double ratio = misfit_px / config.pixel_misfit_px;
+  factor_ += kFollow * (std::clamp(ratio * ratio, 1.0, kMaxFactor) - factor_);
+}
+
+BackendConfig PixelNoise::applied_to(BackendConfig config) const {
+  config.pixel_sigma_px *= factor_;
+  return config;
+}
+
+}  // namespace stillpoint
