@@ -31,6 +31,7 @@ declare -A may_include=(
 libraries=(
   '<OpenImageIO/      ^datasets/image_io\.cpp$'
   '<embree3/          ^datasets/synthetic/'
+  '<hwy/              ^core/frontend/patch_kernel.cpp'
   '<ceres/            ^core/(backend|loop)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/(backend|loop)/'
   '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/(picture_annotator\.|raster_drawing\.cpp$|video_file\.)'

@@ -9,6 +9,7 @@ packages=(
   g++ cmake ninja-build git make pkg-config ccache
   libeigen3-dev libceres-dev libsuitesparse-dev
   libopencv-dev
+  libhwy-dev
   libopenimageio-dev openimageio-tools
   libembree-dev libtbb-dev
   libfmt-dev libspdlog-dev libcli11-dev

@@ -12,8 +12,8 @@
 #include "core/frontend/feature_detector.h"
 #include "core/frontend/feature_mask.h"
 #include "core/frontend/feature_prediction.h"
-#include "core/frontend/klt.h"
 #include "core/frontend/outlier_rejection.h"
+#include "core/frontend/point_follower.h"
 #include "core/frontend/track.h"
 
 namespace stillpoint {
@@ -66,7 +66,7 @@ struct FeatureTracker::State {
   }
 
   void advance(const Frame& frame, const MotionPrior& prior, bool detect);
-  void follow(const MotionPrior& prior, double interval_s);
+  void follow_tracks(const MotionPrior& prior, double interval_s);
   [[nodiscard]] KltResult match(const std::vector<cv::Point2f>& predicted, TrackerPrediction kind) const;
   void accept(const KltResult& matches, const std::vector<cv::Point2f>& predicted, double interval_s);
   void reject_outliers();
@@ -105,9 +105,8 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
   {
     const ScopedTimer timer(timings, Module::kFeatureTracking);
     std::swap(previous, current);
-    current.rebuild(gray, config.window_px,
-                    std::max(config.pyramid_levels, config.unpredicted_pyramid_levels));
-    if (!tracks.empty()) follow(prior, seconds_between(current_t, frame.t));
+    rebuild_pyramid(config, gray, current);
+    if (!tracks.empty()) follow_tracks(prior, seconds_between(current_t, frame.t));
     current_t = frame.t;
   }
   if (detect) {
@@ -119,7 +118,7 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
   if (detect) remember_references();
 }
 
-void FeatureTracker::State::follow(const MotionPrior& prior, double interval_s) {
+void FeatureTracker::State::follow_tracks(const MotionPrior& prior, double interval_s) {
   const TrackerPrediction kind = usable_prediction(config.prediction, prior);
   const std::vector<cv::Point2f> predicted = predict_pixels(tracks, prior, kind, camera);
   accept(match(predicted, kind), predicted, interval_s);
@@ -128,13 +127,14 @@ void FeatureTracker::State::follow(const MotionPrior& prior, double interval_s) 
 KltResult FeatureTracker::State::match(const std::vector<cv::Point2f>& predicted,
                                        TrackerPrediction kind) const {
   const bool predicts = kind != TrackerPrediction::kNone;
-  const KltSettings settings{.window_px = config.window_px,
-                             .levels = predicts ? config.pyramid_levels : config.unpredicted_pyramid_levels,
-                             .max_iterations = config.max_iterations};
+  const int levels = predicts ? config.pyramid_levels : config.unpredicted_pyramid_levels;
   const std::vector<cv::Point2f> points = pixels_of(tracks);
-  KltResult matches = follow_points(previous, current, points, predicted, settings);
+  KltResult matches =
+      follow(config, previous, current, {.points = points, .starts = predicted, .levels = levels});
   if (!config.forward_backward) return matches;
-  return check_backward(previous, current, points, std::move(matches), settings, config.forward_backward_px);
+  const KltResult back =
+      follow(config, current, previous, {.points = matches.pixels, .starts = points, .levels = 1});
+  return keep_returning(points, std::move(matches), back, config.forward_backward_px);
 }
 
 void FeatureTracker::State::accept(const KltResult& matches, const std::vector<cv::Point2f>& predicted,

@@ -21,6 +21,11 @@ constexpr auto enum_names(FeatureDetectorKind) {
       {{FeatureDetectorKind::kGridFast, "grid_fast"}, {FeatureDetectorKind::kShiTomasi, "shi_tomasi"}}};
 }
 
+enum class TrackerKind { kOpenCv, kPatch };
+constexpr auto enum_names(TrackerKind) {
+  return EnumNames<TrackerKind, 2>{{{TrackerKind::kOpenCv, "opencv"}, {TrackerKind::kPatch, "patch"}}};
+}
+
 enum class OutlierModel { kEpipolar, kRigid };
 constexpr auto enum_names(OutlierModel) {
   return EnumNames<OutlierModel, 2>{{{OutlierModel::kEpipolar, "epipolar"}, {OutlierModel::kRigid, "rigid"}}};
@@ -55,11 +60,13 @@ struct FrontendConfig {
   bool circular_mask = true;    ///< both circles. Paper Sec. III-A
   FeatureDetectorKind detector = FeatureDetectorKind::kGridFast;
   TrackerPrediction prediction = TrackerPrediction::kRotation;
-  int window_px = 21;      ///< side of the KLT window
+  TrackerKind tracker = TrackerKind::kOpenCv;
+  int window_px = 21;      ///< opencv: side of the KLT window
   int pyramid_levels = 2;  ///< pictures in the pyramid, the full one included, where motion is predicted
   int unpredicted_pyramid_levels = 4;  ///< the same without prediction: by choice, in VO, at a gap of the IMU
-  int max_iterations = 30;
-  bool forward_backward = false;  ///< track back and compare
+  int max_iterations = 30;             ///< per level
+  double min_correlation = 0.8;        ///< patch: of a patch with its match, brightness set aside
+  bool forward_backward = false;       ///< track back and compare
   double forward_backward_px = 0.5;
   OutlierModel outlier_model =
       OutlierModel::kEpipolar;       ///< what tracks must agree on; rigid uses their depth
@@ -82,10 +89,12 @@ void visit_fields(Visitor&& field, Config& config) {
   field("circular_mask", config.circular_mask);
   field("detector", config.detector);
   field("prediction", config.prediction);
+  field("tracker", config.tracker);
   field("window_px", config.window_px, 5, 63);
   field("pyramid_levels", config.pyramid_levels, 1, 8);
   field("unpredicted_pyramid_levels", config.unpredicted_pyramid_levels, 1, 8);
   field("max_iterations", config.max_iterations, 1, 100);
+  field("min_correlation", config.min_correlation, -1.0, 1.0);
   field("forward_backward", config.forward_backward);
   field("forward_backward_px", config.forward_backward_px, 0.01, 10.0);
   field("outlier_model", config.outlier_model);

@@ -12,10 +12,11 @@ constexpr double kConvergedPx = 0.01;  // step at which the iteration ends, as t
 
 }  // namespace
 
-void ImagePyramid::rebuild(const cv::Mat& gray, int window_px, int levels) {
-  constexpr bool kWithDerivatives = true;
+void ImagePyramid::rebuild(const cv::Mat& gray, int window_px, int levels, PyramidKind kind) {
+  const bool derivatives = kind == PyramidKind::kPicturesAndDerivatives;
+  step_ = derivatives ? 2 : 1;
   constexpr bool kReuseInput = false;  // a border of the caller's own would be read as picture
-  cv::buildOpticalFlowPyramid(gray, images_, cv::Size(window_px, window_px), levels - 1, kWithDerivatives,
+  cv::buildOpticalFlowPyramid(gray, images_, cv::Size(window_px, window_px), levels - 1, derivatives,
                               cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, kReuseInput);
 }
 
@@ -33,12 +34,8 @@ KltResult follow_points(const ImagePyramid& from, const ImagePyramid& to,
   return result;
 }
 
-KltResult check_backward(const ImagePyramid& from, const ImagePyramid& to,
-                         const std::vector<cv::Point2f>& points, KltResult forward,
-                         const KltSettings& settings, double tolerance_px) {
-  const KltSettings full_resolution{
-      .window_px = settings.window_px, .levels = 1, .max_iterations = settings.max_iterations};
-  const KltResult back = follow_points(to, from, forward.pixels, points, full_resolution);
+KltResult keep_returning(const std::vector<cv::Point2f>& points, KltResult forward, const KltResult& back,
+                         double tolerance_px) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool came_back = back.found[i] != 0 && cv::norm(back.pixels[i] - points[i]) <= tolerance_px;
     if (!came_back) forward.found[i] = 0;

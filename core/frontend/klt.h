@@ -8,18 +8,26 @@
 
 namespace stillpoint {
 
-/// A picture at falling resolutions with its derivatives. Rebuilding one of the same size allocates nothing.
+/// Whether a pyramid carries the derivatives that `follow_points` needs; `follow_patches` does not.
+enum class PyramidKind { kPictures, kPicturesAndDerivatives };
+
+/// A picture at falling resolutions. Rebuilding one of the same size and kind allocates nothing.
 class ImagePyramid {
  public:
-  /// @param gray   CV_8UC1, copied
+  /// @param gray   CV_8UC1, copied, with a border as wide as the window around it
   /// @param levels pictures wanted, the full one included; fewer when the smallest would be below the window
-  void rebuild(const cv::Mat& gray, int window_px, int levels);
+  void rebuild(const cv::Mat& gray, int window_px, int levels,
+               PyramidKind kind = PyramidKind::kPicturesAndDerivatives);
 
-  /// Picture and derivatives in turn, as cv::calcOpticalFlowPyrLK takes them.
+  /// Picture and, if there are any, derivatives in turn, as cv::calcOpticalFlowPyrLK takes them.
   [[nodiscard]] const std::vector<cv::Mat>& images() const { return images_; }
+
+  [[nodiscard]] std::size_t levels() const { return images_.size() / step_; }
+  [[nodiscard]] const cv::Mat& level(std::size_t index) const { return images_[step_ * index]; }
 
  private:
   std::vector<cv::Mat> images_;
+  std::size_t step_ = 1;  ///< entries of images_ per level
 };
 
 struct KltSettings {
@@ -40,10 +48,9 @@ struct KltResult {
                                       const std::vector<cv::Point2f>& points,
                                       const std::vector<cv::Point2f>& guesses, const KltSettings& settings);
 
-/// `forward` without the points that do not come back: followed from their match to picture `from`,
-/// beginning at the original, they end more than `tolerance_px` from it. Full resolution only.
-[[nodiscard]] KltResult check_backward(const ImagePyramid& from, const ImagePyramid& to,
-                                       const std::vector<cv::Point2f>& points, KltResult forward,
-                                       const KltSettings& settings, double tolerance_px);
+/// `forward` without the points that do not come back: those that `back`, the search for its matches in the
+/// first picture beginning at the original points, lost or found more than `tolerance_px` from the original.
+[[nodiscard]] KltResult keep_returning(const std::vector<cv::Point2f>& points, KltResult forward,
+                                       const KltResult& back, double tolerance_px);
 
 }  // namespace stillpoint

@@ -40,7 +40,8 @@ TEST(Klt, BackwardCheckKeepsTrueMatchesOnly) {
   const Views views = shifted_views(3, 2);
   KltResult forward = follow_points(views.from, views.to, kPoints, kPoints, {});
   forward.pixels[1] += cv::Point2f(40.0F, 0.0F);  // a match with something else
-  const KltResult checked = check_backward(views.from, views.to, kPoints, forward, {}, 0.5);
+  const KltResult back = follow_points(views.to, views.from, forward.pixels, kPoints, {.levels = 1});
+  const KltResult checked = keep_returning(kPoints, forward, back, 0.5);
   EXPECT_EQ(checked.found, (std::vector<std::uint8_t>{1, 0, 1}));
 }
 

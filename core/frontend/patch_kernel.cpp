@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frontend/patch_kernel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+// Highway compiles what lies between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each instruction
+// set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/frontend/patch_kernel.cpp"
+#include <hwy/foreach_target.h>
+// Its order matters: after foreach_target.h.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace stillpoint::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t kSide = 8;
+constexpr std::size_t kArea = kSide * kSide;
+constexpr float kCoarseConverged_px = 0.1F;  // enough for the next finer level to begin
+constexpr float kHalf = 0.5F * (kSide - 1);
+
+/// A row of the patch, or as much of it as a register holds.
+using Row = hn::CappedTag<float, kSide>;
+using Vector = hn::Vec<Row>;
+using Bytes = hn::Rebind<std::uint8_t, Row>;
+using Integers = hn::Rebind<std::int32_t, Row>;
+/// One sum for each column of the patch.
+using Columns = std::array<float, kSide>;
+
+/// In an order that no register's width changes.
+float sum_of(const Columns& columns) {
+  return ((columns[0] + columns[4]) + (columns[2] + columns[6])) +
+         ((columns[1] + columns[5]) + (columns[3] + columns[7]));
+}
+
+HWY_INLINE Vector load(Row row, const std::uint8_t* pixels) {
+  return hn::ConvertTo(row, hn::PromoteTo(Integers(), hn::LoadU(Bytes(), pixels)));
+}
+
+/// a + share * (b - a)
+HWY_INLINE Vector blend(Vector a, Vector b, Vector share) {
+  return hn::Add(a, hn::Mul(share, hn::Sub(b, a)));
+}
+
+/// The pixel above and left of a place, and the shares of its neighbours.
+struct Place {
+  const std::uint8_t* pixels;
+  std::ptrdiff_t stride;
+  float share_x;
+  float share_y;
+};
+
+/// Of the patch's upper left pixel. @return false where the centre is not in the picture
+bool place_at(const PatchImage& image, PatchPoint centre, Place& place) {
+  const bool inside = centre.x >= 0.0F && centre.y >= 0.0F &&
+                      centre.x <= static_cast<float>(image.width - 1) &&
+                      centre.y <= static_cast<float>(image.height - 1);
+  if (!inside) return false;  // nor where it is not a number
+  const float x = std::floor(centre.x - kHalf);
+  const float y = std::floor(centre.y - kHalf);
+  place = {
+      .pixels = image.pixels + static_cast<std::ptrdiff_t>(y) * image.stride + static_cast<std::ptrdiff_t>(x),
+      .stride = image.stride,
+      .share_x = centre.x - kHalf - x,
+      .share_y = centre.y - kHalf - y};
+  return true;
+}
+
+/// A patch and what the search needs of it.
+struct Patch {
+  HWY_ALIGN std::array<float, kArea> grey;  ///< these three without their means
+  HWY_ALIGN std::array<float, kArea> by_x;
+  HWY_ALIGN std::array<float, kArea> by_y;
+  float moment_x = 0.0F, moment_y = 0.0F;                         ///< sums of by_x * grey and by_y * grey
+  float inverse_xx = 0.0F, inverse_xy = 0.0F, inverse_yy = 0.0F;  ///< of the gradient tensor
+  float norm = 0.0F;                                              ///< root of the sum of grey^2
+};
+
+/// Sums over the patch as it was sampled: grey, by_x, by_y and their products.
+enum Moment : std::size_t { kG, kX, kY, kGG, kGX, kGY, kXX, kXY, kYY, kMoments };
+using Moments = std::array<float, kMoments>;
+
+/// The same of one row, or of rows above each other.
+struct MomentRow {
+  std::array<Vector, kMoments> sums;
+
+  HWY_INLINE void add(Vector g, Vector x, Vector y) {
+    const Vector terms[] = {
+        g, x, y, hn::Mul(g, g), hn::Mul(g, x), hn::Mul(g, y), hn::Mul(x, x), hn::Mul(x, y), hn::Mul(y, y)};
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = hn::Add(sums[i], terms[i]);
+  }
+};
+
+/// Grey values and gradients by central differences, all interpolated, as they are.
+Moments sample(const Place& place, Patch& patch) {
+  const Row row;
+  const Vector share_x = hn::Set(row, place.share_x);
+  const Vector share_y = hn::Set(row, place.share_y);
+  const Vector half = hn::Set(row, 0.5F);
+  std::array<Columns, kMoments> columns;
+  for (std::size_t x = 0; x < kSide; x += hn::Lanes(row)) {
+    const std::uint8_t* pixels = place.pixels - place.stride + x;
+    MomentRow moments;
+    moments.sums.fill(hn::Zero(row));
+    // Between rows of pixels lie the rows of the patch; each is the middle one when the next is known.
+    Vector upper = hn::Zero(row);
+    Vector middle = hn::Zero(row);
+    Vector across_middle = hn::Zero(row);
+    Vector last = hn::Zero(row);
+    Vector across_last = hn::Zero(row);
+    for (std::size_t y = 0; y < kSide + 3; ++y, pixels += place.stride) {
+      const Vector p0 = load(row, pixels);
+      const Vector p1 = load(row, pixels + 1);
+      const Vector centre = blend(p0, p1, share_x);
+      const Vector across =
+          hn::Sub(blend(p1, load(row, pixels + 2), share_x), blend(load(row, pixels - 1), p0, share_x));
+      const Vector lower = blend(last, centre, share_y);
+      if (y > 2) {
+        const std::size_t at = (y - 3) * kSide + x;
+        const Vector by_x = hn::Mul(half, across_middle);
+        const Vector by_y = hn::Mul(half, hn::Sub(lower, upper));
+        moments.add(middle, by_x, by_y);
+        hn::Store(middle, row, patch.grey.data() + at);
+        hn::Store(by_x, row, patch.by_x.data() + at);
+        hn::Store(by_y, row, patch.by_y.data() + at);
+      }
+      upper = middle;
+      middle = lower;
+      across_middle = blend(across_last, across, share_y);
+      last = centre;
+      across_last = across;
+    }
+    for (std::size_t i = 0; i < columns.size(); ++i) hn::StoreU(moments.sums[i], row, columns[i].data() + x);
+  }
+  Moments total;
+  for (std::size_t i = 0; i < columns.size(); ++i) total[i] = sum_of(columns[i]);
+  return total;
+}
+
+void remove_means(const Moments& m, Patch& patch) {
+  const Row row;
+  const Vector mean_grey = hn::Set(row, m[kG] * (1.0F / kArea));
+  const Vector mean_x = hn::Set(row, m[kX] * (1.0F / kArea));
+  const Vector mean_y = hn::Set(row, m[kY] * (1.0F / kArea));
+  for (std::size_t at = 0; at < kArea; at += hn::Lanes(row)) {
+    hn::Store(hn::Sub(hn::Load(row, patch.grey.data() + at), mean_grey), row, patch.grey.data() + at);
+    hn::Store(hn::Sub(hn::Load(row, patch.by_x.data() + at), mean_x), row, patch.by_x.data() + at);
+    hn::Store(hn::Sub(hn::Load(row, patch.by_y.data() + at), mean_y), row, patch.by_y.data() + at);
+  }
+}
+
+/// @return false where there is too little texture
+bool prepare(const Place& place, float min_eigenvalue, Patch& patch) {
+  const Moments m = sample(place, patch);
+  constexpr float kShare = 1.0F / kArea;
+  const float xx = m[kXX] - m[kX] * m[kX] * kShare;
+  const float xy = m[kXY] - m[kX] * m[kY] * kShare;
+  const float yy = m[kYY] - m[kY] * m[kY] * kShare;
+  const float smaller = 0.5F * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4.0F * xy * xy));
+  if (!(smaller >= min_eigenvalue * kArea)) return false;
+  remove_means(m, patch);
+  const float inverse = 1.0F / (xx * yy - xy * xy);
+  patch.inverse_xx = yy * inverse;
+  patch.inverse_xy = -xy * inverse;
+  patch.inverse_yy = xx * inverse;
+  patch.moment_x = m[kGX] - m[kG] * m[kX] * kShare;
+  patch.moment_y = m[kGY] - m[kG] * m[kY] * kShare;
+  patch.norm = std::sqrt(m[kGG] - m[kG] * m[kG] * kShare);
+  return true;
+}
+
+/// Calls use(row of the patch, grey values there) for one column of registers.
+template <class Use>
+HWY_INLINE void for_each_row(const Place& place, std::size_t x, Use use) {
+  const Row row;
+  const Vector share_x = hn::Set(row, place.share_x);
+  const Vector share_y = hn::Set(row, place.share_y);
+  const std::uint8_t* pixels = place.pixels + x;
+  Vector upper = blend(load(row, pixels), load(row, pixels + 1), share_x);
+  for (std::size_t y = 0; y < kSide; ++y) {
+    pixels += place.stride;
+    const Vector lower = blend(load(row, pixels), load(row, pixels + 1), share_x);
+    use(y * kSide + x, blend(upper, lower, share_y));
+    upper = lower;
+  }
+}
+
+/// The way from here to where the patch fits better.
+PatchPoint step_from(const Place& place, const Patch& patch) {
+  const Row row;
+  Columns sums_x;
+  Columns sums_y;
+  for (std::size_t x = 0; x < kSide; x += hn::Lanes(row)) {
+    Vector sum_x = hn::Zero(row);
+    Vector sum_y = hn::Zero(row);
+    for_each_row(place, x, [&](std::size_t at, Vector grey) HWY_ATTR {
+      sum_x = hn::Add(sum_x, hn::Mul(grey, hn::Load(row, patch.by_x.data() + at)));
+      sum_y = hn::Add(sum_y, hn::Mul(grey, hn::Load(row, patch.by_y.data() + at)));
+    });
+    hn::StoreU(sum_x, row, sums_x.data() + x);
+    hn::StoreU(sum_y, row, sums_y.data() + x);
+  }
+  const float error_x = sum_of(sums_x) - patch.moment_x, error_y = sum_of(sums_y) - patch.moment_y;
+  return {-(patch.inverse_xx * error_x + patch.inverse_xy * error_y),
+          -(patch.inverse_xy * error_x + patch.inverse_yy * error_y)};
+}
+
+/// Normalised cross-correlation of the patch with what is here, in [-1, 1].
+float correlation(const Place& place, const Patch& patch) {
+  const Row row;
+  Columns sums;
+  Columns squares;
+  Columns products;
+  for (std::size_t x = 0; x < kSide; x += hn::Lanes(row)) {
+    Vector sum = hn::Zero(row);
+    Vector square = hn::Zero(row);
+    Vector product = hn::Zero(row);
+    for_each_row(place, x, [&](std::size_t at, Vector grey) HWY_ATTR {
+      sum = hn::Add(sum, grey);
+      square = hn::Add(square, hn::Mul(grey, grey));
+      product = hn::Add(product, hn::Mul(grey, hn::Load(row, patch.grey.data() + at)));
+    });
+    hn::StoreU(sum, row, sums.data() + x);
+    hn::StoreU(square, row, squares.data() + x);
+    hn::StoreU(product, row, products.data() + x);
+  }
+  const float total = sum_of(sums);
+  const float variance = sum_of(squares) - total * total * (1.0F / kArea);
+  return variance > 0.0F ? sum_of(products) / (patch.norm * std::sqrt(variance)) : 0.0F;
+}
+
+/// Walks to where the patch fits. @return false where it leaves the picture
+bool walk(const PatchImage& image, const Patch& patch, const PatchSettings& end, PatchPoint& match) {
+  Place place;
+  for (int i = 0; i < end.max_iterations; ++i) {
+    if (!place_at(image, match, place)) return false;
+    const PatchPoint step = step_from(place, patch);
+    match = {match.x + step.x, match.y + step.y};
+    if (step.x * step.x + step.y * step.y < end.converged_px * end.converged_px) break;
+  }
+  return place_at(image, match, place);
+}
+
+bool track_patch(const PatchSearch& search, PatchPoint point, const PatchSettings& settings,
+                 PatchPoint& match) {
+  Patch patch;
+  Place place;
+  for (std::size_t level = search.from.size(); level-- > 0;) {
+    const float scale = 1.0F / static_cast<float>(1U << level);
+    const bool textured = place_at(search.from[level], {point.x * scale, point.y * scale}, place) &&
+                          prepare(place, settings.min_eigenvalue, patch);
+    if (!textured && level > 0) continue;  // a coarse level without texture leaves it to the finer ones
+    if (!textured) return false;
+    PatchPoint scaled{match.x * scale, match.y * scale};
+    PatchSettings end = settings;
+    if (level > 0) end.converged_px = kCoarseConverged_px;
+    const bool inside = walk(search.to[level], patch, end, scaled);
+    if (!inside && level > 0) continue;
+    match = {scaled.x / scale, scaled.y / scale};
+    if (!inside) return false;
+  }
+  return place_at(search.to[0], match, place) && correlation(place, patch) >= settings.min_correlation;
+}
+
+void track_patches(const PatchSearch& search, const PatchSettings& settings) {
+  for (std::size_t i = 0; i < search.points.size(); ++i) {
+    const bool found = track_patch(search, search.points[i], settings, search.matches[i]);
+    search.found[i] = found ? 1 : 0;
+  }
+}
+
+}  // namespace stillpoint::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace stillpoint {
+
+// Compilers differ in the target that needs no instruction set (g++ before 12.3 cannot compile EMU128).
+#if HWY_BASELINE_SCALAR == HWY_SCALAR
+namespace portable = N_SCALAR;
+#else
+namespace portable = N_EMU128;
+#endif
+
+HWY_EXPORT(track_patches);
+
+void track_patches(const PatchSearch& search, const PatchSettings& settings, PatchTarget target) {
+  if (target == PatchTarget::kPortable) {
+    portable::track_patches(search, settings);
+  } else {
+    HWY_DYNAMIC_DISPATCH(track_patches)(search, settings);
+  }
+}
+
+}  // namespace stillpoint
+#endif
