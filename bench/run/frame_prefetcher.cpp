@@ -26,22 +26,23 @@ Frame FramePrefetcher::take(std::size_t index) {
     slot = std::move(slots_.front());
     slots_.pop_front();
     changed_.notify_all();
-  } while (slot.index < index);
+  } while (slot.picture.index < index);
   lock.unlock();
-  times_.push_back(slot.elapsed);
+  decoded_.push_back(slot.picture);
   if (slot.error) std::rethrow_exception(slot.error);
   return std::move(slot.frame);
 }
 
 FramePrefetcher::Slot FramePrefetcher::decode(std::size_t index) const {
-  Slot slot{.index = index, .frame = {}, .error = nullptr, .elapsed = {}};
-  const auto start = std::chrono::steady_clock::now();
+  Slot slot{.picture = {.index = index, .start = std::chrono::steady_clock::now(), .elapsed = {}},
+            .frame = {},
+            .error = nullptr};
   try {
     slot.frame = load_(index);
   } catch (...) {
     slot.error = std::current_exception();
   }
-  slot.elapsed = std::chrono::steady_clock::now() - start;
+  slot.picture.elapsed = std::chrono::steady_clock::now() - slot.picture.start;
   return slot;
 }
 

@@ -15,6 +15,13 @@
 
 namespace stillpoint {
 
+/// When a picture was decoded.
+struct DecodedPicture {
+  std::size_t index = 0;
+  std::chrono::steady_clock::time_point start;
+  std::chrono::nanoseconds elapsed{};
+};
+
 /// Hands out frames 0, 1, ... `count - 1`; at most `ahead` decoded ones wait. What is handed out does not
 /// depend on timing.
 class FramePrefetcher {
@@ -31,15 +38,14 @@ class FramePrefetcher {
   /// @param index larger than at the last call, below `count`
   [[nodiscard]] Frame take(std::size_t index);
 
-  /// Time that each frame handed out took to decode, in the order of the calls.
-  [[nodiscard]] const std::vector<std::chrono::nanoseconds>& decoding_times() const { return times_; }
+  /// Of each frame handed out, in the order of the calls.
+  [[nodiscard]] const std::vector<DecodedPicture>& decoded() const { return decoded_; }
 
  private:
   struct Slot {
-    std::size_t index = 0;
+    DecodedPicture picture;
     Frame frame;
     std::exception_ptr error;
-    std::chrono::nanoseconds elapsed{};
   };
 
   [[nodiscard]] Slot decode(std::size_t index) const;
@@ -49,7 +55,7 @@ class FramePrefetcher {
   std::size_t count_;
   std::size_t ahead_;
   std::size_t next_ = 0;  ///< the smallest index that may still be asked for
-  std::vector<std::chrono::nanoseconds> times_;
+  std::vector<DecodedPicture> decoded_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Slot> slots_;  ///< guarded by mutex_

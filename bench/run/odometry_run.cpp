@@ -61,11 +61,19 @@ void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& 
   }
   run.dynamic_features += update.counters.dynamic_features;
   run.frame_timings.push_back(update.timings);
+  run.frame_timings.back().drop_spans();
   run.frame_hashes.push_back(update.hashes);
   const Timestamp t = info.frame_times[static_cast<std::size_t>(update.frame_id)];
   run.frame_counters.push_back(counters_of(update, t));
   if (update.status != OdometryStatus::kTracking) return;
   run.trajectory.poses.push_back({t, update.T_w_c});
+}
+
+/// As `record`, for timelines.
+void record_spans(OdometryRun& run, const OdometryUpdate& update) {
+  for (const ModuleSpan& span : update.timings.spans()) {
+    if (span.module != Module::kImageDecoding) run.spans.push_back({update.frame_id, span});
+  }
 }
 
 void score_verdicts(OdometryRun& run, const PictureReport& report, const SensorStream& stream,
@@ -78,9 +86,13 @@ void score_verdicts(OdometryRun& run, const PictureReport& report, const SensorS
   run.verdicts->add(report.tracked.features, report.dynamic.verdicts, *labels, slid);
 }
 
-void record_decoding(OdometryRun& run, const FramePrefetcher& prefetcher) {
-  for (const std::chrono::nanoseconds elapsed : prefetcher.decoding_times()) {
-    run.timings.add(Module::kImageDecoding, {.ns = elapsed.count(), .calls = 1});
+void record_decoding(OdometryRun& run, const FramePrefetcher& prefetcher, bool keep_spans) {
+  for (const DecodedPicture& picture : prefetcher.decoded()) {
+    run.timings.add(Module::kImageDecoding, {.ns = picture.elapsed.count(), .calls = 1});
+    if (!keep_spans) continue;
+    run.spans.push_back(
+        {.frame = static_cast<std::int64_t>(picture.index),
+         .span = {.module = Module::kImageDecoding, .start = picture.start, .elapsed = picture.elapsed}});
   }
 }
 
@@ -103,6 +115,7 @@ OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const 
                              run.frames_planned);
   const auto on_update = [&](const OdometryUpdate& update) {
     record(run, update, info);
+    if (spec.keep_spans) record_spans(run, update);
     if (control.on_update) control.on_update(update);
   };
   SlidTracks slid(info);
@@ -116,7 +129,7 @@ OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const 
       spec, input_of(info, run.frames_planned, prefetcher),
       {.on_update = on_update, .on_picture = on_picture, .stop_requested = control.stop_requested});
   run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  record_decoding(run, prefetcher);
+  record_decoding(run, prefetcher, spec.keep_spans);
   return run;
 }
 

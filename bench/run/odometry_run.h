@@ -23,6 +23,13 @@ struct RunSpec {
   std::string mode = "sequential";  ///< or "pipelined" or "realtime"
   double speed = 1.0;               ///< of the clock of "realtime"
   std::size_t max_frames = 0;       ///< pictures from the start; 0 = all
+  bool keep_spans = false;          ///< for timelines
+};
+
+/// A stay in a module, and for which picture.
+struct FrameSpan {
+  std::int64_t frame = 0;
+  ModuleSpan span;
 };
 
 /// What came of it.
@@ -33,6 +40,7 @@ struct OdometryRun {
   std::int64_t dynamic_features = 0;          ///< verdicts of a mover, summed over the pictures
   std::optional<VerdictScore> verdicts;       ///< where the sequence has labels; not of "realtime"
   std::vector<ModuleTimings> frame_timings;   ///< of each picture that was asked for
+  std::vector<FrameSpan> spans;               ///< where they were to be kept; pictures as they were decoded
   std::vector<StateHashes> frame_hashes;      ///< likewise
   std::vector<FrameCounters> frame_counters;  ///< likewise
   std::size_t frames_planned = 0;

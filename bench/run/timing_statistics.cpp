@@ -19,23 +19,35 @@ bool is_thread(Module module) {
 }
 
 void TimingSamples::add(Module module, const ModuleTime& frame) {
-  if (frame.calls == 0) return;
-  const auto index = static_cast<std::size_t>(module);
-  samples_ms_[index].push_back(milliseconds(frame.ns, is_thread(module) ? 1 : frame.calls));
-  totals_[index].ns += frame.ns;
-  totals_[index].calls += frame.calls;
+  if (frame.calls > 0) frames_[static_cast<std::size_t>(module)].push_back(frame);
 }
 
 std::optional<TimingStatistics> TimingSamples::statistics(Module module) const {
-  const std::vector<double>& samples = samples_ms_[static_cast<std::size_t>(module)];
-  if (samples.empty()) return std::nullopt;
-  const ModuleTime& total = totals_[static_cast<std::size_t>(module)];
-  const auto frames = static_cast<std::int64_t>(samples.size());
-  return TimingStatistics{.mean = milliseconds(total.ns, is_thread(module) ? frames : total.calls),
-                          .median = percentile(samples, 0.5).value(),
-                          .p95 = percentile(samples, 0.95).value(),
-                          .max = *std::max_element(samples.begin(), samples.end()),
+  return statistics(module, is_thread(module) ? TimePer::kFrame : TimePer::kCall);
+}
+
+std::optional<TimingStatistics> TimingSamples::statistics(Module module, TimePer per) const {
+  std::vector<double> samples_ms;
+  ModuleTime total;
+  for (const ModuleTime& frame : frames_[static_cast<std::size_t>(module)]) {
+    samples_ms.push_back(milliseconds(frame.ns, per == TimePer::kFrame ? 1 : frame.calls));
+    total.ns += frame.ns;
+    total.calls += frame.calls;
+  }
+  if (samples_ms.empty()) return std::nullopt;
+  const auto frames = static_cast<std::int64_t>(samples_ms.size());
+  return TimingStatistics{.mean = milliseconds(total.ns, per == TimePer::kFrame ? frames : total.calls),
+                          .median = percentile(samples_ms, 0.5).value(),
+                          .p95 = percentile(samples_ms, 0.95).value(),
+                          .p99 = percentile(samples_ms, 0.99).value(),
+                          .max = *std::max_element(samples_ms.begin(), samples_ms.end()),
                           .calls = total.calls};
+}
+
+std::int64_t TimingSamples::frames_beyond(Module module, double budget_ms) const {
+  const std::vector<ModuleTime>& frames = frames_[static_cast<std::size_t>(module)];
+  return std::count_if(frames.begin(), frames.end(),
+                       [&](const ModuleTime& frame) { return milliseconds(frame.ns, 1) > budget_ms; });
 }
 
 }  // namespace stillpoint

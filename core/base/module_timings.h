@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace stillpoint {
 
@@ -36,9 +37,21 @@ struct ModuleTime {
   std::int64_t calls = 0;
 };
 
+/// One stay in a module, for timelines.
+struct ModuleSpan {
+  Module module = Module::kFeatureTracking;
+  std::chrono::steady_clock::time_point start;
+  std::chrono::nanoseconds elapsed{};
+};
+
 /// What one frame spent, module by module; carried in the messages, so no locks and no globals.
 class ModuleTimings {
  public:
+  /// @param calls 0 where the span is only a part of a call
+  void add(const ModuleSpan& span, int calls) {
+    add(span.module, span.elapsed, calls);
+    spans_.push_back(span);
+  }
   void add(Module module, std::chrono::nanoseconds elapsed, int calls = 1) {
     ModuleTime& entry = times_[static_cast<std::size_t>(module)];
     entry.ns += elapsed.count();
@@ -49,13 +62,18 @@ class ModuleTimings {
       times_[i].ns += other.times_[i].ns;
       times_[i].calls += other.times_[i].calls;
     }
+    spans_.insert(spans_.end(), other.spans_.begin(), other.spans_.end());
   }
+  /// In the order in which they ended, thread by thread. About 14 a frame: drop what is not wanted.
+  [[nodiscard]] const std::vector<ModuleSpan>& spans() const { return spans_; }
+  void drop_spans() { spans_ = {}; }
   [[nodiscard]] const ModuleTime& operator[](Module module) const {
     return times_[static_cast<std::size_t>(module)];
   }
 
  private:
   std::array<ModuleTime, kModuleCount> times_{};
+  std::vector<ModuleSpan> spans_;
 };
 
 /// Adds the time from its construction to its destruction to one module.
@@ -67,7 +85,8 @@ class ScopedTimer {
   ScopedTimer(ModuleTimings& timings, Module module, Kind kind = Kind::kCall)
       : timings_(timings), module_(module), kind_(kind), start_(std::chrono::steady_clock::now()) {}
   ~ScopedTimer() {
-    timings_.add(module_, std::chrono::steady_clock::now() - start_, kind_ == Kind::kCall ? 1 : 0);
+    timings_.add({.module = module_, .start = start_, .elapsed = std::chrono::steady_clock::now() - start_},
+                 kind_ == Kind::kCall ? 1 : 0);
   }
   ScopedTimer(const ScopedTimer&) = delete;
   ScopedTimer& operator=(const ScopedTimer&) = delete;

@@ -18,7 +18,7 @@ Frame frame_of(std::size_t index) {
 TEST(FramePrefetcher, HandsFramesOutInOrder) {
   FramePrefetcher prefetcher(frame_of, 20, 3);
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(prefetcher.take(i).id, static_cast<std::int64_t>(i));
-  EXPECT_EQ(prefetcher.decoding_times().size(), 20u);
+  EXPECT_EQ(prefetcher.decoded().size(), 20u);
 }
 
 TEST(FramePrefetcher, DropsFramesThatAreJumpedOver) {
