@@ -14,6 +14,7 @@ namespace stillpoint {
 [[nodiscard]] Command store_command();           ///< `stillpoint store`: looking after stores of runs
 [[nodiscard]] Command stats_command();           ///< `stillpoint stats`: what runs say together
 [[nodiscard]] Command compare_command();         ///< `stillpoint compare`: the gate for commits
+[[nodiscard]] Command profile_command();         ///< `stillpoint profile`: where the time of a run goes
 [[nodiscard]] Command report_command();          ///< `stillpoint report`: one offline page about a store
 [[nodiscard]] Command config_command();     ///< `stillpoint config`: resolved configs and the reference page
 [[nodiscard]] Command data_command();       ///< `stillpoint data`: make and inspect sequences

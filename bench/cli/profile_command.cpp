@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress.h"
+#include "bench/config/config_file.h"
+#include "bench/profile/profile_table.h"
+#include "bench/profile/timeline.h"
+#include "bench/record/output_folder.h"
+#include "bench/run/sequence_source.h"
+#include "core/base/error.h"
+#include "reports/text_table.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// What the command line of `profile` says.
+struct ProfileArguments {
+  std::string sequence;
+  std::string base = "stillpoint";
+  std::string variant;
+  std::vector<std::string> settings;
+  std::string mode = "sequential";
+  std::string out;
+  std::string format;
+  std::string rig;
+  double budget_ms = 33.0;
+  int max_frames = 0;
+};
+
+/// One run with all that was measured.
+struct Profile {
+  OdometryRun run;
+  std::vector<ProfileRow> rows;
+  DeadlineMisses misses;
+};
+
+Profile measure(const SensorStream& stream, const ProfileArguments& arguments) {
+  ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
+  const auto on_update = [&](const OdometryUpdate& update) {
+    progress.update(static_cast<std::size_t>(update.frame_id) + 1);
+  };
+  const RunSpec spec{.config = load_config({arguments.base, arguments.variant, arguments.settings}),
+                     .mode = arguments.mode,
+                     .max_frames = static_cast<std::size_t>(arguments.max_frames),
+                     .keep_spans = true};
+  OdometryRun run = run_odometry(
+      stream, spec, {.on_update = on_update, .on_picture = {}, .stop_requested = interrupt_requested});
+  std::vector<ProfileRow> rows = profile_rows(run.timings, arguments.budget_ms);
+  const DeadlineMisses misses = deadline_misses(run.frame_timings, arguments.budget_ms);
+  return {.run = std::move(run), .rows = std::move(rows), .misses = misses};
+}
+
+Json json_of(const Profile& profile, const ProfileArguments& arguments, const std::string& sequence) {
+  Json json = {{"sequence", sequence},
+               {"base", arguments.base},
+               {"variant", arguments.variant},
+               {"mode", arguments.mode},
+               {"wall_s", profile.run.wall_s}};
+  json.update(profile_json(profile.rows, profile.misses));
+  return json;
+}
+
+std::string ms(double value) { return fmt::format("{:.3f}", value); }
+
+void print_table(const std::vector<ProfileRow>& rows) {
+  TableRows table = {{"ms", "per", "mean", "median", "p95", "p99", "max", "times", "frames beyond budget"}};
+  const auto add = [&](const ProfileRow& row, const char* per, const TimingStatistics& time) {
+    table.push_back({std::string(module_name(row.module)), per, ms(time.mean), ms(time.median), ms(time.p95),
+                     ms(time.p99), ms(time.max), fmt::format("{}", time.calls),
+                     fmt::format("{}", row.frames_beyond)});
+  };
+  for (const ProfileRow& row : rows) {
+    if (!is_thread(row.module)) add(row, "call", row.per_call);
+    add(row, "frame", row.per_frame);
+  }
+  std::cout << format_table(table, TableStyle::kText);
+}
+
+void print(const Profile& profile) {
+  print_table(profile.rows);
+  std::cout << fmt::format(
+      "{} frames in {:.2f} s; longer than {:g} ms: {} on one thread, {} with a thread for each stage\n",
+      profile.misses.frames, profile.run.wall_s, profile.misses.budget_ms, profile.misses.one_thread,
+      profile.misses.thread_per_stage);
+}
+
+int run_profile(const ProfileArguments& arguments) {
+  if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
+  if (!(arguments.budget_ms > 0.0)) throw InputError("--frame-budget-ms", "must be above 0, e.g. 33");
+  watch_interrupts();
+  const auto stream =
+      find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
+                    {.progress = {}, .stop_requested = interrupt_requested});
+  if (!stream) return kExitInterrupted;
+  const std::string& name = stream->info().name;
+  const fs::path folder = arguments.out.empty() ? fs::path("build/profile") / name : fs::path(arguments.out);
+  require_writable(folder);
+  const Profile profile = measure(*stream, arguments);
+  if (interrupt_requested()) return kExitInterrupted;
+  write_files(folder, {{"profile.json", json_of(profile, arguments, name).dump(2) + "\n"},
+                       {"trace.json", chrome_trace(profile.run.spans, "stillpoint " + name)},
+                       {"stacks.folded", folded_stacks(profile.run.spans)}});
+  print(profile);
+  std::cout << fmt::format("{} (open trace.json in ui.perfetto.dev)\n", folder.string());
+  return kExitOk;
+}
+
+}  // namespace
+
+Command profile_command() {
+  const auto arguments = std::make_shared<ProfileArguments>();
+  return {
+      .name = "profile",
+      .summary = "Say where the time of one run goes: table, timeline, stacks",
+      .example = "profile market --frame-budget-ms 33 --out /tmp/profile",
+      .options = {{"SEQ", "Sequence folder, or the name of a rendered one", &arguments->sequence},
+                  {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+                  {"--variant", "Overlays joined by +", &arguments->variant},
+                  {"--set", "Change one key: key=value, may be repeated", &arguments->settings},
+                  {"--mode", "How the stages are run: sequential, pipelined or realtime", &arguments->mode},
+                  {"--frame-budget-ms", "Frames that take longer are counted", &arguments->budget_ms},
+                  {"--out", "Folder for profile.json, trace.json, stacks.folded [build/profile/SEQ]",
+                   &arguments->out},
+                  {"--format", "Layout of the folder [recognised]", &arguments->format},
+                  {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
+                  {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
+      .action = [arguments] { return run_profile(*arguments); },
+      .subcommands = {}};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/profile/profile_table.h"
+
+#include <algorithm>
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+namespace stillpoint {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array kStages = {Module::kTrackingThread, Module::kObjectDetection,
+                                Module::kOptimizationThread};
+
+Json json_of(const TimingStatistics& statistics) {
+  return {{"mean", statistics.mean},
+          {"median", statistics.median},
+          {"p95", statistics.p95},
+          {"p99", statistics.p99},
+          {"max", statistics.max}};
+}
+
+}  // namespace
+
+std::vector<ProfileRow> profile_rows(const TimingSamples& samples, double budget_ms) {
+  std::vector<ProfileRow> rows;
+  for (std::size_t i = 0; i < kModuleCount; ++i) {
+    const auto module = static_cast<Module>(i);
+    const std::optional<TimingStatistics> per_call = samples.statistics(module, TimePer::kCall);
+    if (!per_call) continue;
+    rows.push_back({.module = module,
+                    .per_call = *per_call,
+                    .per_frame = samples.statistics(module, TimePer::kFrame).value(),
+                    .frames_beyond = samples.frames_beyond(module, budget_ms)});
+  }
+  return rows;
+}
+
+DeadlineMisses deadline_misses(const std::vector<ModuleTimings>& frames, double budget_ms) {
+  DeadlineMisses misses{.budget_ms = budget_ms, .frames = static_cast<std::int64_t>(frames.size())};
+  for (const ModuleTimings& frame : frames) {
+    double sum_ms = 0.0;
+    double slowest_ms = 0.0;
+    for (const Module stage : kStages) {
+      const double stage_ms = 1e-6 * static_cast<double>(frame[stage].ns);
+      sum_ms += stage_ms;
+      slowest_ms = std::max(slowest_ms, stage_ms);
+    }
+    misses.one_thread += sum_ms > budget_ms;
+    misses.thread_per_stage += slowest_ms > budget_ms;
+  }
+  return misses;
+}
+
+Json profile_json(const std::vector<ProfileRow>& rows, const DeadlineMisses& misses) {
+  Json modules = Json::array();
+  for (const ProfileRow& row : rows) {
+    modules.push_back({{"module", module_name(row.module)},
+                       {"thread", is_thread(row.module)},
+                       {"calls", row.per_call.calls},
+                       {"per_call_ms", json_of(row.per_call)},
+                       {"per_frame_ms", json_of(row.per_frame)},
+                       {"frames_beyond_budget", row.frames_beyond}});
+  }
+  return {{"modules", modules},
+          {"deadline",
+           {{"budget_ms", misses.budget_ms},
+            {"frames", misses.frames},
+            {"missed_by_one_thread", misses.one_thread},
+            {"missed_by_a_thread_per_stage", misses.thread_per_stage}}}};
+}
+
+}  // namespace stillpoint

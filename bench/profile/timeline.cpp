@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/profile/timeline.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace stillpoint {
+namespace {
+
+constexpr int kProcess = 1;
+
+std::chrono::steady_clock::time_point end_of(const ModuleSpan& span) { return span.start + span.elapsed; }
+
+/// Track by track, by start, outer spans before those within. Of two that are equal the one that was left
+/// last is the outer one.
+std::vector<FrameSpan> in_order(std::span<const FrameSpan> spans) {
+  std::vector<FrameSpan> sorted(spans.rbegin(), spans.rend());
+  const auto key = [](const FrameSpan& one) {
+    return std::tuple(track_of(one.span.module), one.span.start, -one.span.elapsed);
+  };
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](const FrameSpan& a, const FrameSpan& b) { return key(a) < key(b); });
+  return sorted;
+}
+
+std::string microseconds(std::chrono::nanoseconds time) {
+  return fmt::format("{}.{:03}", time.count() / 1000, time.count() % 1000);
+}
+
+int track_number(Track track) { return static_cast<int>(track) + 1; }
+
+std::string name_event(const char* what, int track, const std::string& name) {
+  return nlohmann::ordered_json{
+      {"ph", "M"}, {"name", what}, {"pid", kProcess}, {"tid", track}, {"args", {{"name", name}}}}
+      .dump();
+}
+
+std::string complete_event(const FrameSpan& one, std::chrono::steady_clock::time_point zero) {
+  return fmt::format(
+      R"({{"ph":"X","name":"{}","cat":"module","pid":{},"tid":{},"ts":{},"dur":{},"args":{{"frame":{}}}}})",
+      module_name(one.span.module), kProcess, track_number(track_of(one.span.module)),
+      microseconds(one.span.start - zero), microseconds(one.span.elapsed), one.frame);
+}
+
+/// A span that has begun and what of it was not spent in spans within.
+struct Open {
+  ModuleSpan span;
+  std::chrono::nanoseconds own{};
+};
+
+using StackTimes = std::map<std::string, std::chrono::nanoseconds>;
+
+/// Ends the innermost span.
+void close_innermost(std::vector<Open>& stack, StackTimes& times) {
+  std::string key(track_name(track_of(stack.back().span.module)));
+  for (const Open& open : stack) key.append(";").append(module_name(open.span.module));
+  times[key] += stack.back().own;
+  stack.pop_back();
+}
+
+bool lies_within(const ModuleSpan& inner, const ModuleSpan& outer) {
+  return track_of(inner.module) == track_of(outer.module) && end_of(inner) <= end_of(outer);
+}
+
+}  // namespace
+
+Track track_of(Module module) {
+  switch (module) {
+    case Module::kFeatureTracking:
+    case Module::kFeatureDetection:
+    case Module::kTrackingThread:
+    case Module::kOutlierRejection:
+    case Module::kFeatureMask:
+      return Track::kTracking;
+    case Module::kObjectDetection:
+      return Track::kDetection;
+    case Module::kImageDecoding:
+      return Track::kDecoding;
+    case Module::kDynamicRecognition:
+    case Module::kStateOptimization:
+    case Module::kOptimizationThread:
+    case Module::kWindowSolve:
+    case Module::kMarginalization:
+      break;
+  }
+  return Track::kOptimization;
+}
+
+std::string_view track_name(Track track) {
+  static constexpr std::array<std::string_view, 4> kNames = {"tracking", "object detection", "optimization",
+                                                             "image decoding"};
+  return kNames[static_cast<std::size_t>(track)];
+}
+
+std::string chrome_trace(std::span<const FrameSpan> spans, const std::string& process) {
+  std::vector<std::string> events = {name_event("process_name", 0, process)};
+  for (const Track track : {Track::kTracking, Track::kDetection, Track::kOptimization, Track::kDecoding}) {
+    events.push_back(name_event("thread_name", track_number(track), std::string(track_name(track))));
+  }
+  std::chrono::steady_clock::time_point zero = std::chrono::steady_clock::time_point::max();
+  for (const FrameSpan& one : spans) zero = std::min(zero, one.span.start);
+  for (const FrameSpan& one : in_order(spans)) events.push_back(complete_event(one, zero));
+  return fmt::format("{{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n{}\n]}}\n", fmt::join(events, ",\n"));
+}
+
+std::string folded_stacks(std::span<const FrameSpan> spans) {
+  StackTimes times;
+  std::vector<Open> stack;
+  for (const FrameSpan& one : in_order(spans)) {
+    while (!stack.empty() && !lies_within(one.span, stack.back().span)) close_innermost(stack, times);
+    if (!stack.empty()) stack.back().own -= one.span.elapsed;
+    stack.push_back({.span = one.span, .own = one.span.elapsed});
+  }
+  while (!stack.empty()) close_innermost(stack, times);
+  std::string text;
+  for (const auto& [key, own] : times) text += fmt::format("{} {}\n", key, own.count());
+  return text;
+}
+
+}  // namespace stillpoint
