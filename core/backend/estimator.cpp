@@ -5,6 +5,7 @@
 
 #include "core/backend/camera_pose.h"
 #include "core/backend/depth_initialization.h"
+#include "core/backend/gauge.h"
 #include "core/backend/initializer.h"
 #include "core/backend/landmark_tracks.h"
 #include "core/backend/marginalization.h"
@@ -240,8 +241,10 @@ bool Estimator::refine(OdometryUpdate& update) {
   if (knows_scale()) {
     initialize_depths(backend_, rig_.camera.focal_px(), window_);
     const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
+    const Pose oldest = window_.frames.front().state.T_w_b;
     const SolveReport report =
         solve_window(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
+    if (!window_.inertial) undo_jump(oldest, backend_.initializer, window_);
     if (backend_.pixel_misfit_px > 0.0) {
       pixel_noise_.observe(median_misfit_px(window_, rig_.camera.focal_px()), backend_);
     }
