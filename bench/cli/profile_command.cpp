@@ -11,6 +11,8 @@
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
 #include "bench/config/config_file.h"
+#include "bench/plan/bench_plan.h"
+#include "bench/profile/process_usage.h"
 #include "bench/profile/profile_table.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
@@ -34,6 +36,7 @@ struct ProfileArguments {
   std::string out;
   std::string format;
   std::string rig;
+  std::string cores;
   double budget_ms = 33.0;
   int max_frames = 0;
 };
@@ -43,12 +46,42 @@ struct Profile {
   OdometryRun run;
   std::vector<ProfileRow> rows;
   DeadlineMisses misses;
+  ProcessUsage usage;
+  std::map<int, ThreadUsage> threads;
 };
+
+/// The times of threads while they live: those of a run end with it.
+class ThreadWatch {
+ public:
+  void look() {
+    for (auto& [id, usage] : thread_usages()) threads_[id] = usage;
+  }
+  /// Since the watch began.
+  [[nodiscard]] std::map<int, ThreadUsage> usages() const {
+    std::map<int, ThreadUsage> own = threads_;
+    for (const auto& [id, usage] : before_) {
+      own[id].user_s -= usage.user_s;
+      own[id].system_s -= usage.system_s;
+    }
+    return own;
+  }
+
+ private:
+  std::map<int, ThreadUsage> before_ = thread_usages();
+  std::map<int, ThreadUsage> threads_ = before_;
+};
+
+/// Looking costs time that would be the run's. Threads that end with a run are seen up to that many pictures
+/// before.
+constexpr std::int64_t kFramesBetweenLooks = 10;
 
 Profile measure(const SensorStream& stream, const ProfileArguments& arguments) {
   ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
+  ThreadWatch watch;
+  const ProcessUsage before = process_usage();
   const auto on_update = [&](const OdometryUpdate& update) {
     progress.update(static_cast<std::size_t>(update.frame_id) + 1);
+    if (update.frame_id % kFramesBetweenLooks == 0) watch.look();
   };
   const RunSpec spec{.config = load_config({arguments.base, arguments.variant, arguments.settings}),
                      .mode = arguments.mode,
@@ -56,18 +89,22 @@ Profile measure(const SensorStream& stream, const ProfileArguments& arguments) {
                      .keep_spans = true};
   OdometryRun run = run_odometry(
       stream, spec, {.on_update = on_update, .on_picture = {}, .stop_requested = interrupt_requested});
+  const ProcessUsage usage = usage_between(before, process_usage());
+  watch.look();
   std::vector<ProfileRow> rows = profile_rows(run.timings, arguments.budget_ms);
   const DeadlineMisses misses = deadline_misses(run.frame_timings, arguments.budget_ms);
-  return {.run = std::move(run), .rows = std::move(rows), .misses = misses};
+  return {.run = std::move(run),
+          .rows = std::move(rows),
+          .misses = misses,
+          .usage = usage,
+          .threads = watch.usages()};
 }
 
 Json json_of(const Profile& profile, const ProfileArguments& arguments, const std::string& sequence) {
-  Json json = {{"sequence", sequence},
-               {"base", arguments.base},
-               {"variant", arguments.variant},
-               {"mode", arguments.mode},
-               {"wall_s", profile.run.wall_s}};
+  Json json = {{"sequence", sequence},   {"base", arguments.base},   {"variant", arguments.variant},
+               {"mode", arguments.mode}, {"cores", arguments.cores}, {"wall_s", profile.run.wall_s}};
   json.update(profile_json(profile.rows, profile.misses));
+  json["process"] = usage_json(profile.usage, profile.threads);
   return json;
 }
 
@@ -93,11 +130,21 @@ void print(const Profile& profile) {
       "{} frames in {:.2f} s; longer than {:g} ms: {} on one thread, {} with a thread for each stage\n",
       profile.misses.frames, profile.run.wall_s, profile.misses.budget_ms, profile.misses.one_thread,
       profile.misses.thread_per_stage);
+  const ProcessUsage& usage = profile.usage;
+  std::cout << fmt::format(
+      "processor {:.2f} s + {:.2f} s system, {} waits, {} preemptions, {} + {} page faults, peak {:.0f} MB\n",
+      usage.user_s, usage.system_s, usage.waits, usage.preemptions, usage.minor_faults, usage.major_faults,
+      1e-6 * static_cast<double>(usage.peak_memory_bytes));
+  for (const auto& [id, thread] : profile.threads) {
+    std::cout << fmt::format("  thread {} {}: {:.2f} s + {:.2f} s system\n", id, thread.name, thread.user_s,
+                             thread.system_s);
+  }
 }
 
 int run_profile(const ProfileArguments& arguments) {
   if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
   if (!(arguments.budget_ms > 0.0)) throw InputError("--frame-budget-ms", "must be above 0, e.g. 33");
+  if (!arguments.cores.empty()) pin_to(processors_of(arguments.cores));
   watch_interrupts();
   const auto stream =
       find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
@@ -130,6 +177,7 @@ Command profile_command() {
                   {"--set", "Change one key: key=value, may be repeated", &arguments->settings},
                   {"--mode", "How the stages are run: sequential, pipelined or realtime", &arguments->mode},
                   {"--frame-budget-ms", "Frames that take longer are counted", &arguments->budget_ms},
+                  {"--cores", "Processors it may use, e.g. 0,1 [all]", &arguments->cores},
                   {"--out", "Folder for profile.json, trace.json, stacks.folded [build/profile/SEQ]",
                    &arguments->out},
                   {"--format", "Layout of the folder [recognised]", &arguments->format},

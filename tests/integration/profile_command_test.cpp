@@ -61,6 +61,23 @@ TEST(ProfileCommand, WritesAValidTraceOfOneThreadAndOfSeveral) {
   }
 }
 
+TEST(ProfileCommand, TellsWhatTheProcessTook) {
+  const TemporaryFolder folder;
+  const ProgramResult result = profile(folder, {"--cores", "0"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json process = read_json(folder.path() / "profile.json").at("process");
+  EXPECT_GT(process.at("user_s").get<double>(), 0.0);
+  EXPECT_GT(process.at("peak_memory_bytes").get<std::int64_t>(), 1'000'000);
+  EXPECT_GE(process.at("threads").size(), 2U);  // the odometry, and the decoding ahead of it
+}
+
+TEST(ProfileCommand, RefusesProcessorsThatAreNotThere) {
+  const TemporaryFolder folder;
+  const ProgramResult result = profile(folder, {"--cores", "99999"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("no processor of this machine"), std::string::npos) << result.err;
+}
+
 TEST(ProfileCommand, RefusesABudgetOfNothing) {
   const TemporaryFolder folder;
   const ProgramResult result = profile(folder, {"--frame-budget-ms", "0"});
