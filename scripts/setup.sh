@@ -3,6 +3,7 @@
 # Installs the Debian 12 packages that Stillpoint is built from. Asks dpkg first and does nothing when all are there.
 #   scripts/setup.sh         what building, testing and running need
 #   scripts/setup.sh --dev   also clang-format and clang-tidy, for scripts/check.sh
+#   scripts/setup.sh --pages also a browser and LaTeX, for the tests of pages and tables that are skipped without
 set -euo pipefail
 
 packages=(
@@ -19,7 +20,8 @@ packages=(
 case "${1:-}" in
   "") ;;
   --dev) packages+=(clang-format clang-tidy) ;;
-  *) echo "setup: error: unknown option \"$1\"; the only option is --dev" >&2; exit 2 ;;
+  --pages) packages+=(chromium nodejs npm texlive-latex-recommended) ;;
+  *) echo "setup: error: unknown option \"$1\"; the options are --dev and --pages" >&2; exit 2 ;;
 esac
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }

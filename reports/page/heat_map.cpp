@@ -26,12 +26,14 @@ std::string cell_html(const AblationRow& row) {
   std::string lost = row.lost == 0 ? "" : fmt::format("<br>{} lost", row.lost);
   if (!row.change) return "<td class=\"empty\">-" + lost + "</td>";
   const RelativeChange& change = *row.change;
+  const std::string interval =
+      change.count == 1 ? "1 pair" : percent(change.interval.low) + " to " + percent(change.interval.high);
   const bool is_sure = change.count > 1 && (change.interval.low > 0.0 || change.interval.high < 0.0);
   return fmt::format(
       "<td class=\"{}{}\" style=\"--depth:{}%\" title=\"{} pairs\">{}<span class=\"interval\">{} to "
       "{}</span>{}</td>",
       change.median > 0.0 ? "worse" : "better", is_sure ? "" : " unsure", depth(change.median), change.count,
-      percent(change.median), percent(change.interval.low), percent(change.interval.high), lost);
+      percent(change.median), interval, lost);
 }
 
 std::vector<StoredRun> comparable(std::span<const StoredRun> runs) {

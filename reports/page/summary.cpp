@@ -5,6 +5,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "reports/tables/run_cells.h"
 
@@ -83,10 +84,15 @@ std::string best_sentence(std::span<const StoredRun> runs) {
     ++wins[best];
   }
   if (contests == 0) return "";
-  const auto most = std::max_element(wins.begin(), wins.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
-  return fmt::format("{} has the smallest trajectory error on {} of {} sequences.", most->first, most->second,
-                     contests);
+  std::size_t most = 0;
+  for (const auto& [label, count] : wins) most = std::max(most, count);
+  std::vector<std::string> winners;
+  for (const std::string& label : labels) {
+    if (wins.contains(label) && wins.at(label) == most) winners.push_back(label);
+  }
+  const char* verb = winners.size() == 1 ? "has" : "each have";
+  return fmt::format("{} {} the smallest trajectory error on {} of {} sequences.", fmt::join(winners, ", "), verb,
+                     most, contests);
 }
 
 std::vector<std::string> change_sentences(const std::string& base, const Comparison& comparison) {

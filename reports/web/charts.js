@@ -55,7 +55,7 @@
     return charts;
   }
 
-  // Draws all charts of a run into `place`; onFrame(index or null) hears the pointer, onZoom(min, max) the zoom.
+  // Draws all charts of a run into `place`; onFrame(index) hears the pointer, onZoom(min, max) the zoom.
   page.drawCharts = function (place, series, onFrame, onZoom) {
     place.replaceChildren();
     const plots = [];
@@ -73,10 +73,10 @@
       place.append(figure);
       const options = {
         width: figure.clientWidth || 900, height: chart.id === "modules" ? 220 : 150,
-        cursor: { sync: { key: cursor.key }, drag: { x: true, y: false }, focus: { prox: 30 } },
+        cursor: { sync: { key: cursor.key }, drag: { x: true, y: false } },
         scales: { x: { time: false } }, axes: axes(chart.unit), series: [{ label: "time [s]", value: number }, ...chart.lines],
         hooks: {
-          setCursor: [(u) => onFrame(u.cursor.left < 0 ? null : u.cursor.idx)],
+          setCursor: [(u) => { if (u.cursor.left >= 0 && u.cursor.idx !== null) onFrame(u.cursor.idx); }],
           setScale: [(u, key) => { if (key === "x" && plots.includes(u)) zoomAll(u.scales.x.min, u.scales.x.max); }],
         },
       };

@@ -19,7 +19,7 @@
   function readout(series, frame) {
     const place = byId("readout");
     place.replaceChildren();
-    if (frame === null) return;
+    if (!series.frames) return;
     const add = (label, text) => { const part = page.element("span"); part.append(page.element("b", {}, label + " "), text); place.append(part); };
     add("frame", String(frame));
     add("time", series.t[frame].toFixed(3) + " s");
@@ -37,8 +37,8 @@
     state.frame = frame;
     readout(page.series(state.run), frame);
     state.views.point(frame);
-    if (!fromChart && frame !== null) state.charts.point(frame);
-    byId("runs").dataset.frame = frame === null ? "" : frame;
+    if (!fromChart) state.charts.point(frame);
+    byId("runs").dataset.frame = frame;
     state.moving = false;
   }
 
@@ -72,7 +72,7 @@
       byId("runs").dataset.zoom = min.toFixed(3) + " " + max.toFixed(3);
     });
     state.views.show(series, page.truth(state.run, series.start));
-    readout(series, null);
+    readout(series, 0);
     byId("runs").dataset.run = run.key;
   };
 

@@ -6,7 +6,7 @@
   const VIEWS = [{ id: "plan", title: "From above: x to the right, y up [m]", across: "x", up: "y" },
     { id: "side", title: "From the side: x to the right, z up [m]", across: "x", up: "z" }];
   // Dark to light in brightness too, so that it reads without colours.
-  const RAMP = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+  const RAMP = [[98, 66, 158], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
   function rampColor(share) {
     const place = Math.max(0, Math.min(1, share)) * (RAMP.length - 1);

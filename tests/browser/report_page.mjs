@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The offline page as its readers meet it. Run by pages.sh.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { chromium } from "playwright-core";
+
+const { BROWSER, PAGE, WORK, STILLPOINT_SCREENSHOTS } = process.env;
+const OPEN_MS = 2000;
+const browser = await chromium.launch({ executablePath: BROWSER, args: ["--no-sandbox"] });
+
+// A page whose every request and complaint is kept.
+async function open(file, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 1300, height: 900 }, ...options });
+  page.faults = [];
+  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) page.faults.push(message.text()); });
+  page.on("pageerror", (error) => page.faults.push(error.message));
+  page.on("request", (request) => { if (request.url() !== "file://" + file && !/^(data|blob):/.test(request.url())) page.faults.push("request " + request.url()); });
+  await page.goto("file://" + file);
+  await page.waitForFunction(() => document.documentElement.dataset.readyMs !== undefined);
+  return page;
+}
+
+// What the page points at, after it has drawn.
+const runs = (page) => page.evaluate(async () => {
+  for (let i = 0; i < 2; ++i) await new Promise((drawn) => requestAnimationFrame(drawn));
+  return { ...document.getElementById("runs").dataset };
+});
+
+async function test(name, action) {
+  await action();
+  console.log("ok  " + name);
+}
+
+const page = await open(PAGE);
+
+await test("every chart has data", async () => {
+  const charts = await page.$$eval("#series figure", (figures) => figures.map((figure) => {
+    const canvas = figure.querySelector("canvas");
+    const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    const colors = new Set();
+    for (let i = 0; i < pixels.length; i += 4) if (pixels[i + 3] > 200) colors.add((pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2]);
+    return [figure.dataset.chart, colors.size];
+  }));
+  assert.deepEqual(charts.map((chart) => chart[0]), ["error", "features", "dynamic", "modules"]);
+  for (const [name, colors] of charts) assert.ok(colors > 3, name + " is blank");
+});
+
+await test("hovering one chart moves all and tells the frame", async () => {
+  const over = page.locator("[data-chart=error] .u-over");
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox();
+  await page.mouse.move(box.x + box.width * 0.3, box.y + box.height / 2, { steps: 5 });
+  const first = Number((await runs(page)).frame);
+  await page.mouse.move(box.x + box.width * 0.6, box.y + box.height / 2, { steps: 5 });
+  const second = Number((await runs(page)).frame);
+  assert.ok(second > first, `frame ${first}, then ${second}`);
+  assert.match(await page.textContent("#readout"), new RegExp("frame " + second));
+  const cursors = await page.$$eval("#series .u-cursor-x", (lines) => lines.map((line) => line.style.transform));
+  assert.equal(new Set(cursors).size, 1);
+});
+
+await test("hovering the path moves the charts", async () => {
+  const canvas = page.locator("#path-plan");
+  await canvas.scrollIntoViewIfNeeded();
+  const at = await page.evaluate(() => {
+    const pixels = (canvas) => canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    const canvas = document.getElementById("path-plan"), data = pixels(canvas);
+    for (let y = 40; y < canvas.height - 40; ++y) for (let x = 40; x < canvas.width - 40; ++x) {
+      const i = 4 * (y * canvas.width + x);
+      if (data[i + 3] > 250 && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 60) return { x: x / devicePixelRatio, y: y / devicePixelRatio };
+    }
+  });
+  await page.evaluate(() => { document.getElementById("runs").dataset.frame = ""; });
+  await canvas.hover({ position: at });
+  assert.notEqual((await runs(page)).frame, "");
+});
+
+await test("dragging zooms all charts, and 0 shows the whole time", async () => {
+  const over = page.locator("[data-chart=features] .u-over");
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox();
+  await page.mouse.move(box.x + box.width * 0.25, box.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.5, box.y + 40, { steps: 5 });
+  await page.mouse.up();
+  const [low, high] = (await runs(page)).zoom.split(" ").map(Number);
+  assert.ok(low > 0 && high > low);
+  await page.keyboard.press("0");
+  const [start] = (await runs(page)).zoom.split(" ").map(Number);
+  assert.equal(start, 0);
+});
+
+await test("keys step frames, find the worst and change the run", async () => {
+  const before = Number((await runs(page)).frame);
+  await page.keyboard.press("ArrowRight");
+  assert.equal(Number((await runs(page)).frame), before + 1);
+  await page.keyboard.press("Shift+ArrowLeft");
+  assert.equal(Number((await runs(page)).frame), Math.max(0, before - 9));
+  await page.keyboard.press("w");
+  const worst = Number((await runs(page)).frame);
+  await page.keyboard.press("w");
+  assert.notEqual(Number((await runs(page)).frame), worst);
+  const run = (await runs(page)).run;
+  await page.keyboard.press("n");
+  assert.notEqual((await runs(page)).run, run);
+  await page.keyboard.press("p");
+  assert.equal((await runs(page)).run, run);
+});
+
+await test("a number of the table leads to its run", async () => {
+  const link = page.locator("#table-ate_rmse_m td a").last();
+  const key = (await link.getAttribute("href")).slice("#run=".length);
+  await link.click();
+  await page.waitForFunction((wanted) => document.getElementById("runs").dataset.run === wanted, key);
+});
+
+await test("tables and series can be downloaded", async () => {
+  for (const name of ["ate_rmse_m.csv", "series of the selected run.csv"]) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name, exact: true }).click()]);
+    const text = readFileSync(await download.path(), "utf8");
+    assert.ok(text.split("\n").length > 2, name);
+  }
+});
+
+await test("light and dark differ, and the switch changes between them", async () => {
+  const ground = (opened) => opened.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await ground(page);
+  await page.click("#theme");
+  assert.notEqual(await ground(page), light);
+  await page.click("#theme");
+});
+
+await test("nothing was asked of the network and nothing complained", () => assert.deepEqual(page.faults, []));
+
+if (STILLPOINT_SCREENSHOTS) {
+  for (const colorScheme of ["light", "dark"]) {
+    const opened = await open(PAGE, { colorScheme, viewport: { width: 1200, height: 1500 } });
+    await opened.evaluate(() => { for (const detail of document.querySelectorAll("#published details")) detail.open = false; });
+    await opened.keyboard.press("w");
+    await opened.screenshot({ path: `${STILLPOINT_SCREENSHOTS}/report_${colorScheme}.png` });
+    await opened.locator("#runs").screenshot({ path: `${STILLPOINT_SCREENSHOTS}/report_run_${colorScheme}.png` });
+    await opened.close();
+  }
+}
+
+// The page with 1,000 runs of 1,000 frames each, made of the run that it has.
+function grown(text) {
+  const script = (id) => new RegExp(`(<script type="application/json" id="${id}">)(.*?)(</script>)`, "s");
+  const index = JSON.parse(script("index").exec(text)[2]);
+  const one = index.runs.findIndex((run) => run.frames > 0);
+  const series = JSON.parse(script("series-" + one).exec(text)[2]);
+  const frames = 1000;
+  const bytes = (packed) => { const source = Buffer.from(packed.data, "base64"); return Buffer.alloc(2 * frames, source).toString("base64"); };
+  const ramp = Buffer.from(Uint16Array.from({ length: frames }, (_, i) => i).buffer).toString("base64");
+  series.frames = frames;
+  series.t = { low: 0, step: 1 / 30, data: ramp };
+  for (const column of Object.values(series.columns)) column.data = bytes(column);
+  const runs = Array.from({ length: 1000 }, (_, i) => ({ ...index.runs[one], key: i.toString(16), frames }));
+  const all = runs.map((_, i) => `<script type="application/json" id="series-${i}">${JSON.stringify(series)}</script>`).join("\n");
+  const bare = text.replace(/<script type="application\/json" id="series-\d+">.*?<\/script>/gs, "");
+  return bare.replace(script("index"), (_, open, __, close) => open + JSON.stringify({ ...index, runs }) + close + "\n" + all);
+}
+
+await test("1,000 runs of 1,000 frames open quickly", async () => {
+  const file = WORK + "/large.html";
+  writeFileSync(file, grown(readFileSync(PAGE, "utf8")));
+  const opened = await open(file);
+  const ms = Number(await opened.evaluate(() => document.documentElement.dataset.readyMs));
+  console.log(`    ${(readFileSync(file).length / 1e6).toFixed(1)} MB are open after ${ms} ms`);
+  assert.equal(await opened.locator("#run option").count(), 1000);
+  assert.ok(ms < OPEN_MS, `${ms} ms`);
+});
+
+await browser.close();
