@@ -4,12 +4,11 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
-#include "bench/cli/progress.h"
+#include "bench/cli/plan_hooks.h"
 #include "bench/plan/bench_table.h"
 #include "bench/plan/plan_runner.h"
 #include "bench/record/output_folder.h"
@@ -39,33 +38,6 @@ int exit_code(const std::vector<BenchRow>& rows) {
     return row.status == "ok" || row.status == "skipped";
   });
   return all_well ? kExitOk : kExitFindings;
-}
-
-/// Tells what is being done, how far a rendering is, and how long the rest may take.
-PlanHooks hooks() {
-  const auto rendering = std::make_shared<std::unique_ptr<ProgressLine>>();
-  const auto runs = std::make_shared<std::unique_ptr<ProgressLine>>();
-  const auto line = [](std::unique_ptr<ProgressLine>& progress, const char* label, std::size_t total,
-                       const char* unit) {
-    if (!progress) progress = std::make_unique<ProgressLine>(label, total, unit);
-    return progress.get();
-  };
-  return {
-      .on_step =
-          [rendering, runs](const std::string& what) {
-            rendering->reset();
-            if (*runs) (*runs)->wipe();
-            spdlog::info("{}", what);
-            if (*runs) (*runs)->draw();
-          },
-      .on_rendered =
-          [rendering, line](int done, int total) {
-            line(*rendering, "rendering", static_cast<std::size_t>(total), "frames")
-                ->update(static_cast<std::size_t>(done));
-          },
-      .on_progress = [runs, line](std::size_t done,
-                                  std::size_t total) { line(*runs, "bench", total, "runs")->update(done); },
-      .stop_requested = interrupt_requested};
 }
 
 /// Lists the runs and whether the store has them; makes nothing, not even a store.
@@ -123,7 +95,7 @@ int bench(const BenchArguments& arguments) {
   PlanReport report;
   {
     Journal journal(arguments.store);
-    report = run_plan(matrix, journal, {.jobs = arguments.jobs, .retry = arguments.retry}, hooks());
+    report = run_plan(matrix, journal, {.jobs = arguments.jobs, .retry = arguments.retry}, plan_hooks());
   }
   const Store store(arguments.store);
   const std::vector<BenchRow> rows = plan_rows(matrix, store);

@@ -16,6 +16,7 @@ namespace stillpoint {
 [[nodiscard]] Command compare_command();         ///< `stillpoint compare`: the gate for commits
 [[nodiscard]] Command profile_command();         ///< `stillpoint profile`: where the time of a run goes
 [[nodiscard]] Command report_command();          ///< `stillpoint report`: one offline page about a store
+[[nodiscard]] Command reproduce_command();  ///< `stillpoint reproduce`: a table of the paper in one command
 [[nodiscard]] Command config_command();     ///< `stillpoint config`: resolved configs and the reference page
 [[nodiscard]] Command data_command();       ///< `stillpoint data`: make and inspect sequences
 [[nodiscard]] Command check_command();      ///< `stillpoint data check`: the sequence doctor

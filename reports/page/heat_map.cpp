@@ -30,8 +30,8 @@ std::string cell_html(const AblationRow& row) {
       change.count == 1 ? "1 pair" : percent(change.interval.low) + " to " + percent(change.interval.high);
   const bool is_sure = change.count > 1 && (change.interval.low > 0.0 || change.interval.high < 0.0);
   return fmt::format(
-      "<td class=\"{}{}\" style=\"--depth:{}%\" title=\"{} pairs\">{}<span class=\"interval\">{} to "
-      "{}</span>{}</td>",
+      "<td class=\"{}{}\" style=\"--depth:{}%\" title=\"{} pairs\">{}<span class=\"interval\">{}"
+      "</span>{}</td>",
       change.median > 0.0 ? "worse" : "better", is_sure ? "" : " unsure", depth(change.median), change.count,
       percent(change.median), interval, lost);
 }
@@ -47,7 +47,7 @@ std::vector<StoredRun> comparable(std::span<const StoredRun> runs) {
 }  // namespace
 
 std::string base_variant(std::span<const StoredRun> runs) {
-  const std::vector<std::string> labels = distinct(runs, run_label);
+  const std::vector<std::string> labels = distinct(runs, system_label);
   for (const char* name : {"dynamic_vins", "stillpoint", "vo"}) {
     if (std::find(labels.begin(), labels.end(), name) != labels.end()) return name;
   }
@@ -57,7 +57,7 @@ std::string base_variant(std::span<const StoredRun> runs) {
 std::string heat_map_html(std::span<const StoredRun> all, const std::string& base,
                           const std::string& metric) {
   const std::vector<StoredRun> runs = comparable(all);
-  if (distinct(runs, run_label).size() < 2) return "";
+  if (distinct(runs, system_label).size() < 2) return "";
   const std::vector<std::string> sequences =
       distinct(runs, [](const RunIdentity& identity) { return identity.sequence; });
   std::string text = fmt::format(
@@ -71,7 +71,7 @@ std::string heat_map_html(std::span<const StoredRun> all, const std::string& bas
     text += "<th scope=\"col\">" + escape_html(sequence) + "</th>";
   text += "</tr></thead><tbody>";
   const std::vector<AblationRow> rows = ablation(runs, base, metric);
-  for (const std::string& variant : distinct(runs, run_label)) {
+  for (const std::string& variant : distinct(runs, system_label)) {
     if (variant == base) continue;
     text += "\n<tr><th scope=\"row\">" + escape_html(variant) + "</th>";
     for (std::size_t i = 0; i <= sequences.size(); ++i) {

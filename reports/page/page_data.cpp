@@ -27,7 +27,7 @@ std::string dumped(const Json& json) {
 Json run_json(const StoredRun& run) {
   const RunIdentity& identity = run.identity;
   Json json = {{"key", run.key},
-               {"label", clean_line(run_label(identity))},
+               {"label", clean_line(system_label(identity))},
                {"sequence", clean_line(identity.sequence)},
                {"seed", identity.seed},
                {"repetition", identity.repetition},
@@ -109,7 +109,7 @@ PageData page_data(const Store& store, std::span<const StoredRun> runs) {
     Json& entry = index["runs"].emplace_back(run_json(run));
     entry["frames"] = series.t_s.size();
     data.series.push_back(dumped(series_json(series)));
-    gather_times(times, series, run_label(run.identity));
+    gather_times(times, series, system_label(run.identity));
     if (entry["truth"].is_string() && !index["truths"].contains(entry["truth"].get<std::string>())) {
       index["truths"][entry["truth"].get<std::string>()] = truth_json(store.truth(run));
     }

@@ -67,6 +67,8 @@ std::string summary_html(const ReportSubject& subject) {
 
 /// The first tables open, the others a click away.
 std::string tables_html(const std::vector<ReportTable>& tables, bool quoted) {
+  const char* none = quoted ? "No runs here share a sequence with a quoted table."
+                            : "Every run here is a point of a sweep: see its curves below.";
   constexpr std::size_t kOpen = 1;
   std::string text;
   std::size_t shown = 0;
@@ -75,7 +77,7 @@ std::string tables_html(const std::vector<ReportTable>& tables, bool quoted) {
     text += fmt::format("<details{}><summary>{}</summary>{}</details>\n", shown++ < kOpen ? " open" : "",
                         escape_html(table.title), table_html(table));
   }
-  return text.empty() ? "<p class=\"none\">No runs here share a sequence with a quoted table.</p>" : text;
+  return text.empty() ? fmt::format("<p class=\"none\">{}</p>", none) : text;
 }
 
 std::string heat_html(const ReportSubject& subject) {

@@ -21,7 +21,7 @@ std::string counted(std::size_t count, const std::string& noun) {
 
 std::string failure_sentence(const StoredRun& run) {
   std::string text =
-      run_label(run.identity) + " on " + run.identity.sequence + ": " + outcome_name(run.outcome);
+      system_label(run.identity) + " on " + run.identity.sequence + ": " + outcome_name(run.outcome);
   return run.detail.empty() ? text + "." : text + ", " + run.detail + ".";
 }
 
@@ -61,7 +61,7 @@ std::vector<std::string> outcome_sentences(std::span<const StoredRun> runs) {
     if (run.outcome != Outcome::kOk) failed.push_back(&run);
   }
   std::string first = counted(runs.size(), "run") + " of " +
-                      counted(distinct(runs, run_label).size(), "variant") + " on " +
+                      counted(distinct(runs, system_label).size(), "variant") + " on " +
                       counted(sequences_of(runs).size(), "sequence") + ": ";
   first += failed.empty() ? "all ended well." : counted(failed.size(), "run") + " did not end well.";
   std::vector<std::string> sentences = {first};
@@ -74,7 +74,7 @@ std::vector<std::string> outcome_sentences(std::span<const StoredRun> runs) {
 }
 
 std::string best_sentence(std::span<const StoredRun> runs) {
-  const std::vector<std::string> labels = distinct(runs, run_label);
+  const std::vector<std::string> labels = distinct(runs, system_label);
   std::map<std::string, std::size_t> wins;
   std::size_t contests = 0;
   for (const std::string& sequence : sequences_of(runs)) {
@@ -91,8 +91,8 @@ std::string best_sentence(std::span<const StoredRun> runs) {
     if (wins.contains(label) && wins.at(label) == most) winners.push_back(label);
   }
   const char* verb = winners.size() == 1 ? "has" : "each have";
-  return fmt::format("{} {} the smallest trajectory error on {} of {} sequences.", fmt::join(winners, ", "), verb,
-                     most, contests);
+  return fmt::format("{} {} the smallest trajectory error on {} of {} sequences.", fmt::join(winners, ", "),
+                     verb, most, contests);
 }
 
 std::vector<std::string> change_sentences(const std::string& base, const Comparison& comparison) {

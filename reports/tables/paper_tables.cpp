@@ -178,7 +178,7 @@ ReportTable table3(std::span<const StoredRun> runs) {
       cell.state = CellState::kOk;
     }
   }
-  for (const std::string& label : distinct(runs, run_label)) {
+  for (const std::string& label : distinct(runs, system_label)) {
     TableRow& row = table.rows.emplace_back(TableRow{label, "ours", {}});
     for (const PaperModule& module : kModules)
       row.cells.push_back(cost_cell(runs_of(runs, label, ""), module.module));

@@ -35,7 +35,7 @@ bool has_metric(std::span<const StoredRun> runs, const std::string& name) {
   });
 }
 
-std::vector<std::string> labels_of(std::span<const StoredRun> runs) { return distinct(runs, run_label); }
+std::vector<std::string> labels_of(std::span<const StoredRun> runs) { return distinct(runs, system_label); }
 std::vector<std::string> sequences_of(std::span<const StoredRun> runs) {
   return distinct(runs, [](const RunIdentity& identity) { return identity.sequence; });
 }

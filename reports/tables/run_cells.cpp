@@ -18,7 +18,7 @@ std::string failure_note(std::size_t failed, std::size_t all, const StoredRun& f
 
 }  // namespace
 
-std::string run_label(const RunIdentity& identity) {
+std::string system_label(const RunIdentity& identity) {
   if (identity.system == "stillpoint") return identity.variant;
   return identity.variant.empty() ? identity.system : identity.system + " " + identity.variant;
 }
@@ -84,7 +84,7 @@ std::vector<const StoredRun*> runs_of(std::span<const StoredRun> runs, const std
   std::vector<const StoredRun*> found;
   for (const StoredRun& run : runs) {
     const bool is_on_it = sequence.empty() || run.identity.sequence == sequence;
-    if (is_on_it && run.identity.axis.empty() && run_label(run.identity) == label) found.push_back(&run);
+    if (is_on_it && run.identity.axis.empty() && system_label(run.identity) == label) found.push_back(&run);
   }
   return found;
 }

@@ -13,7 +13,7 @@
 namespace stillpoint {
 
 /// How readers know what made a run: the variant of our odometry, or the name of another system.
-[[nodiscard]] std::string run_label(const RunIdentity& identity);
+[[nodiscard]] std::string system_label(const RunIdentity& identity);
 
 /// Distinct values in the order of first appearance.
 [[nodiscard]] std::vector<std::string> distinct(std::span<const StoredRun> runs,

@@ -16,6 +16,10 @@ browser="$(command -v chromium || command -v chromium-browser || command -v goog
 
 mkdir -p "$work"
 store="${STILLPOINT_REPORT_STORE:-$work/store.sqlite}"
-[[ -e "$store" ]] || "$program" bench "$here/plan.toml" --store "$store" --out "$work/bench" >"$work/bench.log" 2>&1
+if [[ -z "${STILLPOINT_REPORT_STORE:-}" ]]; then
+  for plan in plan sweep; do
+    "$program" bench "$here/$plan.toml" --store "$store" --out "$work/$plan" >"$work/$plan.log" 2>&1
+  done
+fi
 "$program" report "$store" --out "$work/page"
 BROWSER="$browser" PAGE="$work/page/index.html" WORK="$work" node "$here/report_page.mjs"

@@ -122,6 +122,12 @@ await test("tables and series can be downloaded", async () => {
   }
 });
 
+await test("sweeps have a curve", async () => {
+  const swept = await page.evaluate(() => window.stillpoint.index.runs.some((run) => run.sweep));
+  assert.equal(await page.locator("#sweeps").isVisible(), swept);
+  assert.equal(await page.locator("#curves canvas").count() > 0, swept);
+});
+
 await test("light and dark differ, and the switch changes between them", async () => {
   const ground = (opened) => opened.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await ground(page);
