@@ -62,6 +62,7 @@ TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
                      {"frontend.min_distance_px", "20"},
                      {"frontend.unstable_radius_px", "20"},
                      {"frontend.prediction", "\"full\""},
+                     {"frontend.window_px", "15"},
                      {"frontend.outlier_model", "\"rigid\""},
                      {"frontend.ransac_threshold_px", "2.0"},
                      {"dynamic.mask", "\"depth_band\""},
