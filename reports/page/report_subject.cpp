@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -13,6 +14,8 @@
 namespace stillpoint {
 namespace {
 
+constexpr const char* kOwnSystem = "stillpoint";
+
 std::vector<StoredPlan> chosen_plans(const Store& store, const std::string& plan) {
   std::vector<StoredPlan> plans = store.plans();
   if (!plan.empty()) std::erase_if(plans, [&](const StoredPlan& stored) { return stored.name != plan; });
@@ -24,6 +27,29 @@ std::string title_of(const Store& store, const std::vector<StoredPlan>& plans) {
   for (const StoredPlan& plan : plans)
     title += (title.empty() ? "" : "; ") + (plan.title.empty() ? plan.name : plan.title);
   return title.empty() ? "Runs of " + store.file().filename().string() : title;
+}
+
+/// Of builds that share a plan the one that was begun last: numbers of two builds are never put together.
+std::string newest_build(const std::vector<StoredRun>& runs) {
+  std::map<std::string, std::int64_t> first_run;
+  for (const StoredRun& run : runs) {
+    if (run.identity.system != kOwnSystem) continue;
+    const auto [place, is_new] = first_run.insert({run.identity.build, run.id});
+    if (!is_new) place->second = std::min(place->second, run.id);
+  }
+  const auto newest = std::max_element(first_run.begin(), first_run.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return newest == first_run.end() ? "" : newest->first;
+}
+
+/// Leaves the newest build of our odometry, and what other systems made.
+void set_older_builds_apart(ReportSubject& subject) {
+  const std::string newest = newest_build(subject.runs);
+  const auto is_older = [&](const StoredRun& run) {
+    return run.identity.system == kOwnSystem && run.identity.build != newest;
+  };
+  std::copy_if(subject.runs.begin(), subject.runs.end(), std::back_inserter(subject.other_runs), is_older);
+  std::erase_if(subject.runs, is_older);
 }
 
 }  // namespace
@@ -47,6 +73,7 @@ ReportSubject report_subject(const Store& store, const std::string& plan) {
   if (subject.runs.empty())
     throw InputError(store.file().string(),
                      "holds no ended run; make some with `stillpoint bench PLAN --store FILE`");
+  set_older_builds_apart(subject);
   subject.published = published_names();
   return subject;
 }

@@ -119,6 +119,31 @@ TEST(ReportPage, WeighsLessThanTheBudgetWithoutData) {
   EXPECT_LT(report_html(store, report_subject(store, "")).size(), 400'000u);
 }
 
+TEST(ReportSubject, NeverPutsTwoBuildsTogether) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "s";
+  // As a gate runs them: base, head, head, base. The head was begun last.
+  const std::vector<RunIdentity> pairs = {
+      {.variant = "vo", .sequence = "a", .build = "base", .repetition = 1},
+      {.variant = "vo", .sequence = "a", .build = "head", .repetition = 1},
+      {.variant = "vo", .sequence = "a", .build = "head", .repetition = 2},
+      {.variant = "vo", .sequence = "a", .build = "base", .repetition = 2}};
+  Journal journal(file);
+  std::vector<std::string> keys;
+  for (const RunIdentity& identity : pairs) {
+    static_cast<void>(journal.claim(identity));
+    journal.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", identity.build == "head" ? 2.0 : 1.0}}});
+    keys.push_back(run_key(identity));
+  }
+  journal.record_plan({.name = "p", .title = "", .text = "", .run_keys = keys});
+  const Store store(file);
+  const ReportSubject subject = report_subject(store, "p");
+  ASSERT_EQ(subject.runs.size(), 2u);
+  EXPECT_EQ(subject.other_runs.size(), 2u);
+  EXPECT_EQ(report_tables(subject).front().rows[0].cells[0].number, 2.0);
+  EXPECT_NE(report_html(store, subject).find("Against build base: worse"), std::string::npos);
+}
+
 TEST(ReportSubject, NamesThePlansThatThereAre) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
