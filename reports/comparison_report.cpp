@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "reports/tables/escaping.h"
 #include "reports/text_table.h"
 
 namespace stillpoint {
@@ -48,29 +49,6 @@ Json changes_json(const std::vector<MetricChange>& changes) {
   return list;
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += letter;
-    }
-  }
-  return result;
-}
-
 struct TestCase {
   std::string group;
   std::string name;
@@ -79,13 +57,15 @@ struct TestCase {
 };
 
 std::string test_case(const TestCase& test) {
-  const std::string open =
-      fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escaped(test.group), escaped(test.name));
+  const std::string open = fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escape_html(test.group),
+                                       escape_html(test.name));
   switch (test.verdict) {
     case ChangeVerdict::kWorse:
-      return open + fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", escaped(test.message));
+      return open +
+             fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", escape_html(test.message));
     case ChangeVerdict::kInconclusive:
-      return open + fmt::format(">\n    <skipped message=\"{}\"/>\n  </testcase>\n", escaped(test.message));
+      return open +
+             fmt::format(">\n    <skipped message=\"{}\"/>\n  </testcase>\n", escape_html(test.message));
     default:
       return open + "/>\n";
   }
@@ -142,7 +122,7 @@ std::string comparison_junit(const ComparisonTitle& title, const Comparison& com
              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"{}\" tests=\"{}\" "
              "failures=\"{}\" "
              "skipped=\"{}\">\n",
-             escaped("compare " + title.base + " " + title.head), tests.size(), failures, skipped) +
+             escape_html("compare " + title.base + " " + title.head), tests.size(), failures, skipped) +
          body + "</testsuite>\n";
 }
 

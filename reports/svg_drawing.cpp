@@ -3,28 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "reports/tables/escaping.h"
+
 namespace stillpoint {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string hex(const Color& color) {
   return fmt::format("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue);
@@ -49,7 +31,7 @@ struct Writer {
     out += fmt::format(
         "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.2f}\" text-anchor=\"{}\" fill=\"{}\">{}</text>\n",
         label.at.x, label.at.y, label.size, kAnchors[static_cast<int>(label.anchor)], hex(label.color),
-        escaped(label.text));
+        escape_html(label.text));
   }
 };
 

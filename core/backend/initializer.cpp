@@ -2,12 +2,13 @@
 #include "core/backend/initializer.h"
 
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include "core/backend/window_problem.h"
-#include "core/geometry/so3.h"
+#include "core/imu/gyro_bias.h"
 
 namespace stillpoint {
 namespace {
@@ -16,22 +17,15 @@ constexpr int kGravitySteps = 4;
 constexpr double kGaugeSigma_m = 1e-3;
 constexpr double kGaugeSigma_rad = 1e-3;
 
-/// Gyro bias that closes the gap between visual and inertial rotations, by linear least squares from the
-/// present one.
+/// Gyro bias at which inertial rotations agree best with the visual ones.
 Eigen::Vector3d solve_gyro_bias(const Window& window) {
-  Eigen::Matrix3d H = Eigen::Matrix3d::Identity() * 1e-9;
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  Eigen::Vector3d bias = window.frames[1].from_previous->gyro_bias();
+  std::vector<RotationPair> pairs;
   for (std::size_t i = 1; i < window.frames.size(); ++i) {
-    const Preintegration& imu = *window.frames[i].from_previous;
-    const Eigen::Quaterniond q_visual =
-        window.frames[i - 1].state.T_w_b.q.conjugate() * window.frames[i].state.T_w_b.q;
-    const Eigen::Vector3d gap = log_so3(imu.delta_q(bias).conjugate() * q_visual);
-    const Eigen::Matrix3d J = imu.jacobian().block<3, 3>(ImuErrorIndex::kRotation, ImuErrorIndex::kGyroBias);
-    H += J.transpose() * J;
-    b += J.transpose() * gap;
+    const Eigen::Quaterniond& q_w_bi = window.frames[i - 1].state.T_w_b.q;
+    pairs.push_back({.preintegration = &*window.frames[i].from_previous,
+                     .q_bi_bj = q_w_bi.conjugate() * window.frames[i].state.T_w_b.q});
   }
-  return bias + H.ldlt().solve(b);
+  return estimate_gyro_bias(pairs);
 }
 
 /// Linear system A [v0, g, s - 1] = y for "where would the body be without speed and gravity" at each frame

@@ -39,9 +39,8 @@ class RealtimeRun {
         config_(config),
         control_(control),
         stages_(assemble(input, config)),
-        interval_s_(median_interval_s(input.frame_times)),
         clock_(input.frame_times.empty() ? Timestamp{} : input.frame_times.front(), speed) {
-    report_.deadline_ms = 1e3 * interval_s_ / speed;
+    report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / speed;
     feedback_.push(stages_.optimization.knowledge());
   }
 
@@ -132,7 +131,6 @@ class RealtimeRun {
   Stages stages_;
   RunSummary summary_;     ///< `frames`, `skipped`, `interrupted` belong to the camera's thread while it runs
   RealtimeReport report_;  ///< `dropped` likewise
-  double interval_s_;
   PacingClock clock_;
   BoundedChannel<PictureOnWay> exposed_{kWaitingPictures};
   BoundedChannel<Frame> to_detect_{1};

@@ -10,7 +10,7 @@ namespace stillpoint {
 /// One line of valid UTF-8: bytes that are none become U+FFFD, control characters spaces.
 [[nodiscard]] std::string clean_line(std::string_view text);
 
-/// For HTML text and for attributes in either kind of quotes.
+/// For HTML and XML text, and for attributes in either kind of quotes.
 [[nodiscard]] std::string escape_html(std::string_view text);
 
 /// For text in LaTeX. Letters beyond Latin-1 are written as their code points, because not every font has
