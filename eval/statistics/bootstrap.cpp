@@ -6,16 +6,9 @@
 #include <vector>
 
 #include "eval/metrics/statistics.h"
+#include "eval/statistics/draw.h"
 
 namespace stillpoint {
-namespace {
-
-/// A whole number below `count`. The standard's distribution differs between libraries; this does not.
-std::size_t draw(std::mt19937_64& random, std::size_t count) {
-  return static_cast<std::size_t>((static_cast<unsigned __int128>(random()) * count) >> 64);
-}
-
-}  // namespace
 
 std::optional<Interval> median_interval(std::span<const double> values, const BootstrapOptions& options) {
   if (values.empty()) return std::nullopt;
