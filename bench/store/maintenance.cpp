@@ -84,6 +84,17 @@ RunIdentity identity_of(const Json& json) {
           .axis_value = json.at("axis_value")};
 }
 
+Json acceptance_json(const Acceptance& acceptance) {
+  return {{"commit", acceptance.commit},   {"metric", acceptance.metric},
+          {"variant", acceptance.variant}, {"sequence", acceptance.sequence},
+          {"reason", acceptance.reason},   {"accepted", acceptance.accepted}};
+}
+
+Acceptance acceptance_of(const Json& json) {
+  return {json.at("commit"),   json.at("metric"), json.at("variant"),
+          json.at("sequence"), json.at("reason"), json.at("accepted")};
+}
+
 Json run_json(const Store& store, const StoredRun& run) {
   Json json = {{"key", run.key},
                {"identity", identity_json(run.identity)},
@@ -133,7 +144,7 @@ RunOutcome outcome_of_json(const Json& json) {
 
 std::vector<std::string> verify_store(const fs::path& file) {
   const Database database(file, DatabaseAccess::kRead);
-  require_current_schema(database);
+  require_readable_schema(database);
   std::vector<std::string> faults;
   append_rows(faults, database.prepare("PRAGMA integrity_check"), "database");
   append_rows(faults, database.prepare("PRAGMA foreign_key_check"), "a row names another that is not there");
@@ -178,6 +189,7 @@ MergeReport merge_stores(const fs::path& from, const fs::path& into) {
   for (const StoredRun& run : source.runs())
     add_run(journal, run.identity, outcome_from(source, run), report);
   for (const StoredPlan& plan : source.plans()) journal.record_plan(plan);
+  write_acceptances(into, source.acceptances());
   return report;
 }
 
@@ -192,6 +204,9 @@ std::string export_store(const fs::path& file) {
   }
   json["runs"] = Json::array();
   for (const StoredRun& run : store.runs()) json["runs"].push_back(run_json(store, run));
+  json["accepted"] = Json::array();
+  for (const Acceptance& acceptance : store.acceptances())
+    json["accepted"].push_back(acceptance_json(acceptance));
   // Messages of a program need not be UTF-8; every other text is.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -211,6 +226,10 @@ MergeReport import_store(const std::string& text, const std::string& place, cons
                            .text = plan.at("text"),
                            .run_keys = plan.at("run_keys").get<std::vector<std::string>>()});
     }
+    std::vector<Acceptance> acceptances;
+    for (const Json& accepted : json.value("accepted", Json::array()))
+      acceptances.push_back(acceptance_of(accepted));
+    write_acceptances(into, acceptances);
     return report;
   } catch (const Json::exception& error) {
     throw InputError(place, std::string("is no exported store: ") + error.what());

@@ -27,7 +27,8 @@ struct MergeReport {
   std::size_t present = 0;  ///< were there already
 };
 
-/// Adds the ended runs of `from` to `into`, which is made if need be, with their plans, manifests and files.
+/// Adds the ended runs of `from` to `into`, which is made if need be, with their plans, manifests, files and
+/// acceptances.
 /// A run that is there already stays as it is.
 /// @throws InputError if a file of `from` is missing or damaged; what was added before is kept
 MergeReport merge_stores(const std::filesystem::path& from, const std::filesystem::path& into);

@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kApplicationId = 0x53746c70;  // "Stlp", so that `file` and we know a store
 
 /// One step from each version to the next. Steps that were published are never changed.
-constexpr std::array<const char*, 1> kSteps = {R"sql(
+constexpr std::array<const char*, 2> kSteps = {R"sql(
 -- What does not differ from run to run, or seldom: configs, machines, builds.
 CREATE TABLE manifest (
   hash TEXT PRIMARY KEY,
@@ -87,6 +87,18 @@ CREATE TABLE plan_entry (
   run_key TEXT NOT NULL,          -- the run may not be made yet
   PRIMARY KEY (plan, position)
 ) WITHOUT ROWID;
+)sql",
+                                               R"sql(
+-- Changes of numbers that people accept.
+CREATE TABLE acceptance (
+  build TEXT NOT NULL,            -- the commit that brought the change
+  metric TEXT NOT NULL,           -- name of a metric or of a module
+  variant TEXT NOT NULL,          -- empty: all
+  sequence TEXT NOT NULL,         -- likewise
+  reason TEXT NOT NULL,
+  accepted TEXT NOT NULL,         -- UTC
+  PRIMARY KEY (build, metric, variant, sequence)
+) WITHOUT ROWID;
 )sql"};
 
 std::string version_text(std::int64_t version) { return std::to_string(version); }
@@ -125,13 +137,9 @@ void migrate(const Database& database) {
   transaction.commit();
 }
 
-void require_current_schema(const Database& database) {
-  const std::int64_t version = version_of(database);
-  if (version == schema_version()) return;
-  throw InputError(database.file().string(),
-                   version == 0 ? "is empty; fill it with `stillpoint bench PLAN --store FILE`"
-                                : "has the older schema " + version_text(version) +
-                                      "; the next `stillpoint bench` into it brings it up to date");
+void require_readable_schema(const Database& database) {
+  if (version_of(database) > 0) return;
+  throw InputError(database.file().string(), "is empty; fill it with `stillpoint bench PLAN --store FILE`");
 }
 
 }  // namespace stillpoint

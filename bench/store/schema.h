@@ -13,7 +13,8 @@ namespace stillpoint {
 /// @throws InputError if the file is another program's database, or a newer program's store
 void migrate(const Database& database);
 
-/// @throws InputError as `migrate`, and if the store is older: reading changes nothing
-void require_current_schema(const Database& database);
+/// Older stores are read as they are: what they lack is empty.
+/// @throws InputError as `migrate`, and if the file is empty: reading changes nothing
+void require_readable_schema(const Database& database);
 
 }  // namespace stillpoint

@@ -79,7 +79,7 @@ fs::path files_folder(const fs::path& store_file) { return store_file.string() +
 
 Store::Store(const fs::path& file)
     : database_(file, DatabaseAccess::kRead), blobs_(files_folder(file) / "blobs") {
-  require_current_schema(database_);
+  require_readable_schema(database_);
 }
 
 std::vector<StoredRun> Store::runs(const RunFilter& filter) const {
@@ -121,6 +121,8 @@ std::vector<StoredRun> Store::plan_runs(const std::string& plan) const {
   throw InputError(file().string(),
                    "holds no plan \"" + plan + "\"; it holds: " + (known.empty() ? "none" : known));
 }
+
+std::vector<Acceptance> Store::acceptances() const { return read_acceptances(database_); }
 
 std::int64_t Store::unfinished() const {
   return database_.integer("SELECT count(*) FROM run WHERE state = 'running'");

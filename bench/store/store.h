@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/store/acceptance.h"
 #include "bench/store/blob_files.h"
 #include "bench/store/database.h"
 #include "bench/store/stored_run.h"
@@ -39,7 +40,7 @@ struct StoredPlan {
 class Store {
  public:
   /// Opens a store for reading; it may be written at the same time, and may lie where nothing can be written.
-  /// @throws InputError if there is none, it is damaged, or its schema is not this program's
+  /// @throws InputError if there is none, it is damaged, or a newer program's
   explicit Store(const std::filesystem::path& file);
 
   /// Ended runs, in the order in which they were begun.
@@ -50,6 +51,9 @@ class Store {
   [[nodiscard]] std::vector<StoredRun> plan_runs(const std::string& plan) const;
 
   [[nodiscard]] std::vector<StoredPlan> plans() const;
+
+  /// Changes of numbers that were accepted.
+  [[nodiscard]] std::vector<Acceptance> acceptances() const;
 
   /// Number of runs that were begun and have not ended: being made, or broken off.
   [[nodiscard]] std::int64_t unfinished() const;

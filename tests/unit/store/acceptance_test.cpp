@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/acceptance.h"
+
+#include <gtest/gtest.h>
+
+#include "bench/store/journal.h"
+#include "bench/store/maintenance.h"
+#include "bench/store/schema.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Acceptance kFaster{.commit = "abc",
+                         .metric = "ate_rmse_m",
+                         .variant = "vo",
+                         .sequence = "",
+                         .reason = "a \"faster\" solver; 'tis fine",
+                         .accepted = "2026-01-01T00:00:00Z"};
+
+/// A store with one run.
+fs::path small_store(const TemporaryFolder& folder, const std::string& name) {
+  fs::path file = folder.path() / name;
+  Journal journal(file);
+  const RunIdentity identity{.variant = "vo", .sequence = "office"};
+  static_cast<void>(journal.claim(identity));
+  journal.finish(identity, {.metrics = {{"ate_rmse_m", "r", "m", 0.5}}});
+  return file;
+}
+
+TEST(Acceptances, AreKeptAndReplacedByTheirSubject) {
+  const TemporaryFolder folder;
+  const fs::path file = small_store(folder, "s");
+  write_acceptances(file, {kFaster});
+  Acceptance again = kFaster;
+  again.reason = "another";
+  Acceptance other = kFaster;
+  other.variant = "";
+  write_acceptances(file, {again, other});
+  const std::vector<Acceptance> kept = Store(file).acceptances();
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0].variant, "");
+  EXPECT_EQ(kept[1].reason, "another");
+}
+
+TEST(Acceptances, CanBeTakenBack) {
+  const TemporaryFolder folder;
+  const fs::path file = small_store(folder, "s");
+  write_acceptances(file, {kFaster});
+  EXPECT_TRUE(withdraw_acceptance(file, kFaster));
+  EXPECT_FALSE(withdraw_acceptance(file, kFaster));
+  EXPECT_TRUE(Store(file).acceptances().empty());
+}
+
+TEST(Acceptances, DoNotMakeAStore) {
+  const TemporaryFolder folder;
+  expect_input_error([&] { write_acceptances(folder.path() / "none", {kFaster}); }, {"no such store"});
+  EXPECT_FALSE(fs::exists(folder.path() / "none"));
+}
+
+TEST(Acceptances, GoWithTheRunsIntoOtherStores) {
+  const TemporaryFolder folder;
+  const fs::path file = small_store(folder, "s");
+  write_acceptances(file, {kFaster});
+  static_cast<void>(merge_stores(file, folder.path() / "merged"));
+  static_cast<void>(import_store(export_store(file), "text", folder.path() / "imported"));
+  for (const char* name : {"merged", "imported"}) {
+    const std::vector<Acceptance> kept = Store(folder.path() / name).acceptances();
+    ASSERT_EQ(kept.size(), 1u) << name;
+    EXPECT_EQ(kept.front().reason, kFaster.reason);
+    EXPECT_EQ(kept.front().accepted, kFaster.accepted);
+  }
+}
+
+/// A store as the first schema had it.
+fs::path first_schema_store(const TemporaryFolder& folder) {
+  fs::path file = small_store(folder, "old");
+  Database(file, DatabaseAccess::kWrite).execute("DROP TABLE acceptance; PRAGMA user_version = 1");
+  return file;
+}
+
+TEST(Acceptances, AStoreOfTheFirstSchemaIsReadAsItIs) {
+  const TemporaryFolder folder;
+  const fs::path file = first_schema_store(folder);
+  const Store store(file);
+  EXPECT_EQ(store.runs().size(), 1u);
+  EXPECT_TRUE(store.acceptances().empty());
+  EXPECT_EQ(Database(file, DatabaseAccess::kRead).integer("PRAGMA user_version"), 1);
+}
+
+TEST(Acceptances, TheFirstOneBringsAnOlderStoreUpToDateAndKeepsItsRuns) {
+  const TemporaryFolder folder;
+  const fs::path file = first_schema_store(folder);
+  write_acceptances(file, {kFaster});
+  EXPECT_EQ(Database(file, DatabaseAccess::kRead).integer("PRAGMA user_version"), schema_version());
+  const Store store(file);
+  ASSERT_EQ(store.runs().size(), 1u);
+  EXPECT_EQ(metric_value(store.runs().front(), "ate_rmse_m"), 0.5);
+  EXPECT_EQ(store.acceptances().size(), 1u);
+}
+
+}  // namespace
+}  // namespace stillpoint
