@@ -10,6 +10,7 @@ namespace stillpoint {
 struct BuildInfo {
   std::string version;      ///< of the project
   std::string git_commit;   ///< of the sources; "unknown" outside a repository
+  std::string git_time;     ///< when it was committed, UTC, ISO 8601; empty outside a repository
   bool git_dirty = false;   ///< the sources differed from the commit
   std::string git_changes;  ///< hash of these differences; empty without any
   std::string build_type;

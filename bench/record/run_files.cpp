@@ -133,10 +133,11 @@ std::string manifest_json(const RunManifest& manifest) {
   json["weights"] = weights_json(manifest.config.detector);
   json["threads"] = {
       {"odometry", 1}, {"detection_pool", manifest.config.frontend.grid.threads}, {"decoding", 1}};
-  json["build"] = {{"version", manifest.build.version},     {"git_commit", manifest.build.git_commit},
-                   {"git_dirty", manifest.build.git_dirty}, {"git_changes", manifest.build.git_changes},
-                   {"type", manifest.build.build_type},     {"compiler", manifest.build.compiler},
-                   {"flags", manifest.build.flags},         {"packages", manifest.build.packages}};
+  json["build"] = {{"version", manifest.build.version},         {"git_commit", manifest.build.git_commit},
+                   {"git_time", manifest.build.git_time},       {"git_dirty", manifest.build.git_dirty},
+                   {"git_changes", manifest.build.git_changes}, {"type", manifest.build.build_type},
+                   {"compiler", manifest.build.compiler},       {"flags", manifest.build.flags},
+                   {"packages", manifest.build.packages}};
   json["host"] = host_json(manifest.host);
   return json.dump(kIndent) + "\n";
 }

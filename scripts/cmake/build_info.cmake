@@ -2,6 +2,7 @@
 # Writes OUTPUT from TEMPLATE with the git state of ROOT; the file changes only when its content does.
 # Run at every build by: cmake -DROOT=... -DTEMPLATE=... -DOUTPUT=... -P build_info.cmake
 set(GIT_COMMIT "unknown")
+set(GIT_TIME "")
 set(GIT_DIRTY "false")
 set(GIT_CHANGES "")
 find_program(GIT_PROGRAM git)
@@ -10,6 +11,9 @@ if(GIT_PROGRAM)
                   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
   if(NOT failed)
     set(GIT_COMMIT ${commit})
+    execute_process(COMMAND ${CMAKE_COMMAND} -E env TZ=UTC ${GIT_PROGRAM} -C ${ROOT} show --no-patch
+                            --format=%cd --date=format-local:%Y-%m-%dT%H:%M:%SZ HEAD
+                    OUTPUT_VARIABLE GIT_TIME OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     execute_process(COMMAND ${GIT_PROGRAM} -C ${ROOT} status --porcelain
                     OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     if(changes)
