@@ -23,20 +23,24 @@ std::optional<Pose> true_T_w_c(const GroundTruth& truth, Timestamp t) {
 
 }  // namespace
 
+bool SlidTracks::is_off(const Eigen::Vector3d& p_w, const Sighting& sighting) const {
+  const Eigen::Vector3d p_c = sighting.T_w_c.inverse() * p_w;
+  return p_c.z() > 0.0 && (info_.rig.camera.project(p_c) - sighting.pixel).norm() > kSlid_px;
+}
+
 void SlidTracks::add(const TrackedFrame& frame) {
-  const std::optional<Pose> T_w_c = true_T_w_c(info_.ground_truth, frame.t);
   std::map<std::int64_t, Track> present;
+  const std::optional<Pose> T_w_c = true_T_w_c(info_.ground_truth, frame.t);
   for (const TrackedFeature& feature : frame.features) {
+    if (!T_w_c) break;
+    const Sighting now{.T_w_c = *T_w_c, .pixel = feature.pixel};
     const auto known = tracks_.find(feature.id);
-    if (known != tracks_.end()) {
-      Track track = known->second;
-      const Eigen::Vector3d p_c = T_w_c ? T_w_c->inverse() * track.p_w : Eigen::Vector3d::Zero();
-      track.slid = p_c.z() > 0.0 && (info_.rig.camera.project(p_c) - feature.pixel).norm() > kSlid_px;
-      present.emplace(feature.id, track);
-    } else if (T_w_c && feature.depth > 0.0) {
-      present.emplace(feature.id,
-                      Track{.p_w = *T_w_c * Eigen::Vector3d(feature.depth * feature.bearing.homogeneous())});
+    Track track = known != tracks_.end() ? known->second : Track{.birth = now};
+    if (!track.p_w && feature.depth > 0.0) {
+      track.p_w = *T_w_c * Eigen::Vector3d(feature.depth * feature.bearing.homogeneous());
     }
+    track.slid = track.p_w && (is_off(*track.p_w, now) || is_off(*track.p_w, track.birth));
+    present.emplace(feature.id, track);
   }
   tracks_ = std::move(present);
 }

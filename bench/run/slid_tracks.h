@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "core/types/rig.h"
 #include "core/types/tracked_frame.h"
@@ -21,15 +22,23 @@ class SlidTracks {
   /// Takes up a picture, and forgets the tracks that it no longer has.
   void add(const TrackedFrame& frame);
 
-  /// Whether the track is more than a few pixels away from where its first measured point should be now.
+  /// Whether the point where the track's depth was first measured is more than a few pixels away from it
+  /// now, or was so when the track was born.
   /// False for tracks without any measured depth, and without ground truth.
   [[nodiscard]] bool contains(std::int64_t id) const;
 
  private:
+  struct Sighting {
+    Pose T_w_c;
+    Eigen::Vector2d pixel;
+  };
   struct Track {
-    Eigen::Vector3d p_w = Eigen::Vector3d::Zero();  ///< where it was when its depth was first measured
+    Sighting birth;
+    std::optional<Eigen::Vector3d> p_w;  ///< where it was when its depth was first measured
     bool slid = false;
   };
+  [[nodiscard]] bool is_off(const Eigen::Vector3d& p_w, const Sighting& sighting) const;
+
   const SequenceInfo& info_;
   std::map<std::int64_t, Track> tracks_;
 };

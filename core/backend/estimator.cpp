@@ -223,6 +223,7 @@ void Estimator::mark_dynamic(std::span<const FeatureVerdict> verdicts) {
     while (landmark != window_.landmarks.end() && landmark->id < verdict.id) ++landmark;
     if (landmark == window_.landmarks.end()) return;
     if (landmark->id != verdict.id) continue;
+    if (verdict.reason == VerdictReason::kRested) forget_past(*landmark);
     const bool cleared = landmark->dynamic && verdict.verdict == Verdict::kStable;
     landmark->dynamic = verdict.verdict != Verdict::kStable;
     if (!cleared) continue;

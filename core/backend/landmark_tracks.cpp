@@ -114,4 +114,11 @@ std::optional<Preintegration> merged(const std::optional<Preintegration>& earlie
   return both;
 }
 
+void forget_past(Landmark& landmark) {
+  landmark.host = landmark.last();
+  landmark.observations.erase(landmark.observations.begin(), std::prev(landmark.observations.end()));
+  landmark.inverse_depth = 0.0;
+  landmark.source = DepthSource::kNone;
+}
+
 }  // namespace stillpoint

@@ -23,6 +23,9 @@ void remove_oldest_frame(Window& window);
 /// Drops the frame before the newest; its inertial samples go to the newest.
 void remove_second_newest_frame(Window& window);
 
+/// Begins the landmark anew with its newest observation: what was seen before was another point.
+void forget_past(Landmark& landmark);
+
 /// Inertial samples of `later` appended to `earlier`; absent if either is.
 [[nodiscard]] std::optional<Preintegration> merged(const std::optional<Preintegration>& earlier,
                                                    const std::optional<Preintegration>& later);

@@ -46,6 +46,9 @@ struct DynamicConfig {
   int quiet_pictures = 0;  ///< recycles also after so many in a row; 0 = only by the window, whose pictures
                            ///< may lie far apart; own addition
   double quiet_px = 1;     ///< mean residual up to which a picture counts as quiet
+  int rest_pictures = 0;   ///< a feature that stayed at one place for so many pictures is still from then on,
+                           ///< and its older observations are dropped; 0 = never; own addition
+  double rest_px = 1;      ///< that count as staying, px of the camera's focal length
   bool gate_before_solve = false;  ///< check the newest picture at its predicted pose first; the paper
                                    ///< names that pose, the published code only uses optimised ones
   double gate_threshold_px = 10;   ///< mean residual of a mover there, px of the camera's focal length
@@ -70,6 +73,8 @@ void visit_fields(Visitor&& field, Config& config) {
   field("mcc_min_observations", config.mcc_min_observations, 2, 40);
   field("quiet_pictures", config.quiet_pictures, 0, 1000);
   field("quiet_px", config.quiet_px, 0.01, 1000.0);
+  field("rest_pictures", config.rest_pictures, 0, 1000);
+  field("rest_px", config.rest_px, 0.01, 1000.0);
   field("gate_before_solve", config.gate_before_solve);
   field("gate_threshold_px", config.gate_threshold_px, 0.1, 1000.0);
   field("min_stable_features", config.min_stable_features, 0, 1000);

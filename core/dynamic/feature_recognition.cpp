@@ -79,7 +79,8 @@ std::vector<FeatureVerdict> FeatureRecognition::gate(std::span<const Consistency
   return apply_floor(verdicts(), config_.min_stable_features);
 }
 
-std::vector<FeatureVerdict> FeatureRecognition::check(std::span<const ConsistencyResidual> residuals) {
+std::vector<FeatureVerdict> FeatureRecognition::check(std::span<const ConsistencyResidual> residuals,
+                                                      std::span<const std::int64_t> resting) {
   for (Feature& feature : features_) ++feature.quiet;
   for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
     feature.verdict.residual_px = residual.mean_px;
@@ -95,13 +96,16 @@ std::vector<FeatureVerdict> FeatureRecognition::check(std::span<const Consistenc
       if (feature.quiet >= config_.quiet_pictures) recycle(feature);
     }
   }
+  for (Feature& feature : features_) {
+    if (std::ranges::binary_search(resting, feature.verdict.id)) recycle(feature, VerdictReason::kRested);
+  }
   return apply_floor(verdicts(), config_.min_stable_features);
 }
 
-void FeatureRecognition::recycle(Feature& feature) {
+void FeatureRecognition::recycle(Feature& feature, VerdictReason reason) {
   if (!is_dynamic(feature.verdict) || feature.inside_mask) return;
   feature.verdict.verdict = Verdict::kStable;
-  feature.verdict.reason = VerdictReason::kRecycled;
+  feature.verdict.reason = reason;
 }
 
 std::vector<FeatureVerdict> FeatureRecognition::verdicts() const {

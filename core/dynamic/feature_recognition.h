@@ -36,7 +36,9 @@ class FeatureRecognition {
   /// Flags features whose residual is over the threshold, and recycles flagged ones whose residual is not,
   /// seen often enough in the window, or that were quiet for long enough. A feature without a residual is
   /// quiet: nothing is known of its depth, and so the estimate does not use it.
-  [[nodiscard]] std::vector<FeatureVerdict> check(std::span<const ConsistencyResidual> residuals);
+  /// @param resting ids of features that stand still by now, whatever their older observations say; rising
+  [[nodiscard]] std::vector<FeatureVerdict> check(std::span<const ConsistencyResidual> residuals,
+                                                  std::span<const std::int64_t> resting = {});
 
   /// Forgets every feature.
   void reset() { features_.clear(); }
@@ -50,7 +52,7 @@ class FeatureRecognition {
 
   [[nodiscard]] bool is_inside(const TrackedFeature& feature, const DepthView& depth,
                                const SemanticMask& mask) const;
-  static void recycle(Feature& feature);
+  static void recycle(Feature& feature, VerdictReason reason = VerdictReason::kRecycled);
   [[nodiscard]] std::vector<FeatureVerdict> verdicts() const;
 
   DynamicConfig config_;

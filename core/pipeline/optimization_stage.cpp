@@ -32,7 +32,8 @@ OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& ri
       camera_(rig.camera),
       estimator_(config.backend, config.imu, rig, config.seed),
       objects_(config.dynamic),
-      recognition_(config.dynamic) {}
+      recognition_(config.dynamic),
+      resting_(config.dynamic.rest_pictures, config.dynamic.rest_px) {}
 
 OdometryUpdate OptimizationStage::process(const TrackedFrame& frame, const DetectionSet& detections) {
   OdometryUpdate update;
@@ -88,7 +89,10 @@ void OptimizationStage::look_for_motion_before(ModuleTimings& timings) {
 void OptimizationStage::look_for_motion_after(ModuleTimings& timings) {
   if (!config_.moving_consistency) return;
   const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
-  take(recognition_.check(consistency_residuals(view())));
+  const ConsistencyView seen = view();
+  std::vector<std::int64_t> resting;
+  if (config_.rest_pictures > 0) resting = resting_.update(seen);
+  take(recognition_.check(consistency_residuals(seen), resting));
 }
 
 ConsistencyView OptimizationStage::view() const {
@@ -104,6 +108,7 @@ void OptimizationStage::take(std::vector<FeatureVerdict> verdicts) {
 void OptimizationStage::forget() {
   objects_.reset();
   recognition_.reset();
+  resting_.reset();
 }
 
 }  // namespace stillpoint

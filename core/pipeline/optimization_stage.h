@@ -8,6 +8,7 @@
 #include "core/backend/estimator.h"
 #include "core/dynamic/feature_recognition.h"
 #include "core/dynamic/missed_detection.h"
+#include "core/dynamic/resting_features.h"
 #include "core/pipeline/odometry_config.h"
 
 namespace stillpoint {
@@ -53,6 +54,7 @@ class OptimizationStage {
   Estimator estimator_;
   MissedDetectionCompensation objects_;
   FeatureRecognition recognition_;
+  RestingFeatures resting_;
   DynamicReport dynamic_;
 };
 

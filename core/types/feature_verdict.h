@@ -22,6 +22,7 @@ enum class VerdictReason : std::uint8_t {
   kResidual,            ///< Eq. (6) over the threshold, with optimised poses
   kPredictionResidual,  ///< over the threshold with the predicted pose of the newest picture
   kRecycled,            ///< was flagged, and enough observations agree that it stands still
+  kRested,              ///< was flagged, and stands still since; older observations are of something else
   kFloor,               ///< suspect, but too few others were left
 };
 
@@ -32,7 +33,7 @@ enum class VerdictReason : std::uint8_t {
 }
 [[nodiscard]] constexpr std::string_view reason_name(VerdictReason reason) {
   constexpr std::string_view kNames[] = {"nothing_suspect",     "inside_mask", "history", "residual",
-                                         "prediction_residual", "recycled",    "floor"};
+                                         "prediction_residual", "recycled",    "rested",  "floor"};
   return kNames[static_cast<std::size_t>(reason)];
 }
 

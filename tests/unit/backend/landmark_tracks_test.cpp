@@ -39,6 +39,17 @@ TEST(LandmarkTracks, MoveToTheNewestFrameWhenTheirHostGoes) {
   EXPECT_NEAR(1.0 / window.landmarks[0].inverse_depth, depth_in_newest, 1e-9);
 }
 
+TEST(LandmarkTracks, BeginAnewWhenTheirPastIsForgotten) {
+  Window window = visual_window(5, 1);
+  Landmark& landmark = window.landmarks[0];
+  const Eigen::Vector2d newest = landmark.observations.back().bearing;
+  forget_past(landmark);
+  EXPECT_EQ(landmark.host, 4);
+  ASSERT_EQ(landmark.observations.size(), 1u);
+  EXPECT_EQ(landmark.observations[0].bearing, newest);
+  EXPECT_EQ(landmark.inverse_depth, 0.0);
+}
+
 TEST(LandmarkTracks, JoinByIdAndStartWhereTheTrackerFoundThem) {
   Window window = visual_window(3, 2);
   window.frames.push_back(window.frames.back());

@@ -224,5 +224,17 @@ TEST(FeatureRecognition, CountsAFeatureWithoutResidualAsQuietOutsideTheMaskOnly)
   EXPECT_EQ(recognition.check({}).at(0).verdict, Verdict::kStable);
 }
 
+TEST(FeatureRecognition, ClearsWhatRestsWhateverItsOlderObservationsSayOutsideTheMaskOnly) {
+  FeatureRecognition recognition(config());
+  const std::vector<std::int64_t> resting = {1};
+  const std::vector slid = {ConsistencyResidual{.id = 1, .mean_px = 25.0, .compared = 6}};
+  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  expect_verdict(recognition.check(slid, resting).at(0), Verdict::kDynamicObject, VerdictReason::kInsideMask);
+  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), {}));
+  expect_verdict(recognition.check(slid, {}).at(0), Verdict::kDynamicObject, VerdictReason::kHistory);
+  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), {}));
+  expect_verdict(recognition.check(slid, resting).at(0), Verdict::kStable, VerdictReason::kRested);
+}
+
 }  // namespace
 }  // namespace stillpoint
