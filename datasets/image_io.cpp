@@ -168,11 +168,11 @@ void write_png(const std::filesystem::path& file, const cv::Mat& picture) {
   write_whole(file, encode(file, "png", spec, picture));
 }
 
-void write_jpeg(const std::filesystem::path& file, const cv::Mat& picture) {
+void write_jpeg(const std::filesystem::path& file, const cv::Mat& picture, int quality) {
   keep_to_one_thread();
   STILLPOINT_CHECK(picture.depth() == CV_8U);
   OIIO::ImageSpec spec = spec_of(picture);
-  spec.attribute("compression", "jpeg:90");
+  spec.attribute("compression", "jpeg:" + std::to_string(quality));
   write_whole(file, encode(file, "jpg", spec, picture));
 }
 

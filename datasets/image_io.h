@@ -29,9 +29,10 @@ namespace stillpoint {
 /// @throws InputError if the file cannot be written completely; nothing half-written is left behind
 void write_png(const std::filesystem::path& file, const cv::Mat& picture);
 
-/// Writes a JPEG of quality 90: small, and not what was there before to the bit.
+/// Writes a JPEG: small, and not what was there before to the bit.
 /// @param picture CV_8UC1 or CV_8UC3 (R, G, B), not empty
+/// @param quality 1 to 100
 /// @throws InputError as `write_png`
-void write_jpeg(const std::filesystem::path& file, const cv::Mat& picture);
+void write_jpeg(const std::filesystem::path& file, const cv::Mat& picture, int quality = 90);
 
 }  // namespace stillpoint

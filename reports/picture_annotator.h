@@ -30,6 +30,9 @@ class PictureAnnotator {
   /// @return CV_8UC3 in the order R, G, B, of the size of the picture
   [[nodiscard]] cv::Mat annotate(const PictureReport& report);
 
+  /// Takes a picture's features into their tracks and draws nothing.
+  void follow(const PictureReport& report) { tracks_ = continued(report); }
+
  private:
   struct Track {
     std::vector<cv::Point2d> pixels;  ///< oldest first

@@ -34,7 +34,7 @@ libraries=(
   '<hwy/              ^core/frontend/patch_kernel.cpp'
   '<ceres/            ^core/(backend|loop)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/(backend|loop)/'
-  '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/(picture_annotator\.|raster_drawing\.cpp$|video_file\.)'
+  '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/(picture_annotator\.|(raster_drawing|worst_pictures)\.cpp$|video_file\.)'
   '<opencv2/calib3d[./]  ^core/(frontend|dynamic|detector|loop)/|^core/backend/relative_pose\.cpp$'
   '<opencv2/videoio[./]  ^reports/video_file\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'

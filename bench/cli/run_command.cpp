@@ -20,6 +20,7 @@
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "reports/run_video.h"
+#include "reports/worst_pictures.h"
 
 namespace stillpoint {
 namespace {
@@ -41,6 +42,7 @@ struct RunArguments {
   double speed = 1.0;
   std::vector<std::string> dumps;
   std::string video;
+  int pictures = 0;
 };
 
 /// One run of possibly several.
@@ -61,7 +63,8 @@ std::vector<PlannedRun> plan_runs(const RunArguments& arguments) {
                     .spec = {.config = load_config({arguments.base, variant, arguments.settings}),
                              .mode = arguments.mode,
                              .speed = arguments.speed,
-                             .max_frames = static_cast<std::size_t>(arguments.max_frames)},
+                             .max_frames = static_cast<std::size_t>(arguments.max_frames),
+                             .keep_spans = true},
                     .folder = {},
                     .video = arguments.video});
   }
@@ -89,13 +92,20 @@ void log_update(const OdometryUpdate& update) {
     spdlog::warn("frame {}: tracking failed, the estimator begins anew", update.frame_id);
 }
 
-/// The video that was asked for, with the circles that the tracker of this run keeps.
+/// The video that was asked for.
 std::optional<RunVideo> start_video(const SequenceInfo& info, const PlannedRun& planned) {
   if (planned.video.empty()) return std::nullopt;
-  const FrontendConfig& frontend = planned.spec.config.frontend;
-  const AnnotationStyle style{.stable_radius_px = frontend.circular_mask ? frontend.min_distance_px : 0,
-                              .unstable_radius_px = frontend.circular_mask ? frontend.unstable_radius_px : 0};
-  return std::optional<RunVideo>(std::in_place, planned.video, style, mean_rate_hz(info.frame_times));
+  return std::optional<RunVideo>(std::in_place, planned.video, annotation_style(planned.spec.config.frontend),
+                                 mean_rate_hz(info.frame_times));
+}
+
+/// The pictures of the worst frames, if they were asked for.
+std::optional<WorstPictures> start_pictures(const SequenceInfo& info, const RunArguments& arguments,
+                                            const PlannedRun& planned) {
+  if (arguments.pictures == 0) return std::nullopt;
+  return std::optional<WorstPictures>(std::in_place, planned.folder / "pictures",
+                                      static_cast<std::size_t>(arguments.pictures),
+                                      annotation_style(planned.spec.config.frontend), info);
 }
 
 /// What a run leaves behind.
@@ -118,10 +128,12 @@ Executed execute(const SensorStream& stream, const RunArguments& arguments, cons
   RunControl control{.on_update = on_update, .on_picture = {}, .stop_requested = interrupt_requested};
   const bool dumps = !arguments.dumps.empty();
   std::optional<RunVideo> video = start_video(stream.info(), planned);
-  if (dumps || video) {
+  std::optional<WorstPictures> pictures = start_pictures(stream.info(), arguments, planned);
+  if (dumps || video || pictures) {
     control.on_picture = [&](const PictureReport& report) {
       if (dumps) verdicts.add(report);
       if (video) video->add(report);
+      if (pictures) pictures->add(report);
     };
   }
   Executed run{.result = score_run(stream.info(), run_odometry(stream, planned.spec, control)), .dumps = {}};
@@ -186,6 +198,7 @@ std::unique_ptr<SensorStream> open(const RunArguments& arguments) {
 
 int run(const RunArguments& arguments) {
   if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
+  if (arguments.pictures < 0) throw InputError("--pictures", "must not be negative; 0 means none");
   for (const std::string& dump : arguments.dumps) {
     if (dump != "verdicts") throw InputError("--dump", "\"" + dump + "\" is not known; use \"verdicts\"");
   }
@@ -228,6 +241,9 @@ Command run_command() {
            {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
            {"--dump", "Also write verdicts.csv, every verdict on every feature: verdicts", &arguments->dumps},
            {"--video", "Also write annotated pictures and video.mp4 into this folder", &arguments->video},
+           {"--pictures",
+            "Also write annotated pictures of this many frames at which the error grew most [0]",
+            &arguments->pictures},
            {"--heartbeat", "File that holds the number of the last finished frame", &arguments->heartbeat},
            {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
       .action = [arguments] { return run(*arguments); },

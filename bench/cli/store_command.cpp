@@ -72,7 +72,9 @@ int show(const StoreArguments& arguments) {
 /// Names of attachments as files; a kind without one is text.
 std::string file_name(const std::string& kind) {
   if (kind == "trajectory") return "trajectory.tum";
-  if (kind == "timings" || kind == "frames") return kind + ".csv";
+  if (kind == "timings" || kind == "frames" || kind == "counters") return kind + ".csv";
+  if (kind == "stacks") return "stacks.folded";
+  if (kind.starts_with(kPictureKind)) return "picture_" + kind.substr(kPictureKind.size()) + ".jpg";
   return kind + (kind == "result" ? ".json" : ".txt");
 }
 

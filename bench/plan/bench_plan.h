@@ -75,6 +75,8 @@ struct BenchPlan {
   double time_limit_s = 3600.0;      ///< of one run
   int memory_limit_mb = 0;           ///< of one run; 0 = none
   std::vector<std::string> recipes;  ///< evaluated besides the usual scores, e.g. "strict:se3"
+  int pictures =
+      20;  ///< of the worst frames of each accuracy run, for the page; see `stillpoint run --pictures`
   RenderedGroup rendered;
   RecordedGroup recorded;
   TableLayout table;
@@ -102,6 +104,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("time_limit_s", config.time_limit_s, 0.1, 1e6);
   field("memory_limit_mb", config.memory_limit_mb, 0, 1000000000);
   field("recipes", config.recipes);
+  field("pictures", config.pictures, 0, 1000);
   field("rendered", config.rendered);
   field("recorded", config.recorded);
   field("table", config.table);

@@ -122,7 +122,12 @@ class PlanRunner {
   }
 
   [[nodiscard]] RunRequest request_of(std::size_t run, const fs::path& folder) const {
-    return {.run = matrix_.runs[run], .sequence = folder, .work = journal_.work_folder(identity_of(run))};
+    // Drawing takes time that a timing run would count as its own.
+    const bool is_timed = matrix_.plan.kind == RunKind::kTiming || identity_of(run).mode == "realtime";
+    return {.run = matrix_.runs[run],
+            .sequence = folder,
+            .work = journal_.work_folder(identity_of(run)),
+            .pictures = is_timed ? 0 : matrix_.plan.pictures};
   }
 
   [[nodiscard]] ProcessSpec spec_of(std::size_t run, const fs::path& folder) const {

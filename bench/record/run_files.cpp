@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_text.h"
+#include "bench/profile/timeline.h"
 #include "bench/record/content_hash.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/score_text.h"
@@ -181,6 +182,7 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   files.push_back({"timings.csv", timings_csv(result.run)});
   files.push_back({"frames.csv", frames_csv(result.run)});
   files.push_back({"counters.csv", counter_text(result.run.frame_counters)});
+  files.push_back({"stacks.folded", folded_stacks(result.run.spans)});
   files.push_back({"manifest.json", manifest_json(manifest)});
   write_files(folder, files);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The files of a run: trajectory.tum, result.json, timings.csv, frames.csv, counters.csv, manifest.json.
+/// The files of a run: trajectory.tum, result.json, timings.csv, frames.csv, counters.csv, stacks.folded,
+/// manifest.json.
 #pragma once
 
 #include <filesystem>

@@ -87,6 +87,9 @@ struct FrameCounters {
   bool reset = false;
 };
 
+/// Beginning of the kinds of attachments that are annotated pictures; the number of the frame follows.
+inline constexpr std::string_view kPictureKind = "picture:";
+
 /// What came of a run, as it is put into a store.
 struct RunOutcome {
   Outcome outcome = Outcome::kOk;
@@ -95,7 +98,8 @@ struct RunOutcome {
   std::vector<ModuleCost> costs;
   /// Content by kind: "trajectory" (TUM text), "truth" (likewise, of the same frame of the robot), "timings"
   /// (CSV of `TimingSample`), "counters" (CSV of `FrameCounters`), "frames" (CSV: hash of each module's state
-  /// after each frame), "result" (JSON), "log".
+  /// after each frame), "stacks" (folded stacks), "picture:000042" (JPEG of frame 42, annotated), "result"
+  /// (JSON), "log".
   std::map<std::string, std::string> attachments;
   std::string manifest;  ///< JSON; empty when the run did not come to write one
 };

@@ -25,11 +25,9 @@ struct KeptFile {
   const char* file;
   const char* kind;
 };
-constexpr KeptFile kKeptFiles[] = {{"trajectory.tum", "trajectory"},
-                                   {"timings.csv", "timings"},
-                                   {"frames.csv", "frames"},
-                                   {"counters.csv", "counters"},
-                                   {"result.json", "result"}};
+constexpr KeptFile kKeptFiles[] = {{"trajectory.tum", "trajectory"}, {"timings.csv", "timings"},
+                                   {"frames.csv", "frames"},         {"counters.csv", "counters"},
+                                   {"stacks.folded", "stacks"},      {"result.json", "result"}};
 
 std::string message_of(const ProcessEnd& end) {
   const std::string line = last_line(end.messages);
@@ -46,6 +44,14 @@ RunOutcome without_result(const ProcessEnd& end) {
                        ? message_of(end)
                        : "ended with " + std::to_string(end.exit_code) + ": " + message_of(end);
   return outcome;
+}
+
+/// 000042.jpg becomes "picture:000042".
+void append_pictures(RunOutcome& outcome, const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    outcome.attachments[std::string(kPictureKind) + entry.path().stem().string()] =
+        read_text_file(entry.path());
 }
 
 /// Runs at other times share their manifest.
@@ -70,6 +76,8 @@ ProcessSpec OwnOdometry::command(const RunRequest& request) const {
   for (const std::string& setting : config.settings) {
     spec.arguments.insert(spec.arguments.end(), {"--set", setting});
   }
+  if (request.pictures > 0)
+    spec.arguments.insert(spec.arguments.end(), {"--pictures", std::to_string(request.pictures)});
   return spec;
 }
 
@@ -91,6 +99,7 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessEnd& end
     if (fs::exists(request.work / kept.file))
       outcome.attachments[kept.kind] = read_text_file(request.work / kept.file);
   }
+  append_pictures(outcome, request.work / "pictures");
   return outcome;
 }
 

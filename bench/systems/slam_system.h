@@ -15,6 +15,7 @@ struct RunRequest {
   const PlannedRun& run;
   std::filesystem::path sequence;  ///< folder
   std::filesystem::path work;      ///< folder of its own for what the run writes
+  int pictures = 0;                ///< of its worst frames that are wanted
 };
 
 /// How a system is started, and how its outcome is read.

@@ -46,8 +46,9 @@ TEST(RunCommand, WritesTrajectoryResultAndManifest) {
   const TemporaryFolder out;
   const ProgramResult result = run_program(run_of(rendered_sequence(), out.path()));
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(names_in(out.path()), (std::vector<std::string>{"counters.csv", "frames.csv", "manifest.json",
-                                                            "result.json", "timings.csv", "trajectory.tum"}));
+  EXPECT_EQ(names_in(out.path()),
+            (std::vector<std::string>{"counters.csv", "frames.csv", "manifest.json", "result.json",
+                                      "stacks.folded", "timings.csv", "trajectory.tum"}));
   const nlohmann::json scores = json_of(out.path() / "result.json");
   EXPECT_EQ(scores["status"], "ok");
   EXPECT_EQ(scores["frames"], kFrames);
