@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Makes reports/web/vendor/d3-flamegraph.iife.min.js and its licences anew from npm. Only for who changes a version
+# in reports/web/vendor/package.json: the bundle is checked in, and nobody else needs npm.
+#   scripts/bundle_web.sh
+set -euo pipefail
+vendor="$(cd "$(dirname "${BASH_SOURCE[0]}")/../reports/web/vendor" && pwd)"
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+
+cp "$vendor"/package.json "$vendor"/package-lock.json "$vendor"/flame_bundle.js "$work"
+npm ci --prefix "$work" --no-audit --no-fund
+"$work/node_modules/.bin/esbuild" "$work/flame_bundle.js" --bundle --minify --format=iife --global-name=d3flame \
+  --legal-comments=none --loader:.css=empty --outfile="$vendor/d3-flamegraph.iife.min.js"
+cp "$work/node_modules/d3-flame-graph/LICENSE" "$vendor/LICENSE.d3-flame-graph"
+# The modules of D3 share one text, but for d3-ease and internmap.
+{
+  for module in d3-array internmap d3-ease; do
+    [[ "$module" == d3-array ]] && echo "d3-array, d3-color, d3-dispatch, d3-format, d3-hierarchy, d3-interpolate, d3-scale," \
+      "d3-selection, d3-time, d3-time-format, d3-timer, d3-transition:" || echo "$module:"
+    echo
+    cat "$work/node_modules/$module/LICENSE"
+    echo
+  done
+} >"$vendor/LICENSE.d3"
