@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "eval/io/openloris_file.h"
-#include "eval/metrics/strict_rpe.h"
 #include "eval/openloris/robot_frames.h"
 #include "eval/trajectory/frames.h"
 
@@ -17,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 5> kScenes{"home", "cafe", "corridor", "office", "market"};
-constexpr double kRpeDelta = 1.0;  // [s]
 
 std::vector<fs::path> sorted_entries(const fs::path& folder) {
   std::error_code error;
@@ -33,21 +31,6 @@ CorrectRateOptions lifelong(const std::string& scene, CorrectRateOptions limits)
   limits.max_translation_m = scene == "office" ? 1.0 : scene == "home" || scene == "cafe" ? 3.0 : 5.0;
   limits.max_rotation_deg = 30.0;
   return limits;
-}
-
-OpenlorisRun score_run(const Trajectory& gt, const Trajectory& est, const Similarity& S_w_v,
-                       const OpenlorisOptions& options) {
-  OpenlorisRun run;
-  run.score = score_openloris_sequence(gt, est, S_w_v, options);
-  Trajectory aligned = est;
-  for (StampedPose& pose : aligned.poses) pose.T_w_f = S_w_v * pose.T_w_f;
-  const StrictRpeResult rpe = strict_rpe(strict_matches(gt, aligned), kRpeDelta);
-  if (rpe.errors) {
-    run.rpe_m = rpe.errors->translation_m;
-    run.rpe_deg = rpe.errors->rotation_deg;
-  }
-  run.rpe_dropped = rpe.dropped;
-  return run;
 }
 
 /// Scores file after file.
@@ -85,7 +68,7 @@ class Evaluator {
       if (path == gt.end()) {
         throw InputError(file.string(), "sequence " + std::to_string(number) + " is not in the ground truth");
       }
-      if (!runs.emplace(number, score_run(path->second, est, S_w_v, metric)).second) {
+      if (!runs.emplace(number, score_openloris_run(path->second, est, S_w_v, metric)).second) {
         throw InputError(file.string(), "a second result for sequence " + std::to_string(number) + " of " +
                                             result.scene + "; keep one file for each");
       }

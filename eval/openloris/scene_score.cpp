@@ -3,8 +3,12 @@
 
 #include <cmath>
 
+#include "eval/metrics/strict_rpe.h"
+
 namespace stillpoint {
 namespace {
+
+constexpr double kRpeDelta = 1.0;  // [s]
 
 /// A sum of weighted values that has no mean until something was added.
 class WeightedMean {
@@ -46,6 +50,21 @@ PooledRpe pool_rpe(const std::map<int, OpenlorisRun>& runs) {
 }
 
 }  // namespace
+
+OpenlorisRun score_openloris_run(const Trajectory& gt, const Trajectory& est, const Similarity& S_w_v,
+                                 const OpenlorisOptions& options) {
+  OpenlorisRun run;
+  run.score = score_openloris_sequence(gt, est, S_w_v, options);
+  Trajectory aligned = est;
+  for (StampedPose& pose : aligned.poses) pose.T_w_f = S_w_v * pose.T_w_f;
+  const StrictRpeResult rpe = strict_rpe(strict_matches(gt, aligned), kRpeDelta);
+  if (rpe.errors) {
+    run.rpe_m = rpe.errors->translation_m;
+    run.rpe_deg = rpe.errors->rotation_deg;
+  }
+  run.rpe_dropped = rpe.dropped;
+  return run;
+}
 
 OpenlorisSceneScore score_openloris_scene(const std::map<int, OpenlorisRun>& runs,
                                           const std::map<int, double>& gt_durations_s) {

@@ -27,6 +27,10 @@ struct OpenlorisRun {
   std::size_t rpe_dropped = 0;
 };
 
+/// Parameters as `score_openloris_sequence`.
+[[nodiscard]] OpenlorisRun score_openloris_run(const Trajectory& gt, const Trajectory& est,
+                                               const Similarity& S_w_v, const OpenlorisOptions& options = {});
+
 /// One system on one scene. Three correct rates and two errors exist in the tools; each has its own name
 /// here.
 struct OpenlorisSceneScore {

@@ -13,7 +13,8 @@ namespace stillpoint {
 namespace {
 
 constexpr double kWidth = 900.0;
-constexpr double kLabels = 330.0;  // room for the names
+constexpr double kLabels = 330.0;    // room for the names
+constexpr double kRightRoom = 40.0;  // half of the last tick's text
 constexpr double kRow = 20.0;
 constexpr double kAxis = 30.0;
 constexpr double kSmallest = 1e-3;  // where the axis may begin: a microsecond of a millisecond axis
@@ -25,14 +26,14 @@ struct LogAxis {
 
   [[nodiscard]] double operator()(double value) const {
     const double share = (std::log10(std::max(value, std::pow(10.0, low))) - low) / (high - low);
-    return kLabels + share * (kWidth - kLabels - 20.0);
+    return kLabels + share * (kWidth - kLabels - kRightRoom);
   }
 };
 
-LogAxis axis_of(std::span<const Box> boxes) {
+LogAxis axis_of(std::span<const PlotBox> boxes) {
   double low = boxes.front().p5;
   double high = boxes.front().largest;
-  for (const Box& box : boxes) {
+  for (const PlotBox& box : boxes) {
     low = std::min(low, box.p5);
     high = std::max(high, box.largest);
   }
@@ -55,7 +56,7 @@ std::string ticks_svg(const LogAxis& axis, double height, const std::string& uni
   return text;
 }
 
-std::string box_svg(const Box& box, const LogAxis& axis, double y) {
+std::string box_svg(const PlotBox& box, const LogAxis& axis, double y) {
   const double middle = y + kRow / 2.0;
   std::string text = fmt::format(
       "<g><title>{} {}: median {:.3g}, quartiles {:.3g} to {:.3g}, 95 % {:.3g}, longest "
@@ -75,27 +76,27 @@ std::string box_svg(const Box& box, const LogAxis& axis, double y) {
 
 }  // namespace
 
-std::optional<Box> box_of(std::string group, std::string label, std::span<const double> values) {
+std::optional<PlotBox> box_of(std::string group, std::string label, std::span<const double> values) {
   if (values.empty()) return std::nullopt;
   const auto at = [&](double share) { return percentile(values, share).value(); };
-  return Box{.group = std::move(group),
-             .label = std::move(label),
-             .p5 = at(0.05),
-             .q1 = at(0.25),
-             .median = at(0.5),
-             .q3 = at(0.75),
-             .p95 = at(0.95),
-             .largest = at(1.0),
-             .count = values.size()};
+  return PlotBox{.group = std::move(group),
+                 .label = std::move(label),
+                 .p5 = at(0.05),
+                 .q1 = at(0.25),
+                 .median = at(0.5),
+                 .q3 = at(0.75),
+                 .p95 = at(0.95),
+                 .largest = at(1.0),
+                 .count = values.size()};
 }
 
-std::string box_plot_svg(std::span<const Box> boxes, const std::string& title, const std::string& unit) {
+std::string box_plot_svg(std::span<const PlotBox> boxes, const std::string& title, const std::string& unit) {
   if (boxes.empty()) return "";
   const LogAxis axis = axis_of(boxes);
   std::string marks;
   std::string group;
   double y = 0.0;
-  for (const Box& box : boxes) {
+  for (const PlotBox& box : boxes) {
     if (box.group != group) {
       marks += fmt::format("<text class=\"group\" x=\"4\" y=\"{:.1f}\">{}</text>\n", y + kRow - 6.0,
                            escape_html(box.group));

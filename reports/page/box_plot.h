@@ -9,7 +9,7 @@
 
 namespace stillpoint {
 
-struct Box {
+struct PlotBox {
   std::string group;  ///< heading of neighbouring boxes, e.g. the module
   std::string label;
   double p5 = 0.0;
@@ -22,10 +22,11 @@ struct Box {
 };
 
 /// @return nothing without values
-[[nodiscard]] std::optional<Box> box_of(std::string group, std::string label, std::span<const double> values);
+[[nodiscard]] std::optional<PlotBox> box_of(std::string group, std::string label,
+                                            std::span<const double> values);
 
 /// An SVG on a logarithmic axis, coloured by the page's style sheet; empty without boxes.
-[[nodiscard]] std::string box_plot_svg(std::span<const Box> boxes, const std::string& title,
+[[nodiscard]] std::string box_plot_svg(std::span<const PlotBox> boxes, const std::string& title,
                                        const std::string& unit);
 
 }  // namespace stillpoint

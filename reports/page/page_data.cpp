@@ -7,7 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/profile/timeline.h"
+#include "reports/page/flame_stacks.h"
+#include "reports/page/page_pictures.h"
 #include "reports/page/run_series.h"
+#include "reports/page/segment_curves.h"
 #include "reports/page/series_text.h"
 #include "reports/tables/escaping.h"
 #include "reports/tables/run_cells.h"
@@ -17,7 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxTruthPoints = 2000;  // more than the eye needs
+constexpr std::size_t kMaxTruthPoints = 2000;     // more than the eye needs
+constexpr std::size_t kPictureRoom = 12'000'000;  // bytes: a page with them can still be mailed
 constexpr const char* kModulePrefix = "ms:";
 
 std::string dumped(const Json& json) {
@@ -75,6 +80,7 @@ Json series_json(const RunSeries& series) {
   return {{"start", series.start_s},
           {"frames", series.t_s.size()},
           {"t", packed_series(series.t_s)},
+          {"worst", series.worst},
           {"columns", columns}};
 }
 
@@ -90,12 +96,54 @@ void gather_times(ModuleTimes& times, const RunSeries& series, const std::string
   }
 }
 
-std::vector<Box> boxes_of(const ModuleTimes& times) {
-  std::vector<Box> boxes;
+std::vector<PlotBox> boxes_of(const ModuleTimes& times) {
+  std::vector<PlotBox> boxes;
   for (const auto& [key, values] : times) {
-    if (std::optional<Box> box = box_of(key.first, key.second, values)) boxes.push_back(std::move(*box));
+    if (std::optional<PlotBox> box = box_of(key.first, key.second, values)) boxes.push_back(std::move(*box));
   }
   return boxes;
+}
+
+/// Stacks of all runs of a variant, and over how many frames they were taken.
+struct Flame {
+  StackTimes stacks;
+  std::size_t frames = 0;
+};
+
+void gather_stacks(std::map<std::string, Flame>& flames, const Store& store, const StoredRun& run,
+                   std::size_t frames) {
+  const std::string folded = store.attachment(run, "stacks");
+  if (folded.empty()) return;
+  Flame& flame = flames[clean_line(system_label(run.identity))];
+  add_stacks(flame.stacks, folded, "stacks of run " + run.key);
+  flame.frames += frames;
+}
+
+Json flames_json(std::map<std::string, Flame> flames) {
+  Json json = Json::array();
+  for (auto& [label, flame] : flames) {
+    // Reading pictures is input, done beside and mostly waiting: it would hide everything else.
+    std::erase_if(flame.stacks,
+                  [&](const auto& stack) { return stack.first.starts_with(track_name(Track::kDecoding)); });
+    json.push_back({{"label", label}, {"frames", flame.frames}, {"stacks", flame.stacks}});
+  }
+  return json;
+}
+
+Json segments_json(const std::vector<SegmentFigure>& figures) {
+  Json json = Json::array();
+  for (const SegmentFigure& figure : figures) {
+    Json curves = Json::array();
+    for (const SegmentCurve& curve : figure.curves) {
+      Json errors = Json::array();
+      for (const std::optional<double>& error : curve.translation_percent)
+        errors.push_back(error ? Json(*error) : Json(nullptr));
+      curves.push_back({{"label", clean_line(curve.label)}, {"errors", errors}});
+    }
+    json.push_back(
+        {{"sequence", clean_line(figure.sequence)}, {"lengths", figure.lengths_m}, {"curves", curves}});
+  }
+  return json;
 }
 
 }  // namespace
@@ -104,12 +152,16 @@ PageData page_data(const Store& store, std::span<const StoredRun> runs) {
   PageData data;
   Json index = {{"runs", Json::array()}, {"truths", Json::object()}, {"manifests", Json::object()}};
   ModuleTimes times;
+  std::map<std::string, Flame> flames;
+  std::vector<RunSeries> all;
   for (const StoredRun& run : runs) {
-    const RunSeries series = run_series(store, run);
+    const RunSeries& series = all.emplace_back(run_series(store, run));
     Json& entry = index["runs"].emplace_back(run_json(run));
     entry["frames"] = series.t_s.size();
+    entry["pictures"] = series.pictures.size();
     data.series.push_back(dumped(series_json(series)));
     gather_times(times, series, system_label(run.identity));
+    gather_stacks(flames, store, run, series.t_s.size());
     if (entry["truth"].is_string() && !index["truths"].contains(entry["truth"].get<std::string>())) {
       index["truths"][entry["truth"].get<std::string>()] = truth_json(store.truth(run));
     }
@@ -117,8 +169,11 @@ PageData page_data(const Store& store, std::span<const StoredRun> runs) {
       index["manifests"][run.manifest_hash] = Json::parse(store.manifest(run), nullptr, false);
     }
   }
+  index["flames"] = flames_json(flames);
+  index["segments"] = segments_json(segment_figures(store, runs));
   data.index = dumped(index);
   data.module_boxes = boxes_of(times);
+  data.pictures = page_pictures(store, runs, all, kPictureRoom);
   return data;
 }
 

@@ -13,9 +13,10 @@
 namespace stillpoint {
 
 struct PageData {
-  std::string index;                ///< JSON: runs, truths and manifests by name
-  std::vector<std::string> series;  ///< JSON of each run, in the order of the index
-  std::vector<Box> module_boxes;    ///< time of each frame in each module [ms], by variant
+  std::string index;                  ///< JSON: runs; truths and manifests by name; flames; segments
+  std::vector<std::string> series;    ///< JSON of each run, in the order of the index
+  std::vector<std::string> pictures;  ///< likewise: annotated pictures by position of their frame
+  std::vector<PlotBox> module_boxes;  ///< time of each frame in each module [ms], by variant
 };
 
 /// @throws InputError if files of a run are missing or damaged

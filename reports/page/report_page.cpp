@@ -8,10 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/compare/comparison.h"
+#include "reports/openloris_figure.h"
 #include "reports/page/embedded_web.h"
 #include "reports/page/heat_map.h"
+#include "reports/page/openloris_runs.h"
 #include "reports/page/page_data.h"
 #include "reports/page/summary.h"
+#include "reports/svg_drawing.h"
 #include "reports/tables/escaping.h"
 #include "reports/tables/table_formats.h"
 
@@ -20,8 +23,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kScripts[] = {"unpack.js",   "charts.js",    "paths.js",
-                                    "explorer.js", "downloads.js", "page.js"};
+constexpr const char* kLibraries[] = {"vendor/uPlot.iife.min.js", "vendor/d3-flamegraph.iife.min.js"};
+constexpr const char* kLicences[] = {"vendor/LICENSE.uPlot", "vendor/LICENSE.d3-flame-graph",
+                                     "vendor/LICENSE.d3"};
+constexpr const char* kScripts[] = {"unpack.js",    "charts.js",     "curves.js",   "paths.js",
+                                    "inspector.js", "histograms.js", "explorer.js", "flames.js",
+                                    "downloads.js", "page.js"};
 constexpr const char* kHeatMetrics[] = {"ate_rmse_m", "rpe_trans_rmse_m_per_s", "rpe_rot_rmse_deg_per_s"};
 
 /// Replaces each <!--NAME--> of the template.
@@ -111,6 +118,15 @@ std::string plans_html(const Store& store, const ReportSubject& subject) {
   return text;
 }
 
+std::string openloris_html(const Store& store, const ReportSubject& subject) {
+  const OpenlorisBenchmark benchmark = openloris_of_runs(store, subject.runs);
+  if (benchmark.systems.empty()) return "";
+  std::string svg = svg_text(openloris_figure(benchmark));
+  return "<h3>Correct rates, as the OpenLORIS figure of the paper has them</h3><figure class=\"openloris\" "
+         "role=\"img\" aria-label=\"Time lines of correct poses by system and scene\">" +
+         svg.substr(svg.find("<svg")) + "</figure>";
+}
+
 std::string script(const std::string& id, const std::string& json) {
   return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, json_for_script(json));
 }
@@ -123,14 +139,23 @@ std::string data_html(const PageData& data, const std::vector<ReportTable>& tabl
   }
   std::string text = script("index", data.index);
   text += script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
-  for (std::size_t i = 0; i < data.series.size(); ++i)
+  for (std::size_t i = 0; i < data.series.size(); ++i) {
     text += script(fmt::format("series-{}", i), data.series[i]);
+    text += script(fmt::format("pictures-{}", i), data.pictures[i]);
+  }
   return text;
 }
 
 std::string scripts_html() {
-  std::string text = fmt::format("<script>{}</script>\n", web_file("vendor/uPlot.iife.min.js"));
+  std::string text;
+  for (const char* name : kLibraries) text += fmt::format("<script>{}</script>\n", web_file(name));
   for (const char* name : kScripts) text += fmt::format("<script>\n{}</script>\n", web_file(name));
+  return text;
+}
+
+std::string licences_html() {
+  std::string text;
+  for (const char* name : kLicences) text += preformatted(std::string(web_file(name))) + "\n";
   return text;
 }
 
@@ -147,9 +172,10 @@ std::string report_html(const Store& store, const ReportSubject& subject) {
        {"results", tables_html(tables, false)},
        {"heat", heat_html(subject)},
        {"published", tables_html(tables, true)},
+       {"openloris", openloris_html(store, subject)},
        {"boxes", box_plot_svg(data.module_boxes, "Time of each frame in each module", "ms")},
        {"plans", plans_html(store, subject)},
-       {"licences", preformatted(std::string(web_file("vendor/LICENSE.uPlot")))},
+       {"licences", licences_html()},
        {"data", data_html(data, tables)},
        {"scripts", scripts_html()}});
 }

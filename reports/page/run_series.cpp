@@ -3,16 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 
 #include "core/base/timestamp.h"
+#include "eval/metrics/error_growth.h"
+#include "eval/metrics/strict_rpe.h"
 #include "eval/recipes/recipe.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kWorst = 20;
 constexpr double kSameStampS = 1e-3;  // files with few decimals round stamps
 /// Scored like the tables: TUM's association and rigid alignment over all pairs.
 constexpr const char* kRecipe = "compat:tum";
@@ -88,6 +92,37 @@ void fill_counters(SeriesTable& table, const std::vector<FrameCounters>& counter
   }
 }
 
+/// Pictures of the run by the position of their frame.
+std::map<std::size_t, std::string> pictures_of(const StoredRun& run,
+                                               const std::vector<FrameCounters>& counters) {
+  std::map<std::int64_t, std::size_t> positions;
+  for (std::size_t i = 0; i < counters.size(); ++i) positions[counters[i].frame] = i;
+  std::map<std::size_t, std::string> pictures;
+  for (const auto& [kind, blob] : run.blobs) {
+    if (!kind.starts_with(kPictureKind)) continue;
+    const auto position = positions.find(std::strtoll(kind.c_str() + kPictureKind.size(), nullptr, 10));
+    if (position != positions.end()) pictures[position->second] = kind;
+  }
+  return pictures;
+}
+
+void fill_worst(RunSeries& series, SeriesTable& table, const std::vector<Timestamp>& stamps,
+                const std::vector<MatchedPose>& matches) {
+  std::vector<std::optional<MatchedPose>> poses(stamps.size());
+  for (const MatchedPose& match : matches) {
+    if (const std::optional<std::size_t> frame = index_of(stamps, match.t)) poses[*frame] = match;
+  }
+  ErrorGrowth growth;
+  WorstFrames worst(series.pictures.empty() ? kWorst : series.pictures.size());
+  for (std::size_t frame = 0; frame < poses.size(); ++frame) {
+    const double grown = growth.next(poses[frame]);
+    if (std::isfinite(grown)) table.set("growth_m", frame, grown);
+    if (series.pictures.empty() || series.pictures.contains(frame))
+      static_cast<void>(worst.offer(frame, grown));
+  }
+  series.worst = worst.frames();
+}
+
 }  // namespace
 
 RunSeries run_series(const Store& store, const StoredRun& run) {
@@ -98,8 +133,11 @@ RunSeries run_series(const Store& store, const StoredRun& run) {
   if (stamps.empty()) return series;
   series.start_s = to_seconds(stamps.front());
   for (const Timestamp t : stamps) series.t_s.push_back(seconds_between(stamps.front(), t));
+  series.pictures = pictures_of(run, counters);
   SeriesTable table(stamps.size());
-  fill_path(table, stamps, path, store.truth(run));
+  const Trajectory truth = store.truth(run);
+  fill_path(table, stamps, path, truth);
+  fill_worst(series, table, stamps, strict_matches(truth, path));
   fill_counters(table, counters);
   if (!counters.empty()) {
     for (const TimingSample& sample : store.timing_samples(run)) {

@@ -5,15 +5,14 @@
   const STACKED = ["feature_tracking", "feature_detection", "dynamic_recognition", "state_optimization", "object_detection"];
   const cursor = uPlot.sync("frames");
 
-  function axes(label) {
+  page.axes = function (label) {
     const axis = { stroke: page.color("faint"), grid: { stroke: page.color("line"), width: 1 }, ticks: { stroke: page.color("line") } };
     return [{ ...axis, label: "time [s]", labelSize: 18, size: 34 }, { ...axis, label, size: 62 }];
-  }
+  };
 
-  const number = (u, value) => (value === null || value === undefined ? "-" : Number(value.toPrecision(4)).toString());
-  function line(label, color, extra) {
-    return { label, stroke: page.color(color), width: 1.4, value: number, spanGaps: false, points: { show: false }, ...extra };
-  }
+  page.number = (u, value) => (value === null || value === undefined ? "-" : Number(value.toPrecision(4)).toString());
+  page.line = (label, color, extra) => ({ label, stroke: page.color(color), width: 1.4, value: page.number, spanGaps: false, points: { show: false }, ...extra });
+  const { line, number } = page;
 
   // Each layer upon the ones below; a frame without any stays empty.
   function stacked(series) {
@@ -28,9 +27,25 @@
   }
 
   // Median time between frames [ms]: who takes longer falls behind.
-  function deadline(series) {
+  page.deadline = function (series) {
     const gaps = series.t.slice(1).map((t, i) => t - series.t[i]).sort((a, b) => a - b);
     return gaps.length ? 1000 * gaps[Math.floor(gaps.length / 2)] : null;
+  };
+
+  // Where the odometry had no pose, the ground of a chart is red.
+  function shadeLost(plot, series) {
+    const lost = series.columns.x;
+    if (!lost) return;
+    const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.fillStyle = page.color("bad") + "33";
+    lost.forEach((x, i) => {
+      if (x !== null) return;
+      const until = series.t[Math.min(i + 1, series.frames - 1)];
+      const left = Math.max(plot.valToPos(series.t[i], "x", true), bbox.left), right = Math.min(plot.valToPos(until, "x", true), bbox.left + bbox.width);
+      if (right > left) ctx.fillRect(left, bbox.top, right - left, bbox.height);
+    });
+    ctx.restore();
   }
 
   function definitions(series) {
@@ -45,7 +60,7 @@
       charts.push({ id: "dynamic", title: "Share of the features that are held to move", unit: "share", lines: [line("dynamic", "c1")], data: [series.columns.dynamic] });
     const layers = stacked(series);
     if (layers.length) {
-      const limit = deadline(series);
+      const limit = page.deadline(series);
       const own = (name) => (u, value, s, i) => number(u, i === null ? null : series.columns["ms:" + name][i]);
       charts.push({ id: "modules", title: "Time of the modules, stacked; dashed: the time until the next picture", unit: "ms",
         lines: layers.map((layer, i) => line(layer.name + " [ms]", "c" + i, { fill: page.color("c" + i) + "55", value: own(layer.name) }))
@@ -74,8 +89,9 @@
       const options = {
         width: figure.clientWidth || 900, height: chart.id === "modules" ? 220 : 150,
         cursor: { sync: { key: cursor.key }, drag: { x: true, y: false } },
-        scales: { x: { time: false } }, axes: axes(chart.unit), series: [{ label: "time [s]", value: number }, ...chart.lines],
+        scales: { x: { time: false } }, axes: page.axes(chart.unit), series: [{ label: "time [s]", value: number }, ...chart.lines],
         hooks: {
+          drawClear: [(u) => shadeLost(u, series)],
           setCursor: [(u) => { if (u.cursor.left >= 0 && u.cursor.idx !== null) onFrame(u.cursor.idx); }],
           setScale: [(u, key) => { if (key === "x" && plots.includes(u)) zoomAll(u.scales.x.min, u.scales.x.max); }],
         },
@@ -92,28 +108,5 @@
       whole() { zoomAll(series.t[0], series.t[series.t.length - 1]); },
       resize() { for (const plot of plots) plot.setSize({ width: place.clientWidth, height: plot.height }); },
     };
-  };
-
-  // Curves over the values of a sweep: one chart for each axis, one line for each variant and sequence.
-  page.drawSweeps = function (place) {
-    const swept = page.index.runs.filter((run) => run.sweep);
-    const axesOf = [...new Set(swept.map((run) => run.sweep.axis))];
-    const error = (run) => { const found = run.metrics.find((metric) => metric[0] === "ate_rmse_m"); return found && run.outcome === "ok" ? found[1] : null; };
-    const middle = (numbers) => { const known = numbers.filter((n) => n !== null).sort((a, b) => a - b); return known.length ? known[Math.floor((known.length - 1) / 2)] : null; };
-    for (const axis of axesOf) {
-      const runs = swept.filter((run) => run.sweep.axis === axis);
-      const values = [...new Set(runs.map((run) => run.sweep.value))].sort((a, b) => a - b);
-      const names = [...new Set(runs.map((run) => run.label + ", " + run.sequence))];
-      const data = names.map((name) => values.map((value) => middle(runs.filter((run) => run.sweep.value === value && run.label + ", " + run.sequence === name).map(error))));
-      const figure = page.element("figure");
-      figure.append(page.element("figcaption", {}, "RMSE of the position error over " + axis));
-      place.append(figure);
-      const lines = names.map((name, i) => line(name, "c" + (i % 7), { points: { show: true, size: 6 } }));
-      const labels = axes("m");
-      labels[0].label = axis;
-      new uPlot({ width: place.clientWidth || 900, height: 220, scales: { x: { time: false } }, axes: labels, series: [{ label: axis, value: number }, ...lines] },
-        [values, ...data], figure);
-    }
-    return axesOf.length;
   };
 })(window.stillpoint);

@@ -2,19 +2,11 @@
 // One run at a time: its paths, charts, numbers and manifest, and the frame that everything points at.
 "use strict";
 (function (page) {
-  const WORST = 20;
   const byId = (id) => document.getElementById(id);
-  const state = { run: -1, frame: null, worst: [], worstAt: -1, charts: null, views: null };
+  const state = { run: -1, frame: null, worstAt: -1, charts: null, views: null, inspector: null };
 
   const name = (run) => run.label + " on " + run.sequence + ", seed " + run.seed + (run.repetition > 1 ? ", repetition " + run.repetition : "")
     + (run.sweep ? ", " + run.sweep.axis + " = " + run.sweep.value : "") + (run.outcome === "ok" ? "" : " (" + run.outcome + ")");
-
-  // Frames at which the error grew most since the frame before.
-  function worstFrames(series) {
-    const error = series.columns.error_m || [];
-    const growth = error.map((value, i) => (i > 0 && value !== null && error[i - 1] !== null ? value - error[i - 1] : -Infinity));
-    return growth.map((value, i) => [value, i]).filter((pair) => pair[0] > 0).sort((a, b) => b[0] - a[0]).slice(0, WORST).map((pair) => pair[1]);
-  }
 
   function readout(series, frame) {
     const place = byId("readout");
@@ -23,7 +15,7 @@
     const add = (label, text) => { const part = page.element("span"); part.append(page.element("b", {}, label + " "), text); place.append(part); };
     add("frame", String(frame));
     add("time", series.t[frame].toFixed(3) + " s");
-    const shown = { error_m: "error [m]", error_deg: "error [deg]", features: "features", landmarks: "in the window", dynamic: "dynamic share" };
+    const shown = { error_m: "error [m]", growth_m: "error grew by [m]", error_deg: "error [deg]", features: "features", landmarks: "in the window", dynamic: "dynamic share" };
     for (const [column, values] of Object.entries(series.columns)) {
       const label = column.startsWith("ms:") ? column.slice(3) + " [ms]" : shown[column];
       if (label) add(label, values[frame] === null ? "-" : Number(values[frame].toPrecision(4)).toString());
@@ -37,6 +29,7 @@
     state.frame = frame;
     readout(page.series(state.run), frame);
     state.views.point(frame);
+    state.inspector.show(frame);
     if (!fromChart) state.charts.point(frame);
     byId("runs").dataset.frame = frame;
     state.moving = false;
@@ -61,7 +54,6 @@
     state.run = (index + runs.length) % runs.length;
     const run = runs[state.run], series = page.series(state.run);
     state.frame = null;
-    state.worst = worstFrames(series);
     state.worstAt = -1;
     byId("run").value = state.run;
     byId("outcome").textContent = run.outcome === "ok" ? (series.frames ? "" : "This run has no frames in the store.") : run.outcome + ": " + run.detail;
@@ -73,6 +65,8 @@
     });
     state.views.show(series, page.truth(state.run, series.start));
     readout(series, 0);
+    state.inspector.select(state.run, series);
+    byId("spread-of-times").hidden = page.drawHistograms(byId("histograms"), series) === 0;
     byId("runs").dataset.run = run.key;
   };
 
@@ -81,15 +75,28 @@
     if (series.frames) point(Math.max(0, Math.min(series.frames - 1, (state.frame === null ? -1 : state.frame) + frames)), false);
   }
 
-  function nextWorst() {
-    if (!state.worst.length) return;
-    state.worstAt = (state.worstAt + 1) % state.worst.length;
-    point(state.worst[state.worstAt], false);
+  function stepWorst(steps) {
+    const worst = page.series(state.run).worst;
+    if (!worst.length) return;
+    state.worstAt = (Math.max(state.worstAt, steps > 0 ? -1 : 0) + steps + worst.length) % worst.length;
+    point(worst[state.worstAt], false);
+  }
+
+  // The runs behind a number of a table, and how it was made of them.
+  function showBehind(link) {
+    const keys = link.dataset.runs.split(" ");
+    const place = byId("behind"), recipe = link.closest("td").title;
+    place.replaceChildren("The number " + link.textContent + " is of " + (keys.length === 1 ? "one run: " : "the median of these " + keys.length + " runs, as far as they ended well: "));
+    for (const key of keys) {
+      const run = page.index.runs.find((candidate) => candidate.key === key);
+      if (run) place.append(page.element("a", { href: "#run=" + key }, name(run)), " ");
+    }
+    if (recipe) place.append(page.element("span", { class: "recipe" }, "Recipe: " + recipe));
   }
 
   const KEYS = {
     ArrowRight: (event) => step(event.shiftKey ? 10 : 1), ArrowLeft: (event) => step(event.shiftKey ? -10 : -1),
-    n: () => page.selectRun(state.run + 1), p: () => page.selectRun(state.run - 1), w: nextWorst, 0: () => state.charts.whole(),
+    n: () => page.selectRun(state.run + 1), p: () => page.selectRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: () => state.charts.whole(),
   };
 
   function onKey(event) {
@@ -116,7 +123,9 @@
     list.addEventListener("change", () => page.selectRun(Number(list.value)));
     byId("previous").addEventListener("click", () => page.selectRun(state.run - 1));
     byId("next").addEventListener("click", () => page.selectRun(state.run + 1));
-    byId("worst").addEventListener("click", nextWorst);
+    byId("worst").addEventListener("click", () => stepWorst(1));
+    state.inspector = page.inspector((frame) => { state.worstAt = page.series(state.run).worst.indexOf(frame); point(frame, false); });
+    document.addEventListener("click", (event) => { const link = event.target.closest("a[data-runs]"); if (link) showBehind(link); });
     byId("whole").addEventListener("click", () => state.charts.whole());
     document.addEventListener("keydown", onKey);
     window.addEventListener("hashchange", fromHash);

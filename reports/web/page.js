@@ -29,6 +29,7 @@
     const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
     root.dataset.theme = dark ? "light" : "dark";
     page.redrawExplorer();
+    page.redrawFlames();
   }
 
   document.getElementById("theme").addEventListener("click", toggleTheme);
@@ -36,8 +37,9 @@
   page.startExplorer();
   page.startDownloads();
   showEnvironment();
-  const sweeps = document.getElementById("sweeps");
-  sweeps.hidden = false;
-  sweeps.hidden = page.drawSweeps(document.getElementById("curves")) === 0;
+  page.startFlames();
+  const reveal = (section, draw) => { const place = document.getElementById(section); place.hidden = false; place.hidden = draw() === 0; };
+  reveal("sweeps", () => page.drawSweeps(document.getElementById("curves")));
+  reveal("segments", () => page.drawSegments(document.getElementById("segment-curves")));
   root.dataset.readyMs = Math.round(performance.now());
 })(window.stillpoint);

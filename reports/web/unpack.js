@@ -28,10 +28,13 @@ window.stillpoint = {};
       const packed = parse("series-" + run);
       const columns = {};
       for (const [name, column] of Object.entries(packed.columns)) columns[name] = page.unpack(column);
-      cache.set(run, { start: packed.start, frames: packed.frames, t: page.unpack(packed.t), columns });
+      cache.set(run, { start: packed.start, frames: packed.frames, t: page.unpack(packed.t), worst: packed.worst, columns });
     }
     return cache.get(run);
   };
+
+  // {frame: JPEG in base64} of a run.
+  page.pictures = (run) => (document.getElementById("pictures-" + run) ? parse("pictures-" + run) : {});
 
   // True path of a run, its times counted from the first frame; null if it has none.
   page.truth = function (run, start) {

@@ -107,11 +107,54 @@ await test("keys step frames, find the worst and change the run", async () => {
   assert.equal((await runs(page)).run, run);
 });
 
+await test("keys step through annotated pictures of the worst frames", async () => {
+  const shown = () => page.$eval("#picture", async (image) => { await image.decode(); return [image.naturalWidth, image.src.length, image.alt]; });
+  await page.evaluate(() => window.stillpoint.redrawExplorer());
+  const ranks = [];
+  for (const key of ["w", "w", "W"]) {
+    await page.keyboard.press(key);
+    const [width, bytes, alt] = await shown();
+    assert.ok(width >= 320 && bytes > 4000, `${width} px, ${bytes} bytes`);
+    ranks.push(Number(/, (\d+) of the/.exec(alt)[1]));
+    assert.equal((await runs(page)).picture, (await runs(page)).frame);
+  }
+  assert.deepEqual(ranks, [1, 2, 1]);
+  assert.equal(await page.locator("#worst-list button").count(), 20);
+  await page.locator("#worst-list button").nth(2).press("Enter");
+  assert.match(await page.textContent("#picture-caption"), /, 3 of the 20 worst/);
+});
+
+await test("the flame chart has frames, zooms at a click and changes with the variant", async () => {
+  const widths = () => page.$$eval("#flame rect", (rects) => rects.map((rect) => Number(rect.getAttribute("width"))));
+  const whole = await widths();
+  assert.ok(whole.length > 5, whole.length + " frames");
+  await page.locator("#flame g").filter({ hasText: "optimization" }).first().click();
+  assert.notDeepEqual(await widths(), whole);
+  const first = await page.getAttribute("#flames", "data-variant");
+  await page.selectOption("#flame-variant", { index: 1 });
+  assert.notEqual(await page.getAttribute("#flames", "data-variant"), first);
+  assert.ok(await page.locator("#flame-table tr").count() > 5);
+});
+
+await test("each module of the run has a histogram", async () => {
+  const bars = await page.$$eval("#histograms figure", (figures) => figures.map((figure) => [figure.dataset.module, [...figure.querySelectorAll("rect")].filter((rect) => Number(rect.getAttribute("height")) > 0).length]));
+  assert.ok(bars.some(([name]) => name === "feature_tracking"));
+  for (const [name, count] of bars) assert.ok(count > 1, name);
+});
+
+await test("relative errors have a curve, and OpenLORIS scenes their figure", async () => {
+  assert.ok(await page.locator("#segment-curves canvas").count() > 0);
+  const scenes = await page.evaluate(() => window.stillpoint.index.runs.some((run) => /^(market|corridor)/.test(run.sequence)));
+  assert.equal(await page.locator("figure.openloris svg circle").count() > 0, scenes);
+});
+
 await test("a number of the table leads to its run", async () => {
   const link = page.locator("#table-ate_rmse_m td a").last();
   const key = (await link.getAttribute("href")).slice("#run=".length);
   await link.click();
   await page.waitForFunction((wanted) => document.getElementById("runs").dataset.run === wanted, key);
+  assert.equal(await page.locator(`#behind a[href="#run=${key}"]`).count(), 1);
+  assert.match(await page.textContent("#behind"), /Recipe: /);
 });
 
 await test("tables and series can be downloaded", async () => {
@@ -163,7 +206,7 @@ function grown(text) {
   for (const column of Object.values(series.columns)) column.data = bytes(column);
   const runs = Array.from({ length: 1000 }, (_, i) => ({ ...index.runs[one], key: i.toString(16), frames }));
   const all = runs.map((_, i) => `<script type="application/json" id="series-${i}">${JSON.stringify(series)}</script>`).join("\n");
-  const bare = text.replace(/<script type="application\/json" id="series-\d+">.*?<\/script>/gs, "");
+  const bare = text.replace(/<script type="application\/json" id="(series|pictures)-\d+">.*?<\/script>/gs, "");
   return bare.replace(script("index"), (_, open, __, close) => open + JSON.stringify({ ...index, runs }) + close + "\n" + all);
 }
 

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/store/journal.h"
+#include "reports/page/flame_stacks.h"
+#include "reports/page/openloris_runs.h"
+#include "reports/page/page_pictures.h"
+#include "reports/page/segment_curves.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+/// A TUM file of 101 poses, ten a second, along x with a speed in m/s.
+std::string straight(double speed) {
+  std::string text;
+  for (int i = 0; i <= 100; ++i)
+    text += std::to_string(0.1 * i) + " " + std::to_string(speed * 0.1 * i) + " 0 0 0 0 0 1\n";
+  return text;
+}
+
+void add_run(const std::filesystem::path& file, const RunIdentity& identity, const RunOutcome& outcome) {
+  Journal journal(file);
+  ASSERT_EQ(journal.claim(identity), Claim::kGranted);
+  journal.finish(identity, outcome);
+}
+
+/// Walks 10 m where the path has 10 m times `scale`.
+RunOutcome walk(double scale) {
+  RunOutcome outcome;
+  outcome.attachments = {{"trajectory", straight(scale)}, {"truth", straight(1.0)}};
+  return outcome;
+}
+
+TEST(FlameStacks, AddUpOverFiles) {
+  StackTimes times;
+  add_stacks(times, "tracking;klt 5\ntracking 2\n", "a");
+  add_stacks(times, "tracking;klt 7\n", "b");
+  EXPECT_EQ(times, (StackTimes{{"tracking", 2.0}, {"tracking;klt", 12.0}}));
+}
+
+TEST(FlameStacks, RefuseWhatIsNone) {
+  StackTimes times;
+  expect_input_error([&] { add_stacks(times, "a 1\nb;c\n", "stacks of run 7"); }, {"stacks of run 7", "2"});
+}
+
+TEST(SegmentFigures, AreTheShareOfTheWayThatIsWrong) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "s";
+  add_run(file, {.variant = "long", .sequence = "a"}, walk(1.02));
+  add_run(file, {.variant = "blind", .sequence = "a"}, {.outcome = Outcome::kCrashed, .detail = "x"});
+  const Store store(file);
+  const std::vector<SegmentFigure> figures = segment_figures(store, store.runs());
+  ASSERT_EQ(figures.size(), 1U);
+  ASSERT_EQ(figures[0].lengths_m.size(), 5U);
+  EXPECT_NEAR(figures[0].lengths_m[4], 5.0, 1e-9);  // half of 10 m
+  ASSERT_EQ(figures[0].curves.size(), 1U);          // who has no pose has no curve
+  for (const std::optional<double>& percent : figures[0].curves[0].translation_percent)
+    EXPECT_NEAR(percent.value(), 2.0, 0.01);  // every metre is told as 1.02 m
+}
+
+TEST(OpenlorisOfRuns, TakesScenesAndCountsSeedsAsTheirSequences) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "s";
+  add_run(file, {.variant = "vo", .sequence = "market", .seed = 1}, walk(1.0));
+  add_run(file, {.variant = "vo", .sequence = "market", .seed = 2}, walk(1.0));
+  add_run(file, {.variant = "vo", .sequence = "walking_xyz"}, walk(1.0));
+  const Store store(file);
+  const OpenlorisBenchmark benchmark = openloris_of_runs(store, store.runs());
+  ASSERT_EQ(benchmark.gt_durations_s.size(), 1U);
+  EXPECT_NEAR(benchmark.gt_durations_s.at("market").at(2), 10.0, 1e-9);
+  EXPECT_NEAR(benchmark.systems.at("vo").at("market").score.figure_correct_rate, 1.0, 1e-9);
+}
+
+TEST(PagePictures, GiveEachRunItsWorstBeforeAnyGetsASecond) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "s";
+  RunOutcome outcome;
+  outcome.attachments = {{"picture:000004", "foobar"}, {"picture:000009", "barfoo"}};
+  add_run(file, {.variant = "a"}, outcome);
+  add_run(file, {.variant = "b"}, outcome);
+  const Store store(file);
+  RunSeries series;
+  series.worst = {9, 4};
+  series.pictures = {{4, "picture:000004"}, {9, "picture:000009"}};
+  // Six bytes are eight in base64: there is room for three pictures of the four.
+  const std::vector<std::string> pictures =
+      page_pictures(store, store.runs(), std::vector{series, series}, 30);
+  ASSERT_EQ(pictures.size(), 2U);
+  EXPECT_EQ(nlohmann::json::parse(pictures[0]), (nlohmann::json{{"9", "YmFyZm9v"}, {"4", "Zm9vYmFy"}}));
+  EXPECT_EQ(nlohmann::json::parse(pictures[1]), (nlohmann::json{{"9", "YmFyZm9v"}}));
+}
+
+TEST(RunSeries, NamesTheWorstFramesThatHaveAPicture) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "s";
+  RunOutcome outcome;
+  // The true path stands still; the estimate jumps by 1 m at frame 11, by 3 m at 12, and is lost at 13.
+  outcome.attachments["truth"] =
+      "0.0 0 0 0 0 0 0 1\n0.1 0 0 0 0 0 0 1\n0.2 0 0 0 0 0 0 1\n0.3 0 0 0 0 0 0 1\n";
+  outcome.attachments["trajectory"] = "0.0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.2 4 0 0 0 0 0 1\n";
+  outcome.attachments["counters"] =
+      "frame,t_ns,status,tracked_features,window_landmarks,depth_landmarks,dynamic_features,"
+      "solver_iterations,keyframe,reset\n10,0,tracking,9,9,9,0,3,1,0\n11,100000000,tracking,9,9,9,0,3,1,0\n"
+      "12,200000000,tracking,9,9,9,0,3,1,0\n13,300000000,lost,0,0,0,0,0,0,0\n";
+  add_run(file, {.variant = "all"}, outcome);
+  outcome.attachments["picture:000011"] = "jpeg";
+  add_run(file, {.variant = "pictured"}, outcome);
+  const Store store(file);
+  EXPECT_EQ(run_series(store, store.runs()[0]).worst, (std::vector<std::size_t>{3, 2, 1}));
+  const RunSeries pictured = run_series(store, store.runs()[1]);
+  EXPECT_EQ(pictured.worst, (std::vector<std::size_t>{1}));  // the position of frame 11
+  EXPECT_EQ(pictured.pictures.at(1), "picture:000011");
+}
+
+}  // namespace
+}  // namespace stillpoint
