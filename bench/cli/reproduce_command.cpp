@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -28,7 +30,7 @@ struct ReproduceArguments {
   std::string out = "build/reproduce";
   bool synthetic = false;
   bool real = false;
-  int jobs = 1;
+  int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 };
 
 /// A table or figure of the paper, and the plans that make its numbers.
@@ -37,7 +39,6 @@ struct Target {
   const char* synthetic_plan;
   const char* real_plan;  ///< empty: there is none
   const char* real_data;  ///< what it needs, and how it is got
-  std::optional<PaperTable> table;
 };
 constexpr const char* kTumData =
     "the fr3_walking sequences of the TUM RGB-D dataset; unpack them and name them with `stillpoint data add "
@@ -46,11 +47,10 @@ constexpr const char* kOpenlorisData =
     "the OpenLORIS-Scene recordings, which are given out on request; run `stillpoint run` over each, and "
     "`stillpoint "
     "eval openloris` over the results";
-constexpr Target kTargets[] = {
-    {"table1", "table1_tum_synthetic", "table1_tum", kTumData, PaperTable::kTable1},
-    {"table2", "table2_ablation_synthetic", "table2_ablation", kTumData, PaperTable::kTable2},
-    {"table3", "table3_runtime", "", kOpenlorisData, PaperTable::kTable3},
-    {"openloris", "openloris_synthetic", "", kOpenlorisData, std::nullopt}};
+constexpr Target kTargets[] = {{"table1", "table1_tum_synthetic", "table1_tum", kTumData},
+                               {"table2", "table2_ablation_synthetic", "table2_ablation", kTumData},
+                               {"table3", "table3_runtime", "", kOpenlorisData},
+                               {"openloris", "openloris_synthetic", "", kOpenlorisData}};
 
 std::vector<Target> chosen(const std::string& name) {
   std::vector<Target> targets;
@@ -87,13 +87,14 @@ bool make_runs(const Target& target, const std::string& plan, const ReproduceArg
 
 /// Writes the tables of a target and shows the first.
 void write_tables(const Target& target, const std::vector<StoredRun>& runs, const fs::path& out) {
+  const std::optional<PaperTable> paper = paper_table_of(target.synthetic_plan);
   const std::vector<ReportTable> tables =
-      target.table ? std::vector{paper_table(*target.table, runs)} : metric_tables(runs);
+      paper ? std::vector{paper_table(*paper, runs)} : metric_tables(runs);
   std::vector<OutputFile> files;
   std::string latex;
   for (const ReportTable& table : tables) {
     for (OutputFile& file : table_files(table)) {
-      file.name = target.table ? file.name : std::string(target.name) + "_" + file.name;
+      file.name = paper ? file.name : std::string(target.name) + "_" + file.name;
       files.push_back(std::move(file));
     }
     latex += table_latex(table);
@@ -112,7 +113,9 @@ int reproduce(const ReproduceArguments& arguments) {
   require_writable(out);
   watch_interrupts();
   bool whole = true;
+  std::size_t number = 0;
   for (const Target& target : targets) {
+    std::cout << fmt::format("{} ({} of {})\n", target.name, ++number, targets.size()) << std::flush;
     const std::string plan = arguments.real ? target.real_plan : target.synthetic_plan;
     if (plan.empty()) {
       std::cout << fmt::format("{} has no plan over real data. It needs {}.\n", target.name,
@@ -148,7 +151,7 @@ Command reproduce_command() {
                    &arguments->real},
                   {"--store", "File that keeps the runs [build/bench/reproduce.sqlite]", &arguments->store},
                   {"--out", "Folder for tables and the page [build/reproduce]", &arguments->out},
-                  {"--jobs", "Accuracy runs at a time", &arguments->jobs}},
+                  {"--jobs", "Accuracy runs at a time [one for each processor]", &arguments->jobs}},
       .action = [arguments] { return reproduce(*arguments); },
       .subcommands = {}};
 }

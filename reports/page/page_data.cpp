@@ -160,8 +160,10 @@ PageData page_data(const Store& store, std::span<const StoredRun> runs) {
     entry["frames"] = series.t_s.size();
     entry["pictures"] = series.pictures.size();
     data.series.push_back(dumped(series_json(series)));
-    gather_times(times, series, system_label(run.identity));
-    gather_stacks(flames, store, run, series.t_s.size());
+    if (tells_times(runs, run)) {
+      gather_times(times, series, system_label(run.identity));
+      gather_stacks(flames, store, run, series.t_s.size());
+    }
     if (entry["truth"].is_string() && !index["truths"].contains(entry["truth"].get<std::string>())) {
       index["truths"][entry["truth"].get<std::string>()] = truth_json(store.truth(run));
     }

@@ -19,6 +19,7 @@ struct ReportSubject {
   std::vector<StoredRun> runs;         ///< those of the page
   std::vector<StoredRun> other_runs;   ///< of other builds, to tell what changed
   std::vector<std::string> published;  ///< names of quoted tables to stand beside
+  std::vector<ReportTable> paper;      ///< the paper's tables whose plans are among those of the page
 };
 
 /// Everything in the store, or one plan of it; the newest runs of each plan.
@@ -26,7 +27,7 @@ struct ReportSubject {
 /// @throws InputError if the store has no such plan, or no runs
 [[nodiscard]] ReportSubject report_subject(const Store& store, const std::string& plan);
 
-/// Tables of a subject: metrics, module times, beside quoted ones.
+/// Tables of a subject: the paper's, metrics, module times, beside quoted ones.
 [[nodiscard]] std::vector<ReportTable> report_tables(const ReportSubject& subject);
 
 /// A table as NAME.md, NAME.tex, NAME.csv, NAME.json.

@@ -7,7 +7,9 @@
 
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
+#include "reports/page/names_apart.h"
 #include "reports/page/report_page.h"
+#include "reports/tables/paper_tables.h"
 #include "reports/tables/result_tables.h"
 #include "reports/tables/table_formats.h"
 
@@ -52,6 +54,22 @@ void set_older_builds_apart(ReportSubject& subject) {
   std::erase_if(subject.runs, is_older);
 }
 
+std::vector<ReportTable> paper_tables(const ReportSubject& subject) {
+  std::vector<ReportTable> tables;
+  for (const StoredPlan& plan : subject.plans) {
+    const std::optional<PaperTable> table = paper_table_of(plan.name);
+    if (!table) continue;
+    std::vector<StoredRun> runs = subject.runs;
+    std::erase_if(runs, [&](const StoredRun& run) {
+      return std::find(plan.run_keys.begin(), plan.run_keys.end(), run.key) == plan.run_keys.end();
+    });
+    ReportTable paper = paper_table(*table, runs);
+    paper.name = plan.name;
+    tables.push_back(std::move(paper));
+  }
+  return tables;
+}
+
 }  // namespace
 
 ReportSubject report_subject(const Store& store, const std::string& plan) {
@@ -74,12 +92,17 @@ ReportSubject report_subject(const Store& store, const std::string& plan) {
     throw InputError(store.file().string(),
                      "holds no ended run; make some with `stillpoint bench PLAN --store FILE`");
   set_older_builds_apart(subject);
+  subject.paper = paper_tables(subject);
+  const NameChanges changes = names_apart(subject.plans, subject.runs);
+  subject.runs = renamed(std::move(subject.runs), changes);
+  subject.other_runs = renamed(std::move(subject.other_runs), changes);
   subject.published = published_names();
   return subject;
 }
 
 std::vector<ReportTable> report_tables(const ReportSubject& subject) {
-  std::vector<ReportTable> tables = metric_tables(subject.runs);
+  std::vector<ReportTable> tables = subject.paper;
+  for (ReportTable& table : metric_tables(subject.runs)) tables.push_back(std::move(table));
   tables.push_back(cost_table(subject.runs));
   for (const std::string& name : subject.published)
     tables.push_back(beside_table(subject.runs, load_published(name)));

@@ -194,6 +194,13 @@ ReportTable table3(std::span<const StoredRun> runs) {
 
 }  // namespace
 
+std::optional<PaperTable> paper_table_of(std::string_view plan) {
+  if (plan.starts_with("table1_")) return PaperTable::kTable1;
+  if (plan.starts_with("table2_")) return PaperTable::kTable2;
+  if (plan.starts_with("table3_")) return PaperTable::kTable3;
+  return std::nullopt;
+}
+
 ReportTable paper_table(PaperTable table, std::span<const StoredRun> runs) {
   switch (table) {
     case PaperTable::kTable1:

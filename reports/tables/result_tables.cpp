@@ -126,7 +126,7 @@ ReportTable cost_table(std::span<const StoredRun> runs) {
   for (const std::string& label : labels_of(runs)) {
     TableRow row{.label = label, .from = "", .cells = {}};
     for (const std::string& module : modules)
-      row.cells.push_back(cost_cell(runs_of(runs, label, ""), module));
+      row.cells.push_back(cost_cell(timed_runs_of(runs, label), module));
     table.rows.push_back(std::move(row));
   }
   table.notes = {"Modules are averaged per call, threads per frame; medians over all runs of a variant."};
@@ -149,7 +149,7 @@ ReportTable beside_table(std::span<const StoredRun> runs, const PublishedTable& 
   for (const std::string& label : labels_of(runs)) {
     TableRow row{.label = label, .from = "ours", .cells = {}};
     for (const std::string& column : columns) {
-      row.cells.push_back(is_cost ? cost_cell(runs_of(runs, label, ""), column)
+      row.cells.push_back(is_cost ? cost_cell(timed_runs_of(runs, label), column)
                                   : metric_cell(runs_of(runs, label, column), published.metric));
     }
     table.rows.push_back(std::move(row));

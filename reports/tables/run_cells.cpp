@@ -89,4 +89,18 @@ std::vector<const StoredRun*> runs_of(std::span<const StoredRun> runs, const std
   return found;
 }
 
+bool tells_times(std::span<const StoredRun> runs, const StoredRun& run) {
+  const auto is_timed = [](const StoredRun& other) { return other.identity.kind == "timing"; };
+  const std::string label = system_label(run.identity);
+  return is_timed(run) || std::none_of(runs.begin(), runs.end(), [&](const StoredRun& other) {
+           return is_timed(other) && system_label(other.identity) == label;
+         });
+}
+
+std::vector<const StoredRun*> timed_runs_of(std::span<const StoredRun> runs, const std::string& label) {
+  std::vector<const StoredRun*> found = runs_of(runs, label, "");
+  std::erase_if(found, [&](const StoredRun* run) { return !tells_times(runs, *run); });
+  return found;
+}
+
 }  // namespace stillpoint

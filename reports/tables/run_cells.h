@@ -32,6 +32,14 @@ using RunNumber = std::function<std::optional<double>(const StoredRun&)>;
 /// `run_cell` over the mean time of a module.
 [[nodiscard]] TableCell cost_cell(const std::vector<const StoredRun*>& runs, const std::string& module);
 
+/// Whether the times of a run are to be told: those of timed runs where its label has any, because others
+/// share the machine with runs beside them.
+[[nodiscard]] bool tells_times(std::span<const StoredRun> runs, const StoredRun& run);
+
+/// Those of a label, outside sweeps, whose times are to be told.
+[[nodiscard]] std::vector<const StoredRun*> timed_runs_of(std::span<const StoredRun> runs,
+                                                          const std::string& label);
+
 /// Those of a label on a sequence, outside sweeps; an empty sequence matches all.
 [[nodiscard]] std::vector<const StoredRun*> runs_of(std::span<const StoredRun> runs, const std::string& label,
                                                     const std::string& sequence);

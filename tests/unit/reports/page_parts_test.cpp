@@ -4,6 +4,7 @@
 
 #include "bench/store/journal.h"
 #include "reports/page/flame_stacks.h"
+#include "reports/page/names_apart.h"
 #include "reports/page/openloris_runs.h"
 #include "reports/page/page_pictures.h"
 #include "reports/page/segment_curves.h"
@@ -72,6 +73,39 @@ TEST(OpenlorisOfRuns, TakesScenesAndCountsSeedsAsTheirSequences) {
   ASSERT_EQ(benchmark.gt_durations_s.size(), 1U);
   EXPECT_NEAR(benchmark.gt_durations_s.at("market").at(2), 10.0, 1e-9);
   EXPECT_NEAR(benchmark.systems.at("vo").at("market").score.figure_correct_rate, 1.0, 1e-9);
+}
+
+StoredRun run_with_key(const std::string& key, const RunIdentity& identity) {
+  StoredRun run;
+  run.key = key;
+  run.identity = identity;
+  return run;
+}
+
+TEST(NamesApart, TellWhatTwoPlansMeanByOneName) {
+  const std::vector<StoredPlan> plans = {{.name = "p", .title = "", .text = "", .run_keys = {"1", "2"}},
+                                         {.name = "q", .title = "", .text = "", .run_keys = {"3", "4"}}};
+  const std::vector<StoredRun> runs = {
+      run_with_key("1", {.variant = "vo", .sequence = "a", .sequence_id = "8 s", .config_hash = "x"}),
+      run_with_key("2", {.variant = "vio", .sequence = "a", .sequence_id = "8 s", .config_hash = "y"}),
+      run_with_key("3", {.variant = "vo", .sequence = "b", .sequence_id = "b", .config_hash = "z"}),
+      run_with_key("4", {.variant = "vio", .sequence = "a", .sequence_id = "20 s", .config_hash = "y"})};
+  const std::vector<StoredRun> told = renamed(runs, names_apart(plans, runs));
+  EXPECT_EQ(told[0].identity.variant, "vo");
+  EXPECT_EQ(told[2].identity.variant, "vo (q)");  // z is not x
+  EXPECT_EQ(told[3].identity.variant, "vio");     // y in both plans
+  EXPECT_EQ(told[1].identity.sequence, "a");
+  EXPECT_EQ(told[3].identity.sequence, "a (q)");
+}
+
+TEST(NamesApart, TakeNeitherSeedsNorSweepsForADifference) {
+  const std::vector<StoredPlan> plans = {{.name = "p", .title = "", .text = "", .run_keys = {"1", "2"}},
+                                         {.name = "q", .title = "", .text = "", .run_keys = {"3"}}};
+  const std::vector<StoredRun> runs = {
+      run_with_key("1", {.variant = "vo", .config_hash = "x", .seed = 1}),
+      run_with_key("2", {.variant = "vo", .config_hash = "y", .seed = 2}),
+      run_with_key("3", {.variant = "vo", .config_hash = "z", .axis = "k", .axis_value = 3.0})};
+  EXPECT_TRUE(names_apart(plans, runs).variants.empty());
 }
 
 TEST(PagePictures, GiveEachRunItsWorstBeforeAnyGetsASecond) {

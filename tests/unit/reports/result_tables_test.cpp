@@ -53,6 +53,21 @@ TEST(MetricTables, AreThereWhenEveryRunFailed) {
   ASSERT_EQ(metric_tables(runs).size(), 1u);
 }
 
+TEST(CostTable, TellsTheTimesOfTimedRunsWhereThereAreAny) {
+  StoredRun timed = run_of("a", "s", 1.0);
+  timed.identity.kind = "timing";
+  timed.costs.front().mean_ms = 1.0;
+  const std::vector<StoredRun> runs = {run_of("a", "s", 1.0), timed, run_of("b", "s", 1.0)};
+  const ReportTable table = cost_table(runs);
+  EXPECT_EQ(table.rows[0].cells[0].number, 1.0);  // not the median of 1 and 2 ms
+  EXPECT_EQ(table.rows[1].cells[0].number, 2.0);  // b was never timed
+}
+
+TEST(PaperTables, AreKnownByTheirPlans) {
+  EXPECT_EQ(paper_table_of("table2_ablation"), PaperTable::kTable2);
+  EXPECT_FALSE(paper_table_of("quick"));
+}
+
 TEST(MetricTables, LeaveSweepsOut) {
   StoredRun swept = run_of("a", "s", 9.0);
   swept.identity.axis = "synth.walkers";
