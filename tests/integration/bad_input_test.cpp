@@ -8,24 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/program.h"
+#include "tests/support/refusal.h"
 #include "tests/support/rendered_sequence.h"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// One error line that contains all of `parts`, exit code 2, and no folder of results.
-void expect_refused(const ProgramResult& result, const fs::path& out, const std::vector<std::string>& parts) {
-  EXPECT_EQ(result.exit_code, 2);
-  const std::size_t error = result.err.find("stillpoint: error: ");
-  ASSERT_NE(error, std::string::npos) << result.err;
-  const std::string line = result.err.substr(error);
-  EXPECT_EQ(line.find('\n'), line.size() - 1) << "more than one line: " << line;
-  for (const std::string& part : parts)
-    EXPECT_NE(line.find(part), std::string::npos) << part << " / " << line;
-  EXPECT_FALSE(fs::exists(out)) << out;
-}
 
 /// A fault that is put into a copy of a good sequence.
 struct Fault {
@@ -40,31 +29,28 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-void replace(const fs::path& file, const std::string& text) {
-  fs::remove(file);
-  std::ofstream(file) << text;
-}
-
 void append(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::app) << text; }
 
 /// Files that hold nothing but one line, far away in time.
 void move_in_time(const fs::path& sequence) {
-  replace(sequence / "d400_gyroscope.txt", "1.0 0 0 0\n1.1 0 0 0\n");
-  replace(sequence / "d400_accelerometer.txt", "1.0 0 0 9.8\n1.1 0 0 9.8\n");
+  replace_file(sequence / "d400_gyroscope.txt", "1.0 0 0 0\n1.1 0 0 0\n");
+  replace_file(sequence / "d400_accelerometer.txt", "1.0 0 0 9.8\n1.1 0 0 9.8\n");
 }
 
 void spoil_all_pictures(const fs::path& sequence) {
-  for (const fs::path& file : files_in(sequence / "color")) replace(file, "no picture");
+  for (const fs::path& file : files_in(sequence / "color")) replace_file(file, "no picture");
 }
 
 /// Every depth picture becomes one of 1x1.
 void shrink_depth(const fs::path& sequence) {
   const std::string tiny_pgm = "P5\n1 1\n65535\n\1\1";
-  for (const fs::path& file : files_in(sequence / "aligned_depth")) replace(file, tiny_pgm);
+  for (const fs::path& file : files_in(sequence / "aligned_depth")) replace_file(file, tiny_pgm);
 }
 
 const Fault kFaults[] = {
-    {"EmptyImu", [](const fs::path& s) { replace(s / "d400_gyroscope.txt", ""); }, {"d400_gyroscope.txt"}},
+    {"EmptyImu",
+     [](const fs::path& s) { replace_file(s / "d400_gyroscope.txt", ""); },
+     {"d400_gyroscope.txt"}},
     {"UnsortedImu",
      [](const fs::path& s) { append(s / "d400_gyroscope.txt", "1700000000.5 0 0 0\n"); },
      {"d400_gyroscope.txt:"}},
@@ -73,7 +59,7 @@ const Fault kFaults[] = {
      {"d400_accelerometer.txt:"}},
     {"NoOverlapInTime", move_in_time, {"overlap"}},
     {"UnreadableCalibration",
-     [](const fs::path& s) { replace(s / "sensors.yaml", "{ no: [yaml"); },
+     [](const fs::path& s) { replace_file(s / "sensors.yaml", "{ no: [yaml"); },
      {"sensors.yaml"}},
     {"MissingCalibration", [](const fs::path& s) { fs::remove(s / "sensors.yaml"); }, {"sensors.yaml"}},
     {"NoPictureReadable", spoil_all_pictures, {"color/"}},
