@@ -31,7 +31,7 @@ declare -A may_include=(
 libraries=(
   '<OpenImageIO/      ^datasets/image_io\.cpp$'
   '<embree3/          ^datasets/synthetic/'
-  '<hwy/              ^core/frontend/patch_kernel.cpp'
+  '<hwy/              ^core/frontend/(fast|patch)_kernel.cpp'
   '<ceres/            ^core/(backend|loop)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/(backend|loop)/'
   '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/(picture_annotator\.|(raster_drawing|worst_pictures)\.cpp$|video_file\.)'

@@ -2,7 +2,7 @@
 #include "core/frontend/fast_cell.h"
 
 #include <algorithm>
-#include <opencv2/features2d.hpp>
+#include <opencv2/core.hpp>
 #include <tuple>
 
 namespace stillpoint {
@@ -12,38 +12,27 @@ bool stronger(const Corner& a, const Corner& b) {
   return std::tuple(-a.score, a.pixel.y, a.pixel.x) < std::tuple(-b.score, b.pixel.y, b.pixel.x);
 }
 
-std::vector<Corner> free_corners(const cv::Mat& gray, const FeatureMask& mask, const cv::Rect& cell,
-                                 const FastCellSettings& settings) {
-  const cv::Point margin(settings.padding_px, settings.padding_px);
-  const cv::Rect padded = cv::Rect(cell.tl() - margin, cell.br() + margin) & cv::Rect({0, 0}, gray.size());
-  constexpr bool kNonMaximumSuppression = true;
-  std::vector<cv::KeyPoint> keypoints;
-  cv::FAST(gray(padded), keypoints, settings.threshold, kNonMaximumSuppression);
-
-  std::vector<Corner> corners;
-  for (const cv::KeyPoint& keypoint : keypoints) {
-    const cv::Point2f pixel = keypoint.pt + cv::Point2f(padded.tl());
-    if (cell.contains(cv::Point(pixel)) && mask.is_free(pixel)) corners.push_back({pixel, keypoint.response});
-  }
-  return corners;
-}
-
 }  // namespace
 
-std::vector<Corner> fast_corners_in_cell(const cv::Mat& gray, const FeatureMask& mask, const cv::Rect& cell,
-                                         const FastCellSettings& settings) {
-  std::vector<Corner> chosen;
-  if (cv::countNonZero(mask.image()(cell)) == 0) return chosen;
-  std::vector<Corner> corners = free_corners(gray, mask, cell, settings);
-  std::sort(corners.begin(), corners.end(), stronger);
-  for (const Corner& corner : corners) {
-    if (chosen.size() == settings.limit) break;
-    if (is_apart(corner.pixel, chosen, settings.min_distance_px)) chosen.push_back(corner);
+void FastCell::search(const cv::Mat& gray, const FeatureMask& mask, const cv::Rect& cell,
+                      const FastCellSettings& settings) {
+  chosen_.clear();
+  if (cv::countNonZero(mask.image()(cell)) == 0) return;
+  const cv::Point margin(settings.padding_px, settings.padding_px);
+  const cv::Rect padded = cv::Rect(cell.tl() - margin, cell.br() + margin) & cv::Rect({0, 0}, gray.size());
+  free_.clear();
+  for (Corner corner : fast_.find(gray(padded), settings.threshold)) {
+    corner.pixel += cv::Point2f(padded.tl());
+    if (cell.contains(cv::Point(corner.pixel)) && mask.is_free(corner.pixel)) free_.push_back(corner);
   }
-  return chosen;
+  std::sort(free_.begin(), free_.end(), stronger);
+  for (const Corner& corner : free_) {
+    if (chosen_.size() == settings.limit) break;
+    if (is_apart(corner.pixel, chosen_, settings.min_distance_px)) chosen_.push_back(corner);
+  }
 }
 
-bool is_apart(const cv::Point2f& pixel, const std::vector<Corner>& others, int distance_px) {
+bool is_apart(const cv::Point2f& pixel, std::span<const Corner> others, int distance_px) {
   const double squared_distance = static_cast<double>(distance_px) * distance_px;
   return distance_px == 0 || std::all_of(others.begin(), others.end(), [&](const Corner& other) {
            const cv::Point2f offset = other.pixel - pixel;

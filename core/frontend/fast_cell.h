@@ -3,16 +3,13 @@
 #pragma once
 
 #include <opencv2/core/types.hpp>
+#include <span>
 #include <vector>
 
+#include "core/frontend/fast_corners.h"
 #include "core/frontend/feature_mask.h"
 
 namespace stillpoint {
-
-struct Corner {
-  cv::Point2f pixel;
-  float score = 0.0F;  ///< highest threshold at which it still is a corner [grey levels]
-};
 
 struct FastCellSettings {
   int padding_px = 3;  ///< pixels around the cell that the test may look at; with 4 or more, corners beyond
@@ -22,15 +19,26 @@ struct FastCellSettings {
   std::size_t limit = 0;    ///< most corners to return
 };
 
-/// The strongest corners of a cell on free pixels, strongest first; of equal ones the upper, then the left
-/// one. FAST answers in clusters, so each corner taken shuts out those nearer than the minimum distance: the
-/// next ones are alternatives, not neighbours of the first.
-/// @param cell inside the picture
-[[nodiscard]] std::vector<Corner> fast_corners_in_cell(const cv::Mat& gray, const FeatureMask& mask,
-                                                       const cv::Rect& cell,
-                                                       const FastCellSettings& settings);
+/// Kept between searches for its memory only.
+class FastCell {
+ public:
+  /// The strongest corners of a cell on free pixels, strongest first; of equal ones the upper, then the left
+  /// one. FAST answers in clusters, so each corner taken shuts out those nearer than the minimum distance:
+  /// the next ones are alternatives, not neighbours of the first.
+  /// @param cell inside the picture
+  void search(const cv::Mat& gray, const FeatureMask& mask, const cv::Rect& cell,
+              const FastCellSettings& settings);
+
+  /// What the last search found.
+  [[nodiscard]] std::span<const Corner> corners() const { return chosen_; }
+
+ private:
+  FastCorners fast_;
+  std::vector<Corner> free_;
+  std::vector<Corner> chosen_;
+};
 
 /// Whether `pixel` is further than `distance_px` from all `others`; always true for a distance of 0.
-[[nodiscard]] bool is_apart(const cv::Point2f& pixel, const std::vector<Corner>& others, int distance_px);
+[[nodiscard]] bool is_apart(const cv::Point2f& pixel, std::span<const Corner> others, int distance_px);
 
 }  // namespace stillpoint

@@ -27,7 +27,8 @@ class FeatureDetector {
   virtual ~FeatureDetector() = default;
 
   /// New points, the most wanted first [px]. Same history and same request, same answer.
-  [[nodiscard]] virtual std::vector<cv::Point2f> detect(const DetectionRequest& request) = 0;
+  /// @return valid until the next call
+  [[nodiscard]] virtual const std::vector<cv::Point2f>& detect(const DetectionRequest& request) = 0;
 
   /// Forgets what earlier pictures taught.
   virtual void reset() = 0;

@@ -38,6 +38,7 @@ struct GridDetectorConfig {
   int padding_px = 3;        ///< overlap between cells; FAST needs 3
   int fast_threshold = 10;   ///< brightness step [grey levels]
   bool skip_empty = true;    ///< a cell that gave nothing is skipped at the next detection
+  bool stop_early = false;   ///< search the emptiest cells first, and no more once enough was found
   int spare_candidates = 2;  ///< candidates kept per cell beyond its quota
   int threads = 1;           ///< workers of the cell pool; the result does not depend on it
 };
@@ -49,6 +50,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("padding_px", config.padding_px, 3, 32);
   field("fast_threshold", config.fast_threshold, 1, 255);
   field("skip_empty", config.skip_empty);
+  field("stop_early", config.stop_early);
   field("spare_candidates", config.spare_candidates, 0, 64);
   field("threads", config.threads, 1, 64);
 }

@@ -2,6 +2,7 @@
 #include "core/frontend/grid_detector.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <tuple>
 
@@ -16,37 +17,38 @@ int cell_edge(int length, int parts, int index) { return length * index / parts;
 /// The stretch that holds a pixel: the inverse of `cell_edge`.
 int cell_index(int length, int parts, int pixel) { return ((pixel + 1) * parts - 1) / length; }
 
-struct Candidate {
-  Corner corner;
-  std::size_t cell = 0;
-  int fill = 0;  // features the cell would have before this one, if all stronger ones of it were taken
-};
-
-bool comes_first(const Candidate& a, const Candidate& b) {
-  return std::tuple(a.fill, -a.corner.score, a.cell) < std::tuple(b.fill, -b.corner.score, b.cell);
-}
-
 }  // namespace
 
 GridDetector::GridDetector(const GridDetectorConfig& config, int max_features)
     : config_(config),
       quota_((max_features + config.rows * config.cols - 1) / (config.rows * config.cols)),
       barren_(static_cast<std::size_t>(config.rows) * static_cast<std::size_t>(config.cols), 0),
+      tracked_(barren_.size(), 0),
+      searches_(barren_.size()),
       pool_(config.threads) {}
 
-std::vector<cv::Point2f> GridDetector::detect(const DetectionRequest& request) {
+const std::vector<cv::Point2f>& GridDetector::detect(const DetectionRequest& request) {
   if (request.gray.rows < config_.rows || request.gray.cols < config_.cols) {
     throw InputError("frontend.grid", "more cells than pixels in a picture of " +
                                           std::to_string(request.gray.cols) + "x" +
                                           std::to_string(request.gray.rows) + "; lower rows and cols");
   }
   searched_.clear();
-  if (request.wanted <= 0) return {};
-  const std::vector<int> features = features_per_cell(request);
-  schedule(features);
-  const std::vector<std::vector<Corner>> found = search(request, features);
-  for (std::size_t i = 0; i < searched_.size(); ++i) barren_[searched_[i]] = found[i].empty() ? 1 : 0;
-  return select(request, features, found);
+  candidates_.clear();
+  taken_.clear();
+  pixels_.clear();
+  if (request.wanted <= 0) return pixels_;
+  count_features(request);
+  features_ = tracked_;
+  schedule();
+  for (int fill = 0; fill < quota_ + config_.spare_candidates; ++fill) {
+    const bool enough = taken_.size() == static_cast<std::size_t>(request.wanted);
+    if (enough && config_.stop_early) break;
+    search(request, fill);
+    take(request, fill);
+  }
+  for (const Corner& corner : taken_) pixels_.push_back(corner.pixel);
+  return pixels_;
 }
 
 void GridDetector::reset() { std::fill(barren_.begin(), barren_.end(), std::uint8_t{0}); }
@@ -59,60 +61,65 @@ cv::Rect GridDetector::cell_rect(std::size_t cell, cv::Size size) const {
       cv::Point(cell_edge(size.width, config_.cols, col + 1), cell_edge(size.height, config_.rows, row + 1))};
 }
 
-std::vector<int> GridDetector::features_per_cell(const DetectionRequest& request) const {
-  std::vector<int> features(cell_count(), 0);
+void GridDetector::count_features(const DetectionRequest& request) {
+  std::fill(tracked_.begin(), tracked_.end(), 0);
   for (const cv::Point2f& pixel : request.tracked) {
     const int x = std::clamp(cvRound(pixel.x), 0, request.gray.cols - 1);
     const int y = std::clamp(cvRound(pixel.y), 0, request.gray.rows - 1);
     const int cell = cell_index(request.gray.rows, config_.rows, y) * config_.cols +
                      cell_index(request.gray.cols, config_.cols, x);
-    ++features[static_cast<std::size_t>(cell)];
+    ++tracked_[static_cast<std::size_t>(cell)];
   }
-  return features;
 }
 
-void GridDetector::schedule(const std::vector<int>& features) {
+void GridDetector::schedule() {
+  scheduled_.clear();
   for (std::size_t cell = 0; cell < cell_count(); ++cell) {
     const bool skipped = config_.skip_empty && barren_[cell] != 0;
-    if (features[cell] < quota_ && !skipped) searched_.push_back(cell);
+    if (tracked_[cell] < quota_ && !skipped) scheduled_.push_back(cell);
     barren_[cell] = 0;
   }
 }
 
-std::vector<std::vector<Corner>> GridDetector::search(const DetectionRequest& request,
-                                                      const std::vector<int>& features) {
-  std::vector<std::vector<Corner>> found(searched_.size());
-  pool_.for_each_index(searched_.size(), [&](std::size_t i) {
-    const int lacking = quota_ - features[searched_[i]];
-    found[i] = fast_corners_in_cell(request.gray, request.mask, cell_rect(searched_[i], request.gray.size()),
-                                    {.padding_px = config_.padding_px,
-                                     .threshold = config_.fast_threshold,
-                                     .min_distance_px = request.min_distance_px,
-                                     .limit = static_cast<std::size_t>(lacking + config_.spare_candidates)});
-  });
-  return found;
+/// Searches the scheduled cells that held `fill` features; all of them at once where none will be spared.
+void GridDetector::search(const DetectionRequest& request, int fill) {
+  const std::size_t first = searched_.size();
+  for (const std::size_t cell : scheduled_) {
+    const bool due = config_.stop_early ? tracked_[cell] == fill : fill == 0;
+    if (due) searched_.push_back(cell);
+  }
+  const auto search_cell = [&](std::size_t i) {
+    const std::size_t cell = searched_[first + i];
+    const int lacking = quota_ - tracked_[cell];
+    searches_[cell].search(request.gray, request.mask, cell_rect(cell, request.gray.size()),
+                           {.padding_px = config_.padding_px,
+                            .threshold = config_.fast_threshold,
+                            .min_distance_px = request.min_distance_px,
+                            .limit = static_cast<std::size_t>(lacking + config_.spare_candidates)});
+  };
+  pool_.for_each_index(searched_.size() - first, std::ref(search_cell));  // a copy would need memory
+  for (std::size_t i = first; i < searched_.size(); ++i) {
+    const std::size_t cell = searched_[i];
+    barren_[cell] = searches_[cell].corners().empty() ? 1 : 0;
+    int before = tracked_[cell];
+    for (const Corner& corner : searches_[cell].corners()) candidates_.push_back({corner, cell, before++});
+  }
 }
 
-std::vector<cv::Point2f> GridDetector::select(const DetectionRequest& request, std::vector<int> features,
-                                              const std::vector<std::vector<Corner>>& found) const {
-  std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    int fill = features[searched_[i]];
-    for (const Corner& corner : found[i]) candidates.push_back({corner, searched_[i], fill++});
+/// Takes corners of cells that would have `fill` features before, the strongest first.
+void GridDetector::take(const DetectionRequest& request, int fill) {
+  const auto end = std::partition(candidates_.begin(), candidates_.end(),
+                                  [fill](const Candidate& one) { return one.fill == fill; });
+  std::sort(candidates_.begin(), end, [](const Candidate& a, const Candidate& b) {
+    return std::tuple(-a.corner.score, a.cell) < std::tuple(-b.corner.score, b.cell);
+  });
+  for (auto candidate = candidates_.begin(); candidate != end; ++candidate) {
+    if (taken_.size() == static_cast<std::size_t>(request.wanted)) break;
+    if (features_[candidate->cell] >= quota_) continue;
+    if (!is_apart(candidate->corner.pixel, taken_, request.min_distance_px)) continue;
+    taken_.push_back(candidate->corner);
+    ++features_[candidate->cell];
   }
-  std::sort(candidates.begin(), candidates.end(), comes_first);
-
-  std::vector<Corner> taken;
-  for (const Candidate& candidate : candidates) {
-    if (taken.size() == static_cast<std::size_t>(request.wanted)) break;
-    if (features[candidate.cell] >= quota_) continue;
-    if (!is_apart(candidate.corner.pixel, taken, request.min_distance_px)) continue;
-    taken.push_back(candidate.corner);
-    ++features[candidate.cell];
-  }
-  std::vector<cv::Point2f> pixels;
-  for (const Corner& corner : taken) pixels.push_back(corner.pixel);
-  return pixels;
 }
 
 }  // namespace stillpoint

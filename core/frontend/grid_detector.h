@@ -20,28 +20,41 @@ class GridDetector final : public FeatureDetector {
   ///   silent; rounded down, 56 cells could never hold more than 112 of 130)
   GridDetector(const GridDetectorConfig& config, int max_features);
 
-  /// Fills the emptiest cells first, and among equally full ones the strongest corners. @throws InputError
-  /// when the picture has fewer rows or columns than the grid
-  [[nodiscard]] std::vector<cv::Point2f> detect(const DetectionRequest& request) override;
+  /// Fills the emptiest cells first, and among equally full ones the strongest corners. With `stop_early`
+  /// that choice is the same but for cells that are passed over instead of being found barren. @throws
+  /// InputError when the picture has fewer rows or columns than the grid
+  [[nodiscard]] const std::vector<cv::Point2f>& detect(const DetectionRequest& request) override;
   void reset() override;
 
-  /// Cells searched at the last call, row by row from 0; for tests and reports.
+  /// Cells searched at the last call, in that order: row by row from 0, the emptiest first with `stop_early`;
+  /// for tests and reports.
   [[nodiscard]] const std::vector<std::size_t>& searched_cells() const { return searched_; }
 
  private:
-  [[nodiscard]] std::vector<int> features_per_cell(const DetectionRequest& request) const;
-  void schedule(const std::vector<int>& features);
-  [[nodiscard]] std::vector<std::vector<Corner>> search(const DetectionRequest& request,
-                                                        const std::vector<int>& features);
-  [[nodiscard]] std::vector<cv::Point2f> select(const DetectionRequest& request, std::vector<int> features,
-                                                const std::vector<std::vector<Corner>>& found) const;
+  struct Candidate {
+    Corner corner;
+    std::size_t cell = 0;
+    int fill = 0;  // features the cell would have before this one, if all stronger ones of it were taken
+  };
+
+  void count_features(const DetectionRequest& request);
+  void schedule();
+  void search(const DetectionRequest& request, int fill);
+  void take(const DetectionRequest& request, int fill);
   [[nodiscard]] cv::Rect cell_rect(std::size_t cell, cv::Size size) const;
   [[nodiscard]] std::size_t cell_count() const { return barren_.size(); }
 
   GridDetectorConfig config_;
   int quota_;
   std::vector<std::uint8_t> barren_;  // per cell: gave nothing when last searched
+  std::vector<int> tracked_;          // per cell
+  std::vector<int> features_;         // per cell: tracked and taken
+  std::vector<std::size_t> scheduled_;
   std::vector<std::size_t> searched_;
+  std::vector<FastCell> searches_;  // per cell
+  std::vector<Candidate> candidates_;
+  std::vector<Corner> taken_;
+  std::vector<cv::Point2f> pixels_;
   ThreadPool pool_;
 };
 

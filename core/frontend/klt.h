@@ -26,8 +26,12 @@ class ImagePyramid {
   [[nodiscard]] const cv::Mat& level(std::size_t index) const { return images_[step_ * index]; }
 
  private:
+  void rebuild_pictures(const cv::Mat& gray, int border_px, int levels);
+
   std::vector<cv::Mat> images_;
-  std::size_t step_ = 1;  ///< entries of images_ per level
+  std::vector<std::uint16_t> sums_;  ///< memory of the filter
+  std::size_t step_ = 1;             ///< entries of images_ per level
+  int border_px_ = 0;                ///< of pictures without derivatives
 };
 
 struct KltSettings {

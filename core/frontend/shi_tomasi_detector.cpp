@@ -5,12 +5,12 @@
 
 namespace stillpoint {
 
-std::vector<cv::Point2f> ShiTomasiDetector::detect(const DetectionRequest& request) {
-  std::vector<cv::Point2f> corners;
-  if (request.wanted <= 0) return corners;
-  cv::goodFeaturesToTrack(request.gray, corners, request.wanted, quality_, request.min_distance_px,
+const std::vector<cv::Point2f>& ShiTomasiDetector::detect(const DetectionRequest& request) {
+  corners_.clear();
+  if (request.wanted <= 0) return corners_;
+  cv::goodFeaturesToTrack(request.gray, corners_, request.wanted, quality_, request.min_distance_px,
                           request.mask.image());
-  return corners;
+  return corners_;
 }
 
 }  // namespace stillpoint

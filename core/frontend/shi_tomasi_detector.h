@@ -12,11 +12,12 @@ class ShiTomasiDetector final : public FeatureDetector {
   /// @param quality least strength of a corner as a share of the picture's best, in (0, 1)
   explicit ShiTomasiDetector(double quality) : quality_(quality) {}
 
-  [[nodiscard]] std::vector<cv::Point2f> detect(const DetectionRequest& request) override;
+  [[nodiscard]] const std::vector<cv::Point2f>& detect(const DetectionRequest& request) override;
   void reset() override {}
 
  private:
   double quality_;
+  std::vector<cv::Point2f> corners_;
 };
 
 }  // namespace stillpoint

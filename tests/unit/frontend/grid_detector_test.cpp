@@ -120,6 +120,23 @@ TEST(GridDetector, SkipListCanBeSwitchedOffAndIsForgottenByReset) {
   EXPECT_EQ(reset.searched_cells().size(), static_cast<std::size_t>(kCells));
 }
 
+TEST(GridDetector, StoppingEarlyFindsTheSameInFewerCells) {
+  const cv::Mat gray = random_texture(kPictureSize, 1);
+  const std::vector<cv::Point2f> tracked = {{20.0F, 20.0F}, {60.0F, 60.0F}, {100.0F, 20.0F}};
+  GridDetectorConfig config = small_grid();
+  GridDetector thorough(config, 2 * kCells);
+  config.stop_early = true;
+  GridDetector brief(config, 2 * kCells);
+  for (const int wanted : {4, 12, 20}) {  // enough in empty cells, nearly so, not enough
+    thorough.reset();
+    brief.reset();
+    EXPECT_EQ(detect(brief, gray, free_mask(), tracked, wanted),
+              detect(thorough, gray, free_mask(), tracked, wanted));
+    EXPECT_EQ(thorough.searched_cells().size(), static_cast<std::size_t>(kCells));
+    EXPECT_EQ(brief.searched_cells().size(), wanted == 4 ? 9U : static_cast<std::size_t>(kCells));
+  }
+}
+
 TEST(GridDetector, PaddingFindsCornersOnTheEdgeOfACell) {
   GridDetector detector(small_grid(), kCells);
   cv::Mat gray = blank();
