@@ -69,14 +69,30 @@ bool place_at(const PatchImage& image, PatchPoint centre, Place& place) {
   return true;
 }
 
+/// A symmetric matrix.
+struct Tensor {
+  float xx = 0.0F, xy = 0.0F, yy = 0.0F;
+
+  [[nodiscard]] float smaller_eigenvalue() const {
+    return 0.5F * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4.0F * xy * xy));
+  }
+};
+
+/// The step that the slopes ask for.
+PatchPoint newton_step(const Tensor& tensor, PatchPoint slope) {
+  const float scale = -1.0F / (tensor.xx * tensor.yy - tensor.xy * tensor.xy);
+  return {scale * (tensor.yy * slope.x - tensor.xy * slope.y),
+          scale * (tensor.xx * slope.y - tensor.xy * slope.x)};
+}
+
 /// A patch and what the search needs of it.
 struct Patch {
   HWY_ALIGN std::array<float, kArea> grey;  ///< these three without their means
   HWY_ALIGN std::array<float, kArea> by_x;
   HWY_ALIGN std::array<float, kArea> by_y;
-  float moment_x = 0.0F, moment_y = 0.0F;                         ///< sums of by_x * grey and by_y * grey
-  float inverse_xx = 0.0F, inverse_xy = 0.0F, inverse_yy = 0.0F;  ///< of the gradient tensor
-  float norm = 0.0F;                                              ///< root of the sum of grey^2
+  PatchPoint slope;   ///< sums of by_x * grey and by_y * grey
+  Tensor tensor;      ///< sums of products of the gradients
+  float norm = 0.0F;  ///< root of the sum of grey^2
 };
 
 /// Sums over the patch as it was sampled: grey, by_x, by_y and their products.
@@ -156,18 +172,12 @@ void remove_means(const Moments& m, Patch& patch) {
 bool prepare(const Place& place, float min_eigenvalue, Patch& patch) {
   const Moments m = sample(place, patch);
   constexpr float kShare = 1.0F / kArea;
-  const float xx = m[kXX] - m[kX] * m[kX] * kShare;
-  const float xy = m[kXY] - m[kX] * m[kY] * kShare;
-  const float yy = m[kYY] - m[kY] * m[kY] * kShare;
-  const float smaller = 0.5F * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4.0F * xy * xy));
-  if (!(smaller >= min_eigenvalue * kArea)) return false;
+  patch.tensor = {.xx = m[kXX] - m[kX] * m[kX] * kShare,
+                  .xy = m[kXY] - m[kX] * m[kY] * kShare,
+                  .yy = m[kYY] - m[kY] * m[kY] * kShare};
+  if (!(patch.tensor.smaller_eigenvalue() >= min_eigenvalue * kArea)) return false;
   remove_means(m, patch);
-  const float inverse = 1.0F / (xx * yy - xy * xy);
-  patch.inverse_xx = yy * inverse;
-  patch.inverse_xy = -xy * inverse;
-  patch.inverse_yy = xx * inverse;
-  patch.moment_x = m[kGX] - m[kG] * m[kX] * kShare;
-  patch.moment_y = m[kGY] - m[kG] * m[kY] * kShare;
+  patch.slope = {m[kGX] - m[kG] * m[kX] * kShare, m[kGY] - m[kG] * m[kY] * kShare};
   patch.norm = std::sqrt(m[kGG] - m[kG] * m[kG] * kShare);
   return true;
 }
@@ -188,8 +198,8 @@ HWY_INLINE void for_each_row(const Place& place, std::size_t x, Use use) {
   }
 }
 
-/// The way from here to where the patch fits better.
-PatchPoint step_from(const Place& place, const Patch& patch) {
+/// Half the gradient of the squared misfit here.
+PatchPoint slope_at(const Place& place, const Patch& patch) {
   const Row row;
   Columns sums_x;
   Columns sums_y;
@@ -203,9 +213,7 @@ PatchPoint step_from(const Place& place, const Patch& patch) {
     hn::StoreU(sum_x, row, sums_x.data() + x);
     hn::StoreU(sum_y, row, sums_y.data() + x);
   }
-  const float error_x = sum_of(sums_x) - patch.moment_x, error_y = sum_of(sums_y) - patch.moment_y;
-  return {-(patch.inverse_xx * error_x + patch.inverse_xy * error_y),
-          -(patch.inverse_xy * error_x + patch.inverse_yy * error_y)};
+  return {sum_of(sums_x) - patch.slope.x, sum_of(sums_y) - patch.slope.y};
 }
 
 /// Normalised cross-correlation of the patch with what is here, in [-1, 1].
@@ -232,37 +240,76 @@ float correlation(const Place& place, const Patch& patch) {
   return variance > 0.0F ? sum_of(products) / (patch.norm * std::sqrt(variance)) : 0.0F;
 }
 
-/// Walks to where the patch fits. @return false where it leaves the picture
-bool walk(const PatchImage& image, const Patch& patch, const PatchSettings& end, PatchPoint& match) {
+/// A patch of one level, perhaps joined by that of the next coarser one around the same point.
+struct Target {
+  const Patch* patch;
+  const PatchImage* image;
+  const Patch* coarse = nullptr;
+  const PatchImage* coarse_image = nullptr;
+};
+
+/// The way from `match` to where the target fits better. @return false where it leaves the picture
+bool step_from(const Target& target, PatchPoint match, PatchPoint& step) {
   Place place;
-  for (int i = 0; i < end.max_iterations; ++i) {
-    if (!place_at(image, match, place)) return false;
-    const PatchPoint step = step_from(place, patch);
-    match = {match.x + step.x, match.y + step.y};
-    if (step.x * step.x + step.y * step.y < end.converged_px * end.converged_px) break;
+  if (!place_at(*target.image, match, place)) return false;
+  PatchPoint slope = slope_at(place, *target.patch);
+  Tensor tensor = target.patch->tensor;
+  if (target.coarse != nullptr) {
+    // a step of one pixel is half a pixel there
+    if (!place_at(*target.coarse_image, {0.5F * match.x, 0.5F * match.y}, place)) return false;
+    const PatchPoint coarse_slope = slope_at(place, *target.coarse);
+    const Tensor& coarse_tensor = target.coarse->tensor;
+    slope = {slope.x + 0.5F * coarse_slope.x, slope.y + 0.5F * coarse_slope.y};
+    tensor = {.xx = tensor.xx + 0.25F * coarse_tensor.xx,
+              .xy = tensor.xy + 0.25F * coarse_tensor.xy,
+              .yy = tensor.yy + 0.25F * coarse_tensor.yy};
   }
-  return place_at(image, match, place);
+  step = newton_step(tensor, slope);
+  return true;
+}
+
+/// Walks to where the target fits. @return false where it leaves the picture
+bool walk(const Target& target, int max_iterations, float converged_px, PatchPoint& match) {
+  PatchPoint step;
+  for (int i = 0; i < max_iterations; ++i) {
+    if (!step_from(target, match, step)) return false;
+    match = {match.x + step.x, match.y + step.y};
+    if (step.x * step.x + step.y * step.y < converged_px * converged_px) break;
+  }
+  Place place;
+  return place_at(*target.image, match, place);
+}
+
+bool prepare_at(const PatchImage& image, PatchPoint centre, float min_eigenvalue, Patch& patch) {
+  Place place;
+  return place_at(image, centre, place) && prepare(place, min_eigenvalue, patch);
 }
 
 bool track_patch(const PatchSearch& search, PatchPoint point, const PatchSettings& settings,
                  PatchPoint& match) {
-  Patch patch;
-  Place place;
+  std::array<Patch, 2> patches;  // the last two levels, by parity
+  bool textured = false;
   for (std::size_t level = search.from.size(); level-- > 0;) {
     const float scale = 1.0F / static_cast<float>(1U << level);
-    const bool textured = place_at(search.from[level], {point.x * scale, point.y * scale}, place) &&
-                          prepare(place, settings.min_eigenvalue, patch);
-    if (!textured && level > 0) continue;  // a coarse level without texture leaves it to the finer ones
-    if (!textured) return false;
+    const bool coarser_textured = textured;
+    Patch& patch = patches[level % 2];
+    textured =
+        prepare_at(search.from[level], {point.x * scale, point.y * scale}, settings.min_eigenvalue, patch);
+    if (!textured) continue;  // a coarse level without texture leaves it to the finer ones
+    Target target{.patch = &patch, .image = &search.to[level]};
+    if (level == 0 && coarser_textured) {
+      target.coarse = &patches[1];
+      target.coarse_image = &search.to[1];
+    }
     PatchPoint scaled{match.x * scale, match.y * scale};
-    PatchSettings end = settings;
-    if (level > 0) end.converged_px = kCoarseConverged_px;
-    const bool inside = walk(search.to[level], patch, end, scaled);
-    if (!inside && level > 0) continue;
-    match = {scaled.x / scale, scaled.y / scale};
-    if (!inside) return false;
+    const float converged_px = level > 0 ? kCoarseConverged_px : settings.converged_px;
+    const bool inside = walk(target, settings.max_iterations, converged_px, scaled);
+    if (inside || level == 0) match = {scaled.x / scale, scaled.y / scale};
+    if (!inside && level == 0) return false;
   }
-  return place_at(search.to[0], match, place) && correlation(place, patch) >= settings.min_correlation;
+  Place place;
+  return textured && place_at(search.to[0], match, place) &&
+         correlation(place, patches[0]) >= settings.min_correlation;
 }
 
 void track_patches(const PatchSearch& search, const PatchSettings& settings) {

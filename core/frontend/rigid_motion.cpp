@@ -3,45 +3,25 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <opencv2/calib3d.hpp>
-#include <vector>
+#include <array>
+#include <cmath>
+#include <random>
 
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kMinObservations = 4;  // P3P and one to choose among its solutions
+constexpr std::size_t kSampleSize =
+    4;  // one more than the pose needs: it averages, and shuns false solutions
 constexpr int kMaxSamples = 100;
+constexpr int kSampleSteps = 4;  // from no motion: enough for 30 degrees
 constexpr int kRefinementSteps = 4;
-constexpr double kMinDepth = 1e-3;  // [m]: points behind the camera take no part in the refinement
+constexpr double kUnweighted = 1e3;  // scale of a weight that no misfit lowers
+constexpr double kMinDepth = 1e-3;   // [m]: points behind the camera take no part in the refinement
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-Pose to_pose(const cv::Vec3d& rotation, const cv::Vec3d& translation) {
-  return {exp_so3({rotation[0], rotation[1], rotation[2]}), {translation[0], translation[1], translation[2]}};
-}
-
-std::optional<Pose> draw_pose(std::span<const PointObservation> observations,
-                              const RigidMotionSettings& settings) {
-  std::vector<cv::Point3d> points;
-  std::vector<cv::Point2d> bearings;
-  for (const PointObservation& observation : observations) {
-    points.emplace_back(observation.point.x(), observation.point.y(), observation.point.z());
-    bearings.emplace_back(observation.bearing.x(), observation.bearing.y());
-  }
-  constexpr bool kUseGuess = false;
-  cv::Vec3d rotation;
-  cv::Vec3d translation;
-  const bool found = cv::solvePnPRansac(
-      points, bearings, cv::Matx33d::eye(), cv::noArray(), rotation, translation, kUseGuess, kMaxSamples,
-      static_cast<float>(settings.threshold), settings.confidence, cv::noArray(), cv::SOLVEPNP_P3P);
-  if (!found) return std::nullopt;
-  const Pose pose = to_pose(rotation, translation);
-  if (!pose.q.coeffs().allFinite() || !pose.p.allFinite()) return std::nullopt;
-  return pose;
-}
 
 /// One Gauss-Newton step of the left perturbation (theta, p): x' = Exp(theta) x + p.
 Pose refine(std::span<const PointObservation> observations, const Pose& T_to_from, double cauchy_scale) {
@@ -65,17 +45,58 @@ Pose refine(std::span<const PointObservation> observations, const Pose& T_to_fro
   return Pose{exp_so3(step.head<3>()), step.tail<3>()} * T_to_from;
 }
 
+Pose refine(std::span<const PointObservation> observations, Pose T_to_from, double cauchy_scale, int steps) {
+  for (int i = 0; i < steps; ++i) T_to_from = refine(observations, T_to_from, cauchy_scale);
+  return T_to_from;
+}
+
+std::size_t count_inliers(std::span<const PointObservation> observations, const Pose& T_to_from,
+                          double threshold) {
+  const Eigen::Matrix3d R_to_from = T_to_from.R();
+  std::size_t inliers = 0;
+  for (const PointObservation& observation : observations) {
+    const Eigen::Vector3d p = R_to_from * observation.point + T_to_from.p;
+    const bool fits = (p.head<2>() - p.z() * observation.bearing).norm() <= threshold * p.z();
+    inliers += fits ? 1 : 0;
+  }
+  return inliers;
+}
+
+/// Samples to draw until, with the settings' confidence, one was clean. Fischler and Bolles 1981.
+double samples_needed(double inlier_share, double confidence) {
+  const double clean = std::pow(inlier_share, static_cast<double>(kSampleSize));
+  return clean < 1.0 ? std::log(1.0 - confidence) / std::log(1.0 - clean) : 0.0;
+}
+
+std::optional<Pose> draw_pose(std::span<const PointObservation> observations,
+                              const RigidMotionSettings& settings) {
+  const double number = static_cast<double>(observations.size());
+  std::minstd_rand random;  // always the same seed: same input, same answer
+  Pose best;
+  std::size_t most = 0;
+  double needed = kMaxSamples;
+  for (int i = 0; i < kMaxSamples && i < needed; ++i) {
+    std::array<PointObservation, kSampleSize> sample;
+    for (PointObservation& one : sample) one = observations[random() % observations.size()];
+    const Pose pose = refine(sample, Pose{}, kUnweighted, kSampleSteps);
+    const std::size_t inliers = count_inliers(observations, pose, settings.threshold);
+    if (inliers <= most) continue;
+    best = pose;
+    most = inliers;
+    needed = samples_needed(static_cast<double>(inliers) / number, settings.confidence);
+  }
+  if (most < kSampleSize) return std::nullopt;
+  return best;
+}
+
 }  // namespace
 
 std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> observations,
                                           const RigidMotionSettings& settings) {
-  if (observations.size() < kMinObservations) return std::nullopt;
-  std::optional<Pose> T_to_from = draw_pose(observations, settings);
-  if (!T_to_from) return std::nullopt;
-  for (int i = 0; i < kRefinementSteps; ++i) {
-    T_to_from = refine(observations, *T_to_from, 0.5 * settings.threshold);
-  }
-  return T_to_from;
+  if (observations.size() < kSampleSize) return std::nullopt;
+  const std::optional<Pose> drawn = draw_pose(observations, settings);
+  if (!drawn) return std::nullopt;
+  return refine(observations, *drawn, 0.5 * settings.threshold, kRefinementSteps);
 }
 
 }  // namespace stillpoint

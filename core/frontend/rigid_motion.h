@@ -20,9 +20,10 @@ struct RigidMotionSettings {
   double confidence = 0.99;  ///< of having drawn one clean sample
 };
 
-/// The later camera's pose relative to the earlier one (coordinates in the earlier to the later): P3P in
-/// RANSAC, then Gauss-Newton on all observations with Cauchy weights (Holland and Welsch 1977). The
-/// refinement matters: a pose from four noisy points throws out good matches. Deterministic.
+/// The later camera's pose relative to the earlier one (coordinates in the earlier to the later): RANSAC over
+/// samples of four, then Gauss-Newton on all observations with Cauchy weights (Holland and Welsch 1977). The
+/// refinement matters: a pose from four noisy points throws out good matches. Samples too are solved by
+/// Gauss-Newton, from no motion: between two pictures there is little. Deterministic; allocates nothing.
 /// @return nothing with fewer than four observations, or when RANSAC finds no pose
 [[nodiscard]] std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> observations,
                                                         const RigidMotionSettings& settings);

@@ -62,9 +62,12 @@ TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
                      {"frontend.min_distance_px", "20"},
                      {"frontend.unstable_radius_px", "20"},
                      {"frontend.prediction", "\"full\""},
+                     {"frontend.tracker", "\"patch\""},
                      {"frontend.window_px", "15"},
+                     {"frontend.min_correlation", "0.6"},
                      {"frontend.outlier_model", "\"rigid\""},
                      {"frontend.ransac_threshold_px", "2.0"},
+                     {"frontend.grid.stop_early", "true"},
                      {"dynamic.mask", "\"depth_band\""},
                      {"dynamic.epsilon_m", "0.4"},
                      {"dynamic.depth_window_px", "5"},
@@ -86,6 +89,12 @@ TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
                      {"backend.depth.usage", "\"weighted\""},
                      {"backend.depth.outlier_sigmas", "5.0"},
                      {"backend.initializer.kind", "\"instant\""}}));
+}
+
+TEST(ConfigOverlays, LibrariesStandInForOurTrackerAndSolver) {
+  EXPECT_EQ(changes("stillpoint", "libraries"),
+            (Entries{{"frontend.tracker", "\"opencv\""}, {"backend.solver", "\"ceres\""}}));
+  EXPECT_EQ(changes("dynamic_vins", "libraries"), Entries{});
 }
 
 TEST(ConfigOverlays, VinsRgbdIsDynamicVinsWithoutItsInventions) {
