@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/frontend/patch_geometry.h"
+
 // Highway compiles what lies between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE once for each instruction
 // set.
 #undef HWY_TARGET_INCLUDE
@@ -17,10 +19,9 @@ HWY_BEFORE_NAMESPACE();
 namespace stillpoint::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t kSide = 8;
+constexpr std::size_t kSide = kPatchSide;
 constexpr std::size_t kArea = kSide * kSide;
 constexpr float kCoarseConverged_px = 0.1F;  // enough for the next finer level to begin
-constexpr float kHalf = 0.5F * (kSide - 1);
 
 /// A row of the patch, or as much of it as a register holds.
 using Row = hn::CappedTag<float, kSide>;
@@ -43,46 +44,6 @@ HWY_INLINE Vector load(Row row, const std::uint8_t* pixels) {
 /// a + share * (b - a)
 HWY_INLINE Vector blend(Vector a, Vector b, Vector share) {
   return hn::Add(a, hn::Mul(share, hn::Sub(b, a)));
-}
-
-/// The pixel above and left of a place, and the shares of its neighbours.
-struct Place {
-  const std::uint8_t* pixels;
-  std::ptrdiff_t stride;
-  float share_x;
-  float share_y;
-};
-
-/// Of the patch's upper left pixel. @return false where the centre is not in the picture
-bool place_at(const PatchImage& image, PatchPoint centre, Place& place) {
-  const bool inside = centre.x >= 0.0F && centre.y >= 0.0F &&
-                      centre.x <= static_cast<float>(image.width - 1) &&
-                      centre.y <= static_cast<float>(image.height - 1);
-  if (!inside) return false;  // nor where it is not a number
-  const float x = std::floor(centre.x - kHalf);
-  const float y = std::floor(centre.y - kHalf);
-  place = {
-      .pixels = image.pixels + static_cast<std::ptrdiff_t>(y) * image.stride + static_cast<std::ptrdiff_t>(x),
-      .stride = image.stride,
-      .share_x = centre.x - kHalf - x,
-      .share_y = centre.y - kHalf - y};
-  return true;
-}
-
-/// A symmetric matrix.
-struct Tensor {
-  float xx = 0.0F, xy = 0.0F, yy = 0.0F;
-
-  [[nodiscard]] float smaller_eigenvalue() const {
-    return 0.5F * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4.0F * xy * xy));
-  }
-};
-
-/// The step that the slopes ask for.
-PatchPoint newton_step(const Tensor& tensor, PatchPoint slope) {
-  const float scale = -1.0F / (tensor.xx * tensor.yy - tensor.xy * tensor.xy);
-  return {scale * (tensor.yy * slope.x - tensor.xy * slope.y),
-          scale * (tensor.xx * slope.y - tensor.xy * slope.x)};
 }
 
 /// A patch and what the search needs of it.
@@ -201,8 +162,7 @@ HWY_INLINE void for_each_row(const Place& place, std::size_t x, Use use) {
 /// Half the gradient of the squared misfit here.
 PatchPoint slope_at(const Place& place, const Patch& patch) {
   const Row row;
-  Columns sums_x;
-  Columns sums_y;
+  Columns sums_x, sums_y;
   for (std::size_t x = 0; x < kSide; x += hn::Lanes(row)) {
     Vector sum_x = hn::Zero(row);
     Vector sum_y = hn::Zero(row);
@@ -219,9 +179,7 @@ PatchPoint slope_at(const Place& place, const Patch& patch) {
 /// Normalised cross-correlation of the patch with what is here, in [-1, 1].
 float correlation(const Place& place, const Patch& patch) {
   const Row row;
-  Columns sums;
-  Columns squares;
-  Columns products;
+  Columns sums, squares, products;
   for (std::size_t x = 0; x < kSide; x += hn::Lanes(row)) {
     Vector sum = hn::Zero(row);
     Vector square = hn::Zero(row);
@@ -255,14 +213,9 @@ bool step_from(const Target& target, PatchPoint match, PatchPoint& step) {
   PatchPoint slope = slope_at(place, *target.patch);
   Tensor tensor = target.patch->tensor;
   if (target.coarse != nullptr) {
-    // a step of one pixel is half a pixel there
     if (!place_at(*target.coarse_image, {0.5F * match.x, 0.5F * match.y}, place)) return false;
-    const PatchPoint coarse_slope = slope_at(place, *target.coarse);
-    const Tensor& coarse_tensor = target.coarse->tensor;
-    slope = {slope.x + 0.5F * coarse_slope.x, slope.y + 0.5F * coarse_slope.y};
-    tensor = {.xx = tensor.xx + 0.25F * coarse_tensor.xx,
-              .xy = tensor.xy + 0.25F * coarse_tensor.xy,
-              .yy = tensor.yy + 0.25F * coarse_tensor.yy};
+    slope = joined(slope, slope_at(place, *target.coarse));
+    tensor = joined(tensor, target.coarse->tensor);
   }
   step = newton_step(tensor, slope);
   return true;

@@ -78,7 +78,6 @@ TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
                      {"dynamic.mcc_min_observations", "3"},
                      {"dynamic.quiet_pictures", "3"},
                      {"dynamic.rest_pictures", "3"},
-                     {"dynamic.rest_px", "1.0"},
                      {"dynamic.gate_before_solve", "true"},
                      {"dynamic.min_stable_features", "20"},
                      {"backend.rate_hz", "0.0"},
