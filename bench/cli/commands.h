@@ -12,11 +12,15 @@ namespace stillpoint {
 [[nodiscard]] Command bench_command();           ///< `stillpoint bench`: sequences x variants, one table
 [[nodiscard]] Command plan_command();            ///< `stillpoint plan`: what plans ask for
 [[nodiscard]] Command store_command();           ///< `stillpoint store`: looking after stores of runs
-[[nodiscard]] Command stats_command();           ///< `stillpoint stats`: what runs say together
-[[nodiscard]] Command compare_command();         ///< `stillpoint compare`: the gate for commits
-[[nodiscard]] Command profile_command();         ///< `stillpoint profile`: where the time of a run goes
-[[nodiscard]] Command report_command();          ///< `stillpoint report`: one offline page about a store
-[[nodiscard]] Command reproduce_command();  ///< `stillpoint reproduce`: a table of the paper in one command
+/// `stillpoint store accept`, `withdraw` and `accepted`: changes of numbers that people accept
+[[nodiscard]] std::vector<Command> acceptance_commands();
+[[nodiscard]] Command stats_command();        ///< `stillpoint stats`: what runs say together
+[[nodiscard]] Command compare_command();      ///< `stillpoint compare`: the gate for commits
+[[nodiscard]] Command profile_command();      ///< `stillpoint profile`: where the time of a run goes
+[[nodiscard]] Command report_command();       ///< `stillpoint report`: one offline page about a store
+[[nodiscard]] Command dashboard_command();    ///< `stillpoint dashboard`: numbers over commits as pages
+[[nodiscard]] Command regressions_command();  ///< `stillpoint regressions`: what is worse and not accepted
+[[nodiscard]] Command reproduce_command();    ///< `stillpoint reproduce`: a table of the paper in one command
 [[nodiscard]] Command config_command();     ///< `stillpoint config`: resolved configs and the reference page
 [[nodiscard]] Command data_command();       ///< `stillpoint data`: make and inspect sequences
 [[nodiscard]] Command check_command();      ///< `stillpoint data check`: the sequence doctor

@@ -5,8 +5,9 @@
 
 int main(int argc, char** argv) {
   using namespace stillpoint;
-  return run_command_line(argc, argv,
-                          {run_command(), eval_command(), bench_command(), plan_command(), store_command(),
-                           stats_command(), compare_command(), profile_command(), report_command(),
-                           reproduce_command(), detect_command(), config_command(), data_command()});
+  return run_command_line(
+      argc, argv,
+      {run_command(), eval_command(), bench_command(), plan_command(), store_command(), stats_command(),
+       compare_command(), profile_command(), report_command(), dashboard_command(), regressions_command(),
+       reproduce_command(), detect_command(), config_command(), data_command()});
 }

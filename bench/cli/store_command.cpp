@@ -138,29 +138,31 @@ Command store_command() {
                    .action = [arguments, action] { return action(*arguments); },
                    .subcommands = {}};
   };
+  std::vector<Command> subcommands = {
+      subcommand("list", "One line for each run", "list", {}, list),
+      subcommand("show", "Everything about one run", "show 8f18e31477d2f9b7",
+                 {{"KEY", "Key of the run, or its beginning", &arguments->run}}, show),
+      subcommand("extract", "Write trajectory, timings, result and manifest of one run as files",
+                 "extract 8f18e31477d2f9b7 /tmp/run",
+                 {{"KEY", "Key of the run, or its beginning", &arguments->run},
+                  {"DIR", "Folder to write into", &arguments->file}},
+                 extract),
+      subcommand("verify", "Check the database and every file; exit 1 if anything is wrong", "verify", {},
+                 verify),
+      subcommand("gc", "Remove files that no run names any more", "gc", {}, collect),
+      subcommand("merge", "Add the runs of another store", "merge other.sqlite --store all.sqlite",
+                 {{"FROM", "The other store", &arguments->file}}, merge),
+      subcommand("export", "Write everything as one JSON file", "export runs.json",
+                 {{"FILE", "File to write", &arguments->file}}, export_to),
+      subcommand("import", "Add the runs of an exported file", "import runs.json",
+                 {{"FILE", "File to read", &arguments->file}}, import_from)};
+  for (Command& command : acceptance_commands()) subcommands.push_back(std::move(command));
   return {.name = "store",
           .summary = "Look into stores of runs, check them, and move runs between them",
           .example = "store list --store build/bench/store.sqlite",
           .options = {},
           .action = {},
-          .subcommands = {
-              subcommand("list", "One line for each run", "list", {}, list),
-              subcommand("show", "Everything about one run", "show 8f18e31477d2f9b7",
-                         {{"KEY", "Key of the run, or its beginning", &arguments->run}}, show),
-              subcommand("extract", "Write trajectory, timings, result and manifest of one run as files",
-                         "extract 8f18e31477d2f9b7 /tmp/run",
-                         {{"KEY", "Key of the run, or its beginning", &arguments->run},
-                          {"DIR", "Folder to write into", &arguments->file}},
-                         extract),
-              subcommand("verify", "Check the database and every file; exit 1 if anything is wrong", "verify",
-                         {}, verify),
-              subcommand("gc", "Remove files that no run names any more", "gc", {}, collect),
-              subcommand("merge", "Add the runs of another store", "merge other.sqlite --store all.sqlite",
-                         {{"FROM", "The other store", &arguments->file}}, merge),
-              subcommand("export", "Write everything as one JSON file", "export runs.json",
-                         {{"FILE", "File to write", &arguments->file}}, export_to),
-              subcommand("import", "Add the runs of an exported file", "import runs.json",
-                         {{"FILE", "File to read", &arguments->file}}, import_from)}};
+          .subcommands = std::move(subcommands)};
 }
 
 }  // namespace stillpoint

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/page/report_page.h"
 
-#include <map>
-#include <string_view>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +8,7 @@
 #include "reports/openloris_figure.h"
 #include "reports/page/embedded_web.h"
 #include "reports/page/heat_map.h"
+#include "reports/page/html_parts.h"
 #include "reports/page/openloris_runs.h"
 #include "reports/page/page_data.h"
 #include "reports/page/summary.h"
@@ -30,22 +28,6 @@ constexpr const char* kScripts[] = {"unpack.js",    "charts.js",     "curves.js"
                                     "inspector.js", "histograms.js", "explorer.js", "flames.js",
                                     "downloads.js", "page.js"};
 constexpr const char* kHeatMetrics[] = {"ate_rmse_m", "rpe_trans_rmse_m_per_s", "rpe_rot_rmse_deg_per_s"};
-
-/// Replaces each <!--NAME--> of the template.
-std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts) {
-  constexpr std::string_view kOpen = "<!--";
-  constexpr std::string_view kClose = "-->";
-  std::string result;
-  while (true) {
-    const std::size_t begin = text.find(kOpen);
-    result += text.substr(0, begin);
-    if (begin == std::string_view::npos) return result;
-    const std::size_t end = text.find(kClose, begin);
-    const auto found = parts.find(text.substr(begin + kOpen.size(), end - begin - kOpen.size()));
-    if (found != parts.end()) result += found->second;
-    text.remove_prefix(end + kClose.size());
-  }
-}
 
 /// Runs of the latest other build, which a change is told against; empty without one.
 std::vector<StoredRun> previous_runs(const ReportSubject& subject) {
@@ -94,18 +76,6 @@ std::string heat_html(const ReportSubject& subject) {
   return text.empty() ? "<p class=\"none\">One variant alone has nothing to be compared with.</p>" : text;
 }
 
-/// A pre element keeps the lines that `escape_html` makes spaces.
-std::string preformatted(const std::string& text) {
-  std::string result;
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    const std::size_t end = rest.find('\n');
-    result += escape_html(rest.substr(0, end)) + "\n";
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  }
-  return result;
-}
-
 std::string plans_html(const Store& store, const ReportSubject& subject) {
   std::string text;
   for (const StoredPlan& plan : subject.plans) {
@@ -127,21 +97,17 @@ std::string openloris_html(const Store& store, const ReportSubject& subject) {
          svg.substr(svg.find("<svg")) + "</figure>";
 }
 
-std::string script(const std::string& id, const std::string& json) {
-  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, json_for_script(json));
-}
-
 std::string data_html(const PageData& data, const std::vector<ReportTable>& tables) {
   Json files = Json::array();
   for (const ReportTable& table : tables) {
     for (const OutputFile& file : table_files(table))
       files.push_back({{"name", file.name}, {"text", file.text}});
   }
-  std::string text = script("index", data.index);
-  text += script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
+  std::string text = data_script("index", data.index);
+  text += data_script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
   for (std::size_t i = 0; i < data.series.size(); ++i) {
-    text += script(fmt::format("series-{}", i), data.series[i]);
-    text += script(fmt::format("pictures-{}", i), data.pictures[i]);
+    text += data_script(fmt::format("series-{}", i), data.series[i]);
+    text += data_script(fmt::format("pictures-{}", i), data.pictures[i]);
   }
   return text;
 }
@@ -164,7 +130,7 @@ std::string licences_html() {
 std::string report_html(const Store& store, const ReportSubject& subject) {
   const PageData data = page_data(store, subject.runs);
   const std::vector<ReportTable> tables = report_tables(subject);
-  return filled(
+  return filled_template(
       web_file("page.html"),
       {{"title", escape_html(subject.title)},
        {"styles", std::string(web_file("vendor/uPlot.min.css")) + std::string(web_file("page.css"))},

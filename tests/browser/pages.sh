@@ -3,18 +3,8 @@
 # Opens pages in a real headless browser. Exit 77 with a reason where that is not to be had.
 #   tests/browser/pages.sh STILLPOINT [WORK]
 # STILLPOINT_SCREENSHOTS=DIR keeps pictures of the page, STILLPOINT_REPORT_STORE=FILE takes a store that is there.
-set -euo pipefail
-program="$(realpath "$1")"
-work="${2:-$(mktemp -d)}"
-here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
-skip() { echo "skipped: $1"; exit 77; }
+source "$(dirname "${BASH_SOURCE[0]}")/browser.sh"
 
-command -v node >/dev/null || skip "no node; apt-get install nodejs"
-browser="$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)"
-[[ -n "$browser" ]] || skip "no chromium; apt-get install chromium"
-[[ -d "$here/node_modules/playwright-core" ]] || skip "no playwright-core; npm ci --prefix tests/browser"
-
-mkdir -p "$work"
 store="${STILLPOINT_REPORT_STORE:-$work/store.sqlite}"
 if [[ -z "${STILLPOINT_REPORT_STORE:-}" ]]; then
   for plan in plan sweep; do

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/dashboard/dashboard.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "reports/dashboard/commit_page.h"
+#include "reports/dashboard/dashboard_data.h"
+#include "reports/dashboard/history_text.h"
+#include "reports/dashboard/regression_list.h"
+#include "reports/page/embedded_web.h"
+#include "reports/page/html_parts.h"
+#include "reports/tables/escaping.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kMostMembers = 20;  // of a group that are listed by name
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string commit_link(const CommitHistory& history, std::size_t commit) {
+  const Commit& target = history.commits[commit];
+  return fmt::format("<a href=\"{}\">{}</a>", commit_file(target), escape_html(commit_label(target.name)));
+}
+
+std::string series_link(const CommitHistory& history, std::size_t series) {
+  return fmt::format("<a href=\"#series={}\">{}</a>", series,
+                     escape_html(subject_label(history.series[series].subject)));
+}
+
+std::string summary_html(const CommitHistory& history, const HistoryChanges& changes) {
+  std::set<std::string> hosts;
+  for (const HistorySeries& series : history.series) hosts.insert(series.subject.host);
+  const std::size_t open = grouped_shifts(history, changes, ChangeState::kOpen).size();
+  const auto creeping = static_cast<std::size_t>(std::count_if(
+      changes.creeps.begin(), changes.creeps.end(), [](const Creep& creep) { return creep.worse; }));
+  std::string text = "<li>" + (open == 0 ? "No open regressions" : counted(open, "open regression")) +
+                     (creeping == 0 ? "" : "; " + counted(creeping, "number") + " creeping for the worse") +
+                     ".</li>";
+  text +=
+      fmt::format("<li>{} from {} to {}, {}, {} of machines.</li>", counted(history.commits.size(), "commit"),
+                  escape_html(history.commits.front().time), escape_html(history.commits.back().time),
+                  fmt::format("{} series", history.series.size()),
+                  hosts.size() == 1 ? "1 class" : fmt::format("{} classes", hosts.size()));
+  return "<ul class=\"summary\">" + text + "</ul>";
+}
+
+/// The others of a group, below its largest.
+std::string members_html(const CommitHistory& history, const ShiftGroup& group) {
+  if (group.shifts.size() < 2) return "";
+  std::string items;
+  for (std::size_t i = 1; i < std::min(group.shifts.size(), kMostMembers); ++i) {
+    items += "<li>" + series_link(history, group.shifts[i]->series) + " " + change_label(*group.shifts[i]) +
+             "</li>";
+  }
+  const std::string left = group.shifts.size() > kMostMembers
+                               ? fmt::format("<li>{} more</li>", group.shifts.size() - kMostMembers)
+                               : "";
+  return fmt::format("<details><summary>and {} more series</summary><ul>{}{}</ul></details>",
+                     group.shifts.size() - 1, items, left);
+}
+
+std::string group_row(const CommitHistory& history, const ShiftGroup& group) {
+  const LevelShift& largest = *group.shifts.front();
+  const HistorySeries& series = history.series[largest.series];
+  return fmt::format(
+      "<tr><th scope=\"row\">{}</th><td class=\"from\">{} .. {}</td><td class=\"from\">{}{}</td>"
+      "<td class=\"from\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+      "class=\"from\">{}</td></tr>\n",
+      escape_html(group.metric), commit_link(history, group.before), commit_link(history, group.after),
+      series_link(history, largest.series), members_html(history, group), escape_html(series.subject.host),
+      escape_html(number_label(largest.level_before, series.unit)),
+      escape_html(number_label(largest.level_after, series.unit)), change_label(largest),
+      interval_label(largest), escape_html(largest.reason));
+}
+
+std::string groups_html(const CommitHistory& history, const HistoryChanges& changes, ChangeState state,
+                        const std::string& none) {
+  const std::vector<ShiftGroup> groups = grouped_shifts(history, changes, state);
+  if (groups.empty()) return "<p class=\"none\">" + none + "</p>";
+  std::string rows;
+  for (const ShiftGroup& group : groups) rows += group_row(history, group);
+  return html_table(state_name(state) + "-changes", "",
+                    {{"metric", true},
+                     {"after .. up to", true},
+                     {"largest on", true},
+                     {"machine", true},
+                     {"before"},
+                     {"after"},
+                     {"change"},
+                     {"95 % interval"},
+                     {state == ChangeState::kAccepted ? "reason" : "", true}},
+                    rows);
+}
+
+std::string creeps_html(const CommitHistory& history, const HistoryChanges& changes) {
+  std::string rows;
+  for (const Creep& creep : changes.creeps) {
+    const HistorySeries& series = history.series[creep.series];
+    rows += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td class=\"from\">{}</td><td class=\"from\">{} .. {}</td><td>{:+.1f} "
+        "%</td>"
+        "<td class=\"from\">{}</td></tr>\n",
+        escape_html(series.metric), series_link(history, creep.series), commit_link(history, creep.first),
+        commit_link(history, creep.last), 100.0 * creep.change, creep.worse ? "worse" : "better");
+  }
+  if (rows.empty()) return "<p class=\"none\">No number moves steadily by more than its margin.</p>";
+  return html_table("creeps", "", {{"metric", true}, {"on", true}, {"commits", true}, {"in all"}, {"", true}},
+                    rows);
+}
+
+std::string scripts_html() {
+  std::string text = fmt::format("<script>{}</script>\n", web_file("vendor/uPlot.iife.min.js"));
+  for (const char* name : {"unpack.js", "dashboard/history_charts.js", "dashboard/dashboard.js"})
+    text += fmt::format("<script>\n{}</script>\n", web_file(name));
+  return text;
+}
+
+std::string index_html(const CommitHistory& history, const HistoryChanges& changes) {
+  std::string styles;
+  for (const char* name : {"vendor/uPlot.min.css", "page.css", "dashboard/dashboard.css"})
+    styles += web_file(name);
+  return filled_template(
+      web_file("dashboard/dashboard.html"),
+      {{"styles", styles},
+       {"summary", summary_html(history, changes)},
+       {"open", groups_html(history, changes, ChangeState::kOpen, "None.")},
+       {"accepted", groups_html(history, changes, ChangeState::kAccepted, "None.")},
+       {"improved", groups_html(history, changes, ChangeState::kImproved, "None.")},
+       {"ended", groups_html(history, changes, ChangeState::kEnded, "None.")},
+       {"creeps", creeps_html(history, changes)},
+       {"licences", preformatted(std::string(web_file("vendor/LICENSE.uPlot")))},
+       {"data", data_script("index", dashboard_data(history, changes)) + data_script("files", "[]")},
+       {"scripts", scripts_html()}});
+}
+
+}  // namespace
+
+std::vector<OutputFile> dashboard_files(const Store& store) {
+  const CommitHistory history = commit_history(store);
+  if (history.commits.empty())
+    throw InputError(
+        store.file().string(),
+        "holds no ended run of the odometry; make some with `stillpoint bench PLAN --store FILE`");
+  const HistoryChanges changes = history_changes(history, store.acceptances());
+  std::vector<OutputFile> files = {{"index.html", index_html(history, changes)},
+                                   {"regressions.md", regressions_markdown(history, changes)},
+                                   {"regressions.json", regressions_json(history, changes)}};
+  for (std::size_t i = 0; i < history.commits.size(); ++i)
+    files.push_back({commit_file(history.commits[i]), commit_html(history, changes, i)});
+  return files;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/page/html_parts.h"
+
+#include <fmt/format.h>
+
+#include "reports/tables/escaping.h"
+
+namespace stillpoint {
+
+std::string filled_template(std::string_view text, const TemplateParts& parts) {
+  constexpr std::string_view kOpen = "<!--";
+  constexpr std::string_view kClose = "-->";
+  std::string result;
+  while (true) {
+    const std::size_t begin = text.find(kOpen);
+    result += text.substr(0, begin);
+    if (begin == std::string_view::npos) return result;
+    const std::size_t end = text.find(kClose, begin);
+    const auto found = parts.find(text.substr(begin + kOpen.size(), end - begin - kOpen.size()));
+    if (found != parts.end()) result += found->second;
+    text.remove_prefix(end + kClose.size());
+  }
+}
+
+std::string preformatted(const std::string& text) {
+  std::string result;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('\n');
+    result += escape_html(rest.substr(0, end)) + "\n";
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  }
+  return result;
+}
+
+std::string html_table(const std::string& id, const std::string& caption,
+                       const std::vector<ColumnHead>& heads, const std::string& rows) {
+  std::string head;
+  for (const ColumnHead& column : heads) {
+    head += fmt::format("<th scope=\"col\"{}>{}</th>", column.is_text ? " class=\"from\"" : "", column.text);
+  }
+  return fmt::format(
+      "<div class=\"table\"><table id=\"{}\">{}<thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>",
+      id, caption.empty() ? "" : "<caption>" + caption + "</caption>", head, rows);
+}
+
+std::string data_script(const std::string& id, const std::string& json) {
+  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, json_for_script(json));
+}
+
+}  // namespace stillpoint

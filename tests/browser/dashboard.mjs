@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The dashboard as its readers meet it. Run by dashboard.sh, with the store of history_store.mjs.
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { chromium } from "playwright-core";
+
+const { BROWSER, PAGE, STILLPOINT_SCREENSHOTS } = process.env;
+const OPEN_MS = 2000;
+const browser = await chromium.launch({ executablePath: BROWSER, args: ["--no-sandbox"] });
+const folder = "file://" + PAGE.slice(0, PAGE.lastIndexOf("/") + 1);
+
+// A page whose every request beyond the dashboard's own pages and every complaint is kept.
+async function open(options = {}) {
+  const page = await browser.newPage({ viewport: { width: 1300, height: 900 }, ...options });
+  page.faults = [];
+  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) page.faults.push(message.text()); });
+  page.on("pageerror", (error) => page.faults.push(error.message));
+  page.on("dialog", (dialog) => { page.faults.push("dialog " + dialog.message()); dialog.dismiss(); });
+  page.on("request", (request) => {
+    const own = request.isNavigationRequest() && request.url().startsWith(folder);
+    if (!own && !/^(data|blob):/.test(request.url())) page.faults.push("request " + request.url());
+  });
+  await page.goto("file://" + PAGE);
+  await ready(page);
+  return page;
+}
+const ready = (page) => page.waitForFunction(() => document.documentElement.dataset.readyMs !== undefined, null, { timeout: 5000 })
+  .catch(() => assert.fail("not ready: " + page.faults.join("; ")));
+
+// What the page points at, after it has drawn.
+const shown = (page) => page.evaluate(async () => {
+  for (let i = 0; i < 2; ++i) await new Promise((drawn) => requestAnimationFrame(drawn));
+  return { ...document.getElementById("history").dataset };
+});
+
+async function test(name, action) {
+  await action();
+  console.log("ok  " + name);
+}
+
+const page = await open();
+
+await test("the page opens quickly and weighs little besides its data", async () => {
+  const ms = Number(await page.evaluate(() => document.documentElement.dataset.readyMs));
+  const data = await page.evaluate(() => document.getElementById("index").textContent.length);
+  console.log(`    open after ${ms} ms; ${((statSync(PAGE).size - data) / 1e3).toFixed(0)} kB without its data`);
+  assert.ok(ms < OPEN_MS && statSync(PAGE).size - data < 400e3);
+});
+
+await test("every chart has data, and accuracy and cost share one time line", async () => {
+  const charts = await page.$$eval("#history figure", (figures) => figures.map((figure) => {
+    const canvas = figure.querySelector("canvas");
+    const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    const colors = new Set();
+    for (let i = 0; i < pixels.length; i += 4) if (pixels[i + 3] > 200) colors.add((pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2]);
+    return [figure.dataset.chart, colors.size];
+  }));
+  assert.equal(charts[0][0], "timeline");
+  assert.deepEqual(charts.slice(1).map((chart) => chart[0]).sort(),
+    ["ate_rmse_m", "coverage", "failed_runs", "feature_tracking", "process_cpu_s", "resets", "state_optimization"]);
+  for (const [name, colors] of charts) assert.ok(colors > 3, name + " is blank");
+  assert.deepEqual(await page.$$eval("#timeline .u-legend .u-label", (labels) => labels.map((label) => label.textContent)), ["commit", "ate_rmse_m", "process_cpu_s"]);
+});
+
+await test("the known regression is open with its commits, and the accepted one has its reason", async () => {
+  const row = page.locator("#open-changes tr", { hasText: "state_optimization" });
+  const commits = await page.evaluate(() => window.stillpoint.index.commits.map((commit) => commit.label));
+  const text = await row.textContent();
+  assert.ok(text.includes(`${commits[39]} .. ${commits[40]}`), text);
+  assert.match(await page.locator("#accepted-changes").textContent(), /a faster solver <b>"worth" it<\/b>/);
+  assert.match(await page.locator("#creeps").textContent(), /ate_rmse_m.*worse/s);
+  assert.equal(await page.locator("#open-changes tr", { hasText: "ate_rmse_m" }).count(), 0);
+});
+
+await test("hovering one chart moves all and tells the commit", async () => {
+  const over = page.locator("#timeline .u-over");
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox();
+  await page.mouse.move(box.x + box.width * 0.3, box.y + box.height / 2, { steps: 5 });
+  const first = (await shown(page)).commit;
+  await page.mouse.move(box.x + box.width * 0.6, box.y + box.height / 2, { steps: 5 });
+  assert.notEqual((await shown(page)).commit, first);
+  assert.match(await page.textContent("#readout"), /commit .*ate_rmse_m/s);
+  const cursors = await page.$$eval("#numbers .u-cursor-x", (lines) => lines.map((line) => line.style.transform));
+  assert.equal(new Set(cursors).size, 1, cursors.join(" "));
+});
+
+await test("dragging zooms all charts, and 0 shows all commits", async () => {
+  const over = page.locator("#timeline .u-over");
+  const box = await over.boundingBox();
+  await page.mouse.move(box.x + box.width * 0.25, box.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.5, box.y + 40, { steps: 5 });
+  await page.mouse.up();
+  const [low, high] = (await shown(page)).zoom.split(" ").map(Number);
+  assert.ok(low > 5 && high < 40, `${low} to ${high}`);
+  await page.keyboard.press("0");
+  assert.deepEqual((await shown(page)).zoom, "-0.50 59.50");
+});
+
+await test("keys step commits, change what is shown and go through regressions", async () => {
+  await page.mouse.move(2, 2);
+  const at = (page) => shown(page).then((state) => page.evaluate((name) => window.stillpoint.index.commits.findIndex((commit) => commit.name === name), state.commit));
+  const before = await at(page);
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await at(page), before + 1);
+  await page.keyboard.press("Shift+ArrowLeft");
+  assert.equal(await at(page), before - 9);
+  const subject = (await shown(page)).subject;
+  await page.keyboard.press("n");
+  assert.notEqual((await shown(page)).subject, subject);
+  await page.keyboard.press("p");
+  assert.equal((await shown(page)).subject, subject);
+  await page.keyboard.press("r");
+  assert.equal((await shown(page)).subject, "stillpoint on walking_xyz");
+  assert.equal(await at(page), 40);
+});
+
+await test("machines are told apart", async () => {
+  const small = await page.evaluate(() => window.stillpoint.index.hosts.findIndex((host) => host.startsWith("Small board")));
+  await page.selectOption("#host", String(small));
+  assert.equal(await page.locator("#subject option").count(), 1);
+  await page.selectOption("#host", "");
+  assert.equal(await page.locator("#subject option").count(), 4);
+});
+
+await test("Enter opens the commit's page, with what changed and the numbers before it", async () => {
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("r");
+  const target = (await shown(page)).commit;
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#shifts");
+  assert.match(await page.textContent("h1"), new RegExp(target));
+  assert.match(await page.textContent("#shifts"), /state_optimization.*open|process_cpu_s.*open/s);
+  assert.ok(await page.locator("#numbers tbody tr").count() > 4);
+  await page.locator("#shifts a").first().click();
+  await ready(page);
+  assert.notEqual((await shown(page)).series, undefined);
+});
+
+await test("names that people would not choose stay text", async () => {
+  const at = await page.evaluate(() => window.stillpoint.index.subjects.findIndex((subject) => subject.label.includes("onerror")));
+  await page.evaluate((subject) => window.stillpoint.showSubject(subject), at);
+  assert.match((await shown(page)).subject, /"><img src=x onerror=alert\(1\)>/);
+  assert.equal(await page.locator("img").count(), 0);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  assert.ok(wide <= 0, `${wide} px wider than the window`);
+  const link = await page.evaluate(() => window.stillpoint.index.commits[5].page);
+  await page.goto(folder + link);
+  assert.match(await page.textContent("h1"), /onerror=alert/);
+  assert.equal(await page.locator("img").count(), 0);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= document.documentElement.clientWidth));
+  await page.goBack();
+  await ready(page);
+});
+
+await test("light and dark differ, and the switch changes between them", async () => {
+  const ground = (opened) => opened.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await ground(page);
+  await page.click("#theme");
+  assert.notEqual(await ground(page), light);
+  await page.click("#theme");
+});
+
+await test("nothing was asked of the network and nothing complained", () => assert.deepEqual(page.faults, []));
+
+if (STILLPOINT_SCREENSHOTS) {
+  for (const colorScheme of ["light", "dark"]) {
+    const opened = await open({ colorScheme, viewport: { width: 1200, height: 1500 } });
+    await opened.keyboard.press("r");
+    await opened.evaluate(() => scrollTo(0, 0));
+    await opened.screenshot({ path: `${STILLPOINT_SCREENSHOTS}/dashboard_${colorScheme}.png` });
+    await opened.keyboard.press("Enter");
+    await opened.waitForSelector("#shifts");
+    await opened.screenshot({ path: `${STILLPOINT_SCREENSHOTS}/dashboard_commit_${colorScheme}.png` });
+    await opened.close();
+  }
+}
+
+await browser.close();
