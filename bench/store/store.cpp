@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "bench/store/counter_text.h"
+#include "bench/store/line_reader.h"
 #include "bench/store/schema.h"
 #include "bench/store/timing_text.h"
 #include "core/base/error.h"
@@ -71,6 +72,15 @@ void read_details(const Database& database, std::vector<StoredRun>& runs) {
   while (blobs.step()) {
     if (StoredRun* run = run_at(blobs)) run->blobs[blobs.text(1)] = blobs.text(2);
   }
+}
+
+/// Whether a file of poses has more than comments: that of a lost run has not.
+bool holds_rows(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view line = cut_front(text, '\n');
+    if (!line.empty() && line.front() != '#') return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -151,7 +161,7 @@ std::vector<FrameCounters> Store::frame_counters(const StoredRun& run) const {
 
 Trajectory Store::poses(const StoredRun& run, const std::string& kind) const {
   const std::string text = attachment(run, kind);
-  if (text.empty()) return {.frame = "camera", .poses = {}};
+  if (!holds_rows(text)) return {.frame = "camera", .poses = {}};
   return parse_tum(text, file().string() + ", run " + run.key, "camera").trajectory;
 }
 

@@ -210,6 +210,31 @@ function grown(text) {
   return bare.replace(script("index"), (_, open, __, close) => open + JSON.stringify({ ...index, runs }) + close + "\n" + all);
 }
 
+// The page with names that would like to be more than text, wherever the scripts take them from.
+function hostile(text) {
+  const name = "<img src=x onerror='window.broken=1'>\"'&\u202e\\{}%$" + "long ".repeat(200);
+  return text.replace(/(<script type="application\/json" id="index">)(.*?)(<\/script>)/s, (_, open, json, close) => {
+    const index = JSON.parse(json);
+    for (const run of index.runs) Object.assign(run, { label: name, sequence: name, build: name, detail: name });
+    for (const flame of index.flames) { flame.label = name; flame.stacks = { ...flame.stacks, [name + ";" + name]: 5e9 }; }
+    for (const figure of index.segments) { figure.sequence = name; for (const curve of figure.curves) curve.label = name; }
+    return open + JSON.stringify(index).replaceAll("<", "\\u003c") + close;
+  });
+}
+
+await test("hostile names stay text and keep the page within its width", async () => {
+  const file = WORK + "/hostile.html";
+  writeFileSync(file, hostile(readFileSync(PAGE, "utf8")));
+  const opened = await open(file);
+  for (const key of ["n", "w"]) await opened.keyboard.press(key);
+  await opened.locator("#table-ate_rmse_m td a").last().click();
+  assert.equal(await opened.locator("img:not(#picture)").count(), 0);
+  assert.equal(await opened.evaluate(() => window.broken), undefined);
+  assert.ok(await opened.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than the window");
+  assert.deepEqual(opened.faults, []);
+  await opened.close();
+});
+
 await test("1,000 runs of 1,000 frames open quickly", async () => {
   const file = WORK + "/large.html";
   writeFileSync(file, grown(readFileSync(PAGE, "utf8")));

@@ -101,6 +101,20 @@ TEST(ReportPage, HostileNamesStayText) {
   EXPECT_EQ(page.find("<!--"), std::string::npos);
 }
 
+TEST(ReportPage, ShowsRunsWithNoPoseAndWithOne) {
+  const TemporaryFolder folder;
+  Journal journal(folder.path() / "s");
+  for (const char* trajectory : {"# timestamp tx ty tz qx qy qz qw\n", "1.0 0 0 0 0 0 0 1\n"}) {
+    const RunIdentity identity{.variant = trajectory, .sequence = "market"};
+    static_cast<void>(journal.claim(identity));
+    RunOutcome outcome{.outcome = Outcome::kLost, .detail = "no frame has a pose"};
+    outcome.attachments = {{"trajectory", trajectory}, {"truth", "1.0 0 0 0 0 0 0 1\n2.0 1 0 0 0 0 0 1\n"}};
+    journal.finish(identity, outcome);
+  }
+  const Store store(folder.path() / "s");
+  EXPECT_NE(report_html(store, report_subject(store, "")).find(">failed<"), std::string::npos);
+}
+
 TEST(ReportPage, RefersToNothingOutside) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
