@@ -39,6 +39,7 @@ libraries=(
   '<opencv2/videoio[./]  ^reports/video_file\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
   '<(sqlite3|zstd)    ^bench/store/'
+  '<microhttpd       ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
   '<spdlog/           ^bench/'
   '<toml\+\+/         ^(bench|datasets)/'

@@ -14,7 +14,7 @@ packages=(
   libopenimageio-dev openimageio-tools
   libembree-dev libtbb-dev
   libfmt-dev libspdlog-dev libcli11-dev
-  nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev
+  nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev libmicrohttpd-dev
   libgtest-dev libbenchmark-dev
 )
 case "${1:-}" in

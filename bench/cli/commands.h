@@ -20,7 +20,8 @@ namespace stillpoint {
 [[nodiscard]] Command report_command();       ///< `stillpoint report`: one offline page about a store
 [[nodiscard]] Command dashboard_command();    ///< `stillpoint dashboard`: numbers over commits as pages
 [[nodiscard]] Command regressions_command();  ///< `stillpoint regressions`: what is worse and not accepted
-[[nodiscard]] Command reproduce_command();    ///< `stillpoint reproduce`: a table of the paper in one command
+[[nodiscard]] Command serve_command();  ///< `stillpoint serve`: the dashboard for browsers on this machine
+[[nodiscard]] Command reproduce_command();  ///< `stillpoint reproduce`: a table of the paper in one command
 [[nodiscard]] Command config_command();     ///< `stillpoint config`: resolved configs and the reference page
 [[nodiscard]] Command data_command();       ///< `stillpoint data`: make and inspect sequences
 [[nodiscard]] Command check_command();      ///< `stillpoint data check`: the sequence doctor

@@ -11,6 +11,14 @@ volatile std::sig_atomic_t g_interrupted = 0;
 
 void note_signal(int) { g_interrupted = 1; }
 
+sigset_t interrupts() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
 }  // namespace
 
 void watch_interrupts() {
@@ -22,5 +30,16 @@ void watch_interrupts() {
 }
 
 bool interrupt_requested() { return g_interrupted != 0; }
+
+void hold_interrupts() {
+  const sigset_t signals = interrupts();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+void await_interrupt() {
+  const sigset_t signals = interrupts();
+  int signal = 0;
+  sigwait(&signals, &signal);
+}
 
 }  // namespace stillpoint

@@ -9,5 +9,5 @@ int main(int argc, char** argv) {
       argc, argv,
       {run_command(), eval_command(), bench_command(), plan_command(), store_command(), stats_command(),
        compare_command(), profile_command(), report_command(), dashboard_command(), regressions_command(),
-       reproduce_command(), detect_command(), config_command(), data_command()});
+       serve_command(), reproduce_command(), detect_command(), config_command(), data_command()});
 }

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/serve/static_server.h"
+
+#include <array>
+#include <optional>
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include "tests/support/expect_input_error.h"
+
+namespace stillpoint {
+namespace {
+
+/// A connection to a server on this machine; closed at its end.
+class Client {
+ public:
+  explicit Client(std::uint16_t port, const char* address = "127.0.0.1")
+      : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in server{};
+    server.sin_family = AF_INET;
+    server.sin_port = htons(port);
+    inet_pton(AF_INET, address, &server.sin_addr);
+    wait_at_most({5, 0});
+    connected_ = connect(socket_, reinterpret_cast<const sockaddr*>(&server), sizeof server) == 0;
+  }
+  ~Client() { close(socket_); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  [[nodiscard]] bool connected() const { return connected_; }
+
+  /// How long `received` waits for more.
+  void wait_at_most(timeval patience) const {
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  }
+
+  /// Sends as much as the server takes.
+  void send_text(const std::string& text) const {
+    std::size_t sent = 0;
+    while (sent < text.size()) {
+      const ssize_t got = send(socket_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+      if (got <= 0) return;
+      sent += static_cast<std::size_t>(got);
+    }
+  }
+
+  /// All that comes until the server closes the connection; nothing if it has been reset.
+  [[nodiscard]] std::string received() const {
+    std::string text;
+    std::array<char, 4096> block{};
+    for (ssize_t got = 0; (got = recv(socket_, block.data(), block.size(), 0)) > 0;)
+      text.append(block.data(), static_cast<std::size_t>(got));
+    return text;
+  }
+
+ private:
+  int socket_;
+  bool connected_ = false;
+};
+
+const std::vector<OutputFile> kFiles = {
+    {"index.html", "<p>index</p>"}, {"commits/a.html", "<p>a</p>"}, {"r.json", "{}"}};
+
+StaticServer served() { return StaticServer(kFiles, {.port = 0}); }
+
+std::string reply_of(const StaticServer& server, const std::string& request) {
+  const Client client(server.port());
+  client.send_text(request);
+  return client.received();
+}
+
+std::string request_of(const std::string& method, const std::string& path,
+                       const std::string& host = "localhost") {
+  return method + " " + path + " HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n";
+}
+
+/// "200" of "HTTP/1.1 200 OK..."; nothing of no answer.
+std::string status_of(const std::string& answer) { return answer.size() < 12 ? "" : answer.substr(9, 3); }
+
+TEST(StaticServer, GivesItsFiles) {
+  const StaticServer server = served();
+  const std::string index = reply_of(server, request_of("GET", "/"));
+  EXPECT_EQ(status_of(index), "200");
+  EXPECT_TRUE(index.ends_with("\r\n\r\n<p>index</p>"));
+  EXPECT_NE(index.find("text/html; charset=utf-8"), std::string::npos);
+  EXPECT_TRUE(reply_of(server, request_of("GET", "/commits/a.html?x=1")).ends_with("<p>a</p>"));
+  EXPECT_NE(reply_of(server, request_of("GET", "/r.json")).find("application/json"), std::string::npos);
+}
+
+TEST(StaticServer, AnswersHeadWithoutContent) {
+  const std::string answer = reply_of(served(), request_of("HEAD", "/index.html"));
+  EXPECT_EQ(status_of(answer), "200");
+  EXPECT_NE(answer.find("Content-Length: 12"), std::string::npos);
+  EXPECT_TRUE(answer.ends_with("\r\n\r\n"));
+}
+
+TEST(StaticServer, RefusesOtherMethods) {
+  const StaticServer server = served();
+  for (const char* method : {"POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE", "get"})
+    EXPECT_EQ(status_of(reply_of(server, request_of(method, "/"))), "405") << method;
+  EXPECT_NE(reply_of(server, request_of("POST", "/")).find("Allow: GET, HEAD"), std::string::npos);
+}
+
+TEST(StaticServer, HasNoWayToTheDisk) {
+  const StaticServer server = served();
+  for (const char* path : {"/../etc/passwd", "/commits/../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd",
+                           "/..%2f..%2fetc%2fpasswd", "/%252e%252e/etc/passwd", "/%c0%ae%c0%ae/etc/passwd",
+                           "//etc/passwd", "/commits/", "/commits", "\\..\\etc"}) {
+    const std::string status = status_of(reply_of(server, request_of("GET", path)));
+    EXPECT_TRUE(status == "404" || status == "400") << path << " " << status;
+  }
+}
+
+TEST(StaticServer, RefusesLongRequests) {
+  const StaticServer server = served();
+  const std::string long_path = reply_of(server, request_of("GET", "/" + std::string(100'000, 'a')));
+  EXPECT_EQ(status_of(long_path), "414");
+  std::string many_headers = "GET / HTTP/1.1\r\nHost: localhost\r\n";
+  for (int i = 0; i < 5000; ++i) many_headers += "X-Header-" + std::to_string(i) + ": some text in it\r\n";
+  const std::string refused = status_of(reply_of(server, many_headers + "\r\n"));
+  EXPECT_TRUE(refused == "431" || refused.empty()) << refused;  // empty: it was reset while it was still sent
+  EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/"))), "200");
+}
+
+TEST(StaticServer, DoesNotReadBodies) {
+  const StaticServer server = served();
+  const Client client(server.port());
+  client.send_text("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000000000\r\n\r\n");
+  EXPECT_EQ(status_of(client.received()), "405");  // though none of the body has come
+}
+
+TEST(StaticServer, IsReachedByItsAddressAlone) {
+  const StaticServer server = served();
+  EXPECT_TRUE(Client(server.port()).connected());
+  EXPECT_FALSE(Client(server.port(), "127.0.0.2").connected());  // would be, if it listened on every address
+}
+
+TEST(StaticServer, AnswersOnlyRequestsThatNameThisMachine) {
+  const StaticServer server = served();
+  EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/", "127.0.0.1:8035"))), "200");
+  for (const char* host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example:80"})
+    EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/", host))), "403") << host;
+}
+
+TEST(StaticServer, HoldsABoundedNumberOfConnections) {
+  constexpr int kConnections = 32;
+  const StaticServer server = served();
+  std::vector<std::unique_ptr<Client>> silent;
+  for (int i = 0; i < kConnections; ++i) silent.push_back(std::make_unique<Client>(server.port()));
+  const Client late(server.port());
+  late.send_text(request_of("GET", "/"));
+  late.wait_at_most({0, 30'000});
+  EXPECT_EQ(late.received(), "");  // it waits until another goes
+  silent.pop_back();
+  late.wait_at_most({5, 0});
+  EXPECT_EQ(status_of(late.received()), "200");
+}
+
+TEST(StaticServer, SaysWhatItCannotListenOn) {
+  expect_input_error([] { const StaticServer server(kFiles, {.address = "here", .port = 0}); },
+                     {"--address", "here"});
+  expect_input_error([] { const StaticServer server(kFiles, {.port = 70000}); }, {"--port"});
+  const StaticServer first = served();
+  expect_input_error([&] { const StaticServer second(kFiles, {.port = first.port()}); },
+                     {"--port", "in use"});
+}
+
+}  // namespace
+}  // namespace stillpoint
