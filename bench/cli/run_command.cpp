@@ -19,7 +19,10 @@
 #include "bench/run/heartbeat.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
+#include "datasets/to_and_fro.h"
+#include "reports/cost_trend.h"
 #include "reports/run_video.h"
+#include "reports/svg_drawing.h"
 #include "reports/worst_pictures.h"
 
 namespace stillpoint {
@@ -41,6 +44,7 @@ struct RunArguments {
   int max_frames = 0;
   double speed = 1.0;
   std::vector<std::string> dumps;
+  int passes = 1;
   std::string video;
   int pictures = 0;
 };
@@ -108,6 +112,10 @@ std::optional<WorstPictures> start_pictures(const SequenceInfo& info, const RunA
                                       annotation_style(planned.spec.config.frontend), info);
 }
 
+bool asked_for(const RunArguments& arguments, const std::string& dump) {
+  return std::ranges::find(arguments.dumps, dump) != arguments.dumps.end();
+}
+
 /// What a run leaves behind.
 struct Executed {
   RunResult result;
@@ -126,7 +134,7 @@ Executed execute(const SensorStream& stream, const RunArguments& arguments, cons
   };
   VerdictDump verdicts;
   RunControl control{.on_update = on_update, .on_picture = {}, .stop_requested = interrupt_requested};
-  const bool dumps = !arguments.dumps.empty();
+  const bool dumps = asked_for(arguments, "verdicts");
   std::optional<RunVideo> video = start_video(stream.info(), planned);
   std::optional<WorstPictures> pictures = start_pictures(stream.info(), arguments, planned);
   if (dumps || video || pictures) {
@@ -141,6 +149,10 @@ Executed execute(const SensorStream& stream, const RunArguments& arguments, cons
   run.result.mode = planned.spec.mode;
   if (video) video->finish();
   if (dumps) run.dumps.push_back({"verdicts.csv", verdicts.text()});
+  if (asked_for(arguments, "cost") && !interrupt_requested()) {
+    const CostTrend trend = cost_trend(frame_costs(run.result.run));
+    run.dumps.push_back({"cost.svg", svg_text(cost_plot(trend))});
+  }
   return run;
 }
 
@@ -192,15 +204,18 @@ std::unique_ptr<SensorStream> open(const RunArguments& arguments) {
     }
     progress->update(static_cast<std::size_t>(done));
   };
-  return find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
-                       {.progress = on_rendered, .stop_requested = interrupt_requested});
+  auto stream = find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
+                              {.progress = on_rendered, .stop_requested = interrupt_requested});
+  const bool once = !stream || arguments.passes == 1;
+  return once ? std::move(stream) : play_to_and_fro(std::move(stream), arguments.passes);
 }
 
 int run(const RunArguments& arguments) {
   if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
   if (arguments.pictures < 0) throw InputError("--pictures", "must not be negative; 0 means none");
   for (const std::string& dump : arguments.dumps) {
-    if (dump != "verdicts") throw InputError("--dump", "\"" + dump + "\" is not known; use \"verdicts\"");
+    if (dump == "verdicts" || dump == "cost") continue;
+    throw InputError("--dump", "\"" + dump + "\" is not known; use \"verdicts\" or \"cost\"");
   }
   watch_interrupts();
   const std::vector<PlannedRun> runs = plan_runs(arguments);
@@ -239,7 +254,13 @@ Command run_command() {
            {"--format", "Layout of the folder: tum, openloris, euroc, 7scenes, folder [recognised]",
             &arguments->format},
            {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
-           {"--dump", "Also write verdicts.csv, every verdict on every feature: verdicts", &arguments->dumps},
+           {"--dump",
+            "Also write verdicts.csv, every verdict on every feature, or cost.svg, what frames cost over "
+            "time: "
+            "verdicts, cost",
+            &arguments->dumps},
+           {"--passes", "Play it forwards and backwards in turn, so many times, without inertial data [1]",
+            &arguments->passes},
            {"--video", "Also write annotated pictures and video.mp4 into this folder", &arguments->video},
            {"--pictures",
             "Also write annotated pictures of this many frames at which the error grew most [0]",
