@@ -97,13 +97,22 @@ std::string openloris_html(const Store& store, const ReportSubject& subject) {
          svg.substr(svg.find("<svg")) + "</figure>";
 }
 
-std::string data_html(const PageData& data, const std::vector<ReportTable>& tables) {
+/// Which plan makes which runs, for the command that repeats one.
+std::string plans_json(const std::vector<StoredPlan>& plans) {
+  Json json = Json::array();
+  for (const StoredPlan& plan : plans)
+    json.push_back({{"name", clean_line(plan.name)}, {"runs", plan.run_keys}});
+  return json.dump();
+}
+
+std::string data_html(const PageData& data, const ReportSubject& subject,
+                      const std::vector<ReportTable>& tables) {
   Json files = Json::array();
   for (const ReportTable& table : tables) {
     for (const OutputFile& file : table_files(table))
       files.push_back({{"name", file.name}, {"text", file.text}});
   }
-  std::string text = data_script("index", data.index);
+  std::string text = data_script("index", data.index) + data_script("plans", plans_json(subject.plans));
   text += data_script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
   for (std::size_t i = 0; i < data.series.size(); ++i) {
     text += data_script(fmt::format("series-{}", i), data.series[i]);
@@ -142,7 +151,7 @@ std::string report_html(const Store& store, const ReportSubject& subject) {
        {"boxes", box_plot_svg(data.module_boxes, "Time of each frame in each module", "ms")},
        {"plans", plans_html(store, subject)},
        {"licences", licences_html()},
-       {"data", data_html(data, tables)},
+       {"data", data_html(data, subject, tables)},
        {"scripts", scripts_html()}});
 }
 

@@ -49,6 +49,15 @@
     byId("metrics").replaceChildren(table);
   }
 
+  // What makes this run again, with its seeds and repetitions; empty for runs without a plan.
+  function command(run) {
+    const plan = JSON.parse(byId("plans").textContent).find((candidate) => candidate.runs.includes(run.key));
+    if (!plan) return "";
+    const quoted = (text) => "'" + text.replaceAll("'", "'\\''") + "'", own = " (" + plan.name + ")";
+    const bare = (text) => (text.endsWith(own) ? text.slice(0, -own.length) : text);
+    return "stillpoint bench " + quoted(plan.name) + " --filter " + quoted(bare(run.label)) + " --filter " + quoted(bare(run.sequence)) + " --store again.sqlite";
+  }
+
   page.selectRun = function (index) {
     const runs = page.index.runs;
     state.run = (index + runs.length) % runs.length;
@@ -58,6 +67,7 @@
     byId("run").value = state.run;
     byId("outcome").textContent = run.outcome === "ok" ? (series.frames ? "" : "This run has no frames in the store.") : run.outcome + ": " + run.detail;
     showMetrics(run);
+    byId("repeat-run").textContent = command(run);
     byId("manifest").textContent = JSON.stringify(page.index.manifests[run.manifest] || null, null, 2);
     state.charts = page.drawCharts(byId("series"), series, (frame) => point(frame, true), (min, max) => {
       state.views.zoom(min, max);

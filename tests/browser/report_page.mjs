@@ -155,6 +155,7 @@ await test("a number of the table leads to its run", async () => {
   await page.waitForFunction((wanted) => document.getElementById("runs").dataset.run === wanted, key);
   assert.equal(await page.locator(`#behind a[href="#run=${key}"]`).count(), 1);
   assert.match(await page.textContent("#behind"), /Recipe: /);
+  assert.match(await page.textContent("#repeat-run"), /^stillpoint bench '\w+' --filter '[^']+' --filter '\w+' --store/);
 });
 
 await test("tables and series can be downloaded", async () => {
@@ -185,6 +186,7 @@ if (STILLPOINT_SCREENSHOTS) {
   for (const colorScheme of ["light", "dark"]) {
     const opened = await open(PAGE, { colorScheme, viewport: { width: 1200, height: 1500 } });
     await opened.evaluate(() => { for (const detail of document.querySelectorAll("#published details")) detail.open = false; });
+    await opened.evaluate(() => window.stillpoint.selectRun(Math.max(0, window.stillpoint.index.runs.findIndex((run) => run.sequence === "walking_xyz"))));
     await opened.keyboard.press("w");
     await opened.screenshot({ path: `${STILLPOINT_SCREENSHOTS}/report_${colorScheme}.png` });
     await opened.locator("#runs").screenshot({ path: `${STILLPOINT_SCREENSHOTS}/report_run_${colorScheme}.png` });
