@@ -2,43 +2,16 @@
 // The dashboard as its readers meet it. Run by dashboard.sh, with the store of history_store.mjs.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
-import { chromium } from "playwright-core";
+import { browser, drawnCharts, lightAndDarkDiffer, open, pointedAt, ready, test } from "./browser.mjs";
 
-const { BROWSER, PAGE, STILLPOINT_SCREENSHOTS } = process.env;
+const { PAGE, STILLPOINT_SCREENSHOTS } = process.env;
 const OPEN_MS = 2000;
-const browser = await chromium.launch({ executablePath: BROWSER, args: ["--no-sandbox"] });
 const folder = "file://" + PAGE.slice(0, PAGE.lastIndexOf("/") + 1);
 
-// A page whose every request beyond the dashboard's own pages and every complaint is kept.
-async function open(options = {}) {
-  const page = await browser.newPage({ viewport: { width: 1300, height: 900 }, ...options });
-  page.faults = [];
-  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) page.faults.push(message.text()); });
-  page.on("pageerror", (error) => page.faults.push(error.message));
-  page.on("dialog", (dialog) => { page.faults.push("dialog " + dialog.message()); dialog.dismiss(); });
-  page.on("request", (request) => {
-    const own = request.isNavigationRequest() && request.url().startsWith(folder);
-    if (!own && !/^(data|blob):/.test(request.url())) page.faults.push("request " + request.url());
-  });
-  await page.goto("file://" + PAGE);
-  await ready(page);
-  return page;
-}
-const ready = (page) => page.waitForFunction(() => document.documentElement.dataset.readyMs !== undefined, null, { timeout: 5000 })
-  .catch(() => assert.fail("not ready: " + page.faults.join("; ")));
-
-// What the page points at, after it has drawn.
-const shown = (page) => page.evaluate(async () => {
-  for (let i = 0; i < 2; ++i) await new Promise((drawn) => requestAnimationFrame(drawn));
-  return { ...document.getElementById("history").dataset };
-});
-
-async function test(name, action) {
-  await action();
-  console.log("ok  " + name);
-}
-
-const page = await open();
+// Its pages may lead to each other.
+const openDashboard = (options) => open(PAGE, options, (request) => request.isNavigationRequest() && request.url().startsWith(folder));
+const shown = (page) => pointedAt(page, "history");
+const page = await openDashboard();
 
 await test("the page opens quickly and weighs little besides its data", async () => {
   const ms = Number(await page.evaluate(() => document.documentElement.dataset.readyMs));
@@ -48,17 +21,10 @@ await test("the page opens quickly and weighs little besides its data", async ()
 });
 
 await test("every chart has data, and accuracy and cost share one time line", async () => {
-  const charts = await page.$$eval("#history figure", (figures) => figures.map((figure) => {
-    const canvas = figure.querySelector("canvas");
-    const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
-    const colors = new Set();
-    for (let i = 0; i < pixels.length; i += 4) if (pixels[i + 3] > 200) colors.add((pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2]);
-    return [figure.dataset.chart, colors.size];
-  }));
-  assert.equal(charts[0][0], "timeline");
-  assert.deepEqual(charts.slice(1).map((chart) => chart[0]).sort(),
+  const charts = await drawnCharts(page, "#history");
+  assert.equal(charts[0], "timeline");
+  assert.deepEqual(charts.slice(1).sort(),
     ["ate_rmse_m", "coverage", "failed_runs", "feature_tracking", "process_cpu_s", "resets", "state_optimization"]);
-  for (const [name, colors] of charts) assert.ok(colors > 3, name + " is blank");
   assert.deepEqual(await page.$$eval("#timeline .u-legend .u-label", (labels) => labels.map((label) => label.textContent)), ["commit", "ate_rmse_m", "process_cpu_s"]);
 });
 
@@ -154,19 +120,13 @@ await test("names that people would not choose stay text", async () => {
   await ready(page);
 });
 
-await test("light and dark differ, and the switch changes between them", async () => {
-  const ground = (opened) => opened.evaluate(() => getComputedStyle(document.body).backgroundColor);
-  const light = await ground(page);
-  await page.click("#theme");
-  assert.notEqual(await ground(page), light);
-  await page.click("#theme");
-});
+await test("light and dark differ, and the switch changes between them", () => lightAndDarkDiffer(page));
 
 await test("nothing was asked of the network and nothing complained", () => assert.deepEqual(page.faults, []));
 
 if (STILLPOINT_SCREENSHOTS) {
   for (const colorScheme of ["light", "dark"]) {
-    const opened = await open({ colorScheme, viewport: { width: 1200, height: 1500 } });
+    const opened = await openDashboard({ colorScheme, viewport: { width: 1200, height: 1500 } });
     await opened.keyboard.press("r");
     await opened.evaluate(() => scrollTo(0, 0));
     await opened.screenshot({ path: `${STILLPOINT_SCREENSHOTS}/dashboard_${colorScheme}.png` });

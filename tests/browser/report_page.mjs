@@ -2,47 +2,16 @@
 // The offline page as its readers meet it. Run by pages.sh.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { chromium } from "playwright-core";
+import { browser, drawnCharts, lightAndDarkDiffer, open, pointedAt, test } from "./browser.mjs";
 
-const { BROWSER, PAGE, WORK, STILLPOINT_SCREENSHOTS } = process.env;
+const { PAGE, WORK, STILLPOINT_SCREENSHOTS } = process.env;
 const OPEN_MS = 2000;
-const browser = await chromium.launch({ executablePath: BROWSER, args: ["--no-sandbox"] });
 
-// A page whose every request and complaint is kept.
-async function open(file, options = {}) {
-  const page = await browser.newPage({ viewport: { width: 1300, height: 900 }, ...options });
-  page.faults = [];
-  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) page.faults.push(message.text()); });
-  page.on("pageerror", (error) => page.faults.push(error.message));
-  page.on("request", (request) => { if (request.url() !== "file://" + file && !/^(data|blob):/.test(request.url())) page.faults.push("request " + request.url()); });
-  await page.goto("file://" + file);
-  await page.waitForFunction(() => document.documentElement.dataset.readyMs !== undefined);
-  return page;
-}
-
-// What the page points at, after it has drawn.
-const runs = (page) => page.evaluate(async () => {
-  for (let i = 0; i < 2; ++i) await new Promise((drawn) => requestAnimationFrame(drawn));
-  return { ...document.getElementById("runs").dataset };
-});
-
-async function test(name, action) {
-  await action();
-  console.log("ok  " + name);
-}
-
+const runs = (page) => pointedAt(page, "runs");
 const page = await open(PAGE);
 
 await test("every chart has data", async () => {
-  const charts = await page.$$eval("#series figure", (figures) => figures.map((figure) => {
-    const canvas = figure.querySelector("canvas");
-    const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
-    const colors = new Set();
-    for (let i = 0; i < pixels.length; i += 4) if (pixels[i + 3] > 200) colors.add((pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2]);
-    return [figure.dataset.chart, colors.size];
-  }));
-  assert.deepEqual(charts.map((chart) => chart[0]), ["error", "features", "dynamic", "modules"]);
-  for (const [name, colors] of charts) assert.ok(colors > 3, name + " is blank");
+  assert.deepEqual(await drawnCharts(page, "#series"), ["error", "features", "dynamic", "modules"]);
 });
 
 await test("hovering one chart moves all and tells the frame", async () => {
@@ -172,13 +141,7 @@ await test("sweeps have a curve", async () => {
   assert.equal(await page.locator("#curves canvas").count() > 0, swept);
 });
 
-await test("light and dark differ, and the switch changes between them", async () => {
-  const ground = (opened) => opened.evaluate(() => getComputedStyle(document.body).backgroundColor);
-  const light = await ground(page);
-  await page.click("#theme");
-  assert.notEqual(await ground(page), light);
-  await page.click("#theme");
-});
+await test("light and dark differ, and the switch changes between them", () => lightAndDarkDiffer(page));
 
 await test("nothing was asked of the network and nothing complained", () => assert.deepEqual(page.faults, []));
 

@@ -75,7 +75,7 @@
     lines.forEach((line, i) => {
       scales[line.scale] = { range: valueRange };
       const unit = page.index.series[line.index].unit;
-      axes.push(axis({ scale: line.scale, side: i === 0 ? 3 : 1, size: 62, label: lines.length > 1 ? unit || "share" : undefined, labelSize: 16, grid: { show: i === 0, stroke: page.color("line"), width: 1 } }));
+      axes.push(axis({ scale: line.scale, side: i === 0 ? 3 : 1, size: 62, values: (u, splits) => splits.map((at) => Number(at.toPrecision(5)).toString()), label: lines.length > 1 ? unit || "share" : undefined, labelSize: 16, grid: { show: i === 0, stroke: page.color("line"), width: 1 } }));
     });
     const shown = lines.map((line) => ({ label: page.index.series[line.index].metric, scale: line.scale, stroke: page.color(line.color), width: 1.3,
       spanGaps: true, value: number, points: { show: true, size: 5, fill: page.color(line.color) } }));
