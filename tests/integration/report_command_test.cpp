@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "bench/store/journal.h"
 #include "tests/support/program.h"
+#include "tests/support/rendered_sequence.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint {
@@ -26,6 +28,42 @@ TEST(ReportCommand, WritesThePageAndItsTables) {
   EXPECT_TRUE(fs::exists(out / "index.html"));
   for (const char* name : {"ate_rmse_m.md", "ate_rmse_m.tex", "ate_rmse_m.csv", "ate_rmse_m.json"})
     EXPECT_TRUE(fs::exists(out / "tables" / name)) << name;
+}
+
+/// Makes the run of a plan over the rendered sequence.
+StoredRun run_of_plan(const TemporaryFolder& folder, const std::string& settings) {
+  const std::string sequence = rendered_sequence().filename().string();
+  const fs::path plan = folder.write(
+      "plan.toml", settings + "[recorded]\nsequences = [\"" + sequence + "\"]\nvariants = [\"vo\"]\n");
+  const ProgramResult result =
+      run_program({"bench", plan.string(), "--out", folder.path().string(), "--store",
+                   (folder.path() / "store.sqlite").string()},
+                  {.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()}});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return Store(folder.path() / "store.sqlite").runs().back();
+}
+
+std::size_t pictures_of(const StoredRun& run) {
+  std::size_t pictures = 0;
+  for (const auto& [kind, blob] : run.blobs) pictures += kind.starts_with(kPictureKind) ? 1 : 0;
+  return pictures;
+}
+
+TEST(ReportCommand, CarriesPicturesAndStacksThatBenchKept) {
+  const TemporaryFolder folder;
+  const StoredRun run = run_of_plan(folder, "pictures = 2\n");
+  EXPECT_EQ(pictures_of(run), 2u);
+  const fs::path store = folder.path() / "store.sqlite";
+  ASSERT_EQ(run_program({"report", store.string(), "--out", folder.path().string()}).exit_code, 0);
+  std::ifstream file(folder.path() / "index.html");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(page.find("\"/9j/"), std::string::npos);  // how a JPEG begins in base64
+  EXPECT_NE(page.find("tracking;tracking_thread;feature_tracking"), std::string::npos);
+}
+
+TEST(BenchCommand, DrawsNothingWhileItTimes) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(pictures_of(run_of_plan(folder, "pictures = 2\nkind = \"timing\"\n")), 0u);
 }
 
 TEST(ReportCommand, RefusesWhatIsNoStore) {

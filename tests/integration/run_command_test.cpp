@@ -123,6 +123,13 @@ TEST(RunCommand, WritesAnnotatedPicturesAndAVideo) {
   EXPECT_EQ(names_in(out.path() / "video" / "frames").size(), 20u);
 }
 
+TEST(RunCommand, WritesPicturesOfTheWorstFramesOnly) {
+  const TemporaryFolder out;
+  const ProgramResult result = run_program(run_of(rendered_sequence(), out.path(), {"--pictures", "3"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(names_in(out.path() / "pictures").size(), 3u);
+}
+
 TEST(RunCommand, EachVariantHasItsFolder) {
   const TemporaryFolder out;
   const ProgramResult result = run_program(
