@@ -90,6 +90,8 @@ std::optional<Creep> creep_of(const Judged& judged, std::size_t index) {
   return Creep{.series = index,
                .first = judged.commit(0),
                .last = judged.commit(judged.values.size() - 1),
+               .start = trend->start,
+               .end = end,
                .change = (end - trend->start) / std::abs(trend->start),
                .p_value = trend->p_value,
                .worse = bad_direction(*judged.series.rule) * trend->slope > 0.0};

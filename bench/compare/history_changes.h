@@ -43,7 +43,9 @@ struct Creep {
   std::size_t series = 0;
   std::size_t first = 0;  ///< the line's first and last commit
   std::size_t last = 0;
-  double change = 0.0;  ///< from the line's start to its end, relative to its start
+  double start = 0.0;  ///< the line's values there
+  double end = 0.0;
+  double change = 0.0;  ///< relative to its start
   double p_value = 1.0;
   bool worse = false;
 };

@@ -121,7 +121,8 @@ std::string dashboard_data(const CommitHistory& history, const HistoryChanges& c
     creeps.push_back({{"series", creep.series},
                       {"first", creep.first},
                       {"last", creep.last},
-                      {"change", rounded(creep.change)},
+                      {"from", rounded(creep.start)},
+                      {"to", rounded(creep.end)},
                       {"worse", creep.worse}});
   }
   const Json json = {{"commits", commits_json(history.commits)},

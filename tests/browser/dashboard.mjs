@@ -82,12 +82,16 @@ await test("keys step commits, change what is shown and go through regressions",
   assert.equal(await at(page), 40);
 });
 
-await test("machines are told apart", async () => {
+await test("plans and machines choose what is shown", async () => {
+  const subjects = () => page.$$eval("#subject option", (options) => options.map((option) => option.textContent));
+  await page.selectOption("#plan", "0");
+  assert.deepEqual(await subjects(), ["vo on walking_xyz, Desktop, 2 processors"]);
+  await page.selectOption("#plan", "");
   const small = await page.evaluate(() => window.stillpoint.index.hosts.findIndex((host) => host.startsWith("Small board")));
   await page.selectOption("#host", String(small));
-  assert.equal(await page.locator("#subject option").count(), 1);
+  assert.deepEqual(await subjects(), ["vo on walking_xyz, Small board, 2 processors"]);
   await page.selectOption("#host", "");
-  assert.equal(await page.locator("#subject option").count(), 4);
+  assert.equal((await subjects()).length, 4);
 });
 
 await test("Enter opens the commit's page, with what changed and the numbers before it", async () => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints a store with a known history, for `stillpoint store import`: 60 commits, two machines, a cost that steps, an
-// error that creeps, and names that people would not choose. node history_store.mjs > FILE
+// error that creeps, and names that people would not choose. node history_store.mjs [KEY...] > FILE
 const COMMITS = 60, STEP = 40;
 const HOSTILE = `"><img src=x onerror=alert(1)>'\\$&%_#{}~^</script>\u202e\u{1F600}` + "long".repeat(60);
 
@@ -44,4 +44,7 @@ for (let i = 0; i < COMMITS; ++i) {
 const accepted = [{ commit: hex(30), metric: "ate_rmse_m", variant: "vo", sequence: "", reason: `a faster solver <b>"worth" it</b>`, accepted: time(61) }];
 // One run of two machines has one key: the second machine is told apart by its data's name.
 for (const one of runs) if (one.manifest.includes("Small board")) one.identity.repetition = 2;
-console.log(JSON.stringify({ stillpoint_store: 1, plans: [], runs, accepted }));
+// With keys of runs as arguments: a plan that asks for these, and nothing else.
+const keys = process.argv.slice(2);
+const plans = keys.length ? [{ name: HOSTILE, title: HOSTILE, text: "", run_keys: keys }] : [];
+console.log(JSON.stringify({ stillpoint_store: 1, plans, runs: keys.length ? [] : runs, accepted: keys.length ? [] : accepted }));

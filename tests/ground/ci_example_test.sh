@@ -39,6 +39,8 @@ verdict() { echo "$2" >"$STAGE/verdict_$1"; }
 [[ "$(exit_code history.sh kept out)" == 0 ]] || fail "a quiet history fails: $(cat "$STAGE/output")"
 [[ "$(steps)" == "stillpoint bench;stillpoint dashboard;stillpoint regressions;" ]] || fail "history runs $(steps)"
 [[ -d kept && -e out/regressions.md ]] || fail "the history is not kept, or its regressions are not written"
+[[ "$(exit_code history.sh kept out accepted.json)" == 0 ]] || fail "accepted changes are refused"
+[[ "$(steps)" == "stillpoint bench;stillpoint store;stillpoint dashboard;stillpoint regressions;" ]] || fail "with accepted changes it runs $(steps)"
 verdict regressions 1
 [[ "$(exit_code history.sh kept out)" == 1 ]] || fail "an open regression does not fail the job"
 [[ "$(steps)" == *dashboard* ]] || fail "an open regression keeps the dashboard from being made"

@@ -38,7 +38,7 @@
     u.ctx.stroke();
   }
 
-  // A line where each change is, and the levels between changes.
+  // A line where each change is, the levels between changes, and the slope of a creep.
   function drawChanges(u, line) {
     const { left, top, width, height } = u.bbox;
     u.ctx.save();
@@ -49,6 +49,10 @@
     for (const shift of shiftsOf(line.index)) {
       const x = u.valToPos((shift.before + shift.after) / 2, "x", true);
       strokeLine(u, page.color(COLORS[shift.state]), [], [x, top], [x, top + height]);
+    }
+    for (const creep of page.index.creeps.filter((one) => one.series === line.index)) {
+      strokeLine(u, page.color(creep.worse ? "worse" : "better"), [1, 4], [u.valToPos(creep.first, "x", true), u.valToPos(creep.from, line.scale, true)],
+        [u.valToPos(creep.last, "x", true), u.valToPos(creep.to, line.scale, true)]);
     }
     for (const [start, end, level] of levelSpans(line.index)) {
       const y = u.valToPos(level, line.scale, true);

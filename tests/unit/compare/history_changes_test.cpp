@@ -99,6 +99,7 @@ TEST(HistoryChanges, ManySmallStepsAreACreep) {
   const HistoryChanges changes = history_changes(history_of("ms", {values}), {});
   ASSERT_EQ(changes.creeps.size(), 1u);
   EXPECT_TRUE(changes.creeps.front().worse);
+  EXPECT_NEAR(changes.creeps.front().start, 4.0, 0.04);  // 1 % noise
   EXPECT_NEAR(changes.creeps.front().change, 59 * 0.002, 0.02);
   EXPECT_TRUE(history_changes(cost_history({4.0, 4.4}), {}).creeps.empty());  // a step is none
 }

@@ -75,6 +75,17 @@ TEST(Acceptances, GoWithTheRunsIntoOtherStores) {
   }
 }
 
+TEST(Acceptances, ComeFromAFileOfThemAlone) {
+  const TemporaryFolder folder;
+  const fs::path file = small_store(folder, "s");
+  constexpr const char* kText =
+      R"({"stillpoint_store": 1, "plans": [], "runs": [], "accepted": [{"commit": "abc", "metric": "m", "variant": "",
+          "sequence": "", "reason": "why", "accepted": "2026-01-31T12:00:00Z"}]})";
+  EXPECT_EQ(import_store(kText, "text", file).added, 0u);
+  ASSERT_EQ(Store(file).acceptances().size(), 1u);
+  EXPECT_EQ(Store(file).acceptances().front().reason, "why");
+}
+
 /// A store as the first schema had it.
 fs::path first_schema_store(const TemporaryFolder& folder) {
   fs::path file = small_store(folder, "old");
