@@ -43,9 +43,7 @@ int dashboard(const DashboardArguments& arguments) {
 int regressions(const DashboardArguments& arguments) {
   if (arguments.format != "markdown" && arguments.format != "json")
     throw InputError("--format", "\"" + arguments.format + "\" is not known; use markdown or json");
-  const Store store(arguments.store);
-  const CommitHistory history = commit_history(store);
-  const HistoryChanges changes = history_changes(history, store.acceptances());
+  const auto [history, changes] = judged_history(Store(arguments.store));
   std::cout << (arguments.format == "json" ? regressions_json(history, changes)
                                            : regressions_markdown(history, changes));
   return grouped_shifts(history, changes, ChangeState::kOpen).empty() ? kExitOk : kExitFindings;

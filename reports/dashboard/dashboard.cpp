@@ -142,13 +142,18 @@ std::string index_html(const CommitHistory& history, const HistoryChanges& chang
 
 }  // namespace
 
-std::vector<OutputFile> dashboard_files(const Store& store) {
-  const CommitHistory history = commit_history(store);
-  if (history.commits.empty())
+JudgedHistory judged_history(const Store& store) {
+  JudgedHistory judged{.history = commit_history(store), .changes = {}};
+  if (judged.history.commits.empty())
     throw InputError(
         store.file().string(),
         "holds no ended run of the odometry; make some with `stillpoint bench PLAN --store FILE`");
-  const HistoryChanges changes = history_changes(history, store.acceptances());
+  judged.changes = history_changes(judged.history, store.acceptances());
+  return judged;
+}
+
+std::vector<OutputFile> dashboard_files(const Store& store) {
+  const auto [history, changes] = judged_history(store);
   std::vector<OutputFile> files = {{"index.html", index_html(history, changes)},
                                    {"regressions.md", regressions_markdown(history, changes)},
                                    {"regressions.json", regressions_json(history, changes)}};

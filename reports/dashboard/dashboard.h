@@ -10,8 +10,17 @@
 
 namespace stillpoint {
 
+struct JudgedHistory {
+  CommitHistory history;
+  HistoryChanges changes;
+};
+
+/// What a store says of its commits.
+/// @throws InputError if no run of our odometry has ended: that nothing became worse would be no news
+[[nodiscard]] JudgedHistory judged_history(const Store& store);
+
 /// index.html, regressions.md, regressions.json, and a page for each commit in commits/.
-/// @throws InputError if no run of our odometry has ended
+/// @throws InputError as `judged_history`
 [[nodiscard]] std::vector<OutputFile> dashboard_files(const Store& store);
 
 }  // namespace stillpoint

@@ -41,6 +41,8 @@ TEST(RegressionsCommand, TellsCiByItsExitCode) {
   const ProgramResult open = run_program({"regressions", store_of(bad, Outcome::kLost).string()});
   EXPECT_EQ(open.exit_code, 1);
   EXPECT_NE(open.out.find("failed\\_runs"), std::string::npos);
+  { const Journal empty(bad.path() / "empty"); }
+  EXPECT_EQ(run_program({"regressions", (bad.path() / "empty").string()}).exit_code, 2);
   EXPECT_EQ(run_program({"regressions", (bad.path() / "none").string()}).exit_code, 2);
   EXPECT_EQ(run_program({"regressions", (bad.path() / "s.sqlite").string(), "--format", "xml"}).exit_code, 2);
 }
