@@ -23,6 +23,8 @@ int serve(const ServeArguments& arguments) {
   const StaticServer server(dashboard_files(Store(arguments.store)), arguments.server);
   spdlog::info("serving http://{}:{}/ as the store is now; Ctrl-C ends it", arguments.server.address,
                server.port());
+  if (!arguments.server.address.starts_with("127."))
+    spdlog::warn("{} is no loopback address: other machines can read the numbers", arguments.server.address);
   await_interrupt();
   return kExitOk;
 }
