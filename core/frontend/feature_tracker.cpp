@@ -22,6 +22,8 @@ namespace {
 constexpr double kClaheClip = 3.0;  // as VINS-Mono has it
 const cv::Size kClaheTiles(8, 8);
 
+using MovingIds = std::span<const std::int64_t>;
+
 std::string size_text(const cv::Size& size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
@@ -65,11 +67,11 @@ struct FeatureTracker::State {
     if (config.equalize) equalizer = cv::createCLAHE(kClaheClip, kClaheTiles);
   }
 
-  void advance(const Frame& frame, const MotionPrior& prior, bool detect);
+  void advance(const Frame& frame, const MotionPrior& prior, bool detect, MovingIds moving);
   void follow_tracks(const MotionPrior& prior, double interval_s);
   [[nodiscard]] KltResult match(const std::vector<cv::Point2f>& predicted, TrackerPrediction kind) const;
   void accept(const KltResult& matches, const std::vector<cv::Point2f>& predicted, double interval_s);
-  void reject_outliers();
+  void reject_outliers(MovingIds moving);
   void apply_mask();
   void find_new(const cv::Mat& gray);
   void measure_depth(const Frame& frame);
@@ -97,7 +99,8 @@ struct FeatureTracker::State {
   ModuleTimings timings;
 };
 
-void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior, bool detect) {
+void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior, bool detect,
+                                    MovingIds moving) {
   lost = 0;
   detected = 0;
   if (equalizer) equalizer->apply(frame.gray, equalized);
@@ -110,7 +113,7 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
     current_t = frame.t;
   }
   if (detect) {
-    reject_outliers();
+    reject_outliers(moving);
     apply_mask();
     find_new(gray);
   }
@@ -162,12 +165,16 @@ void FeatureTracker::State::accept(const KltResult& matches, const std::vector<c
   tracks = std::move(kept);
 }
 
-void FeatureTracker::State::reject_outliers() {
+void FeatureTracker::State::reject_outliers(MovingIds moving) {
   const ScopedTimer timer(timings, Module::kOutlierRejection);
+  const auto is_spared = [&](const Track& track) {
+    return config.reject_among_still && std::ranges::binary_search(moving, track.feature.id);
+  };
   const std::vector<cv::Point2f> pixels = pixels_of(tracks);
   std::vector<Match> matches;
   matches.reserve(tracks.size());
   for (const Track& track : tracks) {
+    if (is_spared(track)) continue;
     matches.push_back({track.reference_bearing, track.reference_depth, track.feature.bearing});
   }
   const Inliers inliers = find_inliers(matches, {.model = config.outlier_model,
@@ -175,10 +182,11 @@ void FeatureTracker::State::reject_outliers() {
                                                  .confidence = config.ransac_confidence,
                                                  .min_inlier_share = config.ransac_min_inlier_share,
                                                  .focal_px = camera.focal_px()});
+  auto inlier = inliers.begin();
   std::vector<Track> kept;
   kept.reserve(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (inliers[i] != 0) {
+    if (is_spared(tracks[i]) || *inlier++ != 0) {
       kept.push_back(tracks[i]);
     } else {
       unstable.push_back(pixels[i]);
@@ -242,12 +250,13 @@ FeatureTracker::FeatureTracker(const FrontendConfig& config, const Camera& camer
 
 FeatureTracker::~FeatureTracker() = default;
 
-TrackedFrame FeatureTracker::track(const Frame& frame, const MotionPrior& prior, bool detect) {
+TrackedFrame FeatureTracker::track(const Frame& frame, const MotionPrior& prior, bool detect,
+                                   std::span<const std::int64_t> moving) {
   check_frame(frame, state_->camera);
   state_->timings = {};
   {
     const ScopedTimer timer(state_->timings, Module::kTrackingThread);
-    state_->advance(frame, prior, detect);
+    state_->advance(frame, prior, detect, moving);
   }
   TrackedFrame result{.id = frame.id,
                       .t = frame.t,

@@ -2,7 +2,9 @@
 /// Follows points from picture to picture and finds new ones where they are missing. Paper Sec. III-A.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 
 #include "core/frontend/frontend_config.h"
 #include "core/types/frame.h"
@@ -20,10 +22,12 @@ class FeatureTracker {
   /// Tracks all features into `frame`; with `detect` also rejects outliers, masks and finds new ones.
   /// @param frame CV_8UC1 gray of the camera's size; depth may be empty, else CV_16UC1 of the same size
   /// @param prior motion of the camera since the last call; ignored as far as it is not valid
+  /// @param moving ids of features that are known to move, rising; see FrontendConfig::reject_among_still
   /// @return only features that this picture saw. Velocities are 0 where no time has passed since the last
   /// call
   /// @throws InputError for pictures of another size or type; the tracker then stays as it was
-  [[nodiscard]] TrackedFrame track(const Frame& frame, const MotionPrior& prior, bool detect);
+  [[nodiscard]] TrackedFrame track(const Frame& frame, const MotionPrior& prior, bool detect,
+                                   std::span<const std::int64_t> moving = {});
 
   /// Forgets all features; ids go on rising.
   void reset();

@@ -75,6 +75,8 @@ struct FrontendConfig {
   double ransac_threshold_px = 1.0;  ///< misfit, px of the camera's focal length
   double ransac_confidence = 0.99;
   double ransac_min_inlier_share = 0.5;  ///< a model that fewer fit is not believed: nothing is rejected
+  bool reject_among_still = false;  ///< features that the optimisation holds to move neither vote nor are
+                                    ///< judged: a person who fills the picture cannot win; own addition
   int border_px = 1;
   double depth_max_spread =
       0.05;               ///< of the 3x3 depths around a feature, as a share of its own; 0 = no check
@@ -103,6 +105,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("ransac_threshold_px", config.ransac_threshold_px, 0.1, 20.0);
   field("ransac_confidence", config.ransac_confidence, 0.5, 0.99999);
   field("ransac_min_inlier_share", config.ransac_min_inlier_share, 0.0, 1.0);
+  field("reject_among_still", config.reject_among_still);
   field("border_px", config.border_px, 0, 100);
   field("depth_max_spread", config.depth_max_spread, 0.0, 10.0);
   field("equalize", config.equalize);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/optimization_stage.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/pipeline/consistency_view.h"
@@ -19,9 +18,12 @@ std::vector<Box> boxes_of(const std::vector<TrackedBox>& tracked) {
   return boxes;
 }
 
-int count_dynamic(const std::vector<FeatureVerdict>& verdicts) {
-  return static_cast<int>(std::ranges::count_if(
-      verdicts, [](const FeatureVerdict& verdict) { return verdict.verdict != Verdict::kStable; }));
+std::vector<std::int64_t> dynamic_ids(const std::vector<FeatureVerdict>& verdicts) {
+  std::vector<std::int64_t> ids;
+  for (const FeatureVerdict& verdict : verdicts) {
+    if (verdict.verdict != Verdict::kStable) ids.push_back(verdict.id);
+  }
+  return ids;
 }
 
 }  // namespace
@@ -49,7 +51,8 @@ OdometryUpdate OptimizationStage::process(const TrackedFrame& frame, const Detec
     }
     estimator_.finish(update);
   }
-  update.counters.dynamic_features = count_dynamic(dynamic_.verdicts);
+  moving_ = dynamic_ids(dynamic_.verdicts);
+  update.counters.dynamic_features = static_cast<int>(moving_.size());
   update.hashes = {.tracking = state_hash(frame.features),
                    .dynamic = state_hash(dynamic_.verdicts),
                    .optimization = state_hash(update.state)};

@@ -9,6 +9,7 @@
 #include "core/dynamic/feature_recognition.h"
 #include "core/dynamic/missed_detection.h"
 #include "core/dynamic/resting_features.h"
+#include "core/pipeline/feedback.h"
 #include "core/pipeline/odometry_config.h"
 
 namespace stillpoint {
@@ -36,7 +37,7 @@ class OptimizationStage {
   /// The pose at a picture that does not enter the window.
   [[nodiscard]] OdometryUpdate predict(const TrackedFrame& frame);
 
-  [[nodiscard]] MotionKnowledge knowledge() const { return estimator_.knowledge(); }
+  [[nodiscard]] Feedback feedback() const { return {estimator_.knowledge(), moving_}; }
   [[nodiscard]] const ImuHealth& imu_health() const { return estimator_.imu_health(); }
   [[nodiscard]] const DynamicReport& dynamic() const { return dynamic_; }
 
@@ -56,6 +57,7 @@ class OptimizationStage {
   FeatureRecognition recognition_;
   RestingFeatures resting_;
   DynamicReport dynamic_;
+  std::vector<std::int64_t> moving_;  ///< of the last picture in the window
 };
 
 }  // namespace stillpoint

@@ -20,7 +20,7 @@ class PipelinedRun {
         stages_(assemble(input, config)),
         feedback_(static_cast<std::size_t>(config.pipeline.feedback_lag) + 2) {
     // The tracker takes one of these for each picture, and waits where there is none: that is the lag.
-    for (int i = 0; i <= config.pipeline.feedback_lag; ++i) feedback_.push(stages_.optimization.knowledge());
+    for (int i = 0; i <= config.pipeline.feedback_lag; ++i) feedback_.push(stages_.optimization.feedback());
   }
 
   RunSummary run() {
@@ -47,7 +47,7 @@ class PipelinedRun {
       if (!picture) continue;
       picture->full = stages_.rate.admits(picture->frame.t);
       if (picture->full && !to_detect_.push(picture->frame)) return;
-      const std::optional<MotionKnowledge> known = feedback_.pop();
+      const std::optional<Feedback> known = feedback_.pop();
       if (!known) return;
       imu.up_to(after(picture->frame.t, input_.rig.time_offset_s + kImuLead_s), stages_.tracking);
       picture->tracked = stages_.tracking.process(picture->frame, picture->full, *known);
@@ -74,7 +74,7 @@ class PipelinedRun {
       }
       imu.up_to(after(picture->frame.t, input_.rig.time_offset_s + kImuLead_s), stages_.optimization);
       close_picture(*picture, detections, stages_.optimization, control_, summary_);
-      feedback_.push(stages_.optimization.knowledge());
+      feedback_.push(stages_.optimization.feedback());
     }
   }
 
@@ -90,7 +90,7 @@ class PipelinedRun {
   const RunControl& control_;
   Stages stages_;
   RunSummary summary_;  ///< `frames`, `skipped`, `interrupted` belong to the tracker's thread while it runs
-  BoundedChannel<MotionKnowledge> feedback_;
+  BoundedChannel<Feedback> feedback_;
   BoundedChannel<Frame> to_detect_{kWaiting};
   BoundedChannel<PictureOnWay> tracked_{kWaiting};
   BoundedChannel<DetectionOnWay> detected_{kWaiting};

@@ -16,8 +16,8 @@ int RealtimeReport::deadline_misses() const {
 RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config, const RunControl& control) {
   Stages stages = assemble(input, config);
   ImuFeed imu_of_tracker(input.imu), imu_of_estimator(input.imu);
-  std::deque<MotionKnowledge> feedback(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1,
-                                       stages.optimization.knowledge());
+  std::deque<Feedback> feedback(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1,
+                                stages.optimization.feedback());
   RunSummary summary;
   for (std::size_t i = 0; i < input.frame_times.size(); ++i) {
     if (control.stop_requested && control.stop_requested()) {
@@ -37,7 +37,7 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
     std::optional<DetectionOnWay> detections;
     if (picture->full) detections = detect_objects(*stages.detector, picture->frame);
     close_picture(*picture, detections, stages.optimization, control, summary);
-    feedback.push_back(stages.optimization.knowledge());
+    feedback.push_back(stages.optimization.feedback());
   }
   close_run(stages, summary);
   return summary;

@@ -14,12 +14,13 @@ TrackingStage::TrackingStage(const OdometryConfig& config, const Rig& rig)
       tracker_(config.frontend, rig.camera),
       imu_(config.imu.max_gap_s) {}
 
-TrackedFrame TrackingStage::process(const Frame& frame, bool full, const MotionKnowledge& known) {
+TrackedFrame TrackingStage::process(const Frame& frame, bool full, const Feedback& feedback) {
+  const MotionKnowledge& known = feedback.motion;
   MotionPrior prior;
   if (predicts_ && last_frame_) prior = motion_prior(known, imu_, *last_frame_, frame.t);
   if (known.begun) imu_.forget_before(after(known.newest.t, known.time_offset_s - kKeptBefore_s));
   last_frame_ = frame.t;
-  return tracker_.track(frame, prior, full);
+  return tracker_.track(frame, prior, full, feedback.moving);
 }
 
 }  // namespace stillpoint

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "core/backend/state_prediction.h"
 #include "core/frontend/feature_tracker.h"
+#include "core/pipeline/feedback.h"
 #include "core/pipeline/odometry_config.h"
 
 namespace stillpoint {
@@ -20,8 +20,8 @@ class TrackingStage {
   void add_imu(const ImuSample& sample) { imu_.add(sample); }
 
   /// @param full  whether the picture enters the window: lost features are replaced
-  /// @param known what the optimisation said last
-  [[nodiscard]] TrackedFrame process(const Frame& frame, bool full, const MotionKnowledge& known);
+  /// @param feedback what the optimisation said last
+  [[nodiscard]] TrackedFrame process(const Frame& frame, bool full, const Feedback& feedback);
 
  private:
   bool predicts_;

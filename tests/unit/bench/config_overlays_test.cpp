@@ -67,6 +67,7 @@ TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
                      {"frontend.min_correlation", "0.6"},
                      {"frontend.outlier_model", "\"rigid\""},
                      {"frontend.ransac_threshold_px", "2.0"},
+                     {"frontend.reject_among_still", "true"},
                      {"frontend.grid.stop_early", "true"},
                      {"dynamic.mask", "\"depth_band\""},
                      {"dynamic.epsilon_m", "0.4"},

@@ -255,5 +255,34 @@ TEST(FeatureTracker, CountsEachModuleOncePerPicture) {
   }
 }
 
+/// How many features of the right third, which stands still, are left when the rest of the picture goes 9 px
+/// to the side. Its features are known to move.
+int count_still_behind_a_mover(bool reject_among_still) {
+  constexpr int kEdge = 430;
+  FrontendConfig config;
+  config.outlier_model = OutlierModel::kRigid;
+  config.reject_among_still = reject_among_still;
+  const TexturedPlane plane = test_plane();
+  const Frame standing = plane.frame_at(Pose{}, 0);
+  Frame later =
+      plane.frame_at(Pose{Eigen::Quaterniond::Identity(), {0.036, 0.0, 0.0}}, 1);  // 500 * 0.036 / 2
+  const cv::Rect still(kEdge, 0, standing.gray.cols - kEdge, standing.gray.rows);
+  standing.gray(still).copyTo(later.gray(still));
+  FeatureTracker tracker(config, test_camera());
+  std::vector<std::int64_t> moving, behind;
+  for (const TrackedFeature& feature : tracker.track(standing, {}, kDetect).features) {
+    (feature.pixel.x() < kEdge ? moving : behind).push_back(feature.id);
+  }
+  const TrackedFrame found = tracker.track(later, {}, kDetect, moving);
+  return static_cast<int>(std::ranges::count_if(found.features, [&](const TrackedFeature& feature) {
+    return std::ranges::binary_search(behind, feature.id);
+  }));
+}
+
+TEST(FeatureTracker, AMoverWhoFillsThePictureWinsUnlessItIsKnown) {
+  EXPECT_LT(count_still_behind_a_mover(false), 5);  // those on the edge of the mover
+  EXPECT_GT(count_still_behind_a_mover(true), 20);  // a third of some 100, and some that the edge takes away
+}
+
 }  // namespace
 }  // namespace stillpoint
