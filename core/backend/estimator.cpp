@@ -201,6 +201,8 @@ void Estimator::slide(bool keyframe) {
     window_.prior = marginalize_frame(window_.prior, window_.newest() - 1);
     remove_second_newest_frame(window_);
   }
+  // Nothing tied the frame that left to the others: they stay where they are.
+  if (window_.prior.empty()) window_.prior = first_prior(window_, backend_.initializer);
 }
 
 OdometryStatus Estimator::status() const {

@@ -74,6 +74,7 @@ LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config
     const Eigen::Map<const Eigen::VectorXd> now(block_address(blocks, block), global_size(block.kind));
     prior.blocks.push_back({block.kind, block.frame - 1, now});
   }
+  if (kept.empty()) return prior;
   SquareRoot root = eliminate(equations.H, equations.b, gone, kept);
   prior.jacobian = std::move(root.jacobian);
   prior.residual = std::move(root.residual);

@@ -9,7 +9,8 @@
 namespace stillpoint {
 
 /// The prior once the oldest frame and the landmarks it hosts are gone. Frame indices are already those after
-/// the slide (each one less). The window itself is not changed.
+/// the slide (each one less). The window itself is not changed. Empty where nothing ties that frame to the
+/// others.
 /// @param focal_px the camera's focal length
 [[nodiscard]] LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config,
                                              double focal_px);

@@ -72,6 +72,7 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
         {block.kind, block.frame - 1,
          Eigen::Map<const BlockVector>(block_address(blocks_, block), global_size(block.kind))});
   }
+  if (prior.blocks.empty()) return prior;
   const std::vector<int> columns = columns_of(order, system_.layout);
   const std::size_t gone_columns = columns_of(std::span(order).first(gone), system_.layout).size();
   SquareRoot root = root_of_rest(system_.H, -rhs, columns, static_cast<Eigen::Index>(gone_columns));

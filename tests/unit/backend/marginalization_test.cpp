@@ -38,6 +38,17 @@ TEST(Marginalization, ThePriorPullsADisplacedFrameBack) {
   }
 }
 
+TEST(Marginalization, AFrameThatNothingTiesToOthersLeavesNoPrior) {
+  Window window = visual_window(5, 30);
+  window.prior = first_prior(window, InitializerConfig{});  // of frame 0 alone
+  window.landmarks.clear();
+  for (const WindowSolverKind kind : {WindowSolverKind::kCeres, WindowSolverKind::kSchur}) {
+    BackendConfig config;
+    config.solver = kind;
+    EXPECT_TRUE(marginalize_oldest(window, config, kFocal_px).empty());
+  }
+}
+
 TEST(Marginalization, DroppingAFrameFromAPriorKeepsTheOthersMarginals) {
   // Two scalars-as-offsets would do, but blocks are poses: x0 - x1 = 0 and x1 = 0 known with unit weight in
   // p.
