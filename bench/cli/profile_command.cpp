@@ -110,22 +110,24 @@ Json json_of(const Profile& profile, const ProfileArguments& arguments, const st
 
 std::string ms(double value) { return fmt::format("{:.3f}", value); }
 
-void print_table(const std::vector<ProfileRow>& rows) {
+void print_table(const std::vector<ProfileRow>& rows, const DeadlineMisses& misses) {
   TableRows table = {{"ms", "per", "mean", "median", "p95", "p99", "max", "times", "frames beyond budget"}};
-  const auto add = [&](const ProfileRow& row, const char* per, const TimingStatistics& time) {
-    table.push_back({std::string(module_name(row.module)), per, ms(time.mean), ms(time.median), ms(time.p95),
-                     ms(time.p99), ms(time.max), fmt::format("{}", time.calls),
-                     fmt::format("{}", row.frames_beyond)});
+  const auto add = [&](std::string_view name, const char* per, const TimingStatistics& time,
+                       std::int64_t beyond) {
+    table.push_back({std::string(name), per, ms(time.mean), ms(time.median), ms(time.p95), ms(time.p99),
+                     ms(time.max), fmt::format("{}", time.calls), fmt::format("{}", beyond)});
   };
   for (const ProfileRow& row : rows) {
-    if (!is_thread(row.module)) add(row, "call", row.per_call);
-    add(row, "frame", row.per_frame);
+    const std::string_view name = module_name(row.module);
+    if (!is_thread(row.module)) add(name, "call", row.per_call, row.frames_beyond);
+    add(name, "frame", row.per_frame, row.frames_beyond);
   }
+  if (misses.whole_frame) add("all_stages", "frame", *misses.whole_frame, misses.one_thread);
   std::cout << format_table(table, TableStyle::kText);
 }
 
 void print(const Profile& profile) {
-  print_table(profile.rows);
+  print_table(profile.rows, profile.misses);
   std::cout << fmt::format(
       "{} frames in {:.2f} s; longer than {:g} ms: {} on one thread, {} with a thread for each stage\n",
       profile.misses.frames, profile.run.wall_s, profile.misses.budget_ms, profile.misses.one_thread,

@@ -33,6 +33,10 @@ void print(const TableRows& rows, const StatsArguments& arguments) {
 }
 
 std::string number(double value) { return fmt::format("{:.5g}", value); }
+std::string change_text(const RelativeChange& change) {
+  return fmt::format("{:+.1f} % ({:+.1f} to {:+.1f})", 100.0 * change.median, 100.0 * change.interval.low,
+                     100.0 * change.interval.high);
+}
 std::string interval_text(const Interval& interval) {
   return number(interval.low) + " to " + number(interval.high);
 }
@@ -67,7 +71,7 @@ int show_ablation(const StatsArguments& arguments) {
       cells.insert(cells.end(), {fmt::format("{}", row.difference->count), fmt::format("{}", row.lost),
                                  number(row.difference->median), interval_text(row.difference->interval),
                                  fmt::format("{:+.2f}", row.difference->effect),
-                                 row.change ? fmt::format("{:+.1f} %", 100.0 * row.change->median) : "n/a"});
+                                 row.change ? change_text(*row.change) : "n/a"});
     } else {
       cells.insert(cells.end(), {"0", fmt::format("{}", row.lost), "n/a", "n/a", "n/a", "n/a"});
     }

@@ -40,17 +40,19 @@ std::vector<ProfileRow> profile_rows(const TimingSamples& samples, double budget
 
 DeadlineMisses deadline_misses(const std::vector<ModuleTimings>& frames, double budget_ms) {
   DeadlineMisses misses{.budget_ms = budget_ms, .frames = static_cast<std::int64_t>(frames.size())};
+  TimingSamples sums;
   for (const ModuleTimings& frame : frames) {
-    double sum_ms = 0.0;
-    double slowest_ms = 0.0;
+    ModuleTime sum{.calls = 1};
+    std::int64_t slowest_ns = 0;
     for (const Module stage : kStages) {
-      const double stage_ms = 1e-6 * static_cast<double>(frame[stage].ns);
-      sum_ms += stage_ms;
-      slowest_ms = std::max(slowest_ms, stage_ms);
+      sum.ns += frame[stage].ns;
+      slowest_ns = std::max(slowest_ns, frame[stage].ns);
     }
-    misses.one_thread += sum_ms > budget_ms;
-    misses.thread_per_stage += slowest_ms > budget_ms;
+    sums.add(Module::kOptimizationThread, sum);
+    misses.one_thread += 1e-6 * static_cast<double>(sum.ns) > budget_ms;
+    misses.thread_per_stage += 1e-6 * static_cast<double>(slowest_ns) > budget_ms;
   }
+  misses.whole_frame = sums.statistics(Module::kOptimizationThread);
   return misses;
 }
 
@@ -65,6 +67,7 @@ Json profile_json(const std::vector<ProfileRow>& rows, const DeadlineMisses& mis
                        {"frames_beyond_budget", row.frames_beyond}});
   }
   return {{"modules", modules},
+          {"whole_frame_ms", misses.whole_frame ? json_of(*misses.whole_frame) : Json()},
           {"deadline",
            {{"budget_ms", misses.budget_ms},
             {"frames", misses.frames},

@@ -26,6 +26,7 @@ struct DeadlineMisses {
   std::int64_t frames = 0;
   std::int64_t one_thread = 0;
   std::int64_t thread_per_stage = 0;
+  std::optional<TimingStatistics> whole_frame;  ///< the stages together; nothing without frames
 };
 
 [[nodiscard]] std::vector<ProfileRow> profile_rows(const TimingSamples& samples, double budget_ms);

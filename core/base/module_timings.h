@@ -67,6 +67,11 @@ class ModuleTimings {
   /// In the order in which they ended, thread by thread. About 14 a frame: drop what is not wanted.
   [[nodiscard]] const std::vector<ModuleSpan>& spans() const { return spans_; }
   void drop_spans() { spans_ = {}; }
+  /// Begins anew, in the memory that is there.
+  void clear() {
+    times_ = {};
+    spans_.clear();
+  }
   [[nodiscard]] const ModuleTime& operator[](Module module) const {
     return times_[static_cast<std::size_t>(module)];
   }

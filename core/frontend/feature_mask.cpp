@@ -2,6 +2,7 @@
 #include "core/frontend/feature_mask.h"
 
 #include <cstdint>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 
 namespace stillpoint {
@@ -14,7 +15,7 @@ constexpr std::uint8_t kTaken = 0;
 
 void FeatureMask::clear(cv::Size size) {
   image_.create(size, CV_8UC1);
-  image_.setTo(kFree);
+  std::memset(image_.data, kFree, image_.total());  // cv::Mat::setTo asks for memory
 }
 
 bool FeatureMask::is_free(const cv::Point2f& pixel) const {

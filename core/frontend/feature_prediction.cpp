@@ -2,6 +2,7 @@
 #include "core/frontend/feature_prediction.h"
 
 #include <cmath>
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -22,10 +23,11 @@ TrackerPrediction usable_prediction(TrackerPrediction wanted, const MotionPrior&
 }
 
 std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks, const MotionPrior& prior,
-                                        TrackerPrediction kind, const Camera& camera) {
+                                        TrackerPrediction kind, const Camera& camera,
+                                        std::vector<cv::Point2f> memory) {
   const Eigen::Matrix3d R_ccur_cprev = prior.T_ccur_cprev.R();
-  std::vector<cv::Point2f> pixels;
-  pixels.reserve(tracks.size());
+  std::vector<cv::Point2f> pixels = std::move(memory);
+  pixels.clear();
   for (const Track& track : tracks) {
     Eigen::Vector2d pixel = track.feature.pixel;
     if (kind != TrackerPrediction::kNone) {

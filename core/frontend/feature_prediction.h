@@ -20,8 +20,10 @@ namespace stillpoint {
 /// Predicted pixel of each track, distortion included; its present pixel where nothing can be said.
 /// With kFull a track moves by rotation and translation at its known depth, and by rotation alone without
 /// one; the paper speaks of preintegration without saying which, the published code rotates only.
-/// @param kind what `usable_prediction` returned
+/// @param kind   what `usable_prediction` returned
+/// @param memory for the result
 [[nodiscard]] std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks, const MotionPrior& prior,
-                                                      TrackerPrediction kind, const Camera& camera);
+                                                      TrackerPrediction kind, const Camera& camera,
+                                                      std::vector<cv::Point2f> memory = {});
 
 }  // namespace stillpoint

@@ -48,9 +48,9 @@ Eigen::Vector2d to_vector(const cv::Point2f& point) {
   return {static_cast<double>(point.x), static_cast<double>(point.y)};
 }
 
-std::vector<cv::Point2f> pixels_of(const std::vector<Track>& tracks) {
-  std::vector<cv::Point2f> pixels;
-  pixels.reserve(tracks.size());
+std::vector<cv::Point2f> pixels_of(const std::vector<Track>& tracks, std::vector<cv::Point2f> memory) {
+  std::vector<cv::Point2f> pixels = std::move(memory);
+  pixels.clear();
   for (const Track& track : tracks) {
     pixels.emplace_back(static_cast<float>(track.feature.pixel.x()),
                         static_cast<float>(track.feature.pixel.y()));
@@ -69,8 +69,8 @@ struct FeatureTracker::State {
 
   void advance(const Frame& frame, const MotionPrior& prior, bool detect, MovingIds moving);
   void follow_tracks(const MotionPrior& prior, double interval_s);
-  [[nodiscard]] KltResult match(const std::vector<cv::Point2f>& predicted, TrackerPrediction kind) const;
-  void accept(const KltResult& matches, const std::vector<cv::Point2f>& predicted, double interval_s);
+  void match(TrackerPrediction kind);
+  void accept(double interval_s);
   void reject_outliers(MovingIds moving);
   void apply_mask();
   void find_new(const cv::Mat& gray);
@@ -91,7 +91,15 @@ struct FeatureTracker::State {
   // code leaves them out; with them, features on movers are not born again at every detection.
   std::vector<cv::Point2f> unstable;
   FeatureMask mask;
+  OutlierSearch outliers;
   std::int64_t next_id = 0;
+
+  // Memory of what one step hands to the next.
+  std::vector<cv::Point2f> pixels;
+  std::vector<cv::Point2f> predicted;
+  KltResult matches;
+  KltResult back;
+  std::vector<Match> pairs;
 
   // Of the present picture.
   int lost = 0;
@@ -123,32 +131,31 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
 
 void FeatureTracker::State::follow_tracks(const MotionPrior& prior, double interval_s) {
   const TrackerPrediction kind = usable_prediction(config.prediction, prior);
-  const std::vector<cv::Point2f> predicted = predict_pixels(tracks, prior, kind, camera);
-  accept(match(predicted, kind), predicted, interval_s);
+  predicted = predict_pixels(tracks, prior, kind, camera, std::move(predicted));
+  match(kind);
+  accept(interval_s);
 }
 
-KltResult FeatureTracker::State::match(const std::vector<cv::Point2f>& predicted,
-                                       TrackerPrediction kind) const {
+void FeatureTracker::State::match(TrackerPrediction kind) {
   const bool predicts = kind != TrackerPrediction::kNone;
   const int levels = predicts ? config.pyramid_levels : config.unpredicted_pyramid_levels;
-  const std::vector<cv::Point2f> points = pixels_of(tracks);
-  KltResult matches =
-      follow(config, previous, current, {.points = points, .starts = predicted, .levels = levels});
-  if (!config.forward_backward) return matches;
-  const KltResult back =
-      follow(config, current, previous, {.points = matches.pixels, .starts = points, .levels = 1});
-  return keep_returning(points, std::move(matches), back, config.forward_backward_px);
+  pixels = pixels_of(tracks, std::move(pixels));
+  matches = follow(config, previous, current, {.points = pixels, .starts = predicted, .levels = levels},
+                   std::move(matches));
+  if (!config.forward_backward) return;
+  back = follow(config, current, previous, {.points = matches.pixels, .starts = pixels, .levels = 1},
+                std::move(back));
+  matches = keep_returning(pixels, std::move(matches), back, config.forward_backward_px);
 }
 
-void FeatureTracker::State::accept(const KltResult& matches, const std::vector<cv::Point2f>& predicted,
-                                   double interval_s) {
-  std::vector<Track> kept;
-  kept.reserve(tracks.size());
+void FeatureTracker::State::accept(double interval_s) {
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const Eigen::Vector2d pixel = to_vector(matches.pixels[i]);
     const bool inside = pixel.allFinite() && camera.contains(pixel, config.border_px);
     if (matches.found[i] != 0 && inside) {
-      Track track = tracks[i];
+      Track& track = tracks[kept++];
+      track = tracks[i];
       TrackedFeature& feature = track.feature;
       const Eigen::Vector2d bearing = camera.unproject(pixel);
       feature.velocity.setZero();
@@ -156,13 +163,12 @@ void FeatureTracker::State::accept(const KltResult& matches, const std::vector<c
       feature.bearing = bearing;
       feature.pixel = pixel;
       ++feature.age;
-      kept.push_back(track);
     } else if (camera.contains(to_vector(predicted[i]), config.border_px)) {
       unstable.push_back(predicted[i]);
       ++lost;
     }
   }
-  tracks = std::move(kept);
+  tracks.resize(kept);
 }
 
 void FeatureTracker::State::reject_outliers(MovingIds moving) {
@@ -170,42 +176,40 @@ void FeatureTracker::State::reject_outliers(MovingIds moving) {
   const auto is_spared = [&](const Track& track) {
     return config.reject_among_still && std::ranges::binary_search(moving, track.feature.id);
   };
-  const std::vector<cv::Point2f> pixels = pixels_of(tracks);
-  std::vector<Match> matches;
-  matches.reserve(tracks.size());
+  pixels = pixels_of(tracks, std::move(pixels));
+  pairs.clear();
   for (const Track& track : tracks) {
     if (is_spared(track)) continue;
-    matches.push_back({track.reference_bearing, track.reference_depth, track.feature.bearing});
+    pairs.push_back({track.reference_bearing, track.reference_depth, track.feature.bearing});
   }
-  const Inliers inliers = find_inliers(matches, {.model = config.outlier_model,
+  const Inliers& inliers = outliers.find(pairs, {.model = config.outlier_model,
                                                  .threshold_px = config.ransac_threshold_px,
                                                  .confidence = config.ransac_confidence,
                                                  .min_inlier_share = config.ransac_min_inlier_share,
                                                  .focal_px = camera.focal_px()});
   auto inlier = inliers.begin();
-  std::vector<Track> kept;
-  kept.reserve(tracks.size());
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (is_spared(tracks[i]) || *inlier++ != 0) {
-      kept.push_back(tracks[i]);
+      tracks[kept++] = tracks[i];
     } else {
       unstable.push_back(pixels[i]);
       ++lost;
     }
   }
-  tracks = std::move(kept);
+  tracks.resize(kept);
 }
 
 void FeatureTracker::State::apply_mask() {
   const ScopedTimer timer(timings, Module::kFeatureMask);
   mask.clear(cv::Size(camera.width, camera.height));
   if (config.circular_mask) {
-    const std::vector<cv::Point2f> pixels = pixels_of(tracks);
-    std::vector<Track> kept;
+    pixels = pixels_of(tracks, std::move(pixels));
+    std::size_t kept = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
-      if (mask.claim(pixels[i], config.min_distance_px)) kept.push_back(tracks[i]);
+      if (mask.claim(pixels[i], config.min_distance_px)) tracks[kept++] = tracks[i];
     }
-    tracks = std::move(kept);
+    tracks.resize(kept);
     for (const cv::Point2f& pixel : unstable) mask.take_circle(pixel, config.unstable_radius_px);
   }
   unstable.clear();
@@ -213,11 +217,11 @@ void FeatureTracker::State::apply_mask() {
 
 void FeatureTracker::State::find_new(const cv::Mat& gray) {
   const ScopedTimer timer(timings, Module::kFeatureDetection);
-  const std::vector<cv::Point2f> tracked = pixels_of(tracks);
-  const std::vector<cv::Point2f> corners =
+  pixels = pixels_of(tracks, std::move(pixels));
+  const std::vector<cv::Point2f>& corners =
       detector->detect({.gray = gray,
                         .mask = mask,
-                        .tracked = tracked,
+                        .tracked = pixels,
                         .wanted = config.max_features - static_cast<int>(tracks.size()),
                         .min_distance_px = config.circular_mask ? config.min_distance_px : 0});
   for (const cv::Point2f& corner : corners) {
@@ -251,22 +255,23 @@ FeatureTracker::FeatureTracker(const FrontendConfig& config, const Camera& camer
 FeatureTracker::~FeatureTracker() = default;
 
 TrackedFrame FeatureTracker::track(const Frame& frame, const MotionPrior& prior, bool detect,
-                                   std::span<const std::int64_t> moving) {
+                                   std::span<const std::int64_t> moving, TrackedFrame memory) {
   check_frame(frame, state_->camera);
-  state_->timings = {};
+  TrackedFrame result = std::move(memory);
+  state_->timings = std::move(result.timings);
+  state_->timings.clear();
   {
     const ScopedTimer timer(state_->timings, Module::kTrackingThread);
     state_->advance(frame, prior, detect, moving);
   }
-  TrackedFrame result{.id = frame.id,
-                      .t = frame.t,
-                      .features = {},
-                      .depth = frame.depth,
-                      .depth_units_per_m = frame.depth_units_per_m,
-                      .lost = state_->lost,
-                      .detected = state_->detected,
-                      .timings = state_->timings};
-  result.features.reserve(state_->tracks.size());
+  result.id = frame.id;
+  result.t = frame.t;
+  result.depth = frame.depth;
+  result.depth_units_per_m = frame.depth_units_per_m;
+  result.lost = state_->lost;
+  result.detected = state_->detected;
+  result.timings = std::move(state_->timings);
+  result.features.clear();
   for (const Track& track : state_->tracks) result.features.push_back(track.feature);
   return result;
 }

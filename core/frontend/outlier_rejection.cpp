@@ -7,9 +7,6 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <optional>
-#include <utility>
-
-#include "core/frontend/rigid_motion.h"
 
 namespace stillpoint {
 namespace {
@@ -20,28 +17,6 @@ constexpr double kNoLine = 1e-12;  // without translation there are no epipolar 
 
 cv::Point2f to_pixel(const Eigen::Vector2d& bearing, double focal_px) {
   return {static_cast<float>(focal_px * bearing.x()), static_cast<float>(focal_px * bearing.y())};
-}
-
-std::optional<Inliers> believed(Inliers inliers, const OutlierRejectionSettings& settings) {
-  const auto fitting = std::count(inliers.begin(), inliers.end(), std::uint8_t{1});
-  const double share = static_cast<double>(fitting) / static_cast<double>(inliers.size());
-  if (share < settings.min_inlier_share) return std::nullopt;
-  return inliers;
-}
-
-std::optional<Inliers> epipolar_inliers(std::span<const Match> matches,
-                                        const OutlierRejectionSettings& settings) {
-  std::vector<cv::Point2f> from;
-  std::vector<cv::Point2f> to;
-  for (const Match& match : matches) {
-    from.push_back(to_pixel(match.from, settings.focal_px));
-    to.push_back(to_pixel(match.to, settings.focal_px));
-  }
-  Inliers inliers;
-  const cv::Mat matrix =
-      cv::findFundamentalMat(from, to, cv::FM_RANSAC, settings.threshold_px, settings.confidence, inliers);
-  if (matrix.empty() || inliers.size() != matches.size()) return std::nullopt;
-  return believed(std::move(inliers), settings);
 }
 
 /// Distance of a match from where the motion says it should be, or from the line it should be on [normalised
@@ -57,33 +32,52 @@ double misfit(const Match& match, const Pose& T_to_from) {
   return slope < kNoLine ? 0.0 : std::abs(line.dot(match.to.homogeneous())) / slope;
 }
 
-std::optional<Inliers> rigid_inliers(std::span<const Match> matches,
-                                     const OutlierRejectionSettings& settings) {
-  std::vector<PointObservation> observations;
-  for (const Match& match : matches) {
-    if (match.depth > 0.0) observations.push_back({match.depth * match.from.homogeneous(), match.to});
-  }
-  if (observations.size() < kMinDepthMatches) return std::nullopt;
-  const std::optional<Pose> T_to_from = estimate_rigid_motion(
-      observations,
-      {.threshold = settings.threshold_px / settings.focal_px, .confidence = settings.confidence});
-  if (!T_to_from) return std::nullopt;
-  Inliers inliers;
-  for (const Match& match : matches) {
-    inliers.push_back(misfit(match, *T_to_from) * settings.focal_px <= settings.threshold_px ? 1 : 0);
-  }
-  return believed(std::move(inliers), settings);
-}
-
 }  // namespace
 
-Inliers find_inliers(std::span<const Match> matches, const OutlierRejectionSettings& settings) {
-  const Inliers all(matches.size(), 1);
-  if (matches.size() < kMinMatches) return all;
-  if (settings.model == OutlierModel::kRigid) {
-    if (const std::optional<Inliers> inliers = rigid_inliers(matches, settings)) return *inliers;
+bool OutlierSearch::is_believed(const OutlierRejectionSettings& settings) const {
+  const auto fitting = std::count(inliers_.begin(), inliers_.end(), std::uint8_t{1});
+  return static_cast<double>(fitting) >= settings.min_inlier_share * static_cast<double>(inliers_.size());
+}
+
+bool OutlierSearch::fit_epipolar(std::span<const Match> matches, const OutlierRejectionSettings& settings) {
+  std::vector<cv::Point2f> from;
+  std::vector<cv::Point2f> to;
+  for (const Match& match : matches) {
+    from.push_back(to_pixel(match.from, settings.focal_px));
+    to.push_back(to_pixel(match.to, settings.focal_px));
   }
-  return epipolar_inliers(matches, settings).value_or(all);
+  const cv::Mat matrix =
+      cv::findFundamentalMat(from, to, cv::FM_RANSAC, settings.threshold_px, settings.confidence, inliers_);
+  return !matrix.empty() && inliers_.size() == matches.size() && is_believed(settings);
+}
+
+bool OutlierSearch::fit_rigid(std::span<const Match> matches, const OutlierRejectionSettings& settings) {
+  observations_.clear();
+  for (const Match& match : matches) {
+    if (match.depth > 0.0) observations_.push_back({match.depth * match.from.homogeneous(), match.to});
+  }
+  if (observations_.size() < kMinDepthMatches) return false;
+  const std::optional<Pose> T_to_from = estimate_rigid_motion(
+      observations_,
+      {.threshold = settings.threshold_px / settings.focal_px, .confidence = settings.confidence});
+  if (!T_to_from) return false;
+  inliers_.clear();
+  for (const Match& match : matches) {
+    inliers_.push_back(misfit(match, *T_to_from) * settings.focal_px <= settings.threshold_px ? 1 : 0);
+  }
+  return is_believed(settings);
+}
+
+const Inliers& OutlierSearch::find(std::span<const Match> matches, const OutlierRejectionSettings& settings) {
+  const bool judged = matches.size() >= kMinMatches &&
+                      ((settings.model == OutlierModel::kRigid && fit_rigid(matches, settings)) ||
+                       fit_epipolar(matches, settings));
+  if (!judged) inliers_.assign(matches.size(), 1);
+  return inliers_;
+}
+
+Inliers find_inliers(std::span<const Match> matches, const OutlierRejectionSettings& settings) {
+  return OutlierSearch().find(matches, settings);
 }
 
 }  // namespace stillpoint

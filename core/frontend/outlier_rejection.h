@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/frontend/frontend_config.h"
+#include "core/frontend/rigid_motion.h"
 
 namespace stillpoint {
 
@@ -27,6 +28,21 @@ struct OutlierRejectionSettings {
   double confidence = 0.99;       ///< of having drawn one clean sample
   double min_inlier_share = 0.5;  ///< a motion that fewer matches fit is not believed
   double focal_px = 0.0;          ///< > 0
+};
+
+/// Kept between searches for its memory only.
+class OutlierSearch {
+ public:
+  /// As `find_inliers`. @return valid until the next call
+  [[nodiscard]] const Inliers& find(std::span<const Match> matches, const OutlierRejectionSettings& settings);
+
+ private:
+  [[nodiscard]] bool fit_epipolar(std::span<const Match> matches, const OutlierRejectionSettings& settings);
+  [[nodiscard]] bool fit_rigid(std::span<const Match> matches, const OutlierRejectionSettings& settings);
+  [[nodiscard]] bool is_believed(const OutlierRejectionSettings& settings) const;
+
+  std::vector<PointObservation> observations_;
+  Inliers inliers_;
 };
 
 /// Which matches fit the one motion that most fit, by RANSAC (Fischler and Bolles 1981). Same input, same

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -10,6 +11,7 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMaxLevels = 8;
+constexpr std::size_t kBatch = 64;  // points handed to the kernel at a time
 
 /// The views that the kernel takes of a pyramid.
 struct Views {
@@ -45,26 +47,29 @@ struct Views {
 
 KltResult follow_patches(const ImagePyramid& from, const ImagePyramid& to,
                          const std::vector<cv::Point2f>& points, const std::vector<cv::Point2f>& guesses,
-                         int levels, const PatchSettings& settings, PatchTarget target) {
+                         int levels, const PatchSettings& settings, PatchTarget target, KltResult memory) {
   STILLPOINT_CHECK(points.size() == guesses.size());
-  KltResult result{.pixels = guesses, .found = std::vector<std::uint8_t>(points.size(), 0)};
+  KltResult result = std::move(memory);
+  result.pixels.resize(points.size());
+  result.found.resize(points.size());
   const Views from_views(from, levels);
   const Views to_views(to, levels);
   const std::size_t shared = std::min(from_views.count, to_views.count);
   // cv::Point2f and PatchPoint are both two floats, but only copies may say so.
-  std::vector<PatchPoint> centres;
-  std::vector<PatchPoint> matches;
-  centres.reserve(points.size());
-  matches.reserve(points.size());
-  for (const cv::Point2f& point : points) centres.push_back({point.x, point.y});
-  for (const cv::Point2f& guess : guesses) matches.push_back({guess.x, guess.y});
-  track_patches({.from = from_views.view(shared),
-                 .to = to_views.view(shared),
-                 .points = centres,
-                 .matches = matches,
-                 .found = result.found},
-                settings, target);
-  for (std::size_t i = 0; i < matches.size(); ++i) result.pixels[i] = {matches[i].x, matches[i].y};
+  std::array<PatchPoint, kBatch> centres;
+  std::array<PatchPoint, kBatch> matches;
+  for (std::size_t first = 0; first < points.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, points.size() - first);
+    for (std::size_t i = 0; i < count; ++i) centres[i] = {points[first + i].x, points[first + i].y};
+    for (std::size_t i = 0; i < count; ++i) matches[i] = {guesses[first + i].x, guesses[first + i].y};
+    track_patches({.from = from_views.view(shared),
+                   .to = to_views.view(shared),
+                   .points = std::span(centres).first(count),
+                   .matches = std::span(matches).first(count),
+                   .found = std::span(result.found).subspan(first, count)},
+                  settings, target);
+    for (std::size_t i = 0; i < count; ++i) result.pixels[first + i] = {matches[i].x, matches[i].y};
+  }
   return result;
 }
 

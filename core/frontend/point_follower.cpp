@@ -2,6 +2,7 @@
 #include "core/frontend/point_follower.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/frontend/patch_tracker.h"
 
@@ -17,11 +18,12 @@ void rebuild_pyramid(const FrontendConfig& config, const cv::Mat& gray, ImagePyr
 }
 
 KltResult follow(const FrontendConfig& config, const ImagePyramid& from, const ImagePyramid& to,
-                 const PointSearch& search) {
+                 const PointSearch& search, KltResult memory) {
   if (config.tracker == TrackerKind::kPatch) {
     return follow_patches(from, to, search.points, search.starts, search.levels,
                           {.max_iterations = config.max_iterations,
-                           .min_correlation = static_cast<float>(config.min_correlation)});
+                           .min_correlation = static_cast<float>(config.min_correlation)},
+                          PatchTarget::kBest, std::move(memory));
   }
   return follow_points(
       from, to, search.points, search.starts,

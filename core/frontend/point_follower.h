@@ -17,7 +17,8 @@ struct PointSearch {
 /// Makes what `follow` needs of a picture.
 void rebuild_pyramid(const FrontendConfig& config, const cv::Mat& gray, ImagePyramid& pyramid);
 
+/// @param memory for the result
 [[nodiscard]] KltResult follow(const FrontendConfig& config, const ImagePyramid& from, const ImagePyramid& to,
-                               const PointSearch& search);
+                               const PointSearch& search, KltResult memory = {});
 
 }  // namespace stillpoint

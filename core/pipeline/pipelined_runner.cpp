@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The runner with a thread for each stage, and the same bits as one thread. Paper Sec. II.
 #include <thread>
+#include <utility>
 
 #include "core/base/bounded_channel.h"
 #include "core/pipeline/runner_parts.h"
@@ -12,6 +13,12 @@ namespace {
 /// Pictures that may wait between two stages.
 constexpr std::size_t kWaiting = 4;
 
+/// What the optimisation gives back to the tracker: what it says, and a frame for its memory.
+struct Returned {
+  Feedback said;
+  TrackedFrame spent;
+};
+
 class PipelinedRun {
  public:
   PipelinedRun(const SensorInput& input, const OdometryConfig& config, const RunControl& control)
@@ -20,7 +27,9 @@ class PipelinedRun {
         stages_(assemble(input, config)),
         feedback_(static_cast<std::size_t>(config.pipeline.feedback_lag) + 2) {
     // The tracker takes one of these for each picture, and waits where there is none: that is the lag.
-    for (int i = 0; i <= config.pipeline.feedback_lag; ++i) feedback_.push(stages_.optimization.feedback());
+    for (int i = 0; i <= config.pipeline.feedback_lag; ++i) {
+      feedback_.push({stages_.optimization.feedback(), {}});
+    }
   }
 
   RunSummary run() {
@@ -47,10 +56,11 @@ class PipelinedRun {
       if (!picture) continue;
       picture->full = stages_.rate.admits(picture->frame.t);
       if (picture->full && !to_detect_.push(picture->frame)) return;
-      const std::optional<Feedback> known = feedback_.pop();
-      if (!known) return;
+      std::optional<Returned> returned = feedback_.pop();
+      if (!returned) return;
       imu.up_to(after(picture->frame.t, input_.rig.time_offset_s + kImuLead_s), stages_.tracking);
-      picture->tracked = stages_.tracking.process(picture->frame, picture->full, *known);
+      picture->tracked =
+          stages_.tracking.process(picture->frame, picture->full, returned->said, std::move(returned->spent));
       if (!tracked_.push(std::move(*picture))) return;
     }
     to_detect_.close();
@@ -66,7 +76,7 @@ class PipelinedRun {
 
   void optimize() {
     ImuFeed imu(input_.imu);
-    while (const std::optional<PictureOnWay> picture = tracked_.pop()) {
+    while (std::optional<PictureOnWay> picture = tracked_.pop()) {
       std::optional<DetectionOnWay> detections;
       if (picture->full) {
         detections = detected_.pop();
@@ -74,7 +84,7 @@ class PipelinedRun {
       }
       imu.up_to(after(picture->frame.t, input_.rig.time_offset_s + kImuLead_s), stages_.optimization);
       close_picture(*picture, detections, stages_.optimization, control_, summary_);
-      feedback_.push(stages_.optimization.feedback());
+      feedback_.push({stages_.optimization.feedback(), std::move(picture->tracked)});
     }
   }
 
@@ -90,7 +100,7 @@ class PipelinedRun {
   const RunControl& control_;
   Stages stages_;
   RunSummary summary_;  ///< `frames`, `skipped`, `interrupted` belong to the tracker's thread while it runs
-  BoundedChannel<Feedback> feedback_;
+  BoundedChannel<Returned> feedback_;
   BoundedChannel<Frame> to_detect_{kWaiting};
   BoundedChannel<PictureOnWay> tracked_{kWaiting};
   BoundedChannel<DetectionOnWay> detected_{kWaiting};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <utility>
 
 #include "core/pipeline/runner_parts.h"
 
@@ -19,6 +20,7 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
   std::deque<Feedback> feedback(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1,
                                 stages.optimization.feedback());
   RunSummary summary;
+  TrackedFrame spent;
   for (std::size_t i = 0; i < input.frame_times.size(); ++i) {
     if (control.stop_requested && control.stop_requested()) {
       summary.interrupted = true;
@@ -32,11 +34,13 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
     imu_of_estimator.up_to(imu_end, stages.optimization);
 
     picture->full = stages.rate.admits(picture->frame.t);
-    picture->tracked = stages.tracking.process(picture->frame, picture->full, feedback.front());
+    picture->tracked =
+        stages.tracking.process(picture->frame, picture->full, feedback.front(), std::move(spent));
     feedback.pop_front();
     std::optional<DetectionOnWay> detections;
     if (picture->full) detections = detect_objects(*stages.detector, picture->frame);
     close_picture(*picture, detections, stages.optimization, control, summary);
+    spent = std::move(picture->tracked);
     feedback.push_back(stages.optimization.feedback());
   }
   close_run(stages, summary);

@@ -21,7 +21,9 @@ class TrackingStage {
 
   /// @param full  whether the picture enters the window: lost features are replaced
   /// @param feedback what the optimisation said last
-  [[nodiscard]] TrackedFrame process(const Frame& frame, bool full, const Feedback& feedback);
+  /// @param memory for the result: a frame that nobody needs any more
+  [[nodiscard]] TrackedFrame process(const Frame& frame, bool full, const Feedback& feedback,
+                                     TrackedFrame memory = {});
 
  private:
   bool predicts_;

@@ -34,6 +34,8 @@ TEST(DeadlineMisses, CountTheSumForOneThreadAndTheSlowestForSeveral) {
   EXPECT_EQ(misses.frames, 3);
   EXPECT_EQ(misses.one_thread, 2);
   EXPECT_EQ(misses.thread_per_stage, 1);
+  ASSERT_TRUE(misses.whole_frame.has_value());
+  EXPECT_DOUBLE_EQ(misses.whole_frame->median, 21.0);  // of 10, 25 and 21
 }
 
 }  // namespace
