@@ -48,7 +48,10 @@ DisplayName display_name(const std::string& system) {
   for (const DisplayName& known : kNamesOfSystems) {
     if (known.system == system) return known;
   }
-  return {system, system, ""};
+  const std::string_view name = system;
+  const std::size_t slash = name.rfind('/');
+  if (slash == std::string_view::npos) return {name, name, ""};
+  return {name, name.substr(slash + 1), name.substr(0, slash)};
 }
 
 /// New systems first, then the known ones in their order.
