@@ -25,7 +25,9 @@ Database open_for_writing(const fs::path& file) {
   migrate(database);
   Statement check = database.prepare("PRAGMA quick_check(1)");
   if (!check.step() || check.text(0) != "ok") {
-    throw InputError(file.string(), "is damaged (" + check.text(0) +
+    std::string fault = check.text(0);
+    std::ranges::replace(fault, '\n', ' ');
+    throw InputError(file.string(), "is damaged (" + fault +
                                         "); save what is readable with `stillpoint store export`, and go on "
                                         "with a new store");
   }

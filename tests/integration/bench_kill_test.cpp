@@ -13,8 +13,7 @@
 #include <unistd.h>
 
 #include "bench/store/store.h"
-#include "tests/support/fake_sequence.h"
-#include "tests/support/program.h"
+#include "tests/support/replay_bench.h"
 
 namespace stillpoint {
 namespace {
@@ -22,38 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = STILLPOINT_BINARY_DIR "/stillpoint";
-constexpr const char* kReplay = STILLPOINT_BINARY_DIR "/tests/replay_program";
 constexpr int kRuns = 200;
 constexpr int kKills = 20;
-
-/// A plan of one stand-in system over two sequences.
-fs::path write_plan(const TemporaryFolder& folder, int repetitions, const std::string& flags,
-                    const std::string& limits = "") {
-  fake_sequence(folder, "freiburg1_a");
-  fake_sequence(folder, "freiburg1_b");
-  folder.write(
-      "replay.toml",
-      "name = \"replay\"\nversion = \"1\"\nlayout = \"as_is\"\ntimings = \"result.json\"\ncommand = [\"" +
-          std::string(kReplay) + "\", " + flags +
-          "\"run\", \"{sequence}\", \"--out\", \"{out}\", \"--set\", \"{seed}-{repetition}\"]\n");
-  return folder.write("plan.toml", "title = \"Replays\"\nsystems = [\"" +
-                                       (folder.path() / "replay.toml").string() +
-                                       "\"]\nrepetitions = " + std::to_string(repetitions) + "\n" + limits +
-                                       "[recorded]\nsequences = [\"freiburg1_*\"]\n");
-}
-
-std::vector<std::string> arguments(const TemporaryFolder& folder, const fs::path& plan,
-                                   const fs::path& store) {
-  return {"bench",  plan.string(), "--store", store.string(),
-          "--jobs", "2",           "--out",   (folder.path() / "out").string()};
-}
-
-ProgramResult bench(const TemporaryFolder& folder, const fs::path& plan, const fs::path& store) {
-  ProgramOptions options;
-  options.environment = {"STILLPOINT_DATA=" + folder.path().string(),
-                         "STILLPOINT_REGISTRY=" + (folder.path() / "none.json").string()};
-  return run_program(arguments(folder, plan, store), options);
-}
 
 /// Starts the benchmark, and kills it after a while. @return whether it was still at work
 bool kill_after(const TemporaryFolder& folder, const fs::path& plan, const fs::path& store,
@@ -64,7 +33,7 @@ bool kill_after(const TemporaryFolder& folder, const fs::path& plan, const fs::p
     setenv("STILLPOINT_REGISTRY", (folder.path() / "none.json").c_str(), 1);
     static_cast<void>(!std::freopen("/dev/null", "w", stdout));
     static_cast<void>(!std::freopen("/dev/null", "w", stderr));
-    std::vector<std::string> words = arguments(folder, plan, store);
+    std::vector<std::string> words = replay_arguments(folder, plan, store);
     words.insert(words.begin(), "stillpoint");
     std::vector<char*> pointers;
     for (std::string& word : words) pointers.push_back(word.data());
@@ -97,9 +66,9 @@ std::map<std::string, std::string> content_of(const fs::path& file) {
 TEST(BenchKill, TwentyKillsLeaveWhatOneUndisturbedBenchmarkLeaves) {
   const TemporaryFolder folder;
   const std::string log = (folder.path() / "log").string();
-  const fs::path plan = write_plan(folder, kRuns / 2, "\"--log\", \"" + log + "\", ");
+  const fs::path plan = write_replay_plan(folder, kRuns / 2, "\"--log\", \"" + log + "\", ");
   const fs::path calm = folder.path() / "calm.sqlite";
-  ASSERT_EQ(bench(folder, plan, calm).exit_code, 0);
+  ASSERT_EQ(replay_bench(folder, plan, calm).exit_code, 0);
   fs::remove(log);
 
   const fs::path killed = folder.path() / "killed.sqlite";
@@ -109,7 +78,7 @@ TEST(BenchKill, TwentyKillsLeaveWhatOneUndisturbedBenchmarkLeaves) {
   for (int i = 0; i < kKills; ++i)
     interrupted += kill_after(folder, plan, killed, milliseconds(random)) ? 1 : 0;
   EXPECT_GE(interrupted, kKills / 2);  // otherwise the benchmark is too short to be disturbed
-  const ProgramResult last = bench(folder, plan, killed);
+  const ProgramResult last = replay_bench(folder, plan, killed);
   EXPECT_EQ(last.exit_code, 0) << last.err;
 
   EXPECT_EQ(Store(killed).unfinished(), 0);
@@ -126,20 +95,20 @@ TEST(BenchKill, TwentyKillsLeaveWhatOneUndisturbedBenchmarkLeaves) {
 
 TEST(BenchKill, TheSecondCallMakesNothing) {
   const TemporaryFolder folder;
-  const fs::path plan = write_plan(folder, 2, "");
+  const fs::path plan = write_replay_plan(folder, 2, "");
   const fs::path store = folder.path() / "store.sqlite";
-  EXPECT_NE(bench(folder, plan, store).out.find("4 runs made, 0 were there"), std::string::npos);
-  EXPECT_NE(bench(folder, plan, store).out.find("0 runs made, 4 were there"), std::string::npos);
+  EXPECT_NE(replay_bench(folder, plan, store).out.find("4 runs made, 0 were there"), std::string::npos);
+  EXPECT_NE(replay_bench(folder, plan, store).out.find("0 runs made, 4 were there"), std::string::npos);
 }
 
 TEST(BenchKill, TwoDriversShareTheWork) {
   const TemporaryFolder folder;
   const std::string log = (folder.path() / "log").string();
-  const fs::path plan = write_plan(folder, 20, "\"--log\", \"" + log + "\", ");
+  const fs::path plan = write_replay_plan(folder, 20, "\"--log\", \"" + log + "\", ");
   const fs::path store = folder.path() / "store.sqlite";
   const pid_t other = fork();
-  if (other == 0) _exit(bench(folder, plan, store).exit_code);
-  EXPECT_EQ(bench(folder, plan, store).exit_code, 0);
+  if (other == 0) _exit(replay_bench(folder, plan, store).exit_code);
+  EXPECT_EQ(replay_bench(folder, plan, store).exit_code, 0);
   int status = 0;
   waitpid(other, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 0);
@@ -155,7 +124,8 @@ StoredRun first_run(const fs::path& store) { return Store(store).runs().front();
 TEST(BenchKill, TellsHowARunEnded) {
   const TemporaryFolder folder;
   const fs::path store = folder.path() / "store.sqlite";
-  EXPECT_EQ(bench(folder, write_plan(folder, 1, "\"--crash-after\", \"7\", "), store).exit_code, 1);
+  EXPECT_EQ(replay_bench(folder, write_replay_plan(folder, 1, "\"--crash-after\", \"7\", "), store).exit_code,
+            1);
   EXPECT_EQ(first_run(store).outcome, Outcome::kCrashed);
   EXPECT_NE(first_run(store).detail.find("signal 11"), std::string::npos);
 }
@@ -163,16 +133,20 @@ TEST(BenchKill, TellsHowARunEnded) {
 TEST(BenchKill, EndsARunAtItsTimeLimit) {
   const TemporaryFolder folder;
   const fs::path store = folder.path() / "store.sqlite";
-  EXPECT_EQ(bench(folder, write_plan(folder, 1, "\"--hang\", ", "time_limit_s = 0.3\n"), store).exit_code, 1);
+  EXPECT_EQ(replay_bench(folder, write_replay_plan(folder, 1, "\"--hang\", ", "time_limit_s = 0.3\n"), store)
+                .exit_code,
+            1);
   EXPECT_EQ(first_run(store).outcome, Outcome::kTimedOut);
 }
 
 TEST(BenchKill, EndsARunAtItsMemoryLimit) {
   const TemporaryFolder folder;
   const fs::path store = folder.path() / "store.sqlite";
-  EXPECT_EQ(bench(folder, write_plan(folder, 1, "\"--fill\", \"300\", ", "memory_limit_mb = 100\n"), store)
-                .exit_code,
-            1);
+  EXPECT_EQ(
+      replay_bench(folder, write_replay_plan(folder, 1, "\"--fill\", \"300\", ", "memory_limit_mb = 100\n"),
+                   store)
+          .exit_code,
+      1);
   EXPECT_EQ(first_run(store).outcome, Outcome::kOutOfMemory);
 }
 

@@ -19,6 +19,7 @@ namespace stillpoint {
 namespace {
 
 constexpr int kPipeBytes = 4096;
+constexpr uid_t kNobody = 65534;
 constexpr const char* kProgram = STILLPOINT_BINARY_DIR "/stillpoint";
 
 void limit_files(std::uint64_t bytes) {
@@ -35,6 +36,7 @@ void limit_files(std::uint64_t bytes) {
     const std::size_t equals = setting.find('=');
     setenv(setting.substr(0, equals).c_str(), setting.substr(equals + 1).c_str(), 1);
   }
+  if (options.may_only_read && geteuid() == 0 && setuid(kNobody) != 0) _exit(127);
   if (options.file_limit_bytes) limit_files(*options.file_limit_bytes);
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());

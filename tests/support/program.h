@@ -19,6 +19,7 @@ struct ProgramResult {
 struct ProgramOptions {
   std::vector<std::string> environment;           ///< "NAME=value", besides the test's own
   std::optional<std::uint64_t> file_limit_bytes;  ///< no file grows beyond it, as on a full disk
+  bool may_only_read = false;                     ///< runs as "nobody" where the tests run as root
   std::string interrupt_after;                    ///< SIGINT is sent once when stderr contains this
 };
 
