@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/channel_waits.h"
+
 namespace stillpoint {
 
 /// Any number of threads may push and pop; what is pushed comes out once, in order.
@@ -22,7 +24,7 @@ class BoundedChannel {
   /// Waits for room. @return false if the channel is closed: the value is gone
   bool push(T value) {
     std::unique_lock lock(mutex_);
-    has_room_.wait(lock, [this] { return closed_ || items_.size() < capacity_; });
+    wait(has_room_, lock, for_room_, [this] { return closed_ || items_.size() < capacity_; });
     if (closed_) return false;
     items_.push_back(std::move(value));
     has_items_.notify_one();
@@ -46,7 +48,7 @@ class BoundedChannel {
   /// Waits for an item. @return nothing once the channel is closed and empty
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
-    has_items_.wait(lock, [this] { return closed_ || !items_.empty(); });
+    wait(has_items_, lock, for_items_, [this] { return closed_ || !items_.empty(); });
     return take_front();
   }
 
@@ -65,7 +67,23 @@ class BoundedChannel {
     has_items_.notify_all();
   }
 
+  /// Of `push` and `pop` so far; `pop_for` does not count.
+  [[nodiscard]] ChannelWaits waits(std::string name) const {
+    const std::scoped_lock lock(mutex_);
+    return {.channel = std::move(name), .for_items = for_items_, .for_room = for_room_};
+  }
+
  private:
+  template <class Ready>
+  static void wait(std::condition_variable& changed, std::unique_lock<std::mutex>& lock, WaitTime& time,
+                   const Ready& ready) {
+    if (ready()) return;
+    const auto start = std::chrono::steady_clock::now();
+    changed.wait(lock, ready);
+    time.ns += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
+    ++time.waits;
+  }
+
   std::optional<T> take_front() {
     if (items_.empty()) return std::nullopt;
     std::optional<T> item = std::move(items_.front());
@@ -75,11 +93,13 @@ class BoundedChannel {
   }
 
   std::size_t capacity_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable has_room_;
   std::condition_variable has_items_;
   std::deque<T> items_;  ///< guarded by mutex_
   bool closed_ = false;  ///< guarded by mutex_
+  WaitTime for_items_;   ///< guarded by mutex_
+  WaitTime for_room_;    ///< guarded by mutex_
 };
 
 }  // namespace stillpoint

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/bounded_channel.h"
+#include "core/base/thread_name.h"
 #include "core/pipeline/runner_parts.h"
 #include "core/pipeline/thread_errors.h"
 
@@ -39,12 +40,15 @@ class PipelinedRun {
       errors_.guard([this] { optimize(); }, [this] { close(); });
     }
     errors_.rethrow();
+    summary_.waits = {to_detect_.waits("pictures to detect in"), tracked_.waits("tracked pictures"),
+                      detected_.waits("detections"), feedback_.waits("feedback to the tracker")};
     close_run(stages_, summary_);
     return std::move(summary_);
   }
 
  private:
   void track() {
+    name_this_thread("tracking");
     ImuFeed imu(input_.imu);
     for (std::size_t i = 0; i < input_.frame_times.size(); ++i) {
       if (control_.stop_requested && control_.stop_requested()) {
@@ -68,6 +72,7 @@ class PipelinedRun {
   }
 
   void detect() {
+    name_this_thread("detection");
     while (const std::optional<Frame> frame = to_detect_.pop()) {
       if (!detected_.push(detect_objects(*stages_.detector, *frame))) return;
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The runner against the clock: pictures come when their stamps say, and nobody waits for the slowest stage.
-#include <algorithm>
 #include <thread>
 
 #include "core/base/bounded_channel.h"
 #include "core/base/error.h"
+#include "core/base/thread_name.h"
 #include "core/pipeline/newest_detections.h"
 #include "core/pipeline/pacing_clock.h"
 #include "core/pipeline/runner_parts.h"
@@ -13,24 +13,9 @@
 namespace stillpoint {
 namespace {
 
-/// Pictures that wait for the tracker; when more come, the oldest is dropped.
-constexpr std::size_t kWaitingPictures = 2;
-
 /// Inertial samples that the optimisation waits for after an exposure: the cut is interpolated, and the time
 /// offset may grow. Less than offline, since it is paid for in latency.
 constexpr double kRealtimeImuLead_s = 0.005;
-
-/// Share of the picture interval in which the optimisation waits for boxes.
-constexpr double kDetectionWait = 0.3;
-
-double median_interval_s(std::span<const Timestamp> times) {
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(seconds_between(times[i - 1], times[i]));
-  if (intervals.empty()) return 0.0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::ranges::nth_element(intervals, middle);
-  return *middle;
-}
 
 class RealtimeRun {
  public:
@@ -55,6 +40,8 @@ class RealtimeRun {
       errors_.guard([this] { optimize(); }, [this] { close(); });
     }
     errors_.rethrow();
+    summary_.waits = {exposed_.waits("exposed pictures"), to_detect_.waits("pictures to detect in"),
+                      tracked_.waits("tracked pictures")};
     summary_.realtime = std::move(report_);
     close_run(stages_, summary_);
     return std::move(summary_);
@@ -62,6 +49,7 @@ class RealtimeRun {
 
  private:
   void expose() {
+    name_this_thread("camera");
     for (std::size_t i = 0; i < input_.frame_times.size(); ++i) {
       if (!clock_.wait_until(input_.frame_times[i], control_.stop_requested)) {
         summary_.interrupted = true;
@@ -75,6 +63,7 @@ class RealtimeRun {
   }
 
   void track() {
+    name_this_thread("tracking");
     ImuFeed imu(input_.imu);
     Feedback known = stages_.optimization.feedback();
     while (std::optional<PictureOnWay> picture = exposed_.pop()) {
@@ -90,6 +79,7 @@ class RealtimeRun {
   }
 
   void detect() {
+    name_this_thread("detection");
     while (const std::optional<Frame> frame = to_detect_.pop()) {
       detected_.put(detect_objects(*stages_.detector, *frame));
     }

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/channel_waits.h"
 #include "core/pipeline/assembly.h"
+#include "core/pipeline/board.h"
 #include "core/types/odometry_update.h"
 
 namespace stillpoint {
@@ -51,7 +53,8 @@ struct RunSummary {
   bool interrupted = false;  ///< stop was requested before the end
   std::string detector;      ///< what really looked for objects
   DetectorCounters detector_counters;
-  std::optional<RealtimeReport> realtime;  ///< of `run_realtime`
+  std::vector<ChannelWaits> waits;         ///< between the threads; none where there is one
+  std::optional<RealtimeReport> realtime;  ///< of `run_realtime` and `run_on_board`
 };
 
 /// One thread, picture by picture; the same input and config give the same bits.
@@ -71,5 +74,20 @@ struct RunSummary {
 /// @throws InputError as `run_sequential`
 [[nodiscard]] RunSummary run_realtime(const SensorInput& input, const OdometryConfig& config,
                                       const RunControl& control, double speed);
+
+/// A virtual clock, and the machine that is thought to run beside it.
+struct BoardClock {
+  BoardModel board;
+  double speed = 1.0;  ///< of the recording's time, > 0
+};
+
+/// What `run_realtime` would do on another machine: pictures come by their stamps on a virtual clock, stages
+/// take as long as the board needs, what is not ready in time is dropped or late. Accuracy and speed of the
+/// board come of one run. With fixed costs the same input gives the same bits; without costs those of
+/// `run_sequential` (feedback lag 0). Two simplifications: a busy detector lets a picture pass instead of
+/// keeping it in mind, and inertial samples are there without delay.
+/// @throws InputError as `run_sequential`
+[[nodiscard]] RunSummary run_on_board(const SensorInput& input, const OdometryConfig& config,
+                                      const RunControl& control, const BoardClock& clock);
 
 }  // namespace stillpoint

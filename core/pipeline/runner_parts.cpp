@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/runner_parts.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 
 namespace stillpoint {
+
+double median_interval_s(std::span<const Timestamp> times) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(seconds_between(times[i - 1], times[i]));
+  if (intervals.empty()) return 0.0;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::ranges::nth_element(intervals, middle);
+  return *middle;
+}
 
 std::optional<PictureOnWay> load_picture(const SensorInput& input, std::size_t index,
                                          std::vector<SkippedFrame>& skipped) {

@@ -13,6 +13,15 @@ namespace stillpoint {
 /// interpolated, and the time offset may grow.
 constexpr double kImuLead_s = 0.02;
 
+/// Pictures that wait for the tracker when they come by the clock; when more come, the oldest is dropped.
+constexpr std::size_t kWaitingPictures = 2;
+
+/// Share of the picture interval in which the optimisation waits for boxes, when pictures come by the clock.
+constexpr double kDetectionWait = 0.3;
+
+/// Between successive pictures; 0 for fewer than two.
+[[nodiscard]] double median_interval_s(std::span<const Timestamp> times);
+
 /// Hands a stage the samples that a picture needs.
 class ImuFeed {
  public:
