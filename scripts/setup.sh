@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian 12 packages that Stillpoint is built from. Asks dpkg first and does nothing when all are there.
 #   scripts/setup.sh         what building, testing and running need
-#   scripts/setup.sh --dev   also clang-format and clang-tidy, for scripts/check.sh
+#   scripts/setup.sh --dev   also clang-format and clang-tidy, for scripts/check.sh, and valgrind, to count instructions
 #   scripts/setup.sh --pages also a browser and LaTeX, for the tests of pages and tables that are skipped without
 set -euo pipefail
 
@@ -19,7 +19,7 @@ packages=(
 )
 case "${1:-}" in
   "") ;;
-  --dev) packages+=(clang-format clang-tidy) ;;
+  --dev) packages+=(clang-format clang-tidy valgrind) ;;
   --pages) packages+=(chromium nodejs npm texlive-latex-recommended) ;;
   *) echo "setup: error: unknown option \"$1\"; the options are --dev and --pages" >&2; exit 2 ;;
 esac

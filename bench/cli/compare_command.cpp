@@ -14,8 +14,10 @@
 #include "bench/plan/paired_plan.h"
 #include "bench/plan/plan_runner.h"
 #include "bench/record/output_folder.h"
+#include "bench/store/maintenance.h"
 #include "bench/store/store.h"
 #include "core/base/error.h"
+#include "eval/io/text_reader.h"
 #include "reports/comparison_report.h"
 
 namespace stillpoint {
@@ -45,6 +47,9 @@ bool is_program(const std::string& file) {
   return fs::is_regular_file(file) && access(file.c_str(), X_OK) == 0;
 }
 
+/// Whether a file is an exported store, by its name.
+bool is_export(const std::string& file) { return file.ends_with(".json"); }
+
 /// Runs of the newest build in a store, unless a build is named.
 std::vector<StoredRun> runs_of_build(const Store& store, std::string build, const std::string& place) {
   const std::vector<StoredRun> all = store.runs();
@@ -55,8 +60,9 @@ std::vector<StoredRun> runs_of_build(const Store& store, std::string build, cons
   return runs;
 }
 
-/// BASE or HEAD: a store, STORE@COMMIT, or a commit in the store of --store.
+/// BASE or HEAD: a store, an exported one, STORE@COMMIT, or a commit in the store of --store.
 std::vector<StoredRun> stored_runs(const std::string& place, const std::string& default_store) {
+  if (is_export(place)) return exported_runs(read_text_file(place), place);
   if (is_store(place)) return runs_of_build(Store(place), "", place);
   const std::size_t at = place.rfind('@');
   if (at != std::string::npos) return runs_of_build(Store(place.substr(0, at)), place.substr(at + 1), place);
@@ -121,14 +127,16 @@ Command compare_command() {
       .name = "compare",
       .summary = "Judge a change: exit 0 same or better, 1 worse, 2 harness error, 3 inconclusive",
       .example = "compare build/base/stillpoint build/release/stillpoint --plan quick --out build/compare",
-      .options = {{"BASE", "A store, STORE@COMMIT, a commit in --store, or a program to run now",
-                   &arguments->base},
-                  {"HEAD", "Likewise", &arguments->head},
-                  {"--store", "Store of commits and of programs' runs [build/bench/store.sqlite]",
-                   &arguments->store},
-                  {"--plan", "What programs are run on [quick]", &arguments->plan},
-                  {"--pairs", "How often programs are run as base, head, head, base [10]", &arguments->pairs},
-                  {"--out", "Folder for compare.md, compare.json and compare.xml (JUnit)", &arguments->out}},
+      .options =
+          {{"BASE",
+            "A store, an exported one (.json), STORE@COMMIT, a commit in --store, or a program to run now",
+            &arguments->base},
+           {"HEAD", "Likewise", &arguments->head},
+           {"--store", "Store of commits and of programs' runs [build/bench/store.sqlite]",
+            &arguments->store},
+           {"--plan", "What programs are run on [quick]", &arguments->plan},
+           {"--pairs", "How often programs are run as base, head, head, base [10]", &arguments->pairs},
+           {"--out", "Folder for compare.md, compare.json and compare.xml (JUnit)", &arguments->out}},
       .action = [arguments] { return compare(*arguments); },
       .subcommands = {}};
 }

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
+#include "bench/cli/profile_board.h"
+#include "bench/cli/profile_instructions.h"
+#include "bench/cli/profile_report.h"
 #include "bench/cli/progress.h"
 #include "bench/config/config_file.h"
 #include "bench/plan/bench_plan.h"
@@ -18,13 +21,11 @@
 #include "bench/record/output_folder.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
-#include "reports/text_table.h"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 /// What the command line of `profile` says.
 struct ProfileArguments {
@@ -39,15 +40,9 @@ struct ProfileArguments {
   std::string cores;
   double budget_ms = 33.0;
   int max_frames = 0;
-};
-
-/// One run with all that was measured.
-struct Profile {
-  OdometryRun run;
-  std::vector<ProfileRow> rows;
-  DeadlineMisses misses;
-  ProcessUsage usage;
-  std::map<int, ThreadUsage> threads;
+  bool instructions = false;
+  std::string board;
+  double speed = 1.0;
 };
 
 /// The times of threads while they live: those of a run end with it.
@@ -75,72 +70,70 @@ class ThreadWatch {
 /// before.
 constexpr std::int64_t kFramesBetweenLooks = 10;
 
+RunSpec spec_of(const ProfileArguments& arguments) {
+  return {.config = load_config({arguments.base, arguments.variant, arguments.settings}),
+          .mode = arguments.mode,
+          .speed = arguments.speed,
+          .max_frames = static_cast<std::size_t>(arguments.max_frames),
+          .keep_spans = true};
+}
+
 Profile measure(const SensorStream& stream, const ProfileArguments& arguments) {
   ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
+  AllocationWatch allocations;
   ThreadWatch watch;
+  EnergyMeter energy("/", std::chrono::steady_clock::now());
+  const HardwareCounters counters;
   const ProcessUsage before = process_usage();
   const auto on_update = [&](const OdometryUpdate& update) {
+    allocations.end_picture();
     progress.update(static_cast<std::size_t>(update.frame_id) + 1);
-    if (update.frame_id % kFramesBetweenLooks == 0) watch.look();
+    if (update.frame_id % kFramesBetweenLooks == 0) {
+      watch.look();
+      energy.look(std::chrono::steady_clock::now());
+    }
+    allocations.begin_picture();
   };
-  const RunSpec spec{.config = load_config({arguments.base, arguments.variant, arguments.settings}),
-                     .mode = arguments.mode,
-                     .max_frames = static_cast<std::size_t>(arguments.max_frames),
-                     .keep_spans = true};
-  OdometryRun run = run_odometry(
-      stream, spec, {.on_update = on_update, .on_picture = {}, .stop_requested = interrupt_requested});
-  const ProcessUsage usage = usage_between(before, process_usage());
+  Profile profile{
+      .run = run_odometry(stream, spec_of(arguments),
+                          {.on_update = on_update, .on_picture = {}, .stop_requested = interrupt_requested})};
+  profile.usage = usage_between(before, process_usage());
+  profile.counters = counters.counts();
+  profile.counters_missing = counters.reason();
+  profile.energy = energy.use(std::chrono::steady_clock::now());
   watch.look();
-  std::vector<ProfileRow> rows = profile_rows(run.timings, arguments.budget_ms);
-  const DeadlineMisses misses = deadline_misses(run.frame_timings, arguments.budget_ms);
-  return {.run = std::move(run),
-          .rows = std::move(rows),
-          .misses = misses,
-          .usage = usage,
-          .threads = watch.usages()};
+  profile.threads = watch.usages();
+  profile.rows = profile_rows(profile.run.timings, arguments.budget_ms);
+  profile.misses = deadline_misses(profile.run.frame_timings, arguments.budget_ms);
+  profile.allocations = allocations.counts();
+  profile.recorder = recorder_cost(profile.run);
+  return profile;
 }
 
-Json json_of(const Profile& profile, const ProfileArguments& arguments, const std::string& sequence) {
-  Json json = {{"sequence", sequence},   {"base", arguments.base},   {"variant", arguments.variant},
-               {"mode", arguments.mode}, {"cores", arguments.cores}, {"wall_s", profile.run.wall_s}};
-  json.update(profile_json(profile.rows, profile.misses));
-  json["process"] = usage_json(profile.usage, profile.threads);
-  return json;
-}
+/// Unless told otherwise: a minute's work.
+constexpr int kFramesUnderCallgrind = 30;
 
-std::string ms(double value) { return fmt::format("{:.3f}", value); }
-
-void print_table(const std::vector<ProfileRow>& rows, const DeadlineMisses& misses) {
-  TableRows table = {{"ms", "per", "mean", "median", "p95", "p99", "max", "times", "frames beyond budget"}};
-  const auto add = [&](std::string_view name, const char* per, const TimingStatistics& time,
-                       std::int64_t beyond) {
-    table.push_back({std::string(name), per, ms(time.mean), ms(time.median), ms(time.p95), ms(time.p99),
-                     ms(time.max), fmt::format("{}", time.calls), fmt::format("{}", beyond)});
-  };
-  for (const ProfileRow& row : rows) {
-    const std::string_view name = module_name(row.module);
-    if (!is_thread(row.module)) add(name, "call", row.per_call, row.frames_beyond);
-    add(name, "frame", row.per_frame, row.frames_beyond);
+InstructionRequest instruction_request(const SequenceInfo& info, const ProfileArguments& arguments,
+                                       const fs::path& folder) {
+  if (arguments.mode != "sequential") {
+    throw InputError("--instructions", "counts one thread, where each run is the same: leave out --mode");
   }
-  if (misses.whole_frame) add("all_stages", "frame", *misses.whole_frame, misses.one_thread);
-  std::cout << format_table(table, TableStyle::kText);
+  const int wanted = arguments.max_frames > 0 ? arguments.max_frames : kFramesUnderCallgrind;
+  return {.sequence = info.folder,
+          .name = info.name,
+          .config = {arguments.base, arguments.variant, arguments.settings},
+          .frames = std::min(wanted, static_cast<int>(info.frame_times.size())),
+          .folder = folder};
 }
 
-void print(const Profile& profile) {
-  print_table(profile.rows, profile.misses);
-  std::cout << fmt::format(
-      "{} frames in {:.2f} s; longer than {:g} ms: {} on one thread, {} with a thread for each stage\n",
-      profile.misses.frames, profile.run.wall_s, profile.misses.budget_ms, profile.misses.one_thread,
-      profile.misses.thread_per_stage);
-  const ProcessUsage& usage = profile.usage;
-  std::cout << fmt::format(
-      "processor {:.2f} s + {:.2f} s system, {} waits, {} preemptions, {} + {} page faults, peak {:.0f} MB\n",
-      usage.user_s, usage.system_s, usage.waits, usage.preemptions, usage.minor_faults, usage.major_faults,
-      1e-6 * static_cast<double>(usage.peak_memory_bytes));
-  for (const auto& [id, thread] : profile.threads) {
-    std::cout << fmt::format("  thread {} {}: {:.2f} s + {:.2f} s system\n", id, thread.name, thread.user_s,
-                             thread.system_s);
+BoardRequest board_request(const ProfileArguments& arguments, const fs::path& folder) {
+  if (arguments.mode != "sequential" || arguments.instructions) {
+    throw InputError("--board", "has a clock of its own: leave out --mode and --instructions");
   }
+  return {.board = arguments.board,
+          .spec = spec_of(arguments),
+          .budget_ms = arguments.budget_ms,
+          .folder = folder};
 }
 
 int run_profile(const ProfileArguments& arguments) {
@@ -155,12 +148,23 @@ int run_profile(const ProfileArguments& arguments) {
   const std::string& name = stream->info().name;
   const fs::path folder = arguments.out.empty() ? fs::path("build/profile") / name : fs::path(arguments.out);
   require_writable(folder);
+  if (!arguments.board.empty()) {
+    return profile_on_board(*stream, board_request(arguments, folder));
+  }
+  if (arguments.instructions) {
+    return profile_instructions(instruction_request(stream->info(), arguments, folder));
+  }
   const Profile profile = measure(*stream, arguments);
   if (interrupt_requested()) return kExitInterrupted;
-  write_files(folder, {{"profile.json", json_of(profile, arguments, name).dump(2) + "\n"},
+  const ProfileTitle title{.sequence = name,
+                           .base = arguments.base,
+                           .variant = arguments.variant,
+                           .mode = arguments.mode,
+                           .cores = arguments.cores};
+  write_files(folder, {{"profile.json", profile_text(profile, title) + "\n"},
                        {"trace.json", chrome_trace(profile.run.spans, "stillpoint " + name)},
                        {"stacks.folded", folded_stacks(profile.run.spans)}});
-  print(profile);
+  print_profile(profile);
   std::cout << fmt::format("{} (open trace.json in ui.perfetto.dev)\n", folder.string());
   return kExitOk;
 }
@@ -169,24 +173,30 @@ int run_profile(const ProfileArguments& arguments) {
 
 Command profile_command() {
   const auto arguments = std::make_shared<ProfileArguments>();
-  return {
-      .name = "profile",
-      .summary = "Say where the time of one run goes: table, timeline, stacks",
-      .example = "profile market --frame-budget-ms 33 --out /tmp/profile",
-      .options = {{"SEQ", "Sequence folder, or the name of a rendered one", &arguments->sequence},
-                  {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
-                  {"--variant", "Overlays joined by +", &arguments->variant},
-                  {"--set", "Change one key: key=value, may be repeated", &arguments->settings},
-                  {"--mode", "How the stages are run: sequential, pipelined or realtime", &arguments->mode},
-                  {"--frame-budget-ms", "Frames that take longer are counted", &arguments->budget_ms},
-                  {"--cores", "Processors it may use, e.g. 0,1 [all]", &arguments->cores},
-                  {"--out", "Folder for profile.json, trace.json, stacks.folded [build/profile/SEQ]",
-                   &arguments->out},
-                  {"--format", "Layout of the folder [recognised]", &arguments->format},
-                  {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
-                  {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
-      .action = [arguments] { return run_profile(*arguments); },
-      .subcommands = {}};
+  return {.name = "profile",
+          .summary = "Say where the time of one run goes: table, timeline, stacks",
+          .example = "profile market --frame-budget-ms 33 --out /tmp/profile",
+          .options =
+              {{"SEQ", "Sequence folder, or the name of a rendered one", &arguments->sequence},
+               {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+               {"--variant", "Overlays joined by +", &arguments->variant},
+               {"--set", "Change one key: key=value, may be repeated", &arguments->settings},
+               {"--mode", "How the stages are run: sequential, pipelined or realtime", &arguments->mode},
+               {"--frame-budget-ms", "Frames that take longer are counted", &arguments->budget_ms},
+               {"--cores", "Processors it may use, e.g. 0,1 [all]", &arguments->cores},
+               {"--out", "Folder for profile.json, trace.json, stacks.folded [build/profile/SEQ]",
+                &arguments->out},
+               {"--format", "Layout of the folder [recognised]", &arguments->format},
+               {"--rig", "A rig.toml that overrides the sequence's calibration", &arguments->rig},
+               {"--max-frames", "Stop after this many pictures; 0 = all, or 30 with --instructions",
+                &arguments->max_frames},
+               {"--board", "Run on the virtual clock of this board: drops, latency, accuracy (name or file)",
+                &arguments->board},
+               {"--speed", "Of the clock in realtime mode and of boards; 1 = as recorded", &arguments->speed},
+               {"--instructions", "Count instructions under valgrind's callgrind instead of time",
+                &arguments->instructions}},
+          .action = [arguments] { return run_profile(*arguments); },
+          .subcommands = {}};
 }
 
 }  // namespace stillpoint

@@ -41,7 +41,9 @@ struct RunArguments {
   std::string format;
   std::string rig;
   std::string heartbeat;
+  std::string sequence_id;
   int max_frames = 0;
+  bool countable = false;
   double speed = 1.0;
   std::vector<std::string> dumps;
   int passes = 1;
@@ -68,7 +70,8 @@ std::vector<PlannedRun> plan_runs(const RunArguments& arguments) {
                              .mode = arguments.mode,
                              .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames),
-                             .keep_spans = true},
+                             .keep_spans = true,
+                             .countable = arguments.countable},
                     .folder = {},
                     .video = arguments.video});
   }
@@ -156,10 +159,16 @@ Executed execute(const SensorStream& stream, const RunArguments& arguments, cons
   return run;
 }
 
+/// What the sequence is known by: as told, or read now.
+std::string id_of(const SequenceInfo& info, const RunArguments& arguments) {
+  if (interrupt_requested()) return "";
+  return arguments.sequence_id.empty() ? sequence_checksum(info.folder) : arguments.sequence_id;
+}
+
 RunManifest manifest_of(const SequenceInfo& info, const RunArguments& arguments, const PlannedRun& planned) {
   return {.sequence = info.name,
           .sequence_format = info.format,
-          .sequence_checksum = interrupt_requested() ? "" : sequence_checksum(info.folder),
+          .sequence_checksum = id_of(info, arguments),
           .base = arguments.base,
           .variant = planned.variant,
           .config = planned.spec.config,
@@ -265,8 +274,13 @@ Command run_command() {
            {"--pictures",
             "Also write annotated pictures of this many frames at which the error grew most [0]",
             &arguments->pictures},
+           {"--sequence-id",
+            "Note this in the manifest instead of a checksum over every file of the sequence",
+            &arguments->sequence_id},
            {"--heartbeat", "File that holds the number of the last finished frame", &arguments->heartbeat},
-           {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames}},
+           {"--max-frames", "Stop after this many pictures; 0 = all", &arguments->max_frames},
+           {"--countable", "One thread with a heap of its own: instruction counts of two runs are equal",
+            &arguments->countable}},
       .action = [arguments] { return run(*arguments); },
       .subcommands = {}};
 }

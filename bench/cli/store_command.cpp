@@ -19,6 +19,7 @@ struct StoreArguments {
   std::string store = "build/bench/store.sqlite";
   std::string run;
   std::string file;
+  bool numbers = false;
 };
 
 int list(const StoreArguments& arguments) {
@@ -114,7 +115,8 @@ int merge(const StoreArguments& arguments) {
 
 int export_to(const StoreArguments& arguments) {
   const std::filesystem::path file = std::filesystem::absolute(arguments.file);
-  write_files(file.parent_path(), {{file.filename().string(), export_store(arguments.store)}});
+  const ExportExtent extent = arguments.numbers ? ExportExtent::kNumbers : ExportExtent::kEverything;
+  write_files(file.parent_path(), {{file.filename().string(), export_store(arguments.store, extent)}});
   return kExitOk;
 }
 
@@ -153,7 +155,10 @@ Command store_command() {
       subcommand("merge", "Add the runs of another store", "merge other.sqlite --store all.sqlite",
                  {{"FROM", "The other store", &arguments->file}}, merge),
       subcommand("export", "Write everything as one JSON file", "export runs.json",
-                 {{"FILE", "File to write", &arguments->file}}, export_to),
+                 {{"FILE", "File to write", &arguments->file},
+                  {"--numbers", "Only numbers, no trajectories and manifests: a baseline for `compare`",
+                   &arguments->numbers}},
+                 export_to),
       subcommand("import", "Add the runs of an exported file", "import runs.json",
                  {{"FILE", "File to read", &arguments->file}}, import_from)};
   for (Command& command : acceptance_commands()) subcommands.push_back(std::move(command));

@@ -61,10 +61,11 @@ struct Series {
 /// Series by metric and subject, in this order.
 using SeriesTable = std::map<std::pair<std::string, std::string>, Series>;
 
-std::string subject_of(const RunIdentity& identity, MetricFamily family) {
+/// What repeats is judged sequence by sequence; what varies needs all the runs of a variant together.
+std::string subject_of(const RunIdentity& identity, const MetricRule& rule) {
   std::string subject = identity.variant;
   if (!identity.axis.empty()) subject += fmt::format(" {} = {}", identity.axis, identity.axis_value);
-  return family == MetricFamily::kAccuracy ? subject + " on " + identity.sequence : subject;
+  return rule.repeatable ? subject + " on " + identity.sequence : subject;
 }
 
 void add_metrics(SeriesTable& table, const RunPair& pair, MetricFamily family) {
@@ -73,10 +74,10 @@ void add_metrics(SeriesTable& table, const RunPair& pair, MetricFamily family) {
     const std::optional<MetricRule> rule = metric_rule(metric.name);
     const std::optional<double> head = metric_value(*pair.head, metric.name);
     if (!rule || rule->family != family || !head) continue;
-    Series& series = table[{metric.name, subject_of(identity, family)}];
+    Series& series = table[{metric.name, subject_of(identity, *rule)}];
     series.rule = *rule;
     series.unit = metric.unit;
-    series.repeatable = family == MetricFamily::kAccuracy && identity.mode != "realtime";
+    series.repeatable = rule->repeatable && identity.mode != "realtime";
     series.pairs.push_back({metric.value, *head});
   }
 }
@@ -85,8 +86,9 @@ void add_costs(SeriesTable& table, const RunPair& pair) {
   for (const ModuleCost& cost : pair.base->costs) {
     for (const ModuleCost& other : pair.head->costs) {
       if (cost.module != other.module) continue;
-      Series& series = table[{cost.module, subject_of(pair.base->identity, MetricFamily::kCost)}];
-      series.rule = *metric_rule("ms");
+      const MetricRule rule = *metric_rule("ms");
+      Series& series = table[{cost.module, subject_of(pair.base->identity, rule)}];
+      series.rule = rule;
       series.unit = "ms";
       series.repeatable = false;
       series.pairs.push_back({cost.mean_ms, other.mean_ms});

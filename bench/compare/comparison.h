@@ -53,7 +53,7 @@ struct Comparison {
 
 /// Pairs runs that differ in nothing but their build. Accuracy is judged for each sequence by itself, so that
 /// one bad motion is not hidden by good ones; where every trajectory is bit-equal it is equal and not judged.
-/// Costs of a variant are judged over all sequences.
+/// Times and memory of a variant are judged over all sequences, instructions for each by itself.
 [[nodiscard]] Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head);
 
 /// Adds the comparison of base with itself. A cost that changes there by itself cannot be judged: its verdict

@@ -15,9 +15,14 @@ constexpr MetricRule kRules[] = {
     {"rpe_rot_rmse_deg_per_s", MetricFamily::kAccuracy, false, 0.05, 5e-3},
     {"correct_rate", MetricFamily::kAccuracy, true, 0.01, 0.0},
     {"coverage", MetricFamily::kAccuracy, true, 0.01, 0.0},
-    {"ms", MetricFamily::kCost, false, 0.03, 0.01},
-    {"process_cpu_s", MetricFamily::kCost, false, 0.03, 0.02},
-    {"peak_memory_mb", MetricFamily::kCost, false, 0.05, 2.0},
+    {"ms", MetricFamily::kCost, false, 0.03, 0.01, false},
+    {"process_cpu_s", MetricFamily::kCost, false, 0.03, 0.02, false},
+    {"peak_memory_mb", MetricFamily::kCost, false, 0.05, 2.0, false},
+    // Counted, not timed: any change is real, but another compiler or a library's update moves them too.
+    {"instructions", MetricFamily::kCost, false, 0.01, 0.0},
+    {"instructions_tracking", MetricFamily::kCost, false, 0.01, 0.0},
+    {"instructions_detection", MetricFamily::kCost, false, 0.01, 1e6},
+    {"instructions_optimization", MetricFamily::kCost, false, 0.01, 0.0},
 };
 
 }  // namespace

@@ -16,8 +16,9 @@ struct MetricRule {
   std::string_view name;  ///< of a metric; a module's cost is "ms"
   MetricFamily family = MetricFamily::kAccuracy;
   bool larger_is_better = false;
-  double margin = 0.0;  ///< a relative change below it does not matter
-  double floor = 0.0;   ///< nor does an absolute one below this, in the metric's unit
+  double margin = 0.0;     ///< a relative change below it does not matter
+  double floor = 0.0;      ///< nor does an absolute one below this, in the metric's unit
+  bool repeatable = true;  ///< the same program gives the same number each time
 };
 
 /// Nothing for a metric that comparisons leave out.

@@ -9,6 +9,7 @@
 #include "bench/config/field_walk.h"
 #include "bench/config/spelling.h"
 #include "bench/plan/bench_plan.h"
+#include "bench/profile/board_file.h"
 #include "bench/systems/external_system.h"
 #include "core/base/error.h"
 #include "core/pipeline/odometry_config.h"
@@ -122,5 +123,6 @@ Config with_settings(Config config, std::span<const Setting> settings) {
 template OdometryConfig with_settings(OdometryConfig config, std::span<const Setting> settings);
 template BenchPlan with_settings(BenchPlan config, std::span<const Setting> settings);
 template ExternalSystem with_settings(ExternalSystem config, std::span<const Setting> settings);
+template BoardFile with_settings(BoardFile config, std::span<const Setting> settings);
 
 }  // namespace stillpoint

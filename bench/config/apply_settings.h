@@ -11,7 +11,7 @@ namespace stillpoint {
 /// The struct with the settings applied in order; later ones win.
 /// @throws InputError with file, line and the nearest key for an unknown key, a wrong type, or a value out of
 /// range
-/// @tparam Config OdometryConfig, BenchPlan or ExternalSystem
+/// @tparam Config OdometryConfig, BenchPlan, ExternalSystem or BoardFile
 template <class Config>
 [[nodiscard]] Config with_settings(Config config, std::span<const Setting> settings);
 

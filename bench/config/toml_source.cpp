@@ -31,6 +31,8 @@ FamilyPlace place_of(TomlFamily family) {
       return {"bench/systems/", "system"};
     case TomlFamily::kPublished:
       return {"reports/published/", "published table"};
+    case TomlFamily::kBoard:
+      return {"bench/boards/", "board"};
   }
   return {};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Finds configs, plans, systems and published tables by name among the embedded files, or by path on disk.
+/// Finds configs, plans, systems, boards and published tables by name among the embedded files, or by path on
+/// disk.
 #pragma once
 
 #include <string>
@@ -15,7 +16,7 @@ struct TomlSource {
 };
 
 /// The families of files, by the folder they live in.
-enum class TomlFamily { kConfig, kPlan, kSystem, kPublished };
+enum class TomlFamily { kConfig, kPlan, kSystem, kPublished, kBoard };
 
 /// A name that ends in ".toml" is a file on disk; any other is embedded, with or without its folder
 /// ("wo_circular_mask" and "ablations/wo_circular_mask" are the same).

@@ -106,6 +106,13 @@ void require_recipes(const std::vector<std::string>& names) {
   }
 }
 
+/// Other systems always see whole sequences, and run as they are.
+void require_own_runs(const BenchPlan& plan) {
+  if (plan.systems.empty() || (plan.max_frames == 0 && plan.kind != RunKind::kInstructions)) return;
+  throw InputError("plan \"" + plan.name + "\"",
+                   "max_frames and kind = \"instructions\" are for our odometry only; leave out systems");
+}
+
 int number_in(std::string_view text, const std::string& cores) {
   int number = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -145,6 +152,7 @@ BenchPlan load_plan(const std::string& name) {
   require_configs(plan, plan.rendered.variants);
   require_configs(plan, plan.recorded.variants);
   require_renderings(plan);
+  require_own_runs(plan);
   require_recipes(plan.recipes);
   static_cast<void>(processors_of(plan.cores));
   for (const std::string& table : plan.table.published) static_cast<void>(load_published(table));

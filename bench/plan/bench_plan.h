@@ -11,11 +11,14 @@
 namespace stillpoint {
 
 enum class RunKind {
-  kAccuracy,  ///< may run beside others
-  kTiming,    ///< one at a time, pinned, the machine's state recorded
+  kAccuracy,      ///< may run beside others
+  kTiming,        ///< one at a time, pinned, the machine's state recorded
+  kInstructions,  ///< under callgrind: instructions are counted instead of time
 };
 constexpr auto enum_names(RunKind) {
-  return EnumNames<RunKind, 2>{{{RunKind::kAccuracy, "accuracy"}, {RunKind::kTiming, "timing"}}};
+  return EnumNames<RunKind, 3>{{{RunKind::kAccuracy, "accuracy"},
+                                {RunKind::kTiming, "timing"},
+                                {RunKind::kInstructions, "instructions"}}};
 }
 
 /// Sequences that the program renders itself.
@@ -68,6 +71,7 @@ struct BenchPlan {
   std::vector<std::string> systems;   ///< other systems: files, see bench/systems/external_system.h
   std::vector<int> seeds = {1};       ///< of renderings and of the odometry
   int repetitions = 1;
+  int max_frames = 0;  ///< pictures from the start of each sequence; 0 = all
   std::string mode = "sequential";
   RunKind kind = RunKind::kAccuracy;
   std::string cores;                 ///< processors for timing runs, e.g. "0,1"; empty = all
@@ -97,6 +101,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("systems", config.systems);
   field("seeds", config.seeds, 0, 1000000000);
   field("repetitions", config.repetitions, 1, 10000);
+  field("max_frames", config.max_frames, 0, 1000000000);
   field("mode", config.mode);
   field("kind", config.kind);
   field("cores", config.cores);

@@ -19,7 +19,7 @@ std::string ProgramPair::base_build() const { return "base-" + program_hash(base
 std::string ProgramPair::head_build() const { return "head-" + program_hash(head); }
 
 PlanMatrix paired_plan(BenchPlan plan, const ProgramPair& programs, int pairs) {
-  plan.kind = RunKind::kTiming;
+  if (plan.kind != RunKind::kInstructions) plan.kind = RunKind::kTiming;
   plan.repetitions = 2 * pairs;
   plan.systems.clear();
   PlanMatrix matrix = expand_plan(plan, "", {});

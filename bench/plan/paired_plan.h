@@ -18,7 +18,8 @@ struct ProgramPair {
 };
 
 /// Every run of a plan's variants as `pairs` times base, head, head, base (ABBA): repetition 2k - 1 has base
-/// first, repetition 2k head. Runs are timed, one by one; other systems take no part.
+/// first, repetition 2k head. Runs are timed, one by one, unless the plan counts instructions; other systems
+/// take no part.
 [[nodiscard]] PlanMatrix paired_plan(BenchPlan plan, const ProgramPair& programs, int pairs);
 
 }  // namespace stillpoint

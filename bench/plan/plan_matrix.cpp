@@ -11,6 +11,13 @@
 namespace stillpoint {
 namespace {
 
+std::string kind_name(RunKind kind) {
+  for (const auto& [value, name] : enum_names(kind)) {
+    if (value == kind) return std::string(name);
+  }
+  return "";
+}
+
 /// Builds the matrix sequence by sequence.
 class Expansion {
  public:
@@ -68,14 +75,19 @@ class Expansion {
   [[nodiscard]] RunIdentity identity_of(int seed, int repetition, const SweepAxis& point) const {
     const PlanSequence& sequence = matrix_.sequences.back();
     return {.sequence = sequence.name,
-            .sequence_id = sequence.id,
+            .sequence_id = sequence.id + part_of_sequence(),
             .mode = matrix_.plan.mode,
-            .kind = matrix_.plan.kind == RunKind::kTiming ? "timing" : "accuracy",
+            .kind = kind_name(matrix_.plan.kind),
             .cores = matrix_.plan.cores,
             .seed = seed,
             .repetition = repetition,
             .axis = point.key,
             .axis_value = point.key.empty() ? 0.0 : point.values.front()};
+  }
+
+  /// A part of a sequence is another sequence: what it is known by tells how long it is.
+  [[nodiscard]] std::string part_of_sequence() const {
+    return matrix_.plan.max_frames == 0 ? "" : fmt::format("-first-{}", matrix_.plan.max_frames);
   }
 
   void add_own(RunIdentity identity, const std::string& variant) {
@@ -91,6 +103,7 @@ class Expansion {
     matrix_.runs.push_back({.sequence = matrix_.sequences.size() - 1,
                             .identity = std::move(identity),
                             .config = std::move(config),
+                            .max_frames = matrix_.plan.max_frames,
                             .system = 0});
   }
 

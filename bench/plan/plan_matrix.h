@@ -17,6 +17,7 @@ struct PlannedRun {
   std::size_t sequence = 0;  ///< in `PlanMatrix::sequences`
   RunIdentity identity;
   ConfigRequest config;           ///< of a run of our odometry
+  int max_frames = 0;             ///< likewise; 0 = all
   std::size_t system = 0;         ///< in `PlanMatrix::systems`, of a run of another one
   std::filesystem::path program;  ///< that runs our odometry; empty = this one
 };

@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sched.h>
+#include <sys/personality.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -35,14 +36,26 @@ cpu_set_t processor_set(const std::vector<int>& cores) {
   return set;
 }
 
+/// What exec takes: pointers into `words`, which must live on, and a null.
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
 /// Everything that the child needs after fork, prepared before it: only few calls are safe then.
 struct Launch {
   const char* program;
   char* const* arguments;
+  char* const* environment;
+  const char* folder;  ///< null = ours
   int message_pipe;
   pid_t parent;
   bool pinned;
   cpu_set_t processors;
+  bool fixed_addresses;
 };
 
 /// Becomes the program with stderr in the pipe and stdout nowhere.
@@ -54,7 +67,10 @@ struct Launch {
   dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
   dup2(open("/dev/null", O_WRONLY | O_CLOEXEC), STDOUT_FILENO);
   dup2(launch.message_pipe, STDERR_FILENO);
-  execvp(launch.program, launch.arguments);
+  if (launch.folder == nullptr || chdir(launch.folder) == 0) {
+    if (launch.fixed_addresses) personality(ADDR_NO_RANDOMIZE);
+    execvpe(launch.program, launch.arguments, launch.environment);
+  }
   constexpr char kMessage[] = "cannot be started\n";
   static_cast<void>(!write(STDERR_FILENO, kMessage, sizeof kMessage - 1));
   _exit(kExecFailed);
@@ -76,6 +92,17 @@ double seconds(const timeval& time) {
 
 std::filesystem::path own_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
 
+std::vector<int> allowed_processors() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  sched_getaffinity(0, sizeof set, &set);
+  std::vector<int> processors;
+  for (int i = 0; i < CPU_SETSIZE; ++i) {
+    if (CPU_ISSET(static_cast<std::size_t>(i), &set)) processors.push_back(i);
+  }
+  return processors;
+}
+
 std::string last_line(std::string text) {
   while (text.ends_with('\n')) text.pop_back();
   const std::size_t newline = text.rfind('\n');
@@ -85,20 +112,22 @@ std::string last_line(std::string text) {
 ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::chrono::steady_clock::now()) {
   std::vector<std::string> words = {spec.program.filename().string()};
   words.insert(words.end(), spec.arguments.begin(), spec.arguments.end());
-  std::vector<char*> pointers;
-  pointers.reserve(words.size() + 1);
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
+  const std::vector<char*> arguments = pointers_to(words);
+  std::vector<std::string> settings = spec.environment.value_or(std::vector<std::string>{});
+  const std::vector<char*> environment = pointers_to(settings);
 
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_errno("pipe");
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
   const Launch launch{.program = spec.program.c_str(),
-                      .arguments = pointers.data(),
+                      .arguments = arguments.data(),
+                      .environment = spec.environment ? environment.data() : environ,
+                      .folder = spec.folder.empty() ? nullptr : spec.folder.c_str(),
                       .message_pipe = ends[1],
                       .parent = getpid(),
                       .pinned = !spec.cores.empty(),
-                      .processors = processor_set(spec.cores)};
+                      .processors = processor_set(spec.cores),
+                      .fixed_addresses = spec.fixed_addresses};
   pid_ = fork();
   if (pid_ == 0) become(launch);
   close(ends[1]);

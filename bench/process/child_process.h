@@ -18,8 +18,11 @@ struct ProcessSpec {
   std::filesystem::path program;  ///< searched in PATH when it has no slash
   std::vector<std::string> arguments;
   std::optional<double> time_limit_s;
-  std::optional<std::int64_t> memory_limit_bytes;  ///< of resident memory
-  std::vector<int> cores;                          ///< processors it may use; empty = all
+  std::optional<std::int64_t> memory_limit_bytes;       ///< of resident memory
+  std::vector<int> cores;                               ///< processors it may use; empty = all
+  std::filesystem::path folder;                         ///< that it works in; empty = ours
+  std::optional<std::vector<std::string>> environment;  ///< "NAME=value", all there is; nothing = ours
+  bool fixed_addresses = false;                         ///< the same memory layout at each start
 };
 
 /// How a process ended, and what it took.
@@ -37,6 +40,9 @@ struct ProcessEnd {
 
 /// This program's own file.
 [[nodiscard]] std::filesystem::path own_program();
+
+/// Processors that this process may use.
+[[nodiscard]] std::vector<int> allowed_processors();
 
 /// The last line that is not empty.
 [[nodiscard]] std::string last_line(std::string text);

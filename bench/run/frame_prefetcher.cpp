@@ -4,11 +4,14 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/thread_name.h"
 
 namespace stillpoint {
 
 FramePrefetcher::FramePrefetcher(Load load, std::size_t count, std::size_t ahead)
-    : load_(std::move(load)), count_(count), ahead_(ahead), thread_([this] { decode_all(); }) {}
+    : load_(std::move(load)), count_(count), ahead_(ahead) {
+  if (ahead_ > 0) thread_ = std::jthread([this] { decode_all(); });
+}
 
 FramePrefetcher::~FramePrefetcher() {
   const std::scoped_lock lock(mutex_);
@@ -19,6 +22,13 @@ FramePrefetcher::~FramePrefetcher() {
 Frame FramePrefetcher::take(std::size_t index) {
   STILLPOINT_CHECK(index >= next_ && index < count_);
   next_ = index + 1;
+  Slot slot = ahead_ > 0 ? wait_for(index) : decode(index);
+  decoded_.push_back(slot.picture);
+  if (slot.error) std::rethrow_exception(slot.error);
+  return std::move(slot.frame);
+}
+
+FramePrefetcher::Slot FramePrefetcher::wait_for(std::size_t index) {
   std::unique_lock lock(mutex_);
   Slot slot;
   do {
@@ -27,10 +37,7 @@ Frame FramePrefetcher::take(std::size_t index) {
     slots_.pop_front();
     changed_.notify_all();
   } while (slot.picture.index < index);
-  lock.unlock();
-  decoded_.push_back(slot.picture);
-  if (slot.error) std::rethrow_exception(slot.error);
-  return std::move(slot.frame);
+  return slot;
 }
 
 FramePrefetcher::Slot FramePrefetcher::decode(std::size_t index) const {
@@ -47,6 +54,7 @@ FramePrefetcher::Slot FramePrefetcher::decode(std::size_t index) const {
 }
 
 void FramePrefetcher::decode_all() {
+  name_this_thread("decoding");
   for (std::size_t index = 0; index < count_; ++index) {
     Slot slot = decode(index);
     std::unique_lock lock(mutex_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Decodes pictures ahead of the odometry on a thread of its own, in order.
+/// Decodes pictures ahead of the odometry on a thread of its own, in order, or where they are asked for.
 #pragma once
 
 #include <chrono>
@@ -28,7 +28,8 @@ class FramePrefetcher {
  public:
   using Load = std::function<Frame(std::size_t index)>;
 
-  /// @param load called on the prefetching thread only
+  /// @param load  called on the prefetching thread only
+  /// @param ahead 0: no thread is started, and `take` decodes
   FramePrefetcher(Load load, std::size_t count, std::size_t ahead = 8);
   ~FramePrefetcher();
   FramePrefetcher(const FramePrefetcher&) = delete;
@@ -49,6 +50,7 @@ class FramePrefetcher {
   };
 
   [[nodiscard]] Slot decode(std::size_t index) const;
+  [[nodiscard]] Slot wait_for(std::size_t index);
   void decode_all();
 
   Load load_;

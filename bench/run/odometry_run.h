@@ -2,6 +2,7 @@
 /// Runs our odometry over a sequence and keeps everything that it said.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -21,9 +22,13 @@ namespace stillpoint {
 struct RunSpec {
   OdometryConfig config;
   std::string mode = "sequential";  ///< or "pipelined" or "realtime"
-  double speed = 1.0;               ///< of the clock of "realtime"
-  std::size_t max_frames = 0;       ///< pictures from the start; 0 = all
-  bool keep_spans = false;          ///< for timelines
+  double speed = 1.0;               ///< of the clock of "realtime", and of a board's
+  std::optional<BoardModel>
+      board;                   ///< run on a virtual clock, as on that machine; `mode` is "sequential" then
+  std::size_t max_frames = 0;  ///< pictures from the start; 0 = all
+  bool keep_spans = false;     ///< for timelines
+  bool countable = false;      ///< decodes when asked for, on a thread whose heap nobody else uses:
+                               ///< instruction counts repeat
 };
 
 /// A stay in a module, and for which picture.
@@ -44,7 +49,8 @@ struct OdometryRun {
   std::vector<StateHashes> frame_hashes;      ///< likewise
   std::vector<FrameCounters> frame_counters;  ///< likewise
   std::size_t frames_planned = 0;
-  double wall_s = 0.0;  ///< from the first picture asked for to the last update
+  std::chrono::nanoseconds recording{};  ///< taken by keeping all this
+  double wall_s = 0.0;                   ///< from the first picture asked for to the last update
 };
 
 /// @param control `on_update` may be empty

@@ -95,7 +95,7 @@ Acceptance acceptance_of(const Json& json) {
           json.at("sequence"), json.at("reason"), json.at("accepted")};
 }
 
-Json run_json(const Store& store, const StoredRun& run) {
+Json run_json(const Store& store, const StoredRun& run, ExportExtent extent) {
   Json json = {{"key", run.key},
                {"identity", identity_json(run.identity)},
                {"outcome", outcome_name(run.outcome)},
@@ -117,9 +117,12 @@ Json run_json(const Store& store, const StoredRun& run) {
                              {"p95_ms", cost.p95_ms},
                              {"max_ms", cost.max_ms}});
   }
+  const bool everything = extent == ExportExtent::kEverything;
   json["attachments"] = Json::object();
-  for (const auto& [kind, blob] : run.blobs) json["attachments"][kind] = store.attachment(run, kind);
-  json["manifest"] = store.manifest(run);
+  for (const auto& [kind, blob] : run.blobs) {
+    if (everything) json["attachments"][kind] = store.attachment(run, kind);
+  }
+  json["manifest"] = everything ? store.manifest(run) : "";
   return json;
 }
 
@@ -138,6 +141,18 @@ RunOutcome outcome_of_json(const Json& json) {
   for (const auto& [kind, content] : json.at("attachments").items()) outcome.attachments[kind] = content;
   outcome.manifest = json.at("manifest");
   return outcome;
+}
+
+/// Gives an exported text to `read`. @throws InputError for every fault of it
+template <class Read>
+auto read_export(const std::string& text, const std::string& place, const Read& read) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("stillpoint_store") != 1) throw InputError(place, "is of a newer version; use that version");
+    return read(json);
+  } catch (const Json::exception& error) {
+    throw InputError(place, std::string("is no exported store: ") + error.what());
+  }
 }
 
 }  // namespace
@@ -193,7 +208,7 @@ MergeReport merge_stores(const fs::path& from, const fs::path& into) {
   return report;
 }
 
-std::string export_store(const fs::path& file) {
+std::string export_store(const fs::path& file, ExportExtent extent) {
   const Store store(file);
   Json json;
   json["stillpoint_store"] = 1;
@@ -203,7 +218,7 @@ std::string export_store(const fs::path& file) {
         {{"name", plan.name}, {"title", plan.title}, {"text", plan.text}, {"run_keys", plan.run_keys}});
   }
   json["runs"] = Json::array();
-  for (const StoredRun& run : store.runs()) json["runs"].push_back(run_json(store, run));
+  for (const StoredRun& run : store.runs()) json["runs"].push_back(run_json(store, run, extent));
   json["accepted"] = Json::array();
   for (const Acceptance& acceptance : store.acceptances())
     json["accepted"].push_back(acceptance_json(acceptance));
@@ -212,9 +227,7 @@ std::string export_store(const fs::path& file) {
 }
 
 MergeReport import_store(const std::string& text, const std::string& place, const fs::path& into) {
-  try {
-    const Json json = Json::parse(text);
-    if (json.at("stillpoint_store") != 1) throw InputError(place, "is of a newer version; use that version");
+  return read_export(text, place, [&](const Json& json) {
     Journal journal(into);
     MergeReport report;
     for (const Json& run : json.at("runs")) {
@@ -231,9 +244,25 @@ MergeReport import_store(const std::string& text, const std::string& place, cons
       acceptances.push_back(acceptance_of(accepted));
     write_acceptances(into, acceptances);
     return report;
-  } catch (const Json::exception& error) {
-    throw InputError(place, std::string("is no exported store: ") + error.what());
-  }
+  });
+}
+
+std::vector<StoredRun> exported_runs(const std::string& text, const std::string& place) {
+  return read_export(text, place, [](const Json& json) {
+    std::vector<StoredRun> runs;
+    for (const Json& run : json.at("runs")) {
+      const RunOutcome outcome = outcome_of_json(run);
+      runs.push_back({.key = run.at("key"),
+                      .identity = identity_of(run.at("identity")),
+                      .outcome = outcome.outcome,
+                      .detail = outcome.detail,
+                      .started = run.at("started"),
+                      .ended = run.at("ended"),
+                      .metrics = outcome.metrics,
+                      .costs = outcome.costs});
+    }
+    return runs;
+  });
 }
 
 }  // namespace stillpoint

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/store/stored_run.h"
+
 namespace stillpoint {
 
 /// Everything that is wrong with a store, a line each; empty if nothing is. Reads every file.
@@ -33,12 +35,23 @@ struct MergeReport {
 /// @throws InputError if a file of `from` is missing or damaged; what was added before is kept
 MergeReport merge_stores(const std::filesystem::path& from, const std::filesystem::path& into);
 
-/// The whole store as one JSON text: plans, manifests, and runs with their numbers and files.
-[[nodiscard]] std::string export_store(const std::filesystem::path& file);
+enum class ExportExtent {
+  kEverything,  ///< plans, manifests, and runs with their numbers and files
+  kNumbers,     ///< without files and manifests: small enough to be kept with the sources
+};
+
+/// A store as one JSON text.
+[[nodiscard]] std::string export_store(const std::filesystem::path& file,
+                                       ExportExtent extent = ExportExtent::kEverything);
 
 /// Adds the runs of an exported text, as `merge_stores` does.
 /// @param place name of the text in messages
 MergeReport import_store(const std::string& text, const std::string& place,
                          const std::filesystem::path& into);
+
+/// Ended runs of an exported text, without their files.
+/// @param place name of the text in messages
+/// @throws InputError if it is no exported text
+[[nodiscard]] std::vector<StoredRun> exported_runs(const std::string& text, const std::string& place);
 
 }  // namespace stillpoint

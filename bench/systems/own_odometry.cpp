@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/profile/instruction_count.h"
 #include "bench/record/build_info.h"
 #include "bench/record/result_values.h"
 #include "bench/run/heartbeat.h"
@@ -54,6 +55,18 @@ void append_pictures(RunOutcome& outcome, const fs::path& folder) {
         read_text_file(entry.path());
 }
 
+bool counts_instructions(const RunRequest& request) { return request.run.identity.kind == "instructions"; }
+
+/// Under valgrind times say nothing; instructions take their place.
+void replace_times(RunOutcome& outcome, const RunRequest& request) {
+  std::erase_if(outcome.metrics, [](const Metric& metric) { return metric.name == "wall_s"; });
+  outcome.costs.clear();
+  outcome.attachments.erase("timings");
+  outcome.attachments.erase("result");
+  const std::vector<Metric> counts = instruction_metrics(read_instructions(request.work));
+  outcome.metrics.insert(outcome.metrics.end(), counts.begin(), counts.end());
+}
+
 /// Runs at other times share their manifest.
 std::string timeless(const std::string& manifest) {
   Json json = Json::parse(manifest);
@@ -65,20 +78,27 @@ std::string timeless(const std::string& manifest) {
 
 ProcessSpec OwnOdometry::command(const RunRequest& request) const {
   const ConfigRequest& config = request.run.config;
+  const bool counted = counts_instructions(request);
+  const fs::path folder = counted ? "." : request.work;  // a name that is the same in every run
   ProcessSpec spec;
   spec.program = request.run.program.empty() ? own_program() : request.run.program;
   spec.arguments = {"run",         request.sequence.string(),
                     "--config",    config.base,
                     "--variant",   config.variant,
                     "--mode",      request.run.identity.mode,
-                    "--out",       request.work.string(),
-                    "--heartbeat", (request.work / kHeartbeatFile).string()};
+                    "--out",       folder.string(),
+                    "--heartbeat", (folder / kHeartbeatFile).string()};
+  if (request.run.max_frames > 0) {
+    spec.arguments.insert(spec.arguments.end(), {"--max-frames", std::to_string(request.run.max_frames)});
+  }
   for (const std::string& setting : config.settings) {
     spec.arguments.insert(spec.arguments.end(), {"--set", setting});
   }
-  if (request.pictures > 0)
+  if (request.pictures > 0 && !counted)
     spec.arguments.insert(spec.arguments.end(), {"--pictures", std::to_string(request.pictures)});
-  return spec;
+  if (!counted) return spec;
+  spec.arguments.insert(spec.arguments.end(), {"--sequence-id", request.run.identity.sequence_id});
+  return under_callgrind(std::move(spec), request.work);
 }
 
 RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessEnd& end) const {
@@ -100,6 +120,7 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessEnd& end
       outcome.attachments[kept.kind] = read_text_file(request.work / kept.file);
   }
   append_pictures(outcome, request.work / "pictures");
+  if (counts_instructions(request)) replace_times(outcome, request);
   return outcome;
 }
 

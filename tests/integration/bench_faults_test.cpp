@@ -10,23 +10,13 @@
 #include "bench/store/database.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
+#include "tests/support/refusal.h"
 #include "tests/support/replay_bench.h"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Exit code 2, and one line of error with these parts.
-void expect_refused(const ProgramResult& result, const std::vector<std::string>& parts) {
-  EXPECT_EQ(result.exit_code, 2) << result.out << result.err;
-  const std::size_t error = result.err.find("stillpoint: error: ");
-  ASSERT_NE(error, std::string::npos) << result.err;
-  const std::string line = result.err.substr(error);
-  EXPECT_EQ(line.find('\n'), line.size() - 1) << "more than one line: " << line;
-  for (const std::string& part : parts)
-    EXPECT_NE(line.find(part), std::string::npos) << part << " / " << line;
-}
 
 /// A folder with a plan of two runs, and a store that has them.
 struct FilledStore {

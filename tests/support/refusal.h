@@ -10,7 +10,10 @@
 
 namespace stillpoint {
 
-/// Expects one error line that contains all of `parts`, exit code 2, and no folder of results.
+/// Expects one error line that contains all of `parts`, and exit code 2.
+void expect_refused(const ProgramResult& result, const std::vector<std::string>& parts);
+
+/// And no folder of results.
 void expect_refused(const ProgramResult& result, const std::filesystem::path& out,
                     const std::vector<std::string>& parts);
 

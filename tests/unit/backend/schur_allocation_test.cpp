@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "bench/profile/allocation_counter.h"
 #include "core/backend/schur/schur_solver.h"
-#include "tests/support/allocation_counter.h"
 #include "tests/support/flown_window.h"
 
 namespace stillpoint {

@@ -3,8 +3,8 @@
 
 #include <utility>
 
+#include "bench/profile/allocation_counter.h"
 #include "core/frontend/feature_tracker.h"
-#include "tests/support/allocation_counter.h"
 #include "tests/unit/frontend/textured_picture.h"
 
 namespace stillpoint {

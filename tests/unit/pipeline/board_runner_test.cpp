@@ -8,22 +8,12 @@
 #include "core/pipeline/runner.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/sliding_plane.h"
+#include "tests/support/visual_config.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kPictures = 40;
-
-OdometryConfig visual() {
-  OdometryConfig config;
-  config.imu.enabled = false;
-  config.frontend.min_distance_px = 10;
-  config.frontend.unstable_radius_px = 10;
-  config.backend.rate_hz = 0.0;
-  config.backend.max_iterations = 2;
-  config.pipeline.feedback_lag = 0;
-  return config;
-}
 
 BoardModel board_of(double tracking_ms, double detection_ms, double optimization_ms, int cores) {
   return {.cores = cores,
@@ -45,7 +35,7 @@ BoardResult run(const BoardModel& board, double speed = 1.0) {
       .on_update = [&](const OdometryUpdate& update) { result.positions.push_back(update.T_w_c.p); },
       .on_picture = {},
       .stop_requested = {}};
-  result.summary = run_on_board(plane.input(), visual(), control, {.board = board, .speed = speed});
+  result.summary = run_on_board(plane.input(), visual_config(), control, {.board = board, .speed = speed});
   return result;
 }
 
@@ -62,7 +52,7 @@ TEST(RunOnBoard, WithoutCostsEqualsSequentialToTheBit) {
   const SlidingPlane plane(kPictures);
   std::vector<Eigen::Vector3d> sequential;
   static_cast<void>(run_sequential(
-      plane.input(), visual(),
+      plane.input(), visual_config(),
       {.on_update = [&](const OdometryUpdate& update) { sequential.push_back(update.T_w_c.p); },
        .on_picture = {},
        .stop_requested = {}}));
@@ -100,7 +90,7 @@ TEST(RunOnBoard, NeedsTwoCoresForWhatTwoStagesDoAtATime) {
 }
 
 TEST(RunOnBoard, TakesNoBoxesThatComeTooLate) {
-  OdometryConfig config = visual();
+  OdometryConfig config = visual_config();
   const SlidingPlane plane(kPictures);
   config.detector.kind = DetectorKind::kRecorded;
   const RunSummary summary =

@@ -6,22 +6,12 @@
 #include "core/base/error.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/sliding_plane.h"
+#include "tests/support/visual_config.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kPictures = 40;
-
-OdometryConfig visual(int feedback_lag = 0) {
-  OdometryConfig config;
-  config.imu.enabled = false;
-  config.frontend.min_distance_px = 10;
-  config.frontend.unstable_radius_px = 10;
-  config.backend.rate_hz = 0.0;
-  config.backend.max_iterations = 2;
-  config.pipeline.feedback_lag = feedback_lag;
-  return config;
-}
 
 /// Everything that a run says of positions.
 struct Path {
@@ -36,7 +26,7 @@ struct Path {
 TEST(Runner, SequentialFollowsTheSlide) {
   const SlidingPlane plane(kPictures);
   Path path;
-  const RunSummary summary = run_sequential(plane.input(), visual(), path.control());
+  const RunSummary summary = run_sequential(plane.input(), visual_config(), path.control());
   EXPECT_EQ(summary.frames, kPictures);
   ASSERT_EQ(path.positions.size(), kPictures);
   EXPECT_NEAR(path.positions.back().x(), SlidingPlane::moved_m(kPictures - 1), 0.01);
@@ -47,8 +37,8 @@ TEST(Runner, PipelinedEqualsSequentialToTheBitAtEachLag) {
   const SlidingPlane plane(kPictures);
   for (const int lag : {0, 1, 3}) {
     Path one_thread, three_threads;
-    static_cast<void>(run_sequential(plane.input(), visual(lag), one_thread.control()));
-    static_cast<void>(run_pipelined(plane.input(), visual(lag), three_threads.control()));
+    static_cast<void>(run_sequential(plane.input(), visual_config(lag), one_thread.control()));
+    static_cast<void>(run_pipelined(plane.input(), visual_config(lag), three_threads.control()));
     EXPECT_EQ(one_thread.positions, three_threads.positions) << "lag " << lag;
   }
 }
@@ -56,7 +46,7 @@ TEST(Runner, PipelinedEqualsSequentialToTheBitAtEachLag) {
 TEST(Runner, RealtimeAnswersEveryPictureThatItDidNotDrop) {
   const SlidingPlane plane(kPictures);
   Path path;
-  const RunSummary summary = run_realtime(plane.input(), visual(), path.control(), 20.0);
+  const RunSummary summary = run_realtime(plane.input(), visual_config(), path.control(), 20.0);
   ASSERT_TRUE(summary.realtime.has_value());
   EXPECT_EQ(path.positions.size() + static_cast<std::size_t>(summary.realtime->dropped), kPictures);
   EXPECT_EQ(summary.realtime->latencies_ms.size(), path.positions.size());
@@ -72,7 +62,7 @@ TEST(Runner, EveryRunnerSkipsAndNamesAPictureThatCannotBeRead) {
   };
   for (const auto& run : {run_sequential, run_pipelined}) {
     Path path;
-    const RunSummary summary = run(input, visual(), path.control());
+    const RunSummary summary = run(input, visual_config(), path.control());
     ASSERT_EQ(summary.skipped.size(), 1u);
     EXPECT_EQ(summary.skipped[0].index, 7u);
     EXPECT_EQ(path.positions.size(), kPictures - 1u);
@@ -85,7 +75,7 @@ TEST(Runner, StopsCleanlyWhenAsked) {
     Path path;
     RunControl control = path.control();
     control.stop_requested = [asked = 0]() mutable { return ++asked > 10; };
-    const RunSummary summary = run(plane.input(), visual(), control);
+    const RunSummary summary = run(plane.input(), visual_config(), control);
     EXPECT_TRUE(summary.interrupted);
     EXPECT_EQ(path.positions.size(), 10u);
   }
@@ -99,18 +89,20 @@ TEST(Runner, AFaultOnAnyThreadReachesTheCaller) {
     return plane.picture(index);
   };
   Path path;
-  EXPECT_THROW(static_cast<void>(run_pipelined(input, visual(), path.control())), std::runtime_error);
-  EXPECT_THROW(static_cast<void>(run_realtime(input, visual(), path.control(), 20.0)), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(run_pipelined(input, visual_config(), path.control())), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(run_realtime(input, visual_config(), path.control(), 20.0)),
+               std::runtime_error);
   const RunControl failing_sink{
       .on_update = [](const OdometryUpdate&) { throw std::runtime_error("disk on fire"); },
       .on_picture = {},
       .stop_requested = {}};
-  EXPECT_THROW(static_cast<void>(run_pipelined(plane.input(), visual(), failing_sink)), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(run_pipelined(plane.input(), visual_config(), failing_sink)),
+               std::runtime_error);
 }
 
 TEST(Runner, RefusesAClockThatStands) {
   const SlidingPlane plane(1);
-  expect_input_error([&] { static_cast<void>(run_realtime(plane.input(), visual(), {}, 0.0)); },
+  expect_input_error([&] { static_cast<void>(run_realtime(plane.input(), visual_config(), {}, 0.0)); },
                      {"--speed", "larger than 0"});
 }
 

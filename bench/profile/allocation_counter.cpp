@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/allocation_counter.h"
+#include "bench/profile/allocation_counter.h"
 
 #include <atomic>
 #include <cstdlib>

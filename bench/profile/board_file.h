@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Boards as files: what stages cost on machines that are not at hand.
+#pragma once
+
+#include <string>
+#include <type_traits>
+
+#include "core/base/fields.h"
+#include "core/pipeline/board.h"
+
+namespace stillpoint {
+
+/// A number for each stage, under the names of its `Module`.
+struct StageNumbers {
+  double tracking_thread = 0.0;
+  double object_detection = 0.0;
+  double optimization_thread = 0.0;
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, StageNumbers>
+void visit_fields(Visitor&& field, Config& config) {
+  field("tracking_thread", config.tracking_thread, -1.0, 1e6);
+  field("object_detection", config.object_detection, -1.0, 1e6);
+  field("optimization_thread", config.optimization_thread, -1.0, 1e6);
+}
+
+/// A file of bench/boards/, or a user's own.
+struct BoardFile {
+  std::string title;
+  std::string source;  ///< of the numbers
+  int cores = 2;
+  bool detector_has_own_processor = false;
+  StageNumbers cost_ms = {-1.0, -1.0, -1.0};  ///< fixed cost [ms]; negative = by `factor`
+  StageNumbers factor = {1.0, 1.0, 1.0};      ///< of the time taken here
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, BoardFile>
+void visit_fields(Visitor&& field, Config& config) {
+  field("title", config.title);
+  field("source", config.source);
+  field("cores", config.cores, 1, 1024);
+  field("detector_has_own_processor", config.detector_has_own_processor);
+  field("cost_ms", config.cost_ms);
+  field("factor", config.factor);
+}
+
+/// @param name embedded name ("atlas_200") or a TOML file
+/// @throws InputError if there is none, and for every fault of the file
+[[nodiscard]] BoardFile load_board(const std::string& name);
+
+[[nodiscard]] BoardModel board_model(const BoardFile& file);
+
+}  // namespace stillpoint

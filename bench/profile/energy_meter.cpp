@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/profile/energy_meter.h"
+
+#include <utility>
+
+namespace stillpoint {
+
+EnergyMeter::EnergyMeter(std::filesystem::path root, Time now)
+    : root_(std::move(root)), start_(read_rapl(root_)), last_(now) {
+  if (start_.empty()) look(now);
+}
+
+void EnergyMeter::look(Time now) {
+  if (!start_.empty()) return;
+  const std::vector<RailPower> rails = read_ina3221(root_);
+  if (rails.empty()) return;
+  joules_ += power_w_ * std::chrono::duration<double>(now - last_).count();
+  power_w_ = board_power_w(rails);
+  last_ = now;
+  has_power_ = true;
+}
+
+std::optional<EnergyUse> EnergyMeter::use(Time now) {
+  if (!start_.empty()) return EnergyUse{joules_between(start_, read_rapl(root_)), "RAPL"};
+  look(now);
+  if (!has_power_) return std::nullopt;
+  return EnergyUse{joules_, "INA3221"};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/profile/instruction_count.h"
+
+#include <cstdlib>
+#include <sstream>
+#include <utility>
+
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "eval/io/text_reader.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path find_valgrind() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder) / "valgrind";
+    if (!folder.empty() && access(file.c_str(), X_OK) == 0) return file;
+  }
+  throw InputError("valgrind",
+                   "is needed to count instructions and is not in PATH; install the Debian package "
+                   "\"valgrind\" (scripts/setup.sh --dev)");
+}
+
+/// A function that is called once or twice a picture and does all that its stage does.
+struct StageFunction {
+  const char* stage;
+  std::string_view function;
+};
+constexpr StageFunction kStageFunctions[] = {
+    {"tracking", "stillpoint::TrackingStage::process("},
+    {"detection", "stillpoint::detect_objects("},
+    {"optimization", "stillpoint::OptimizationStage::process("},
+    {"optimization", "stillpoint::OptimizationStage::predict("},
+};
+
+/// Whether callgrind's name is of that function itself, not of a part that the compiler split off.
+bool is_function(std::string_view name, std::string_view function) {
+  return name.starts_with(function) && name.find("[clone") == std::string_view::npos &&
+         name.find(".part.") == std::string_view::npos && name.find(".cold") == std::string_view::npos;
+}
+
+/// Nothing of the caller's. Libraries start no threads of their own where they can be told so; where not,
+/// every thread gets a heap of its own, and keeps nothing of what it frees for another.
+std::vector<std::string> fixed_environment() {
+  return {"PATH=/usr/bin:/bin", "LC_ALL=C", "OPENCV_FOR_THREADS_NUM=1", "OPENIMAGEIO_THREADS=1",
+          "GLIBC_TUNABLES=glibc.malloc.tcache_count=0:glibc.malloc.arena_max=100"};
+}
+
+}  // namespace
+
+ProcessSpec under_callgrind(ProcessSpec run, const fs::path& folder) {
+  fs::create_directories(folder);
+  std::vector<std::string> words = {"--quiet", "--tool=callgrind", "--fair-sched=yes",
+                                    std::string("--callgrind-out-file=") + kCallgrindFile,
+                                    run.program.string()};
+  words.insert(words.end(), run.arguments.begin(), run.arguments.end());
+  words.emplace_back("--countable");
+  run.program = find_valgrind();
+  run.arguments = std::move(words);
+  run.folder = folder;
+  run.environment = fixed_environment();
+  run.cores = {allowed_processors().front()};
+  run.fixed_addresses = true;
+  return run;
+}
+
+std::vector<StageInstructions> stage_instructions(const CallgrindCounts& counts, const std::string& place) {
+  std::vector<StageInstructions> stages;
+  for (const auto& [stage, function] : kStageFunctions) {
+    if (stages.empty() || stages.back().stage != stage) stages.push_back({.stage = stage, .count = 0});
+    for (const auto& [name, count] : counts.inclusive) {
+      if (is_function(name, function)) stages.back().count += count;
+    }
+  }
+  if (stages.front().count == 0) {
+    throw InputError(place, "names no stage of the odometry; was the program stripped of its symbols?");
+  }
+  return stages;
+}
+
+std::vector<Metric> instruction_metrics(const std::vector<StageInstructions>& stages) {
+  constexpr const char* kRecipe = "valgrind callgrind, sequential, one thread";
+  std::vector<Metric> metrics = {{.name = "instructions", .recipe = kRecipe, .unit = ""}};
+  for (const auto& [stage, count] : stages) {
+    const auto value = static_cast<double>(count);  // exact below 2^53
+    metrics.front().value += value;
+    metrics.push_back({.name = "instructions_" + stage, .recipe = kRecipe, .unit = "", .value = value});
+  }
+  return metrics;
+}
+
+std::vector<StageInstructions> read_instructions(const fs::path& folder) {
+  const fs::path file = folder / kCallgrindFile;
+  return stage_instructions(parse_callgrind(read_text_file(file), file.string()), file.string());
+}
+
+}  // namespace stillpoint

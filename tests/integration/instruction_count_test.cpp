@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Instructions counted under callgrind: the same in every run, stored, and judged by the gate.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/store/store.h"
+#include "tests/support/program.h"
+#include "tests/support/rendered_sequence.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class Instructions : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v valgrind >/dev/null 2>&1") != 0) GTEST_SKIP() << "valgrind is not installed";
+  }
+};
+
+/// Stages of a short profile into a folder of that name.
+json counted(const TemporaryFolder& folder, const std::string& name, const ProgramOptions& options) {
+  const fs::path out = folder.path() / name;
+  const ProgramResult result = run_program(
+      {"profile", rendered_sequence().string(), "--instructions", "--max-frames", "3", "--out", out.string()},
+      options);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return json::parse(std::ifstream(out / "instructions.json")).at("stages");
+}
+
+TEST_F(Instructions, AreTheSameToTheDigitInTwoRuns) {
+  const TemporaryFolder folder;
+  ProgramOptions larger_environment;
+  larger_environment.environment = {"SOMETHING=" + std::string(1000, 'x'), "LC_ALL=de_DE.UTF-8"};
+  const json first = counted(folder, "a", {});
+  const json second = counted(folder, "a_folder_with_a_longer_name", larger_environment);
+  EXPECT_EQ(first, second);
+  EXPECT_GT(first.at("tracking"), 1'000'000);  // three pictures of 320x240, each read at least once
+}
+
+TEST_F(Instructions, OfAPlanAreStoredAndCompared) {
+  const TemporaryFolder folder;
+  const fs::path plan = folder.write(
+      "plan.toml",
+      "kind = \"instructions\"\nmax_frames = 15\nvariants = [\"stillpoint\"]\n[recorded]\nsequences = [\"" +
+          rendered_sequence().filename().string() + "\"]\n");
+  const std::string store = (folder.path() / "store.sqlite").string();
+  ProgramOptions options;
+  options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()};
+  ASSERT_EQ(run_program({"bench", plan.string(), "--store", store, "--out", (folder.path() / "o").string()},
+                        options)
+                .exit_code,
+            0);
+  const StoredRun run = Store(store).runs().front();
+  EXPECT_GT(metric_value(run, "instructions").value_or(0.0), 1e6);
+  EXPECT_TRUE(run.costs.empty());  // times under valgrind say nothing
+  EXPECT_FALSE(metric_value(run, "process_cpu_s"));
+
+  const std::string baseline = (folder.path() / "baseline.json").string();
+  ASSERT_EQ(run_program({"store", "export", baseline, "--numbers", "--store", store}).exit_code, 0);
+  EXPECT_LT(fs::file_size(baseline), 10'000u);
+  const ProgramResult same = run_program({"compare", baseline, store});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+  EXPECT_NE(same.out.find("instructions"), std::string::npos) << same.out;
+}
+
+TEST_F(Instructions, ThatGrowAreFoundByTheGate) {
+  const TemporaryFolder folder;
+  const auto exported = [&](const std::string& name, double instructions) {
+    const json run = {
+        {"key", name},
+        {"identity",
+         {{"system", "stillpoint"},
+          {"variant", "vo"},
+          {"sequence", "office"},
+          {"sequence_id", "1"},
+          {"config_hash", ""},
+          {"build", name},
+          {"mode", "sequential"},
+          {"kind", "instructions"},
+          {"cores", ""},
+          {"seed", 1},
+          {"repetition", 1},
+          {"axis", ""},
+          {"axis_value", 0.0}}},
+        {"outcome", "ok"},
+        {"detail", ""},
+        {"started", ""},
+        {"ended", ""},
+        {"metrics", {{{"name", "instructions"}, {"recipe", ""}, {"unit", ""}, {"value", instructions}}}},
+        {"costs", json::array()},
+        {"attachments", json::object()},
+        {"manifest", ""}};
+    return folder
+        .write(name + ".json",
+               json{{"stillpoint_store", 1}, {"plans", json::array()}, {"runs", {run}}}.dump())
+        .string();
+  };
+  const std::string base = exported("base", 1e9);
+  // One pair is enough: counts repeat. The margin is 1 %.
+  EXPECT_EQ(run_program({"compare", base, exported("slower", 1.02e9)}).exit_code, 1);
+  EXPECT_EQ(run_program({"compare", base, exported("same", 1.005e9)}).exit_code, 0);
+}
+
+TEST(InstructionsWithoutValgrind, NameThePackage) {
+  const TemporaryFolder folder;
+  ProgramOptions options;
+  options.environment = {"PATH=" + folder.path().string()};
+  const ProgramResult result = run_program(
+      {"profile", rendered_sequence().string(), "--instructions", "--out", (folder.path() / "out").string()},
+      options);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("Debian package \"valgrind\""), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace stillpoint
