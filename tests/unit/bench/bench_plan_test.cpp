@@ -68,6 +68,16 @@ TEST(PlanMatrix, MultipliesSequencesSeedsRepetitionsAndVariants) {
   EXPECT_EQ(matrix.runs[1].identity.variant, "vo");  // variants alternate
 }
 
+TEST(PlanMatrix, APartOfASequenceIsAnotherSequence) {
+  const TemporaryFolder folder;
+  const std::string text = "variants = [\"vo\"]\n[rendered]\nsequences = [\"walking_xyz\"]\n";
+  const PlannedRun whole = expand_plan(plan_of(folder, text), "", {}).runs.front();
+  const PlannedRun part = expand_plan(plan_of(folder, "max_frames = 30\n" + text), "", {}).runs.front();
+  EXPECT_EQ(part.max_frames, 30);
+  EXPECT_EQ(part.identity.sequence_id, whole.identity.sequence_id + "-first-30");
+  EXPECT_NE(run_key(part.identity), run_key(whole.identity));
+}
+
 TEST(PlanMatrix, KeepsOnlyWhatEveryFilterMatches) {
   const TemporaryFolder folder;
   const BenchPlan plan = plan_of(folder,

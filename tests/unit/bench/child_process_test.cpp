@@ -30,6 +30,26 @@ TEST(ChildProcess, SaysThatAProgramCannotBeStarted) {
   EXPECT_EQ(last_line(end.messages), "cannot be started");
 }
 
+TEST(ChildProcess, GivesItOnlyTheEnvironmentThatIsSaid) {
+  ProcessSpec spec = shell("echo \"$COLOUR$HOME\" >&2");
+  spec.environment = {"COLOUR=red", "PATH=/usr/bin:/bin"};
+  EXPECT_EQ(last_line(run_process(spec).messages), "red");
+}
+
+TEST(ChildProcess, StartsItInAFolder) {
+  ProcessSpec spec = shell("pwd >&2");
+  spec.folder = "/usr";
+  EXPECT_EQ(last_line(run_process(spec).messages), "/usr");
+  spec.folder = "/no/such/folder";
+  EXPECT_EQ(run_process(spec).exit_code, 127);
+}
+
+TEST(ChildProcess, LaysOutItsMemoryTheSameEachTimeIfAsked) {
+  ProcessSpec spec = shell("read -r map </proc/self/maps; echo \"$map\" >&2");
+  spec.fixed_addresses = true;
+  EXPECT_EQ(run_process(spec).messages, run_process(spec).messages);
+}
+
 TEST(ChildProcess, EndsOneThatTakesTooLong) {
   ProcessSpec spec = shell("exec tail -f /dev/null");
   spec.time_limit_s = 0.05;

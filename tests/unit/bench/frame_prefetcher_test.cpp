@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <thread>
+
 #include "core/base/error.h"
 #include "tests/support/expect_input_error.h"
 
@@ -19,6 +22,19 @@ TEST(FramePrefetcher, HandsFramesOutInOrder) {
   FramePrefetcher prefetcher(frame_of, 20, 3);
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(prefetcher.take(i).id, static_cast<std::int64_t>(i));
   EXPECT_EQ(prefetcher.decoded().size(), 20u);
+}
+
+TEST(FramePrefetcher, DecodesWhereItIsAskedWithoutAThread) {
+  std::set<std::thread::id> threads;
+  const auto load = [&](std::size_t index) {
+    threads.insert(std::this_thread::get_id());
+    return frame_of(index);
+  };
+  FramePrefetcher prefetcher(load, 20, 0);
+  EXPECT_EQ(prefetcher.take(2).id, 2);
+  EXPECT_EQ(prefetcher.take(5).id, 5);
+  EXPECT_EQ(prefetcher.decoded().size(), 2u);  // those between were not asked for
+  EXPECT_EQ(threads, std::set<std::thread::id>{std::this_thread::get_id()});
 }
 
 TEST(FramePrefetcher, DropsFramesThatAreJumpedOver) {

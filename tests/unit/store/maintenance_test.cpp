@@ -87,6 +87,18 @@ TEST(StoreMaintenance, ExportsAndImportsEverything) {
   EXPECT_EQ(imported.manifest(run), "{}");
 }
 
+TEST(StoreMaintenance, ExportsNumbersAlone) {
+  const TemporaryFolder folder;
+  const fs::path from = store_of(folder, "from.sqlite", {"a", "b"});
+  const std::string text = export_store(from, ExportExtent::kNumbers);
+  EXPECT_EQ(text.find("log of a"), std::string::npos);
+  const std::vector<StoredRun> runs = exported_runs(text, "runs.json");
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[1].identity.variant, "b");
+  EXPECT_EQ(metric_value(runs[1], "ate_rmse_m"), 0.5);
+  expect_input_error([] { static_cast<void>(exported_runs("[]", "runs.json")); }, {"no exported store"});
+}
+
 TEST(StoreMaintenance, RefusesATextThatIsNoExport) {
   const TemporaryFolder folder;
   const fs::path into = folder.path() / "into.sqlite";
