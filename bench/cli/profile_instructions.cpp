@@ -65,7 +65,8 @@ void print(const std::vector<StageInstructions>& stages, const CallgrindCounts& 
     all += count;
   }
   table.push_back({"all stages", fmt::format("{}", all), in_millions(all, frames)});
-  std::cout << format_table(table, TableStyle::kText) << "\nin the whole program, millions:\n";
+  std::cout << format_table(table, TableStyle::kText)
+            << "\nin the whole program (these few vary from run to run), millions:\n";
   for (const auto& [function, count] : largest(counts)) {
     std::cout << fmt::format("{:>12}  {}\n", in_millions(count, 1.0), function.substr(0, kListedCharacters));
   }
