@@ -43,6 +43,7 @@ struct ProfileArguments {
   bool instructions = false;
   std::string board;
   double speed = 1.0;
+  std::string tegrastats;
 };
 
 /// The times of threads while they live: those of a run end with it.
@@ -82,7 +83,7 @@ Profile measure(const SensorStream& stream, const ProfileArguments& arguments) {
   ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
   AllocationWatch allocations;
   ThreadWatch watch;
-  EnergyMeter energy("/", std::chrono::steady_clock::now());
+  EnergyMeter energy("/", arguments.tegrastats, std::chrono::steady_clock::now());
   const HardwareCounters counters;
   const ProcessUsage before = process_usage();
   const auto on_update = [&](const OdometryUpdate& update) {
@@ -139,6 +140,9 @@ BoardRequest board_request(const ProfileArguments& arguments, const fs::path& fo
 int run_profile(const ProfileArguments& arguments) {
   if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
   if (!(arguments.budget_ms > 0.0)) throw InputError("--frame-budget-ms", "must be above 0, e.g. 33");
+  if (!arguments.tegrastats.empty() && !fs::exists(arguments.tegrastats)) {
+    throw InputError(arguments.tegrastats, "is not there; start `tegrastats --logfile` with this file first");
+  }
   if (!arguments.cores.empty()) pin_to(processors_of(arguments.cores));
   watch_interrupts();
   const auto stream =
@@ -193,6 +197,8 @@ Command profile_command() {
                {"--board", "Run on the virtual clock of this board: drops, latency, accuracy (name or file)",
                 &arguments->board},
                {"--speed", "Of the clock in realtime mode and of boards; 1 = as recorded", &arguments->speed},
+               {"--tegrastats", "Log that tegrastats writes meanwhile: energy of Jetson boards",
+                &arguments->tegrastats},
                {"--instructions", "Count instructions under valgrind's callgrind instead of time",
                 &arguments->instructions}},
           .action = [arguments] { return run_profile(*arguments); },

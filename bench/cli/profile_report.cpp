@@ -89,7 +89,7 @@ void print_machine(const Profile& profile) {
   std::cout << "energy: "
             << (profile.energy ? fmt::format("{:.2f} J of the whole machine ({})", profile.energy->joules,
                                              profile.energy->source)
-                               : "n/a: neither RAPL nor INA3221 can be read here")
+                               : "n/a: neither RAPL nor INA3221 can be read here (on Jetson boards: --tegrastats LOG)")
             << '\n';
   std::cout << "allocations: "
             << (profile.allocations

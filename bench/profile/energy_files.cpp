@@ -124,6 +124,13 @@ std::vector<RailPower> parse_tegrastats(std::string_view line) {
   return rails;
 }
 
+std::vector<RailPower> read_tegrastats(const fs::path& log) {
+  std::ifstream file(log);
+  std::string whole, line;
+  while (std::getline(file, line) && !file.eof()) whole.swap(line);
+  return parse_tegrastats(whole);
+}
+
 double board_power_w(const std::vector<RailPower>& rails) {
   double sum = 0.0;
   for (const RailPower& rail : rails) {

@@ -42,6 +42,10 @@ struct RailPower {
 /// Source: Jetson Developer Guide, "tegrastats Utility".
 [[nodiscard]] std::vector<RailPower> parse_tegrastats(std::string_view line);
 
+/// The same of the last whole line of a log that `tegrastats --logfile` writes; empty where there is none
+/// yet.
+[[nodiscard]] std::vector<RailPower> read_tegrastats(const std::filesystem::path& log);
+
 /// The rail that feeds the whole board where there is one ("VDD_IN", "POM_5V_IN"), else the sum of all.
 [[nodiscard]] double board_power_w(const std::vector<RailPower>& rails);
 

@@ -5,17 +5,25 @@
 
 namespace stillpoint {
 
-EnergyMeter::EnergyMeter(std::filesystem::path root, Time now)
-    : root_(std::move(root)), start_(read_rapl(root_)), last_(now) {
+EnergyMeter::EnergyMeter(std::filesystem::path root, std::filesystem::path tegrastats, Time now)
+    : root_(std::move(root)), tegrastats_(std::move(tegrastats)), start_(read_rapl(root_)), last_(now) {
   if (start_.empty()) look(now);
+}
+
+std::vector<RailPower> EnergyMeter::rails() {
+  std::vector<RailPower> found = read_ina3221(root_);
+  source_ = "INA3221";
+  if (!found.empty() || tegrastats_.empty()) return found;
+  source_ = "tegrastats";
+  return read_tegrastats(tegrastats_);
 }
 
 void EnergyMeter::look(Time now) {
   if (!start_.empty()) return;
-  const std::vector<RailPower> rails = read_ina3221(root_);
-  if (rails.empty()) return;
+  const std::vector<RailPower> present = rails();
+  if (present.empty()) return;
   joules_ += power_w_ * std::chrono::duration<double>(now - last_).count();
-  power_w_ = board_power_w(rails);
+  power_w_ = board_power_w(present);
   last_ = now;
   has_power_ = true;
 }
@@ -24,7 +32,7 @@ std::optional<EnergyUse> EnergyMeter::use(Time now) {
   if (!start_.empty()) return EnergyUse{joules_between(start_, read_rapl(root_)), "RAPL"};
   look(now);
   if (!has_power_) return std::nullopt;
-  return EnergyUse{joules_, "INA3221"};
+  return EnergyUse{joules_, source_};
 }
 
 }  // namespace stillpoint

@@ -95,7 +95,7 @@ TEST(EnergyMeter, AddsUpPowerOverTime) {
   const TemporaryFolder root;
   record_hwmon(root);
   const EnergyMeter::Time start{};
-  EnergyMeter meter(root.path(), start);
+  EnergyMeter meter(root.path(), {}, start);
   meter.look(start + std::chrono::seconds(2));
   const std::optional<EnergyUse> use = meter.use(start + std::chrono::seconds(3));
   ASSERT_TRUE(use);
@@ -107,7 +107,7 @@ TEST(EnergyMeter, PrefersCounters) {
   const TemporaryFolder root;
   record_hwmon(root);
   record_rapl(root, "1000000");
-  EnergyMeter meter(root.path(), {});
+  EnergyMeter meter(root.path(), {}, {});
   record_rapl(root, "4000000");
   const std::optional<EnergyUse> use = meter.use(EnergyMeter::Time{} + std::chrono::seconds(1));
   ASSERT_TRUE(use);
@@ -115,9 +115,20 @@ TEST(EnergyMeter, PrefersCounters) {
   EXPECT_DOUBLE_EQ(use->joules, 3.0);
 }
 
+TEST(EnergyMeter, ReadsTheLogOfTegrastatsWhereThereAreNoSensors) {
+  const TemporaryFolder root;
+  // The last line is still being written.
+  const auto log = root.write("log", "VDD_IN 9000mW/9000mW\nVDD_IN 4000mW/6000mW\nVDD_IN 70");
+  EnergyMeter meter(root.path(), log, {});
+  const std::optional<EnergyUse> use = meter.use(EnergyMeter::Time{} + std::chrono::seconds(2));
+  ASSERT_TRUE(use);
+  EXPECT_EQ(use->source, "tegrastats");
+  EXPECT_DOUBLE_EQ(use->joules, 8.0);
+}
+
 TEST(EnergyMeter, SaysNothingWhereTheMachineDoesNot) {
   const TemporaryFolder root;
-  EnergyMeter meter(root.path(), {});
+  EnergyMeter meter(root.path(), {}, {});
   EXPECT_FALSE(meter.use(EnergyMeter::Time{} + std::chrono::seconds(1)));
 }
 
