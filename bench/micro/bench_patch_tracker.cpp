@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
 
 #include "bench/micro/leaves_picture.h"
 #include "core/frontend/feature_detector.h"
@@ -106,6 +107,7 @@ void follow(benchmark::State& state, Follow follow_all) {
 }
 
 void opencv(benchmark::State& state) {
+  cv::setNumThreads(1);  // one thread each, or the ratio depends on how busy the others are
   follow(state, [](const auto& from, const auto& to, const auto& points, const auto& starts, int levels) {
     return follow_points(from, to, points, starts, {.window_px = kWindowPx, .levels = levels});
   });
