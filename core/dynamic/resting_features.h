@@ -33,9 +33,6 @@ class RestingFeatures {
     int stayed = 0;  ///< pictures after the one that measured it
   };
 
-  [[nodiscard]] bool stays(const Place& place, const ConsistencyView& view,
-                           const Eigen::Vector2d& bearing) const;
-
   int pictures_;
   double stray_px_;
   std::vector<Place> places_;  ///< by rising id

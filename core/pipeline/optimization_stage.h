@@ -37,6 +37,7 @@ class OptimizationStage {
   /// The pose at a picture that does not enter the window.
   [[nodiscard]] OdometryUpdate predict(const TrackedFrame& frame);
 
+  [[nodiscard]] MotionKnowledge knowledge() const { return estimator_.knowledge(); }
   [[nodiscard]] Feedback feedback() const { return {estimator_.knowledge(), moving_}; }
   [[nodiscard]] const ImuHealth& imu_health() const { return estimator_.imu_health(); }
   [[nodiscard]] const DynamicReport& dynamic() const { return dynamic_; }

@@ -90,7 +90,7 @@ class RealtimeRun {
     while (const std::optional<PictureOnWay> picture = tracked_.pop()) {
       const Timestamp t = picture->frame.t;
       const Timestamp imu_end =
-          after(t, stages_.optimization.feedback().motion.time_offset_s + kRealtimeImuLead_s);
+          after(t, stages_.optimization.knowledge().time_offset_s + kRealtimeImuLead_s);
       clock_.wait_until(imu_end, {});
       imu.up_to(imu_end, stages_.optimization);
       close_picture(*picture, detections_for(*picture), stages_.optimization, control_, summary_);
