@@ -13,9 +13,12 @@ struct DepthView {
   double units_per_m = 1000.0;
 };
 
+/// Largest window of `robust_depth`.
+inline constexpr int kMaxDepthWindow_px = 31;
+
 /// Median of the measured depths in a square window around a pixel, the upper one of an even number [m]; 0
 /// where none is measured. The window ends at the edge of the picture.
-/// @param window_px side of the window, odd
+/// @param window_px side of the window, odd, at most kMaxDepthWindow_px
 [[nodiscard]] double robust_depth(const DepthView& depth, const Eigen::Vector2d& pixel, int window_px);
 
 }  // namespace stillpoint

@@ -3,13 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace stillpoint {
 namespace {
 
 bool is_dynamic(const FeatureVerdict& verdict) { return verdict.verdict != Verdict::kStable; }
+
+/// Whether the floor may make it stable.
+bool may_be_lifted(const FeatureVerdict& verdict) {
+  return is_dynamic(verdict) && verdict.reason != VerdictReason::kInsideMask;
+}
+
+/// The floor begins with the smallest.
+auto rank_of(const FeatureVerdict& verdict) {
+  return std::tuple(!may_be_lifted(verdict),
+                    verdict.residual_px.value_or(std::numeric_limits<double>::infinity()), verdict.id);
+}
 
 /// The verdict at the beginning of a new picture, before anything in it was looked at.
 FeatureVerdict carried_over(const FeatureVerdict& before) {
@@ -48,10 +61,10 @@ bool FeatureRecognition::is_inside(const TrackedFeature& feature, const DepthVie
   return config_.unmeasured_is_dynamic || std::isinf(threshold);
 }
 
-std::vector<FeatureVerdict> FeatureRecognition::judge(const TrackedFrame& frame, const SemanticMask& mask) {
+const std::vector<FeatureVerdict>& FeatureRecognition::judge(const TrackedFrame& frame,
+                                                             const SemanticMask& mask) {
   const DepthView depth{.pixels = frame.depth, .units_per_m = frame.depth_units_per_m};
-  std::vector<Feature> present;
-  present.reserve(frame.features.size());
+  present_.clear();
   auto known = features_.begin();
   for (const TrackedFeature& tracked : frame.features) {
     while (known != features_.end() && known->verdict.id < tracked.id) ++known;
@@ -64,23 +77,26 @@ std::vector<FeatureVerdict> FeatureRecognition::judge(const TrackedFrame& frame,
       feature.verdict.verdict = Verdict::kDynamicObject;
       feature.verdict.reason = VerdictReason::kInsideMask;
     }
-    present.push_back(feature);
+    present_.push_back(feature);
   }
-  features_ = std::move(present);
-  return verdicts();
+  std::swap(features_, present_);
+  list_verdicts();
+  return verdicts_;
 }
 
-std::vector<FeatureVerdict> FeatureRecognition::gate(std::span<const ConsistencyResidual> residuals) {
+const std::vector<FeatureVerdict>& FeatureRecognition::gate(std::span<const ConsistencyResidual> residuals) {
   for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
     feature.verdict.residual_px = residual.mean_px;
     if (residual.mean_px > config_.gate_threshold_px)
       flag(feature.verdict, VerdictReason::kPredictionResidual);
   });
-  return apply_floor(verdicts(), config_.min_stable_features);
+  list_verdicts();
+  verdicts_ = apply_floor(std::move(verdicts_), config_.min_stable_features);
+  return verdicts_;
 }
 
-std::vector<FeatureVerdict> FeatureRecognition::check(std::span<const ConsistencyResidual> residuals,
-                                                      std::span<const std::int64_t> resting) {
+const std::vector<FeatureVerdict>& FeatureRecognition::check(std::span<const ConsistencyResidual> residuals,
+                                                             std::span<const std::int64_t> resting) {
   for (Feature& feature : features_) ++feature.quiet;
   for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
     feature.verdict.residual_px = residual.mean_px;
@@ -99,7 +115,9 @@ std::vector<FeatureVerdict> FeatureRecognition::check(std::span<const Consistenc
   for (Feature& feature : features_) {
     if (std::ranges::binary_search(resting, feature.verdict.id)) recycle(feature, VerdictReason::kRested);
   }
-  return apply_floor(verdicts(), config_.min_stable_features);
+  list_verdicts();
+  verdicts_ = apply_floor(std::move(verdicts_), config_.min_stable_features);
+  return verdicts_;
 }
 
 void FeatureRecognition::recycle(Feature& feature, VerdictReason reason) {
@@ -108,31 +126,18 @@ void FeatureRecognition::recycle(Feature& feature, VerdictReason reason) {
   feature.verdict.reason = reason;
 }
 
-std::vector<FeatureVerdict> FeatureRecognition::verdicts() const {
-  std::vector<FeatureVerdict> list;
-  list.reserve(features_.size());
-  for (const Feature& feature : features_) list.push_back(feature.verdict);
-  return list;
+void FeatureRecognition::list_verdicts() {
+  verdicts_.clear();
+  for (const Feature& feature : features_) verdicts_.push_back(feature.verdict);
 }
 
 std::vector<FeatureVerdict> apply_floor(std::vector<FeatureVerdict> verdicts, int min_stable) {
-  std::vector<FeatureVerdict*> candidates;
-  int stable = 0;
-  for (FeatureVerdict& verdict : verdicts) {
-    if (!is_dynamic(verdict)) ++stable;
-    if (is_dynamic(verdict) && verdict.reason != VerdictReason::kInsideMask) candidates.push_back(&verdict);
-  }
-  std::sort(candidates.begin(), candidates.end(), [](const FeatureVerdict* a, const FeatureVerdict* b) {
-    const auto rank = [](const FeatureVerdict& verdict) {
-      return std::tuple(verdict.residual_px.value_or(std::numeric_limits<double>::infinity()), verdict.id);
-    };
-    return rank(*a) < rank(*b);
-  });
-  for (FeatureVerdict* const candidate : candidates) {
-    if (stable >= min_stable) break;
+  const auto stable = std::ranges::count_if(verdicts, std::not_fn(is_dynamic));
+  for (auto missing = min_stable - stable; missing > 0; --missing) {
+    const auto candidate = std::ranges::min_element(verdicts, {}, rank_of);
+    if (candidate == verdicts.end() || !may_be_lifted(*candidate)) break;
     candidate->verdict = Verdict::kStable;
     candidate->reason = VerdictReason::kFloor;
-    ++stable;
   }
   return verdicts;
 }

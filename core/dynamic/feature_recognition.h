@@ -22,23 +22,24 @@ namespace stillpoint {
 /// a person who sits still stays out of the estimate.
 ///
 /// Calls for each picture: `judge`, then `gate` if the prediction is checked, then `check` after the solve.
-/// Each returns the verdicts of all features of the picture, by rising id.
+/// Each returns the verdicts of all features of the picture, by rising id; they are valid until the next
+/// call.
 class FeatureRecognition {
  public:
   explicit FeatureRecognition(DynamicConfig config) : config_(std::move(config)) {}
 
   /// Compares each feature's depth with the mask; features no longer tracked are forgotten.
-  [[nodiscard]] std::vector<FeatureVerdict> judge(const TrackedFrame& frame, const SemanticMask& mask);
+  [[nodiscard]] const std::vector<FeatureVerdict>& judge(const TrackedFrame& frame, const SemanticMask& mask);
 
   /// Flags features that disagree with the predicted pose; clears none, since a prediction is no proof.
-  [[nodiscard]] std::vector<FeatureVerdict> gate(std::span<const ConsistencyResidual> residuals);
+  [[nodiscard]] const std::vector<FeatureVerdict>& gate(std::span<const ConsistencyResidual> residuals);
 
   /// Flags features whose residual is over the threshold, and recycles flagged ones whose residual is not,
   /// seen often enough in the window, or that were quiet for long enough. A feature without a residual is
   /// quiet: nothing is known of its depth, and so the estimate does not use it.
   /// @param resting ids of features that stand still by now, whatever their older observations say; rising
-  [[nodiscard]] std::vector<FeatureVerdict> check(std::span<const ConsistencyResidual> residuals,
-                                                  std::span<const std::int64_t> resting = {});
+  [[nodiscard]] const std::vector<FeatureVerdict>& check(std::span<const ConsistencyResidual> residuals,
+                                                         std::span<const std::int64_t> resting = {});
 
   /// Forgets every feature.
   void reset() { features_.clear(); }
@@ -53,10 +54,12 @@ class FeatureRecognition {
   [[nodiscard]] bool is_inside(const TrackedFeature& feature, const DepthView& depth,
                                const SemanticMask& mask) const;
   static void recycle(Feature& feature, VerdictReason reason = VerdictReason::kRecycled);
-  [[nodiscard]] std::vector<FeatureVerdict> verdicts() const;
+  void list_verdicts();
 
   DynamicConfig config_;
-  std::vector<Feature> features_;  ///< by rising id
+  std::vector<Feature> features_;         ///< by rising id
+  std::vector<Feature> present_;          ///< the list that is being made, kept for its memory
+  std::vector<FeatureVerdict> verdicts_;  ///< handed out last
 };
 
 /// Keeps suspicion from starving the estimate: where fewer than `min_stable` verdicts are stable, the dynamic

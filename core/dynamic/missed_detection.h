@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/dynamic/box_association.h"
 #include "core/dynamic/dynamic_config.h"
 #include "core/types/box_geometry.h"
 #include "core/types/detection.h"
@@ -36,8 +37,8 @@ class MissedDetectionCompensation {
   /// looked, every object is carried, and counts as unwatched. Detections of classes that are not configured
   /// and boxes without area are passed over.
   /// @return boxes to mask: the detected ones in order of the set, then the carried ones by age. Without
-  ///         `missed_detection` the detected ones alone.
-  [[nodiscard]] std::vector<TrackedBox> update(const DetectionSet& set);
+  ///         `missed_detection` the detected ones alone. Valid until the next call.
+  [[nodiscard]] const std::vector<TrackedBox>& update(const DetectionSet& set);
 
   /// Forgets every object; numbers are not used again.
   void reset() { objects_.clear(); }
@@ -55,15 +56,20 @@ class MissedDetectionCompensation {
     [[nodiscard]] Box predicted() const { return moved(box, carried() * velocity); }
   };
 
-  [[nodiscard]] std::vector<Detection> of_dynamic_classes(const DetectionSet& set) const;
+  void select_dynamic_classes(const DetectionSet& set);
   void advance(bool watched);
   [[nodiscard]] Box carried_box(const Object& object) const;
-  [[nodiscard]] std::vector<std::int64_t> take_up(const std::vector<Detection>& detections);
+  void take_up_detections();
   void give_up_lost();
 
   DynamicConfig config_;
   std::vector<Object> objects_;  ///< by rising id
   std::int64_t next_id_ = 0;
+  // Of the newest picture, kept for their memory.
+  std::vector<Detection> detections_;  ///< of classes that may move
+  std::vector<TrackedBox> boxes_;      ///< handed out
+  std::vector<ExpectedBox> expected_;
+  BoxAssociation association_;
 };
 
 }  // namespace stillpoint

@@ -2,6 +2,7 @@
 #include "core/dynamic/moving_consistency.h"
 
 #include <optional>
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -14,7 +15,7 @@ std::optional<Eigen::Vector3d> position_in(const ConsistencyView& view, const Co
                                            const ConsistencyObservation& seen) {
   if (seen.depth > 0.0) return seen.depth * seen.bearing.homogeneous();
   if (feature.inverse_depth <= 0.0) return std::nullopt;
-  const ConsistencyObservation& first = feature.observations.front();
+  const ConsistencyObservation& first = view.seen_of(feature).front();
   const Pose& T_w_cj = view.T_w_c[static_cast<std::size_t>(seen.frame)];
   const Pose& T_w_ci = view.T_w_c[static_cast<std::size_t>(first.frame)];
   const Eigen::Vector3d p_ci = first.bearing.homogeneous() / feature.inverse_depth;
@@ -29,7 +30,7 @@ ConsistencyResidual residual(const ConsistencyView& view, const ConsistencyFeatu
   ConsistencyResidual result{.id = feature.id};
   const Pose T_ci_w = view.T_w_c[static_cast<std::size_t>(reference.frame)].inverse();
   double sum = 0.0;
-  for (const ConsistencyObservation& other : feature.observations) {
+  for (const ConsistencyObservation& other : view.seen_of(feature)) {
     if (other.frame == reference.frame) continue;
     const std::optional<Eigen::Vector3d> p_cj = position_in(view, feature, other);
     if (!p_cj) continue;
@@ -44,22 +45,27 @@ ConsistencyResidual residual(const ConsistencyView& view, const ConsistencyFeatu
 
 }  // namespace
 
-std::vector<ConsistencyResidual> consistency_residuals(const ConsistencyView& view) {
-  std::vector<ConsistencyResidual> residuals;
+std::vector<ConsistencyResidual> consistency_residuals(const ConsistencyView& view,
+                                                       std::vector<ConsistencyResidual> memory) {
+  std::vector<ConsistencyResidual> residuals = std::move(memory);
+  residuals.clear();
   for (const ConsistencyFeature& feature : view.features) {
-    if (feature.observations.size() < 2) continue;
-    const ConsistencyResidual result = residual(view, feature, feature.observations.front());
+    if (feature.count < 2) continue;
+    const ConsistencyResidual result = residual(view, feature, view.seen_of(feature).front());
     if (result.compared > 0) residuals.push_back(result);
   }
   return residuals;
 }
 
-std::vector<ConsistencyResidual> gate_on_prediction(const ConsistencyView& view) {
+std::vector<ConsistencyResidual> gate_on_prediction(const ConsistencyView& view,
+                                                    std::vector<ConsistencyResidual> memory) {
   const int newest = static_cast<int>(view.T_w_c.size()) - 1;
-  std::vector<ConsistencyResidual> residuals;
+  std::vector<ConsistencyResidual> residuals = std::move(memory);
+  residuals.clear();
   for (const ConsistencyFeature& feature : view.features) {
-    if (feature.observations.size() < 2 || feature.observations.back().frame != newest) continue;
-    const ConsistencyResidual result = residual(view, feature, feature.observations.back());
+    const ConsistencyObservation& last = view.seen_of(feature).back();
+    if (feature.count < 2 || last.frame != newest) continue;
+    const ConsistencyResidual result = residual(view, feature, last);
     if (result.compared > 0) residuals.push_back(result);
   }
   return residuals;

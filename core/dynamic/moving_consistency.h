@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/geometry/pose.h"
@@ -19,8 +20,9 @@ struct ConsistencyObservation {
 
 struct ConsistencyFeature {
   std::int64_t id = 0;
-  std::vector<ConsistencyObservation> observations;  ///< by rising frame
   double inverse_depth = 0.0;  ///< estimated, in the frame of the first observation [1/m]; 0 = unknown
+  std::size_t first = 0;       ///< of its observations, in ConsistencyView::observations
+  std::size_t count = 0;       ///< of them, > 0
 };
 
 /// What the check needs of the window. Features of any verdict take part.
@@ -28,6 +30,11 @@ struct ConsistencyView {
   std::vector<Pose> T_w_c;  ///< of each picture, oldest first
   double focal_px = 0.0;    ///< of the camera, > 0: residuals are in its pixels
   std::vector<ConsistencyFeature> features;
+  std::vector<ConsistencyObservation> observations;  ///< feature by feature, each by rising frame
+
+  [[nodiscard]] std::span<const ConsistencyObservation> seen_of(const ConsistencyFeature& feature) const {
+    return std::span(observations).subspan(feature.first, feature.count);
+  }
 };
 
 struct ConsistencyResidual {
@@ -42,12 +49,15 @@ struct ConsistencyResidual {
 /// The place in j is its measured depth along its bearing; where none was measured, the depth that the
 /// estimate implies there; where neither is known, the pair is left out. A point that comes out behind the
 /// camera counts with `focal_px`, the error of half a right angle.
+/// @param memory for the result: a list that nobody needs any more
 /// @return one entry for each feature with at least one pair, in the order of the features
-[[nodiscard]] std::vector<ConsistencyResidual> consistency_residuals(const ConsistencyView& view);
+[[nodiscard]] std::vector<ConsistencyResidual> consistency_residuals(
+    const ConsistencyView& view, std::vector<ConsistencyResidual> memory = {});
 
 /// The same for the newest picture alone, whose pose is a prediction: the mean, over the earlier observations
 /// j, of the distance between the newest observation and where the feature as seen in j should be now.
 /// Features that the newest picture does not see have no entry.
-[[nodiscard]] std::vector<ConsistencyResidual> gate_on_prediction(const ConsistencyView& view);
+[[nodiscard]] std::vector<ConsistencyResidual> gate_on_prediction(
+    const ConsistencyView& view, std::vector<ConsistencyResidual> memory = {});
 
 }  // namespace stillpoint

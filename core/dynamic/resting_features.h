@@ -21,8 +21,8 @@ class RestingFeatures {
   RestingFeatures(int pictures, double stray_px) : pictures_(pictures), stray_px_(stray_px) {}
 
   /// Takes up the newest picture, and forgets features that it does not see.
-  /// @return ids of those at rest, rising
-  std::vector<std::int64_t> update(const ConsistencyView& view);
+  /// @return ids of those at rest, rising; valid until the next call
+  const std::vector<std::int64_t>& update(const ConsistencyView& view);
 
   void reset() { places_.clear(); }
 
@@ -36,6 +36,8 @@ class RestingFeatures {
   int pictures_;
   double stray_px_;
   std::vector<Place> places_;  ///< by rising id
+  std::vector<Place> before_;  ///< the same at the picture before
+  std::vector<std::int64_t> resting_;
 };
 
 }  // namespace stillpoint

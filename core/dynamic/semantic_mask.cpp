@@ -40,8 +40,9 @@ double object_depth_threshold(const BoxDepths& depths, double epsilon_m) {
   return background > 0.0 ? background : std::numeric_limits<double>::infinity();
 }
 
-SemanticMask::SemanticMask(std::span<const Box> boxes, const DepthView& depth, cv::Size size,
-                           const DynamicConfig& config) {
+void SemanticMask::assign(std::span<const Box> boxes, const DepthView& depth, cv::Size size,
+                          const DynamicConfig& config) {
+  boxes_.clear();
   if (config.mask == DynamicMask::kOff) return;
   const Box picture{.x_min = 0.0, .y_min = 0.0, .x_max = size.width - 1.0, .y_max = size.height - 1.0};
   for (const Box& detected : boxes) {

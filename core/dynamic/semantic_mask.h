@@ -44,7 +44,14 @@ class SemanticMask {
   /// Takes up boxes with the margin of `config`; those without area in the picture are left out.
   /// @param depth picture of the size `size`; empty = nothing measured
   SemanticMask(std::span<const Box> boxes, const DepthView& depth, cv::Size size,
-               const DynamicConfig& config);
+               const DynamicConfig& config) {
+    assign(boxes, depth, size, config);
+  }
+
+  /// The same as constructing anew, in the memory that is there.
+  void assign(std::span<const Box> boxes, const DepthView& depth, cv::Size size, const DynamicConfig& config);
+  /// Forgets every box.
+  void clear() { boxes_.clear(); }
 
   /// Threshold at a pixel [m]; the largest where boxes overlap; 0 = no object.
   [[nodiscard]] double threshold_at(const Eigen::Vector2d& pixel) const;

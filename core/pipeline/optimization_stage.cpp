@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/optimization_stage.h"
 
+#include <span>
 #include <utility>
 
 #include "core/pipeline/consistency_view.h"
@@ -11,15 +12,17 @@ namespace {
 
 using Kind = ScopedTimer::Kind;
 
-std::vector<Box> boxes_of(const std::vector<TrackedBox>& tracked) {
-  std::vector<Box> boxes;
-  boxes.reserve(tracked.size());
+std::vector<Box> boxes_of(const std::vector<TrackedBox>& tracked, std::vector<Box> memory) {
+  std::vector<Box> boxes = std::move(memory);
+  boxes.clear();
   for (const TrackedBox& object : tracked) boxes.push_back(object.box);
   return boxes;
 }
 
-std::vector<std::int64_t> dynamic_ids(const std::vector<FeatureVerdict>& verdicts) {
-  std::vector<std::int64_t> ids;
+std::vector<std::int64_t> dynamic_ids(const std::vector<FeatureVerdict>& verdicts,
+                                      std::vector<std::int64_t> memory) {
+  std::vector<std::int64_t> ids = std::move(memory);
+  ids.clear();
   for (const FeatureVerdict& verdict : verdicts) {
     if (verdict.verdict != Verdict::kStable) ids.push_back(verdict.id);
   }
@@ -51,7 +54,7 @@ OdometryUpdate OptimizationStage::process(const TrackedFrame& frame, const Detec
     }
     estimator_.finish(update);
   }
-  moving_ = dynamic_ids(dynamic_.verdicts);
+  moving_ = dynamic_ids(dynamic_.verdicts, std::move(moving_));
   update.counters.dynamic_features = static_cast<int>(moving_.size());
   update.hashes = {.tracking = state_hash(frame.features),
                    .dynamic = state_hash(dynamic_.verdicts),
@@ -61,7 +64,7 @@ OdometryUpdate OptimizationStage::process(const TrackedFrame& frame, const Detec
 
 OdometryUpdate OptimizationStage::predict(const TrackedFrame& frame) {
   OdometryUpdate update;
-  dynamic_ = {};
+  dynamic_.clear();
   estimator_.predict(frame.id, frame.t, update);
   update.hashes = {.tracking = state_hash(frame.features), .optimization = state_hash(update.state)};
   return update;
@@ -71,12 +74,12 @@ OdometryUpdate OptimizationStage::predict(const TrackedFrame& frame) {
 void OptimizationStage::look_for_objects(const TrackedFrame& frame, const DetectionSet& detections,
                                          ModuleTimings& timings) {
   const ScopedTimer timer(timings, Module::kDynamicRecognition);
-  dynamic_ = {};
+  dynamic_.clear();
   if (config_.mask != DynamicMask::kOff) {
     dynamic_.boxes = objects_.update(detections);
-    dynamic_.mask = SemanticMask(boxes_of(dynamic_.boxes),
-                                 {.pixels = frame.depth, .units_per_m = frame.depth_units_per_m},
-                                 {camera_.width, camera_.height}, config_);
+    boxes_ = boxes_of(dynamic_.boxes, std::move(boxes_));
+    dynamic_.mask.assign(boxes_, {.pixels = frame.depth, .units_per_m = frame.depth_units_per_m},
+                         {camera_.width, camera_.height}, config_);
   }
   take(recognition_.judge(frame, dynamic_.mask));
 }
@@ -85,25 +88,28 @@ void OptimizationStage::look_for_objects(const TrackedFrame& frame, const Detect
 void OptimizationStage::look_for_motion_before(ModuleTimings& timings) {
   if (!config_.moving_consistency || !config_.gate_before_solve || !estimator_.window().inertial) return;
   const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
-  take(recognition_.gate(gate_on_prediction(view())));
+  residuals_ = gate_on_prediction(look(), std::move(residuals_));
+  take(recognition_.gate(residuals_));
 }
 
 /// Sec. III-E at the refined poses.
 void OptimizationStage::look_for_motion_after(ModuleTimings& timings) {
   if (!config_.moving_consistency) return;
   const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
-  const ConsistencyView seen = view();
-  std::vector<std::int64_t> resting;
+  const ConsistencyView& seen = look();
+  std::span<const std::int64_t> resting;
   if (config_.rest_pictures > 0) resting = resting_.update(seen);
-  take(recognition_.check(consistency_residuals(seen), resting));
+  residuals_ = consistency_residuals(seen, std::move(residuals_));
+  take(recognition_.check(residuals_, resting));
 }
 
-ConsistencyView OptimizationStage::view() const {
-  return consistency_view(estimator_.window(), camera_.focal_px(), pixel_sigma_px_);
+const ConsistencyView& OptimizationStage::look() {
+  view_ = consistency_view(estimator_.window(), camera_.focal_px(), pixel_sigma_px_, std::move(view_));
+  return view_;
 }
 
-void OptimizationStage::take(std::vector<FeatureVerdict> verdicts) {
-  dynamic_.verdicts = std::move(verdicts);
+void OptimizationStage::take(const std::vector<FeatureVerdict>& verdicts) {
+  dynamic_.verdicts = verdicts;
   estimator_.mark_dynamic(dynamic_.verdicts);
 }
 

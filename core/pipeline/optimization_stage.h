@@ -19,6 +19,12 @@ struct DynamicReport {
   std::vector<TrackedBox> boxes;         ///< detected and carried; without margin
   SemanticMask mask;                     ///< the boxes with their margin and depth thresholds
   std::vector<FeatureVerdict> verdicts;  ///< of all features, by rising id
+
+  void clear() {
+    boxes.clear();
+    mask.clear();
+    verdicts.clear();
+  }
 };
 
 /// Joins the estimator with the recognition of dynamic features. Knows nothing of threads.
@@ -46,8 +52,8 @@ class OptimizationStage {
   void look_for_objects(const TrackedFrame& frame, const DetectionSet& detections, ModuleTimings& timings);
   void look_for_motion_before(ModuleTimings& timings);
   void look_for_motion_after(ModuleTimings& timings);
-  [[nodiscard]] ConsistencyView view() const;
-  void take(std::vector<FeatureVerdict> verdicts);
+  [[nodiscard]] const ConsistencyView& look();
+  void take(const std::vector<FeatureVerdict>& verdicts);
   void forget();
 
   DynamicConfig config_;
@@ -59,6 +65,10 @@ class OptimizationStage {
   RestingFeatures resting_;
   DynamicReport dynamic_;
   std::vector<std::int64_t> moving_;  ///< of the last picture in the window
+  // Kept for their memory.
+  std::vector<Box> boxes_;
+  ConsistencyView view_;
+  std::vector<ConsistencyResidual> residuals_;
 };
 
 }  // namespace stillpoint

@@ -12,6 +12,11 @@ using Joined = std::vector<std::optional<std::size_t>>;
 
 constexpr double kMinIou = 0.3;
 
+Joined associate(std::span<const ExpectedBox> objects, std::span<const Detection> detections,
+                 double min_iou) {
+  return BoxAssociation().associate(objects, detections, min_iou);
+}
+
 /// A square of 100 px from (x, y), in the reach of 20 px around it.
 ExpectedBox expected(double x, double y, const std::string& name = "person") {
   const Box box{.x_min = x, .y_min = y, .x_max = x + 100, .y_max = y + 100};

@@ -14,12 +14,18 @@ Pose at_x(double x) { return Pose{Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}}
 
 /// Cameras at x = 0, 0.1 and 0.2 m that look along z.
 ConsistencyView sideways_motion() {
-  return {.T_w_c = {at_x(0.0), at_x(0.1), at_x(0.2)}, .focal_px = kFocal, .features = {}};
+  return {.T_w_c = {at_x(0.0), at_x(0.1), at_x(0.2)}, .focal_px = kFocal, .features = {}, .observations = {}};
 }
 
+/// The only feature of a view.
+struct SeenFeature {
+  std::vector<ConsistencyObservation> observations;
+  double inverse_depth = 0.0;
+};
+
 /// A point seen by cameras `first`.. of the view, at `p_w[k]` when camera first + k looked; with depth.
-ConsistencyFeature seen_at(const ConsistencyView& view, int first, const std::vector<Eigen::Vector3d>& p_w) {
-  ConsistencyFeature feature{.id = 7};
+SeenFeature seen_at(const ConsistencyView& view, int first, const std::vector<Eigen::Vector3d>& p_w) {
+  SeenFeature feature;
   for (std::size_t k = 0; k < p_w.size(); ++k) {
     const int frame = first + static_cast<int>(k);
     const Eigen::Vector3d p_c = view.T_w_c[static_cast<std::size_t>(frame)].inverse() * p_w[k];
@@ -28,9 +34,15 @@ ConsistencyFeature seen_at(const ConsistencyView& view, int first, const std::ve
   return feature;
 }
 
-std::vector<ConsistencyResidual> residuals_of(ConsistencyView view, const ConsistencyFeature& feature) {
-  view.features = {feature};
-  return consistency_residuals(view);
+ConsistencyView with(ConsistencyView view, const SeenFeature& feature) {
+  view.features = {
+      {.id = 7, .inverse_depth = feature.inverse_depth, .first = 0, .count = feature.observations.size()}};
+  view.observations = feature.observations;
+  return view;
+}
+
+std::vector<ConsistencyResidual> residuals_of(const ConsistencyView& view, const SeenFeature& feature) {
+  return consistency_residuals(with(view, feature));
 }
 
 TEST(MovingConsistency, AStillPointHasNoResidual) {
@@ -63,7 +75,7 @@ TEST(MovingConsistency, AFeatureSeenFirstLaterIsHeldAgainstThatPicture) {
 
 TEST(MovingConsistency, UsesTheEstimatedDepthWhereNoneWasMeasured) {
   const ConsistencyView view = sideways_motion();
-  ConsistencyFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.0, 0.02, 2.0}, {0.0, 0.06, 2.0}});
+  SeenFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.0, 0.02, 2.0}, {0.0, 0.06, 2.0}});
   for (ConsistencyObservation& seen : feature.observations) seen.depth = 0.0;
   feature.inverse_depth = 0.5;  // 2 m: same depth in every camera, so as above
   EXPECT_NEAR(residuals_of(view, feature).at(0).mean_px, 10.0, 1e-9);
@@ -71,14 +83,14 @@ TEST(MovingConsistency, UsesTheEstimatedDepthWhereNoneWasMeasured) {
 
 TEST(MovingConsistency, MeasuredDepthGoesBeforeTheEstimatedOne) {
   const ConsistencyView view = sideways_motion();
-  ConsistencyFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}});
+  SeenFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}});
   feature.inverse_depth = 2.0;  // wrong
   EXPECT_NEAR(residuals_of(view, feature).at(0).mean_px, 5.0, 1e-9);
 }
 
 TEST(MovingConsistency, LeavesOutPairsOfUnknownDepth) {
   const ConsistencyView view = sideways_motion();
-  ConsistencyFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}, {0.06, 0.0, 2.0}});
+  SeenFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}, {0.06, 0.0, 2.0}});
   feature.observations[2].depth = 0.0;
   const auto residuals = residuals_of(view, feature);
   ASSERT_EQ(residuals.size(), 1U);
@@ -88,7 +100,7 @@ TEST(MovingConsistency, LeavesOutPairsOfUnknownDepth) {
 
 TEST(MovingConsistency, SaysNothingOfWhatCannotBeCompared) {
   const ConsistencyView view = sideways_motion();
-  ConsistencyFeature without_depth = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}});
+  SeenFeature without_depth = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}});
   for (ConsistencyObservation& seen : without_depth.observations) seen.depth = 0.0;
   EXPECT_TRUE(residuals_of(view, without_depth).empty());
   EXPECT_TRUE(residuals_of(view, seen_at(view, 0, {{0.0, 0.0, 2.0}})).empty());
@@ -97,7 +109,7 @@ TEST(MovingConsistency, SaysNothingOfWhatCannotBeCompared) {
 TEST(MovingConsistency, APointBehindTheFirstCameraCountsWithTheFocalLength) {
   ConsistencyView view = sideways_motion();
   view.T_w_c[1] = Pose{exp_so3({0.0, M_PI, 0.0}), Eigen::Vector3d::Zero()};  // looks back
-  ConsistencyFeature feature{.id = 7};
+  SeenFeature feature;
   feature.observations = {{.frame = 0, .bearing = {0.0, 0.0}, .depth = 2.0},
                           {.frame = 1, .bearing = {0.0, 0.0}, .depth = 2.0}};
   EXPECT_NEAR(residuals_of(view, feature).at(0).mean_px, kFocal, 1e-9);
@@ -113,28 +125,26 @@ TEST(MovingConsistency, DepthThatMovesAlongTheRayIsSeenFromTheSide) {
 }
 
 TEST(GateOnPrediction, ComparesTheNewestPictureOnly) {
-  ConsistencyView view = sideways_motion();
+  const ConsistencyView view = sideways_motion();
   // Moved 0.06 m and back again: the earlier pictures disagree with each other, and by 0 px and 15 px with
   // the newest one.
-  view.features = {seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.06, 0.0, 2.0}, {0.0, 0.0, 2.0}})};
-  const auto residuals = gate_on_prediction(view);
+  const auto residuals =
+      gate_on_prediction(with(view, seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.06, 0.0, 2.0}, {0.0, 0.0, 2.0}})));
   ASSERT_EQ(residuals.size(), 1U);
   EXPECT_EQ(residuals[0].compared, 2);
   EXPECT_NEAR(residuals[0].mean_px, 7.5, 1e-9);
 }
 
 TEST(GateOnPrediction, SaysNothingOfFeaturesThatTheNewestPictureDoesNotSee) {
-  ConsistencyView view = sideways_motion();
-  view.features = {seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.06, 0.0, 2.0}})};
-  EXPECT_TRUE(gate_on_prediction(view).empty());
+  const ConsistencyView view = sideways_motion();
+  EXPECT_TRUE(gate_on_prediction(with(view, seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.06, 0.0, 2.0}}))).empty());
 }
 
 TEST(GateOnPrediction, NeedsNoDepthInTheNewestPicture) {
-  ConsistencyView view = sideways_motion();
-  ConsistencyFeature feature = seen_at(view, 1, {{0.0, 0.0, 2.0}, {0.0, 0.04, 2.0}});
+  const ConsistencyView view = sideways_motion();
+  SeenFeature feature = seen_at(view, 1, {{0.0, 0.0, 2.0}, {0.0, 0.04, 2.0}});
   feature.observations.back().depth = 0.0;
-  view.features = {feature};
-  EXPECT_NEAR(gate_on_prediction(view).at(0).mean_px, 10.0, 1e-9);  // 500 * 0.04 / 2
+  EXPECT_NEAR(gate_on_prediction(with(view, feature)).at(0).mean_px, 10.0, 1e-9);  // 500 * 0.04 / 2
 }
 
 }  // namespace

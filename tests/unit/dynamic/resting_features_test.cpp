@@ -12,9 +12,10 @@ constexpr double kStray_px = 1.5;
 
 /// One picture of feature 7, seen by a camera at the origin of the world.
 ConsistencyView picture(double u_px, double depth) {
-  ConsistencyFeature feature{.id = 7};
-  feature.observations.push_back({.frame = 0, .bearing = {u_px / kFocal_px, 0.0}, .depth = depth});
-  return {.T_w_c = {Pose()}, .focal_px = kFocal_px, .features = {feature}};
+  return {.T_w_c = {Pose()},
+          .focal_px = kFocal_px,
+          .features = {{.id = 7, .first = 0, .count = 1}},
+          .observations = {{.frame = 0, .bearing = {u_px / kFocal_px, 0.0}, .depth = depth}}};
 }
 
 TEST(RestingFeatures, RestAfterSoManyPicturesAtOnePlace) {
@@ -55,7 +56,7 @@ TEST(RestingFeatures, AreSeenFromACameraThatMoves) {
 TEST(RestingFeatures, AreForgottenWhenAPictureMissesThem) {
   RestingFeatures resting(kPictures, kStray_px);
   for (int i = 0; i < 4; ++i) (void)resting.update(picture(10.0, 2.0));
-  (void)resting.update({.T_w_c = {Pose()}, .focal_px = kFocal_px, .features = {}});
+  (void)resting.update({.T_w_c = {Pose()}, .focal_px = kFocal_px, .features = {}, .observations = {}});
   EXPECT_TRUE(resting.update(picture(10.0, 2.0)).empty());
 }
 
