@@ -113,7 +113,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
   const WindowFrame& last = window_.frames.back();
   next.state = extrapolate(knowledge(), imu_, frame.t);
   if (uses_imu()) {
-    const std::vector<ImuSample> samples =
+    const std::vector<ImuSample>& samples =
         imu_.samples_up_to(after(last.state.t, last.time_offset_s), after(frame.t, next.time_offset_s));
     if (samples.size() >= 2) {
       next.gyro_b = samples.back().gyro_b;
@@ -273,6 +273,7 @@ void Estimator::finish(OdometryUpdate& update) {
     slide(keyframe_);
   }
   report(newest_, update);
+  forget_spent(knowledge(), imu_);
 }
 
 void Estimator::predict(std::int64_t frame_id, Timestamp t, OdometryUpdate& update) {

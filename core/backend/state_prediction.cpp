@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/state_prediction.h"
 
-#include <vector>
-
 #include "core/geometry/so3.h"
 #include "core/imu/propagation.h"
 
 namespace stillpoint {
 namespace {
+
+/// The time offset may still change by so much.
+constexpr double kKeptBefore_s = 0.2;
 
 Pose constant_velocity(const NavState& previous, const NavState& newest, Timestamp t) {
   const double share = seconds_between(newest.t, t) / seconds_between(previous.t, newest.t);
@@ -23,14 +24,16 @@ NavState extrapolate(const MotionKnowledge& known, ImuBuffer& imu, Timestamp t) 
   if (known.inertial) {
     NavState start = known.newest;
     start.t = after(start.t, known.time_offset_s);
-    const std::vector<NavState> path =
-        propagate(start, imu.samples_up_to(start.t, after(t, known.time_offset_s)), known.gravity_w);
-    if (!path.empty()) state = path.back();
+    state = propagate(start, imu.samples_up_to(start.t, after(t, known.time_offset_s)), known.gravity_w);
   } else if (known.previous.t < known.newest.t) {
     state.T_w_b = constant_velocity(known.previous, known.newest, t);
   }
   state.t = t;
   return state;
+}
+
+void forget_spent(const MotionKnowledge& known, ImuBuffer& imu) {
+  if (known.begun) imu.forget_before(after(known.newest.t, known.time_offset_s - kKeptBefore_s));
 }
 
 MotionPrior motion_prior(const MotionKnowledge& known, ImuBuffer& imu, Timestamp from, Timestamp to) {

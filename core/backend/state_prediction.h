@@ -23,6 +23,9 @@ struct MotionKnowledge {
 /// State at an image stamp not before the newest one: inertial propagation, or constant velocity.
 [[nodiscard]] NavState extrapolate(const MotionKnowledge& known, ImuBuffer& imu, Timestamp t);
 
+/// Forgets samples that nothing needs any more which follows the newest state.
+void forget_spent(const MotionKnowledge& known, ImuBuffer& imu);
+
 /// How the camera moved between two pictures, for the tracker; the newest state is not after `from`.
 /// Inertial data only: a tracker that starts where constant velocity puts weak features finds them there,
 /// and the estimate follows itself.

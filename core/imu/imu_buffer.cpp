@@ -34,12 +34,20 @@ void ImuBuffer::add(const ImuSample& sample) {
 }
 
 void ImuBuffer::forget_before(Timestamp t) {
-  while (samples_.size() >= 2 && samples_[1].t <= t) samples_.pop_front();
+  std::size_t spent = 0;
+  while (spent + 1 < samples_.size() && samples_[spent + 1].t <= t) ++spent;
+  samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(spent));
 }
 
-std::vector<ImuSample> ImuBuffer::samples_between(Timestamp begin, Timestamp end) {
-  if (samples_.empty() || begin >= end) return {};
-  if (samples_.front().t > begin || samples_.back().t < end) return {};
+const std::vector<ImuSample>& ImuBuffer::samples_between(Timestamp begin, Timestamp end) {
+  cut_.clear();
+  cut_between(begin, end);
+  return cut_;
+}
+
+void ImuBuffer::cut_between(Timestamp begin, Timestamp end) {
+  if (samples_.empty() || begin >= end) return;
+  if (samples_.front().t > begin || samples_.back().t < end) return;
 
   const auto position = [this](Timestamp t) {  // of the first sample at or after t
     const auto found = std::lower_bound(samples_.begin(), samples_.end(), t, earlier);
@@ -50,25 +58,24 @@ std::vector<ImuSample> ImuBuffer::samples_between(Timestamp begin, Timestamp end
   const bool exact_begin = samples_[at_begin].t == begin;
   count_gaps(exact_begin ? at_begin : at_begin - 1, at_end);
 
-  std::vector<ImuSample> cut;
-  cut.reserve(at_end - at_begin + 2);
-  if (!exact_begin) cut.push_back(interpolate_at(samples_[at_begin - 1], samples_[at_begin], begin));
-  for (std::size_t i = at_begin; i < at_end; ++i) cut.push_back(samples_[i]);
+  if (!exact_begin) cut_.push_back(interpolate_at(samples_[at_begin - 1], samples_[at_begin], begin));
+  for (std::size_t i = at_begin; i < at_end; ++i) cut_.push_back(samples_[i]);
   const bool exact_end = samples_[at_end].t == end;
-  cut.push_back(exact_end ? samples_[at_end] : interpolate_at(samples_[at_end - 1], samples_[at_end], end));
-  return cut;
+  cut_.push_back(exact_end ? samples_[at_end] : interpolate_at(samples_[at_end - 1], samples_[at_end], end));
 }
 
-std::vector<ImuSample> ImuBuffer::samples_up_to(Timestamp begin, Timestamp end) {
-  if (samples_.empty() || begin >= end || samples_.front().t > begin) return {};
+const std::vector<ImuSample>& ImuBuffer::samples_up_to(Timestamp begin, Timestamp end) {
+  cut_.clear();
+  if (samples_.empty() || begin >= end || samples_.front().t > begin) return cut_;
   const ImuSample last = samples_.back();
-  if (last.t >= end) return samples_between(begin, end);
-  if (seconds_between(last.t, end) > max_gap_s_) return {};
-
-  std::vector<ImuSample> cut = samples_between(begin, last.t);
-  if (cut.empty()) cut.push_back(held_at(last, begin));
-  cut.push_back(held_at(last, end));
-  return cut;
+  if (last.t >= end) {
+    cut_between(begin, end);
+  } else if (seconds_between(last.t, end) <= max_gap_s_) {
+    cut_between(begin, last.t);
+    if (cut_.empty()) cut_.push_back(held_at(last, begin));
+    cut_.push_back(held_at(last, end));
+  }
+  return cut_;
 }
 
 /// Counts the holes between samples_[first] and samples_[last] that no cut has counted before.

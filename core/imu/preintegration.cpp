@@ -101,7 +101,6 @@ void Preintegration::integrate(const std::vector<ImuSample>& samples) {
   } else {
     STILLPOINT_CHECK(samples.front().t == samples_.back().t);
   }
-  samples_.reserve(samples_.size() + samples.size() - 1);
   for (std::size_t i = 1; i < samples.size(); ++i) {
     step(samples_.back(), samples[i]);
     samples_.push_back(samples[i]);

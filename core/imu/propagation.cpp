@@ -5,12 +5,8 @@
 
 namespace stillpoint {
 
-std::vector<NavState> propagate(const NavState& start, const std::vector<ImuSample>& samples,
-                                const Eigen::Vector3d& gravity_w) {
-  std::vector<NavState> states;
-  if (samples.size() < 2) return states;
-  states.reserve(samples.size() - 1);
-
+NavState propagate(const NavState& start, std::span<const ImuSample> samples,
+                   const Eigen::Vector3d& gravity_w) {
   const ImuBias bias{.gyro = start.gyro_bias, .accel = start.accel_bias};
   NavState state = start;
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -21,12 +17,11 @@ std::vector<NavState> propagate(const NavState& start, const std::vector<ImuSamp
     state.T_w_b.q = step.q_r_b;
     state.T_w_b.p += state.v_w * dt + 0.5 * dt * dt * acceleration_w;
     state.v_w += acceleration_w * dt;
-    states.push_back(state);
   }
-  return states;
+  return state;
 }
 
-MotionPrior rotation_prior(const std::vector<ImuSample>& samples, const Eigen::Vector3d& gyro_bias,
+MotionPrior rotation_prior(std::span<const ImuSample> samples, const Eigen::Vector3d& gyro_bias,
                            const Pose& T_b_c) {
   MotionPrior prior;
   if (samples.size() < 2) return prior;
