@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/estimator.h"
 
-#include <algorithm>
+#include <utility>
 
-#include "core/backend/camera_pose.h"
 #include "core/backend/depth_initialization.h"
 #include "core/backend/gauge.h"
 #include "core/backend/initializer.h"
@@ -34,16 +33,18 @@ ImuNoise scaled(const ImuNoise& noise, double factor) {
 }
 
 /// Points that the newest frame sees and whose place earlier frames know.
-std::vector<PointSighting> known_points(const Window& window, const DepthConfig& depth) {
-  std::vector<PointSighting> sightings;
+std::vector<PointSighting> known_points(const Window& window, const DepthConfig& depth,
+                                        std::vector<PointSighting> memory) {
+  std::vector<PointSighting> sightings = std::move(memory);
+  sightings.clear();
   for (const Landmark& landmark : window.landmarks) {
     if (landmark.dynamic || landmark.last() != window.newest() || landmark.host == window.newest()) continue;
     const Observation& host = landmark.observations.front();
-    Landmark placed = landmark;
     const bool measured = host.depth > 0.0 && host.depth <= depth.max_m;
-    if (placed.inverse_depth <= 0.0 && measured) placed.inverse_depth = 1.0 / host.depth;
-    if (placed.inverse_depth <= 0.0) continue;
-    sightings.push_back({window.position(placed), landmark.observations.back().bearing});
+    double inverse_depth = landmark.inverse_depth;
+    if (inverse_depth <= 0.0 && measured) inverse_depth = 1.0 / host.depth;
+    if (inverse_depth <= 0.0) continue;
+    sightings.push_back({window.position(landmark, inverse_depth), landmark.observations.back().bearing});
   }
   return sightings;
 }
@@ -117,11 +118,12 @@ void Estimator::push_frame(const TrackedFrame& frame) {
         imu_.samples_up_to(after(last.state.t, last.time_offset_s), after(frame.t, next.time_offset_s));
     if (samples.size() >= 2) {
       next.gyro_b = samples.back().gyro_b;
-      next.from_previous.emplace(rig_.imu_noise, last.state.gyro_bias, last.state.accel_bias);
+      next.from_previous.emplace(rig_.imu_noise, last.state.gyro_bias, last.state.accel_bias,
+                                 window_.spare_samples.take());
       next.from_previous->integrate(samples);
     }
   }
-  window_.frames.push_back(next);
+  window_.frames.push_back(std::move(next));
 }
 
 /// Finds the newest camera among known points where inertial data do not say where it is.
@@ -136,8 +138,9 @@ bool Estimator::locate_newest() {
   }
   const CameraPoseOptions options{.inlier_threshold = kLocateInlier_px / rig_.camera.focal_px(),
                                   .seed = seed_ + static_cast<std::uint32_t>(newest.id)};
+  sightings_ = known_points(window_, backend_.depth, std::move(sightings_));
   const std::optional<CameraPose> found =
-      estimate_camera_pose(known_points(window_, backend_.depth), prediction * window_.T_b_c, options);
+      estimate_camera_pose(sightings_, prediction * window_.T_b_c, options);
   newest.state.T_w_b = found ? found->T_w_c * window_.T_b_c.inverse() : prediction;
   return found.has_value();
 }
@@ -249,7 +252,7 @@ bool Estimator::refine(OdometryUpdate& update) {
         solve_window(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
     if (!window_.inertial) undo_jump(oldest, backend_.initializer, window_);
     if (backend_.pixel_misfit_px > 0.0) {
-      pixel_noise_.observe(median_misfit_px(window_, rig_.camera.focal_px()), backend_);
+      pixel_noise_.observe(misfit_.median_px(window_, rig_.camera.focal_px()), backend_);
     }
     update.counters.window_landmarks = report.landmarks;
     update.counters.depth_landmarks = report.depth_landmarks;

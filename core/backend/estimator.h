@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/backend/backend_config.h"
+#include "core/backend/camera_pose.h"
 #include "core/backend/pixel_noise.h"
 #include "core/backend/schur/schur_solver.h"
 #include "core/backend/state_prediction.h"
@@ -83,6 +85,8 @@ class Estimator {
   ImuBuffer imu_;
   SchurSolver solver_;  ///< its memory only, whoever solves
   Window window_;
+  std::vector<PointSighting> sightings_;  ///< kept for its memory
+  MisfitMeter misfit_;
   PixelNoise pixel_noise_;
   NavState newest_;    ///< last state handed out
   NavState previous_;  ///< the one before: constant velocity where there is no IMU

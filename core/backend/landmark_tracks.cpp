@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/landmark_tracks.h"
 
-#include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -16,11 +17,41 @@ Observation observe(const TrackedFeature& feature, const Rig& rig, const DepthCo
 }
 
 /// Landmarks of ended tracks with one observation tie nothing together any more.
+bool is_useless(const Landmark& landmark, int newest) {
+  return landmark.observations.empty() || (landmark.observations.size() < 2 && landmark.last() < newest);
+}
+
 void remove_useless(Window& window) {
-  const int newest = window.newest();
-  std::erase_if(window.landmarks, [newest](const Landmark& landmark) {
-    return landmark.observations.empty() || (landmark.observations.size() < 2 && landmark.last() < newest);
-  });
+  auto kept = window.landmarks.begin();
+  for (Landmark& landmark : window.landmarks) {
+    if (!is_useless(landmark, window.newest())) std::swap(*kept++, landmark);
+  }
+  for (auto gone = kept; gone != window.landmarks.end(); ++gone) {
+    window.spare_observations.give(std::move(gone->observations));
+  }
+  window.landmarks.erase(kept, window.landmarks.end());
+}
+
+Landmark born(const TrackedFeature& feature, const Observation& seen, Window& window) {
+  Landmark landmark{
+      .id = feature.id, .host = window.newest(), .observations = window.spare_observations.take()};
+  landmark.observations.reserve(window.frames.size());
+  landmark.observations.push_back(seen);
+  return landmark;
+}
+
+void remove(std::optional<Preintegration>& imu, Window& window) {
+  if (imu) window.spare_samples.give(imu->take_samples());
+  imu.reset();
+}
+
+/// Appends the inertial samples of `later` to `earlier`, and puts them in its place; nothing if either is
+/// absent.
+void merge(std::optional<Preintegration>& earlier, std::optional<Preintegration>& later, Window& window) {
+  if (earlier && later) earlier->integrate(later->samples());
+  if (!later) remove(earlier, window);
+  remove(later, window);
+  later = std::exchange(earlier, std::nullopt);
 }
 
 /// Takes the first observation away; the inverse depth is expressed anew in the next frame, by the estimated
@@ -40,7 +71,6 @@ void move_to_next_host(const Window& window, Landmark& landmark) {
 void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConfig& config, Window& window) {
   const int newest = window.newest();
   auto landmark = window.landmarks.begin();
-  std::vector<Landmark> born;
   for (const TrackedFeature& feature : frame.features) {
     while (landmark != window.landmarks.end() && landmark->id < feature.id) ++landmark;
     const bool known =
@@ -48,14 +78,9 @@ void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConf
     if (known) {
       landmark->observations.push_back(observe(feature, rig, config));
     } else if (landmark == window.landmarks.end() || landmark->id != feature.id) {
-      born.push_back(
-          Landmark{.id = feature.id, .host = newest, .observations = {observe(feature, rig, config)}});
+      landmark = window.landmarks.insert(landmark, born(feature, observe(feature, rig, config), window));
     }
   }
-  window.landmarks.insert(window.landmarks.end(), born.begin(), born.end());
-  std::inplace_merge(
-      window.landmarks.begin(), window.landmarks.end() - static_cast<std::ptrdiff_t>(born.size()),
-      window.landmarks.end(), [](const Landmark& a, const Landmark& b) { return a.id < b.id; });
   remove_useless(window);
 }
 
@@ -86,7 +111,7 @@ void remove_oldest_frame(Window& window) {
     --landmark.host;
   }
   window.frames.erase(window.frames.begin());
-  window.frames.front().from_previous.reset();
+  remove(window.frames.front().from_previous, window);
   remove_useless(window);
 }
 
@@ -100,18 +125,10 @@ void remove_second_newest_frame(Window& window) {
     }
     if (landmark.host > second) --landmark.host;
   }
-  window.frames.back().from_previous = merged(window.frames[static_cast<std::size_t>(second)].from_previous,
-                                              window.frames.back().from_previous);
+  merge(window.frames[static_cast<std::size_t>(second)].from_previous, window.frames.back().from_previous,
+        window);
   window.frames.erase(window.frames.end() - 2);
   remove_useless(window);
-}
-
-std::optional<Preintegration> merged(const std::optional<Preintegration>& earlier,
-                                     const std::optional<Preintegration>& later) {
-  if (!earlier || !later) return std::nullopt;
-  std::optional<Preintegration> both = earlier;
-  both->integrate(later->samples());
-  return both;
 }
 
 void forget_past(Landmark& landmark) {

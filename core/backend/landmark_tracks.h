@@ -26,8 +26,4 @@ void remove_second_newest_frame(Window& window);
 /// Begins the landmark anew with its newest observation: what was seen before was another point.
 void forget_past(Landmark& landmark);
 
-/// Inertial samples of `later` appended to `earlier`; absent if either is.
-[[nodiscard]] std::optional<Preintegration> merged(const std::optional<Preintegration>& earlier,
-                                                   const std::optional<Preintegration>& later);
-
 }  // namespace stillpoint

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace stillpoint {
 namespace {
@@ -14,21 +13,21 @@ constexpr double kFollow = 0.1;  // share of the way to each new value: about te
 
 }  // namespace
 
-double median_misfit_px(const Window& window, double focal_px) {
-  std::vector<Pose> T_c_w;
-  for (int frame = 0; frame <= window.newest(); ++frame) T_c_w.push_back(window.T_w_c(frame).inverse());
-  std::vector<double> squared;
+double MisfitMeter::median_px(const Window& window, double focal_px) {
+  T_c_w_.clear();
+  for (int frame = 0; frame <= window.newest(); ++frame) T_c_w_.push_back(window.T_w_c(frame).inverse());
+  squared_.clear();
   for (const Landmark& landmark : window.landmarks) {
     if (!is_usable(landmark)) continue;
     const Eigen::Vector3d p_w = window.position(landmark);
     for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
-      const Eigen::Vector3d p_c = T_c_w[static_cast<std::size_t>(frame)] * p_w;
-      squared.push_back((p_c.hnormalized() - landmark.in(frame).bearing).squaredNorm());
+      const Eigen::Vector3d p_c = T_c_w_[static_cast<std::size_t>(frame)] * p_w;
+      squared_.push_back((p_c.hnormalized() - landmark.in(frame).bearing).squaredNorm());
     }
   }
-  if (squared.size() < kMinSightings) return 0.0;
-  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
-  std::nth_element(squared.begin(), middle, squared.end());
+  if (squared_.size() < kMinSightings) return 0.0;
+  const auto middle = squared_.begin() + static_cast<std::ptrdiff_t>(squared_.size() / 2);
+  std::nth_element(squared_.begin(), middle, squared_.end());
   return focal_px * std::sqrt(*middle);
 }
 

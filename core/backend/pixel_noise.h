@@ -2,14 +2,24 @@
 /// How far from what the window says its landmarks were really seen, and what that makes of the pixel noise.
 #pragma once
 
+#include <vector>
+
 #include "core/backend/backend_config.h"
 #include "core/backend/window.h"
 
 namespace stillpoint {
 
-/// Median distance between where frames after the host saw usable landmarks and where the window puts them
-/// [px]; 0 with fewer than 20 sightings.
-[[nodiscard]] double median_misfit_px(const Window& window, double focal_px);
+/// Kept between windows for its memory only.
+class MisfitMeter {
+ public:
+  /// Median distance between where frames after the host saw usable landmarks and where the window puts them
+  /// [px]; 0 with fewer than 20 sightings.
+  [[nodiscard]] double median_px(const Window& window, double focal_px);
+
+ private:
+  std::vector<Pose> T_c_w_;      ///< of each frame
+  std::vector<double> squared_;  ///< distance of each sighting [normalised plane]
+};
 
 /// Follows the factor by which a camera's pixels err more than `pixel_sigma_px` says.
 ///

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/backend/factors/linear_prior.h"
+#include "core/base/spare_vectors.h"
 #include "core/imu/preintegration.h"
 #include "core/types/nav_state.h"
 #include "core/types/rig.h"
@@ -58,6 +59,8 @@ struct Window {
   bool inertial = false;    ///< the IMU takes part: the world is level and speeds are known
   LinearPrior prior;        ///< what gone frames said about the states
   LinearPrior calibration;  ///< what the rig says about its extrinsics and time offset
+  SpareVectors<Observation> spare_observations;  ///< of landmarks that have left
+  SpareVectors<ImuSample> spare_samples;         ///< of preintegrations that have left
 
   [[nodiscard]] int newest() const { return static_cast<int>(frames.size()) - 1; }
   [[nodiscard]] Pose T_w_c(int frame) const {
@@ -66,8 +69,12 @@ struct Window {
 
   /// Position in the world; the landmark's inverse depth must be known.
   [[nodiscard]] Eigen::Vector3d position(const Landmark& landmark) const {
+    return position(landmark, landmark.inverse_depth);
+  }
+  /// The same at another inverse depth, > 0.
+  [[nodiscard]] Eigen::Vector3d position(const Landmark& landmark, double inverse_depth) const {
     return T_w_c(landmark.host) *
-           Eigen::Vector3d(landmark.observations.front().bearing.homogeneous() / landmark.inverse_depth);
+           Eigen::Vector3d(landmark.observations.front().bearing.homogeneous() / inverse_depth);
   }
 };
 

@@ -91,8 +91,10 @@ void propagate_covariance(const StepBlocks& blocks, const ImuNoise& noise, Matri
 }  // namespace
 
 Preintegration::Preintegration(const ImuNoise& noise, const Eigen::Vector3d& gyro_bias,
-                               const Eigen::Vector3d& accel_bias)
-    : noise_(noise), gyro_bias_(gyro_bias), accel_bias_(accel_bias) {}
+                               const Eigen::Vector3d& accel_bias, std::vector<ImuSample> memory)
+    : noise_(noise), samples_(std::move(memory)), gyro_bias_(gyro_bias), accel_bias_(accel_bias) {
+  samples_.clear();
+}
 
 void Preintegration::integrate(const std::vector<ImuSample>& samples) {
   if (samples.empty()) return;

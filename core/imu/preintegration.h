@@ -3,6 +3,7 @@
 /// (VINS-Mono), Sec. IV-B; Forster et al. 2017.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,7 +30,9 @@ using Vector15 = Eigen::Matrix<double, 15, 1>;
 /// state.
 class Preintegration {
  public:
-  Preintegration(const ImuNoise& noise, const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias);
+  /// @param memory for the samples: a list that nobody needs any more
+  Preintegration(const ImuNoise& noise, const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias,
+                 std::vector<ImuSample> memory = {});
 
   /// Adds samples of one interval: they must start at i and end at j (see `samples_between`), rising in time.
   /// A second call continues where the first ended: its first sample is at the time of the last one before
@@ -41,6 +44,8 @@ class Preintegration {
 
   [[nodiscard]] double duration_s() const { return duration_s_; }
   [[nodiscard]] const std::vector<ImuSample>& samples() const { return samples_; }
+  /// Gives them up, with their memory: the last call.
+  [[nodiscard]] std::vector<ImuSample> take_samples() { return std::move(samples_); }
   [[nodiscard]] const Eigen::Vector3d& gyro_bias() const { return gyro_bias_; }    ///< linearisation point
   [[nodiscard]] const Eigen::Vector3d& accel_bias() const { return accel_bias_; }  ///< linearisation point
   [[nodiscard]] const Matrix15& covariance() const { return covariance_; }  ///< of (p, theta, v, bg, ba)

@@ -25,17 +25,17 @@ double sigma_after(const std::vector<double>& misfits, const BackendConfig& conf
 
 TEST(MedianMisfit, IsTheDistanceByWhichAllSightingsAreOff) {
   Window window = visual_window(4, 30);
-  EXPECT_NEAR(median_misfit_px(window, kFocal_px), 0.0, 1e-9);
+  EXPECT_NEAR(MisfitMeter().median_px(window, kFocal_px), 0.0, 1e-9);
   for (Landmark& landmark : window.landmarks) {
     for (std::size_t i = 1; i < landmark.observations.size(); ++i) {
       landmark.observations[i].bearing += Eigen::Vector2d(3.0, 4.0) / kFocal_px;  // 5 px
     }
   }
-  EXPECT_NEAR(median_misfit_px(window, kFocal_px), 5.0, 1e-9);
+  EXPECT_NEAR(MisfitMeter().median_px(window, kFocal_px), 5.0, 1e-9);
 }
 
 TEST(MedianMisfit, IsUnknownWithFewSightings) {
-  EXPECT_EQ(median_misfit_px(visual_window(2, 19), kFocal_px), 0.0);
+  EXPECT_EQ(MisfitMeter().median_px(visual_window(2, 19), kFocal_px), 0.0);
 }
 
 TEST(PixelNoise, StaysNominalUpToTheNominalMisfit) {
