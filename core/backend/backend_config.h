@@ -74,6 +74,9 @@ void visit_fields(Visitor&& field, Config& config) {
   field("max_scale_sigma", config.max_scale_sigma, 1e-3, 10.0);
 }
 
+/// The longest window that may be configured.
+inline constexpr int kMaxWindowSize = 40;
+
 struct BackendConfig {
   double rate_hz = 10.0;               ///< pictures a second that enter the window; 0 = every one
   int window_size = 10;                ///< states before the newest
@@ -98,7 +101,7 @@ template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, BackendConfig>
 void visit_fields(Visitor&& field, Config& config) {
   field("rate_hz", config.rate_hz, 0.0, 1000.0);
-  field("window_size", config.window_size, 4, 40);
+  field("window_size", config.window_size, 4, kMaxWindowSize);
   field("keyframe_parallax_px", config.keyframe_parallax_px, 0.1, 200.0);
   field("keyframe_min_tracked", config.keyframe_min_tracked, 0, 1000);
   field("pixel_sigma_px", config.pixel_sigma_px, 0.05, 20.0);

@@ -199,9 +199,9 @@ void Estimator::slide(bool keyframe) {
     LinearPrior prior =
         marginalize_oldest(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
     remove_oldest_frame(window_);
-    window_.prior = std::move(prior);
+    solver_.reuse(std::exchange(window_.prior, std::move(prior)));
   } else {
-    window_.prior = marginalize_frame(window_.prior, window_.newest() - 1);
+    marginalizer_.remove(window_.newest() - 1, window_.prior);
     remove_second_newest_frame(window_);
   }
   // Nothing tied the frame that left to the others: they stay where they are.

@@ -8,6 +8,7 @@
 
 #include "core/backend/backend_config.h"
 #include "core/backend/camera_pose.h"
+#include "core/backend/marginalization.h"
 #include "core/backend/pixel_noise.h"
 #include "core/backend/schur/schur_solver.h"
 #include "core/backend/state_prediction.h"
@@ -83,7 +84,8 @@ class Estimator {
   Rig rig_;
   std::uint32_t seed_;
   ImuBuffer imu_;
-  SchurSolver solver_;  ///< its memory only, whoever solves
+  SchurSolver solver_;              ///< its memory only, whoever solves
+  FrameMarginalizer marginalizer_;  ///< likewise
   Window window_;
   std::vector<PointSighting> sightings_;  ///< kept for its memory
   MisfitMeter misfit_;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/marginalization.h"
 
-#include <algorithm>
-
-#include <Eigen/QR>
+#include <utility>
 
 #include "core/backend/normal_equations.h"
 #include "core/backend/schur/schur_solver.h"
@@ -41,8 +39,9 @@ NormalEquations linearize_oldest(const Window& window, const BackendConfig& conf
 
 }  // namespace
 
-std::vector<BlockRef> candidate_blocks(const Window& window) {
-  std::vector<BlockRef> blocks;
+std::vector<BlockRef> candidate_blocks(const Window& window, std::vector<BlockRef> memory) {
+  std::vector<BlockRef> blocks = std::move(memory);
+  blocks.clear();
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
   if (!window.inertial) return blocks;
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
@@ -81,35 +80,47 @@ LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config
   return prior;
 }
 
-LinearPrior marginalize_frame(const LinearPrior& prior, int frame) {
-  LinearPrior left;
-  std::vector<int> gone;
-  std::vector<int> kept;
-  int column = 0;
+/// Sorts blocks and columns of the prior into those of the frame and the others.
+void FrameMarginalizer::split(int frame, const LinearPrior& prior) {
+  const Eigen::Index rows = prior.jacobian.rows();
+  int gone = 0;
+  for (const PriorBlock& block : prior.blocks) gone += block.frame == frame ? local_size(block.kind) : 0;
+  gone_.resize(rows, gone);
+  rest_.resize(rows, prior.jacobian.cols() - gone + 1);
+  left_.blocks.clear();
+  int from = 0, to_gone = 0, to_rest = 0;
   for (const PriorBlock& block : prior.blocks) {
     const int size = local_size(block.kind);
-    append(block.frame == frame ? gone : kept, columns_of(column, size));
-    if (block.frame != frame) {
-      left.blocks.push_back(block);
-      if (block.frame > frame) --left.blocks.back().frame;
+    if (block.frame == frame) {
+      gone_.middleCols(to_gone, size) = prior.jacobian.middleCols(from, size);
+      to_gone += size;
+    } else {
+      rest_.middleCols(to_rest, size) = prior.jacobian.middleCols(from, size);
+      to_rest += size;
+      left_.blocks.push_back(block);
+      if (block.frame > frame) --left_.blocks.back().frame;
     }
-    column += size;
+    from += size;
   }
-  if (gone.empty()) {
-    left.jacobian = prior.jacobian;
-    left.residual = prior.residual;
-    return left;
+  rest_.col(to_rest) = prior.residual;
+}
+
+void FrameMarginalizer::remove(int frame, LinearPrior& prior) {
+  split(frame, prior);
+  Eigen::Index said = 0;
+  if (gone_.cols() > 0) {
+    // Rows turned so that the first few carry all that is said of the gone columns; the others are what is
+    // left.
+    qr_.compute(gone_);
+    Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxRows + 1> workspace;
+    Eigen::Map<Eigen::MatrixXd>& turned = rest_;
+    qr_.householderQ().adjoint().applyThisOnTheLeft(turned, workspace);
+    said = qr_.rank();
   }
-  // Rows turned so that the first few carry all that is said of the gone columns; the others are what is
-  // left.
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(prior.jacobian(Eigen::all, gone));
-  Eigen::MatrixXd rest(prior.jacobian.rows(), static_cast<Eigen::Index>(kept.size()) + 1);
-  rest << prior.jacobian(Eigen::all, kept), prior.residual;
-  rest.applyOnTheLeft(qr.householderQ().adjoint());
-  const Eigen::Index rows = rest.rows() - qr.rank();
-  left.jacobian = rest.bottomLeftCorner(rows, rest.cols() - 1);
-  left.residual = rest.col(rest.cols() - 1).tail(rows);
-  return left;
+  const Eigen::Index rows = rest_.rows() - said;
+  left_.jacobian = rest_.bottomLeftCorner(rows, rest_.cols() - 1);
+  left_.residual = rest_.col(rest_.cols() - 1).tail(rows);
+  std::swap(prior, left_);
 }
 
 }  // namespace stillpoint

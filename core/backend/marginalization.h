@@ -2,6 +2,8 @@
 /// Takes a frame out of the window and keeps what it said about the others as a prior.
 #pragma once
 
+#include <Eigen/QR>
+
 #include "core/backend/backend_config.h"
 #include "core/backend/window.h"
 #include "core/backend/window_problem.h"
@@ -23,9 +25,26 @@ class SchurSolver;
 
 /// All blocks that a prior without the oldest frame may speak of: the states after it. Calibration is taken
 /// as known: an early, wrong time offset would be frozen into the prior, sure of itself.
-[[nodiscard]] std::vector<BlockRef> candidate_blocks(const Window& window);
+/// @param memory for the result: a list that nobody needs any more
+[[nodiscard]] std::vector<BlockRef> candidate_blocks(const Window& window, std::vector<BlockRef> memory = {});
 
-/// The prior without its say on `frame`; indices above it become one less.
-[[nodiscard]] LinearPrior marginalize_frame(const LinearPrior& prior, int frame);
+/// Takes what a prior says on one frame out of it; kept from frame to frame for its memory only.
+class FrameMarginalizer {
+ public:
+  /// Indices above `frame` become one less.
+  void remove(int frame, LinearPrior& prior);
+
+ private:
+  static constexpr int kMaxRows = 15 * (kMaxWindowSize + 1);
+  /// Columns of the states of one frame: small enough for Eigen to hold the factorisation in place.
+  using FrameColumns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, 15>;
+
+  void split(int frame, const LinearPrior& prior);
+
+  FrameColumns gone_;
+  KeptMatrix<Eigen::MatrixXd> rest_;  ///< the other columns, and the residual behind them
+  Eigen::ColPivHouseholderQR<FrameColumns> qr_;
+  LinearPrior left_;
+};
 
 }  // namespace stillpoint

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "core/backend/kept_matrix.h"
+
 namespace stillpoint {
 
 enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset };
@@ -31,8 +33,8 @@ struct PriorBlock {
 /// residual(x) = residual + jacobian * (x [-] linearization), blocks side by side in the order of `blocks`.
 struct LinearPrior {
   std::vector<PriorBlock> blocks;
-  Eigen::MatrixXd jacobian;
-  Eigen::VectorXd residual;
+  KeptMatrix<Eigen::MatrixXd> jacobian;
+  KeptVector residual;
 
   [[nodiscard]] bool empty() const { return blocks.empty(); }
 };

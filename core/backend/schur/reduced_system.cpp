@@ -135,6 +135,7 @@ void PriorTerm::read(const LinearPrior& prior) {
   information_.setZero();
   information_.selfadjointView<Eigen::Lower>().rankUpdate(prior.jacobian.transpose());
   difference_.resize(size);
+  gradient_.resize(size);
 }
 
 double PriorTerm::cost(ParameterBlocks& blocks) {

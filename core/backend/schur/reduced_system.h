@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "core/backend/kept_matrix.h"
 #include "core/backend/schur/skyline_cholesky.h"
 #include "core/backend/window_problem.h"
 
@@ -52,8 +53,8 @@ class ReducedSystem {
   }
 
   ReducedLayout layout;
-  RowMajorMatrix H;
-  Eigen::VectorXd g;
+  KeptMatrix<RowMajorMatrix> H;
+  KeptVector g;
   std::vector<int> first;  ///< profile of H, for `skyline_factorize`
 };
 
@@ -77,10 +78,10 @@ class PriorTerm {
  private:
   const LinearPrior* prior_ = nullptr;
   std::vector<BlockRef> blocks_;
-  Eigen::MatrixXd information_;  // J^T J, lower triangle
-  Eigen::VectorXd difference_;
-  Eigen::VectorXd error_;
-  Eigen::VectorXd gradient_;
+  KeptMatrix<Eigen::MatrixXd> information_;  // J^T J, lower triangle
+  KeptVector difference_;
+  KeptVector error_;
+  KeptVector gradient_;
 };
 
 }  // namespace stillpoint

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 #include "core/backend/marginalization.h"
 #include "core/backend/normal_equations.h"
@@ -12,40 +12,54 @@ namespace {
 /// A pivot below this share of its diagonal has lost its digits: the eigenvalues then say what is known.
 constexpr double kMinPivotShare = 1e-11;
 
-std::vector<int> columns_of(std::span<const BlockRef> blocks, const ReducedLayout& layout) {
-  std::vector<int> columns;
-  for (const BlockRef block : blocks) {
-    for (int i = 0; i < local_size(block.kind); ++i) columns.push_back(layout.column(block) + i);
-  }
-  return columns;
-}
-
-/// The system in the order of `columns`, which are the first `gone` to leave and then those to stay.
-/// With H = L L^T the part of L that is left is the root of what is left of H.
-SquareRoot root_of_rest(const RowMajorMatrix& H, const Eigen::VectorXd& b, const std::vector<int>& columns,
-                        Eigen::Index gone) {
-  const auto size = static_cast<Eigen::Index>(columns.size());
-  RowMajorMatrix L = H(columns, columns);
-  const Eigen::VectorXd diagonal = L.diagonal();
-  const std::vector<int> dense(columns.size() / kTile, 0);
-  const bool definite = skyline_factorize(dense, L);
-  const bool exact =
-      definite && (kMinPivotShare * L.diagonal().cwiseAbs2().cwiseProduct(diagonal)).maxCoeff() < 1.0;
-  if (!exact) {
-    const std::vector<int> leaving(columns.begin(), columns.begin() + gone);
-    const std::vector<int> staying(columns.begin() + gone, columns.end());
-    return eliminate(H, b, leaving, staying);
-  }
-  Eigen::VectorXd y = b(columns);
-  skyline_forward(dense, L, y);
-  L.diagonal() = L.diagonal().cwiseInverse().eval();
-  const Eigen::Index kept = size - gone;
-  SquareRoot root{Eigen::MatrixXd::Zero(kept, kept), y.tail(kept)};
-  root.jacobian.triangularView<Eigen::Upper>() = L.bottomRightCorner(kept, kept).transpose();
-  return root;
-}
-
 }  // namespace
+
+void SchurSolver::append_columns(BlockRef block) {
+  for (int i = 0; i < local_size(block.kind); ++i) columns_.push_back(system_.layout.column(block) + i);
+}
+
+/// Makes S_ the Cholesky root of the system in the order of `columns_`.
+/// @return false where that root would be inexact
+bool SchurSolver::factorize_columns() {
+  const auto size = static_cast<Eigen::Index>(columns_.size());
+  S_.resize(size, size);
+  for (Eigen::Index row = 0; row < size; ++row) {
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      const auto [smaller, larger] =
+          std::minmax(columns_[static_cast<std::size_t>(row)], columns_[static_cast<std::size_t>(column)]);
+      S_(row, column) = system_.H(larger, smaller);
+    }
+  }
+  diagonal_ = S_.diagonal();
+  dense_.assign(columns_.size() / kTile, 0);
+  return skyline_factorize(dense_, S_) &&
+         (kMinPivotShare * S_.diagonal().cwiseAbs2().cwiseProduct(diagonal_)).maxCoeff() < 1.0;
+}
+
+/// With H = L L^T the part of L that is left is the root of what is left of H.
+/// @param gone the first of `columns_` that leave; `newton_.states` holds the right-hand side
+void SchurSolver::write_root_of_rest(Eigen::Index gone, LinearPrior& prior) {
+  if (!factorize_columns()) {
+    const Eigen::MatrixXd H = system_.H.selfadjointView<Eigen::Lower>();
+    const std::vector<int> leaving(columns_.begin(), columns_.begin() + gone);
+    const std::vector<int> staying(columns_.begin() + gone, columns_.end());
+    const SquareRoot root = eliminate(H, -newton_.states, leaving, staying);
+    prior.jacobian = root.jacobian;
+    prior.residual = root.residual;
+    return;
+  }
+  step_.states.resize(S_.rows());
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    step_.states[static_cast<Eigen::Index>(i)] = -newton_.states[columns_[i]];
+  }
+  skyline_forward(dense_, S_, step_.states);
+  S_.diagonal() = S_.diagonal().cwiseInverse();
+  const Eigen::Index kept = S_.rows() - gone;
+  prior.residual = step_.states.tail(kept);
+  prior.jacobian.resize(kept, kept);
+  prior.jacobian.setZero();
+  prior.jacobian.triangularView<Eigen::Upper>() = S_.bottomRightCorner(kept, kept).transpose();
+}
 
 LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendConfig& config,
                                             double focal_px) {
@@ -56,28 +70,25 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
   prior_.add_to(system_, blocks_);
   if (window.newest() >= 1 && has_imu_term(window, 1)) add_imu_term(window, 1, blocks_, system_);
   visual_.add_to(system_, blocks_);
-  Eigen::VectorXd rhs = -system_.g;
-  visual_.eliminate(0.0, system_.H, rhs);
-  system_.H.triangularView<Eigen::StrictlyUpper>() = system_.H.transpose();
+  newton_.states = -system_.g;
+  visual_.eliminate(0.0, system_.H, newton_.states);
 
-  std::vector<BlockRef> order = {{BlockKind::kPose, 0}};
-  if (window.inertial) order.push_back({BlockKind::kSpeedBias, 0});
-  const std::size_t gone = order.size();
-  LinearPrior prior;
-  for (const BlockRef block : candidate_blocks(window)) {
+  columns_.clear();
+  append_columns({BlockKind::kPose, 0});
+  if (window.inertial) append_columns({BlockKind::kSpeedBias, 0});
+  const auto gone = static_cast<Eigen::Index>(columns_.size());
+  LinearPrior prior = std::move(spare_);
+  prior.blocks.clear();
+  kept_ = candidate_blocks(window, std::move(kept_));
+  for (const BlockRef block : kept_) {
     const int size = local_size(block.kind);
     if (system_.H.diagonal().segment(system_.layout.column(block), size).isZero(0.0)) continue;
-    order.push_back(block);
+    append_columns(block);
     prior.blocks.push_back(
         {block.kind, block.frame - 1,
          Eigen::Map<const BlockVector>(block_address(blocks_, block), global_size(block.kind))});
   }
-  if (prior.blocks.empty()) return prior;
-  const std::vector<int> columns = columns_of(order, system_.layout);
-  const std::size_t gone_columns = columns_of(std::span(order).first(gone), system_.layout).size();
-  SquareRoot root = root_of_rest(system_.H, -rhs, columns, static_cast<Eigen::Index>(gone_columns));
-  prior.jacobian = std::move(root.jacobian);
-  prior.residual = std::move(root.residual);
+  if (!prior.blocks.empty()) write_root_of_rest(gone, prior);
   return prior;
 }
 

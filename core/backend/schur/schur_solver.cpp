@@ -21,7 +21,7 @@ constexpr double kMinCurvature = 1e-6;
 constexpr double kFirstDamping = 1e-8;
 constexpr double kLastDamping = 1.0;
 
-void move_pose(const Eigen::VectorXd& step, int column, double* x) {
+void move_pose(const KeptVector& step, int column, double* x) {
   Eigen::Map<Eigen::Vector3d>{x} += step.segment<3>(column);
   Eigen::Map<Eigen::Quaterniond> q(x + 3);
   q = (q * exp_so3(step.segment<3>(column + 3))).normalized();
@@ -68,6 +68,7 @@ bool SchurSolver::find_newton_step() {
     visual_.eliminate(damping, S_, newton_.states);
     if (!skyline_factorize(system_.first, S_)) continue;
     skyline_solve(system_.first, S_, newton_.states);
+    seen_.resize(visual_.coupling().cols());
     seen_.noalias() = visual_.coupling().transpose() * newton_.states.tail(visual_.coupling().rows());
     newton_.landmarks =
         -(visual_.gradient() + seen_).cwiseQuotient((1.0 + damping) * scale_squared_.landmarks);
@@ -83,7 +84,9 @@ double SchurSolver::scaled_norm(const Direction& direction) const {
 }
 
 double SchurSolver::curvature(const Direction& direction) {
+  seen_.resize(visual_.coupling().cols());
   seen_.noalias() = visual_.coupling().transpose() * direction.states.tail(visual_.coupling().rows());
+  product_.resize(direction.states.size());
   product_.noalias() = system_.H.selfadjointView<Eigen::Lower>() * direction.states;
   return direction.states.dot(product_) + 2.0 * direction.landmarks.dot(seen_) +
          direction.landmarks.cwiseAbs2().dot(visual_.information());

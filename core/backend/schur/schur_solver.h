@@ -3,6 +3,9 @@
 /// dogleg. Paper Sec. II (state optimisation).
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "core/backend/schur/visual_terms.h"
 #include "core/backend/window_solver.h"
 
@@ -18,12 +21,14 @@ class SchurSolver {
   /// See `marginalize_oldest`; by the Cholesky root of all states instead of eigenvalues.
   [[nodiscard]] LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config,
                                                double focal_px);
+  /// Takes a prior that nobody needs any more, for the memory of the next.
+  void reuse(LinearPrior spent) { spare_ = std::move(spent); }
 
  private:
   /// A direction in the space of all states and free landmarks.
   struct Direction {
-    Eigen::VectorXd states;
-    Eigen::VectorXd landmarks;
+    KeptVector states;
+    KeptVector landmarks;
   };
 
   void read(const Window& window, const BackendConfig& config, double focal_px);
@@ -36,6 +41,9 @@ class SchurSolver {
   [[nodiscard]] double predicted_decrease(const Direction& direction);
   void place_candidate();
   [[nodiscard]] SolveReport iterate(const Window& window, const BackendConfig& config);
+  void append_columns(BlockRef block);
+  [[nodiscard]] bool factorize_columns();
+  void write_root_of_rest(Eigen::Index gone, LinearPrior& prior);
 
   ReducedLayout layout_;
   ReducedSystem system_;
@@ -44,13 +52,18 @@ class SchurSolver {
   PriorTerm calibration_;
   ParameterBlocks blocks_;
   ParameterBlocks candidate_;
-  RowMajorMatrix S_;
+  KeptMatrix<RowMajorMatrix> S_;
   Direction scale_squared_;  // curvature along each axis
   Direction newton_;
   Direction cauchy_;  // to the minimum along the gradient
   Direction step_;
-  Eigen::VectorXd seen_;     // what a direction of states does to the gradient of the landmarks
-  Eigen::VectorXd product_;  // H times a direction of states
+  KeptVector seen_;           // what a direction of states does to the gradient of the landmarks
+  KeptVector product_;        // H times a direction of states
+  std::vector<int> columns_;  // of the states that leave, then of those that stay
+  std::vector<int> dense_;    // a profile that begins at the first column
+  std::vector<BlockRef> kept_;
+  KeptVector diagonal_;
+  LinearPrior spare_;
 };
 
 }  // namespace stillpoint

@@ -70,13 +70,13 @@ bool factorize_tile(const Tile& rest, const Rows& rows, int column) {
   return true;
 }
 
-Rows rows_at(RowMajorMatrix& S, int row) {
+Rows rows_at(Eigen::Ref<RowMajorMatrix>& S, int row) {
   return {S.row(row).data(), S.row(row + 1).data(), S.row(row + 2).data()};
 }
 
 }  // namespace
 
-bool skyline_factorize(std::span<const int> first, RowMajorMatrix& S) {
+bool skyline_factorize(std::span<const int> first, Eigen::Ref<RowMajorMatrix> S) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     const int row = kTile * static_cast<int>(i);
     const Rows rows = rows_at(S, row);
@@ -94,7 +94,8 @@ bool skyline_factorize(std::span<const int> first, RowMajorMatrix& S) {
   return true;
 }
 
-void skyline_forward(std::span<const int> first, const RowMajorMatrix& factor, Eigen::VectorXd& x) {
+void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor,
+                     Eigen::Ref<Eigen::VectorXd> x) {
   for (int row = 0; row < static_cast<int>(x.size()); ++row) {
     const int begin = first[static_cast<std::size_t>(row / kTile)];
     const double sum = factor.row(row).segment(begin, row - begin).dot(x.segment(begin, row - begin));
@@ -102,7 +103,8 @@ void skyline_forward(std::span<const int> first, const RowMajorMatrix& factor, E
   }
 }
 
-void skyline_solve(std::span<const int> first, const RowMajorMatrix& factor, Eigen::VectorXd& x) {
+void skyline_solve(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor,
+                   Eigen::Ref<Eigen::VectorXd> x) {
   skyline_forward(first, factor, x);
   for (int row = static_cast<int>(x.size()) - 1; row >= 0; --row) {
     const int begin = first[static_cast<std::size_t>(row / kTile)];

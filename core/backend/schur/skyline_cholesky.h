@@ -17,12 +17,14 @@ inline constexpr int kTile = 3;
 /// @param first column of the first entry in each tile of rows, a multiple of kTile; what lies before is zero
 ///   and stays untouched
 /// @return false when a pivot is not positive: S is then spoilt
-[[nodiscard]] bool skyline_factorize(std::span<const int> first, RowMajorMatrix& S);
+[[nodiscard]] bool skyline_factorize(std::span<const int> first, Eigen::Ref<RowMajorMatrix> S);
 
 /// Turns x into L^-1 x.
-void skyline_forward(std::span<const int> first, const RowMajorMatrix& factor, Eigen::VectorXd& x);
+void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor,
+                     Eigen::Ref<Eigen::VectorXd> x);
 
 /// Turns x into S^-1 x by the factor.
-void skyline_solve(std::span<const int> first, const RowMajorMatrix& factor, Eigen::VectorXd& x);
+void skyline_solve(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor,
+                   Eigen::Ref<Eigen::VectorXd> x);
 
 }  // namespace stillpoint

@@ -226,7 +226,7 @@ void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
   system.g[time] += sum(6, 7);
 }
 
-void VisualTerms::eliminate(double damping, RowMajorMatrix& S, Eigen::VectorXd& rhs) {
+void VisualTerms::eliminate(double damping, Eigen::Ref<RowMajorMatrix> S, Eigen::Ref<Eigen::VectorXd> rhs) {
   const Eigen::Index states = coupling_.rows();
   scaled_.resize(states, kBatch);
   for (int begin = 0; begin < free_; begin += kBatch) {
@@ -248,7 +248,7 @@ void VisualTerms::eliminate(double damping, RowMajorMatrix& S, Eigen::VectorXd& 
   }
 }
 
-void VisualTerms::move(const Eigen::VectorXd& step, ParameterBlocks& blocks) const {
+void VisualTerms::move(const KeptVector& step, ParameterBlocks& blocks) const {
   for (const SeenLandmark& landmark : landmarks_) {
     if (landmark.column >= 0) *blocks.inverse_depth(landmark.index) += step[landmark.column];
   }

@@ -25,15 +25,15 @@ class VisualTerms {
 
   /// Subtracts from S and right-hand side what the landmarks, free to follow, take off; each is held by
   /// `damping` times its own information.
-  void eliminate(double damping, RowMajorMatrix& S, Eigen::VectorXd& rhs);
+  void eliminate(double damping, Eigen::Ref<RowMajorMatrix> S, Eigen::Ref<Eigen::VectorXd> rhs);
 
   /// Of the landmarks that are free, side by side: information, gradient, and the coupling to the columns of
   /// the layout from its first pose on (one column each).
-  [[nodiscard]] const Eigen::VectorXd& information() const { return information_; }
-  [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
-  [[nodiscard]] const Eigen::MatrixXd& coupling() const { return coupling_; }
+  [[nodiscard]] const KeptVector& information() const { return information_; }
+  [[nodiscard]] const KeptVector& gradient() const { return gradient_; }
+  [[nodiscard]] const KeptMatrix<Eigen::MatrixXd>& coupling() const { return coupling_; }
   /// Moves the inverse depths of the free ones.
-  void move(const Eigen::VectorXd& step, ParameterBlocks& blocks) const;
+  void move(const KeptVector& step, ParameterBlocks& blocks) const;
 
   [[nodiscard]] int landmarks() const { return static_cast<int>(landmarks_.size()); }
   [[nodiscard]] int measured_landmarks() const { return measured_; }
@@ -99,10 +99,10 @@ class VisualTerms {
   std::vector<PairSum> sums_;
   int free_ = 0;
   std::vector<int> first_frame_;  // of each free landmark: its host
-  Eigen::VectorXd information_;
-  Eigen::VectorXd gradient_;
-  Eigen::MatrixXd coupling_;
-  Eigen::MatrixXd scaled_;  // coupling of some landmarks over the root of their information
+  KeptVector information_;
+  KeptVector gradient_;
+  KeptMatrix<Eigen::MatrixXd> coupling_;
+  KeptMatrix<Eigen::MatrixXd> scaled_;  // coupling of some landmarks over the root of their information
 };
 
 }  // namespace stillpoint

@@ -61,7 +61,8 @@ TEST(Marginalization, DroppingAFrameFromAPriorKeepsTheOthersMarginals) {
   prior.jacobian.topRightCorner<6, 6>() = -Eigen::MatrixXd::Identity(6, 6);
   prior.jacobian.bottomRightCorner<6, 6>().setIdentity();
   prior.residual = Eigen::VectorXd::Zero(12);
-  const LinearPrior left = marginalize_frame(prior, 1);
+  LinearPrior left = prior;
+  FrameMarginalizer().remove(1, left);
   ASSERT_EQ(left.blocks.size(), 1u);
   const Eigen::MatrixXd information = left.jacobian.transpose() * left.jacobian;
   // variances add: 1 + 1 = 2, so the information is 1/2
