@@ -5,10 +5,10 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/base/channel_waits.h"
 
@@ -19,15 +19,14 @@ template <class T>
 class BoundedChannel {
  public:
   /// @param capacity at least 1
-  explicit BoundedChannel(std::size_t capacity) : capacity_(capacity) {}
+  explicit BoundedChannel(std::size_t capacity) : items_(capacity) {}
 
   /// Waits for room. @return false if the channel is closed: the value is gone
   bool push(T value) {
     std::unique_lock lock(mutex_);
-    wait(has_room_, lock, for_room_, [this] { return closed_ || items_.size() < capacity_; });
+    wait(has_room_, lock, for_room_, [this] { return closed_ || count_ < items_.size(); });
     if (closed_) return false;
-    items_.push_back(std::move(value));
-    has_items_.notify_one();
+    append(std::move(value));
     return true;
   }
 
@@ -36,26 +35,22 @@ class BoundedChannel {
     const std::scoped_lock lock(mutex_);
     std::optional<T> dropped;
     if (closed_) return dropped;
-    if (items_.size() == capacity_) {
-      dropped = std::move(items_.front());
-      items_.pop_front();
-    }
-    items_.push_back(std::move(value));
-    has_items_.notify_one();
+    if (count_ == items_.size()) dropped = take_front();
+    append(std::move(value));
     return dropped;
   }
 
   /// Waits for an item. @return nothing once the channel is closed and empty
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
-    wait(has_items_, lock, for_items_, [this] { return closed_ || !items_.empty(); });
+    wait(has_items_, lock, for_items_, [this] { return closed_ || count_ > 0; });
     return take_front();
   }
 
   /// Waits no longer than `limit`. @return nothing if no item came
   std::optional<T> pop_for(std::chrono::nanoseconds limit) {
     std::unique_lock lock(mutex_);
-    has_items_.wait_for(lock, limit, [this] { return closed_ || !items_.empty(); });
+    has_items_.wait_for(lock, limit, [this] { return closed_ || count_ > 0; });
     return take_front();
   }
 
@@ -84,22 +79,31 @@ class BoundedChannel {
     ++time.waits;
   }
 
+  void append(T value) {
+    items_[(front_ + count_) % items_.size()] = std::move(value);
+    ++count_;
+    has_items_.notify_one();
+  }
+
   std::optional<T> take_front() {
-    if (items_.empty()) return std::nullopt;
-    std::optional<T> item = std::move(items_.front());
-    items_.pop_front();
+    if (count_ == 0) return std::nullopt;
+    std::optional<T> item = std::exchange(items_[front_], std::nullopt);
+    front_ = (front_ + 1) % items_.size();
+    --count_;
     has_room_.notify_one();
     return item;
   }
 
-  std::size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable has_room_;
   std::condition_variable has_items_;
-  std::deque<T> items_;  ///< guarded by mutex_
-  bool closed_ = false;  ///< guarded by mutex_
-  WaitTime for_items_;   ///< guarded by mutex_
-  WaitTime for_room_;    ///< guarded by mutex_
+  // All guarded by mutex_.
+  std::vector<std::optional<T>> items_;  ///< a ring: memory is asked for once
+  std::size_t front_ = 0;                ///< of the ring
+  std::size_t count_ = 0;                ///< of items in it
+  bool closed_ = false;
+  WaitTime for_items_;
+  WaitTime for_room_;
 };
 
 }  // namespace stillpoint

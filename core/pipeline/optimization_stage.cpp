@@ -40,41 +40,53 @@ OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& ri
       recognition_(config.dynamic),
       resting_(config.dynamic.rest_pictures, config.dynamic.rest_px) {}
 
-OdometryUpdate OptimizationStage::process(const TrackedFrame& frame, const DetectionSet& detections) {
-  OdometryUpdate update;
+void OptimizationStage::begin_update() {
+  ModuleTimings timings = std::move(update_.timings);
+  timings.clear();
+  update_ = {.timings = std::move(timings)};
+  dynamic_.clear();
+}
+
+OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const DetectionSet& detections) {
+  begin_update();
   {
-    const ScopedTimer timer(update.timings, Module::kOptimizationThread);
-    estimator_.add(frame, update);
-    look_for_objects(frame, detections, update.timings);
-    look_for_motion_before(update.timings);
-    if (estimator_.refine(update)) {
-      look_for_motion_after(update.timings);
+    const ScopedTimer timer(update_.timings, Module::kOptimizationThread);
+    estimator_.add(frame, update_);
+    look_for_objects(frame, detections, update_.timings);
+    look_for_motion_before(update_.timings);
+    if (estimator_.refine(update_)) {
+      look_for_motion_after(update_.timings);
     } else {
       forget();
     }
-    estimator_.finish(update);
+    estimator_.finish(update_);
   }
   moving_ = dynamic_ids(dynamic_.verdicts, std::move(moving_));
-  update.counters.dynamic_features = static_cast<int>(moving_.size());
-  update.hashes = {.tracking = state_hash(frame.features),
-                   .dynamic = state_hash(dynamic_.verdicts),
-                   .optimization = state_hash(update.state)};
-  return update;
+  update_.counters.dynamic_features = static_cast<int>(moving_.size());
+  update_.hashes = {.tracking = state_hash(frame.features),
+                    .dynamic = state_hash(dynamic_.verdicts),
+                    .optimization = state_hash(update_.state)};
+  return update_;
 }
 
-OdometryUpdate OptimizationStage::predict(const TrackedFrame& frame) {
-  OdometryUpdate update;
-  dynamic_.clear();
-  estimator_.predict(frame.id, frame.t, update);
-  update.hashes = {.tracking = state_hash(frame.features), .optimization = state_hash(update.state)};
-  return update;
+OdometryUpdate& OptimizationStage::predict(const TrackedFrame& frame) {
+  begin_update();
+  estimator_.predict(frame.id, frame.t, update_);
+  update_.hashes = {.tracking = state_hash(frame.features), .optimization = state_hash(update_.state)};
+  return update_;
+}
+
+Feedback OptimizationStage::feedback(Feedback memory) const {
+  Feedback said = std::move(memory);
+  said.motion = estimator_.knowledge();
+  said.moving = moving_;
+  return said;
 }
 
 /// Sec. III-C and III-D.
 void OptimizationStage::look_for_objects(const TrackedFrame& frame, const DetectionSet& detections,
                                          ModuleTimings& timings) {
   const ScopedTimer timer(timings, Module::kDynamicRecognition);
-  dynamic_.clear();
   if (config_.mask != DynamicMask::kOff) {
     dynamic_.boxes = objects_.update(detections);
     boxes_ = boxes_of(dynamic_.boxes, std::move(boxes_));

@@ -38,17 +38,20 @@ class OptimizationStage {
 
   /// Takes a picture into the window.
   /// @param detections of the picture; passed over where the mask is off
-  [[nodiscard]] OdometryUpdate process(const TrackedFrame& frame, const DetectionSet& detections);
+  /// @return valid until the next picture; who takes part in it may add to it
+  [[nodiscard]] OdometryUpdate& process(const TrackedFrame& frame, const DetectionSet& detections);
 
-  /// The pose at a picture that does not enter the window.
-  [[nodiscard]] OdometryUpdate predict(const TrackedFrame& frame);
+  /// The pose at a picture that does not enter the window. @return as `process`
+  [[nodiscard]] OdometryUpdate& predict(const TrackedFrame& frame);
 
   [[nodiscard]] MotionKnowledge knowledge() const { return estimator_.knowledge(); }
-  [[nodiscard]] Feedback feedback() const { return {estimator_.knowledge(), moving_}; }
+  /// @param memory for the result: what nobody needs any more
+  [[nodiscard]] Feedback feedback(Feedback memory = {}) const;
   [[nodiscard]] const ImuHealth& imu_health() const { return estimator_.imu_health(); }
   [[nodiscard]] const DynamicReport& dynamic() const { return dynamic_; }
 
  private:
+  void begin_update();
   void look_for_objects(const TrackedFrame& frame, const DetectionSet& detections, ModuleTimings& timings);
   void look_for_motion_before(ModuleTimings& timings);
   void look_for_motion_after(ModuleTimings& timings);
@@ -65,6 +68,7 @@ class OptimizationStage {
   RestingFeatures resting_;
   DynamicReport dynamic_;
   std::vector<std::int64_t> moving_;  ///< of the last picture in the window
+  OdometryUpdate update_;             ///< of the last picture
   // Kept for their memory.
   std::vector<Box> boxes_;
   ConsistencyView view_;

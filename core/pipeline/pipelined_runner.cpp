@@ -14,12 +14,6 @@ namespace {
 /// Pictures that may wait between two stages.
 constexpr std::size_t kWaiting = 4;
 
-/// What the optimisation gives back to the tracker: what it says, and a frame for its memory.
-struct Returned {
-  Feedback said;
-  TrackedFrame spent;
-};
-
 class PipelinedRun {
  public:
   PipelinedRun(const SensorInput& input, const OdometryConfig& config, const RunControl& control)
@@ -65,6 +59,7 @@ class PipelinedRun {
       imu.up_to(after(picture->frame.t, input_.rig.time_offset_s + kImuLead_s), stages_.tracking);
       picture->tracked =
           stages_.tracking.process(picture->frame, picture->full, returned->said, std::move(returned->spent));
+      picture->told = std::move(returned->said);
       if (!tracked_.push(std::move(*picture))) return;
     }
     to_detect_.close();
@@ -89,7 +84,7 @@ class PipelinedRun {
       }
       imu.up_to(after(picture->frame.t, input_.rig.time_offset_s + kImuLead_s), stages_.optimization);
       close_picture(*picture, detections, stages_.optimization, control_, summary_);
-      feedback_.push({stages_.optimization.feedback(), std::move(picture->tracked)});
+      feedback_.push({stages_.optimization.feedback(std::move(picture->told)), std::move(picture->tracked)});
     }
   }
 

@@ -2,7 +2,6 @@
 #include "core/pipeline/runner.h"
 
 #include <algorithm>
-#include <deque>
 #include <utility>
 
 #include "core/pipeline/runner_parts.h"
@@ -17,10 +16,11 @@ int RealtimeReport::deadline_misses() const {
 RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config, const RunControl& control) {
   Stages stages = assemble(input, config);
   ImuFeed imu_of_tracker(input.imu), imu_of_estimator(input.imu);
-  std::deque<Feedback> feedback(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1,
-                                stages.optimization.feedback());
+  // What the optimisation says after a picture takes the place of what was said the lag and one before.
+  std::vector<Returned> returned(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1,
+                                 {stages.optimization.feedback(), {}});
+  std::size_t oldest = 0;
   RunSummary summary;
-  TrackedFrame spent;
   for (std::size_t i = 0; i < input.frame_times.size(); ++i) {
     if (control.stop_requested && control.stop_requested()) {
       summary.interrupted = true;
@@ -34,14 +34,14 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
     imu_of_estimator.up_to(imu_end, stages.optimization);
 
     picture->full = stages.rate.admits(picture->frame.t);
-    picture->tracked =
-        stages.tracking.process(picture->frame, picture->full, feedback.front(), std::move(spent));
-    feedback.pop_front();
+    auto& [said, spent] = returned[oldest];
+    picture->tracked = stages.tracking.process(picture->frame, picture->full, said, std::move(spent));
     std::optional<DetectionOnWay> detections;
     if (picture->full) detections = detect_objects(*stages.detector, picture->frame);
     close_picture(*picture, detections, stages.optimization, control, summary);
+    said = stages.optimization.feedback(std::move(said));
     spent = std::move(picture->tracked);
-    feedback.push_back(stages.optimization.feedback());
+    oldest = (oldest + 1) % returned.size();
   }
   close_run(stages, summary);
   return summary;

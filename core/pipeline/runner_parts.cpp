@@ -38,8 +38,8 @@ DetectionOnWay detect_objects(ObjectDetector& detector, const Frame& frame) {
 
 void close_picture(const PictureOnWay& picture, const std::optional<DetectionOnWay>& detections,
                    OptimizationStage& optimization, const RunControl& control, RunSummary& summary) {
-  OdometryUpdate update = picture.full ? optimization.process(picture.tracked, detections->set)
-                                       : optimization.predict(picture.tracked);
+  OdometryUpdate& update = picture.full ? optimization.process(picture.tracked, detections->set)
+                                        : optimization.predict(picture.tracked);
   update.timings.add(picture.decoding);
   update.timings.add(picture.tracked.timings);
   if (detections) update.timings.add(detections->timings);

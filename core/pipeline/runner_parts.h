@@ -37,10 +37,17 @@ class ImuFeed {
   std::size_t next_ = 0;
 };
 
+/// What the optimisation gives back to the tracker: what it says, and a frame for its memory.
+struct Returned {
+  Feedback said;
+  TrackedFrame spent;
+};
+
 /// A picture on its way through the stages.
 struct PictureOnWay {
   Frame frame;
   bool full = false;  ///< enters the window
+  Feedback told;      ///< to the tracker, before this picture; goes back for its memory
   TrackedFrame tracked;
   ModuleTimings decoding;
 };
