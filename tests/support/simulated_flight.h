@@ -21,6 +21,7 @@ struct SimulatedFlight {
   bool noisy_imu = false;
   double time_offset_s = 0.0;  ///< IMU time of a picture minus its stamp
   int points = 200;            ///< about half of them are in view
+  double period_s = 0.0;       ///< of a flight to and fro on the first part of the path; 0 = on and on
 
   static Rig rig() {
     Rig rig;
@@ -48,6 +49,12 @@ struct SimulatedFlight {
     return s;
   }
 
+  /// Where on the path the body is: as fast as `state` says in the middle of its way, and smooth.
+  [[nodiscard]] double along(double t) const {
+    const double turn = 2.0 * M_PI / period_s;
+    return period_s > 0.0 ? (1.0 + std::sin(turn * t)) / turn : t;
+  }
+
   [[nodiscard]] std::vector<ImuSample> imu(double seconds, double rate_hz = 200.0) const {
     Random random(11);
     const double density = std::sqrt(rate_hz);
@@ -55,10 +62,12 @@ struct SimulatedFlight {
     for (int i = 0; i <= static_cast<int>(seconds * rate_hz); ++i) {
       constexpr double h = 1e-4;
       const double t = i / rate_hz;
-      const Eigen::Quaterniond q = exp_so3(angles(t));
+      const double before = along(t - h), now = along(t), later = along(t + h);
+      const Eigen::Quaterniond q = exp_so3(angles(now));
       ImuSample sample{.t = from_seconds(t)};
-      sample.gyro_b = log_so3(exp_so3(angles(t - h)).conjugate() * exp_so3(angles(t + h))) / (2.0 * h);
-      const Eigen::Vector3d acceleration = (position(t + h) - 2.0 * position(t) + position(t - h)) / (h * h);
+      sample.gyro_b = log_so3(exp_so3(angles(before)).conjugate() * exp_so3(angles(later))) / (2.0 * h);
+      const Eigen::Vector3d acceleration =
+          (position(later) - 2.0 * position(now) + position(before)) / (h * h);
       sample.accel_b = q.conjugate() * (acceleration + Eigen::Vector3d(0.0, 0.0, 9.81));
       if (noisy_imu) {
         for (int k = 0; k < 3; ++k) {
@@ -76,7 +85,7 @@ struct SimulatedFlight {
     Random places(5);
     Random random(static_cast<std::uint32_t>(1000 + id));
     const Rig calibration = rig();
-    const Pose T_c_w = (state(t + time_offset_s).T_w_b * calibration.T_b_c).inverse();
+    const Pose T_c_w = (state(along(t + time_offset_s)).T_w_b * calibration.T_b_c).inverse();
     TrackedFrame frame{.id = id, .t = from_seconds(t)};
     for (int k = 0; k < points; ++k) {
       const Eigen::Vector3d p_w(places.uniform(2.0, 5.0), places.uniform(-2.5, 2.5),
