@@ -105,9 +105,9 @@ class BoardRun {
     if (detector_free_ > now_) return;
     BoardDetection detection{.found = detect_objects(*stages_.detector, frame), .known_at = {}};
     const bool nothing_to_do = config_.detector.kind == DetectorKind::kNone;
-    const Time cost =
-        nothing_to_do ? Time{}
-                      : cost_of(clock_.board.detection, detection.found.timings[Module::kObjectDetection]);
+    const Time cost = nothing_to_do ? Time{}
+                                    : cost_of(clock_.board.detection,
+                                              {.ns = detection.found.search->elapsed.count(), .calls = 1});
     detection.known_at = clock_.board.detector_has_own_processor ? now_ + cost : cores_.occupy(now_, cost);
     detector_free_ = detection.known_at;
     detections_.push_back(std::move(detection));
@@ -145,7 +145,7 @@ class BoardRun {
       detections_.pop_front();
     }
     const bool usable = newest && seconds_between(newest->set.t, t) <= config_.pipeline.detection_max_age_s;
-    if (!usable) newest = {.set = {.t = t, .state = DetectionState::kLate, .detections = {}}, .timings = {}};
+    if (!usable) newest = {.set = {.t = t, .state = DetectionState::kLate, .detections = {}}, .search = {}};
     report_.late_detections += newest->set.state == DetectionState::kLate;
     return std::move(*newest);
   }

@@ -26,7 +26,7 @@ class NewestDetections {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, wait, [&] { return newest_ && newest_->set.t >= t; });
     const bool usable = newest_ && seconds_between(newest_->set.t, t) <= max_age_s;
-    if (!usable) return {.set = {.t = t, .state = DetectionState::kLate, .detections = {}}, .timings = {}};
+    if (!usable) return {.set = {.t = t, .state = DetectionState::kLate, .detections = {}}, .search = {}};
     DetectionOnWay found = std::move(*newest_);
     newest_.reset();
     return found;

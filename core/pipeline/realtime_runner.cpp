@@ -26,7 +26,7 @@ class RealtimeRun {
         stages_(assemble(input, config)),
         clock_(input.frame_times.empty() ? Timestamp{} : input.frame_times.front(), speed) {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / speed;
-    feedback_.push(stages_.optimization.feedback());
+    feedback_.push({stages_.optimization.feedback(), {}});
   }
 
   RunSummary run() {
@@ -65,13 +65,18 @@ class RealtimeRun {
   void track() {
     name_this_thread("tracking");
     ImuFeed imu(input_.imu);
-    Feedback known = stages_.optimization.feedback();
+    Returned newest;
     while (std::optional<PictureOnWay> picture = exposed_.pop()) {
       picture->full = stages_.rate.admits(picture->frame.t);
       if (picture->full) to_detect_.push_dropping_oldest(picture->frame);
-      while (const std::optional<Feedback> newer = feedback_.pop_for({})) known = *newer;
+      if (std::optional<Returned> newer = feedback_.pop_for({})) {
+        picture->told = std::move(newest.said);
+        newest = std::move(*newer);
+      }
+      const Feedback& known = newest.said;
       imu.up_to(after(picture->frame.t, known.motion.time_offset_s), stages_.tracking);
-      picture->tracked = stages_.tracking.process(picture->frame, picture->full, known);
+      picture->tracked =
+          stages_.tracking.process(picture->frame, picture->full, known, std::move(newest.spent));
       if (!tracked_.push(std::move(*picture))) return;
     }
     to_detect_.close();
@@ -87,15 +92,15 @@ class RealtimeRun {
 
   void optimize() {
     ImuFeed imu(input_.imu);
-    while (const std::optional<PictureOnWay> picture = tracked_.pop()) {
+    while (std::optional<PictureOnWay> picture = tracked_.pop()) {
       const Timestamp t = picture->frame.t;
-      const Timestamp imu_end =
-          after(t, stages_.optimization.knowledge().time_offset_s + kRealtimeImuLead_s);
+      const Timestamp imu_end = after(t, stages_.optimization.knowledge().time_offset_s + kRealtimeImuLead_s);
       clock_.wait_until(imu_end, {});
       imu.up_to(imu_end, stages_.optimization);
       close_picture(*picture, detections_for(*picture), stages_.optimization, control_, summary_);
       report_.latencies_ms.push_back(1e3 * clock_.wall_seconds_late(t));
-      feedback_.push_dropping_oldest(stages_.optimization.feedback());
+      feedback_.push_dropping_oldest(
+          {stages_.optimization.feedback(std::move(picture->told)), std::move(picture->tracked)});
     }
   }
 
@@ -126,7 +131,7 @@ class RealtimeRun {
   BoundedChannel<PictureOnWay> exposed_{kWaitingPictures};
   BoundedChannel<Frame> to_detect_{1};
   BoundedChannel<PictureOnWay> tracked_{1};
-  BoundedChannel<Feedback> feedback_{1};
+  BoundedChannel<Returned> feedback_{1};
   NewestDetections detected_;
   ThreadErrors errors_;
 };

@@ -2,10 +2,18 @@
 #include "core/pipeline/runner_parts.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/base/error.h"
 
 namespace stillpoint {
+namespace {
+
+ModuleSpan span_since(std::chrono::steady_clock::time_point start, Module module) {
+  return {.module = module, .start = start, .elapsed = std::chrono::steady_clock::now() - start};
+}
+
+}  // namespace
 
 double median_interval_s(std::span<const Timestamp> times) {
   std::vector<double> intervals;
@@ -19,20 +27,21 @@ double median_interval_s(std::span<const Timestamp> times) {
 std::optional<PictureOnWay> load_picture(const SensorInput& input, std::size_t index,
                                          std::vector<SkippedFrame>& skipped) {
   PictureOnWay picture;
-  const ScopedTimer timer(picture.decoding, Module::kImageDecoding);
+  const auto start = std::chrono::steady_clock::now();
   try {
     picture.frame = input.load_frame(index);
   } catch (const InputError& error) {
     skipped.push_back({index, error.what()});
     return std::nullopt;
   }
+  picture.decoding = span_since(start, Module::kImageDecoding);
   return picture;
 }
 
 DetectionOnWay detect_objects(ObjectDetector& detector, const Frame& frame) {
-  DetectionOnWay found;
-  const ScopedTimer timer(found.timings, Module::kObjectDetection);
-  found.set = detector.detect(frame);
+  const auto start = std::chrono::steady_clock::now();
+  DetectionOnWay found{.set = detector.detect(frame), .search = {}};
+  found.search = span_since(start, Module::kObjectDetection);
   return found;
 }
 
@@ -40,9 +49,9 @@ void close_picture(const PictureOnWay& picture, const std::optional<DetectionOnW
                    OptimizationStage& optimization, const RunControl& control, RunSummary& summary) {
   OdometryUpdate& update = picture.full ? optimization.process(picture.tracked, detections->set)
                                         : optimization.predict(picture.tracked);
-  update.timings.add(picture.decoding);
+  update.timings.add(picture.decoding, 1);
   update.timings.add(picture.tracked.timings);
-  if (detections) update.timings.add(detections->timings);
+  if (detections && detections->search) update.timings.add(*detections->search, 1);
   summary.resets += update.counters.reset;
   if (control.on_update) control.on_update(update);
   if (control.on_picture) {

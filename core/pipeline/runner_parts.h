@@ -47,15 +47,15 @@ struct Returned {
 struct PictureOnWay {
   Frame frame;
   bool full = false;  ///< enters the window
-  Feedback told;      ///< to the tracker, before this picture; goes back for its memory
+  Feedback told;      ///< to the tracker, before; goes back for its memory
   TrackedFrame tracked;
-  ModuleTimings decoding;
+  ModuleSpan decoding;
 };
 
 /// What was found in a picture, and how long that took.
 struct DetectionOnWay {
   DetectionSet set;
-  ModuleTimings timings;
+  std::optional<ModuleSpan> search;  ///< absent where none ended in time
 };
 
 /// The picture, or nothing and the reason in `skipped`.

@@ -12,7 +12,7 @@ namespace {
 using std::chrono::milliseconds;
 
 DetectionOnWay found_at(double t) {
-  return {.set = {.t = from_seconds(t), .state = DetectionState::kPresent, .detections = {}}, .timings = {}};
+  return {.set = {.t = from_seconds(t), .state = DetectionState::kPresent, .detections = {}}, .search = {}};
 }
 
 TEST(NewestDetections, AreThePicturesOwnWhereTheyAreInTime) {
