@@ -5,6 +5,7 @@
 
 #include "core/backend/normal_equations.h"
 #include "core/backend/schur/schur_solver.h"
+#include "core/base/error.h"
 
 namespace stillpoint {
 namespace {
@@ -85,6 +86,7 @@ void FrameMarginalizer::split(int frame, const LinearPrior& prior) {
   const Eigen::Index rows = prior.jacobian.rows();
   int gone = 0;
   for (const PriorBlock& block : prior.blocks) gone += block.frame == frame ? local_size(block.kind) : 0;
+  STILLPOINT_CHECK(rows <= kMaxRows && gone <= kMaxColumns);
   gone_.resize(rows, gone);
   rest_.resize(rows, prior.jacobian.cols() - gone + 1);
   left_.blocks.clear();

@@ -32,12 +32,15 @@ class SchurSolver;
 class FrameMarginalizer {
  public:
   /// Indices above `frame` become one less.
+  /// @param frame not calibration
   void remove(int frame, LinearPrior& prior);
 
  private:
-  static constexpr int kMaxRows = 15 * (kMaxWindowSize + 1);
+  static constexpr int kMaxColumns = 15;  ///< pose, speed and biases
+  static constexpr int kMaxRows = kMaxColumns * (kMaxWindowSize + 1);
   /// Columns of the states of one frame: small enough for Eigen to hold the factorisation in place.
-  using FrameColumns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, 15>;
+  using FrameColumns =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxColumns>;
 
   void split(int frame, const LinearPrior& prior);
 
