@@ -2,6 +2,7 @@
 // Benchmarks that are killed, shared, or fed with systems that fail, over the stand-in system.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -68,15 +69,19 @@ TEST(BenchKill, TwentyKillsLeaveWhatOneUndisturbedBenchmarkLeaves) {
   const std::string log = (folder.path() / "log").string();
   const fs::path plan = write_replay_plan(folder, kRuns / 2, "\"--log\", \"" + log + "\", ");
   const fs::path calm = folder.path() / "calm.sqlite";
+  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(replay_bench(folder, plan, calm).exit_code, 0);
+  const std::chrono::duration<double, std::milli> calm_ms = std::chrono::steady_clock::now() - start;
   fs::remove(log);
 
   const fs::path killed = folder.path() / "killed.sqlite";
   std::mt19937 random(5);
-  std::uniform_int_distribution<int> milliseconds(50, 700);
+  // Of the time it needs on this machine: on average the kills are spread over three quarters of it.
+  std::uniform_real_distribution<double> share(0.0, 1.5 / kKills);
   int interrupted = 0;
   for (int i = 0; i < kKills; ++i)
-    interrupted += kill_after(folder, plan, killed, milliseconds(random)) ? 1 : 0;
+    interrupted +=
+        kill_after(folder, plan, killed, static_cast<int>(share(random) * calm_ms.count())) ? 1 : 0;
   EXPECT_GE(interrupted, kKills / 2);  // otherwise the benchmark is too short to be disturbed
   const ProgramResult last = replay_bench(folder, plan, killed);
   EXPECT_EQ(last.exit_code, 0) << last.err;
