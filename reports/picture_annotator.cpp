@@ -67,21 +67,9 @@ void draw_boxes(const std::vector<TrackedBox>& boxes, cv::Mat& canvas) {
   }
 }
 
-const char* status_text(OdometryStatus status) {
-  switch (status) {
-    case OdometryStatus::kInitialising:
-      return "initialising";
-    case OdometryStatus::kTracking:
-      return "tracking";
-    case OdometryStatus::kLost:
-      break;
-  }
-  return "lost";
-}
-
 void write_status(const OdometryUpdate& update, cv::Mat& canvas) {
-  const std::string text = std::to_string(update.frame_id) + "  " + status_text(update.status) + "  " +
-                           std::to_string(update.counters.tracked_features) + " features, " +
+  const std::string text = std::to_string(update.frame_id) + "  " + std::string(status_name(update.status)) +
+                           "  " + std::to_string(update.counters.tracked_features) + " features, " +
                            std::to_string(update.counters.dynamic_features) + " dynamic";
   write_line(text, cv::Point(6, canvas.rows - 8), canvas);
 }

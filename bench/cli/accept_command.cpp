@@ -8,6 +8,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/store_subcommand.h"
 #include "bench/compare/commit_history.h"
 #include "bench/config/spelling.h"
 #include "bench/record/utc_time.h"
@@ -89,30 +90,20 @@ int list(const AcceptArguments& arguments) {
 std::vector<Command> acceptance_commands() {
   const auto arguments = std::make_shared<AcceptArguments>();
   Acceptance& subject = arguments->subject;
-  const Option store{"--store", "The store [build/bench/store.sqlite]", &arguments->store};
   const std::vector<Option> named = {
       {"COMMIT", "The commit up to which the number changed, or its beginning", &subject.commit},
       {"--metric", "Name of the metric or module, as `stillpoint regressions` has it", &subject.metric},
       {"--variant", "Only of this variant [every]", &subject.variant},
-      {"--sequence", "Only on this sequence [every]", &subject.sequence},
-      store};
+      {"--sequence", "Only on this sequence [every]", &subject.sequence}};
   std::vector<Option> with_reason = named;
   with_reason.push_back({"--reason", "Why the change is accepted", &subject.reason});
-  const auto command = [&](const std::string& name, const std::string& summary, const std::string& example,
-                           std::vector<Option> options, int (*action)(const AcceptArguments&)) {
-    return Command{.name = name,
-                   .summary = summary,
-                   .example = "store " + example,
-                   .options = std::move(options),
-                   .action = [arguments, action] { return action(*arguments); },
-                   .subcommands = {}};
-  };
   return {
-      command("accept", "Mark a change of a number as accepted: it is no open regression any more",
-              "accept 11826db --metric state_optimization --reason \"exact solver\"", with_reason, accept),
-      command("withdraw", "Take an acceptance back", "withdraw 11826db --metric state_optimization", named,
-              withdraw),
-      command("accepted", "One line for each accepted change", "accepted", {store}, list)};
+      store_subcommand("accept", "Mark a change of a number as accepted: it is no open regression any more",
+                       "accept 11826db --metric state_optimization --reason \"exact solver\"", with_reason,
+                       arguments, accept),
+      store_subcommand("withdraw", "Take an acceptance back", "withdraw 11826db --metric state_optimization",
+                       named, arguments, withdraw),
+      store_subcommand("accepted", "One line for each accepted change", "accepted", {}, arguments, list)};
 }
 
 }  // namespace stillpoint

@@ -6,6 +6,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/store_subcommand.h"
 #include "bench/record/output_folder.h"
 #include "bench/store/maintenance.h"
 #include "bench/store/store.h"
@@ -129,16 +130,9 @@ int import_from(const StoreArguments& arguments) {
 
 Command store_command() {
   const auto arguments = std::make_shared<StoreArguments>();
-  const Option store{"--store", "The store [build/bench/store.sqlite]", &arguments->store};
   const auto subcommand = [&](const std::string& name, const std::string& summary, const std::string& example,
                               std::vector<Option> options, int (*action)(const StoreArguments&)) {
-    options.push_back(store);
-    return Command{.name = name,
-                   .summary = summary,
-                   .example = "store " + example,
-                   .options = std::move(options),
-                   .action = [arguments, action] { return action(*arguments); },
-                   .subcommands = {}};
+    return store_subcommand(name, summary, example, std::move(options), arguments, action);
   };
   std::vector<Command> subcommands = {
       subcommand("list", "One line for each run", "list", {}, list),

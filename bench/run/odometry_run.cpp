@@ -30,23 +30,11 @@ SensorInput input_of(const SequenceInfo& info, std::size_t frames, FramePrefetch
           .load_frame = [&prefetcher](std::size_t index) { return prefetcher.take(index); }};
 }
 
-std::string status_text(OdometryStatus status) {
-  switch (status) {
-    case OdometryStatus::kInitialising:
-      return "initialising";
-    case OdometryStatus::kTracking:
-      return "tracking";
-    case OdometryStatus::kLost:
-      return "lost";
-  }
-  return "";
-}
-
 FrameCounters counters_of(const OdometryUpdate& update, Timestamp t) {
   const OdometryCounters& counters = update.counters;
   return {.frame = update.frame_id,
           .t_ns = t.ns,
-          .status = status_text(update.status),
+          .status = std::string(status_name(update.status)),
           .tracked_features = counters.tracked_features,
           .window_landmarks = counters.window_landmarks,
           .depth_landmarks = counters.depth_landmarks,

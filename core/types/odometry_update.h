@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "core/base/module_timings.h"
 #include "core/types/nav_state.h"
@@ -10,6 +11,12 @@
 namespace stillpoint {
 
 enum class OdometryStatus { kInitialising, kTracking, kLost };
+
+/// Stable names for files that people and programs read.
+[[nodiscard]] constexpr std::string_view status_name(OdometryStatus status) {
+  constexpr std::string_view kNames[] = {"initialising", "tracking", "lost"};
+  return kNames[static_cast<std::size_t>(status)];
+}
 
 struct OdometryCounters {
   int tracked_features = 0;  ///< came from the tracker
