@@ -81,7 +81,9 @@ struct BackendConfig {
   double rate_hz = 10.0;               ///< pictures a second that enter the window; 0 = every one
   int window_size = 10;                ///< states before the newest
   double keyframe_parallax_px = 10.0;  ///< mean displacement that makes a keyframe
-  int keyframe_min_tracked = 20;       ///< fewer known features make a keyframe
+  int keyframe_min_tracked = 20;       ///< fewer still features shared with the last keyframe make another
+  double keyframe_min_shared = 0.5;    ///< the same as a share of the still features; 0 = never, as in the
+                                       ///< published code, where people's features make parallax
   double pixel_sigma_px = 1.5;         ///< standard deviation of a feature's position
   double pixel_misfit_px = 0.0;  ///< median misfit that belongs to pixel_sigma_px: more widens it; 0 = never
   double cauchy_scale = 1.0;     ///< of the robust loss, in standard deviations
@@ -104,6 +106,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("window_size", config.window_size, 4, kMaxWindowSize);
   field("keyframe_parallax_px", config.keyframe_parallax_px, 0.1, 200.0);
   field("keyframe_min_tracked", config.keyframe_min_tracked, 0, 1000);
+  field("keyframe_min_shared", config.keyframe_min_shared, 0.0, 1.0);
   field("pixel_sigma_px", config.pixel_sigma_px, 0.05, 20.0);
   field("pixel_misfit_px", config.pixel_misfit_px, 0.0, 20.0);
   field("cauchy_scale", config.cauchy_scale, 0.01, 100.0);

@@ -92,16 +92,21 @@ bool is_second_newest_keyframe(const Window& window, const BackendConfig& config
                                           window.frames.back().state.t);
   if (interval > config.keyframe_max_interval_s) return true;
 
-  int tracked = 0;
+  int seen = 0;
+  int shared = 0;
   int common = 0;
   double displacement_px = 0.0;
   for (const Landmark& landmark : window.landmarks) {
-    tracked += landmark.host < window.newest() && landmark.last() == window.newest();
-    if (landmark.dynamic || !landmark.seen_in(second - 1) || !landmark.seen_in(second)) continue;
+    if (landmark.dynamic) continue;
+    const bool now = landmark.last() == window.newest();
+    seen += now;
+    shared += now && landmark.seen_in(second - 1);
+    if (!landmark.seen_in(second - 1) || !landmark.seen_in(second)) continue;
     displacement_px += focal_px * (landmark.in(second).bearing - landmark.in(second - 1).bearing).norm();
     ++common;
   }
-  if (tracked < config.keyframe_min_tracked || common == 0) return true;
+  if (shared < config.keyframe_min_tracked || shared < config.keyframe_min_shared * seen || common == 0)
+    return true;
   return displacement_px / common >= config.keyframe_parallax_px;
 }
 

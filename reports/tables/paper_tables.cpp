@@ -132,7 +132,7 @@ ReportTable table1(std::span<const StoredRun> runs) {
   constexpr PaperSystem kSystems[] = {{"ORB-SLAM2", "ORB-SLAM2", ""},
                                       {"DS-SLAM", "DS-SLAM", ""},
                                       {"Ji et al.", "Ji et al. 2021", ""},
-                                      {"Dynamic-VINS", "Dynamic-VINS (VO)", "dynamic_vins+vo"}};
+                                      {"Dynamic-VINS", "Dynamic-VINS (VO)", "dynamic_vins_vo"}};
   return accuracy_table(
       {.name = "table1", .title = "Table I: RMSE of ATE, T.RPE and R.RPE on TUM RGB-D fr3 walking"}, runs,
       metrics_of("tum_fr3"), kSystems);
@@ -140,10 +140,10 @@ ReportTable table1(std::span<const StoredRun> runs) {
 
 ReportTable table2(std::span<const StoredRun> runs) {
   constexpr PaperSystem kSystems[] = {
-      {"W/O circular mask", "Dynamic-VINS wo_circular_mask", "vo+wo_circular_mask"},
-      {"W/O object detection", "Dynamic-VINS wo_object_detection", "vo+wo_object_detection"},
-      {"W/O seg-like mask", "Dynamic-VINS wo_seg_like_mask", "vo+wo_seg_like_mask"},
-      {"W/O MCC", "Dynamic-VINS wo_mcc", "vo+wo_mcc"}};
+      {"W/O circular mask", "Dynamic-VINS wo_circular_mask", "dynamic_vins_vo+wo_circular_mask"},
+      {"W/O object detection", "Dynamic-VINS wo_object_detection", "dynamic_vins_vo+wo_object_detection"},
+      {"W/O seg-like mask", "Dynamic-VINS wo_seg_like_mask", "dynamic_vins_vo+wo_seg_like_mask"},
+      {"W/O MCC", "Dynamic-VINS wo_mcc", "dynamic_vins_vo+wo_mcc"}};
   return accuracy_table(
       {.name = "table2",
        .title = "Table II: ablation, RMSE of ATE, T.RPE and R.RPE on TUM RGB-D fr3 walking"},

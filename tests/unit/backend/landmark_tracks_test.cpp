@@ -62,14 +62,49 @@ TEST(LandmarkTracks, JoinByIdAndStartWhereTheTrackerFoundThem) {
   EXPECT_EQ(window.landmarks[2].observations[0].depth, 0.0);  // nearer than min_m: not believed
 }
 
-TEST(LandmarkTracks, AStillCameraMakesNoKeyframe) {
-  Window window = visual_window(4, 30);
+/// A camera at rest: frames 0.1 s apart that see the same `landmarks` at the same places.
+Window resting_window(int landmarks) {
+  Window window = visual_window(4, landmarks);
   for (Landmark& landmark : window.landmarks) {
     for (Observation& seen : landmark.observations) seen = landmark.observations[0];
   }
+  return window;
+}
+
+TEST(LandmarkTracks, AStillCameraMakesNoKeyframe) {
+  const Window window = resting_window(30);
   EXPECT_FALSE(is_second_newest_keyframe(window, {}, 500.0));
   EXPECT_TRUE(
       is_second_newest_keyframe(window, {.keyframe_max_interval_s = 0.15}, 500.0));  // 0.2 s have passed
+}
+
+TEST(LandmarkTracks, AStillCameraMakesAKeyframeForTheNewLandmarks) {
+  const BackendConfig config{.keyframe_min_tracked = 0, .keyframe_min_shared = 0.5};
+  Window window = resting_window(30);
+  const auto let_newest_find = [&](int count) {  // not seen by frame 1, the last keyframe
+    for (int i = 0; i < count; ++i) {
+      Landmark& landmark = window.landmarks[static_cast<std::size_t>(i)];
+      landmark.host = 2;
+      landmark.observations.resize(2);
+    }
+  };
+  let_newest_find(15);  // half of them new: 15 of 30 shared
+  EXPECT_FALSE(is_second_newest_keyframe(window, config, 500.0));
+  let_newest_find(16);
+  EXPECT_TRUE(is_second_newest_keyframe(window, config, 500.0));
+}
+
+TEST(LandmarkTracks, AMovingThingNeitherMakesNorSparesAKeyframe) {
+  const BackendConfig config{.keyframe_min_tracked = 20};
+  Window window = resting_window(30);
+  for (std::size_t i = 0; i < 10; ++i) {  // on a person: 100 px a frame
+    window.landmarks[i].dynamic = true;
+    for (std::size_t k = 0; k < 4; ++k)
+      window.landmarks[i].observations[k].bearing.x() += 0.2 * static_cast<double>(k);
+  }
+  EXPECT_FALSE(is_second_newest_keyframe(window, config, 500.0));  // 20 others stand still
+  window.landmarks[10].dynamic = true;
+  EXPECT_TRUE(is_second_newest_keyframe(window, config, 500.0));  // 19 are too few to hold on to
 }
 
 }  // namespace

@@ -52,8 +52,21 @@ TEST(ConfigOverlays, AblationsOfTheRecognitionChangeOneKeyEach) {
   expect_one_change("wo_missed_detection", {"dynamic.missed_detection", "false"});
 }
 
-TEST(ConfigOverlays, VoUsesNoImu) {
-  EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"}}));
+TEST(ConfigOverlays, VoUsesNoImuAndHoldsOnByFeatures) {
+  EXPECT_EQ(changes("stillpoint", "vo"),
+            (Entries{{"imu.enabled", "false"}, {"backend.keyframe_min_shared", "0.7"}}));
+}
+
+TEST(ConfigOverlays, DynamicVinsVoHasThePublishedTumSettings) {
+  EXPECT_EQ(config_difference(base("dynamic_vins"), base("dynamic_vins_vo")),
+            (Entries{{"imu.enabled", "false"},
+                     {"frontend.max_features", "250"},
+                     {"frontend.min_distance_px", "10"},
+                     {"frontend.unstable_radius_px", "10"},
+                     {"backend.rate_hz", "0.0"},
+                     {"backend.keyframe_min_shared", "0.7"},
+                     {"backend.depth.min_m", "0.4"},
+                     {"backend.depth.max_m", "10.0"}}));
 }
 
 TEST(ConfigOverlays, StillpointChangesWhatMeasurementsShowedToBeBetter) {
