@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/store/line_reader.h"
+#include "bench/store/csv_rows.h"
 
 namespace stillpoint {
 namespace {
@@ -12,17 +12,17 @@ constexpr std::string_view kHeader =
     "frame,t_ns,status,tracked_features,window_landmarks,depth_landmarks,dynamic_features,solver_iterations,"
     "keyframe,reset";
 
-FrameCounters frame_of(const LineReader& reader, std::string_view text) {
+FrameCounters frame_of(const CsvRows& rows, std::string_view text) {
   FrameCounters frame;
-  frame.frame = reader.number(cut_front(text, ','));
-  frame.t_ns = reader.number(cut_front(text, ','));
+  frame.frame = rows.number(cut_front(text, ','));
+  frame.t_ns = rows.number(cut_front(text, ','));
   frame.status = std::string(cut_front(text, ','));
   for (std::int64_t* value : {&frame.tracked_features, &frame.window_landmarks, &frame.depth_landmarks,
                               &frame.dynamic_features, &frame.solver_iterations}) {
-    *value = reader.number(cut_front(text, ','));
+    *value = rows.number(cut_front(text, ','));
   }
-  frame.keyframe = reader.number(cut_front(text, ',')) != 0;
-  frame.reset = reader.number(text) != 0;
+  frame.keyframe = rows.number(cut_front(text, ',')) != 0;
+  frame.reset = rows.number(text) != 0;
   return frame;
 }
 
@@ -41,8 +41,8 @@ std::string counter_text(std::span<const FrameCounters> frames) {
 
 std::vector<FrameCounters> parse_counters(std::string_view text, const std::string& place) {
   std::vector<FrameCounters> frames;
-  LineReader reader{.place = place, .header = kHeader};
-  reader.for_each_row(text, [&](std::string_view row) { frames.push_back(frame_of(reader, row)); });
+  CsvRows rows{.place = place, .header = kHeader};
+  rows.for_each_row(text, [&](std::string_view row) { frames.push_back(frame_of(rows, row)); });
   return frames;
 }
 

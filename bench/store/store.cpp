@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "bench/store/counter_text.h"
-#include "bench/store/line_reader.h"
+#include "bench/store/csv_rows.h"
 #include "bench/store/schema.h"
 #include "bench/store/timing_text.h"
 #include "core/base/error.h"

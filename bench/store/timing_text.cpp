@@ -3,19 +3,19 @@
 
 #include <fmt/format.h>
 
-#include "bench/store/line_reader.h"
+#include "bench/store/csv_rows.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr std::string_view kHeader = "frame,module,ns,calls";
 
-TimingSample sample_of(const LineReader& reader, std::string_view text) {
+TimingSample sample_of(const CsvRows& rows, std::string_view text) {
   TimingSample sample;
-  sample.frame = reader.number(cut_front(text, ','));
+  sample.frame = rows.number(cut_front(text, ','));
   sample.module = std::string(cut_front(text, ','));
-  sample.ns = reader.number(cut_front(text, ','));
-  sample.calls = reader.number(text);
+  sample.ns = rows.number(cut_front(text, ','));
+  sample.calls = rows.number(text);
   return sample;
 }
 
@@ -31,8 +31,8 @@ std::string timing_text(std::span<const TimingSample> samples) {
 
 std::vector<TimingSample> parse_timings(std::string_view text, const std::string& place) {
   std::vector<TimingSample> samples;
-  LineReader reader{.place = place, .header = kHeader};
-  reader.for_each_row(text, [&](std::string_view row) { samples.push_back(sample_of(reader, row)); });
+  CsvRows rows{.place = place, .header = kHeader};
+  rows.for_each_row(text, [&](std::string_view row) { samples.push_back(sample_of(rows, row)); });
   return samples;
 }
 

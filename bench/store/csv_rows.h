@@ -20,7 +20,7 @@ inline std::string_view cut_front(std::string_view& text, char separator) {
 }
 
 /// A struct for the sake of its place.
-struct LineReader {
+struct CsvRows {
   const std::string& place;
   std::string_view header;  ///< the columns that are expected
   long line = 1;
