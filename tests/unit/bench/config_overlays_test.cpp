@@ -52,6 +52,12 @@ TEST(ConfigOverlays, AblationsOfTheRecognitionChangeOneKeyEach) {
   expect_one_change("wo_missed_detection", {"dynamic.missed_detection", "false"});
 }
 
+TEST(ConfigOverlays, DepthBandGivesTheMaskOfStillpoint) {
+  EXPECT_EQ(changes("dynamic_vins", "depth_band"),
+            (Entries{{"dynamic.mask", "\"depth_band\""}, {"dynamic.epsilon_m", "0.4"}}));
+  EXPECT_EQ(changes("stillpoint", "depth_band"), Entries{});
+}
+
 TEST(ConfigOverlays, VoUsesNoImuAndHoldsOnByFeatures) {
   EXPECT_EQ(changes("stillpoint", "vo"),
             (Entries{{"imu.enabled", "false"}, {"backend.keyframe_min_shared", "0.7"}}));
