@@ -135,7 +135,7 @@ class PlanRunner {
     ProcessSpec spec = system_of(run).command(request_of(run, folder));
     spec.time_limit_s = plan.time_limit_s;
     if (plan.memory_limit_mb > 0) spec.memory_limit_bytes = std::int64_t{plan.memory_limit_mb} << 20;
-    spec.cores = processors_of(plan.cores);
+    if (!plan.cores.empty()) spec.cores = processors_of(plan.cores);  // else as the system asks
     return spec;
   }
 
