@@ -25,11 +25,12 @@ class Instructions : public testing::Test {
 };
 
 /// Stages of a short profile into a folder of that name.
-json counted(const TemporaryFolder& folder, const std::string& name, const ProgramOptions& options) {
+json counted(const TemporaryFolder& folder, const std::string& name, const ProgramOptions& options,
+             const std::string& variant = "") {
   const fs::path out = folder.path() / name;
-  const ProgramResult result = run_program(
-      {"profile", rendered_sequence().string(), "--instructions", "--max-frames", "3", "--out", out.string()},
-      options);
+  const ProgramResult result = run_program({"profile", rendered_sequence().string(), "--instructions",
+                                            "--max-frames", "3", "--out", out.string(), "--variant", variant},
+                                           options);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return json::parse(std::ifstream(out / "instructions.json")).at("stages");
 }
@@ -44,20 +45,25 @@ TEST_F(Instructions, AreTheSameToTheDigitInTwoRuns) {
   EXPECT_GT(first.at("tracking"), 1'000'000);  // three pictures of 320x240, each read at least once
 }
 
-TEST_F(Instructions, OfAPlanAreStoredAndCompared) {
-  const TemporaryFolder folder;
-  const fs::path plan = folder.write(
-      "plan.toml",
-      "kind = \"instructions\"\nmax_frames = 15\nvariants = [\"stillpoint\"]\n[recorded]\nsequences = [\"" +
-          rendered_sequence().filename().string() + "\"]\n");
-  const std::string store = (folder.path() / "store.sqlite").string();
+/// The store of a plan of one run.
+std::string store_of_plan(const TemporaryFolder& folder, const std::string& variant, int pictures) {
+  const fs::path plan =
+      folder.write("plan.toml", "kind = \"instructions\"\nmax_frames = " + std::to_string(pictures) +
+                                    "\nvariants = [\"" + variant + "\"]\n[recorded]\nsequences = [\"" +
+                                    rendered_sequence().filename().string() + "\"]\n");
+  std::string store = (folder.path() / "store.sqlite").string();
   ProgramOptions options;
   options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()};
-  ASSERT_EQ(run_program({"bench", plan.string(), "--store", store, "--out", (folder.path() / "o").string()},
-                        options)
-                .exit_code,
-            0);
-  const StoredRun run = Store(store).runs().front();
+  const ProgramResult result = run_program(
+      {"bench", plan.string(), "--store", store, "--out", (folder.path() / "o").string()}, options);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return store;
+}
+
+TEST_F(Instructions, OfAPlanAreStoredAndCompared) {
+  const TemporaryFolder folder;
+  const std::string store = store_of_plan(folder, "stillpoint", 15);
+  const StoredRun run = Store(store).runs().at(0);
   EXPECT_GT(metric_value(run, "instructions").value_or(0.0), 1e6);
   EXPECT_TRUE(run.costs.empty());  // times under valgrind say nothing
   EXPECT_FALSE(metric_value(run, "process_cpu_s"));
@@ -68,6 +74,16 @@ TEST_F(Instructions, OfAPlanAreStoredAndCompared) {
   const ProgramResult same = run_program({"compare", baseline, store});
   EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
   EXPECT_NE(same.out.find("instructions"), std::string::npos) << same.out;
+}
+
+/// A library that shares its work among threads would hide what the others execute from its stage.
+TEST_F(Instructions, OfAPlanAreThoseOfAProfile) {
+  constexpr const char* kOpenCvTracker = "vo+dynamic_vins";
+  const TemporaryFolder folder;
+  const StoredRun run = Store(store_of_plan(folder, kOpenCvTracker, 3)).runs().at(0);
+  const double of_plan = metric_value(run, "instructions_tracking").value_or(0.0);
+  const double of_profile = counted(folder, "p", {}, kOpenCvTracker).at("tracking");
+  EXPECT_NEAR(of_plan / of_profile, 1.0, 0.002);  // other arguments, another heap
 }
 
 TEST_F(Instructions, ThatGrowAreFoundByTheGate) {
