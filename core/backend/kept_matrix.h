@@ -59,7 +59,9 @@ class KeptMatrix : public Eigen::Map<Plain> {
     ::new (static_cast<Base*>(this)) Base(memory_.data(), rows, cols);
   }
 
-  std::vector<typename Plain::Scalar> memory_;
+  /// Aligned as Eigen's own: where a vectorised loop begins, and so how a sum rounds, must not depend on the
+  /// heap.
+  std::vector<typename Plain::Scalar, Eigen::aligned_allocator<typename Plain::Scalar>> memory_;
 };
 
 using KeptVector = KeptMatrix<Eigen::VectorXd>;

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <memory>
+#include <vector>
+
 namespace stillpoint {
 namespace {
 
@@ -16,6 +20,15 @@ TEST(KeptMatrix, TakesTheSizeOfWhatIsAssignedInTheMemoryThatItHas) {
   kept.resize(5, 4);
   EXPECT_EQ(kept.data(), memory);
   EXPECT_EQ(kept.rows(), 5);
+}
+
+TEST(KeptMatrix, IsAlignedAsEigensOwnWhateverTheHeap) {
+  std::vector<std::unique_ptr<char[]>> between;
+  for (std::size_t size = 8; size < 200; size += 16) {
+    between.push_back(std::make_unique<char[]>(size));
+    const Kept kept = Eigen::MatrixXd::Constant(3, 3, 1.0);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(kept.data()) % EIGEN_MAX_ALIGN_BYTES, 0u);
+  }
 }
 
 TEST(KeptMatrix, CopiesAreOfTheirOwn) {
