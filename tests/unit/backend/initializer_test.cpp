@@ -80,7 +80,7 @@ Window of_unknown_scale(Window window, double metres) {
 }
 
 TEST(Initializer, FindsTheScaleOfAMonocularWindow) {
-  const Pose T_visual_w{exp_so3({0.7, -0.3, 0.4}), {}};
+  const Pose T_visual_w{exp_so3({0.7, -0.3, 0.4}), Eigen::Vector3d::Zero()};
   const Window window = of_unknown_scale(exact_window(T_visual_w, 11, 0.1), 2.5);
   const std::optional<InertialAlignment> alignment = align_with_imu(window, 9.81, monocular());
   ASSERT_TRUE(alignment);
