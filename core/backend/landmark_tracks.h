@@ -12,8 +12,9 @@ namespace stillpoint {
 /// @param frame features by rising id
 void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConfig& config, Window& window);
 
-/// Whether the frame before the newest should stay in the window: it sees few old landmarks, or moved enough
-/// against its predecessor, or that one is long past. Qin et al. 2018, Sec. IV-A.
+/// Whether the frame before the newest should stay in the window: its predecessor, the last keyframe, shares
+/// few still landmarks with the newest, or it moved enough against that one, or that one is long past.
+/// Qin et al. 2018, Sec. IV-A; the share is our own.
 [[nodiscard]] bool is_second_newest_keyframe(const Window& window, const BackendConfig& config,
                                              double focal_px);
 
