@@ -4,46 +4,49 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "datasets/detections_file.h"
 #include "datasets/formats/formats.h"
-#include "datasets/image_io.h"
-#include "datasets/rig_file.h"
+#include "datasets/io/detections_file.h"
+#include "datasets/io/image_io.h"
+#include "datasets/io/rig_file.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
-const SequenceFormat& find_format(const std::filesystem::path& folder, const std::string& wanted) {
+const SequenceFormat& find_format(const std::filesystem::path& folder, const std::string& requested) {
   std::string names;
-  std::string marks;
+  std::string signatures;
   for (const SequenceFormat* const format : sequence_formats()) {
-    if (wanted.empty() ? format->recognise(folder) : format->name == wanted) return *format;
+    if (requested.empty() ? format->recognize(folder) : format->name == requested) return *format;
     names += (names.empty() ? "" : ", ") + std::string(format->name);
-    marks += "; " + std::string(format->name) + " has " + std::string(format->mark);
+    signatures += "; " + std::string(format->name) + " has " + std::string(format->signature);
   }
-  if (!wanted.empty()) throw InputError("format \"" + wanted + "\"", "is not known; known are " + names);
-  throw InputError(folder.string(), "is no sequence of a known format" + marks);
+  if (!requested.empty()) {
+    throw InputError("unknown format \"" + requested + "\"; expected one of: " + names);
+  }
+  throw InputError(folder.string(), "is not a sequence of a supported format" + signatures);
 }
 
-/// The folder without a trailing slash or dot, so that it has a name.
-std::filesystem::path named_folder(const std::filesystem::path& folder) {
+/// Absolute path of the folder without a trailing slash or dot, so that `filename()` is the sequence name.
+std::filesystem::path normalized_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw InputError(folder.string(), "no such folder");
   }
-  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
-  return whole.has_filename() ? whole : whole.parent_path();
+  const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-void override_rig(SequenceContent& content, const std::filesystem::path& wanted) {
-  const std::filesystem::path own = content.info.folder / "rig.toml";
-  const std::filesystem::path file = wanted.empty() && std::filesystem::exists(own) ? own : wanted;
+/// Applies the requested rig file, or else the rig.toml of the folder if there is one.
+void override_rig(SequenceContent& content, const std::filesystem::path& requested) {
+  const std::filesystem::path local = content.info.folder / "rig.toml";
+  const std::filesystem::path file = requested.empty() && std::filesystem::exists(local) ? local : requested;
   if (!file.empty()) {
     const OverriddenRig overridden = apply_rig_file(file, content.info.rig);
     content.info.rig = overridden.rig;
     content.extrinsic_known |= overridden.has_extrinsic;
     content.info.notes.push_back("calibration: overridden by " + file.string());
-  } else if (!content.calibration_assumed.empty()) {
-    content.info.notes.push_back(content.calibration_assumed);
+  } else if (!content.assumed_calibration_note.empty()) {
+    content.info.notes.push_back(content.assumed_calibration_note);
   }
 }
 
@@ -53,11 +56,10 @@ void check_rig(const SequenceContent& content) {
   if (camera.width <= 0 || camera.height <= 0 || camera.fx <= 0.0 || camera.fy <= 0.0) {
     throw InputError(
         folder,
-        "the camera's calibration is unknown; add a rig.toml with [camera] width, height, fx, fy, cx, cy");
+        "the camera calibration is missing; add a rig.toml with [camera] width, height, fx, fy, cx, cy");
   }
   if (content.info.rig.has_imu && !content.extrinsic_known) {
-    throw InputError(
-        folder, "has inertial data but nothing says where the IMU sits; add a rig.toml with [imu] T_b_c");
+    throw InputError(folder, "has IMU data but no camera-IMU extrinsic; add a rig.toml with [imu] T_b_c");
   }
 }
 
@@ -65,11 +67,11 @@ std::string span_text(Timestamp first, Timestamp last) {
   return std::to_string(to_seconds(first)) + " to " + std::to_string(to_seconds(last)) + " s";
 }
 
-void require_overlap(const SequenceInfo& info, const std::string& what, Timestamp first, Timestamp last) {
+void require_overlap(const SequenceInfo& info, const std::string& stream, Timestamp first, Timestamp last) {
   if (first <= info.frame_times.back() && last >= info.frame_times.front()) return;
-  throw InputError(info.folder.string(), what + " covers " + span_text(first, last) + ", the pictures " +
+  throw InputError(info.folder.string(), stream + " covers " + span_text(first, last) + ", the images " +
                                              span_text(info.frame_times.front(), info.frame_times.back()) +
-                                             ": no overlap in time; are they of one recording?");
+                                             ": no overlap in time; are they of the same recording?");
 }
 
 void check_overlap(const SequenceInfo& info, FaultLog& faults) {
@@ -82,10 +84,10 @@ void check_overlap(const SequenceInfo& info, FaultLog& faults) {
   });
 }
 
-void require_size(const std::filesystem::path& file, const cv::Mat& picture, const Camera& camera) {
-  if (picture.cols == camera.width && picture.rows == camera.height) return;
-  throw InputError(file.string(), "is " + std::to_string(picture.cols) + "x" + std::to_string(picture.rows) +
-                                      " where the calibration says " + std::to_string(camera.width) + "x" +
+void require_size(const std::filesystem::path& file, const cv::Mat& image, const Camera& camera) {
+  if (image.cols == camera.width && image.rows == camera.height) return;
+  throw InputError(file.string(), "is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
+                                      ", but the calibration is for " + std::to_string(camera.width) + "x" +
                                       std::to_string(camera.height) + "; correct [camera] in rig.toml");
 }
 
@@ -101,7 +103,7 @@ cv::Mat load_depth(const SequenceContent& content, const std::filesystem::path& 
   return register_depth(depth, rig.depth_units_per_m, *content.depth_camera, rig.camera);
 }
 
-/// Pictures on disk, decoded when asked for.
+/// Decodes the image files of a folder on demand.
 class FolderStream : public SensorStream {
  public:
   explicit FolderStream(SequenceContent content) : content_(std::move(content)) {}
@@ -109,19 +111,19 @@ class FolderStream : public SensorStream {
   [[nodiscard]] Frame load_frame(std::size_t index) const override { return decode_frame(content_, index); }
   [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t index) const override {
     const std::filesystem::path& folder = content_.info.folder;
-    const std::filesystem::path picture = content_.pictures[index].color.filename();
+    const std::filesystem::path name = content_.frame_files[index].color.filename();
     for (const char* kind : {"labels", "motion"}) {
-      if (!std::filesystem::exists(folder / kind / picture)) return std::nullopt;
+      if (!std::filesystem::exists(folder / kind / name)) return std::nullopt;
     }
-    return MotionLabels{.object = read_picture(folder / "labels" / picture),
-                        .speed_cm_per_s = read_picture(folder / "motion" / picture)};
+    return MotionLabels{.object = read_image(folder / "labels" / name),
+                        .speed_cm_per_s = read_image(folder / "motion" / name)};
   }
 
  private:
   SequenceContent content_;
 };
 
-std::vector<DetectionSet> boxes_if_there(const std::filesystem::path& file, FaultLog& faults) {
+std::vector<DetectionSet> read_optional_boxes(const std::filesystem::path& file, FaultLog& faults) {
   return std::filesystem::exists(file) ? read_detections(file, faults) : std::vector<DetectionSet>{};
 }
 
@@ -129,12 +131,12 @@ std::vector<DetectionSet> boxes_if_there(const std::filesystem::path& file, Faul
 
 SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOptions& options,
                               FaultLog& faults) {
-  const std::filesystem::path whole = named_folder(folder);
-  const SequenceFormat& format = find_format(whole, options.format);
-  SequenceContent content = format.read(whole, faults);
+  const std::filesystem::path root = normalized_folder(folder);
+  const SequenceFormat& format = find_format(root, options.format);
+  SequenceContent content = format.read(root, faults);
   content.info.format = format.name;
-  content.info.detections = boxes_if_there(whole / "detections.txt", faults);
-  content.info.true_boxes = boxes_if_there(whole / "true_boxes.txt", faults);
+  content.info.detections = read_optional_boxes(root / "detections.txt", faults);
+  content.info.true_boxes = read_optional_boxes(root / "true_boxes.txt", faults);
   override_rig(content, options.rig_file);
   check_rig(content);
   check_overlap(content.info, faults);
@@ -142,15 +144,15 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
 }
 
 Frame decode_frame(const SequenceContent& content, std::size_t index) {
-  STILLPOINT_CHECK(index < content.pictures.size());
-  const PictureFiles& files = content.pictures[index];
-  const cv::Mat picture = read_picture(files.color);
-  require_size(files.color, picture, content.info.rig.camera);
+  STILLPOINT_CHECK(index < content.frame_files.size());
+  const FrameFiles& files = content.frame_files[index];
+  const cv::Mat image = read_image(files.color);
+  require_size(files.color, image, content.info.rig.camera);
   Frame frame;
   frame.id = static_cast<std::int64_t>(index);
   frame.t = content.info.frame_times[index];
-  frame.gray = to_gray(picture);
-  if (picture.channels() == 3) frame.color = picture;
+  frame.gray = to_gray(image);
+  if (image.channels() == 3) frame.color = image;
   if (!files.depth.empty()) frame.depth = load_depth(content, files.depth);
   frame.depth_units_per_m = content.info.rig.depth_units_per_m;
   return frame;
@@ -161,4 +163,4 @@ std::unique_ptr<SensorStream> open_sequence(const std::filesystem::path& folder,
   return std::make_unique<FolderStream>(read_sequence(folder, options, strict));
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,11 +24,11 @@ void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);
   out << text;
   out.close();
-  if (!out) throw InputError(file.string(), "cannot be written; free space or name another folder");
+  if (!out) throw InputError(file.string(), "cannot be written; free disk space or choose another folder");
 }
 
-/// Lets `fill` write into a folder that takes its name when all is there.
-void write_whole(const fs::path& folder, const std::function<void(const fs::path&)>& fill) {
+/// Calls `fill` on a temporary folder, then renames it to `folder`.
+void write_atomically(const fs::path& folder, const std::function<void(const fs::path&)>& fill) {
   const fs::path unfinished = folder.string() + "." + std::to_string(getpid());
   try {
     fs::create_directories(unfinished);
@@ -37,7 +37,7 @@ void write_whole(const fs::path& folder, const std::function<void(const fs::path
   } catch (const std::exception& error) {
     std::error_code ignored;
     fs::remove_all(unfinished, ignored);
-    if (fs::is_directory(folder)) return;  // another process was faster: its export is the same
+    if (fs::is_directory(folder)) return;  // a concurrent process has finished the same export
     throw InputError(folder.string(), std::string("cannot be exported: ") + error.what());
   }
 }
@@ -76,13 +76,13 @@ std::string pose_text(const Pose& pose) {
                      pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w());
 }
 
-std::string inertial_row(const ImuSample& sample, char separator) {
+std::string imu_row(const ImuSample& sample, char separator) {
   return fmt::format("{0}{6}{1:.17g}{6}{2:.17g}{6}{3:.17g}{6}{4:.17g}{6}{5:.17g}", sample.gyro_b.x(),
                      sample.gyro_b.y(), sample.gyro_b.z(), sample.accel_b.x(), sample.accel_b.y(),
                      sample.accel_b.z(), separator);
 }
 
-void write_tum_pictures(const SensorStream& stream, const fs::path& folder) {
+void write_tum_images(const SensorStream& stream, const fs::path& folder) {
   fs::create_directories(folder / "rgb");
   fs::create_directories(folder / "depth");
   std::string colors;
@@ -111,11 +111,11 @@ void write_tum_texts(const SequenceInfo& info, const fs::path& folder) {
   if (info.imu.empty()) return;
   std::string samples = "# timestamp wx wy wz ax ay az\n";
   for (const ImuSample& sample : info.imu)
-    samples += seconds_text(sample.t) + " " + inertial_row(sample, ' ') + "\n";
+    samples += seconds_text(sample.t) + " " + imu_row(sample, ' ') + "\n";
   write_text(folder / "imu.txt", samples);
 }
 
-void write_euroc_pictures(const SensorStream& stream, const fs::path& folder) {
+void write_euroc_images(const SensorStream& stream, const fs::path& folder) {
   fs::create_directories(folder / "data");
   std::string list = "#timestamp [ns],filename\n";
   for (std::size_t i = 0; i < stream.info().frame_times.size(); ++i) {
@@ -150,7 +150,7 @@ void write_euroc_texts(const SequenceInfo& info, const fs::path& mav) {
   write_euroc_sensors(info.rig, mav);
   std::string samples = "#timestamp [ns],w_x,w_y,w_z [rad s^-1],a_x,a_y,a_z [m s^-2]\n";
   for (const ImuSample& sample : info.imu)
-    samples += fmt::format("{},{}\n", sample.t.ns, inertial_row(sample, ','));
+    samples += fmt::format("{},{}\n", sample.t.ns, imu_row(sample, ','));
   write_text(mav / "imu0" / "data.csv", samples);
   if (info.ground_truth.trajectory.poses.empty()) return;
   const fs::path truth = mav / "state_groundtruth_estimate0";
@@ -170,8 +170,8 @@ void write_euroc_texts(const SequenceInfo& info, const fs::path& mav) {
 }  // namespace
 
 void export_tum(const SensorStream& stream, const fs::path& folder) {
-  write_whole(folder, [&](const fs::path& unfinished) {
-    write_tum_pictures(stream, unfinished);
+  write_atomically(folder, [&](const fs::path& unfinished) {
+    write_tum_images(stream, unfinished);
     write_tum_texts(stream.info(), unfinished);
   });
 }
@@ -179,12 +179,12 @@ void export_tum(const SensorStream& stream, const fs::path& folder) {
 void export_euroc(const SensorStream& stream, const fs::path& folder) {
   if (stream.info().imu.empty()) {
     throw InputError(stream.info().folder.string(),
-                     "has no IMU, which the EuRoC layout needs; use layout = \"tum\"");
+                     "has no IMU, which the EuRoC layout requires; use layout = \"tum\"");
   }
-  write_whole(folder, [&](const fs::path& unfinished) {
-    write_euroc_pictures(stream, unfinished / "mav0" / "cam0");
+  write_atomically(folder, [&](const fs::path& unfinished) {
+    write_euroc_images(stream, unfinished / "mav0" / "cam0");
     write_euroc_texts(stream.info(), unfinished / "mav0");
   });
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

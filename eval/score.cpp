@@ -4,7 +4,7 @@
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 std::optional<Timestamp> start_of(const Trajectory& gt, const ScoreOptions& options) {
@@ -38,4 +38,4 @@ Score score(const Trajectory& gt, const Trajectory& est, const ScoreOptions& opt
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

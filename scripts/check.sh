@@ -1,17 +1,35 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# What must pass before a commit: format, the ground rules, build, tests, sanitizers, and clang-tidy on the .cpp files
-# that differ from the branch or commit given (default: main).
+# Checks that must pass before a commit: format, repository rules, build, tests, sanitizers, and clang-tidy on the .cpp
+# files that differ from BASE (default: main).
+#   scripts/check.sh [BASE]
+#   scripts/check.sh --deep   the fast, pipelined and real-time tests in a debug build and under the thread sanitizer
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+# deep PRESET: builds the fast tests and the tests of the threaded runners, and runs them
+deep() {
+  step "$1 build"
+  configure "$1"
+  build "$1" fast_tests threaded_tests
+  step "fast and threaded tests of the $1 build"
+  ctest --preset "$1" --label-regex '^(fast|threaded)$' --parallel "$(nproc)"
+}
+if [[ "${1:-}" == --deep ]]; then
+  deep debug
+  TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/scripts/tsan_suppressions.txt" deep tsan
+  exit 0
+fi
 base="${1:-main}"
 
 step "format"
 scripts/format.sh --check
 
-step "layers, paper map, style"
+step "layers, paper map, style, language, one-definition rule"
 scripts/layers.sh
 scripts/paper_map.sh
 scripts/style.sh
+scripts/language.sh
+scripts/odr.sh
 
 scripts/test.sh
 

@@ -29,14 +29,14 @@ declare -A may_include=(
 
 # header prefix (extended regex) -> the files that may include it (extended regex)
 libraries=(
-  '<OpenImageIO/      ^datasets/image_io\.cpp$'
+  '<OpenImageIO/      ^datasets/io/image_io\.cpp$'
   '<embree3/          ^datasets/synthetic/'
   '<hwy/              ^core/frontend/(fast|patch)_kernel.cpp'
   '<ceres/            ^core/(backend|loop)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/(backend|loop)/'
   '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/(picture_annotator\.|(raster_drawing|worst_pictures)\.cpp$|video_file\.)'
-  '<opencv2/calib3d[./]  ^core/(frontend|dynamic|detector|loop)/|^core/backend/relative_pose\.cpp$'
-  '<opencv2/videoio[./]  ^reports/video_file\.cpp$'
+  '<opencv2/calib3d[./]  ^core/(frontend|dynamic|detector|loop)/|^core/backend/start/relative_pose\.cpp$'
+  '<opencv2/videoio[./]  ^reports/frames/video_file\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
   '<(sqlite3|zstd)    ^bench/store/'
   '<microhttpd       ^bench/serve/'

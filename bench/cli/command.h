@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One subcommand as data: what it is called, what it takes, what it does. command_line.cpp makes it real.
+/// Declarative description of a subcommand. command_line.cpp converts it to CLI11 objects.
 #pragma once
 
 #include <functional>
@@ -7,10 +7,10 @@
 #include <variant>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Where the value of an option goes; its type says what is accepted. A bool is a flag without a value, a
-/// list an option that may be given several times.
+/// Destination of an option's value; its type determines the accepted values. A bool is a flag without a
+/// value, a vector is an option that may be repeated.
 using OptionTarget = std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*>;
 
 /// An option (`--out`) or, when its name does not begin with a dash, a required argument (`SEQ`).
@@ -18,17 +18,18 @@ struct Option {
   std::string name;
   std::string help;
   OptionTarget target;
+  std::string hidden_alias = {};  ///< former name of a vector option; accepted, not listed by --help
 };
 
-/// A subcommand. Targets of its options belong to the state that `action` holds, usually a shared struct.
+/// A subcommand. `action` owns the option targets, usually through a captured shared_ptr to a struct.
 struct Command {
   std::string name;
   std::string summary;  ///< one line
-  std::string example;  ///< a command line that works, without the program's name
+  std::string example;  ///< a valid command line, without the program name
   std::vector<Option> options;
-  std::function<int()> action;  ///< runs after parsing, unless a subcommand was named; returns the exit code;
-                                ///< may be empty then
+  std::function<int()> action;  ///< called after parsing if no subcommand was given; returns the exit code.
+                                ///< May be empty for commands that require a subcommand
   std::vector<Command> subcommands;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

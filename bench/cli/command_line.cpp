@@ -11,10 +11,19 @@
 #include "bench/record/build_info.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-/// @param optional whether even arguments may be absent: a subcommand may take their place
+/// Registers `alias` as an unlisted spelling of a vector option. CLI11 processes options in their order of
+/// declaration, so the values of the alias follow those of the option.
+void add_hidden_alias(CLI::App& app, const std::string& alias, std::vector<std::string>& target) {
+  const auto append = [&target](const std::vector<std::string>& values) {
+    target.insert(target.end(), values.begin(), values.end());
+  };
+  app.add_option_function<std::vector<std::string>>(alias, append)->allow_extra_args(false)->group("");
+}
+
+/// @param optional whether positional arguments may be omitted, as a subcommand may be given instead
 void add_option(CLI::App& app, const Option& option, bool optional) {
   const auto add = [&](auto* target) {
     CLI::Option* added = nullptr;
@@ -27,6 +36,7 @@ void add_option(CLI::App& app, const Option& option, bool optional) {
     if (positional && !optional) added->required();
     if constexpr (std::is_same_v<decltype(target), std::vector<std::string>*>) {
       if (!positional) added->allow_extra_args(false);
+      if (!option.hidden_alias.empty()) add_hidden_alias(app, option.hidden_alias, *target);
     }
   };
   std::visit(add, option.target);
@@ -51,25 +61,23 @@ void log_to_stderr(bool verbose) {
   spdlog::set_default_logger(logger);
 }
 
-/// Help and version go to stdout and are a success; anything else is wrong usage.
+/// Prints help or version to stdout and returns 0; any other parse result is a usage error.
 int finish_parsing(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);
-  std::string problem = error.what();
-  for (char& letter : problem) letter = letter == '\n' ? ' ' : letter;
-  std::cerr << "stillpoint: error: command line: " << problem << "; try --help\n";
+  std::string message = error.what();
+  for (char& letter : message) letter = letter == '\n' ? ' ' : letter;
+  std::cerr << "stillpoint: error: command line: " << message << "; try --help\n";
   return kExitBadInput;
 }
 
 }  // namespace
 
 int run_command_line(int argc, char** argv, const std::vector<Command>& commands) {
-  CLI::App app(
-      "RGB-D inertial odometry for dynamic scenes, and the benchmark that proves what its parts are worth",
-      "stillpoint");
+  CLI::App app("RGB-D inertial odometry for dynamic scenes, and its benchmark harness", "stillpoint");
   app.require_subcommand(1);
   app.set_version_flag("--version", build_info().version + " (" + build_info().git_commit + ")");
   bool verbose = false;
-  app.add_flag("-v,--verbose", verbose, "Log every frame");
+  app.add_flag("-v,--verbose", verbose, "Log each frame");
   app.parse_complete_callback([&verbose] { log_to_stderr(verbose); });
   int exit_code = kExitOk;
   for (const Command& command : commands) add_command(app, command, exit_code);
@@ -87,4 +95,4 @@ int run_command_line(int argc, char** argv, const std::vector<Command>& commands
   return exit_code;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -3,15 +3,15 @@
 
 #include <csignal>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-// The one global of the program: a signal handler can reach nothing else.
+// A global, as a signal handler has no other state. The only one of the program.
 volatile std::sig_atomic_t g_interrupted = 0;
 
-void note_signal(int) { g_interrupted = 1; }
+void on_signal(int) { g_interrupted = 1; }
 
-sigset_t interrupts() {
+sigset_t interrupt_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -21,9 +21,9 @@ sigset_t interrupts() {
 
 }  // namespace
 
-void watch_interrupts() {
+void install_interrupt_handlers() {
   struct sigaction action {};
-  action.sa_handler = note_signal;
+  action.sa_handler = on_signal;
   action.sa_flags = SA_RESETHAND;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
@@ -31,15 +31,15 @@ void watch_interrupts() {
 
 bool interrupt_requested() { return g_interrupted != 0; }
 
-void hold_interrupts() {
-  const sigset_t signals = interrupts();
+void block_interrupts() {
+  const sigset_t signals = interrupt_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
 
-void await_interrupt() {
-  const sigset_t signals = interrupts();
+void wait_for_interrupt() {
+  const sigset_t signals = interrupt_signals();
   int signal = 0;
   sigwait(&signals, &signal);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

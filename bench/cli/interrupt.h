@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Ctrl-C as a polite request: the first one is noted, the second one kills.
+/// Handling of SIGINT and SIGTERM: the first signal requests a stop, the second one terminates the process.
 #pragma once
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// From now on SIGINT and SIGTERM are noted, once each.
-void watch_interrupts();
+/// Installs one-shot handlers for SIGINT and SIGTERM that set a flag.
+void install_interrupt_handlers();
 
-/// True after a signal that `watch_interrupts` waits for.
+/// True once a handler of `install_interrupt_handlers` was called.
 [[nodiscard]] bool interrupt_requested();
 
-/// From now on SIGINT and SIGTERM wait for `await_interrupt`, in this thread and those that it starts.
-void hold_interrupts();
+/// Blocks SIGINT and SIGTERM in this thread and in threads created by it later.
+void block_interrupts();
 
-/// Returns at the first of them.
-void await_interrupt();
+/// Waits for SIGINT or SIGTERM, which must be blocked (`block_interrupts`).
+void wait_for_interrupt();
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -4,7 +4,7 @@
 #include "bench/cli/commands.h"
 
 int main(int argc, char** argv) {
-  using namespace stillpoint;
+  using namespace stillpoint::bench;
   return run_command_line(
       argc, argv,
       {run_command(), eval_command(), bench_command(), plan_command(), store_command(), stats_command(),

@@ -7,15 +7,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 constexpr std::chrono::milliseconds kRedrawInterval{100};
-constexpr const char* kWipe = "\r\033[K";
+constexpr const char* kClearLine = "\r\033[K";
 }  // namespace
 
-std::string span_text(double seconds) {
-  const auto whole = std::llround(seconds);
-  if (whole < 60) return fmt::format("{} s", whole);
+std::string duration_text(double seconds) {
+  const auto whole_seconds = std::llround(seconds);
+  if (whole_seconds < 60) return fmt::format("{} s", whole_seconds);
   const auto minutes = std::llround(seconds / 60.0);
   if (minutes < 60) return fmt::format("{} min", minutes);
   return fmt::format("{} h {} min", minutes / 60, minutes % 60);
@@ -28,18 +28,19 @@ ProgressLine::ProgressLine(std::string label, std::size_t total, std::string uni
       visible_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {}
 
-ProgressLine::~ProgressLine() { wipe(); }
+ProgressLine::~ProgressLine() { clear(); }
 
-void ProgressLine::wipe() const {
-  if (visible_) fmt::print(stderr, "{}", kWipe);
+void ProgressLine::clear() const {
+  if (visible_) fmt::print(stderr, "{}", kClearLine);
 }
 
 void ProgressLine::draw() const {
   if (!visible_) return;
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double rate = elapsed_s > 0.0 ? static_cast<double>(done_) / elapsed_s : 0.0;
-  const std::string rest = rate > 0.0 ? span_text(static_cast<double>(total_ - done_) / rate) : "?";
-  fmt::print(stderr, "{}{}: {} of {} {}, {:.3g}/s, {} left", kWipe, label_, done_, total_, unit_, rate, rest);
+  const std::string remaining = rate > 0.0 ? duration_text(static_cast<double>(total_ - done_) / rate) : "?";
+  fmt::print(stderr, "{}{}: {} of {} {}, {:.3g}/s, {} left", kClearLine, label_, done_, total_, unit_, rate,
+             remaining);
   std::fflush(stderr);
 }
 
@@ -51,4 +52,4 @@ void ProgressLine::update(std::size_t done) {
   draw();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

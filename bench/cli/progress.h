@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A line on the terminal that counts up and guesses the rest; silent where stderr is no terminal.
+/// Progress line on stderr with rate and estimated remaining time; no output if stderr is not a terminal.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <string>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 class ProgressLine {
  public:
-  /// @param unit what is counted, e.g. "frames"
+  /// @param unit of the counts, e.g. "frames"
   ProgressLine(std::string label, std::size_t total, std::string unit);
-  /// Wipes the line.
+  /// Clears the line.
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Redraws at most ten times a second.
+  /// Redraws at most 10 times per second.
   void update(std::size_t done);
 
-  /// Makes room for other lines.
-  void wipe() const;
+  /// Clears the line, so that other output can be printed; `draw` restores it.
+  void clear() const;
   void draw() const;
 
  private:
@@ -34,7 +34,7 @@ class ProgressLine {
   std::chrono::steady_clock::time_point drawn_;
 };
 
-/// A span for people: "50 s", "3 min", "2 h 5 min".
-[[nodiscard]] std::string span_text(double seconds);
+/// Human-readable duration: "50 s", "3 min", "2 h 5 min".
+[[nodiscard]] std::string duration_text(double seconds);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

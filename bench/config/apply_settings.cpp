@@ -9,12 +9,12 @@
 #include "bench/config/field_walk.h"
 #include "bench/config/spelling.h"
 #include "bench/plan/bench_plan.h"
-#include "bench/profile/board_file.h"
+#include "bench/profile/device_file.h"
 #include "bench/systems/external_system.h"
 #include "core/base/error.h"
-#include "core/pipeline/odometry_config.h"
+#include "core/config/odometry_config.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 InputError error_at(const Setting& setting, const std::string& problem) {
@@ -26,7 +26,6 @@ InputError bad_value(const Setting& setting, const std::string& problem) {
   return error_at(setting, fmt::format("\"{}\" {}", setting.key, problem));
 }
 
-/// The value as a T.
 template <class T>
 T value_as(const Setting& setting, const std::string& type) {
   if (const T* value = std::get_if<T>(&setting.value)) return *value;
@@ -35,11 +34,11 @@ T value_as(const Setting& setting, const std::string& type) {
 
 double number_within(double value, const Setting& setting, const Bounds& bounds) {
   if (value >= bounds.min && value <= bounds.max) return value;  // false for NaN
-  throw bad_value(setting, fmt::format("is {}, out of range; it must lie between {} and {}", value,
-                                       bounds.min, bounds.max));
+  throw bad_value(setting, fmt::format("is {}, out of range; it must be between {} and {}", value, bounds.min,
+                                       bounds.max));
 }
 
-/// Gives a member of any type the value of a setting.
+/// Assigns the value of a setting to a member of any supported type.
 struct Assign {
   const Setting& setting;
   const Bounds& bounds;
@@ -47,7 +46,7 @@ struct Assign {
   void operator()(bool& member) const { member = value_as<bool>(setting, "true or false"); }
 
   void operator()(int& member) const {
-    const std::int64_t value = value_as<std::int64_t>(setting, "a whole number");
+    const std::int64_t value = value_as<std::int64_t>(setting, "an integer");
     const Bounds representable{std::max(bounds.min, -2147483648.0), std::min(bounds.max, 2147483647.0)};
     member = static_cast<int>(number_within(static_cast<double>(value), setting, representable));
   }
@@ -66,8 +65,8 @@ struct Assign {
 
   void operator()(std::vector<int>& member) const {
     member.clear();
-    for (const double number : value_as<std::vector<double>>(setting, "a list of whole numbers")) {
-      if (number != std::floor(number)) throw bad_value(setting, "must be a list of whole numbers");
+    for (const double number : value_as<std::vector<double>>(setting, "a list of integers")) {
+      if (number != std::floor(number)) throw bad_value(setting, "must be a list of integers");
       member.push_back(static_cast<int>(number_within(number, setting, bounds)));
     }
   }
@@ -78,14 +77,14 @@ struct Assign {
     for (const auto& [value, name] : enum_names(Enum{})) {
       choices += fmt::format("{}\"{}\"", choices.empty() ? "" : ", ", name);
     }
-    const std::string typed = value_as<std::string>(setting, "one of " + choices);
+    const std::string text = value_as<std::string>(setting, "one of " + choices);
     for (const auto& [value, name] : enum_names(Enum{})) {
-      if (name == typed) {
+      if (name == text) {
         member = value;
         return;
       }
     }
-    throw bad_value(setting, fmt::format("is \"{}\"; it must be one of {}", typed, choices));
+    throw bad_value(setting, fmt::format("is \"{}\"; expected one of: {}", text, choices));
   }
 };
 
@@ -100,7 +99,7 @@ InputError unknown_key(const Setting& setting, const std::vector<std::string>& k
   const bool is_section = std::any_of(
       keys.begin(), keys.end(), [&](const std::string& key) { return key.starts_with(setting.key + "."); });
   if (is_section)
-    return bad_value(setting, "is a section, not a key; write [" + setting.key + "] and keys below it");
+    return bad_value(setting, "is a section, not a key; write [" + setting.key + "] followed by its keys");
   return error_at(setting, fmt::format("unknown key \"{}\"{}", setting.key, suggestion(setting.key, keys)));
 }
 
@@ -123,6 +122,6 @@ Config with_settings(Config config, std::span<const Setting> settings) {
 template OdometryConfig with_settings(OdometryConfig config, std::span<const Setting> settings);
 template BenchPlan with_settings(BenchPlan config, std::span<const Setting> settings);
 template ExternalSystem with_settings(ExternalSystem config, std::span<const Setting> settings);
-template BoardFile with_settings(BoardFile config, std::span<const Setting> settings);
+template DeviceFile with_settings(DeviceFile config, std::span<const Setting> settings);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Changes a config, or a plan, by settings from files and command lines.
+/// Applies settings from files and command lines to a config struct.
 #pragma once
 
 #include <span>
 
 #include "bench/config/setting.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// The struct with the settings applied in order; later ones win.
-/// @throws InputError with file, line and the nearest key for an unknown key, a wrong type, or a value out of
-/// range
-/// @tparam Config OdometryConfig, BenchPlan, ExternalSystem or BoardFile
+/// Returns the struct with the settings applied in order; later ones override earlier ones.
+/// @throws InputError with file and line for an unknown key (with the nearest key), a wrong type, or a value
+/// out of range
+/// @tparam Config OdometryConfig, BenchPlan, ExternalSystem or DeviceFile
 template <class Config>
 [[nodiscard]] Config with_settings(Config config, std::span<const Setting> settings);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -5,12 +5,12 @@
 #include <fmt/ranges.h>
 
 #include "bench/config/field_walk.h"
-#include "bench/record/content_hash.h"
+#include "bench/model/content_hash.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string toml_quoted(std::string_view text) {
   std::string result = "\"";
   for (const char letter : text) {
     if (letter == '"' || letter == '\\') result += '\\';
@@ -19,11 +19,11 @@ std::string quoted(std::string_view text) {
   return result + '"';
 }
 
-/// A value of any type as TOML writes it.
+/// Formats a value of any supported type in TOML syntax.
 struct TomlValue {
   std::string operator()(bool value) const { return value ? "true" : "false"; }
   std::string operator()(int value) const { return std::to_string(value); }
-  std::string operator()(const std::string& value) const { return quoted(value); }
+  std::string operator()(const std::string& value) const { return toml_quoted(value); }
 
   std::string operator()(double value) const {
     const std::string shortest = fmt::format("{}", value);
@@ -33,23 +33,23 @@ struct TomlValue {
 
   std::string operator()(const std::vector<std::string>& values) const {
     std::vector<std::string> elements;
-    for (const std::string& value : values) elements.push_back(quoted(value));
+    for (const std::string& value : values) elements.push_back(toml_quoted(value));
     return fmt::format("[{}]", fmt::join(elements, ", "));
   }
 
   template <ConfigEnum Enum>
   std::string operator()(Enum value) const {
     for (const auto& [candidate, name] : enum_names(value)) {
-      if (candidate == value) return quoted(name);
+      if (candidate == value) return toml_quoted(name);
     }
-    return quoted("?");
+    return toml_quoted("?");
   }
 };
 
-/// What a value may be, for the reference page.
+/// Describes the type of a value, or its choices, for the reference page.
 struct TypeText {
   std::string operator()(bool) const { return "true or false"; }
-  std::string operator()(int) const { return "whole number"; }
+  std::string operator()(int) const { return "integer"; }
   std::string operator()(double) const { return "number"; }
   std::string operator()(const std::string&) const { return "string"; }
   std::string operator()(const std::vector<std::string>&) const { return "list of strings"; }
@@ -57,7 +57,7 @@ struct TypeText {
   template <ConfigEnum Enum>
   std::string operator()(Enum value) const {
     std::vector<std::string> names;
-    for (const auto& [candidate, name] : enum_names(value)) names.push_back(quoted(name));
+    for (const auto& [candidate, name] : enum_names(value)) names.push_back(toml_quoted(name));
     return fmt::format("{}", fmt::join(names, ", "));
   }
 };
@@ -106,4 +106,4 @@ std::string config_reference() {
   return page;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

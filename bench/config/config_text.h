@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A config as text: every key with its value, for people, for manifests, and for comparison.
+/// Text form of a config: all keys with their values, for display, manifests and comparison.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "core/pipeline/odometry_config.h"
+#include "core/config/odometry_config.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// One key and its value as TOML writes it.
+/// One key and its value in TOML syntax.
 struct ConfigEntry {
   std::string key;
   std::string value;
   friend bool operator==(const ConfigEntry&, const ConfigEntry&) = default;
 };
 
-/// Every key in the fixed order of the field lists; numbers read back to the same bits.
+/// All keys in the order of the field lists; numbers are printed such that they are read back bit-exactly.
 [[nodiscard]] std::vector<ConfigEntry> config_entries(const OdometryConfig& config);
 
-/// The entries as a TOML text of dotted keys, one a line.
+/// The entries as TOML text with dotted keys, one per line.
 [[nodiscard]] std::string config_text(const OdometryConfig& config);
 
-/// Sixteen hexadecimal digits that change with any value of the config.
+/// Hash of all values of the config, as 16 hexadecimal digits.
 [[nodiscard]] std::string config_hash(const OdometryConfig& config);
 
 /// The entries of `changed` whose values differ from those of `parent`.
 [[nodiscard]] std::vector<ConfigEntry> config_difference(const OdometryConfig& parent,
                                                          const OdometryConfig& changed);
 
-/// The reference page of all keys: a Markdown table of key, type or choices, range and default.
+/// Reference page of all keys: a Markdown table of key, type or choices, range and default.
 [[nodiscard]] std::string config_reference();
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

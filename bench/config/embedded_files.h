@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Files of the sources, carried inside the program so that it works anywhere.
+/// Source files embedded in the executable, so that it does not depend on installed data files.
 #pragma once
 
 #include <span>
 #include <string_view>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct EmbeddedFile {
-  std::string_view path;  ///< from the root of the sources, e.g. "bench/configs/vo.toml"
+  std::string_view path;  ///< relative to the source root, e.g. "bench/configs/vo.toml"
   std::string_view text;
 };
 
-/// The TOML files of configs, plans, systems and published tables, in order of their paths.
+/// The TOML files of configs, plans, systems, devices and published tables, sorted by path.
 [[nodiscard]] std::span<const EmbeddedFile> embedded_files();
 
-/// The files of reports/web; defined in the library of the reports.
+/// The files of reports/web; defined in the reports library.
 [[nodiscard]] std::span<const EmbeddedFile> web_files();
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

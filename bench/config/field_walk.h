@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Walks every leaf of a config struct by its dotted key; see core/base/fields.h.
+/// Visits all leaf members of a config struct with their dotted keys; see core/base/fields.h.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 #include "core/base/fields.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 /// Inclusive range of a number.
 struct Bounds {
@@ -25,7 +25,7 @@ template <class T>
 concept ConfigSection = std::is_class_v<T> && !std::is_same_v<T, std::string> &&
                         !std::is_same_v<T, std::vector<std::string>> && !std::is_same_v<T, std::vector<int>>;
 
-/// Calls `leaf(key, member, bounds)` for every member that is no section, in the order of the field lists.
+/// Calls `leaf(key, member, bounds)` for every member that is not a section, in the order of the field lists.
 template <class Config, class Leaf>
 void walk_fields(Config& config, Leaf&& leaf, const std::string& prefix = "") {
   visit_fields(
@@ -40,4 +40,4 @@ void walk_fields(Config& config, Leaf&& leaf, const std::string& prefix = "") {
       config);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

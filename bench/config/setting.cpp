@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 std::string type_name(const toml::node& node) {
@@ -17,13 +17,13 @@ std::string type_name(const toml::node& node) {
   return name.str();
 }
 
-/// Reads the values of one file; a struct for the sake of the file's name.
+/// Converts the TOML nodes of one file.
 struct SettingReader {
-  std::string file;
+  std::string file;  ///< for error messages
 
   [[nodiscard]] InputError unsupported(const std::string& key, const toml::node& node) const {
     return {file, static_cast<long>(node.source().begin.line),
-            "\"" + key + "\" is of type " + type_name(node) +
+            "\"" + key + "\" has the unsupported type " + type_name(node) +
                 "; use true or false, a number, a string, or a list of strings or of numbers"};
   }
 
@@ -90,14 +90,14 @@ std::vector<Setting> parse_settings(std::string_view text, const std::string& fi
     return settings;
   } catch (const toml::parse_error& error) {
     throw InputError(file, static_cast<long>(error.source().begin.line),
-                     "not valid TOML: " + std::string(error.description()));
+                     "invalid TOML: " + std::string(error.description()));
   }
 }
 
 Setting parse_assignment(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw InputError("--set", "\"" + assignment + "\" is no assignment; write key=value");
+    throw InputError("--set", "\"" + assignment + "\" is not an assignment; write key=value");
   }
   const std::string key = assignment.substr(0, equals);
   const std::string value = assignment.substr(equals + 1);
@@ -109,4 +109,4 @@ Setting parse_assignment(const std::string& assignment) {
   return setting;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

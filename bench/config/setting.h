@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a TOML file says, taken apart into dotted keys with their values and places.
+/// A TOML file as a flat list of dotted keys with their values and source locations.
 #pragma once
 
 #include <cstdint>
@@ -8,27 +8,27 @@
 #include <variant>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 using SettingValue =
     std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>, std::vector<double>>;
 
-/// One `key = value`, and where it was written.
+/// One `key = value`, and its source location.
 struct Setting {
   std::string key;  ///< dotted, e.g. "frontend.grid.rows"
   SettingValue value;
-  std::string file;  ///< as the user knows it
-  long line = 0;     ///< from 1; 0 for a command line
+  std::string file;  ///< path or option, as shown in messages
+  long line = 0;     ///< from 1; 0 for the command line
 };
 
-/// Takes a TOML text apart, in the order of its lines.
+/// Parses a TOML text into settings, in the order of its lines.
 /// @param file name of the text in messages
-/// @throws InputError if the text is no TOML, or a value is neither bool, number, string nor list of strings
-/// or of numbers
+/// @throws InputError if the text is not valid TOML, or a value is not a bool, number, string, or list of
+/// strings or of numbers
 [[nodiscard]] std::vector<Setting> parse_settings(std::string_view text, const std::string& file);
 
-/// Takes `key=value` from a command line apart; a value that is no TOML is taken as a bare string.
+/// Parses a `key=value` argument of the command line; a value that is not valid TOML is read as a string.
 /// @throws InputError if there is no key or no `=`
 [[nodiscard]] Setting parse_assignment(const std::string& assignment);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 constexpr double kWrongLetter = 1.0;
 constexpr double kOmittedLetter = 0.1;
 }  // namespace
 
 double spelling_distance(std::string_view typed, std::string_view name) {
-  // Row i of the usual table: cost of turning the first i letters typed into each prefix of the name.
+  // Row i of the Levenshtein matrix: cost of transforming the first i typed letters into each prefix of the
+  // name.
   std::vector<double> row(name.size() + 1);
   for (std::size_t j = 0; j <= name.size(); ++j) row[j] = kOmittedLetter * static_cast<double>(j);
   for (std::size_t i = 1; i <= typed.size(); ++i) {
@@ -33,4 +34,4 @@ std::string suggestion(std::string_view typed, std::span<const std::string> name
   return nearest == names.end() ? std::string() : "; did you mean \"" + *nearest + "\"?";
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -10,29 +10,29 @@
 #include "bench/config/spelling.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the files of a family lie, and what one is called.
-struct FamilyPlace {
-  std::string root;
-  std::string kind;
+/// Folder of a kind of files, and its name in messages.
+struct KindInfo {
+  std::string folder;
+  std::string name;
 };
 
-FamilyPlace place_of(TomlFamily family) {
-  switch (family) {
-    case TomlFamily::kConfig:
+KindInfo info_of(TomlKind kind) {
+  switch (kind) {
+    case TomlKind::kConfig:
       return {"bench/configs/", "config"};
-    case TomlFamily::kPlan:
+    case TomlKind::kPlan:
       return {"bench/plans/", "plan"};
-    case TomlFamily::kSystem:
+    case TomlKind::kSystem:
       return {"bench/systems/", "system"};
-    case TomlFamily::kPublished:
+    case TomlKind::kPublished:
       return {"reports/published/", "published table"};
-    case TomlFamily::kBoard:
-      return {"bench/boards/", "board"};
+    case TomlKind::kDevice:
+      return {"bench/devices/", "device"};
   }
   return {};
 }
@@ -42,7 +42,7 @@ TomlSource read_file(const fs::path& path) {
   std::ostringstream text;
   text << file.rdbuf();
   if (!fs::is_regular_file(path) || !file) {
-    throw InputError(path.string(), "cannot be read; give the path of an existing TOML file");
+    throw InputError(path.string(), "cannot be read; specify the path of an existing TOML file");
   }
   return {path.string(), text.str(), false};
 }
@@ -54,39 +54,38 @@ std::optional<TomlSource> embedded_at(const std::string& path) {
   return std::nullopt;
 }
 
-/// True when `name` is the whole embedded name or its last part.
-bool names(const std::string& name, const std::string& embedded) {
+/// Whether `name` is the full embedded name or its last components.
+bool name_matches(const std::string& name, const std::string& embedded) {
   return embedded == name || embedded.ends_with("/" + name);
 }
 
 }  // namespace
 
-std::vector<std::string> embedded_names(TomlFamily family) {
-  const std::string root = place_of(family).root;
+std::vector<std::string> embedded_names(TomlKind kind) {
+  const std::string folder = info_of(kind).folder;
   std::vector<std::string> result;
   for (const EmbeddedFile& file : embedded_files()) {
-    if (!file.path.starts_with(root)) continue;
-    result.push_back(fs::path(file.path.substr(root.size())).replace_extension().string());
+    if (!file.path.starts_with(folder)) continue;
+    result.push_back(fs::path(file.path.substr(folder.size())).replace_extension().string());
   }
   return result;
 }
 
-TomlSource find_toml(const std::string& name, TomlFamily family) {
+TomlSource find_toml(const std::string& name, TomlKind kind) {
   if (name.ends_with(".toml")) return read_file(name);
-  const std::vector<std::string> known = embedded_names(family);
+  const std::vector<std::string> known = embedded_names(kind);
   for (const std::string& candidate : known) {
-    if (names(name, candidate)) return *embedded_at(place_of(family).root + candidate + ".toml");
+    if (name_matches(name, candidate)) return *embedded_at(info_of(kind).folder + candidate + ".toml");
   }
-  throw InputError(place_of(family).kind + " \"" + name + "\"",
-                   "there is none of this name" + suggestion(name, known));
+  throw InputError("unknown " + info_of(kind).name + " \"" + name + "\"" + suggestion(name, known));
 }
 
-TomlSource find_parent(const TomlSource& heir, const std::string& parent) {
-  if (!parent.ends_with(".toml")) return find_toml(parent, TomlFamily::kConfig);
-  const fs::path path = (fs::path(heir.place).parent_path() / parent).lexically_normal();
-  if (!heir.embedded) return read_file(path);
+TomlSource find_parent(const TomlSource& child, const std::string& parent) {
+  if (!parent.ends_with(".toml")) return find_toml(parent, TomlKind::kConfig);
+  const fs::path path = (fs::path(child.path).parent_path() / parent).lexically_normal();
+  if (!child.embedded) return read_file(path);
   if (const std::optional<TomlSource> found = embedded_at(path.string())) return *found;
-  throw InputError(heir.place, "inherits \"" + parent + "\", which is not embedded; correct the name");
+  throw InputError(child.path, "inherits \"" + parent + "\", which is not embedded; correct the name");
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,33 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Finds configs, plans, systems, boards and published tables by name among the embedded files, or by path on
-/// disk.
+/// Finds configs, plans, systems, devices and published tables among the embedded files or on disk.
 #pragma once
 
 #include <string>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// A TOML text and where it came from.
+/// A TOML text and its origin.
 struct TomlSource {
-  std::string place;  ///< as messages name it; for embedded files their path in the sources
+  std::string path;  ///< as shown in messages; for embedded files relative to the source root
   std::string text;
   bool embedded = false;
 };
 
-/// The families of files, by the folder they live in.
-enum class TomlFamily { kConfig, kPlan, kSystem, kPublished, kBoard };
+/// Kinds of files; each kind has its own folder.
+enum class TomlKind { kConfig, kPlan, kSystem, kPublished, kDevice };
 
-/// A name that ends in ".toml" is a file on disk; any other is embedded, with or without its folder
-/// ("wo_circular_mask" and "ablations/wo_circular_mask" are the same).
-/// @throws InputError if there is no such file, with the nearest name
-[[nodiscard]] TomlSource find_toml(const std::string& name, TomlFamily family);
+/// A name that ends in ".toml" is a file on disk; any other is an embedded file, with or without its folder
+/// ("wo_circular_mask" and "ablations/wo_circular_mask" are equivalent).
+/// @throws InputError if there is no such file; the message suggests the nearest name
+[[nodiscard]] TomlSource find_toml(const std::string& name, TomlKind kind);
 
-/// The file that `heir` names as its parent: relative to itself when the name ends in ".toml".
+/// The config that `child` inherits; a name that ends in ".toml" is relative to the folder of `child`.
 /// @throws InputError if there is no such file
-[[nodiscard]] TomlSource find_parent(const TomlSource& heir, const std::string& parent);
+[[nodiscard]] TomlSource find_parent(const TomlSource& child, const std::string& parent);
 
-/// Names of all embedded files of a family, e.g. "ablations/wo_circular_mask", in alphabetical order.
-[[nodiscard]] std::vector<std::string> embedded_names(TomlFamily family);
+/// Names of all embedded files of a kind, e.g. "ablations/wo_circular_mask", in alphabetical order.
+[[nodiscard]] std::vector<std::string> embedded_names(TomlKind kind);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Cost of taking one frame out of a full inertial window.
+/// Benchmarks of the marginalization of one frame of a full inertial window.
 #include <benchmark/benchmark.h>
 
-#include "core/backend/marginalization.h"
-#include "core/backend/schur/schur_solver.h"
-#include "tests/support/flown_window.h"
+#include "core/backend/marginalization/marginalization.h"
+#include "core/backend/solvers/schur_solver.h"
+#include "tests/support/simulated_window.h"
 
 namespace stillpoint {
 namespace {
 
 /// @param state range: solver
 void marginalize_oldest_frame(benchmark::State& state) {
-  const Window window = flown_window();
-  BackendConfig config = flown_config();
+  const Window window = simulated_window();
+  BackendConfig config = simulated_window_config();
   config.solver = static_cast<WindowSolverKind>(state.range(0));
-  SchurSolver memory;
-  for (auto _ : state) benchmark::DoNotOptimize(marginalize_oldest(window, config, kFlownFocal_px, memory));
+  SchurSolver solver;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(marginalize_oldest(window, config, kSimulatedFocal_px, solver));
 }
 BENCHMARK(marginalize_oldest_frame)
     ->ArgName("schur")
@@ -24,15 +25,15 @@ BENCHMARK(marginalize_oldest_frame)
     ->Unit(benchmark::kMillisecond);
 
 void marginalize_second_newest_frame(benchmark::State& state) {
-  const Window window = flown_window();
-  const LinearPrior prior = marginalize_oldest(window, flown_config(), kFlownFocal_px);
+  const Window window = simulated_window();
+  const LinearPrior prior = marginalize_oldest(window, simulated_window_config(), kSimulatedFocal_px);
   const int newest = prior.blocks.back().frame;
-  FrameMarginalizer memory;
-  LinearPrior left;
+  FrameMarginalizer marginalizer;
+  LinearPrior remaining;
   for (auto _ : state) {
-    left = prior;
-    memory.remove(newest, left);
-    benchmark::DoNotOptimize(left);
+    remaining = prior;
+    marginalizer.remove(newest, remaining);
+    benchmark::DoNotOptimize(remaining);
   }
 }
 BENCHMARK(marginalize_second_newest_frame)->Unit(benchmark::kMillisecond);

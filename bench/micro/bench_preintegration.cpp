@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Cost of preintegration and propagation; "items" are samples.
+/// Benchmarks of preintegration and propagation; "items" are IMU samples.
 #include <benchmark/benchmark.h>
 
 #include "core/imu/imu_buffer.h"
@@ -9,7 +9,7 @@
 namespace stillpoint {
 namespace {
 
-/// 200 Hz under changing rates and forces, one more sample than intervals.
+/// Samples at 200 Hz with varying rates and specific forces; one more sample than intervals.
 std::vector<ImuSample> samples_at_200_hz(std::int64_t intervals) {
   std::vector<ImuSample> samples;
   for (std::int64_t i = 0; i <= intervals; ++i) {
@@ -32,7 +32,7 @@ void preintegrate(benchmark::State& state) {
   }
   count_samples(state);
 }
-BENCHMARK(preintegrate)->Arg(7)->Arg(20)->Arg(100);  // a picture at 30 Hz and at 10 Hz, half a second
+BENCHMARK(preintegrate)->Arg(7)->Arg(20)->Arg(100);  // frame intervals at 30 Hz and 10 Hz, and 0.5 s
 
 void repropagate(benchmark::State& state) {
   Preintegration imu(ImuNoise{}, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());

@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Cost of one state optimisation: eight iterations over a full inertial window with 150 landmarks, by Ceres
-/// and by the Schur solver.
+/// Benchmarks of one state optimization: eight iterations over a full inertial window with 150 landmarks, by
+/// Ceres and by the Schur solver.
 #include <benchmark/benchmark.h>
 
-#include "core/backend/schur/schur_solver.h"
-#include "tests/support/flown_window.h"
+#include "core/backend/solvers/schur_solver.h"
+#include "tests/support/simulated_window.h"
 
 namespace stillpoint {
 namespace {
 
 void solve(benchmark::State& state, const BackendConfig& config) {
-  const Window start = flown_window();
-  SchurSolver memory;
+  const Window initial_window = simulated_window();
+  SchurSolver solver;
   SolveReport report;
   for (auto _ : state) {
-    Window window = start;
-    report = solve_window(window, config, kFlownFocal_px, memory);
+    Window window = initial_window;
+    report = solve_window(window, config, kSimulatedFocal_px, solver);
     benchmark::DoNotOptimize(window);
   }
   state.counters["landmarks"] = report.landmarks;
-  state.counters["iterations"] = report.iterations - 1;  // the first entry is the start
+  state.counters["iterations"] = report.iterations - 1;  // the first entry is the initial state
   state.counters["cost"] = report.final_cost;
 }
 
 /// @param state range: solver
 void solve_with_weighted_depth(benchmark::State& state) {
-  BackendConfig config = flown_config();
+  BackendConfig config = simulated_window_config();
   config.solver = static_cast<WindowSolverKind>(state.range(0));
   solve(state, config);
 }
 
 void solve_with_fixed_depth(benchmark::State& state) {
-  BackendConfig config = flown_config();
+  BackendConfig config = simulated_window_config();
   config.solver = static_cast<WindowSolverKind>(state.range(0));
   config.depth.usage = DepthUsage::kFixed;
   solve(state, config);

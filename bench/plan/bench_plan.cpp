@@ -15,9 +15,9 @@
 #include "bench/plan/synth_settings.h"
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
-#include "eval/recipes/recipe.h"
+#include "eval/protocols/protocol.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 constexpr std::string_view kConfigPrefix = "config.";
@@ -51,9 +51,9 @@ SweepAxis axis_of(const Setting& setting) {
   return {.key = setting.key.substr(kSweepPrefix.size()), .values = *values};
 }
 
-/// Takes the settings with keys of their own choice out; the others are the plan's own.
-std::vector<Setting> take_free_tables(BenchPlan& plan, const std::vector<Setting>& settings) {
-  std::vector<Setting> own;
+/// Moves the settings of the tables [config], [synth] and [sweep] into the plan; returns the other settings.
+std::vector<Setting> extract_tables(BenchPlan& plan, const std::vector<Setting>& settings) {
+  std::vector<Setting> remaining;
   for (const Setting& setting : settings) {
     const std::string& key = setting.key;
     if (key.starts_with(kConfigPrefix)) {
@@ -63,13 +63,13 @@ std::vector<Setting> take_free_tables(BenchPlan& plan, const std::vector<Setting
     } else if (key.starts_with(kSweepPrefix)) {
       plan.sweep.push_back(axis_of(setting));
     } else {
-      own.push_back(setting);
+      remaining.push_back(setting);
     }
   }
-  return own;
+  return remaining;
 }
 
-/// Loads every config once, so that a fault in the last one shows before the first run.
+/// Loads every config once, so that errors are reported before the first run.
 void require_configs(const BenchPlan& plan, const std::vector<std::string>& variants) {
   for (const std::string& variant : variants) {
     static_cast<void>(load_config({plan.base, variant, plan.config_settings}));
@@ -85,7 +85,7 @@ void require_configs(const BenchPlan& plan, const std::vector<std::string>& vari
 }
 
 void require_renderings(const BenchPlan& plan) {
-  SynthRequest request;
+  synth::SynthRequest request;
   for (const SweepAxis& setting : plan.synth_settings) {
     request = with_number(request, setting.key, setting.values.front());
   }
@@ -97,29 +97,29 @@ void require_renderings(const BenchPlan& plan) {
   }
 }
 
-void require_recipes(const std::vector<std::string>& names) {
+void require_protocols(const std::vector<std::string>& names) {
   std::vector<std::string> known;
-  for (const Recipe& recipe : recipes()) known.emplace_back(recipe.name);
+  for (const eval::Protocol& protocol : eval::protocols()) known.emplace_back(protocol.name);
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw InputError("recipe \"" + name + "\"", "there is none of this name" + suggestion(name, known));
+    throw InputError("unknown protocol \"" + name + "\"" + suggestion(name, known));
   }
 }
 
-/// Other systems always see whole sequences, and run as they are.
-void require_own_runs(const BenchPlan& plan) {
+/// External systems always process whole sequences, and cannot run under callgrind.
+void require_supported_by_systems(const BenchPlan& plan) {
   if (plan.systems.empty() || (plan.max_frames == 0 && plan.kind != RunKind::kInstructions)) return;
   throw InputError("plan \"" + plan.name + "\"",
-                   "max_frames and kind = \"instructions\" are for our odometry only; leave out systems");
+                   "max_frames and kind = \"instructions\" do not support external systems; remove systems");
 }
 
-int number_in(std::string_view text, const std::string& cores) {
+int parse_processor(std::string_view text, const std::string& cores) {
   int number = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool whole = error == std::errc{} && end == text.data() + text.size();
-  if (!whole || number < 0 || number >= sysconf(_SC_NPROCESSORS_CONF)) {
+  const bool is_number = error == std::errc{} && end == text.data() + text.size();
+  if (!is_number || number < 0 || number >= sysconf(_SC_NPROCESSORS_CONF)) {
     throw InputError("cores \"" + cores + "\"",
-                     fmt::format("\"{}\" is no processor of this machine; it has 0 to {}", text,
+                     fmt::format("\"{}\" is not a processor of this machine; expected 0 to {}", text,
                                  sysconf(_SC_NPROCESSORS_CONF) - 1));
   }
   return number;
@@ -127,36 +127,36 @@ int number_in(std::string_view text, const std::string& cores) {
 
 }  // namespace
 
-std::vector<int> processors_of(const std::string& cores) {
+std::vector<int> parse_cpu_list(const std::string& cores) {
   std::vector<int> processors;
   for (std::string_view rest = cores; !rest.empty();) {
     const std::string_view part = rest.substr(0, rest.find(','));
     rest.remove_prefix(std::min(rest.size(), part.size() + 1));
     const std::size_t dash = part.find('-');
-    const int first = number_in(part.substr(0, dash), cores);
-    const int last = dash == std::string_view::npos ? first : number_in(part.substr(dash + 1), cores);
+    const int first = parse_processor(part.substr(0, dash), cores);
+    const int last = dash == std::string_view::npos ? first : parse_processor(part.substr(dash + 1), cores);
     for (int processor = first; processor <= last; ++processor) processors.push_back(processor);
   }
   return processors;
 }
 
 BenchPlan load_plan(const std::string& name) {
-  const TomlSource source = find_toml(name, TomlFamily::kPlan);
+  const TomlSource source = find_toml(name, TomlKind::kPlan);
   BenchPlan plan;
-  const std::vector<Setting> own = take_free_tables(plan, parse_settings(source.text, source.place));
-  plan = with_settings(plan, own);
-  plan.name = std::filesystem::path(source.place).stem().string();
+  const std::vector<Setting> settings = extract_tables(plan, parse_settings(source.text, source.path));
+  plan = with_settings(plan, settings);
+  plan.name = std::filesystem::path(source.path).stem().string();
   plan.text = source.text;
   if (plan.title.empty()) plan.title = plan.name;
   require_configs(plan, plan.variants);
   require_configs(plan, plan.rendered.variants);
   require_configs(plan, plan.recorded.variants);
   require_renderings(plan);
-  require_own_runs(plan);
-  require_recipes(plan.recipes);
-  static_cast<void>(processors_of(plan.cores));
+  require_supported_by_systems(plan);
+  require_protocols(plan.protocols);
+  static_cast<void>(parse_cpu_list(plan.cores));
   for (const std::string& table : plan.table.published) static_cast<void>(load_published(table));
   return plan;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What is to be run: sequences x variants x seeds x repetitions, and how it is shown.
+/// A benchmark plan: sequences x variants x seeds x repetitions, and the layout of the result table.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 #include "core/base/fields.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 enum class RunKind {
-  kAccuracy,      ///< may run beside others
-  kTiming,        ///< one at a time, pinned, the machine's state recorded
-  kInstructions,  ///< under callgrind: instructions are counted instead of time
+  kAccuracy,      ///< runs may execute in parallel
+  kTiming,        ///< one run at a time, pinned to `cores`; the load of the machine is recorded
+  kInstructions,  ///< under callgrind: counts instructions instead of measuring time
 };
 constexpr auto enum_names(RunKind) {
   return EnumNames<RunKind, 3>{{{RunKind::kAccuracy, "accuracy"},
@@ -21,11 +21,11 @@ constexpr auto enum_names(RunKind) {
                                 {RunKind::kInstructions, "instructions"}}};
 }
 
-/// Sequences that the program renders itself.
+/// Synthetic sequences, rendered on demand.
 struct RenderedGroup {
-  std::vector<std::string> sequences;  ///< names of presets, or globs over them ("walking_*")
-  std::vector<std::string> variants;   ///< instead of the plan's
-  double seconds = 8.0;                ///< length of each
+  std::vector<std::string> sequences;  ///< names of presets, or globs ("walking_*")
+  std::vector<std::string> variants;   ///< replaces `BenchPlan::variants` if not empty
+  double seconds = 8.0;                ///< duration of each sequence
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, RenderedGroup>
@@ -37,10 +37,9 @@ void visit_fields(Visitor&& field, Config& config) {
 
 /// Recorded sequences.
 struct RecordedGroup {
-  std::vector<std::string>
-      sequences;  ///< registered names or folders below the data folder, or globs over both
-  std::vector<std::string> variants;  ///< instead of the plan's
-  bool required = true;               ///< otherwise they take part where they are at hand
+  std::vector<std::string> sequences;  ///< registered names, folders in the data folder, or globs over both
+  std::vector<std::string> variants;   ///< replaces `BenchPlan::variants` if not empty
+  bool required = true;                ///< false: sequences that are not available are skipped
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, RecordedGroup>
@@ -50,15 +49,15 @@ void visit_fields(Visitor&& field, Config& config) {
   field("required", config.required);
 }
 
-/// How the runs are shown.
+/// Layout of the result table.
 struct TableLayout {
-  std::vector<std::string> published;  ///< tables of published numbers to stand beside, e.g. "tum_fr3_ate"
+  std::vector<std::string> published;  ///< tables of published numbers to show as well, e.g. "tum_fr3_ate"
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, TableLayout>
 void visit_fields(Visitor&& field, Config& config) { field("published", config.published); }
 
-/// Values that one key takes in turn while everything else stays: a curve for each variant.
+/// One-dimensional parameter sweep: the values of one key, all other keys unchanged.
 struct SweepAxis {
   std::string key;  ///< of the config ("detector.simulated.miss_rate") or of the rendering ("synth.walkers")
   std::vector<double> values;
@@ -66,31 +65,30 @@ struct SweepAxis {
 
 struct BenchPlan {
   std::string title;
-  std::string base = "stillpoint";    ///< config that the variants change
-  std::vector<std::string> variants;  ///< of our odometry
-  std::vector<std::string> systems;   ///< other systems: files, see bench/systems/external_system.h
-  std::vector<int> seeds = {1};       ///< of renderings and of the odometry
+  std::string base = "stillpoint";    ///< config to which the variants are applied
+  std::vector<std::string> variants;  ///< of this odometry
+  std::vector<std::string> systems;   ///< external systems: files, see bench/systems/external_system.h
+  std::vector<int> seeds = {1};       ///< for rendering and for the odometry
   int repetitions = 1;
-  int max_frames = 0;  ///< pictures from the start of each sequence; 0 = all
+  int max_frames = 0;  ///< process only the first frames of each sequence; 0 = all
   std::string mode = "sequential";
   RunKind kind = RunKind::kAccuracy;
-  std::string cores;                 ///< processors for timing runs, e.g. "0,1"; empty = all
-  int warm_up = 0;                   ///< runs made and thrown away before the first timing run of a sequence
-  double time_limit_s = 3600.0;      ///< of one run
-  int memory_limit_mb = 0;           ///< of one run; 0 = none
-  std::vector<std::string> recipes;  ///< evaluated besides the usual scores, e.g. "strict:se3"
-  int pictures =
-      20;  ///< of the worst frames of each accuracy run, for the page; see `stillpoint run --pictures`
+  std::string cores;                   ///< CPU affinity of the runs, e.g. "0,1"; empty = all processors
+  int warm_up = 0;                     ///< discarded runs before the first timing run of a sequence
+  double time_limit_s = 3600.0;        ///< per run
+  int memory_limit_mb = 0;             ///< per run; 0 = none
+  std::vector<std::string> protocols;  ///< additional evaluation protocols, e.g. "strict:se3"
+  int images = 20;  ///< annotated images of the worst frames per accuracy run; see `stillpoint run --images`
   RenderedGroup rendered;
   RecordedGroup recorded;
   TableLayout table;
-  // What follows has keys of its own choice: the tables [config], [synth] and [sweep].
-  std::vector<std::string> config_settings;  ///< "key=value", for every variant
-  std::vector<SweepAxis> synth_settings;     ///< one value each, for every rendering
+  // The tables [config], [synth] and [sweep], whose keys are those of the config and of the rendering.
+  std::vector<std::string> config_settings;  ///< "key=value", applied to every variant
+  std::vector<SweepAxis> synth_settings;     ///< one value each, applied to every rendered sequence
   std::vector<SweepAxis> sweep;
-  // Where it came from.
-  std::string name;
-  std::string text;
+  // Origin of the plan.
+  std::string name;  ///< file name without extension
+  std::string text;  ///< content of the file
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, BenchPlan>
@@ -108,21 +106,21 @@ void visit_fields(Visitor&& field, Config& config) {
   field("warm_up", config.warm_up, 0, 100);
   field("time_limit_s", config.time_limit_s, 0.1, 1e6);
   field("memory_limit_mb", config.memory_limit_mb, 0, 1000000000);
-  field("recipes", config.recipes);
-  field("pictures", config.pictures, 0, 1000);
+  field("protocols", config.protocols);
+  field("images", config.images, 0, 1000);
   field("rendered", config.rendered);
   field("recorded", config.recorded);
   field("table", config.table);
 }
 
-/// Reads a plan, and every config that it names.
-/// @param name embedded name ("quick") or a TOML file
-/// @throws InputError if there is none, for every fault of the file, and for a variant, recipe or key that is
-/// not known
+/// Reads a plan and validates everything that it refers to.
+/// @param name embedded name ("quick") or path of a TOML file
+/// @throws InputError if it does not exist, for every fault of the file, and for an unknown variant, protocol
+/// or key
 [[nodiscard]] BenchPlan load_plan(const std::string& name);
 
-/// The processors of a list like "0,2-3".
-/// @throws InputError if it is no such list, or the machine has none of that number
-[[nodiscard]] std::vector<int> processors_of(const std::string& cores);
+/// Parses a CPU list such as "0,2-3".
+/// @throws InputError if it is malformed, or the machine has no such processor
+[[nodiscard]] std::vector<int> parse_cpu_list(const std::string& cores);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The runs of one variant on one sequence as a row of a table.
+/// Aggregates the runs of one variant on one sequence into a table row.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 #include "bench/store/store.h"
 #include "core/base/module_timings.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Numbers are medians over the runs that ended well (for one run its own); those that are missing are "n/a".
+/// Metrics are medians over the succeeded runs; missing ones are shown as "n/a".
 struct BenchRow {
   std::string sequence;
   std::string variant;
-  std::string sweep;          ///< "key = value"; empty outside a sweep
-  std::string status;         ///< "ok", what went wrong, "not made" or "skipped"
-  std::string reason;         ///< why it is not ok, or what else is to be known
-  std::size_t runs = 0;       ///< that were made
-  std::size_t good_runs = 0;  ///< of these, that ended well
+  std::string sweep;     ///< "key = value"; empty outside a sweep
+  std::string status;    ///< "ok", the outcome of a run that did not succeed, "not run" or "skipped"
+  std::string reason;    ///< reason of a status other than "ok", or a warning
+  std::size_t runs = 0;  ///< executed
+  std::size_t succeeded_runs = 0;  ///< executed with outcome "ok"
   std::optional<double> ate_rmse_m;
   std::optional<double> rpe_trans_rmse_m_per_s;
   std::optional<double> rpe_rot_rmse_deg_per_s;
@@ -31,7 +31,7 @@ struct BenchRow {
   std::array<std::optional<double>, kModuleCount> mean_ms;
 };
 
-/// Every row of a plan in its order, also of runs that were not made.
+/// All rows of a plan in its order, including those without executed runs.
 [[nodiscard]] std::vector<BenchRow> plan_rows(const PlanMatrix& matrix, const Store& store);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -8,12 +8,12 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 using Cells = std::vector<std::string>;
 
-/// The columns of the paper's Table III, in its order, and the ones that the table has for each.
+/// The columns of the paper's Table III, in its order, and their headings in this table.
 struct TimedColumn {
   Module module;
   const char* title;
@@ -39,14 +39,14 @@ std::vector<TimedColumn> present_columns(std::span<const BenchRow> rows) {
   return present;
 }
 
-/// Which columns a table has.
+/// The optional columns of a table.
 struct Columns {
-  bool sweep = false;  ///< a point of a sweep
-  bool runs = false;   ///< how many runs a number is the median of
+  bool sweep = false;  ///< key and value of a sweep point
+  bool runs = false;   ///< number of runs of which the metrics are medians
   std::vector<TimedColumn> timed;
 
-  /// Names stand on the left.
-  [[nodiscard]] std::size_t names() const { return sweep ? 4 : 3; }
+  /// Number of left-aligned text columns; the number columns follow.
+  [[nodiscard]] std::size_t text_columns() const { return sweep ? 4 : 3; }
 };
 
 Columns columns_of(std::span<const BenchRow> rows) {
@@ -62,7 +62,7 @@ Cells header(const Columns& columns) {
   Cells cells = {"sequence", "variant"};
   if (columns.sweep) cells.emplace_back("sweep");
   cells.emplace_back("status");
-  if (columns.runs) cells.emplace_back("good runs");
+  if (columns.runs) cells.emplace_back("succeeded");
   for (const char* title : {"ATE m", "T.RPE m/s", "R.RPE deg/s", "CR", "coverage", "first pose s"}) {
     cells.emplace_back(title);
   }
@@ -74,7 +74,7 @@ Cells cells_of(const BenchRow& row, const Columns& columns) {
   Cells cells = {row.sequence, row.variant};
   if (columns.sweep) cells.push_back(row.sweep);
   cells.push_back(row.status);
-  if (columns.runs) cells.push_back(fmt::format("{} of {}", row.good_runs, row.runs));
+  if (columns.runs) cells.push_back(fmt::format("{} of {}", row.succeeded_runs, row.runs));
   const Cells numbers = {cell(row.ate_rmse_m, 4),
                          cell(row.rpe_trans_rmse_m_per_s, 4),
                          cell(row.rpe_rot_rmse_deg_per_s, 3),
@@ -88,20 +88,20 @@ Cells cells_of(const BenchRow& row, const Columns& columns) {
   return cells;
 }
 
-/// Names to the left, numbers to the right.
-std::string line(const Cells& cells, const std::vector<std::size_t>& widths, std::size_t names) {
+/// One row of the table; text columns are left-aligned, number columns right-aligned.
+std::string line(const Cells& cells, const std::vector<std::size_t>& widths, std::size_t text_columns) {
   std::string text = "|";
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    text += i < names ? fmt::format(" {:<{}} |", cells[i], widths[i])
-                      : fmt::format(" {:>{}} |", cells[i], widths[i]);
+    text += i < text_columns ? fmt::format(" {:<{}} |", cells[i], widths[i])
+                             : fmt::format(" {:>{}} |", cells[i], widths[i]);
   }
   return text + "\n";
 }
 
-std::string rule(const std::vector<std::size_t>& widths, std::size_t names) {
+std::string separator_line(const std::vector<std::size_t>& widths, std::size_t text_columns) {
   std::string text = "|";
   for (std::size_t i = 0; i < widths.size(); ++i) {
-    text += std::string(widths[i] + 1, '-') + (i < names ? "-|" : ":|");
+    text += std::string(widths[i] + 1, '-') + (i < text_columns ? "-|" : ":|");
   }
   return text + "\n";
 }
@@ -121,7 +121,7 @@ nlohmann::ordered_json row_json(const BenchRow& row) {
           {"status", row.status},
           {"reason", row.reason},
           {"runs", row.runs},
-          {"good_runs", row.good_runs},
+          {"succeeded_runs", row.succeeded_runs},
           {"ate_rmse_m", number_or_null(row.ate_rmse_m)},
           {"rpe_trans_rmse_m_per_s", number_or_null(row.rpe_trans_rmse_m_per_s)},
           {"rpe_rot_rmse_deg_per_s", number_or_null(row.rpe_rot_rmse_deg_per_s)},
@@ -141,8 +141,9 @@ std::string markdown_table(std::span<const BenchRow> rows) {
   for (const Cells& cells : lines) {
     for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
   }
-  std::string text = line(lines.front(), widths, columns.names()) + rule(widths, columns.names());
-  for (std::size_t i = 1; i < lines.size(); ++i) text += line(lines[i], widths, columns.names());
+  const std::size_t text_columns = columns.text_columns();
+  std::string text = line(lines.front(), widths, text_columns) + separator_line(widths, text_columns);
+  for (std::size_t i = 1; i < lines.size(); ++i) text += line(lines[i], widths, text_columns);
   for (const BenchRow& row : rows) {
     if (!row.reason.empty())
       text += fmt::format("\n{} {}{}{} {}: {}\n", row.sequence, row.variant, row.sweep.empty() ? "" : " ",
@@ -160,4 +161,4 @@ std::string json_table(const std::string& title, std::span<const BenchRow> rows)
   return json.dump(2) + "\n";
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Rows as one table, for people and for programs.
+/// Formats rows as a Markdown table and as JSON.
 #pragma once
 
 #include <span>
@@ -7,13 +7,13 @@
 
 #include "bench/plan/bench_row.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 /// A Markdown table with aligned columns, followed by the reasons of rows that are not ok. Timings are means
-/// [ms], modules per call and threads per frame; modules that no row has are left out.
+/// [ms], modules per call and threads per frame; modules without any timing are omitted.
 [[nodiscard]] std::string markdown_table(std::span<const BenchRow> rows);
 
-/// The same as a JSON document, numbers in full.
+/// The same rows as a JSON document, numbers with full precision.
 [[nodiscard]] std::string json_table(const std::string& title, std::span<const BenchRow> rows);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

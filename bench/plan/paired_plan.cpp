@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/plan/paired_plan.h"
 
-#include "bench/record/content_hash.h"
+#include "bench/model/content_hash.h"
 #include "eval/io/text_reader.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-/// A program is known by its content: runs of one that was built anew are made anew.
+/// Identifies a program by its content, so that a new build invalidates the cached runs.
 std::string program_hash(const std::filesystem::path& program) {
-  return hash_text(content_hash(read_text_file(program)));
+  return hash_text(content_hash(eval::read_text_file(program)));
 }
 
 }  // namespace
 
-// The prefixes keep a program apart from itself.
+// The prefixes distinguish the two sides if both are the same program.
 std::string ProgramPair::base_build() const { return "base-" + program_hash(base); }
 std::string ProgramPair::head_build() const { return "head-" + program_hash(head); }
 
@@ -43,4 +43,4 @@ PlanMatrix paired_plan(BenchPlan plan, const ProgramPair& programs, int pairs) {
   return matrix;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

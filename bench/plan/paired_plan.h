@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Runs of two programs in alternation, so that what changes on the machine meanwhile touches both alike.
+/// Alternating runs of two builds, so that slow changes of the machine state affect both equally.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 #include "bench/plan/plan_matrix.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Two builds of the program, and the names under which their runs are stored.
+/// Two builds of the program, and the build names under which their runs are stored.
 struct ProgramPair {
   std::filesystem::path base;
   std::filesystem::path head;
@@ -17,9 +17,9 @@ struct ProgramPair {
   [[nodiscard]] std::string head_build() const;
 };
 
-/// Every run of a plan's variants as `pairs` times base, head, head, base (ABBA): repetition 2k - 1 has base
-/// first, repetition 2k head. Runs are timed, one by one, unless the plan counts instructions; other systems
-/// take no part.
+/// Expands each run of the plan to `pairs` groups of base, head, head, base (ABBA order): base is first in
+/// repetition 2k - 1, head is first in repetition 2k. The kind of the runs is `kTiming`, unless the plan
+/// counts instructions; external systems are removed.
 [[nodiscard]] PlanMatrix paired_plan(BenchPlan plan, const ProgramPair& programs, int pairs);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

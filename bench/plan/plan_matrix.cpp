@@ -8,7 +8,7 @@
 
 #include "bench/config/config_text.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 std::string kind_name(RunKind kind) {
@@ -19,15 +19,15 @@ std::string kind_name(RunKind kind) {
 }
 
 /// Builds the matrix sequence by sequence.
-class Expansion {
+class PlanExpander {
  public:
-  Expansion(const BenchPlan& plan, std::string build) : build_(std::move(build)) {
+  PlanExpander(const BenchPlan& plan, std::string build) : build_(std::move(build)) {
     matrix_.plan = plan;
     for (const std::string& name : plan.systems) matrix_.systems.push_back(load_external_system(name));
     for (const SweepAxis& axis : plan.sweep) {
-      for (const double value : axis.values) points_.push_back({axis.key, {value}});
+      for (const double value : axis.values) sweep_points_.push_back({axis.key, {value}});
     }
-    if (points_.empty()) points_.push_back({});
+    if (sweep_points_.empty()) sweep_points_.push_back({});
   }
 
   PlanMatrix expand() && {
@@ -43,13 +43,13 @@ class Expansion {
   }
 
  private:
-  /// Points of an axis of the rendering are sequences of their own; the others share one.
+  /// Each sweep point of a rendering parameter has its own sequence; the other points share one.
   void add_rendered(const std::string& preset, int seed) {
     std::string id;
-    for (const SweepAxis& point : points_) {
-      const bool of_rendering = point.key.starts_with("synth.");
+    for (const SweepAxis& point : sweep_points_) {
+      const bool is_rendering_point = point.key.starts_with("synth.");
       PlanSequence sequence =
-          rendered_sequence(matrix_.plan, preset, seed, of_rendering ? point : SweepAxis{});
+          rendered_sequence(matrix_.plan, preset, seed, is_rendering_point ? point : SweepAxis{});
       if (sequence.id != id) matrix_.sequences.push_back(sequence);
       id = sequence.id;
       add_repetitions(matrix_.plan.rendered.variants, seed, point);
@@ -57,25 +57,26 @@ class Expansion {
   }
 
   void add_recorded(int seed) {
-    for (const SweepAxis& point : points_) {
+    for (const SweepAxis& point : sweep_points_) {
       if (!point.key.starts_with("synth.")) add_repetitions(matrix_.plan.recorded.variants, seed, point);
     }
   }
 
-  void add_repetitions(const std::vector<std::string>& own_variants, int seed, const SweepAxis& point) {
-    const std::vector<std::string>& variants = own_variants.empty() ? matrix_.plan.variants : own_variants;
+  void add_repetitions(const std::vector<std::string>& group_variants, int seed, const SweepAxis& point) {
+    const std::vector<std::string>& variants =
+        group_variants.empty() ? matrix_.plan.variants : group_variants;
     for (int repetition = 1; repetition <= matrix_.plan.repetitions; ++repetition) {
       RunIdentity identity = identity_of(seed, repetition, point);
       for (const std::string& variant : variants) add_own(identity, variant);
-      const bool config_point = !point.key.empty() && !point.key.starts_with("synth.");
-      for (std::size_t i = 0; i < matrix_.systems.size() && !config_point; ++i) add_external(identity, i);
+      const bool is_config_point = !point.key.empty() && !point.key.starts_with("synth.");
+      for (std::size_t i = 0; i < matrix_.systems.size() && !is_config_point; ++i) add_external(identity, i);
     }
   }
 
   [[nodiscard]] RunIdentity identity_of(int seed, int repetition, const SweepAxis& point) const {
     const PlanSequence& sequence = matrix_.sequences.back();
     return {.sequence = sequence.name,
-            .sequence_id = sequence.id + part_of_sequence(),
+            .sequence_id = sequence.id + frame_limit_suffix(),
             .mode = matrix_.plan.mode,
             .kind = kind_name(matrix_.plan.kind),
             .cores = matrix_.plan.cores,
@@ -85,8 +86,8 @@ class Expansion {
             .axis_value = point.key.empty() ? 0.0 : point.values.front()};
   }
 
-  /// A part of a sequence is another sequence: what it is known by tells how long it is.
-  [[nodiscard]] std::string part_of_sequence() const {
+  /// Distinguishes the truncated sequence from the whole one.
+  [[nodiscard]] std::string frame_limit_suffix() const {
     return matrix_.plan.max_frames == 0 ? "" : fmt::format("-first-{}", matrix_.plan.max_frames);
   }
 
@@ -121,10 +122,10 @@ class Expansion {
 
   std::string build_;
   PlanMatrix matrix_;
-  std::vector<SweepAxis> points_;
+  std::vector<SweepAxis> sweep_points_;  ///< one value each; one point with an empty key if there is no sweep
 };
 
-bool passes(const RunIdentity& identity, const std::vector<std::string>& filters) {
+bool matches_all(const RunIdentity& identity, const std::vector<std::string>& filters) {
   return std::all_of(filters.begin(), filters.end(), [&](const std::string& filter) {
     const auto matches = [&](const std::string& name) {
       return fnmatch(filter.c_str(), name.c_str(), 0) == 0;
@@ -137,9 +138,9 @@ bool passes(const RunIdentity& identity, const std::vector<std::string>& filters
 
 PlanMatrix expand_plan(const BenchPlan& plan, const std::string& build,
                        const std::vector<std::string>& filters) {
-  PlanMatrix matrix = Expansion(plan, build).expand();
+  PlanMatrix matrix = PlanExpander(plan, build).expand();
   for (const PlannedRun& run : matrix.runs) matrix.keys.push_back(run_key(run.identity));
-  std::erase_if(matrix.runs, [&](const PlannedRun& run) { return !passes(run.identity, filters); });
+  std::erase_if(matrix.runs, [&](const PlannedRun& run) { return !matches_all(run.identity, filters); });
   return matrix;
 }
 
@@ -151,4 +152,4 @@ std::string run_label(const BenchPlan& plan, const RunIdentity& identity) {
   return label;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,42 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A plan written out: every run that it asks for.
+/// Expands a plan to the list of its runs.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "bench/config/config_file.h"
+#include "bench/model/stored_run.h"
 #include "bench/plan/bench_plan.h"
 #include "bench/plan/plan_sequences.h"
-#include "bench/store/stored_run.h"
 #include "bench/systems/external_system.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct PlannedRun {
-  std::size_t sequence = 0;  ///< in `PlanMatrix::sequences`
+  std::size_t sequence = 0;  ///< index into `PlanMatrix::sequences`
   RunIdentity identity;
-  ConfigRequest config;           ///< of a run of our odometry
-  int max_frames = 0;             ///< likewise; 0 = all
-  std::size_t system = 0;         ///< in `PlanMatrix::systems`, of a run of another one
-  std::filesystem::path program;  ///< that runs our odometry; empty = this one
+  ConfigRequest config;           ///< of a run of this odometry
+  int max_frames = 0;             ///< of a run of this odometry; 0 = all
+  std::size_t system = 0;         ///< index into `PlanMatrix::systems`, of a run of an external system
+  std::filesystem::path program;  ///< executable of this odometry; empty = the current executable
 };
 
 struct PlanMatrix {
   BenchPlan plan;
   std::vector<PlanSequence> sequences;
   std::vector<ExternalSystem> systems;
-  std::vector<PlannedRun> runs;   ///< sequence by sequence; variants alternate within a repetition
-  std::vector<std::string> keys;  ///< of all runs of the plan, also those that filters leave out
+  std::vector<PlannedRun> runs;   ///< grouped by sequence; variants alternate within a repetition
+  std::vector<std::string> keys;  ///< of all runs of the plan, including those excluded by filters
 };
 
-/// @param build what is recorded as the build of our odometry
-/// @param filters globs; a run takes part if each matches its sequence, variant or system
-/// @throws InputError as `matching_presets` and `recorded_sequences`, and for a system that cannot be read
+/// @param build recorded as the build of this odometry
+/// @param filters globs; a run is included if each of them matches its sequence, variant or system
+/// @throws InputError as `matching_presets` and `recorded_sequences`, and if a system file cannot be read
 [[nodiscard]] PlanMatrix expand_plan(const BenchPlan& plan, const std::string& build,
                                      const std::vector<std::string>& filters);
 
-/// A run in a line: sequence, variant, and what of seed, repetition and sweep the plan varies.
+/// One-line description of a run: sequence, variant, and seed, repetition and sweep point if the plan varies
+/// them.
 [[nodiscard]] std::string run_label(const BenchPlan& plan, const RunIdentity& identity);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -15,39 +15,40 @@
 #include "bench/systems/own_odometry.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kElsewherePatienceMs = 200;
+constexpr int kLeasePollMs = 200;
 
 /// One call of `run_plan`.
 class PlanRunner {
  public:
-  PlanRunner(const PlanMatrix& matrix, Journal& journal, const PlanOptions& options, const PlanHooks& hooks)
+  PlanRunner(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
+             const PlanHooks& hooks)
       : matrix_(matrix),
-        journal_(journal),
+        writer_(writer),
         hooks_(hooks),
         pool_(hooks.stop_requested),
         jobs_(matrix.plan.kind == RunKind::kTiming ? 1 : std::max(1, options.jobs)) {
     for (const ExternalSystem& system : matrix.systems) external_.emplace_back(system);
     for (std::size_t i = 0; i < matrix.runs.size(); ++i) {
-      const bool missing = !sequence_of(i).missing.empty();
+      const bool missing = !sequence_of(i).unavailable_reason.empty();
       missing ? static_cast<void>(++report_.missing) : queue_.push_back(i);
     }
   }
 
   PlanReport run() {
     while (true) {
-      while (!stopped() && !queue_.empty() && pool_.running() < static_cast<std::size_t>(jobs_)) begin_next();
+      while (!stopped() && !queue_.empty() && pool_.running() < static_cast<std::size_t>(jobs_)) start_next();
       if (const auto ended = pool_.wait_next()) {
         complete(ended->first, ended->second);
-      } else if (stopped() || (queue_.empty() && elsewhere_.empty())) {
+      } else if (stopped() || (queue_.empty() && leased_by_other_.empty())) {
         break;
       } else if (queue_.empty()) {
-        wait_for_other_driver();
-        queue_.swap(elsewhere_);
+        wait_for_other_worker();
+        queue_.swap(leased_by_other_);
       }
     }
     report_.interrupted = stopped();
@@ -68,46 +69,46 @@ class PlanRunner {
   void count(std::size_t& counter) {
     ++counter;
     if (hooks_.on_progress)
-      hooks_.on_progress(report_.made + report_.kept, matrix_.runs.size() - report_.missing);
+      hooks_.on_progress(report_.executed + report_.cached, matrix_.runs.size() - report_.missing);
   }
 
-  void wait_for_other_driver() {
-    if (!told_of_waiting_ && hooks_.on_step) {
-      hooks_.on_step("wait for " + std::to_string(elsewhere_.size()) + " runs that another driver is making");
+  void wait_for_other_worker() {
+    if (!wait_reported_ && hooks_.on_step) {
+      hooks_.on_step("wait for " + std::to_string(leased_by_other_.size()) + " runs of another worker");
     }
-    told_of_waiting_ = true;
-    poll(nullptr, 0, kElsewherePatienceMs);
+    wait_reported_ = true;
+    poll(nullptr, 0, kLeasePollMs);
   }
 
-  void begin_next() {
+  void start_next() {
     const std::size_t run = queue_.front();
     queue_.pop_front();
-    if (journal_.is_done(run_key(identity_of(run)))) return count(report_.kept);
+    if (writer_.is_done(run_key(identity_of(run)))) return count(report_.cached);
     try {
       const fs::path folder = folder_of(run);
       if (folder.empty()) return;  // the rendering was stopped
       warm_up(run, folder);
-      if (claim(run)) start(run, folder);
+      if (acquire(run)) start(run, folder);
     } catch (const InputError& error) {
-      enter_bad_data(run, error);
+      store_bad_data(run, error);
     }
   }
 
-  /// Claims a run if no one else has; tells why not otherwise.
-  bool claim(std::size_t run) {
-    const Claim claim = journal_.claim(identity_of(run));
-    if (claim == Claim::kDone) count(report_.kept);
-    if (claim == Claim::kElsewhere) elsewhere_.push_back(run);
-    if (claim == Claim::kGranted) claimed_.insert(run);
-    return claim == Claim::kGranted;
+  /// Requests the lease of a run; counts or postpones the run if it is not granted.
+  bool acquire(std::size_t run) {
+    const RunLease lease = writer_.acquire(identity_of(run));
+    if (lease == RunLease::kDone) count(report_.cached);
+    if (lease == RunLease::kLeasedByOther) leased_by_other_.push_back(run);
+    if (lease == RunLease::kGranted) leased_.insert(run);
+    return lease == RunLease::kGranted;
   }
 
-  /// The run cannot even begin. An error of the store itself is the whole call's.
-  void enter_bad_data(std::size_t run, const InputError& error) {
-    if (!claimed_.contains(run) && !claim(run)) return;
-    journal_.finish(identity_of(run), {.outcome = Outcome::kBadData, .detail = error.what()});
-    claimed_.erase(run);
-    count(report_.made);
+  /// Stores a run that could not be started. Errors of the store itself propagate to the caller.
+  void store_bad_data(std::size_t run, const InputError& error) {
+    if (!leased_.contains(run) && !acquire(run)) return;
+    writer_.finish(identity_of(run), {.outcome = Outcome::kBadData, .detail = error.what()});
+    leased_.erase(run);
+    count(report_.executed);
   }
 
   fs::path folder_of(std::size_t run) {
@@ -122,12 +123,12 @@ class PlanRunner {
   }
 
   [[nodiscard]] RunRequest request_of(std::size_t run, const fs::path& folder) const {
-    // Drawing takes time that a timing run would count as its own.
+    // Drawing the annotated images would distort the measured times.
     const bool is_timed = matrix_.plan.kind == RunKind::kTiming || identity_of(run).mode == "realtime";
     return {.run = matrix_.runs[run],
             .sequence = folder,
-            .work = journal_.work_folder(identity_of(run)),
-            .pictures = is_timed ? 0 : matrix_.plan.pictures};
+            .work = writer_.work_folder(identity_of(run)),
+            .images = is_timed ? 0 : matrix_.plan.images};
   }
 
   [[nodiscard]] ProcessSpec spec_of(std::size_t run, const fs::path& folder) const {
@@ -135,18 +136,19 @@ class PlanRunner {
     ProcessSpec spec = system_of(run).command(request_of(run, folder));
     spec.time_limit_s = plan.time_limit_s;
     if (plan.memory_limit_mb > 0) spec.memory_limit_bytes = std::int64_t{plan.memory_limit_mb} << 20;
-    if (!plan.cores.empty()) spec.cores = processors_of(plan.cores);  // else as the system asks
+    if (!plan.cores.empty()) spec.cores = parse_cpu_list(plan.cores);  // else as set by the system
     return spec;
   }
 
-  /// Runs that are thrown away: they bring files into memory and the processor to its clock.
+  /// Executes runs whose results are discarded: they fill the page cache and bring the CPU to its steady
+  /// clock.
   void warm_up(std::size_t run, const fs::path& folder) {
     if (matrix_.plan.kind != RunKind::kTiming || !warmed_up_.insert(matrix_.runs[run].sequence).second)
       return;
     for (int i = 0; i < matrix_.plan.warm_up && !stopped(); ++i) {
       if (hooks_.on_step) hooks_.on_step("warm up " + sequence_of(run).name);
       static_cast<void>(run_process(spec_of(run, folder)));
-      fs::remove_all(journal_.work_folder(identity_of(run)));
+      fs::remove_all(writer_.work_folder(identity_of(run)));
     }
   }
 
@@ -157,55 +159,56 @@ class PlanRunner {
     pool_.start(run, spec);
   }
 
-  void complete(std::size_t run, const ProcessEnd& end) {
-    claimed_.erase(run);
+  void complete(std::size_t run, const ProcessResult& end) {
+    leased_.erase(run);
     const RunRequest request = request_of(run, folders_.at(matrix_.runs[run].sequence));
     if (stopped() && (end.signal != 0 || end.exit_code == kInterruptedCode)) {
-      journal_.release(identity_of(run));
+      writer_.release(identity_of(run));
     } else {
       RunOutcome outcome = outcome_of_run(system_of(run), request, end, matrix_.plan);
       if (matrix_.plan.kind == RunKind::kTiming) {
         append_load(outcome.metrics, load_before_, machine_load(), end.user_s + end.system_s);
       }
-      journal_.finish(identity_of(run), outcome);
-      count(report_.made);
+      writer_.finish(identity_of(run), outcome);
+      count(report_.executed);
     }
     fs::remove_all(request.work);
   }
 
-  static constexpr int kInterruptedCode = 130;  // of `stillpoint run`
+  static constexpr int kInterruptedCode = 130;  // exit code of `stillpoint run`
 
   const PlanMatrix& matrix_;
-  Journal& journal_;
+  StoreWriter& writer_;
   const PlanHooks& hooks_;
   ProcessPool pool_;
   OwnOdometry own_;
   std::vector<ExternalRun> external_;
   int jobs_;
   std::deque<std::size_t> queue_;
-  std::deque<std::size_t> elsewhere_;  ///< runs that another driver has begun
-  std::set<std::size_t> claimed_;
-  std::set<std::size_t> warmed_up_;          ///< sequences
-  std::map<std::size_t, fs::path> folders_;  ///< of sequences
+  std::deque<std::size_t> leased_by_other_;  ///< runs leased by other workers
+  std::set<std::size_t> leased_;             ///< runs leased by this worker
+  std::set<std::size_t> warmed_up_;          ///< indices of sequences
+  std::map<std::size_t, fs::path> folders_;  ///< by index of the sequence
   MachineLoad load_before_;
-  bool told_of_waiting_ = false;
+  bool wait_reported_ = false;
   PlanReport report_;
 };
 
 }  // namespace
 
-PlanReport run_plan(const PlanMatrix& matrix, Journal& journal, const PlanOptions& options,
+PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
                     const PlanHooks& hooks) {
-  std::vector<Outcome> again = {Outcome::kBadData};
+  std::vector<Outcome> repeated = {Outcome::kBadData};
   if (options.retry) {
-    again = {Outcome::kLost, Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory, Outcome::kBadData};
+    repeated = {Outcome::kLost, Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory,
+                Outcome::kBadData};
   }
-  journal.forget(matrix.keys, again);
-  journal.record_plan({.name = matrix.plan.name,
-                       .title = matrix.plan.title,
-                       .text = matrix.plan.text,
-                       .run_keys = matrix.keys});
-  return PlanRunner(matrix, journal, options, hooks).run();
+  writer.remove_runs(matrix.keys, repeated);
+  writer.record_plan({.name = matrix.plan.name,
+                      .title = matrix.plan.title,
+                      .text = matrix.plan.text,
+                      .run_keys = matrix.keys});
+  return PlanRunner(matrix, writer, options, hooks).run();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -12,10 +12,10 @@
 #include "bench/plan/synth_settings.h"
 #include "bench/record/sequence_checksum.h"
 #include "core/base/error.h"
-#include "datasets/synthetic/request_text.h"
-#include "datasets/synthetic/sequence_cache.h"
+#include "datasets/synthetic/sequence/request_text.h"
+#include "datasets/synthetic/sequence/sequence_cache.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,20 +41,24 @@ std::map<std::string, RegisteredSequence> known_sequences() {
   return known;
 }
 
-PlanSequence checked(const RegisteredSequence& registered) {
+/// Verifies the checksum of a registered sequence.
+PlanSequence verified_sequence(const RegisteredSequence& registered) {
   if (!fs::is_directory(registered.folder)) {
     throw InputError("sequence \"" + registered.name + "\"",
                      "its folder " + registered.folder.string() +
-                         " has vanished; bring it back, or name it anew with `stillpoint data add`");
+                         " does not exist; restore it, or register it again with `stillpoint data add`");
   }
   const std::string checksum = sequence_checksum(registered.folder);
   if (!registered.checksum.empty() && registered.checksum != checksum) {
     throw InputError("sequence \"" + registered.name + "\"",
-                     "its files have the checksum " + checksum + " and had " + registered.checksum +
-                         " when it was registered; restore them, or accept them with `stillpoint data add`");
+                     "the checksum of its files is " + checksum + ", expected " + registered.checksum +
+                         " as registered; restore them, or register them again with `stillpoint data add`");
   }
-  return {
-      .name = registered.name, .id = checksum, .rendering = {}, .folder = registered.folder, .missing = ""};
+  return {.name = registered.name,
+          .id = checksum,
+          .rendering = {},
+          .folder = registered.folder,
+          .unavailable_reason = ""};
 }
 
 [[noreturn]] void throw_unknown(const std::string& pattern,
@@ -62,9 +66,9 @@ PlanSequence checked(const RegisteredSequence& registered) {
   std::vector<std::string> names;
   for (const auto& [name, sequence] : known) names.push_back(name);
   throw InputError("sequence \"" + pattern + "\"",
-                   "is not registered, nor a folder below " + data_folder().string() +
+                   "is neither registered nor a folder in " + data_folder().string() +
                        suggestion(pattern, names) +
-                       "; name it with `stillpoint data add NAME DIR`, or set STILLPOINT_DATA");
+                       "; register it with `stillpoint data add NAME DIR`, or set STILLPOINT_DATA");
 }
 
 }  // namespace
@@ -76,7 +80,7 @@ fs::path data_folder() {
 
 std::vector<std::string> matching_presets(const std::vector<std::string>& patterns) {
   std::vector<std::string> found;
-  const std::vector<std::string> presets = preset_names();
+  const std::vector<std::string> presets = synth::preset_names();
   for (const std::string& pattern : patterns) {
     const std::size_t before = found.size();
     std::copy_if(presets.begin(), presets.end(), std::back_inserter(found),
@@ -89,7 +93,7 @@ std::vector<std::string> matching_presets(const std::vector<std::string>& patter
 
 PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset, int seed,
                                const SweepAxis& axis) {
-  SynthRequest request = preset_request(preset);
+  synth::SynthRequest request = synth::preset_request(preset);
   request.seconds = plan.rendered.seconds;
   request.seed = static_cast<std::uint64_t>(seed);
   for (const SweepAxis& setting : plan.synth_settings) {
@@ -98,10 +102,10 @@ PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset,
   if (!axis.key.empty())
     request = with_number(request, axis.key.substr(kSynthPrefixLength), axis.values.front());
   return {.name = preset,
-          .id = "synth-" + request_key(request),
+          .id = "synth-" + synth::request_key(request),
           .rendering = request,
           .folder = {},
-          .missing = ""};
+          .unavailable_reason = ""};
 }
 
 std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
@@ -110,7 +114,7 @@ std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
   for (const std::string& pattern : group.sequences) {
     const std::size_t before = found.size();
     for (const auto& [name, sequence] : known) {
-      if (matches(pattern, name)) found.push_back(checked(sequence));
+      if (matches(pattern, name)) found.push_back(verified_sequence(sequence));
     }
     if (found.size() > before) continue;
     if (group.required) throw_unknown(pattern, known);
@@ -120,16 +124,17 @@ std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
          .id = "",
          .rendering = {},
          .folder = {},
-         .missing = "no folder " + (data_folder() / pattern).string() +
-                    "; set STILLPOINT_DATA to where it is, or name it with `stillpoint data add`"});
+         .unavailable_reason = "no folder " + (data_folder() / pattern).string() +
+                               "; set STILLPOINT_DATA, or register it with `stillpoint data add`"});
   }
   return found;
 }
 
-fs::path sequence_folder(const PlanSequence& sequence, const RenderControl& control) {
-  if (sequence.rendering) return cached_sequence(*sequence.rendering, control);
+fs::path sequence_folder(const PlanSequence& sequence, const synth::RenderControl& control) {
+  if (sequence.rendering) return synth::cached_sequence(*sequence.rendering, control);
   if (fs::is_directory(sequence.folder)) return sequence.folder;
-  throw InputError(sequence.folder.string(), "has vanished; bring the sequence back and call again");
+  throw InputError(sequence.folder.string(),
+                   "no longer exists; restore the sequence and run the command again");
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

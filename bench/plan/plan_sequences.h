@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The sequences that the names and globs of a plan stand for.
+/// Resolves the sequence names and globs of a plan.
 #pragma once
 
 #include <filesystem>
@@ -8,40 +8,39 @@
 #include <vector>
 
 #include "bench/plan/bench_plan.h"
-#include "datasets/synthetic/render_sequence.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// A sequence of a plan: one that is rendered when its first run comes, or a folder.
+/// A sequence of a plan: a synthetic one, rendered before its first run, or a recorded one.
 struct PlanSequence {
-  std::string name;                       ///< in tables
-  std::string id;                         ///< what its content is known by
-  std::optional<SynthRequest> rendering;  ///< of a rendered one
-  std::filesystem::path folder;           ///< of a recorded one
-  std::string missing;                    ///< why it takes no part; empty if it does
+  std::string name;                              ///< shown in tables
+  std::string id;                                ///< identifies the content: request key or checksum
+  std::optional<synth::SynthRequest> rendering;  ///< of a synthetic sequence
+  std::filesystem::path folder;                  ///< of a recorded sequence
+  std::string unavailable_reason;  ///< why a recorded sequence cannot be used; empty if it is available
 };
 
-/// Presets that match one of the names or globs, in the order of these.
-/// @throws InputError for a name or glob that matches none
+/// Presets that match one of the names or globs, in the order of the patterns.
+/// @throws InputError for a name or glob without a match
 [[nodiscard]] std::vector<std::string> matching_presets(const std::vector<std::string>& patterns);
 
-/// What a plan renders for one preset and seed.
-/// @param axis changed in addition: `key` with the prefix "synth.", and one value; empty key: nothing
+/// The synthetic sequence of a plan for one preset and seed.
+/// @param axis sweep point: `key` with the prefix "synth." and one value; an empty key changes nothing
 [[nodiscard]] PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset, int seed,
                                              const SweepAxis& axis);
 
-/// The recorded sequences of a plan; reads every byte of them for their checksums. One that is not at hand is
-/// marked as missing if the group is not required.
-/// @throws InputError for a required one that is not at hand, and for one whose files are not what was
-/// registered
+/// The recorded sequences of a plan; reads all their files to compute checksums. Unavailable sequences get an
+/// `unavailable_reason` if the group is not required.
+/// @throws InputError if a required sequence is not available, or the files of a registered one have changed
 [[nodiscard]] std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group);
 
-/// Folder with the sequence's files, rendered now if need be; empty if that was stopped.
-/// @throws InputError if it cannot be rendered or has vanished
+/// Folder with the files of the sequence, rendered first if necessary; empty if the rendering was stopped.
+/// @throws InputError if it cannot be rendered or no longer exists
 [[nodiscard]] std::filesystem::path sequence_folder(const PlanSequence& sequence,
-                                                    const RenderControl& control);
+                                                    const synth::RenderControl& control);
 
-/// The folder of recorded sequences: STILLPOINT_DATA, else ../shared/data from where the program is called.
+/// The folder of recorded sequences: $STILLPOINT_DATA, else ../shared/data relative to the working directory.
 [[nodiscard]] std::filesystem::path data_folder();
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

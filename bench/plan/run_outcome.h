@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What is stored of a process that made a run.
+/// Derives the stored outcome of a run from its finished process.
 #pragma once
 
 #include "bench/systems/slam_system.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// The system's own account, or how a limit or a signal ended it; what the process took, and the plan's
-/// recipes, beside it.
+/// The outcome reported by the system, or the limit or signal that terminated it, together with the resource
+/// usage of the process and the metrics of the plan's evaluation protocols.
 [[nodiscard]] RunOutcome outcome_of_run(const SlamSystem& system, const RunRequest& request,
-                                        const ProcessEnd& end, const BenchPlan& plan);
+                                        const ProcessResult& end, const BenchPlan& plan);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

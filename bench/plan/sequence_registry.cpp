@@ -10,16 +10,17 @@
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-void require_plain(const std::string& name) {
+void require_valid_name(const std::string& name) {
   constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
   if (!name.empty() && name.find_first_not_of(kAllowed) == std::string::npos) return;
-  throw InputError("sequence name \"" + name + "\"", "may have letters, digits, '_', '-' and '.' only");
+  throw InputError("sequence name \"" + name + "\"",
+                   "is invalid; use letters, digits, '_', '-' and '.' only");
 }
 
 std::string registry_text(const std::vector<RegisteredSequence>& sequences) {
@@ -38,7 +39,7 @@ std::string registry_text(const std::vector<RegisteredSequence>& sequences) {
 }  // namespace
 
 fs::path registry_file() {
-  if (const char* own = std::getenv("STILLPOINT_REGISTRY")) return own;
+  if (const char* file = std::getenv("STILLPOINT_REGISTRY")) return file;
   if (const char* config = std::getenv("XDG_CONFIG_HOME"))
     return fs::path(config) / "stillpoint" / "sequences.json";
   const char* home = std::getenv("HOME");
@@ -49,7 +50,7 @@ std::vector<RegisteredSequence> read_registry(const fs::path& file) {
   std::vector<RegisteredSequence> sequences;
   if (!fs::exists(file)) return sequences;
   try {
-    const Json json = Json::parse(read_text_file(file));
+    const Json json = Json::parse(eval::read_text_file(file));
     for (const Json& entry : json.at("sequences")) {
       sequences.push_back({.name = entry.at("name").get<std::string>(),
                            .folder = entry.at("folder").get<std::string>(),
@@ -58,14 +59,14 @@ std::vector<RegisteredSequence> read_registry(const fs::path& file) {
     }
   } catch (const Json::exception& error) {
     throw InputError(file.string(),
-                     std::string("is no registry of sequences: ") + error.what() +
-                         "; remove it and name the sequences again with `stillpoint data add`");
+                     std::string("is not a valid sequence registry: ") + error.what() +
+                         "; remove it and register the sequences again with `stillpoint data add`");
   }
   return sequences;
 }
 
 void register_sequence(const fs::path& file, const RegisteredSequence& sequence) {
-  require_plain(sequence.name);
+  require_valid_name(sequence.name);
   std::vector<RegisteredSequence> sequences = read_registry(file);
   std::erase_if(sequences, [&](const RegisteredSequence& known) { return known.name == sequence.name; });
   sequences.push_back(sequence);
@@ -74,4 +75,4 @@ void register_sequence(const fs::path& file, const RegisteredSequence& sequence)
   write_files(file.parent_path(), {{file.filename().string(), registry_text(sequences)}});
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

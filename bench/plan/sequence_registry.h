@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Names for recorded sequences, with the checksum that they had when they were named.
+/// Registry of named recorded sequences with their checksums at registration.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct RegisteredSequence {
   std::string name;
   std::filesystem::path folder;
-  std::string checksum;  ///< of its files, see bench/record/sequence_checksum.h
+  std::string checksum;  ///< of the files, see bench/record/sequence_checksum.h
   std::string format;
 };
 
 /// $STILLPOINT_REGISTRY, else sequences.json in $XDG_CONFIG_HOME/stillpoint or ~/.config/stillpoint.
 [[nodiscard]] std::filesystem::path registry_file();
 
-/// Empty if there is no such file.
-/// @throws InputError if it is malformed
+/// Returns an empty list if the file does not exist.
+/// @throws InputError if the file is malformed
 [[nodiscard]] std::vector<RegisteredSequence> read_registry(const std::filesystem::path& file);
 
-/// Adds a sequence, or replaces the one of that name.
-/// @throws InputError if the name is not made of letters, digits, '_', '-' and '.', or the file cannot be
-/// written
+/// Adds a sequence, or replaces the one with the same name.
+/// @throws InputError if the name has other characters than letters, digits, '_', '-' and '.', or the file
+/// cannot be written
 void register_sequence(const std::filesystem::path& file, const RegisteredSequence& sequence);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

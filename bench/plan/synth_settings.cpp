@@ -8,10 +8,12 @@
 #include "bench/config/spelling.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-/// Walks the fields and sets the one of a key; remembers all keys for the message.
+using synth::visit_fields;  // argument-dependent lookup does not find the overload for ImuNoise
+
+/// Visits all fields and sets the one with the given key; collects all keys for the error message.
 class NumberSetter {
  public:
   NumberSetter(std::string key, double value) : key_(std::move(key)), value_(value) {}
@@ -39,7 +41,7 @@ class NumberSetter {
     if (key != key_) return;
     found_ = true;
     if (std::is_same_v<Number, int> && value_ != std::floor(value_)) {
-      throw InputError("synth." + key_, "must be a whole number");
+      throw InputError("synth." + key_, "must be an integer");
     }
     number = static_cast<Number>(value_);
   }
@@ -53,14 +55,14 @@ class NumberSetter {
 
 }  // namespace
 
-SynthRequest with_number(SynthRequest request, const std::string& key, double value) {
+synth::SynthRequest with_number(synth::SynthRequest request, const std::string& key, double value) {
   NumberSetter setter(key, value);
   visit_fields(setter, request);
   if (!setter.found()) {
-    throw InputError("synth." + key, "is no number of a rendering" + suggestion(key, setter.known()));
+    throw InputError("unknown rendering parameter \"synth." + key + "\"" + suggestion(key, setter.known()));
   }
-  check_request(request);
+  synth::check_request(request);
   return request;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

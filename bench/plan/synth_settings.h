@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Changes numbers of a rendering by the names of their fields.
+/// Sets numeric fields of a rendering request by their names.
 #pragma once
 
 #include <string>
 
-#include "datasets/synthetic/presets.h"
+#include "datasets/synthetic/sequence/presets.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// The request with one number changed.
+/// Returns the request with one numeric field changed.
 /// @param key dotted, e.g. "walkers", "depth.noise_per_m", "imu.gyro_bias"
-/// @throws InputError for a key that is no number of a rendering, with the nearest one, for a fraction where
-/// a whole number is asked for, and for a value out of range
-[[nodiscard]] SynthRequest with_number(SynthRequest request, const std::string& key, double value);
+/// @throws InputError for an unknown key (with the nearest one), for a fraction if the field is an integer,
+/// and for a value out of range
+[[nodiscard]] synth::SynthRequest with_number(synth::SynthRequest request, const std::string& key,
+                                              double value);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -17,13 +17,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 constexpr int kExecFailed = 127;
-constexpr std::size_t kKeptMessageBytes = 65'536;
-constexpr int kAttendMs = 100;  // how late a limit may be noticed
-constexpr int kEndingMs = 2;    // a child without messages is about to end
+constexpr std::size_t kMaxMessageBytes = 65'536;
+constexpr int kPollIntervalMs = 100;    // longest delay until an exceeded limit is detected
+constexpr int kExitPollIntervalMs = 2;  // a child that closed stderr is about to exit
 
 [[noreturn]] void throw_errno(const char* what) {
   throw std::system_error(errno, std::generic_category(), what);
@@ -36,7 +36,7 @@ cpu_set_t processor_set(const std::vector<int>& cores) {
   return set;
 }
 
-/// What exec takes: pointers into `words`, which must live on, and a null.
+/// Argument vector for exec: pointers into `words`, null-terminated. `words` must outlive it.
 std::vector<char*> pointers_to(std::vector<std::string>& words) {
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
@@ -45,12 +45,12 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
   return pointers;
 }
 
-/// Everything that the child needs after fork, prepared before it: only few calls are safe then.
+/// Data that the child needs after fork, prepared before it: only async-signal-safe calls are allowed then.
 struct Launch {
   const char* program;
   char* const* arguments;
   char* const* environment;
-  const char* folder;  ///< null = ours
+  const char* folder;  ///< null = inherited
   int message_pipe;
   pid_t parent;
   bool pinned;
@@ -58,11 +58,11 @@ struct Launch {
   bool fixed_addresses;
 };
 
-/// Becomes the program with stderr in the pipe and stdout nowhere.
-[[noreturn]] void become(const Launch& launch) {
+/// Executes the program with stderr redirected to the pipe and stdout to /dev/null.
+[[noreturn]] void exec_child(const Launch& launch) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != launch.parent) _exit(kExecFailed);  // the parent was killed before that call
+  if (getppid() != launch.parent) _exit(kExecFailed);  // the parent died before prctl
   if (launch.pinned) sched_setaffinity(0, sizeof launch.processors, &launch.processors);
   dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
   dup2(open("/dev/null", O_WRONLY | O_CLOEXEC), STDOUT_FILENO);
@@ -90,7 +90,7 @@ double seconds(const timeval& time) {
 
 }  // namespace
 
-std::filesystem::path own_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
+std::filesystem::path executable_path() { return std::filesystem::read_symlink("/proc/self/exe"); }
 
 std::vector<int> allowed_processors() {
   cpu_set_t set;
@@ -129,7 +129,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
                       .processors = processor_set(spec.cores),
                       .fixed_addresses = spec.fixed_addresses};
   pid_ = fork();
-  if (pid_ == 0) become(launch);
+  if (pid_ == 0) exec_child(launch);
   close(ends[1]);
   pipe_ = ends[0];
   if (pid_ < 0) {
@@ -141,7 +141,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
 ChildProcess::~ChildProcess() {
   if (pid_ > 0) {
     kill(-pid_, SIGKILL);
-    kill(pid_, SIGKILL);  // it may not have made its group yet
+    kill(pid_, SIGKILL);  // its process group may not exist yet
     while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
@@ -152,12 +152,12 @@ void ChildProcess::read_messages() {
   std::array<char, 4096> block{};
   while (pipe_ >= 0) {
     const ssize_t got = read(pipe_, block.data(), block.size());
-    if (got > 0) end_.messages.append(block.data(), static_cast<std::size_t>(got));
+    if (got > 0) result_.messages.append(block.data(), static_cast<std::size_t>(got));
     if (got == 0) close_pipe();
     if (got < 0 && errno != EINTR) break;
   }
-  if (end_.messages.size() > 2 * kKeptMessageBytes) {
-    end_.messages.erase(0, end_.messages.size() - kKeptMessageBytes);
+  if (result_.messages.size() > 2 * kMaxMessageBytes) {
+    result_.messages.erase(0, result_.messages.size() - kMaxMessageBytes);
   }
 }
 
@@ -166,7 +166,7 @@ void ChildProcess::close_pipe() {
   pipe_ = -1;
 }
 
-bool ChildProcess::has_ended() const {
+bool ChildProcess::has_exited() const {
   siginfo_t info{};
   return waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
          info.si_pid == pid_;
@@ -176,49 +176,49 @@ void ChildProcess::enforce_limits() {
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const bool late = spec_.time_limit_s && elapsed_s > *spec_.time_limit_s;
   const bool large = spec_.memory_limit_bytes && resident_bytes(pid_) > *spec_.memory_limit_bytes;
-  if ((!late && !large) || end_.timed_out || end_.out_of_memory) return;
-  end_.timed_out = late;
-  end_.out_of_memory = large && !late;
+  if ((!late && !large) || result_.timed_out || result_.out_of_memory) return;
+  result_.timed_out = late;
+  result_.out_of_memory = large && !late;
   kill(-pid_, SIGKILL);
   kill(pid_, SIGKILL);
 }
 
-bool ChildProcess::attend() {
+bool ChildProcess::poll_once() {
   read_messages();
-  if (has_ended()) return false;
+  if (has_exited()) return false;
   enforce_limits();
   return true;
 }
 
-int ChildProcess::patience_ms() const { return pipe_ >= 0 ? kAttendMs : kEndingMs; }
+int ChildProcess::poll_timeout_ms() const { return pipe_ >= 0 ? kPollIntervalMs : kExitPollIntervalMs; }
 
-void ChildProcess::ask_to_end() const { kill(pid_, SIGTERM); }
+void ChildProcess::terminate() const { kill(pid_, SIGTERM); }
 
-ProcessEnd ChildProcess::wait() {
+ProcessResult ChildProcess::wait() {
   int status = 0;
   rusage usage{};
   while (wait4(pid_, &status, 0, &usage) < 0) {
     if (errno != EINTR) throw_errno("wait4");
   }
-  end_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   read_messages();
-  kill(-pid_, SIGKILL);  // what it may have left running
+  kill(-pid_, SIGKILL);  // its remaining children
   pid_ = -1;
-  end_.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-  end_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
-  end_.user_s = seconds(usage.ru_utime);
-  end_.system_s = seconds(usage.ru_stime);
-  end_.peak_memory_bytes = std::int64_t{usage.ru_maxrss} * 1024;
-  return end_;
+  result_.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  result_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+  result_.user_s = seconds(usage.ru_utime);
+  result_.system_s = seconds(usage.ru_stime);
+  result_.peak_memory_bytes = std::int64_t{usage.ru_maxrss} * 1024;
+  return result_;
 }
 
-ProcessEnd run_process(const ProcessSpec& spec) {
+ProcessResult run_process(const ProcessSpec& spec) {
   ChildProcess child(spec);
-  while (child.attend()) {
+  while (child.poll_once()) {
     pollfd waited{.fd = child.message_pipe(), .events = POLLIN, .revents = 0};
-    poll(&waited, 1, child.patience_ms());
+    poll(&waited, 1, child.poll_timeout_ms());
   }
   return child.wait();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A program as a child with limits of its own, so that a crash or a runaway run costs one row and not the
-/// table.
+/// A child process with a time and a memory limit: a crash or a runaway run fails alone and does not affect
+/// the other runs of a plan.
 #pragma once
 
 #include <chrono>
@@ -12,79 +12,80 @@
 
 #include <sys/types.h>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct ProcessSpec {
-  std::filesystem::path program;  ///< searched in PATH when it has no slash
+  std::filesystem::path program;  ///< searched in PATH if it contains no slash
   std::vector<std::string> arguments;
   std::optional<double> time_limit_s;
   std::optional<std::int64_t> memory_limit_bytes;       ///< of resident memory
-  std::vector<int> cores;                               ///< processors it may use; empty = all
-  std::filesystem::path folder;                         ///< that it works in; empty = ours
-  std::optional<std::vector<std::string>> environment;  ///< "NAME=value", all there is; nothing = ours
-  bool fixed_addresses = false;                         ///< the same memory layout at each start
+  std::vector<int> cores;                               ///< CPU affinity; empty = all processors
+  std::filesystem::path folder;                         ///< working directory; empty = inherited
+  std::optional<std::vector<std::string>> environment;  ///< "NAME=value", complete; nullopt = inherited
+  bool fixed_addresses = false;                         ///< disables address space randomization
 };
 
-/// How a process ended, and what it took.
-struct ProcessEnd {
-  int exit_code = 0;  ///< 0 when a signal ended it
-  int signal = 0;     ///< 0 when it ended by itself
+/// Exit status and resource usage of a process.
+struct ProcessResult {
+  int exit_code = 0;  ///< 0 when terminated by a signal
+  int signal = 0;     ///< 0 when it exited
   bool timed_out = false;
-  bool out_of_memory = false;  ///< ended by us at its memory limit
-  std::string messages;        ///< what it wrote to stderr, the last 64 kB
+  bool out_of_memory = false;  ///< killed at its memory limit
+  std::string messages;        ///< last 64 kB of stderr
   double wall_s = 0.0;
   double user_s = 0.0;
   double system_s = 0.0;
   std::int64_t peak_memory_bytes = 0;
 };
 
-/// This program's own file.
-[[nodiscard]] std::filesystem::path own_program();
+/// Path of the running executable.
+[[nodiscard]] std::filesystem::path executable_path();
 
-/// Processors that this process may use.
+/// CPU affinity of this process.
 [[nodiscard]] std::vector<int> allowed_processors();
 
-/// The last line that is not empty.
+/// The last non-empty line.
 [[nodiscard]] std::string last_line(std::string text);
 
-/// A running child. It dies with us, even when we are killed.
+/// A running child process. It is killed when the parent exits or is killed.
 class ChildProcess {
  public:
-  /// @throws std::system_error if no process can be made
+  /// @throws std::system_error if the process cannot be created
   explicit ChildProcess(const ProcessSpec& spec);
-  /// Kills a child that still runs.
+  /// Kills the child if it is still running.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Readable when the child has written messages or has ended; negative when it has closed them.
+  /// File descriptor, readable when the child has written to stderr or exited; negative once stderr is
+  /// closed.
   [[nodiscard]] int message_pipe() const { return pipe_; }
-  /// How long to wait for messages before the next `attend` [ms].
-  [[nodiscard]] int patience_ms() const;
+  /// Longest time to wait for messages before the next `poll_once` [ms].
+  [[nodiscard]] int poll_timeout_ms() const;
 
-  /// Takes in what can be read, and ends a child that is beyond a limit. @return false once it has ended
-  [[nodiscard]] bool attend();
+  /// Reads pending messages, and kills the child if it exceeds a limit. @return false once it has exited
+  [[nodiscard]] bool poll_once();
 
-  /// Asks the child to end.
-  void ask_to_end() const;
+  /// Sends SIGTERM.
+  void terminate() const;
 
-  /// Waits for the end; a child that `attend` has seen ended is there at once.
-  [[nodiscard]] ProcessEnd wait();
+  /// Waits for the exit; does not block after `poll_once` returned false.
+  [[nodiscard]] ProcessResult wait();
 
  private:
   void read_messages();
   void close_pipe();
-  [[nodiscard]] bool has_ended() const;
+  [[nodiscard]] bool has_exited() const;
   void enforce_limits();
 
   ProcessSpec spec_;
   pid_t pid_ = -1;
   int pipe_ = -1;
   std::chrono::steady_clock::time_point start_;
-  ProcessEnd end_;
+  ProcessResult result_;
 };
 
-/// Runs one child to its end.
-[[nodiscard]] ProcessEnd run_process(const ProcessSpec& spec);
+/// Runs one child process until it exits.
+[[nodiscard]] ProcessResult run_process(const ProcessSpec& spec);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -8,12 +8,12 @@
 
 #include <unistd.h>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-constexpr double kQuietShare = 0.05;
+constexpr double kMaxQuietLoad = 0.05;
 constexpr int kIdle = 3;     // column of /proc/stat, after user, nice, system
-constexpr int kIoWait = 4;   // idle, too
+constexpr int kIoWait = 4;   // also idle
 constexpr int kColumns = 8;  // up to steal
 
 }  // namespace
@@ -43,9 +43,9 @@ void append_load(std::vector<Metric>& metrics, const MachineLoad& before, const 
   const auto total = static_cast<double>(after.total - before.total);
   if (total <= 0.0) return;
   const double own = own_s * static_cast<double>(sysconf(_SC_CLK_TCK));
-  const double share = std::max(0.0, (static_cast<double>(after.busy - before.busy) - own) / total);
-  metrics.push_back({"other_load", "/proc/stat", "", share});
-  metrics.push_back({"quiet", "other_load below 0.05", "", share < kQuietShare ? 1.0 : 0.0});
+  const double other_load = std::max(0.0, (static_cast<double>(after.busy - before.busy) - own) / total);
+  metrics.push_back({"other_load", "/proc/stat", "", other_load});
+  metrics.push_back({"quiet", "other_load below 0.05", "", other_load < kMaxQuietLoad ? 1.0 : 0.0});
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

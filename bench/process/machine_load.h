@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How busy the machine was while something was timed.
+/// Load of the machine during a timing measurement.
 #pragma once
 
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
-#include "bench/store/stored_run.h"
+#include "bench/model/stored_run.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Processor time since the machine started [ticks of sysconf(_SC_CLK_TCK)], summed over its processors.
+/// Processor time since boot [ticks of sysconf(_SC_CLK_TCK)], summed over all processors.
 struct MachineLoad {
   std::int64_t busy = 0;
   std::int64_t total = 0;
@@ -18,13 +18,13 @@ struct MachineLoad {
 
 [[nodiscard]] MachineLoad machine_load();
 
-/// @param stat text of /proc/stat (proc(5)); time of guests is within user time already
+/// @param stat text of /proc/stat (proc(5)); user time includes guest time
 [[nodiscard]] MachineLoad parse_machine_load(std::string_view stat);
 
-/// Adds "other_load", the share of the machine that others took between two moments, and "quiet": 1 if that
-/// was below 5 %, else 0. Nothing where the system does not tell.
-/// @param own_s processor time that the timed process took [s]
+/// Adds the metrics "other_load", the fraction of processor time that other processes used between two
+/// measurements, and "quiet": 1 if it is below 5 %, else 0. Adds nothing if /proc/stat is not available.
+/// @param own_s processor time of the timed process [s]
 void append_load(std::vector<Metric>& metrics, const MachineLoad& before, const MachineLoad& after,
                  double own_s);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -5,41 +5,41 @@
 
 #include <poll.h>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 void ProcessPool::start(std::size_t tag, const ProcessSpec& spec) {
   children_.push_back({tag, std::make_unique<ChildProcess>(spec)});
 }
 
-void ProcessPool::pass_on_stop() {
-  if (stop_passed_on_ || !stop_requested_ || !stop_requested_()) return;
-  stop_passed_on_ = true;
-  for (const Entry& entry : children_) entry.child->ask_to_end();
+void ProcessPool::forward_stop() {
+  if (stop_forwarded_ || !stop_requested_ || !stop_requested_()) return;
+  stop_forwarded_ = true;
+  for (const Entry& entry : children_) entry.child->terminate();
 }
 
 void ProcessPool::wait_for_messages() const {
-  std::vector<pollfd> waited;
-  int patience_ms = children_.front().child->patience_ms();
+  std::vector<pollfd> descriptors;
+  int poll_timeout_ms = children_.front().child->poll_timeout_ms();
   for (const Entry& entry : children_) {
-    waited.push_back({.fd = entry.child->message_pipe(), .events = POLLIN, .revents = 0});
-    patience_ms = std::min(patience_ms, entry.child->patience_ms());
+    descriptors.push_back({.fd = entry.child->message_pipe(), .events = POLLIN, .revents = 0});
+    poll_timeout_ms = std::min(poll_timeout_ms, entry.child->poll_timeout_ms());
   }
-  poll(waited.data(), waited.size(), patience_ms);
+  poll(descriptors.data(), descriptors.size(), poll_timeout_ms);
 }
 
-std::optional<std::pair<std::size_t, ProcessEnd>> ProcessPool::wait_next() {
+std::optional<std::pair<std::size_t, ProcessResult>> ProcessPool::wait_next() {
   while (!children_.empty()) {
-    pass_on_stop();
+    forward_stop();
     for (auto entry = children_.begin(); entry != children_.end(); ++entry) {
-      if (entry->child->attend()) continue;
+      if (entry->child->poll_once()) continue;
       const std::size_t tag = entry->tag;
-      const ProcessEnd end = entry->child->wait();
+      const ProcessResult result = entry->child->wait();
       children_.erase(entry);
-      return std::pair{tag, end};
+      return std::pair{tag, result};
     }
     wait_for_messages();
   }
   return std::nullopt;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

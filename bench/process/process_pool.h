@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Several children at once, from one thread.
+/// Concurrent child processes, managed from one thread.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 
 #include "bench/process/child_process.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 class ProcessPool {
  public:
-  /// @param stop_requested asked at least ten times a second; when true the children are asked to end
+  /// @param stop_requested polled at least ten times per second; on true all children get SIGTERM
   explicit ProcessPool(std::function<bool()> stop_requested) : stop_requested_(std::move(stop_requested)) {}
 
-  /// @param tag comes back with the end of this child
+  /// @param tag returned by `wait_next` with the result of this child
   void start(std::size_t tag, const ProcessSpec& spec);
 
-  /// Waits for the next child to end.
+  /// Waits until a child exits.
   /// @return nothing if none is running
-  [[nodiscard]] std::optional<std::pair<std::size_t, ProcessEnd>> wait_next();
+  [[nodiscard]] std::optional<std::pair<std::size_t, ProcessResult>> wait_next();
 
   [[nodiscard]] std::size_t running() const { return children_.size(); }
 
@@ -33,12 +33,12 @@ class ProcessPool {
     std::unique_ptr<ChildProcess> child;
   };
 
-  void pass_on_stop();
+  void forward_stop();
   void wait_for_messages() const;
 
   std::function<bool()> stop_requested_;
   std::vector<Entry> children_;
-  bool stop_passed_on_ = false;
+  bool stop_forwarded_ = false;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 std::string_view cut_line(std::string_view& text) {
@@ -15,7 +15,7 @@ std::string_view cut_line(std::string_view& text) {
   return line;
 }
 
-/// Takes lines in order; keeps which function they are about.
+/// Parses lines in order; tracks the current function.
 class CallgrindReader {
  public:
   explicit CallgrindReader(const std::string& place) : place_(place) {}
@@ -29,7 +29,7 @@ class CallgrindReader {
     } else if (line.starts_with("calls=")) {
       after_calls_ = true;
     } else if (line.starts_with("events:")) {
-      require(line == "events: Ir", "counts other events than \"Ir\"");
+      require(line == "events: Ir", "contains other events than \"Ir\"");
       has_events_ = true;
     } else if (line.starts_with("totals:")) {
       counts_.total = number(line.substr(line.find_last_of(' ') + 1));
@@ -39,7 +39,7 @@ class CallgrindReader {
   }
 
   CallgrindCounts finish() && {
-    require(has_events_ && counts_.total > 0, "has no counts; did the program end well?");
+    require(has_events_ && counts_.total > 0, "has no counts; did the program exit normally?");
     return std::move(counts_);
   }
 
@@ -54,41 +54,41 @@ class CallgrindReader {
       counts_.inclusive[called_] += cost;
       after_calls_ = false;
     } else {
-      require(function_ != nullptr, "counts instructions of no function");
+      require(function_ != nullptr, "has a count outside of a function");
       *function_ += cost;
     }
   }
 
-  /// "(3) name" says what "(3)" stands for from here on.
+  /// Name compression: "(3) name" defines the id "(3)", later lines use the id alone.
   std::string name(std::string_view text) {
     if (!text.starts_with('(')) return std::string(text);
     const std::size_t end = text.find(')');
-    require(end != std::string_view::npos, "has a name without its number");
+    require(end != std::string_view::npos, "has a name with an unterminated id");
     const std::string id(text.substr(0, end + 1));
     if (text.size() > end + 2) names_[id] = text.substr(end + 2);
     const auto found = names_.find(id);
-    require(found != names_.end(), "has a number without its name");
+    require(found != names_.end(), "uses an undefined name id");
     return found->second;
   }
 
   [[nodiscard]] std::int64_t number(std::string_view text) const {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    require(error == std::errc{} && end == text.data() + text.size(), "has a count that is no number");
+    require(error == std::errc{} && end == text.data() + text.size(), "has an invalid count");
     return value;
   }
 
   void require(bool condition, const char* problem) const {
-    if (!condition) throw InputError(place_, line_, std::string(problem) + "; give a file of callgrind");
+    if (!condition) throw InputError(place_, line_, std::string(problem) + "; expected callgrind output");
   }
 
   const std::string& place_;
   long line_ = 0;
   CallgrindCounts counts_;
   std::map<std::string, std::string> names_;
-  std::int64_t* function_ = nullptr;  ///< own count of the function that lines are about
+  std::int64_t* function_ = nullptr;  ///< self count of the current function
   std::string called_;
-  bool after_calls_ = false;  ///< the next count is of the call
+  bool after_calls_ = false;  ///< the next count belongs to the call
   bool has_events_ = false;
 };
 
@@ -100,4 +100,4 @@ CallgrindCounts parse_callgrind(std::string_view text, const std::string& place)
   return std::move(reader).finish();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Reads what Valgrind's callgrind counted.
+/// Parser of Valgrind's callgrind output.
 #pragma once
 
 #include <cstdint>
@@ -7,19 +7,19 @@
 #include <string>
 #include <string_view>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Executed instructions, by function as callgrind names it (with its parameters).
+/// Executed instructions by function, with callgrind's function names (including parameter types).
 struct CallgrindCounts {
   std::int64_t total = 0;
-  std::map<std::string, std::int64_t> self;       ///< without what it called
-  std::map<std::string, std::int64_t> inclusive;  ///< of all calls of it, with what it called
+  std::map<std::string, std::int64_t> self;       ///< without callees
+  std::map<std::string, std::int64_t> inclusive;  ///< with callees, summed over all calls
 };
 
-/// @param text  callgrind.out of one event, "Ir"; names may be compressed, as they are by default
+/// @param text  callgrind.out with the single event "Ir"; names may be compressed (the default)
 /// @param place name of the text in messages
-/// @throws InputError with the line of the first fault
+/// @throws InputError with the line of the first error
 /// Source: Callgrind Format Specification, Valgrind manual 3.19.
 [[nodiscard]] CallgrindCounts parse_callgrind(std::string_view text, const std::string& place);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

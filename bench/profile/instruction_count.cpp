@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,11 +23,11 @@ fs::path find_valgrind() {
     if (!folder.empty() && access(file.c_str(), X_OK) == 0) return file;
   }
   throw InputError("valgrind",
-                   "is needed to count instructions and is not in PATH; install the Debian package "
+                   "is required to count instructions and is not in PATH; install the Debian package "
                    "\"valgrind\" (scripts/setup.sh --dev)");
 }
 
-/// A function that is called once or twice a picture and does all that its stage does.
+/// Entry function of a stage, called once or twice per frame; its inclusive count is that of the stage.
 struct StageFunction {
   const char* stage;
   std::string_view function;
@@ -39,14 +39,14 @@ constexpr StageFunction kStageFunctions[] = {
     {"optimization", "stillpoint::OptimizationStage::predict("},
 };
 
-/// Whether callgrind's name is of that function itself, not of a part that the compiler split off.
+/// Whether a callgrind name is that function, and not a part that the compiler split off.
 bool is_function(std::string_view name, std::string_view function) {
   return name.starts_with(function) && name.find("[clone") == std::string_view::npos &&
          name.find(".part.") == std::string_view::npos && name.find(".cold") == std::string_view::npos;
 }
 
-/// Nothing of the caller's. Libraries start no threads of their own where they can be told so; where not,
-/// every thread gets a heap of its own, and keeps nothing of what it frees for another.
+/// Constant environment. Disables the threads of libraries where possible; otherwise every thread has its own
+/// heap arena, and the per-thread cache of malloc is disabled.
 std::vector<std::string> fixed_environment() {
   return {"PATH=/usr/bin:/bin", "LC_ALL=C", "OPENCV_FOR_THREADS_NUM=1", "OPENIMAGEIO_THREADS=1",
           "GLIBC_TUNABLES=glibc.malloc.tcache_count=0:glibc.malloc.arena_max=100"};
@@ -60,7 +60,7 @@ ProcessSpec under_callgrind(ProcessSpec run, const fs::path& folder) {
                                     std::string("--callgrind-out-file=") + kCallgrindFile,
                                     run.program.string()};
   words.insert(words.end(), run.arguments.begin(), run.arguments.end());
-  words.emplace_back("--countable");
+  words.emplace_back("--deterministic-counts");
   run.program = find_valgrind();
   run.arguments = std::move(words);
   run.folder = folder;
@@ -79,25 +79,25 @@ std::vector<StageInstructions> stage_instructions(const CallgrindCounts& counts,
     }
   }
   if (stages.front().count == 0) {
-    throw InputError(place, "names no stage of the odometry; was the program stripped of its symbols?");
+    throw InputError(place, "contains no stage of the odometry; is the binary stripped of its symbols?");
   }
   return stages;
 }
 
 std::vector<Metric> instruction_metrics(const std::vector<StageInstructions>& stages) {
-  constexpr const char* kRecipe = "valgrind callgrind, sequential, one thread";
-  std::vector<Metric> metrics = {{.name = "instructions", .recipe = kRecipe, .unit = ""}};
+  constexpr const char* kProtocol = "valgrind callgrind, sequential, one thread";
+  std::vector<Metric> metrics = {{.name = "instructions", .protocol = kProtocol, .unit = ""}};
   for (const auto& [stage, count] : stages) {
     const auto value = static_cast<double>(count);  // exact below 2^53
     metrics.front().value += value;
-    metrics.push_back({.name = "instructions_" + stage, .recipe = kRecipe, .unit = "", .value = value});
+    metrics.push_back({.name = "instructions_" + stage, .protocol = kProtocol, .unit = "", .value = value});
   }
   return metrics;
 }
 
 std::vector<StageInstructions> read_instructions(const fs::path& folder) {
   const fs::path file = folder / kCallgrindFile;
-  return stage_instructions(parse_callgrind(read_text_file(file), file.string()), file.string());
+  return stage_instructions(parse_callgrind(eval::read_text_file(file), file.string()), file.string());
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Executed instructions of the odometry, stage by stage: the same number in every run of the same program,
-/// however busy the machine is.
+/// Executed instructions per stage of the odometry: reproducible between runs of the same binary, independent
+/// of the machine's load.
 #pragma once
 
 #include <cstdint>
@@ -8,41 +8,41 @@
 #include <string>
 #include <vector>
 
+#include "bench/model/stored_run.h"
 #include "bench/process/child_process.h"
 #include "bench/profile/callgrind_file.h"
-#include "bench/store/stored_run.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Its name in the folder of a run.
+/// File name in the folder of a run.
 inline constexpr const char* kCallgrindFile = "callgrind.out";
 
-/// Turns `stillpoint run` into the same under callgrind, which writes `kCallgrindFile` into a folder.
-/// What could change a count from run to run is fixed: one processor and no thread for decoding, so that
-/// nobody waits; threads that libraries start take turns; memory lies at the same addresses; the environment
-/// and the paths of results are the same. The processor is valgrind's, whatever the real one: it has AVX2.
-/// @param run    with the absolute path of its sequence, and --sequence-id: a checksum would take longer than
-/// the run
-/// @param folder where results and counts go; made if need be
-/// @throws InputError if there is no valgrind
+/// Wraps `stillpoint run` in callgrind, which writes `kCallgrindFile` into a folder.
+/// Everything that could change a count is fixed: one processor, no decoding thread, fair scheduling of
+/// library threads, no address space randomization, constant environment and result paths. The instruction
+/// set is that of valgrind's virtual CPU (with AVX2), not of the host.
+/// @param run    with the absolute path of its sequence, and --sequence-id (a checksum would take longer than
+///               the run)
+/// @param folder for results and counts; created if it does not exist
+/// @throws InputError if valgrind is not installed
 [[nodiscard]] ProcessSpec under_callgrind(ProcessSpec run, const std::filesystem::path& folder);
 
-/// What one stage of the odometry executed.
+/// Executed instructions of one stage.
 struct StageInstructions {
   std::string stage;
   std::int64_t count = 0;
 };
 
-/// Tracking, object detection and optimisation, in this order; decoding and recording are left out.
-/// @throws InputError if the counts name none of them
+/// Tracking, object detection and optimization, in this order; decoding and recording are excluded.
+/// @throws InputError if the counts contain none of them
 [[nodiscard]] std::vector<StageInstructions> stage_instructions(const CallgrindCounts& counts,
                                                                 const std::string& place);
 
-/// "instructions" of all stages together, and "instructions_" and its name of each.
+/// Metrics "instructions" (sum of all stages) and "instructions_STAGE" of each stage.
 [[nodiscard]] std::vector<Metric> instruction_metrics(const std::vector<StageInstructions>& stages);
 
-/// Reads and sums what a run under `under_callgrind` left behind.
-/// @throws InputError if it left nothing
+/// Reads the output of a run of `under_callgrind`.
+/// @throws InputError if there is none
 [[nodiscard]] std::vector<StageInstructions> read_instructions(const std::filesystem::path& folder);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -33,7 +33,7 @@ std::vector<ProfileRow> profile_rows(const TimingSamples& samples, double budget
     rows.push_back({.module = module,
                     .per_call = *per_call,
                     .per_frame = samples.statistics(module, TimePer::kFrame).value(),
-                    .frames_beyond = samples.frames_beyond(module, budget_ms)});
+                    .frames_over = samples.frames_over(module, budget_ms)});
   }
   return rows;
 }
@@ -64,7 +64,7 @@ Json profile_json(const std::vector<ProfileRow>& rows, const DeadlineMisses& mis
                        {"calls", row.per_call.calls},
                        {"per_call_ms", json_of(row.per_call)},
                        {"per_frame_ms", json_of(row.per_frame)},
-                       {"frames_beyond_budget", row.frames_beyond}});
+                       {"frames_over_budget", row.frames_over}});
   }
   return {{"modules", modules},
           {"whole_frame_ms", misses.whole_frame ? json_of(*misses.whole_frame) : Json()},
@@ -75,4 +75,4 @@ Json profile_json(const std::vector<ProfileRow>& rows, const DeadlineMisses& mis
             {"missed_by_a_thread_per_stage", misses.thread_per_stage}}}};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -6,12 +6,12 @@
 
 #include "eval/metrics/statistics.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 constexpr int kBatches = 15;
 constexpr int kFramesPerBatch = 200;
-constexpr int kTimersPerFrame = 14;  // as many as a picture has: they share the growth of the list
+constexpr int kTimersPerFrame = 14;  // as in a frame, to amortize the growth of the vector alike
 
 double timer_ns() {
   std::vector<double> batches;
@@ -24,7 +24,7 @@ double timer_ns() {
     const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - start;
     batches.push_back(elapsed.count() / (kFramesPerBatch * kTimersPerFrame));
   }
-  return percentile(batches, 0.5).value_or(0.0);
+  return eval::percentile(batches, 0.5).value_or(0.0);
 }
 
 double stages_ns(const OdometryRun& run) {
@@ -43,12 +43,12 @@ double stages_ns(const OdometryRun& run) {
 RecorderCost recorder_cost(const OdometryRun& run) {
   RecorderCost cost{.timer_ns = timer_ns()};
   const double frames = std::max(1.0, static_cast<double>(run.frame_timings.size()));
-  const auto keeping_ns = static_cast<double>(run.recording.count());
+  const auto recording_ns = static_cast<double>(run.recording.count());
   cost.timers_per_frame = static_cast<double>(run.spans.size()) / frames;
-  cost.keeping_us_per_frame = 1e-3 * keeping_ns / frames;
-  const double all_ns = static_cast<double>(run.spans.size()) * cost.timer_ns + keeping_ns;
-  cost.share = all_ns / std::max(1.0, stages_ns(run));
+  cost.recording_us_per_frame = 1e-3 * recording_ns / frames;
+  const double all_ns = static_cast<double>(run.spans.size()) * cost.timer_ns + recording_ns;
+  cost.fraction = all_ns / std::max(1.0, stages_ns(run));
   return cost;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -9,15 +9,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 constexpr int kProcess = 1;
 
 std::chrono::steady_clock::time_point end_of(const ModuleSpan& span) { return span.start + span.elapsed; }
 
-/// Track by track, by start, outer spans before those within. Of two that are equal the one that was left
-/// last is the outer one.
+/// Sorted by track, start, and descending duration, so that outer spans precede inner ones. Of two equal
+/// spans the one that ended last is the outer one.
 std::vector<FrameSpan> in_order(std::span<const FrameSpan> spans) {
   std::vector<FrameSpan> sorted(spans.rbegin(), spans.rend());
   const auto key = [](const FrameSpan& one) {
@@ -47,19 +47,19 @@ std::string complete_event(const FrameSpan& one, std::chrono::steady_clock::time
       microseconds(one.span.start - zero), microseconds(one.span.elapsed), one.frame);
 }
 
-/// A span that has begun and what of it was not spent in spans within.
-struct Open {
+/// An open span and its self time.
+struct OpenSpan {
   ModuleSpan span;
-  std::chrono::nanoseconds own{};
+  std::chrono::nanoseconds self{};
 };
 
 using StackTimes = std::map<std::string, std::chrono::nanoseconds>;
 
-/// Ends the innermost span.
-void close_innermost(std::vector<Open>& stack, StackTimes& times) {
+/// Closes the innermost span and adds its self time.
+void close_innermost(std::vector<OpenSpan>& stack, StackTimes& times) {
   std::string key(track_name(track_of(stack.back().span.module)));
-  for (const Open& open : stack) key.append(";").append(module_name(open.span.module));
-  times[key] += stack.back().own;
+  for (const OpenSpan& open : stack) key.append(";").append(module_name(open.span.module));
+  times[key] += stack.back().self;
   stack.pop_back();
 }
 
@@ -110,16 +110,16 @@ std::string chrome_trace(std::span<const FrameSpan> spans, const std::string& pr
 
 std::string folded_stacks(std::span<const FrameSpan> spans) {
   StackTimes times;
-  std::vector<Open> stack;
+  std::vector<OpenSpan> stack;
   for (const FrameSpan& one : in_order(spans)) {
     while (!stack.empty() && !lies_within(one.span, stack.back().span)) close_innermost(stack, times);
-    if (!stack.empty()) stack.back().own -= one.span.elapsed;
-    stack.push_back({.span = one.span, .own = one.span.elapsed});
+    if (!stack.empty()) stack.back().self -= one.span.elapsed;
+    stack.push_back({.span = one.span, .self = one.span.elapsed});
   }
   while (!stack.empty()) close_innermost(stack, times);
   std::string text;
-  for (const auto& [key, own] : times) text += fmt::format("{} {}\n", key, own.count());
+  for (const auto& [key, self] : times) text += fmt::format("{} {}\n", key, self.count());
   return text;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

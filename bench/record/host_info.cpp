@@ -7,7 +7,7 @@
 #include <sys/utsname.h>
 #include <nlohmann/json.hpp>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 std::string cpu_model() {
@@ -46,4 +46,4 @@ nlohmann::ordered_json host_json(const HostInfo& host) {
   return json;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

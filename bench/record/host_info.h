@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The machine that a run was made on, as far as it bears on its numbers.
+/// Hardware and operating system of a run, as far as they affect its results.
 #pragma once
 
 #include <optional>
@@ -7,18 +7,18 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct HostInfo {
-  std::string cpu;  ///< model name; "unknown" if the system does not tell
+  std::string cpu;  ///< model name; "unknown" if not available
   unsigned logical_cpus = 0;
   std::string kernel;
-  std::optional<std::string> governor;  ///< of the first CPU's clock, where readable
+  std::optional<std::string> governor;  ///< frequency scaling governor of the first CPU, if available
 };
 
 [[nodiscard]] HostInfo host_info();
 
-/// As manifests have it.
+/// JSON of manifests.
 [[nodiscard]] nlohmann::ordered_json host_json(const HostInfo& host);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

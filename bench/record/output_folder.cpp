@@ -10,13 +10,13 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
 InputError cannot_make(const fs::path& folder, const std::error_code& error) {
-  return {folder.string(), "cannot be made: " + error.message() + "; choose another folder with --out"};
+  return {folder.string(), "cannot be created: " + error.message() + "; choose another folder with --out"};
 }
 
 void make_folder(const fs::path& folder) {
@@ -25,7 +25,7 @@ void make_folder(const fs::path& folder) {
   if (error) throw cannot_make(folder, error);
 }
 
-/// Temporary files of one group; what is not renamed is removed.
+/// Temporary files of one group; removed on destruction unless renamed.
 class TemporaryFiles {
  public:
   explicit TemporaryFiles(fs::path folder) : folder_(std::move(folder)) {}
@@ -84,4 +84,4 @@ void write_files(const fs::path& folder, const std::vector<OutputFile>& files) {
   temporary.rename_all();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

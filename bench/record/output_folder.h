@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Files that appear together, whole, or not at all.
+/// Atomic output of a group of files: all of them complete, or none.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct OutputFile {
   std::string name;
   std::string text;
 };
 
-/// Proves that a file can be written in a folder, or in the nearest one above that exists: asked before hours
-/// of work, not after. Leaves no trace.
-/// @throws InputError if it cannot
+/// Checks, before a long computation, that a file can be written in a folder, or in its nearest existing
+/// parent. Leaves no file behind.
+/// @throws InputError if it cannot be written
 void require_writable(const std::filesystem::path& folder);
 
-/// A variant's name as the name of a folder.
+/// Folder name of a variant.
 [[nodiscard]] std::string folder_name(std::string variant);
 
-/// Writes all files under temporary names and renames them when every one is complete.
-/// @throws InputError if the folder cannot be written or the disk is full; nothing new is left then
+/// Writes all files under temporary names and renames them when all are complete.
+/// @throws InputError if the folder cannot be written or the disk is full; no new file remains
 void write_files(const std::filesystem::path& folder, const std::vector<OutputFile>& files);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -3,27 +3,27 @@
 
 #include <nlohmann/json.hpp>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A number of a result file, its unit, and the name under which its recipe is told.
-struct Number {
+/// A metric of result.json, its unit, and its key in "protocols".
+struct MetricField {
   const char* key;
   const char* unit;
-  const char* recipe;
+  const char* protocol;
 };
-constexpr Number kNumbers[] = {{"ate_rmse_m", "m", "ate"},
-                               {"rpe_trans_rmse_m_per_s", "m/s", "rpe"},
-                               {"rpe_rot_rmse_deg_per_s", "deg/s", "rpe"},
-                               {"correct_rate", "", "correct_rate"},
-                               {"coverage", "", "coverage"},
-                               {"first_pose_s", "s", ""},
-                               {"frames", "", ""},
-                               {"poses", "", ""},
-                               {"resets", "", ""},
-                               {"wall_s", "s", ""}};
+constexpr MetricField kNumbers[] = {{"ate_rmse_m", "m", "ate"},
+                                    {"rpe_trans_rmse_m_per_s", "m/s", "rpe"},
+                                    {"rpe_rot_rmse_deg_per_s", "deg/s", "rpe"},
+                                    {"correct_rate", "", "correct_rate"},
+                                    {"coverage", "", "coverage"},
+                                    {"first_pose_s", "s", ""},
+                                    {"frames", "", ""},
+                                    {"poses", "", ""},
+                                    {"resets", "", ""},
+                                    {"wall_s", "s", ""}};
 
 void append_costs(std::vector<ModuleCost>& costs, const Json& timings, const char* group, const char* per) {
   if (!timings.contains(group)) return;
@@ -42,12 +42,12 @@ void append_costs(std::vector<ModuleCost>& costs, const Json& timings, const cha
 
 std::vector<Metric> score_metrics(const Json& json) {
   std::vector<Metric> metrics;
-  const Json recipes = json.value("recipes", Json::object());
-  for (const Number& number : kNumbers) {
+  const Json protocols = json.value("protocols", Json::object());
+  for (const MetricField& number : kNumbers) {
     const auto found = json.find(number.key);
     if (found == json.end() || !found->is_number()) continue;
     metrics.push_back({.name = number.key,
-                       .recipe = recipes.value(number.recipe, ""),
+                       .protocol = protocols.value(number.protocol, ""),
                        .unit = number.unit,
                        .value = found->get<double>()});
   }
@@ -61,4 +61,4 @@ std::vector<ModuleCost> module_costs(const Json& timings) {
   return costs;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -7,16 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_text.h"
+#include "bench/model/content_hash.h"
+#include "bench/model/counter_text.h"
+#include "bench/model/timing_text.h"
 #include "bench/profile/timeline.h"
-#include "bench/record/content_hash.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/score_text.h"
-#include "bench/store/counter_text.h"
-#include "bench/store/timing_text.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/statistics.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -47,14 +47,15 @@ Json timing_json(const TimingSamples& samples, bool threads) {
 
 Json detector_json(const RunSummary& summary) {
   const DetectorCounters& counters = summary.detector_counters;
-  return {{"description", summary.detector}, {"looked", counters.looked},   {"unlooked", counters.unlooked},
-          {"boxes", counters.boxes},         {"clipped", counters.clipped}, {"unusable", counters.unusable}};
+  return {{"description", summary.detector}, {"processed", counters.processed},
+          {"skipped", counters.skipped},     {"boxes", counters.boxes},
+          {"clipped", counters.clipped},     {"rejected", counters.rejected}};
 }
 
 Json realtime_json(const RunSummary& summary) {
   if (!summary.realtime) return nullptr;
   const RealtimeReport& report = *summary.realtime;
-  const auto latency = [&](double share) { return percentile(report.latencies_ms, share).value_or(0.0); };
+  const auto latency = [&](double p) { return eval::percentile(report.latencies_ms, p).value_or(0.0); };
   return {{"deadline_ms", report.deadline_ms},
           {"dropped_frames", report.dropped},
           {"late_detections", report.late_detections},
@@ -64,18 +65,19 @@ Json realtime_json(const RunSummary& summary) {
 
 Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-Json verdicts_json(const OdometryRun& run) {
-  if (!run.verdicts) return nullptr;
-  const auto share = [](const VerdictScore::Share& of) -> Json {
-    return {{"features", of.all}, {"flagged", of.flagged}, {"share", number_or_null(of.share())}};
+Json labels_json(const OdometryRun& run) {
+  if (!run.label_score) return nullptr;
+  const auto group = [](const LabelScore::Group& of) -> Json {
+    return {
+        {"features", of.all}, {"flagged", of.flagged}, {"flagged_ratio", number_or_null(of.flagged_ratio())}};
   };
-  return {{"precision", number_or_null(run.verdicts->precision())},
-          {"people", share(run.verdicts->people)},
-          {"unknown_movers", share(run.verdicts->unknown_movers)},
-          {"background", share(run.verdicts->background)}};
+  return {{"precision", number_or_null(run.label_score->precision())},
+          {"people", group(run.label_score->people)},
+          {"undetectable_objects", group(run.label_score->undetectable_objects)},
+          {"background", group(run.label_score->background)}};
 }
 
-/// Hash of the network that looks for objects; null without one.
+/// Hash of the detector's network weights; null without a network.
 Json weights_json(const DetectorConfig& detector) {
   if (detector.kind != DetectorKind::kNetwork) return nullptr;
   std::ifstream file(detector.weights, std::ios::binary);
@@ -104,7 +106,7 @@ std::string result_json(const RunResult& result) {
                         {"gaps", summary.imu_health.gaps}};
   json["detector"] = detector_json(summary);
   json["dynamic_features"] = result.run.dynamic_features;
-  json["verdicts"] = verdicts_json(result.run);
+  json["dynamic_labels"] = labels_json(result.run);
   json["realtime"] = realtime_json(summary);
   json["notes"] = result.notes;
   json["wall_s"] = result.run.wall_s;
@@ -116,7 +118,7 @@ std::string result_json(const RunResult& result) {
 
 std::string manifest_json(const RunManifest& manifest) {
   Json config = Json::object();
-  // TOML's spelling of these values is JSON's too.
+  // These values have the same syntax in TOML and JSON.
   for (const auto& [key, value] : config_entries(manifest.config)) config[key] = Json::parse(value);
   Json json;
   json["schema"] = 1;
@@ -170,7 +172,7 @@ std::string frames_csv(const OdometryRun& run) {
 }
 
 std::string trajectory_text(const RunResult& result) {
-  const std::string poses = format_tum(result.run.trajectory);
+  const std::string poses = eval::format_tum(result.run.trajectory);
   return result.status == RunStatus::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
 }
 
@@ -187,4 +189,4 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   write_files(folder, files);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

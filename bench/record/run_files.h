@@ -10,7 +10,7 @@
 #include "bench/record/run_manifest.h"
 #include "bench/run/run_result.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 /// Text of result.json; numbers without data are null.
 [[nodiscard]] std::string result_json(const RunResult& result);
@@ -18,19 +18,18 @@ namespace stillpoint {
 /// Text of manifest.json.
 [[nodiscard]] std::string manifest_json(const RunManifest& manifest);
 
-/// Text of timings.csv: time that each picture spent in each module of the odometry, see
-/// bench/store/timing_text.h.
+/// Text of timings.csv: time per frame and module of the odometry, see bench/model/timing_text.h.
 [[nodiscard]] std::string timings_csv(const OdometryRun& run);
 
-/// Text of frames.csv: fingerprint of each module's state after each picture.
+/// Text of frames.csv: hash of each module's state after each frame.
 [[nodiscard]] std::string frames_csv(const OdometryRun& run);
 
-/// Text of trajectory.tum; the first line of an unfinished one says so.
+/// Text of trajectory.tum; that of an interrupted run starts with the comment "# partial".
 [[nodiscard]] std::string trajectory_text(const RunResult& result);
 
-/// Writes the files and the dumps that were asked for, together or not at all.
+/// Writes the files and the requested dumps: all of them, or none.
 /// @throws InputError if the folder cannot be written
 void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest,
                std::vector<OutputFile> dumps = {});
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

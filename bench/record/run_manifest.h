@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Everything that is needed to make a run again, and to know what its numbers may be compared with.
+/// Everything that is necessary to reproduce a run, and to decide which results are comparable with it.
 #pragma once
 
 #include <string>
 
 #include "bench/record/build_info.h"
 #include "bench/record/host_info.h"
-#include "core/pipeline/odometry_config.h"
+#include "core/config/odometry_config.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct RunManifest {
   std::string sequence;
@@ -23,4 +23,4 @@ struct RunManifest {
   std::string started;  ///< UTC, ISO 8601
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

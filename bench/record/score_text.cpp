@@ -4,46 +4,46 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The numbers of a score in the order in which they are shown.
-struct Number {
+/// The metrics of a score, in display order.
+struct MetricField {
   const char* key;
   const char* title;
   const char* unit;
-  std::optional<double> Score::*value;
+  std::optional<double> eval::Score::*value;
 };
-constexpr Number kNumbers[] = {
-    {"coverage", "coverage", "", &Score::coverage},
-    {"ate_rmse_m", "ATE rmse", "m", &Score::ate_rmse_m},
-    {"rpe_trans_rmse_m_per_s", "T.RPE rmse", "m/s", &Score::rpe_trans_rmse_m_per_s},
-    {"rpe_rot_rmse_deg_per_s", "R.RPE rmse", "deg/s", &Score::rpe_rot_rmse_deg_per_s},
-    {"correct_rate", "correct rate", "", &Score::correct_rate},
-    {"first_pose_s", "first pose", "s", &Score::first_pose_s}};
+constexpr MetricField kNumbers[] = {
+    {"coverage", "coverage", "", &eval::Score::coverage},
+    {"ate_rmse_m", "ATE rmse", "m", &eval::Score::ate_rmse_m},
+    {"rpe_trans_rmse_m_per_s", "T.RPE rmse", "m/s", &eval::Score::rpe_trans_rmse_m_per_s},
+    {"rpe_rot_rmse_deg_per_s", "R.RPE rmse", "deg/s", &eval::Score::rpe_rot_rmse_deg_per_s},
+    {"correct_rate", "correct rate", "", &eval::Score::correct_rate},
+    {"first_pose_s", "first pose", "s", &eval::Score::first_pose_s}};
 
 }  // namespace
 
-Json score_members(const Score& score) {
+Json score_members(const eval::Score& score) {
   Json json;
-  for (const Number& number : kNumbers) {
+  for (const MetricField& number : kNumbers) {
     const std::optional<double>& value = score.*number.value;
     json[number.key] = value ? Json(*value) : Json(nullptr);
   }
   json["ate_pairs"] = score.ate_pairs;
   json["rpe_pairs"] = score.rpe_pairs;
-  json["recipes"] = {{"ate", "compat:tum, 0.02 s, one-to-one, rigid alignment"},
-                     {"rpe", "compat:tum, fixed delta of 1 s, all pairs"},
-                     {"correct_rate", "openloris, 1 m, 30 deg, over the time of the ground truth"},
-                     {"coverage", "share of the pictures with a pose"}};
+  json["protocols"] = {{"ate", "compat:tum, 0.02 s, one-to-one, rigid alignment"},
+                       {"rpe", "compat:tum, fixed delta of 1 s, all pairs"},
+                       {"correct_rate", "openloris, 1 m, 30 deg, over the time of the ground truth"},
+                       {"coverage", "fraction of frames with a pose"}};
   return json;
 }
 
-std::string score_text(const Score& score) {
+std::string score_text(const eval::Score& score) {
   std::string text;
-  for (const Number& number : kNumbers) {
+  for (const MetricField& number : kNumbers) {
     const std::optional<double>& value = score.*number.value;
     text += fmt::format("{:<13} {}\n", number.title,
                         value ? fmt::format("{:.6f} {}", *value, number.unit) : "n/a");
@@ -51,6 +51,6 @@ std::string score_text(const Score& score) {
   return text;
 }
 
-std::string score_json(const Score& score) { return score_members(score).dump(2) + "\n"; }
+std::string score_json(const eval::Score& score) { return score_members(score).dump(2) + "\n"; }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

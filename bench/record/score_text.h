@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Scores for people and for programs.
+/// Scores as plain text and as JSON.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 #include "eval/score.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// One line a number with its unit; "n/a" without data.
-[[nodiscard]] std::string score_text(const Score& score);
+/// One line per metric with its unit; "n/a" without data.
+[[nodiscard]] std::string score_text(const eval::Score& score);
 
-/// A JSON document; null without data.
-[[nodiscard]] std::string score_json(const Score& score);
+/// A JSON document; metrics without data are null.
+[[nodiscard]] std::string score_json(const eval::Score& score);
 
-/// The members of that document, and the recipe of each number.
-[[nodiscard]] nlohmann::ordered_json score_members(const Score& score);
+/// The members of that document: metrics, and "protocols" by metric.
+[[nodiscard]] nlohmann::ordered_json score_members(const eval::Score& score);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <vector>
 
-#include "bench/record/content_hash.h"
+#include "bench/model/content_hash.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,4 +41,4 @@ std::string sequence_checksum(const fs::path& folder) {
   return hash_text(hash);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One fingerprint of everything in a sequence's folder.
+/// Checksum of a sequence folder.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Sixteen hexadecimal digits over the names and contents of all files below a folder, in order of their
-/// names. Reads every byte.
+/// Hash of the names and contents of all files below a folder, sorted by name, as sixteen hexadecimal digits.
+/// Reads every byte.
 /// @throws InputError if a file cannot be read
 [[nodiscard]] std::string sequence_checksum(const std::filesystem::path& folder);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

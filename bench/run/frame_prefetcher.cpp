@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 FramePrefetcher::FramePrefetcher(Load load, std::size_t count, std::size_t ahead)
     : load_(std::move(load)), count_(count), ahead_(ahead) {
@@ -23,7 +23,7 @@ Frame FramePrefetcher::take(std::size_t index) {
   STILLPOINT_CHECK(index >= next_ && index < count_);
   next_ = index + 1;
   Slot slot = ahead_ > 0 ? wait_for(index) : decode(index);
-  decoded_.push_back(slot.picture);
+  decoded_.push_back(slot.decoded);
   if (slot.error) std::rethrow_exception(slot.error);
   return std::move(slot.frame);
 }
@@ -36,12 +36,12 @@ FramePrefetcher::Slot FramePrefetcher::wait_for(std::size_t index) {
     slot = std::move(slots_.front());
     slots_.pop_front();
     changed_.notify_all();
-  } while (slot.picture.index < index);
+  } while (slot.decoded.index < index);
   return slot;
 }
 
 FramePrefetcher::Slot FramePrefetcher::decode(std::size_t index) const {
-  Slot slot{.picture = {.index = index, .start = std::chrono::steady_clock::now(), .elapsed = {}},
+  Slot slot{.decoded = {.index = index, .start = std::chrono::steady_clock::now(), .elapsed = {}},
             .frame = {},
             .error = nullptr};
   try {
@@ -49,7 +49,7 @@ FramePrefetcher::Slot FramePrefetcher::decode(std::size_t index) const {
   } catch (...) {
     slot.error = std::current_exception();
   }
-  slot.picture.elapsed = std::chrono::steady_clock::now() - slot.picture.start;
+  slot.decoded.elapsed = std::chrono::steady_clock::now() - slot.decoded.start;
   return slot;
 }
 
@@ -65,4 +65,4 @@ void FramePrefetcher::decode_all() {
   }
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

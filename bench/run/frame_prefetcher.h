@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Decodes pictures ahead of the odometry on a thread of its own, in order, or where they are asked for.
+/// Decodes images ahead of the odometry, in order, on a separate thread or on the caller's.
 #pragma once
 
 #include <chrono>
@@ -13,38 +13,38 @@
 
 #include "core/types/frame.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// When a picture was decoded.
-struct DecodedPicture {
+/// Decoding time of one frame.
+struct DecodedFrame {
   std::size_t index = 0;
   std::chrono::steady_clock::time_point start;
   std::chrono::nanoseconds elapsed{};
 };
 
-/// Hands out frames 0, 1, ... `count - 1`; at most `ahead` decoded ones wait. What is handed out does not
+/// Returns frames 0, 1, ... `count - 1`; buffers at most `ahead` decoded frames. The returned frames do not
 /// depend on timing.
 class FramePrefetcher {
  public:
   using Load = std::function<Frame(std::size_t index)>;
 
   /// @param load  called on the prefetching thread only
-  /// @param ahead 0: no thread is started, and `take` decodes
+  /// @param ahead 0: no thread is started; `take` decodes on the calling thread
   FramePrefetcher(Load load, std::size_t count, std::size_t ahead = 8);
   ~FramePrefetcher();
   FramePrefetcher(const FramePrefetcher&) = delete;
   FramePrefetcher& operator=(const FramePrefetcher&) = delete;
 
-  /// Waits for a frame; those before it are dropped. Throws what decoding it threw.
+  /// Waits for a frame; earlier ones are dropped. Rethrows the exception of its decoding.
   /// @param index larger than at the last call, below `count`
   [[nodiscard]] Frame take(std::size_t index);
 
-  /// Of each frame handed out, in the order of the calls.
-  [[nodiscard]] const std::vector<DecodedPicture>& decoded() const { return decoded_; }
+  /// Decoding times of the returned frames, in the order of the calls.
+  [[nodiscard]] const std::vector<DecodedFrame>& decoded() const { return decoded_; }
 
  private:
   struct Slot {
-    DecodedPicture picture;
+    DecodedFrame decoded;
     Frame frame;
     std::exception_ptr error;
   };
@@ -56,8 +56,8 @@ class FramePrefetcher {
   Load load_;
   std::size_t count_;
   std::size_t ahead_;
-  std::size_t next_ = 0;  ///< the smallest index that may still be asked for
-  std::vector<DecodedPicture> decoded_;
+  std::size_t next_ = 0;  ///< smallest index that `take` accepts
+  std::vector<DecodedFrame> decoded_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Slot> slots_;  ///< guarded by mutex_
@@ -65,4 +65,4 @@ class FramePrefetcher {
   std::jthread thread_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 Heartbeat::Heartbeat(const std::filesystem::path& file)
     : descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
@@ -23,7 +23,7 @@ Heartbeat::Heartbeat(const std::filesystem::path& file)
 Heartbeat::~Heartbeat() { close(descriptor_); }
 
 void Heartbeat::beat(std::int64_t frame) const {
-  // One call of 8 bytes, so that a reader never sees half a number. Failing is no reason to end a run.
+  // One write of 8 bytes, so that a reader never sees a partial number. A failure does not abort the run.
   static_cast<void>(!pwrite(descriptor_, &frame, sizeof frame, 0));
 }
 
@@ -34,4 +34,4 @@ std::optional<std::int64_t> read_heartbeat(const std::filesystem::path& file) {
   return frame;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

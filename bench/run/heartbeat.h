@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The number of the last finished frame in a file, so that a run that crashed can still tell how far it
-/// came.
+/// File with the id of the last processed frame; reports the progress of a run, also after a crash.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Its name in a run's folder.
+/// File name in a run's folder.
 inline constexpr const char* kHeartbeatFile = "heartbeat";
 
 class Heartbeat {
  public:
-  /// @throws InputError if the file cannot be made
+  /// @throws InputError if the file cannot be created
   explicit Heartbeat(const std::filesystem::path& file);
   ~Heartbeat();
   Heartbeat(const Heartbeat&) = delete;
@@ -26,7 +25,7 @@ class Heartbeat {
   int descriptor_;
 };
 
-/// Nothing if there is no such file or it has no number yet.
+/// Nothing if the file does not exist or is empty.
 [[nodiscard]] std::optional<std::int64_t> read_heartbeat(const std::filesystem::path& file);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

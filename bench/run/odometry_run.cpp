@@ -8,20 +8,20 @@
 #include "bench/run/frame_prefetcher.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-/// Pictures that wait for the odometry.
+/// Capacity of the buffer of decoded frames.
 constexpr std::size_t kDecodedAhead = 8;
 
-std::size_t frames_to_run(const SequenceInfo& info, std::size_t max_frames) {
+std::size_t frames_to_run(const datasets::SequenceInfo& info, std::size_t max_frames) {
   if (info.frame_times.empty()) {
-    throw InputError(info.folder.string(), "has no pictures; check it with `stillpoint data check`");
+    throw InputError(info.folder.string(), "has no frames; check it with `stillpoint data check`");
   }
   return max_frames == 0 ? info.frame_times.size() : std::min(max_frames, info.frame_times.size());
 }
 
-SensorInput input_of(const SequenceInfo& info, std::size_t frames, FramePrefetcher& prefetcher) {
+SensorInput input_of(const datasets::SequenceInfo& info, std::size_t frames, FramePrefetcher& prefetcher) {
   return {.rig = info.rig,
           .frame_times = std::span(info.frame_times).first(frames),
           .imu = info.imu,
@@ -44,9 +44,9 @@ FrameCounters counters_of(const OdometryUpdate& update, Timestamp t) {
           .reset = counters.reset};
 }
 
-/// Collects what the updates of one run say. What the runner takes for decoding is only waiting here: the
-/// prefetcher knows the true times.
-void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& info) {
+/// Records an update. The runner's time of image decoding is left out: it is the time of waiting for the
+/// prefetcher, which measures the decoding itself.
+void record(OdometryRun& run, const OdometryUpdate& update, const datasets::SequenceInfo& info) {
   for (std::size_t i = 0; i < kModuleCount; ++i) {
     const auto module = static_cast<Module>(i);
     if (module != Module::kImageDecoding) run.timings.add(module, update.timings[module]);
@@ -61,68 +61,70 @@ void record(OdometryRun& run, const OdometryUpdate& update, const SequenceInfo& 
   run.trajectory.poses.push_back({t, update.T_w_c});
 }
 
-/// As `record`, for timelines.
+/// Records the time spans of an update.
 void record_spans(OdometryRun& run, const OdometryUpdate& update) {
   for (const ModuleSpan& span : update.timings.spans()) {
     if (span.module != Module::kImageDecoding) run.spans.push_back({update.frame_id, span});
   }
 }
 
-/// What the runner takes for decoding is waiting for it.
+/// The runner's time of image decoding is the time of waiting for decoded frames.
 void add_wait(ChannelWaits& decoded, const OdometryUpdate& update) {
   decoded.for_items.ns += update.timings[Module::kImageDecoding].ns;
   decoded.for_items.waits += update.timings[Module::kImageDecoding].calls;
 }
 
-void score_verdicts(OdometryRun& run, const PictureReport& report, const SensorStream& stream,
-                    SlidTracks& slid) {
-  slid.add(report.tracked);
-  if (report.dynamic.verdicts.empty()) return;
-  const std::optional<MotionLabels> labels = stream.load_labels(static_cast<std::size_t>(report.frame.id));
+void score_labels(OdometryRun& run, const FrameReport& report, const datasets::SensorStream& stream,
+                  DriftedTracks& drifted) {
+  drifted.add(report.tracked);
+  if (report.dynamic.labels.empty()) return;
+  const std::optional<datasets::MotionLabels> labels =
+      stream.load_labels(static_cast<std::size_t>(report.frame.id));
   if (!labels) return;
-  if (!run.verdicts) run.verdicts.emplace();
-  run.verdicts->add(report.tracked.features, report.dynamic.verdicts, *labels, slid);
+  if (!run.label_score) run.label_score.emplace();
+  run.label_score->add(report.tracked.features, report.dynamic.labels, *labels, drifted);
 }
 
 void record_decoding(OdometryRun& run, const FramePrefetcher& prefetcher, bool keep_spans) {
-  for (const DecodedPicture& picture : prefetcher.decoded()) {
-    run.timings.add(Module::kImageDecoding, {.ns = picture.elapsed.count(), .calls = 1});
+  for (const DecodedFrame& frame : prefetcher.decoded()) {
+    run.timings.add(Module::kImageDecoding, {.ns = frame.elapsed.count(), .calls = 1});
     if (!keep_spans) continue;
     run.spans.push_back(
-        {.frame = static_cast<std::int64_t>(picture.index),
-         .span = {.module = Module::kImageDecoding, .start = picture.start, .elapsed = picture.elapsed}});
+        {.frame = static_cast<std::int64_t>(frame.index),
+         .span = {.module = Module::kImageDecoding, .start = frame.start, .elapsed = frame.elapsed}});
   }
 }
 
 RunSummary run_in_mode(const RunSpec& spec, const SensorInput& input, const RunControl& control) {
-  if (spec.board)
-    return run_on_board(input, spec.config, control, {.board = *spec.board, .speed = spec.speed});
+  if (spec.device)
+    return run_on_device(input, spec.config, control, {.device = *spec.device, .speed = spec.speed});
   if (spec.mode == "sequential") return run_sequential(input, spec.config, control);
   if (spec.mode == "pipelined") return run_pipelined(input, spec.config, control);
   if (spec.mode == "realtime") return run_realtime(input, spec.config, control, spec.speed);
   throw InputError("--mode",
-                   "\"" + spec.mode + "\" is not known; use \"sequential\", \"pipelined\" or \"realtime\"");
+                   "\"" + spec.mode + "\" is unknown; use \"sequential\", \"pipelined\" or \"realtime\"");
 }
 
-/// A new thread's heap is empty. What lies in the first one's depends on the timing of threads that libraries
-/// start, and so does the length of searches in it. The first picture makes the library that decodes start
-/// its own, before there is anything to disturb.
+/// Runs `work` on a new thread, whose heap is empty. The state of the main thread's heap, and with it the
+/// number of instructions of an allocation, depends on the timing of threads that libraries start. Decoding
+/// the first image beforehand makes the decoding library start its threads.
 template <class Work>
-RunSummary on_fresh_thread(const SensorStream& stream, const Work& work) {
+RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& work) {
   static_cast<void>(stream.load_frame(0));
   return std::async(std::launch::async, work).get();
 }
 
 }  // namespace
 
-OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const RunControl& control) {
-  const SequenceInfo& info = stream.info();
+OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
+                         const RunControl& control) {
+  const datasets::SequenceInfo& info = stream.info();
   OdometryRun run;
   run.trajectory.frame = "camera";
   run.frames_planned = frames_to_run(info, spec.max_frames);
   FramePrefetcher prefetcher([&stream](std::size_t index) { return stream.load_frame(index); },
-                             run.frames_planned, spec.countable ? 0 : kDecodedAhead);
-  ChannelWaits decoded{.channel = "decoded pictures", .for_items = {}, .for_room = {}};
+                             run.frames_planned, spec.deterministic_counts ? 0 : kDecodedAhead);
+  ChannelWaits decoded{.channel = "decoded frames", .for_items = {}, .for_room = {}};
   const auto on_update = [&](const OdometryUpdate& update) {
     const auto begin = std::chrono::steady_clock::now();
     record(run, update, info);
@@ -131,23 +133,23 @@ OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec, const 
     run.recording += std::chrono::steady_clock::now() - begin;
     if (control.on_update) control.on_update(update);
   };
-  SlidTracks slid(info);
-  const auto on_picture = [&](const PictureReport& report) {
-    // Decoding labels beside a run against the clock would slow it.
-    if (spec.mode != "realtime") score_verdicts(run, report, stream, slid);
-    if (control.on_picture) control.on_picture(report);
+  DriftedTracks drifted(info);
+  const auto on_frame = [&](const FrameReport& report) {
+    // Decoding labels would slow down a real-time run.
+    if (spec.mode != "realtime") score_labels(run, report, stream, drifted);
+    if (control.on_frame) control.on_frame(report);
   };
   const auto start = std::chrono::steady_clock::now();
   const auto work = [&] {
     return run_in_mode(
         spec, input_of(info, run.frames_planned, prefetcher),
-        {.on_update = on_update, .on_picture = on_picture, .stop_requested = control.stop_requested});
+        {.on_update = on_update, .on_frame = on_frame, .stop_requested = control.stop_requested});
   };
-  run.summary = spec.countable ? on_fresh_thread(stream, work) : work();
+  run.summary = spec.deterministic_counts ? on_fresh_thread(stream, work) : work();
   run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!spec.countable) run.summary.waits.push_back(decoded);
+  if (!spec.deterministic_counts) run.summary.waits.push_back(decoded);
   record_decoding(run, prefetcher, spec.keep_spans);
   return run;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Runs our odometry over a sequence and keeps everything that it said.
+/// Runs the odometry over a sequence and records its output.
 #pragma once
 
 #include <chrono>
@@ -9,53 +9,52 @@
 #include <string>
 #include <vector>
 
+#include "bench/model/stored_run.h"
+#include "bench/run/label_score.h"
 #include "bench/run/timing_statistics.h"
-#include "bench/run/verdict_score.h"
-#include "bench/store/stored_run.h"
-#include "core/pipeline/runner.h"
+#include "core/pipeline/runners/runner.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 /// What to run.
 struct RunSpec {
   OdometryConfig config;
-  std::string mode = "sequential";  ///< or "pipelined" or "realtime"
-  double speed = 1.0;               ///< of the clock of "realtime", and of a board's
-  std::optional<BoardModel>
-      board;                   ///< run on a virtual clock, as on that machine; `mode` is "sequential" then
-  std::size_t max_frames = 0;  ///< pictures from the start; 0 = all
-  bool keep_spans = false;     ///< for timelines
-  bool countable = false;      ///< decodes when asked for, on a thread whose heap nobody else uses:
-                               ///< instruction counts repeat
+  std::string mode = "sequential";    ///< or "pipelined" or "realtime"
+  double speed = 1.0;                 ///< clock rate of "realtime" and of a device
+  std::optional<DeviceModel> device;  ///< simulate the timing of that device; `mode` must be "sequential"
+  std::size_t max_frames = 0;         ///< frames from the start; 0 = all
+  bool keep_spans = false;            ///< record time spans, for timelines
+  bool deterministic_counts = false;  ///< without prefetching and on a thread with a separate heap, for
+                                      ///< reproducible instruction counts
 };
 
-/// A stay in a module, and for which picture.
+/// Time span of a module, and the frame that it processed.
 struct FrameSpan {
   std::int64_t frame = 0;
   ModuleSpan span;
 };
 
-/// What came of it.
+/// Recorded output of a run.
 struct OdometryRun {
-  Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose for each picture that was tracked
+  Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose per tracked frame
   RunSummary summary;
   TimingSamples timings;
-  std::int64_t dynamic_features = 0;          ///< verdicts of a mover, summed over the pictures
-  std::optional<VerdictScore> verdicts;       ///< where the sequence has labels; not of "realtime"
-  std::vector<ModuleTimings> frame_timings;   ///< of each picture that was asked for
-  std::vector<FrameSpan> spans;               ///< where they were to be kept; pictures as they were decoded
-  std::vector<StateHashes> frame_hashes;      ///< likewise
-  std::vector<FrameCounters> frame_counters;  ///< likewise
+  std::int64_t dynamic_features = 0;          ///< features labelled as dynamic, summed over frames
+  std::optional<LabelScore> label_score;      ///< if the sequence has labels; not in mode "realtime"
+  std::vector<ModuleTimings> frame_timings;   ///< per processed frame
+  std::vector<FrameSpan> spans;               ///< if `keep_spans`; those of decoding last
+  std::vector<StateHashes> frame_hashes;      ///< per processed frame
+  std::vector<FrameCounters> frame_counters;  ///< per processed frame
   std::size_t frames_planned = 0;
-  std::chrono::nanoseconds recording{};  ///< taken by keeping all this
-  double wall_s = 0.0;                   ///< from the first picture asked for to the last update
+  std::chrono::nanoseconds recording{};  ///< time spent on recording this
+  double wall_s = 0.0;                   ///< from the request of the first frame to the last update
 };
 
 /// @param control `on_update` may be empty
-/// @throws InputError for an unknown mode, a sequence without pictures, and what the runner throws
-[[nodiscard]] OdometryRun run_odometry(const SensorStream& stream, const RunSpec& spec,
+/// @throws InputError for an unknown mode, a sequence without frames, and errors of the runner
+[[nodiscard]] OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                                        const RunControl& control);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -6,15 +6,16 @@
 
 #include "eval/trajectory/frames.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-/// True path of the camera over the given frames; whole if they are all frames of the sequence.
-Trajectory camera_truth(const SequenceInfo& info, const std::vector<Timestamp>& frames) {
-  Trajectory truth = move_to_frame(info.ground_truth.trajectory, info.ground_truth.T_c_f.inverse(), "camera");
+/// Ground-truth trajectory of the camera over the given frames; uncropped if they are all of the sequence.
+Trajectory camera_truth(const datasets::SequenceInfo& info, const std::vector<Timestamp>& frames) {
+  Trajectory truth =
+      eval::move_to_frame(info.ground_truth.trajectory, info.ground_truth.T_c_f.inverse(), "camera");
   if (frames.size() == info.frame_times.size() || frames.empty()) return truth;
-  // A picture's pose may belong to a stamp somewhat beyond its own.
-  const double margin_s = ScoreOptions{}.max_difference_s;
+  // A frame may be associated with a slightly later or earlier ground-truth pose.
+  const double margin_s = eval::ScoreOptions{}.max_difference_s;
   std::erase_if(truth.poses, [&](const StampedPose& pose) {
     return pose.t < after(frames.front(), -margin_s) || pose.t > after(frames.back(), margin_s);
   });
@@ -34,7 +35,7 @@ std::string failure_of(const OdometryRun& run) {
       return "interrupted after " + std::to_string(run.summary.frames) + " of " +
              std::to_string(run.frames_planned) + " frames";
     case RunStatus::kFailed:
-      return "no frame has a pose: the estimator never initialised";
+      return "no frame has a pose: the estimator never initialized";
   }
   return "";
 }
@@ -53,9 +54,9 @@ std::string status_name(RunStatus status) {
   return "";
 }
 
-RunResult score_run(const SequenceInfo& info, OdometryRun run) {
+RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run) {
   const std::size_t frames = std::min(run.summary.frames, info.frame_times.size());
-  ScoreOptions options;
+  eval::ScoreOptions options;
   options.expected_times.assign(info.frame_times.begin(),
                                 info.frame_times.begin() + static_cast<std::ptrdiff_t>(frames));
   RunResult result;
@@ -63,9 +64,9 @@ RunResult score_run(const SequenceInfo& info, OdometryRun run) {
   result.status = status_of(run);
   result.failure = failure_of(run);
   result.notes = info.notes;
-  result.score = score(camera_truth(info, options.expected_times), run.trajectory, options);
+  result.score = eval::score(camera_truth(info, options.expected_times), run.trajectory, options);
   result.run = std::move(run);
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The outcome of one run: what its result file says.
+/// The scored result of one run, the content of its result.json.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 #include "bench/run/odometry_run.h"
 #include "eval/score.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 enum class RunStatus {
   kOk,
-  kInterrupted,  ///< stopped on request: what is there is true but not whole
-  kFailed,       ///< ran to the end and found no pose
+  kInterrupted,  ///< stopped on request; the results cover the processed frames
+  kFailed,       ///< processed all frames without any pose
 };
 
 /// "ok", "interrupted" or "failed".
@@ -24,14 +24,14 @@ struct RunResult {
   std::string variant;
   std::string mode;
   RunStatus status = RunStatus::kOk;
-  std::string failure;             ///< why, when not ok
-  std::vector<std::string> notes;  ///< what the reader of the sequence assumed
-  Score score;
+  std::string failure;             ///< reason when not ok
+  std::vector<std::string> notes;  ///< assumptions of the sequence reader
+  eval::Score score;
   OdometryRun run;
 };
 
-/// Scores a run against the sequence's ground truth, moved to the camera. A run over a part of the sequence
-/// is scored on that part.
-[[nodiscard]] RunResult score_run(const SequenceInfo& info, OdometryRun run);
+/// Scores a run against the sequence's ground truth, transformed to the camera frame. An interrupted run is
+/// scored on its processed frames.
+[[nodiscard]] RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

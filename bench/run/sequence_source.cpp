@@ -5,20 +5,21 @@
 
 #include "bench/config/spelling.h"
 #include "core/base/error.h"
-#include "datasets/synthetic/sequence_cache.h"
+#include "datasets/synthetic/sequence/sequence_cache.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-std::unique_ptr<SensorStream> find_sequence(const std::string& name, const OpenOptions& options,
-                                            const RenderControl& control) {
-  if (std::filesystem::is_directory(name)) return open_sequence(name, options);
-  const std::vector<std::string> presets = preset_names();
+std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
+                                                      const datasets::OpenOptions& options,
+                                                      const synth::RenderControl& control) {
+  if (std::filesystem::is_directory(name)) return datasets::open_sequence(name, options);
+  const std::vector<std::string> presets = synth::preset_names();
   if (std::find(presets.begin(), presets.end(), name) == presets.end()) {
     throw InputError("sequence \"" + name + "\"",
                      "is neither a folder nor a preset" + suggestion(name, presets));
   }
-  const std::filesystem::path folder = cached_sequence(preset_request(name), control);
-  return folder.empty() ? nullptr : open_sequence(folder, options);
+  const std::filesystem::path folder = synth::cached_sequence(synth::preset_request(name), control);
+  return folder.empty() ? nullptr : datasets::open_sequence(folder, options);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Finds the sequence that a user names: a folder, or a rendered one that is made on demand.
+/// Opens a sequence by folder, or by the name of a preset that is rendered on demand.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "datasets/sensor_stream.h"
-#include "datasets/synthetic/render_sequence.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Opens a folder, or a preset's rendering with its default settings, from the cache or made now.
+/// Opens a folder, or a preset with its default settings; a preset is rendered unless it is in the cache.
 /// @param name    path of a sequence folder, or a preset, e.g. "walking_xyz"
-/// @param control of the rendering, if there is one
-/// @return nothing if the rendering was stopped
-/// @throws InputError if the name is neither, and what opening and rendering throw
-[[nodiscard]] std::unique_ptr<SensorStream> find_sequence(const std::string& name, const OpenOptions& options,
-                                                          const RenderControl& control);
+/// @param control of the rendering, if one is necessary
+/// @return null if the rendering was stopped
+/// @throws InputError if the name is neither, and errors of opening and rendering
+[[nodiscard]] std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
+                                                                    const datasets::OpenOptions& options,
+                                                                    const synth::RenderControl& control);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

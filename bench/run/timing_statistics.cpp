@@ -5,7 +5,7 @@
 
 #include "eval/metrics/statistics.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 double milliseconds(std::int64_t ns, std::int64_t calls) {
@@ -37,17 +37,17 @@ std::optional<TimingStatistics> TimingSamples::statistics(Module module, TimePer
   if (samples_ms.empty()) return std::nullopt;
   const auto frames = static_cast<std::int64_t>(samples_ms.size());
   return TimingStatistics{.mean = milliseconds(total.ns, per == TimePer::kFrame ? frames : total.calls),
-                          .median = percentile(samples_ms, 0.5).value(),
-                          .p95 = percentile(samples_ms, 0.95).value(),
-                          .p99 = percentile(samples_ms, 0.99).value(),
+                          .median = eval::percentile(samples_ms, 0.5).value(),
+                          .p95 = eval::percentile(samples_ms, 0.95).value(),
+                          .p99 = eval::percentile(samples_ms, 0.99).value(),
                           .max = *std::max_element(samples_ms.begin(), samples_ms.end()),
                           .calls = total.calls};
 }
 
-std::int64_t TimingSamples::frames_beyond(Module module, double budget_ms) const {
+std::int64_t TimingSamples::frames_over(Module module, double budget_ms) const {
   const std::vector<ModuleTime>& frames = frames_[static_cast<std::size_t>(module)];
   return std::count_if(frames.begin(), frames.end(),
                        [&](const ModuleTime& frame) { return milliseconds(frame.ns, 1) > budget_ms; });
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

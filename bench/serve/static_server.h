@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Files in memory for a browser on this machine. There is no way from a request to the disk.
+/// HTTP server of files in memory. Requests never access the file system.
 #pragma once
 
 #include <cstdint>
@@ -12,43 +12,42 @@
 
 struct MHD_Daemon;
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  ///< IPv4; this one is reached from this machine alone
-  int port = 8035;                    ///< 0: any that is free
+  std::string address = "127.0.0.1";  ///< IPv4; the default is accessible from this machine only
+  int port = 8035;                    ///< 0 = any free port
 };
 
-/// Answers GET and HEAD until it is destroyed, in one thread of its own. At most 32 connections of 32 kB
-/// each, which are closed after 10 s without a word; longer requests are refused. On a loopback address only
-/// requests that name this machine as their host are answered, so that no other site's page can read along.
+/// Serves GET and HEAD requests in one background thread until it is destroyed. At most 32 connections with
+/// 32 kB of memory each; larger requests are rejected, idle connections are closed after 10 s. On a loopback
+/// address the Host header must name this machine, which protects against DNS rebinding by other sites.
 class StaticServer {
  public:
-  /// @param files by their paths, "index.html" stands for the folder it is in
-  /// @throws InputError if the address is none, or cannot be taken
+  /// @param files names are request paths; "index.html" is served for its folder
+  /// @throws InputError if the address is invalid or already in use
   StaticServer(const std::vector<OutputFile>& files, const ServerOptions& options);
 
-  StaticServer(const StaticServer&) = delete;  // its thread knows where it is
+  StaticServer(const StaticServer&) = delete;  // the server thread holds a pointer to it
   StaticServer& operator=(const StaticServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
 
-  /// What a request is answered with.
-  struct Answer {
+  struct Response {
     unsigned status = 200;
-    const std::string* text = nullptr;  ///< lives as long as the server
-    std::string type;                   ///< of its content
+    const std::string* text = nullptr;  ///< valid during the lifetime of the server
+    std::string type;                   ///< MIME type
   };
-  /// @param path as requested, without escapes
-  /// @param host as the request names it, empty if it does not
-  [[nodiscard]] Answer answer(const std::string& method, const std::string& path,
-                              const std::string& host) const;
+  /// @param path of the request, without percent encoding
+  /// @param host Host header of the request, empty if absent
+  [[nodiscard]] Response respond(const std::string& method, const std::string& path,
+                                 const std::string& host) const;
 
  private:
-  std::map<std::string, std::string> texts_;  ///< by path, "/index.html"
-  std::map<unsigned, std::string> refusals_;  ///< texts by status
+  std::map<std::string, std::string> texts_;     ///< by path, e.g. "/index.html"
+  std::map<unsigned, std::string> error_texts_;  ///< by HTTP status
   std::string address_;
   std::unique_ptr<MHD_Daemon, void (*)(MHD_Daemon*)> daemon_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

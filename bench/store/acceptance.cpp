@@ -4,11 +4,11 @@
 #include "bench/store/schema.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 Database existing_store(const std::filesystem::path& file) {
-  static_cast<void>(Database(file, DatabaseAccess::kRead));  // says so if there is none
+  static_cast<void>(Database(file, DatabaseAccess::kRead));  // throws if there is none
   Database database(file, DatabaseAccess::kWrite);
   migrate(database);
   return database;
@@ -63,4 +63,4 @@ bool withdraw_acceptance(const std::filesystem::path& file, const Acceptance& ac
   return removed;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

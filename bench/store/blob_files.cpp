@@ -11,10 +11,10 @@
 #include <unistd.h>
 #include <zstd.h>
 
-#include "bench/record/content_hash.h"
+#include "bench/model/content_hash.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,8 +39,8 @@ InputError damaged(const fs::path& file, const std::string& how) {
 std::string decompressed(const std::string& packed, const fs::path& file) {
   const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN)
-    throw damaged(file, "is no zstd file");
-  if (size / 100'000 > packed.size()) throw damaged(file, "says it holds more than it can");
+    throw damaged(file, "is not a zstd file");
+  if (size / 100'000 > packed.size()) throw damaged(file, "has an implausible content size");
   std::string content(size, '\0');
   const std::size_t got = ZSTD_decompress(content.data(), content.size(), packed.data(), packed.size());
   if (ZSTD_isError(got) != 0 || got != size) throw damaged(file, "cannot be decompressed");
@@ -49,10 +49,10 @@ std::string decompressed(const std::string& packed, const fs::path& file) {
 
 [[noreturn]] void cannot_write(const fs::path& file, int error) {
   throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(error) +
-                                      "; free space on the disk and call again, or give another --store");
+                                      "; free space on the disk and retry, or give another --store");
 }
 
-/// Writes bytes until they are on the disk.
+/// Writes a file and syncs it to disk.
 void write_through(const fs::path& file, const std::string& bytes) {
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) cannot_write(file, errno);
@@ -101,7 +101,7 @@ std::string BlobFiles::get(const std::string& name) const {
   std::ostringstream packed;
   packed << stream.rdbuf();
   std::string content = decompressed(packed.str(), path);
-  if (blob_name(content) != name) throw damaged(path, "does not hold what its name says");
+  if (blob_name(content) != name) throw damaged(path, "has content that does not match its hash");
   return content;
 }
 
@@ -118,4 +118,4 @@ std::vector<std::string> BlobFiles::names() const {
 
 void BlobFiles::remove(const std::string& name) const { fs::remove(file(name)); }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Files named by a hash of their content, compressed with zstd: the bulky part of a store.
+/// Content-addressed files, compressed with zstd: the large data of a store.
 #pragma once
 
 #include <filesystem>
@@ -7,22 +7,22 @@
 #include <string_view>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 class BlobFiles {
  public:
   /// @param folder need not exist before the first `put`
   explicit BlobFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Keeps a content, once; on return it is on the disk. Several processes may put the same at once.
+  /// Stores a content unless it is stored already, and syncs it to disk. Safe for concurrent processes.
   /// @return its name: 32 hexadecimal digits, two XXH64 of the content
-  /// @throws InputError if it cannot be written; nothing is left behind then
+  /// @throws InputError if it cannot be written; no partial file remains
   [[nodiscard]] std::string put(std::string_view content) const;
 
-  /// @throws InputError if the file is missing, no zstd, or its content has another hash
+  /// @throws InputError if the file is missing, not zstd, or its content has another hash
   [[nodiscard]] std::string get(const std::string& name) const;
 
-  /// Names of all files that are there, in alphabetical order.
+  /// Names of all stored files, sorted.
   [[nodiscard]] std::vector<std::string> names() const;
 
   void remove(const std::string& name) const;
@@ -33,7 +33,7 @@ class BlobFiles {
   std::filesystem::path folder_;
 };
 
-/// The name that a content has.
+/// Name under which a content is stored.
 [[nodiscard]] std::string blob_name(std::string_view content);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -5,28 +5,28 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr int kBusyTimeoutMs = 60'000;
 
-/// What a user can do about a failure.
+/// Advice for the user about a failure.
 std::string remedy(int result) {
   switch (result & 0xff) {
     case SQLITE_FULL:
     case SQLITE_IOERR:
-      return "free space on the disk and call again; everything stored so far is kept";
+      return "free space on the disk and retry; everything stored so far is preserved";
     case SQLITE_READONLY:
-      return "it may only be read; give another file with --store, or make it writable";
+      return "it is read-only; give another file with --store, or make it writable";
     case SQLITE_CORRUPT:
-      return "it is damaged; look with `stillpoint store verify`, and save what is readable with "
+      return "it is damaged; check it with `stillpoint store verify`, and save what is readable with "
              "`stillpoint store export`";
     case SQLITE_NOTADB:
       return "give the file of a store, or the name of a new one";
     case SQLITE_BUSY:
-      return "another program has been writing for a minute; call again later";
+      return "another process has been writing for a minute; retry later";
     default:
       return "check that its folder exists and its permissions";
   }
@@ -37,8 +37,8 @@ std::string remedy(int result) {
   throw InputError(file.string(), what + "; " + remedy(result));
 }
 
-/// In a folder without write permission a log in shared memory cannot be made: then the file is read as one
-/// that does not change.
+/// In a read-only folder SQLite cannot create the shared memory of its write-ahead log; the file is then
+/// opened as immutable.
 int open_read_only(const fs::path& file, sqlite3** connection) {
   int result = sqlite3_open_v2(file.c_str(), connection, SQLITE_OPEN_READONLY, nullptr);
   if (result == SQLITE_OK)
@@ -53,7 +53,7 @@ int open_read_only(const fs::path& file, sqlite3** connection) {
 sqlite3* open_file(const fs::path& file, DatabaseAccess access) {
   if (access == DatabaseAccess::kRead && !fs::is_regular_file(file)) {
     throw InputError(file.string(),
-                     "there is no such store; make one with `stillpoint bench PLAN --store FILE`");
+                     "there is no such store; create one with `stillpoint bench PLAN --store FILE`");
   }
   sqlite3* connection = nullptr;
   const int result =
@@ -117,7 +117,7 @@ Database::Database(const fs::path& file, DatabaseAccess access)
   sqlite3_extended_result_codes(connection_.get(), 1);
   sqlite3_busy_timeout(connection_.get(), kBusyTimeoutMs);
   execute("PRAGMA foreign_keys = ON");
-  static_cast<void>(integer("SELECT count(*) FROM sqlite_master"));  // reads the header: is it a database?
+  static_cast<void>(integer("SELECT count(*) FROM sqlite_master"));  // reads the header
 }
 
 Statement Database::prepare(std::string_view sql) const { return {file_, connection_.get(), sql}; }
@@ -141,7 +141,7 @@ Transaction::~Transaction() {
   try {
     database_.execute("ROLLBACK");
   } catch (const InputError&) {
-    // An error may have ended the transaction already; the error itself is on its way to the user.
+    // SQLite may have rolled back already, and the exception that unwinds the stack describes the error.
   }
 }
 
@@ -150,4 +150,4 @@ void Transaction::commit() {
   open_ = false;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// SQLite behind a few calls: one connection, statements, transactions, and errors that say what to do.
+/// Thin wrapper of SQLite: connection, statements, transactions, and errors with a remedy.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 enum class DatabaseAccess { kRead, kWrite };
 
-/// One statement with its parameters bound, stepped row by row. Belongs to the database that made it.
+/// A prepared statement with bound parameters, stepped row by row. Must not outlive its database.
 class Statement {
  public:
   Statement(const std::filesystem::path& file, sqlite3* connection, std::string_view sql);
@@ -42,16 +42,15 @@ class Statement {
   int bound_ = 0;
 };
 
-/// A connection to one file. Waits up to a minute for others that write.
+/// A connection to one file. Waits up to a minute for the locks of other connections.
 class Database {
  public:
-  /// For writing the file is made when it is missing; for reading it must exist, and may lie where nothing
-  /// can be written.
-  /// @throws InputError if the file cannot be opened or is no SQLite database
+  /// With `kWrite` a missing file is created; with `kRead` it must exist, and its folder may be read-only.
+  /// @throws InputError if the file cannot be opened or is not an SQLite database
   Database(const std::filesystem::path& file, DatabaseAccess access);
 
   [[nodiscard]] Statement prepare(std::string_view sql) const;
-  /// Runs statements that give no rows.
+  /// Executes statements without results.
   void execute(const std::string& sql) const;
   /// First column of the first row.
   [[nodiscard]] std::int64_t integer(std::string_view sql) const;
@@ -63,7 +62,7 @@ class Database {
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> connection_;
 };
 
-/// Holds the right to write from construction to its end; what was not committed is taken back.
+/// Write transaction (BEGIN IMMEDIATE); rolled back on destruction unless committed.
 class Transaction {
  public:
   explicit Transaction(const Database& database);
@@ -78,4 +77,4 @@ class Transaction {
   bool open_ = true;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

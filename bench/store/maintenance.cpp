@@ -7,16 +7,18 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/store/journal.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
+#include "bench/store/store_writer.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr int kExportVersion = 2;
 
 void append_rows(std::vector<std::string>& faults, Statement statement, const std::string& what) {
   while (statement.step()) {
@@ -24,7 +26,7 @@ void append_rows(std::vector<std::string>& faults, Statement statement, const st
   }
 }
 
-std::set<std::string> named_files(const Database& database) {
+std::set<std::string> referenced_files(const Database& database) {
   std::set<std::string> names;
   Statement rows = database.prepare("SELECT DISTINCT blob FROM attachment");
   while (rows.step()) names.insert(rows.text(0));
@@ -42,13 +44,14 @@ RunOutcome outcome_from(const Store& store, const StoredRun& run) {
   return outcome;
 }
 
-/// Adds one run unless it is there.
-void add_run(Journal& journal, const RunIdentity& identity, const RunOutcome& outcome, MergeReport& report) {
-  if (journal.claim(identity) != Claim::kGranted) {
+/// Adds one run unless the store already contains it.
+void add_run(StoreWriter& writer, const RunIdentity& identity, const RunOutcome& outcome,
+             MergeReport& report) {
+  if (writer.acquire(identity) != RunLease::kGranted) {
     ++report.present;
     return;
   }
-  journal.finish(identity, outcome);
+  writer.finish(identity, outcome);
   ++report.added;
 }
 
@@ -104,8 +107,10 @@ Json run_json(const Store& store, const StoredRun& run, ExportExtent extent) {
                {"ended", run.ended}};
   json["metrics"] = Json::array();
   for (const Metric& metric : run.metrics) {
-    json["metrics"].push_back(
-        {{"name", metric.name}, {"recipe", metric.recipe}, {"unit", metric.unit}, {"value", metric.value}});
+    json["metrics"].push_back({{"name", metric.name},
+                               {"protocol", metric.protocol},
+                               {"unit", metric.unit},
+                               {"value", metric.value}});
   }
   json["costs"] = Json::array();
   for (const ModuleCost& cost : run.costs) {
@@ -131,27 +136,30 @@ RunOutcome outcome_of_json(const Json& json) {
   outcome.outcome = outcome_of(json.at("outcome").get<std::string>());
   outcome.detail = json.at("detail");
   for (const Json& metric : json.at("metrics")) {
+    const char* protocol = metric.contains("protocol") ? "protocol" : kOldProtocolName;
     outcome.metrics.push_back(
-        {metric.at("name"), metric.at("recipe"), metric.at("unit"), metric.at("value")});
+        {metric.at("name"), metric.at(protocol), metric.at("unit"), metric.at("value")});
   }
   for (const Json& cost : json.at("costs")) {
     outcome.costs.push_back({cost.at("module"), cost.at("per"), cost.at("calls"), cost.at("mean_ms"),
                              cost.at("median_ms"), cost.at("p95_ms"), cost.at("max_ms")});
   }
-  for (const auto& [kind, content] : json.at("attachments").items()) outcome.attachments[kind] = content;
+  for (const auto& [kind, content] : json.at("attachments").items())
+    outcome.attachments[current_kind(kind)] = content;
   outcome.manifest = json.at("manifest");
   return outcome;
 }
 
-/// Gives an exported text to `read`. @throws InputError for every fault of it
+/// Parses an exported text and calls `read` with it. @throws InputError for every fault of the text
 template <class Read>
 auto read_export(const std::string& text, const std::string& place, const Read& read) {
   try {
     const Json json = Json::parse(text);
-    if (json.at("stillpoint_store") != 1) throw InputError(place, "is of a newer version; use that version");
+    if (json.at("stillpoint_store").get<int>() > kExportVersion)
+      throw InputError(place, "was written by a newer version; use that version");
     return read(json);
   } catch (const Json::exception& error) {
-    throw InputError(place, std::string("is no exported store: ") + error.what());
+    throw InputError(place, std::string("is not an exported store: ") + error.what());
   }
 }
 
@@ -162,9 +170,9 @@ std::vector<std::string> verify_store(const fs::path& file) {
   require_readable_schema(database);
   std::vector<std::string> faults;
   append_rows(faults, database.prepare("PRAGMA integrity_check"), "database");
-  append_rows(faults, database.prepare("PRAGMA foreign_key_check"), "a row names another that is not there");
+  append_rows(faults, database.prepare("PRAGMA foreign_key_check"), "row with a missing reference");
   const BlobFiles blobs(files_folder(file) / "blobs");
-  for (const std::string& name : named_files(database)) {
+  for (const std::string& name : referenced_files(database)) {
     try {
       static_cast<void>(blobs.get(name));
     } catch (const InputError& error) {
@@ -176,14 +184,14 @@ std::vector<std::string> verify_store(const fs::path& file) {
 
 GarbageReport collect_garbage(const fs::path& file) {
   if (!fs::exists(file)) throw InputError(file.string(), "there is no such store");
-  const Journal cleared(file);  // removes what dead drivers left
+  const StoreWriter cleared(file);  // removes the folders of dead workers
   const Database database(file, DatabaseAccess::kWrite);
   const BlobFiles blobs(files_folder(file) / "blobs");
-  Transaction transaction(database);  // nobody enters a run meanwhile
+  Transaction transaction(database);  // blocks writers, which could reference an unused file
   GarbageReport report;
-  const std::set<std::string> named = named_files(database);
+  const std::set<std::string> referenced = referenced_files(database);
   for (const std::string& name : blobs.names()) {
-    if (named.contains(name)) continue;
+    if (referenced.contains(name)) continue;
     ++report.files;
     report.bytes += static_cast<std::int64_t>(fs::file_size(blobs.file(name)));
     blobs.remove(name);
@@ -199,11 +207,10 @@ GarbageReport collect_garbage(const fs::path& file) {
 MergeReport merge_stores(const fs::path& from, const fs::path& into) {
   if (fs::exists(into) && fs::equivalent(from, into)) throw InputError(into.string(), "is the same store");
   const Store source(from);
-  Journal journal(into);
+  StoreWriter writer(into);
   MergeReport report;
-  for (const StoredRun& run : source.runs())
-    add_run(journal, run.identity, outcome_from(source, run), report);
-  for (const StoredPlan& plan : source.plans()) journal.record_plan(plan);
+  for (const StoredRun& run : source.runs()) add_run(writer, run.identity, outcome_from(source, run), report);
+  for (const StoredPlan& plan : source.plans()) writer.record_plan(plan);
   write_acceptances(into, source.acceptances());
   return report;
 }
@@ -211,7 +218,7 @@ MergeReport merge_stores(const fs::path& from, const fs::path& into) {
 std::string export_store(const fs::path& file, ExportExtent extent) {
   const Store store(file);
   Json json;
-  json["stillpoint_store"] = 1;
+  json["stillpoint_store"] = kExportVersion;
   json["plans"] = Json::array();
   for (const StoredPlan& plan : store.plans()) {
     json["plans"].push_back(
@@ -222,22 +229,22 @@ std::string export_store(const fs::path& file, ExportExtent extent) {
   json["accepted"] = Json::array();
   for (const Acceptance& acceptance : store.acceptances())
     json["accepted"].push_back(acceptance_json(acceptance));
-  // Messages of a program need not be UTF-8; every other text is.
+  // Logs of programs may not be UTF-8; every other text is.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 MergeReport import_store(const std::string& text, const std::string& place, const fs::path& into) {
   return read_export(text, place, [&](const Json& json) {
-    Journal journal(into);
+    StoreWriter writer(into);
     MergeReport report;
     for (const Json& run : json.at("runs")) {
-      add_run(journal, identity_of(run.at("identity")), outcome_of_json(run), report);
+      add_run(writer, identity_of(run.at("identity")), outcome_of_json(run), report);
     }
     for (const Json& plan : json.at("plans")) {
-      journal.record_plan({.name = plan.at("name"),
-                           .title = plan.at("title"),
-                           .text = plan.at("text"),
-                           .run_keys = plan.at("run_keys").get<std::vector<std::string>>()});
+      writer.record_plan({.name = plan.at("name"),
+                          .title = plan.at("title"),
+                          .text = plan.at("text"),
+                          .run_keys = plan.at("run_keys").get<std::vector<std::string>>()});
     }
     std::vector<Acceptance> acceptances;
     for (const Json& accepted : json.value("accepted", Json::array()))
@@ -265,4 +272,4 @@ std::vector<StoredRun> exported_runs(const std::string& text, const std::string&
   });
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

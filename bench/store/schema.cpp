@@ -3,16 +3,19 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
+#include "bench/model/stored_run.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-constexpr std::int64_t kApplicationId = 0x53746c70;  // "Stlp", so that `file` and we know a store
+constexpr std::int64_t kApplicationId = 0x53746c70;  // "Stlp", identifies a store, also to `file`
 
-/// One step from each version to the next. Steps that were published are never changed.
-constexpr std::array<const char*, 2> kSteps = {R"sql(
+/// Migration step i leads from version i to i + 1. Published steps are never changed, so the older ones use
+/// the names of their time.
+constexpr std::array<const char*, 3> kSteps = {R"sql(
 -- What does not differ from run to run, or seldom: configs, machines, builds.
 CREATE TABLE manifest (
   hash TEXT PRIMARY KEY,
@@ -99,7 +102,15 @@ CREATE TABLE acceptance (
   accepted TEXT NOT NULL,         -- UTC
   PRIMARY KEY (build, metric, variant, sequence)
 ) WITHOUT ROWID;
+)sql",
+                                               R"sql(
+ALTER TABLE metric RENAME COLUMN recipe TO protocol;
+ALTER TABLE run RENAME COLUMN driver TO worker;
+UPDATE attachment SET kind = 'image:' || substr(kind, length('picture:') + 1) WHERE kind LIKE 'picture:%';
 )sql"};
+
+constexpr int kRenamedVersion = 3;  // the version whose step renames columns and attachments
+constexpr std::string_view kOldImageKind = "picture:";
 
 std::string version_text(std::int64_t version) { return std::to_string(version); }
 
@@ -113,7 +124,7 @@ std::int64_t version_of(const Database& database) {
   }
   if (version > schema_version()) {
     throw InputError(database.file().string(), "was written by a newer version (schema " +
-                                                   version_text(version) + ", this program knows " +
+                                                   version_text(version) + ", this program supports " +
                                                    version_text(schema_version()) +
                                                    "); use that version, or give another --store");
   }
@@ -124,14 +135,14 @@ std::int64_t version_of(const Database& database) {
 
 int schema_version() { return static_cast<int>(kSteps.size()); }
 
-void migrate(const Database& database) {
-  if (version_of(database) == schema_version()) return;
+void migrate(const Database& database, int version) {
+  if (version_of(database) >= version) return;
   database.execute("PRAGMA journal_mode = WAL");
   Transaction transaction(database);
-  // Asked again: another driver may have migrated while this one waited.
-  for (std::int64_t version = version_of(database); version < schema_version(); ++version) {
-    database.execute(kSteps[static_cast<std::size_t>(version)]);
-    database.execute("PRAGMA user_version = " + version_text(version + 1));
+  // Read again: another worker may have migrated the store while this one waited for the lock.
+  for (std::int64_t step = version_of(database); step < version; ++step) {
+    database.execute(kSteps[static_cast<std::size_t>(step)]);
+    database.execute("PRAGMA user_version = " + version_text(step + 1));
   }
   database.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
   transaction.commit();
@@ -142,4 +153,13 @@ void require_readable_schema(const Database& database) {
   throw InputError(database.file().string(), "is empty; fill it with `stillpoint bench PLAN --store FILE`");
 }
 
-}  // namespace stillpoint
+std::string protocol_column(const Database& database) {
+  return version_of(database) < kRenamedVersion ? kOldProtocolName : "protocol";
+}
+
+std::string current_kind(const std::string& kind) {
+  if (!kind.starts_with(kOldImageKind)) return kind;
+  return std::string(kImageKind) + kind.substr(kOldImageKind.size());
+}
+
+}  // namespace stillpoint::bench

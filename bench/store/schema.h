@@ -1,20 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The tables of a store, and how an older store is brought up to date.
+/// The tables of a store, and the migration of older stores.
 #pragma once
+
+#include <string>
 
 #include "bench/store/database.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Version of the newest schema that this program knows.
+/// Newest schema version that this program supports.
 [[nodiscard]] int schema_version();
 
-/// Makes the tables in an empty file, or adds what an older store lacks; stored rows are kept.
-/// @throws InputError if the file is another program's database, or a newer program's store
-void migrate(const Database& database);
+/// Creates the tables in an empty file, or migrates an older store; stored rows are kept.
+/// @param version to migrate to; only tests need an older one
+/// @throws InputError if the file belongs to another program, or was written by a newer version
+void migrate(const Database& database, int version = schema_version());
 
-/// Older stores are read as they are: what they lack is empty.
-/// @throws InputError as `migrate`, and if the file is empty: reading changes nothing
+/// Checks that a store can be read. Older stores are read without migration; tables that they lack are empty.
+/// @throws InputError as `migrate`, and if the file is empty
 void require_readable_schema(const Database& database);
 
-}  // namespace stillpoint
+/// Column and JSON key of a metric's protocol before schema 3 and before version 2 of exports.
+inline constexpr const char* kOldProtocolName = "recipe";  // alias, read only
+
+/// Column of table `metric` with the evaluation protocol. Call it in the transaction that reads the table.
+[[nodiscard]] std::string protocol_column(const Database& database);
+
+/// Current name of a kind of attachment; images had another prefix than `kImageKind` before schema 3.
+[[nodiscard]] std::string current_kind(const std::string& kind);
+
+}  // namespace stillpoint::bench

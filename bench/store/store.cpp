@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "bench/store/counter_text.h"
-#include "bench/store/csv_rows.h"
+#include "bench/model/counter_text.h"
+#include "bench/model/csv_rows.h"
+#include "bench/model/timing_text.h"
 #include "bench/store/schema.h"
-#include "bench/store/timing_text.h"
 #include "core/base/error.h"
 #include "eval/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -47,7 +47,7 @@ StoredRun run_of(const Statement& row) {
   return run;
 }
 
-/// Reads the tables that hang on runs, each in one pass.
+/// Reads the tables that reference runs, each in one pass.
 void read_details(const Database& database, std::vector<StoredRun>& runs) {
   std::unordered_map<std::int64_t, StoredRun*> by_id;
   for (StoredRun& run : runs) by_id[run.id] = &run;
@@ -55,8 +55,9 @@ void read_details(const Database& database, std::vector<StoredRun>& runs) {
     const auto found = by_id.find(row.integer(0));
     return found == by_id.end() ? nullptr : found->second;
   };
-  Statement metrics =
-      database.prepare("SELECT run, name, recipe, unit, value FROM metric ORDER BY run, name, recipe");
+  const std::string protocol = protocol_column(database);
+  Statement metrics = database.prepare("SELECT run, name, " + protocol +
+                                       ", unit, value FROM metric ORDER BY run, name, " + protocol);
   while (metrics.step()) {
     if (StoredRun* run = run_at(metrics))
       run->metrics.push_back({metrics.text(1), metrics.text(2), metrics.text(3), metrics.real(4)});
@@ -70,12 +71,12 @@ void read_details(const Database& database, std::vector<StoredRun>& runs) {
   }
   Statement blobs = database.prepare("SELECT run, kind, blob FROM attachment ORDER BY run, kind");
   while (blobs.step()) {
-    if (StoredRun* run = run_at(blobs)) run->blobs[blobs.text(1)] = blobs.text(2);
+    if (StoredRun* run = run_at(blobs)) run->blobs[current_kind(blobs.text(1))] = blobs.text(2);
   }
 }
 
-/// Whether a file of poses has more than comments: that of a lost run has not.
-bool holds_rows(std::string_view text) {
+/// Whether a trajectory file contains poses; that of a run without poses contains only comments.
+bool has_rows(std::string_view text) {
   while (!text.empty()) {
     const std::string_view line = cut_front(text, '\n');
     if (!line.empty() && line.front() != '#') return true;
@@ -93,7 +94,7 @@ Store::Store(const fs::path& file)
 }
 
 std::vector<StoredRun> Store::runs(const RunFilter& filter) const {
-  database_.execute("BEGIN");  // all tables as of one moment
+  database_.execute("BEGIN");  // one snapshot of all tables
   std::vector<StoredRun> runs;
   Statement rows = database_.prepare(kRuns);
   rows.bind(filter.system).bind(filter.variant).bind(filter.sequence).bind(filter.build).bind(filter.kind);
@@ -129,7 +130,7 @@ std::vector<StoredRun> Store::plan_runs(const std::string& plan) const {
     return ordered;
   }
   throw InputError(file().string(),
-                   "holds no plan \"" + plan + "\"; it holds: " + (known.empty() ? "none" : known));
+                   "contains no plan \"" + plan + "\"; it contains: " + (known.empty() ? "none" : known));
 }
 
 std::vector<Acceptance> Store::acceptances() const { return read_acceptances(database_); }
@@ -161,8 +162,8 @@ std::vector<FrameCounters> Store::frame_counters(const StoredRun& run) const {
 
 Trajectory Store::poses(const StoredRun& run, const std::string& kind) const {
   const std::string text = attachment(run, kind);
-  if (!holds_rows(text)) return {.frame = "camera", .poses = {}};
-  return parse_tum(text, file().string() + ", run " + run.key, "camera").trajectory;
+  if (!has_rows(text)) return {.frame = "camera", .poses = {}};
+  return eval::parse_tum(text, file().string() + ", run " + run.key, "camera").trajectory;
 }
 
 std::vector<TimingSample> Store::timing_samples(const StoredRun& run) const {
@@ -171,4 +172,4 @@ std::vector<TimingSample> Store::timing_samples(const StoredRun& run) const {
   return parse_timings(text, file().string() + ", run " + run.key);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

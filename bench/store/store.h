@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Reads a store: which runs were made, how they ended, their numbers, timings and trajectories.
+/// Reads a store: runs with their outcomes, metrics, timings and trajectories.
 ///
 ///   const Store store("bench.sqlite");
 ///   for (const StoredRun& run : store.runs({.sequence = "walking_xyz"})) store.trajectory(run);
@@ -9,24 +9,25 @@
 #include <string>
 #include <vector>
 
+#include "bench/model/stored_run.h"
 #include "bench/store/acceptance.h"
 #include "bench/store/blob_files.h"
 #include "bench/store/database.h"
-#include "bench/store/stored_run.h"
 #include "core/types/trajectory.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// Which runs to read; what is empty matches all.
+/// Selects runs; an empty member matches all.
 struct RunFilter {
   std::string system;
   std::string variant;
   std::string sequence;
-  std::string build;  ///< or the beginning of one
+  std::string build;  ///< a build or a prefix of it
   std::string kind;
 };
 
-/// A plan that was run into the store, and the keys of its runs in its order; some may not be made yet.
+/// A plan that was executed into the store, and the keys of its runs in plan order; some may not be executed
+/// yet.
 struct StoredPlan {
   std::string name;
   std::string title;
@@ -34,28 +35,28 @@ struct StoredPlan {
   std::vector<std::string> run_keys;
 };
 
-/// The folder beside a store in which its files lie: FILE.files.
+/// The folder with the files of a store: FILE.files.
 [[nodiscard]] std::filesystem::path files_folder(const std::filesystem::path& store_file);
 
 class Store {
  public:
-  /// Opens a store for reading; it may be written at the same time, and may lie where nothing can be written.
-  /// @throws InputError if there is none, it is damaged, or a newer program's
+  /// Opens a store for reading. It may be written at the same time, and its folder may be read-only.
+  /// @throws InputError if there is none, it is damaged, or was written by a newer version
   explicit Store(const std::filesystem::path& file);
 
-  /// Ended runs, in the order in which they were begun.
+  /// Completed runs, in the order of their start.
   [[nodiscard]] std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
 
-  /// The ended runs of a plan, in its order.
-  /// @throws InputError if the plan was not run into this store, naming those that were
+  /// The completed runs of a plan, in its order.
+  /// @throws InputError if the store does not contain the plan; the message lists those that it contains
   [[nodiscard]] std::vector<StoredRun> plan_runs(const std::string& plan) const;
 
   [[nodiscard]] std::vector<StoredPlan> plans() const;
 
-  /// Changes of numbers that were accepted.
+  /// Accepted changes of metrics.
   [[nodiscard]] std::vector<Acceptance> acceptances() const;
 
-  /// Number of runs that were begun and have not ended: being made, or broken off.
+  /// Number of runs without an outcome: running, or interrupted.
   [[nodiscard]] std::int64_t unfinished() const;
 
   /// JSON; empty if the run has none.
@@ -65,16 +66,17 @@ class Store {
   /// @throws InputError if its file is missing or damaged
   [[nodiscard]] std::string attachment(const StoredRun& run, const std::string& kind) const;
 
-  /// Poses T_w_c; no poses if the run has none.
+  /// Estimated poses T_w_c; empty if the run has none.
   [[nodiscard]] Trajectory trajectory(const StoredRun& run) const;
 
-  /// True poses T_w_c; none if the sequence has no ground truth, or an older program made the run.
+  /// Ground-truth poses T_w_c; empty if the sequence has no ground truth, or the run was recorded by an older
+  /// version.
   [[nodiscard]] Trajectory truth(const StoredRun& run) const;
 
   /// In order of frames; empty if they were not recorded.
   [[nodiscard]] std::vector<FrameCounters> frame_counters(const StoredRun& run) const;
 
-  /// Every frame's time in every module, in order of frames; empty if they were not recorded.
+  /// Time per frame and module, in order of frames; empty if it was not recorded.
   [[nodiscard]] std::vector<TimingSample> timing_samples(const StoredRun& run) const;
 
   [[nodiscard]] const std::filesystem::path& file() const { return database_.file(); }
@@ -86,4 +88,4 @@ class Store {
   BlobFiles blobs_;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -10,18 +10,19 @@
 #include "core/base/error.h"
 #include "datasets/sensor_stream.h"
 #include "datasets/sequence_export.h"
-#include "datasets/synthetic/sequence_cache.h"
+#include "datasets/synthetic/sequence/sequence_cache.h"
 #include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string replaced(std::string text, const std::string& mark, const std::string& value) {
-  for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + value.size())) {
-    text.replace(at, mark.size(), value);
+std::string replaced(std::string text, const std::string& placeholder, const std::string& value) {
+  for (std::size_t at = text.find(placeholder); at != std::string::npos;
+       at = text.find(placeholder, at + value.size())) {
+    text.replace(at, placeholder.size(), value);
   }
   return text;
 }
@@ -29,12 +30,13 @@ std::string replaced(std::string text, const std::string& mark, const std::strin
 fs::path exported(const RunRequest& request, ExportLayout layout) {
   if (layout == ExportLayout::kAsIs) return request.sequence;
   const std::string format = layout == ExportLayout::kTum ? "tum" : "euroc";
-  fs::path folder = cache_folder() / "exports" / (request.run.identity.sequence_id + "-" + format) /
+  fs::path folder = synth::cache_folder() / "exports" / (request.run.identity.sequence_id + "-" + format) /
                     request.sequence.filename();
   if (fs::is_directory(folder)) return folder;
-  const std::unique_ptr<SensorStream> stream = open_sequence(request.sequence);
+  const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(request.sequence);
   if (stream->info().format == format) return request.sequence;
-  layout == ExportLayout::kTum ? export_tum(*stream, folder) : export_euroc(*stream, folder);
+  layout == ExportLayout::kTum ? datasets::export_tum(*stream, folder)
+                               : datasets::export_euroc(*stream, folder);
   return folder;
 }
 
@@ -49,7 +51,7 @@ std::string manifest_text(const ExternalSystem& system, const RunRequest& reques
 
 /// The document itself, or its member "timings" as in a result.json.
 nlohmann::ordered_json timings_of(const fs::path& file) {
-  const nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_text_file(file));
+  const nlohmann::ordered_json json = nlohmann::ordered_json::parse(eval::read_text_file(file));
   return json.contains("timings") ? json.at("timings") : json;
 }
 
@@ -78,19 +80,19 @@ ProcessSpec ExternalRun::command(const RunRequest& request) const {
   return spec;
 }
 
-RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessEnd& end) const {
-  if (end.exit_code != 0) {
-    return failed(Outcome::kCrashed,
-                  "ended with " + std::to_string(end.exit_code) + ": " + last_line(end.messages));
+RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& process) const {
+  if (process.exit_code != 0) {
+    return failed(Outcome::kCrashed, "exited with code " + std::to_string(process.exit_code) + ": " +
+                                         last_line(process.messages));
   }
   const fs::path file = request.work / system_.trajectory;
-  if (!fs::exists(file)) return failed(Outcome::kLost, "left no " + system_.trajectory);
+  if (!fs::exists(file)) return failed(Outcome::kLost, "wrote no " + system_.trajectory);
   RunOutcome result;
   try {
-    const std::string text = read_text_file(file);
+    const std::string text = eval::read_text_file(file);
     OdometryRun run;
-    run.trajectory = parse_tum(text, system_.trajectory, "camera").trajectory;
-    const std::unique_ptr<SensorStream> stream = open_sequence(request.sequence);
+    run.trajectory = eval::parse_tum(text, system_.trajectory, "camera").trajectory;
+    const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(request.sequence);
     run.summary.frames = stream->info().frame_times.size();
     result.metrics = score_metrics(score_members(score_run(stream->info(), run).score));
     result.attachments["trajectory"] = text;
@@ -106,4 +108,4 @@ RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessEnd& end
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Another SLAM system as a command line: what it is called, what it reads, what it leaves behind.
+/// Description of an external SLAM system: name, command line, input layout and output files.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 #include "core/base/fields.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// The form in which a system wants its sequence.
+/// Dataset layout that a system reads.
 enum class ExportLayout {
-  kAsIs,   ///< the folder as it lies on the disk
+  kAsIs,   ///< the original folder, without export
   kTum,    ///< TUM RGB-D: rgb/, depth/, their lists, groundtruth.txt; imu.txt and rig.toml
   kEuroc,  ///< EuRoC ASL: mav0/cam0, mav0/imu0; no depth
 };
@@ -21,20 +21,19 @@ constexpr auto enum_names(ExportLayout) {
       {{ExportLayout::kAsIs, "as_is"}, {ExportLayout::kTum, "tum"}, {ExportLayout::kEuroc, "euroc"}}};
 }
 
-/// A file of bench/systems/, or a user's own. In the words of the command, {sequence} stands for the folder
-/// of the sequence, {out} for an empty folder to write into, {here} for the folder of this file, {seed} and
-/// {repetition} for the run's numbers.
+/// Contents of a file in bench/systems/ or provided by the user. Placeholders in the command: {sequence} is
+/// the folder of the sequence, {out} an empty output folder, {here} the folder of this file, {seed} and
+/// {repetition} those of the run.
 struct ExternalSystem {
   std::string name;
-  std::string version = "unknown";   ///< when it changes, runs are made again
+  std::string version = "unknown";   ///< part of the run key: a change invalidates cached runs
   std::vector<std::string> command;  ///< program and arguments
   ExportLayout layout = ExportLayout::kTum;
-  std::string trajectory = "trajectory.tum";  ///< below {out}: TUM text, poses of the camera in the world
-  std::string
-      timings;  ///< below {out}: JSON of modules and threads like "timings" of a result.json; may be empty
-  // Where it came from.
+  std::string trajectory = "trajectory.tum";  ///< in {out}: TUM format, poses T_w_c
+  std::string timings;  ///< in {out}: JSON with modules and threads as "timings" in result.json; may be empty
+  // Set by load_external_system.
   std::string folder;
-  std::string hash;  ///< of the file's text
+  std::string hash;  ///< of the text of the file
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, ExternalSystem>
@@ -48,7 +47,7 @@ void visit_fields(Visitor&& field, Config& config) {
 }
 
 /// @param name of an embedded file, or path of one that ends in ".toml"
-/// @throws InputError if there is none, for every fault of the file, and without a name or a command
+/// @throws InputError if there is no such file, if it is invalid, or if name or command are missing
 [[nodiscard]] ExternalSystem load_external_system(const std::string& name);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

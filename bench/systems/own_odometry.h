@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Our odometry as a child process: `stillpoint run`.
+/// The odometry of this project, run as a child process: `stillpoint run`.
 #pragma once
 
 #include "bench/systems/slam_system.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 class OwnOdometry : public SlamSystem {
  public:
   [[nodiscard]] ProcessSpec command(const RunRequest& request) const override;
-  [[nodiscard]] RunOutcome outcome(const RunRequest& request, const ProcessEnd& end) const override;
+  [[nodiscard]] RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const override;
 };
 
-/// What the runs of this program are recorded under: its git commit, and a hash of the changes when there are
-/// any.
+/// Build name in run records: git commit, and a hash of uncommitted changes if any.
 [[nodiscard]] std::string build_name();
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -9,10 +9,10 @@
 #include "bench/config/toml_source.h"
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-/// Reads one file; a struct for the sake of its place in messages.
+/// Parser of one file; stores the file name for error messages.
 struct PublishedReader {
   std::string place;
 
@@ -22,7 +22,7 @@ struct PublishedReader {
 
   [[nodiscard]] std::string text(const toml::table& table, const char* key) const {
     const toml::node* node = table.get(key);
-    if (node == nullptr || !node->is_string()) fail(table, fmt::format("needs a text \"{}\"", key));
+    if (node == nullptr || !node->is_string()) fail(table, fmt::format("requires a string \"{}\"", key));
     return node->as_string()->get();
   }
 
@@ -32,7 +32,7 @@ struct PublishedReader {
     PublishedRow row{.system = text(*table, "system"), .source = text(*table, "source")};
     if (table->contains("note")) row.note = text(*table, "note");
     const toml::node* values = table->get("values");
-    if (values == nullptr || !values->is_table()) fail(*table, "needs values = {sequence = number, ...}");
+    if (values == nullptr || !values->is_table()) fail(*table, "requires values = {sequence = number, ...}");
     for (const auto& [name, value] : *values->as_table()) {
       if (!value.is_number()) fail(value, fmt::format("\"{}\" must be a number", name.str()));
       row.values[std::string(name.str())] = value.value<double>().value();
@@ -57,8 +57,7 @@ struct PublishedReader {
       for (const toml::node& node : *rows) {
         table.rows.push_back(row(node));
         if (!table.sources.contains(table.rows.back().source)) {
-          fail(node, "source \"" + table.rows.back().source +
-                         "\" is not in [sources]; say where the number was read");
+          fail(node, "source \"" + table.rows.back().source + "\" is not in [sources]; add it there");
         }
       }
     }
@@ -69,15 +68,15 @@ struct PublishedReader {
 }  // namespace
 
 PublishedTable load_published(const std::string& name) {
-  const TomlSource source = find_toml(name, TomlFamily::kPublished);
+  const TomlSource source = find_toml(name, TomlKind::kPublished);
   try {
-    return PublishedReader{source.place}.table(toml::parse(source.text, source.place));
+    return PublishedReader{source.path}.table(toml::parse(source.text, source.path));
   } catch (const toml::parse_error& error) {
-    throw InputError(source.place, static_cast<long>(error.source().begin.line),
+    throw InputError(source.path, static_cast<long>(error.source().begin.line),
                      "not valid TOML: " + std::string(error.description()));
   }
 }
 
-std::vector<std::string> published_names() { return embedded_names(TomlFamily::kPublished); }
+std::vector<std::string> published_names() { return embedded_names(TomlKind::kPublished); }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Numbers quoted from papers, each with its source; never averaged with measured ones.
+/// Results quoted from papers, with their sources; never averaged with measured results.
 #pragma once
 
 #include <map>
@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
 struct PublishedRow {
   std::string system;
   std::string source;                    ///< short name, a key of `PublishedTable::sources`
-  std::string note;                      ///< what is to be known about this row; may be empty
-  std::map<std::string, double> values;  ///< by sequence or, in tables of costs, by module
+  std::string note;                      ///< remark on the row; may be empty
+  std::map<std::string, double> values;  ///< by sequence, or by module in cost tables
 };
 
 /// A file of reports/published/.
@@ -22,17 +22,17 @@ struct PublishedTable {
   std::string title;
   std::string metric;  ///< of `Metric::name`, or "mean_ms" for costs of modules
   std::string unit;
-  std::string alignment;                   ///< under which the numbers were made
-  std::vector<std::string> comparability;  ///< what to know before comparing, a sentence each
+  std::string alignment;                   ///< trajectory alignment used for the results
+  std::vector<std::string> comparability;  ///< limits of comparability, one sentence each
   std::map<std::string, std::string> sources;
   std::vector<PublishedRow> rows;
 };
 
 /// @param name embedded name ("tum_fr3_ate") or a TOML file
-/// @throws InputError if there is none, or it is malformed, or a row names a source that the file does not
+/// @throws InputError if there is no such file, it is malformed, or a source is not listed in [sources]
 [[nodiscard]] PublishedTable load_published(const std::string& name);
 
 /// Names of all embedded tables.
 [[nodiscard]] std::vector<std::string> published_names();
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whatever can be run over a sequence and leaves a trajectory behind.
+/// Interface of systems that can be benchmarked: run on a sequence, write a trajectory.
 #pragma once
 
 #include <filesystem>
 
+#include "bench/model/stored_run.h"
 #include "bench/plan/plan_matrix.h"
 #include "bench/process/child_process.h"
-#include "bench/store/stored_run.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 
-/// A run that is to be made.
+/// A run to execute.
 struct RunRequest {
   const PlannedRun& run;
   std::filesystem::path sequence;  ///< folder
-  std::filesystem::path work;      ///< folder of its own for what the run writes
-  int pictures = 0;                ///< of its worst frames that are wanted
+  std::filesystem::path work;      ///< exclusive output folder of the run
+  int images = 0;                  ///< number of annotated images of its worst frames
 };
 
-/// How a system is started, and how its outcome is read.
+/// Starts a system and reads its results.
 class SlamSystem {
  public:
   virtual ~SlamSystem() = default;
 
-  /// @throws InputError if the sequence cannot be brought into the form that the system reads
+  /// @throws InputError if the sequence cannot be exported to the layout of the system
   [[nodiscard]] virtual ProcessSpec command(const RunRequest& request) const = 0;
 
-  /// What came of a run whose process has ended by itself or by a signal. Costs of the process and its limits
-  /// are entered by the caller.
-  [[nodiscard]] virtual RunOutcome outcome(const RunRequest& request, const ProcessEnd& end) const = 0;
+  /// Result of a run after its process exited or was killed by a signal. The caller adds the process costs
+  /// and checks the resource limits.
+  [[nodiscard]] virtual RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const = 0;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

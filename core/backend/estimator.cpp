@@ -3,27 +3,26 @@
 
 #include <utility>
 
-#include "core/backend/depth_initialization.h"
-#include "core/backend/gauge.h"
-#include "core/backend/initializer.h"
-#include "core/backend/landmark_tracks.h"
-#include "core/backend/marginalization.h"
-#include "core/backend/monocular_structure.h"
+#include "core/backend/marginalization/marginalization.h"
+#include "core/backend/start/depth_initialization.h"
+#include "core/backend/start/gauge.h"
+#include "core/backend/start/initializer.h"
+#include "core/backend/start/monocular_structure.h"
+#include "core/backend/window/landmark_tracks.h"
 #include "core/base/error.h"
 
 namespace stillpoint {
 namespace {
 
-/// Reprojection within which a point takes part in locating a new camera.
-constexpr double kLocateInlier_px = 5.0;
+/// Inlier threshold of camera localization.
+constexpr double kLocalizationInlier_px = 5.0;
 
-/// Limits beyond which an estimate is held to be lost. Qin et al. 2018, Sec. VI-E; values of the published
-/// code.
+/// Failure detection limits. Qin et al. 2018, Sec. VI-E; values of the published code.
 constexpr double kMaxAccelBias = 2.5;  // [m/s^2]
 constexpr double kMaxGyroBias = 1.0;   // [rad/s]
-constexpr double kMaxJump_m = 5.0;     // between two pictures
+constexpr double kMaxJump_m = 5.0;     // between successive frames
 
-/// Biases further than this from where samples were integrated are not served by the first-order correction.
+/// Largest bias change from the linearization point for which the first-order correction is used.
 constexpr double kRepropagateGyro = 0.01;  // [rad/s]
 constexpr double kRepropagateAccel = 0.1;  // [m/s^2]
 
@@ -32,11 +31,11 @@ ImuNoise scaled(const ImuNoise& noise, double factor) {
           factor * noise.accel_walk};
 }
 
-/// Points that the newest frame sees and whose place earlier frames know.
-std::vector<PointSighting> known_points(const Window& window, const DepthConfig& depth,
-                                        std::vector<PointSighting> memory) {
-  std::vector<PointSighting> sightings = std::move(memory);
-  sightings.clear();
+/// Static points observed in the newest frame whose position is known from earlier frames.
+std::vector<PointObservation> known_points(const Window& window, const DepthConfig& depth,
+                                           std::vector<PointObservation> recycled) {
+  std::vector<PointObservation> observations = std::move(recycled);
+  observations.clear();
   for (const Landmark& landmark : window.landmarks) {
     if (landmark.dynamic || landmark.last() != window.newest() || landmark.host == window.newest()) continue;
     const Observation& host = landmark.observations.front();
@@ -44,29 +43,28 @@ std::vector<PointSighting> known_points(const Window& window, const DepthConfig&
     double inverse_depth = landmark.inverse_depth;
     if (inverse_depth <= 0.0 && measured) inverse_depth = 1.0 / host.depth;
     if (inverse_depth <= 0.0) continue;
-    sightings.push_back({window.position(landmark, inverse_depth), landmark.observations.back().bearing});
+    observations.push_back({window.position(landmark, inverse_depth), landmark.observations.back().bearing});
   }
-  return sightings;
+  return observations;
 }
 
-/// Something must give the scale, and it must be asked.
+/// Rejects configurations in which the scale is unobservable.
 void check_scale(const BackendConfig& backend, const ImuConfig& imu) {
   const bool monocular = backend.initializer.kind == InitializerKind::kMonocular;
   const bool no_depth = backend.depth.usage == DepthUsage::kOff;
   if (no_depth && !imu.enabled) {
     throw InputError("backend.depth.usage",
-                     "\"off\" without an IMU leaves the scale unknown; use \"fixed\" or \"weighted\"");
+                     "\"off\" without an IMU makes the scale unobservable; use \"fixed\" or \"weighted\"");
   }
   if (no_depth && !monocular) {
     throw InputError("backend.depth.usage",
-                     "\"off\" leaves the scale unknown; use \"fixed\" or \"weighted\", or "
+                     "\"off\" makes the scale unobservable; use \"fixed\" or \"weighted\", or "
                      "backend.initializer.kind = \"monocular\"");
   }
   if (monocular && !no_depth) {
-    throw InputError(
-        "backend.initializer.kind",
-        "\"monocular\" starts without depth; set backend.depth.usage = \"off\", or use \"window\" or "
-        "\"instant\"");
+    throw InputError("backend.initializer.kind",
+                     "\"monocular\" requires backend.depth.usage = \"off\"; with depth use \"window\" or "
+                     "\"instant\"");
   }
 }
 
@@ -87,19 +85,19 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
   window_.time_offset_s = rig.time_offset_s;
 }
 
-MotionKnowledge Estimator::knowledge() const {
+MotionState Estimator::motion_state() const {
   return {.newest = newest_,
           .previous = previous_,
           .T_b_c = window_.T_b_c,
           .gravity_w = window_.gravity_w,
           .time_offset_s = window_.time_offset_s,
-          .begun = !window_.frames.empty(),
+          .initialized = !window_.frames.empty(),
           .uses_imu = uses_imu(),
           .inertial = window_.inertial};
 }
 
 void Estimator::push_frame(const TrackedFrame& frame) {
-  begun_ = true;
+  received_frame_ = true;
   WindowFrame next;
   next.id = frame.id;
   next.time_offset_s = window_.time_offset_s;
@@ -107,45 +105,45 @@ void Estimator::push_frame(const TrackedFrame& frame) {
     next.state = newest_;
     next.state.t = frame.t;
     window_.frames.push_back(next);
-    window_.prior = first_prior(window_, backend_.initializer);
+    window_.prior = initial_prior(window_, backend_.initializer);
     window_.calibration = calibration_prior(window_, backend_);
     return;
   }
   const WindowFrame& last = window_.frames.back();
-  next.state = extrapolate(knowledge(), imu_, frame.t);
+  next.state = extrapolate(motion_state(), imu_, frame.t);
   if (uses_imu()) {
     const std::vector<ImuSample>& samples =
         imu_.samples_up_to(after(last.state.t, last.time_offset_s), after(frame.t, next.time_offset_s));
     if (samples.size() >= 2) {
       next.gyro_b = samples.back().gyro_b;
       next.from_previous.emplace(rig_.imu_noise, last.state.gyro_bias, last.state.accel_bias,
-                                 window_.spare_samples.take());
+                                 window_.sample_pool.acquire());
       next.from_previous->integrate(samples);
     }
   }
   window_.frames.push_back(std::move(next));
 }
 
-/// Finds the newest camera among known points where inertial data do not say where it is.
-bool Estimator::locate_newest() {
+/// Without inertial prediction: estimates the newest camera pose from known points (PnP).
+bool Estimator::localize_newest() {
   WindowFrame& newest = window_.frames.back();
   if (window_.inertial) return newest.from_previous.has_value();
-  if (window_.newest() == 0 || !knows_scale()) return true;
+  if (window_.newest() == 0 || !has_metric_scale()) return true;
   Pose prediction = newest.state.T_w_b;
   if (newest.from_previous) {
     const NavState& before = window_.frames[window_.frames.size() - 2].state;
     prediction.q = before.T_w_b.q * newest.from_previous->delta_q(before.gyro_bias);
   }
-  const CameraPoseOptions options{.inlier_threshold = kLocateInlier_px / rig_.camera.focal_px(),
+  const CameraPoseOptions options{.inlier_threshold = kLocalizationInlier_px / rig_.camera.focal_px(),
                                   .seed = seed_ + static_cast<std::uint32_t>(newest.id)};
-  sightings_ = known_points(window_, backend_.depth, std::move(sightings_));
+  known_points_ = known_points(window_, backend_.depth, std::move(known_points_));
   const std::optional<CameraPose> found =
-      estimate_camera_pose(sightings_, prediction * window_.T_b_c, options);
+      estimate_camera_pose(known_points_, prediction * window_.T_b_c, options);
   newest.state.T_w_b = found ? found->T_w_c * window_.T_b_c.inverse() : prediction;
   return found.has_value();
 }
 
-void Estimator::refresh_preintegrations() {
+void Estimator::repropagate_preintegrations() {
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
     std::optional<Preintegration>& imu = window_.frames[i].from_previous;
     const NavState& state = window_.frames[i - 1].state;
@@ -156,20 +154,20 @@ void Estimator::refresh_preintegrations() {
   }
 }
 
-void Estimator::try_to_become_inertial() {
+void Estimator::try_initialize_imu() {
   if (!uses_imu() || window_.inertial) return;
   const double span = seconds_between(window_.frames.front().state.t, window_.frames.back().state.t);
   const bool instant = backend_.initializer.kind == InitializerKind::kInstant && window_.newest() >= 4;
   if (!is_full() && !(instant && span >= backend_.initializer.min_span_s)) return;
   std::optional<Window> visual =
-      knows_scale() ? window_ : reconstruct_window(window_, backend_, rig_.camera.focal_px());
+      has_metric_scale() ? window_ : reconstruct_window(window_, backend_, rig_.camera.focal_px());
   if (!visual) return;
   const std::optional<InertialAlignment> alignment =
       align_with_imu(*visual, imu_config_.gravity, backend_.initializer);
   if (!alignment) return;
-  make_inertial(*alignment, window_.frames.front().state.T_w_b, *visual);
+  apply_alignment(*alignment, window_.frames.front().state.T_w_b, *visual);
   window_ = std::move(*visual);
-  window_.prior = first_prior(window_, backend_.initializer);
+  window_.prior = initial_prior(window_, backend_.initializer);
 }
 
 bool Estimator::has_failed(const NavState& before) const {
@@ -179,7 +177,7 @@ bool Estimator::has_failed(const NavState& before) const {
          (now.T_w_b.p - before.T_w_b.p).norm() > kMaxJump_m;
 }
 
-/// Begins anew where the last trusted state was, so that the world stays the same world.
+/// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
 void Estimator::restart() {
   Window fresh;
   fresh.T_b_c = rig_.T_b_c;
@@ -192,26 +190,26 @@ void Estimator::restart() {
 
 void Estimator::slide(bool keyframe) {
   if (!is_full()) return;
-  if (!knows_scale()) {
+  if (!has_metric_scale()) {
     keyframe ? remove_oldest_frame(window_) : remove_second_newest_frame(window_);
-    window_.prior = first_prior(window_, backend_.initializer);
+    window_.prior = initial_prior(window_, backend_.initializer);
   } else if (keyframe) {
     LinearPrior prior =
         marginalize_oldest(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
     remove_oldest_frame(window_);
-    solver_.reuse(std::exchange(window_.prior, std::move(prior)));
+    solver_.recycle(std::exchange(window_.prior, std::move(prior)));
   } else {
     marginalizer_.remove(window_.newest() - 1, window_.prior);
     remove_second_newest_frame(window_);
   }
-  // Nothing tied the frame that left to the others: they stay where they are.
-  if (window_.prior.empty()) window_.prior = first_prior(window_, backend_.initializer);
+  // Nothing connected the removed frame to the others: fix the gauge at the new oldest frame.
+  if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_.initializer);
 }
 
 OdometryStatus Estimator::status() const {
-  if (window_.frames.empty()) return begun_ ? OdometryStatus::kLost : OdometryStatus::kInitialising;
-  if (uses_imu() && !window_.inertial) return OdometryStatus::kInitialising;
-  return located_ ? OdometryStatus::kTracking : OdometryStatus::kLost;
+  if (window_.frames.empty()) return received_frame_ ? OdometryStatus::kLost : OdometryStatus::kInitializing;
+  if (uses_imu() && !window_.inertial) return OdometryStatus::kInitializing;
+  return localized_ ? OdometryStatus::kTracking : OdometryStatus::kLost;
 }
 
 void Estimator::add(const TrackedFrame& frame, OdometryUpdate& update) {
@@ -222,17 +220,17 @@ void Estimator::add(const TrackedFrame& frame, OdometryUpdate& update) {
   add_observations(frame, rig_, backend_.depth, window_);
 }
 
-void Estimator::mark_dynamic(std::span<const FeatureVerdict> verdicts) {
+void Estimator::mark_dynamic(std::span<const DynamicLabel> labels) {
   auto landmark = window_.landmarks.begin();
-  for (const FeatureVerdict& verdict : verdicts) {
-    while (landmark != window_.landmarks.end() && landmark->id < verdict.id) ++landmark;
+  for (const DynamicLabel& label : labels) {
+    while (landmark != window_.landmarks.end() && landmark->id < label.id) ++landmark;
     if (landmark == window_.landmarks.end()) return;
-    if (landmark->id != verdict.id) continue;
-    if (verdict.reason == VerdictReason::kRested) forget_past(*landmark);
-    const bool cleared = landmark->dynamic && verdict.verdict == Verdict::kStable;
-    landmark->dynamic = verdict.verdict != Verdict::kStable;
+    if (landmark->id != label.id) continue;
+    if (label.reason == LabelReason::kStatic) restart_track(*landmark);
+    const bool cleared = landmark->dynamic && label.label == LabelClass::kStable;
+    landmark->dynamic = label.label != LabelClass::kStable;
     if (!cleared) continue;
-    landmark->inverse_depth = 0.0;  // what was known is of a place that the point has left
+    landmark->inverse_depth = 0.0;  // it was estimated before the point moved
     landmark->source = DepthSource::kNone;
   }
 }
@@ -240,19 +238,19 @@ void Estimator::mark_dynamic(std::span<const FeatureVerdict> verdicts) {
 bool Estimator::refine(OdometryUpdate& update) {
   const ScopedTimer timer(update.timings, Module::kStateOptimization);
   keyframe_ = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
-  located_ = locate_newest();
-  try_to_become_inertial();
-  refresh_preintegrations();
+  localized_ = localize_newest();
+  try_initialize_imu();
+  repropagate_preintegrations();
   const NavState before = newest_;
-  if (knows_scale()) {
+  if (has_metric_scale()) {
     initialize_depths(backend_, rig_.camera.focal_px(), window_);
     const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
     const Pose oldest = window_.frames.front().state.T_w_b;
     const SolveReport report =
         solve_window(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
-    if (!window_.inertial) undo_jump(oldest, backend_.initializer, window_);
-    if (backend_.pixel_misfit_px > 0.0) {
-      pixel_noise_.observe(misfit_.median_px(window_, rig_.camera.focal_px()), backend_);
+    if (!window_.inertial) restore_gauge(oldest, backend_.initializer, window_);
+    if (backend_.reprojection_error_px > 0.0) {
+      pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
     }
     update.counters.window_landmarks = report.landmarks;
     update.counters.depth_landmarks = report.depth_landmarks;
@@ -276,12 +274,12 @@ void Estimator::finish(OdometryUpdate& update) {
     slide(keyframe_);
   }
   report(newest_, update);
-  forget_spent(knowledge(), imu_);
+  drop_old_samples(motion_state(), imu_);
 }
 
 void Estimator::predict(std::int64_t frame_id, Timestamp t, OdometryUpdate& update) {
   update.frame_id = frame_id;
-  report(extrapolate(knowledge(), imu_, t), update);
+  report(extrapolate(motion_state(), imu_, t), update);
 }
 
 void Estimator::report(const NavState& state, OdometryUpdate& update) const {

@@ -1,78 +1,78 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The state optimisation: tracked features and inertial samples in, a pose per picture out. Paper Sec. II.
+/// State optimization: computes a pose per frame from tracked features and inertial samples. Paper Sec. II.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "core/backend/backend_config.h"
-#include "core/backend/camera_pose.h"
-#include "core/backend/marginalization.h"
-#include "core/backend/pixel_noise.h"
-#include "core/backend/schur/schur_solver.h"
+#include "core/backend/marginalization/marginalization.h"
+#include "core/backend/solvers/schur_solver.h"
+#include "core/backend/solvers/window_solver.h"
+#include "core/backend/start/camera_pose.h"
 #include "core/backend/state_prediction.h"
-#include "core/backend/window.h"
-#include "core/backend/window_solver.h"
+#include "core/backend/window/pixel_noise.h"
+#include "core/backend/window/window.h"
+#include "core/config/backend_config.h"
+#include "core/config/imu_config.h"
 #include "core/imu/imu_buffer.h"
-#include "core/imu/imu_config.h"
-#include "core/types/feature_verdict.h"
+#include "core/types/dynamic_label.h"
 #include "core/types/odometry_update.h"
 #include "core/types/rig.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {
 
-/// A sliding window over the last pictures. It starts as visual odometry of metric scale; with an IMU it
-/// turns inertial as soon as gravity and speeds are known, and reports poses from then on. Without depth
-/// there is no visual odometry before: it collects a window until structure from motion and the IMU give its
-/// scale.
+/// Sliding-window estimator. With depth it starts as metric visual odometry; with an IMU it switches to
+/// visual-inertial odometry once gravity and velocities are initialized and reports poses from then on.
+/// Without depth it only collects frames until structure from motion and the IMU determine the scale.
 class Estimator {
  public:
-  /// @throws InputError if inertial data are asked of a rig without an IMU, or nothing gives the scale: depth
-  /// is off and there is no IMU or no monocular initialiser
+  /// @throws InputError if the IMU is enabled for a rig without one, or if the scale is unobservable: depth
+  /// is off and there is no IMU or no monocular initializer
   Estimator(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed);
 
-  /// Samples in order of time; those up to a picture's exposure come before the picture.
+  /// Samples in temporal order; samples up to the exposure of a frame must be added before the frame.
   void add_imu(const ImuSample& sample) { imu_.add(sample); }
 
-  /// Takes a picture into the window, where it was most likely taken.
+  /// Appends a frame to the window at its predicted pose.
   ///
-  /// A picture is `add`ed, its movers are marked, it is `refine`d, what shows itself as a mover by the
-  /// refined poses is marked, and `finish` closes it. Each step adds its part to the picture's update.
-  /// @param frame features by rising id
+  /// Call order per frame: `add`, `mark_dynamic` (labels from detections), `refine`, `mark_dynamic` (labels
+  /// from the moving consistency check with the refined poses), `finish`. Each step fills its part of
+  /// `update`.
+  /// @param frame features sorted by id
   void add(const TrackedFrame& frame, OdometryUpdate& update);
 
-  /// Keeps what moves out of all that follows, and takes what was cleared back in.
-  /// @param verdicts by rising id; landmarks without one stay as they are
-  void mark_dynamic(std::span<const FeatureVerdict> verdicts);
+  /// Excludes dynamic landmarks from the estimate and re-admits cleared ones.
+  /// @param labels sorted by id; landmarks without a label are unchanged
+  void mark_dynamic(std::span<const DynamicLabel> labels);
 
-  /// Finds the picture's pose and refines the window.
-  /// @return false if the estimate is lost: the window is empty, the next picture begins anew
+  /// Optimizes the window, including the pose of the newest frame.
+  /// @return false after a failure: the window has been cleared and restarts with the next frame
   [[nodiscard]] bool refine(OdometryUpdate& update);
 
-  /// Makes room for the next picture and reports the state.
+  /// Slides the window (marginalization) and reports the state.
   void finish(OdometryUpdate& update);
 
-  /// Reports the pose at a picture that does not enter the window, propagated from the newest state.
+  /// Reports the pose of a frame that does not enter the window, propagated from the newest state.
   void predict(std::int64_t frame_id, Timestamp t, OdometryUpdate& update);
 
-  /// What the tracker needs to predict the next picture.
-  [[nodiscard]] MotionKnowledge knowledge() const;
+  /// Input of the tracker's motion prediction.
+  [[nodiscard]] MotionState motion_state() const;
 
   [[nodiscard]] const ImuHealth& imu_health() const { return imu_.health(); }
   [[nodiscard]] const Window& window() const { return window_; }
 
  private:
   [[nodiscard]] bool uses_imu() const { return imu_config_.enabled; }
-  [[nodiscard]] bool knows_scale() const {
+  [[nodiscard]] bool has_metric_scale() const {
     return window_.inertial || backend_.depth.usage != DepthUsage::kOff;
   }
   [[nodiscard]] bool is_full() const { return window_.newest() == backend_.window_size; }
   void push_frame(const TrackedFrame& frame);
-  [[nodiscard]] bool locate_newest();
-  void refresh_preintegrations();
-  void try_to_become_inertial();
+  [[nodiscard]] bool localize_newest();
+  void repropagate_preintegrations();
+  void try_initialize_imu();
   [[nodiscard]] bool has_failed(const NavState& before) const;
   void restart();
   void slide(bool keyframe);
@@ -84,17 +84,17 @@ class Estimator {
   Rig rig_;
   std::uint32_t seed_;
   ImuBuffer imu_;
-  SchurSolver solver_;              ///< its memory only, whoever solves
-  FrameMarginalizer marginalizer_;  ///< likewise
+  SchurSolver solver_;              ///< buffers; also used when Ceres solves
+  FrameMarginalizer marginalizer_;  ///< buffers only
   Window window_;
-  std::vector<PointSighting> sightings_;  ///< kept for its memory
-  MisfitMeter misfit_;
+  std::vector<PointObservation> known_points_;  ///< buffer of `localize_newest`
+  ReprojectionErrorMonitor error_monitor_;
   PixelNoise pixel_noise_;
-  NavState newest_;    ///< last state handed out
-  NavState previous_;  ///< the one before: constant velocity where there is no IMU
-  bool located_ = true;
-  bool keyframe_ = true;  ///< whether the picture before the newest stays
-  bool begun_ = false;    ///< a picture has come
+  NavState newest_;              ///< last reported state
+  NavState previous_;            ///< the state before it: constant velocity model without an IMU
+  bool localized_ = true;        ///< whether the pose of the newest frame was found
+  bool keyframe_ = true;         ///< whether the second-newest frame stays in the window
+  bool received_frame_ = false;  ///< at least one frame was added
 };
 
 }  // namespace stillpoint

@@ -7,42 +7,42 @@
 namespace stillpoint {
 namespace {
 
-/// The time offset may still change by so much.
-constexpr double kKeptBefore_s = 0.2;
+/// Margin for later changes of the estimated time offset.
+constexpr double kRetention_s = 0.2;
 
 Pose constant_velocity(const NavState& previous, const NavState& newest, Timestamp t) {
-  const double share = seconds_between(newest.t, t) / seconds_between(previous.t, newest.t);
+  const double fraction = seconds_between(newest.t, t) / seconds_between(previous.t, newest.t);
   const Pose step = previous.T_w_b.inverse() * newest.T_w_b;
-  return newest.T_w_b * Pose{exp_so3(share * log_so3(step.q)), share * step.p};
+  return newest.T_w_b * Pose{exp_so3(fraction * log_so3(step.q)), fraction * step.p};
 }
 
 }  // namespace
 
-NavState extrapolate(const MotionKnowledge& known, ImuBuffer& imu, Timestamp t) {
-  NavState state = known.newest;
-  if (t == known.newest.t) return state;
-  if (known.inertial) {
-    NavState start = known.newest;
-    start.t = after(start.t, known.time_offset_s);
-    state = propagate(start, imu.samples_up_to(start.t, after(t, known.time_offset_s)), known.gravity_w);
-  } else if (known.previous.t < known.newest.t) {
-    state.T_w_b = constant_velocity(known.previous, known.newest, t);
+NavState extrapolate(const MotionState& motion, ImuBuffer& imu, Timestamp t) {
+  NavState state = motion.newest;
+  if (t == motion.newest.t) return state;
+  if (motion.inertial) {
+    NavState start = motion.newest;
+    start.t = after(start.t, motion.time_offset_s);
+    state = propagate(start, imu.samples_up_to(start.t, after(t, motion.time_offset_s)), motion.gravity_w);
+  } else if (motion.previous.t < motion.newest.t) {
+    state.T_w_b = constant_velocity(motion.previous, motion.newest, t);
   }
   state.t = t;
   return state;
 }
 
-void forget_spent(const MotionKnowledge& known, ImuBuffer& imu) {
-  if (known.begun) imu.forget_before(after(known.newest.t, known.time_offset_s - kKeptBefore_s));
+void drop_old_samples(const MotionState& motion, ImuBuffer& imu) {
+  if (motion.initialized) imu.drop_before(after(motion.newest.t, motion.time_offset_s - kRetention_s));
 }
 
-MotionPrior motion_prior(const MotionKnowledge& known, ImuBuffer& imu, Timestamp from, Timestamp to) {
-  if (!known.begun || !known.uses_imu) return {};
-  if (known.inertial) {
-    return full_prior(extrapolate(known, imu, from).T_w_b, extrapolate(known, imu, to).T_w_b, known.T_b_c);
+MotionPrior motion_prior(const MotionState& motion, ImuBuffer& imu, Timestamp from, Timestamp to) {
+  if (!motion.initialized || !motion.uses_imu) return {};
+  if (motion.inertial) {
+    return full_prior(extrapolate(motion, imu, from).T_w_b, extrapolate(motion, imu, to).T_w_b, motion.T_b_c);
   }
-  return rotation_prior(imu.samples_up_to(after(from, known.time_offset_s), after(to, known.time_offset_s)),
-                        known.newest.gyro_bias, known.T_b_c);
+  return rotation_prior(imu.samples_up_to(after(from, motion.time_offset_s), after(to, motion.time_offset_s)),
+                        motion.newest.gyro_bias, motion.T_b_c);
 }
 
 }  // namespace stillpoint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where the camera is at a time that the window does not hold. Paper Sec. III-A ("IMU preintegration").
+/// Prediction of states and camera motion outside the window. Paper Sec. III-A ("IMU preintegration").
 #pragma once
 
 #include "core/imu/imu_buffer.h"
@@ -8,28 +8,28 @@
 
 namespace stillpoint {
 
-/// What the estimator knows after a picture, as far as predictions need it: the feedback to the tracker.
-struct MotionKnowledge {
-  NavState newest;    ///< last state handed out
-  NavState previous;  ///< the one before: constant velocity where there is no IMU
+/// Motion estimate after a frame, as needed for predictions: the feedback to the tracker.
+struct MotionState {
+  NavState newest;    ///< last reported state
+  NavState previous;  ///< the state before it: constant velocity model without an IMU
   Pose T_b_c;
   Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();
   double time_offset_s = 0.0;
-  bool begun = false;     ///< a picture was taken in since the start or the last failure
-  bool uses_imu = false;  ///< its biases and the time offset mean something
-  bool inertial = false;  ///< gravity and speed are known
+  bool initialized = false;  ///< the window holds at least one frame
+  bool uses_imu = false;     ///< biases and time offset are valid
+  bool inertial = false;     ///< gravity and velocity are initialized
 };
 
-/// State at an image stamp not before the newest one: inertial propagation, or constant velocity.
-[[nodiscard]] NavState extrapolate(const MotionKnowledge& known, ImuBuffer& imu, Timestamp t);
+/// State at an image timestamp >= `newest.t`: IMU propagation, or constant velocity without an IMU.
+[[nodiscard]] NavState extrapolate(const MotionState& motion, ImuBuffer& imu, Timestamp t);
 
-/// Forgets samples that nothing needs any more which follows the newest state.
-void forget_spent(const MotionKnowledge& known, ImuBuffer& imu);
+/// Drops IMU samples older than the newest state.
+void drop_old_samples(const MotionState& motion, ImuBuffer& imu);
 
-/// How the camera moved between two pictures, for the tracker; the newest state is not after `from`.
-/// Inertial data only: a tracker that starts where constant velocity puts weak features finds them there,
-/// and the estimate follows itself.
-[[nodiscard]] MotionPrior motion_prior(const MotionKnowledge& known, ImuBuffer& imu, Timestamp from,
+/// Predicted camera motion between two frames, for the tracker; requires `newest.t` <= `from`. Uses inertial
+/// data only: a constant-velocity prediction biases weakly textured features towards the prediction, and this
+/// error feeds back into the estimate.
+[[nodiscard]] MotionPrior motion_prior(const MotionState& motion, ImuBuffer& imu, Timestamp from,
                                        Timestamp to);
 
 }  // namespace stillpoint

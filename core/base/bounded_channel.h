@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A queue of limited length between two threads.
+/// Bounded blocking queue between threads.
 #pragma once
 
 #include <chrono>
@@ -14,14 +14,14 @@
 
 namespace stillpoint {
 
-/// Any number of threads may push and pop; what is pushed comes out once, in order.
+/// First in, first out; any number of threads may push and pop.
 template <class T>
 class BoundedChannel {
  public:
   /// @param capacity at least 1
   explicit BoundedChannel(std::size_t capacity) : items_(capacity) {}
 
-  /// Waits for room. @return false if the channel is closed: the value is gone
+  /// Blocks while the channel is full. @return false if the channel is closed; the value is then discarded
   bool push(T value) {
     std::unique_lock lock(mutex_);
     wait(has_room_, lock, for_room_, [this] { return closed_ || count_ < items_.size(); });
@@ -30,7 +30,7 @@ class BoundedChannel {
     return true;
   }
 
-  /// Never waits: the oldest item makes room. @return the item that was dropped, if there was one
+  /// Never blocks: drops the oldest item if the channel is full. @return the dropped item, if any
   std::optional<T> push_dropping_oldest(T value) {
     const std::scoped_lock lock(mutex_);
     std::optional<T> dropped;
@@ -40,21 +40,21 @@ class BoundedChannel {
     return dropped;
   }
 
-  /// Waits for an item. @return nothing once the channel is closed and empty
+  /// Blocks while the channel is empty. @return nullopt once the channel is closed and empty
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     wait(has_items_, lock, for_items_, [this] { return closed_ || count_ > 0; });
     return take_front();
   }
 
-  /// Waits no longer than `limit`. @return nothing if no item came
-  std::optional<T> pop_for(std::chrono::nanoseconds limit) {
+  /// Blocks for at most `timeout`. @return nullopt if no item arrived in time
+  std::optional<T> pop_for(std::chrono::nanoseconds timeout) {
     std::unique_lock lock(mutex_);
-    has_items_.wait_for(lock, limit, [this] { return closed_ || count_ > 0; });
+    has_items_.wait_for(lock, timeout, [this] { return closed_ || count_ > 0; });
     return take_front();
   }
 
-  /// Nothing can be pushed any more; what is inside can still be popped. May be called again.
+  /// After this call nothing can be pushed; remaining items can still be popped. Idempotent.
   void close() {
     const std::scoped_lock lock(mutex_);
     closed_ = true;
@@ -62,7 +62,7 @@ class BoundedChannel {
     has_items_.notify_all();
   }
 
-  /// Of `push` and `pop` so far; `pop_for` does not count.
+  /// Wait statistics of `push` and `pop` so far; `pop_for` is not counted.
   [[nodiscard]] ChannelWaits waits(std::string name) const {
     const std::scoped_lock lock(mutex_);
     return {.channel = std::move(name), .for_items = for_items_, .for_room = for_room_};
@@ -98,9 +98,9 @@ class BoundedChannel {
   std::condition_variable has_room_;
   std::condition_variable has_items_;
   // All guarded by mutex_.
-  std::vector<std::optional<T>> items_;  ///< a ring: memory is asked for once
-  std::size_t front_ = 0;                ///< of the ring
-  std::size_t count_ = 0;                ///< of items in it
+  std::vector<std::optional<T>> items_;  ///< ring buffer, allocated once
+  std::size_t front_ = 0;                ///< index of the oldest item
+  std::size_t count_ = 0;                ///< number of items
   bool closed_ = false;
   WaitTime for_items_;
   WaitTime for_room_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How often and how long threads waited at a channel.
+/// Number and duration of blocking waits at a channel.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@ namespace stillpoint {
 
 struct WaitTime {
   std::int64_t ns = 0;
-  std::int64_t waits = 0;  ///< those who found what they wanted did not wait
+  std::int64_t waits = 0;  ///< calls that blocked; calls that could proceed at once are not counted
 };
 
 struct ChannelWaits {
   std::string channel;
-  WaitTime for_items;  ///< of those who took
-  WaitTime for_room;   ///< of those who put
+  WaitTime for_items;  ///< consumers, channel empty
+  WaitTime for_room;   ///< producers, channel full
 };
 
 }  // namespace stillpoint

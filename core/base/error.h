@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The two kinds of failure: input that is wrong, and states that cannot be.
+/// Error types: invalid input (InputError) and violated internal invariants (STILLPOINT_CHECK).
 #pragma once
 
 #include <stdexcept>
@@ -7,23 +7,24 @@
 
 namespace stillpoint {
 
-/// Wrong input. The message says place, problem and remedy, lower case, without a full stop; programs exit
-/// with 2.
+/// Invalid input. The message states location, problem and remedy, in lower case, without a full stop;
+/// programs exit with code 2.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
 
-  /// @param place   a file or an option, as the user knows it
-  /// @param problem what was found, and the likely remedy after a semicolon
-  InputError(const std::string& place, const std::string& problem)
-      : std::runtime_error(place + ": " + problem) {}
+  /// @param location a file or an option, as the user wrote it
+  /// @param problem  what was found, and the likely remedy after a semicolon
+  InputError(const std::string& location, const std::string& problem)
+      : std::runtime_error(location + ": " + problem) {}
 
   /// @param line line number in `file`, counted from 1
   InputError(const std::string& file, long line, const std::string& problem)
       : std::runtime_error(file + ":" + std::to_string(line) + ": " + problem) {}
 };
 
-/// Ends the program's present work when an invariant of ours does not hold: a bug, never a user's mistake.
+/// Reports a violated invariant: always a bug in this library, never invalid input.
+/// @throws std::logic_error
 [[noreturn]] void check_failed(const char* condition, const char* file, int line);
 
 }  // namespace stillpoint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Time spent in each module of the odometry, in the columns of the paper's Table III.
+/// Time spent in each module of the odometry; the modules include the columns of the paper's Table III.
 #pragma once
 
 #include <array>
@@ -10,44 +10,45 @@
 
 namespace stillpoint {
 
-/// The first seven are the columns of Table III; the others split them further.
+/// The first seven are the columns of Table III; the others subdivide them.
 enum class Module : std::uint8_t {
   kFeatureTracking,     ///< prediction, KLT, compaction; per frame
   kFeatureDetection,    ///< cell bookkeeping, FAST, selection; per detecting frame
   kTrackingThread,      ///< everything the tracker does with one frame
   kDynamicRecognition,  ///< semantic mask, missed detection compensation, moving consistency check
-  kStateOptimization,   ///< from IMU integration's end to the slide: PnP, triangulation, solve,
-                        ///< marginalisation
+  kStateOptimization,   ///< after IMU integration, up to sliding the window: PnP, triangulation, solve,
+                        ///< marginalization
   kOptimizationThread,  ///< everything the estimator does with one frame
   kObjectDetection,     ///< one detector call
   kOutlierRejection,    ///< epipolar RANSAC of the tracker
   kFeatureMask,         ///< circular masks
   kWindowSolve,         ///< the nonlinear solve alone
-  kMarginalization,     ///< marginalisation alone
-  kImageDecoding,       ///< reading and decoding pictures: input, in no thread of the paper
+  kMarginalization,     ///< marginalization alone
+  kImageDecoding,       ///< reading and decoding images; not part of any thread in the paper
 };
 inline constexpr std::size_t kModuleCount = 12;
 
 /// Stable name of a module in result files: snake_case, e.g. "feature_tracking".
 [[nodiscard]] std::string_view module_name(Module module);
 
-/// Sum and count of one module's calls. Table III averages modules per call and threads per frame: keep both.
+/// Total time and number of calls of one module. Both are needed: Table III averages modules per call and
+/// threads per frame.
 struct ModuleTime {
   std::int64_t ns = 0;
   std::int64_t calls = 0;
 };
 
-/// One stay in a module, for timelines.
+/// One timed interval of a module, for timelines.
 struct ModuleSpan {
   Module module = Module::kFeatureTracking;
   std::chrono::steady_clock::time_point start;
   std::chrono::nanoseconds elapsed{};
 };
 
-/// What one frame spent, module by module; carried in the messages, so no locks and no globals.
+/// Timings of one frame by module. Passed along in the messages, so neither locks nor globals are needed.
 class ModuleTimings {
  public:
-  /// @param calls 0 where the span is only a part of a call
+  /// @param calls 0 if the span is only part of a call
   void add(const ModuleSpan& span, int calls) {
     add(span.module, span.elapsed, calls);
     spans_.push_back(span);
@@ -64,10 +65,10 @@ class ModuleTimings {
     }
     spans_.insert(spans_.end(), other.spans_.begin(), other.spans_.end());
   }
-  /// In the order in which they ended, thread by thread. About 14 a frame: drop what is not wanted.
+  /// Spans in order of their end time, grouped by thread. About 14 per frame: drop them if not needed.
   [[nodiscard]] const std::vector<ModuleSpan>& spans() const { return spans_; }
   void drop_spans() { spans_ = {}; }
-  /// Begins anew, in the memory that is there.
+  /// Resets all timings and keeps the allocated capacity.
   void clear() {
     times_ = {};
     spans_.clear();
@@ -81,10 +82,10 @@ class ModuleTimings {
   std::vector<ModuleSpan> spans_;
 };
 
-/// Adds the time from its construction to its destruction to one module.
+/// Adds the time between its construction and its destruction to one module.
 class ScopedTimer {
  public:
-  /// A module that is left and entered again for one picture is one call: all but one of its spans are parts.
+  /// A module entered several times during one frame counts as one call: all but one of its spans are kPart.
   enum class Kind { kCall, kPart };
 
   ScopedTimer(ModuleTimings& timings, Module module, Kind kind = Kind::kCall)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Points in time as whole nanoseconds, so that equal stamps compare equal.
+/// Timestamps in integer nanoseconds, so that equal stamps compare equal.
 #pragma once
 
 #include <cmath>
@@ -8,14 +8,14 @@
 
 namespace stillpoint {
 
-/// Nanoseconds since the data set's own epoch.
+/// Nanoseconds since the epoch of the dataset.
 struct Timestamp {
   std::int64_t ns = 0;
 
   friend constexpr auto operator<=>(Timestamp, Timestamp) = default;
 };
 
-/// Signed span from `from` to `to` [s]. Files may hold stamps whose difference is beyond 64 bits.
+/// Signed duration from `from` to `to` [s]. The difference of two valid stamps may exceed 64 bits.
 [[nodiscard]] constexpr double seconds_between(Timestamp from, Timestamp to) {
   return static_cast<double>(static_cast<__int128>(to.ns) - from.ns) * 1e-9;
 }
@@ -25,8 +25,7 @@ struct Timestamp {
   return Timestamp{t.ns + std::llround(seconds * 1e9)};
 }
 
-/// Seconds since the epoch [s]; exact to about 0.2 us for present-day Unix stamps: for printing and plots
-/// only.
+/// Seconds since the epoch [s], for printing and plots only: exact to about 0.2 us for current Unix stamps.
 [[nodiscard]] constexpr double to_seconds(Timestamp t) { return static_cast<double>(t.ns) * 1e-9; }
 
 /// The stamp of `seconds` since the epoch, rounded to the nearest nanosecond.

@@ -17,12 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPadding = 114.0;  ///< gray beside a picture of other proportions, as in training of YOLO
+constexpr double kPadding = 114.0;  ///< gray value of the letterbox, as in the training of YOLO
 
 void require_file(const std::string& key, const std::string& file) {
-  if (file.empty()) throw InputError(key, "is not set; it names a file of the network");
+  if (file.empty()) throw InputError(key, "is not set; it must name a file of the network");
   if (!fs::is_regular_file(file))
-    throw InputError(file, "is no file; " + key + " names a file of the network");
+    throw InputError(file, "is not a file; " + key + " must name a file of the network");
 }
 
 std::vector<std::string> read_names(const std::string& file) {
@@ -33,7 +33,7 @@ std::vector<std::string> read_names(const std::string& file) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
     if (!line.empty()) names.push_back(line);
   }
-  if (names.empty()) throw InputError(file, "holds no class names; it should have one a line");
+  if (names.empty()) throw InputError(file, "contains no class names; expected one per line");
   return names;
 }
 
@@ -43,8 +43,8 @@ void require_known_class(const DetectorConfig& config, const std::vector<std::st
       dynamic_classes.begin(), dynamic_classes.end(),
       [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); });
   if (known || dynamic_classes.empty()) return;
-  throw InputError(config.names,
-                   "has none of the classes of dynamic.classes; the first here is \"" + names.front() + "\"");
+  throw InputError(config.names, "contains none of the classes in dynamic.classes; its first class is \"" +
+                                     names.front() + "\"");
 }
 
 int opencv_backend(NetworkBackend backend) {
@@ -67,25 +67,25 @@ void choose_backend(cv::dnn::Net& net, NetworkBackend backend) {
   const auto id = static_cast<cv::dnn::Backend>(opencv_backend(backend));
   const std::vector<cv::dnn::Target> targets = cv::dnn::getAvailableTargets(id);
   if (std::find(targets.begin(), targets.end(), target_of(backend)) == targets.end()) {
-    throw InputError("detector.backend", "this OpenCV was built without it; use \"opencv\"");
+    throw InputError("detector.backend", "OpenCV was built without it; use \"opencv\"");
   }
   net.setPreferableBackend(id);
   net.setPreferableTarget(target_of(backend));
 }
 
-/// Keeps OpenCV from printing what it throws as well.
-class QuietOpencv {
+/// Silences the OpenCV log: OpenCV also prints the errors that it throws.
+class ScopedSilentOpencv {
  public:
-  QuietOpencv() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~QuietOpencv() { cv::utils::logging::setLogLevel(before_); }
-  QuietOpencv(const QuietOpencv&) = delete;
-  QuietOpencv& operator=(const QuietOpencv&) = delete;
+  ScopedSilentOpencv() : previous_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~ScopedSilentOpencv() { cv::utils::logging::setLogLevel(previous_); }
+  ScopedSilentOpencv(const ScopedSilentOpencv&) = delete;
+  ScopedSilentOpencv& operator=(const ScopedSilentOpencv&) = delete;
 
  private:
-  cv::utils::logging::LogLevel before_;
+  cv::utils::logging::LogLevel previous_;
 };
 
-/// What OpenCV says, without its line breaks.
+/// Error message of OpenCV without line breaks.
 std::string one_line(const cv::Exception& error) {
   std::string text = error.err;
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -96,46 +96,46 @@ cv::dnn::Net load(const DetectorConfig& config) {
   require_file("detector.weights", config.weights);
   const bool darknet = config.layout == NetworkLayout::kDarknet;
   if (darknet) require_file("detector.cfg", config.cfg);
-  const QuietOpencv quiet;
+  const ScopedSilentOpencv silent;
   try {
     return darknet ? cv::dnn::readNetFromDarknet(config.cfg, config.weights)
                    : cv::dnn::readNetFromONNX(config.weights);
   } catch (const cv::Exception& error) {
-    throw InputError(config.weights, "is no network that OpenCV can read (" + one_line(error) +
+    throw InputError(config.weights, "is not a network that OpenCV can read (" + one_line(error) +
                                          "); check detector.weights, detector.cfg and detector.layout");
   }
 }
 
-/// OpenCV takes what a short file of weights lacks as zeros, in silence.
-/// @throws InputError if the file holds fewer numbers than the Darknet network has
+/// OpenCV silently fills up a truncated weights file with zeros.
+/// @throws InputError if the file contains fewer weights than the Darknet network requires
 void require_complete_weights(const cv::dnn::Net& net, const std::string& file) {
-  constexpr std::uintmax_t kShortestHeader = 16;
-  std::uintmax_t numbers = 0;
+  constexpr std::uintmax_t kMinHeaderBytes = 16;
+  std::uintmax_t weights = 0;
   for (const cv::String& name : net.getLayerNames()) {
     const cv::Ptr<cv::dnn::Layer> layer = net.getLayer(net.getLayerId(name));
-    if (layer->type == "Region") continue;  // its numbers are the anchors of the cfg
-    for (const cv::Mat& blob : layer->blobs) numbers += blob.total();
+    if (layer->type == "Region") continue;  // its blobs are the anchors from the cfg
+    for (const cv::Mat& blob : layer->blobs) weights += blob.total();
   }
-  const std::uintmax_t needed = kShortestHeader + numbers * sizeof(float);
+  const std::uintmax_t needed = kMinHeaderBytes + weights * sizeof(float);
   if (fs::file_size(file) >= needed) return;
-  throw InputError(file, "holds " + std::to_string(fs::file_size(file)) + " bytes, detector.cfg asks for " +
+  throw InputError(file, "has " + std::to_string(fs::file_size(file)) + " bytes, detector.cfg requires " +
                              std::to_string(needed) + "; it is truncated or belongs to another network");
 }
 
-/// How the picture lies in the network's input: input = picture * scale.
-struct Placement {
+/// Scale from the image to the network input: input = image * scale.
+struct InputScale {
   double x = 1.0;
   double y = 1.0;
 };
 
-Placement placement_of(cv::Size picture, const DetectorConfig& config) {
-  const double x = static_cast<double>(config.input_px) / picture.width;
-  const double y = static_cast<double>(config.input_px) / picture.height;
+InputScale input_scale(cv::Size image, const DetectorConfig& config) {
+  const double x = static_cast<double>(config.input_px) / image.width;
+  const double y = static_cast<double>(config.input_px) / image.height;
   if (config.layout == NetworkLayout::kDarknet) return {x, y};
   return {std::min(x, y), std::min(x, y)};
 }
 
-cv::Mat input_of(const Frame& frame, const Placement& scale, const DetectorConfig& config) {
+cv::Mat make_blob(const Frame& frame, const InputScale& scale, const DetectorConfig& config) {
   cv::Mat color = frame.color;
   if (color.empty()) cv::cvtColor(frame.gray, color, cv::COLOR_GRAY2RGB);
   const cv::Size size(std::min(cvRound(color.cols * scale.x), config.input_px),
@@ -150,37 +150,38 @@ cv::Mat input_of(const Frame& frame, const Placement& scale, const DetectorConfi
 
 NetworkDetector::NetworkDetector(const DetectorConfig& config, std::span<const std::string> dynamic_classes)
     : config_(config),
-      reader_{.layout = config.layout,
-              .input_px = config.input_px,
-              .names = read_names(config.names),
-              .score_threshold = config.score_threshold},
+      decode_options_{.layout = config.layout,
+                      .input_px = config.input_px,
+                      .names = read_names(config.names),
+                      .score_threshold = config.score_threshold},
       net_(load(config)),
       output_names_(net_.getUnconnectedOutLayersNames()) {
-  require_known_class(config, reader_.names, dynamic_classes);
+  require_known_class(config, decode_options_.names, dynamic_classes);
   if (config.layout == NetworkLayout::kDarknet) require_complete_weights(net_, config.weights);
   choose_backend(net_, config.backend);
   cv::setNumThreads(config.threads);
   const cv::Mat empty(config.input_px, config.input_px, CV_8UC3, cv::Scalar::all(kPadding));
-  static_cast<void>(read_outputs(reader_, run(cv::dnn::blobFromImage(empty)), config.weights));
+  static_cast<void>(decode_outputs(decode_options_, run(cv::dnn::blobFromImage(empty)), config.weights));
 }
 
 std::vector<cv::Mat> NetworkDetector::run(const cv::Mat& input) {
   std::vector<cv::Mat> outputs;
-  const QuietOpencv quiet;
+  const ScopedSilentOpencv silent;
   try {
     net_.setInput(input);
     net_.forward(outputs, output_names_);
   } catch (const cv::Exception& error) {
-    throw InputError(config_.weights, "cannot be run on " + std::to_string(config_.input_px) + " px (" +
-                                          one_line(error) + "); check detector.input_px");
+    throw InputError(config_.weights, "cannot be run with an input of " + std::to_string(config_.input_px) +
+                                          " px (" + one_line(error) + "); check detector.input_px");
   }
   return outputs;
 }
 
 DetectionSet NetworkDetector::detect(const Frame& frame) {
-  const Placement scale = placement_of(frame.gray.size(), config_);
-  std::vector<Detection> detections = without_duplicates(
-      read_outputs(reader_, run(input_of(frame, scale, config_)), config_.weights), config_.nms_threshold);
+  const InputScale scale = input_scale(frame.gray.size(), config_);
+  std::vector<Detection> detections = non_maximum_suppression(
+      decode_outputs(decode_options_, run(make_blob(frame, scale, config_)), config_.weights),
+      config_.nms_threshold);
   for (Detection& detection : detections) {
     Box& box = detection.box;
     box = {.x_min = box.x_min / scale.x,
@@ -188,7 +189,7 @@ DetectionSet NetworkDetector::detect(const Frame& frame) {
            .x_max = box.x_max / scale.x,
            .y_max = box.y_max / scale.y};
   }
-  ++counters_.looked;
+  ++counters_.processed;
   return {.t = frame.t,
           .state = DetectionState::kPresent,
           .detections = usable_boxes(std::move(detections), frame.gray.size(), counters_)};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A detection network, run by OpenCV. The paper uses YOLOv3 (Sec. III-C); any YOLO of a known layout does.
+/// Neural network detector, on OpenCV DNN. The paper uses YOLOv3 (Sec. III-C); any YOLO network with a
+/// supported output layout works.
 #pragma once
 
 #include <opencv2/dnn/dnn.hpp>
@@ -9,17 +10,17 @@
 
 namespace stillpoint {
 
-/// Darknet networks see the picture stretched to their square input, as they were trained; the others see it
-/// with its proportions kept, at the upper left of a gray square. YOLOX takes blue-green-red of 0 to 255,
-/// the others red-green-blue of 0 to 1.
+/// Preprocessing: Darknet networks get the image stretched to the square input, as in their training; the
+/// others get it letterboxed (aspect ratio kept, upper left of a gray square). Channels are BGR in [0, 255]
+/// for YOLOX, RGB in [0, 1] for the others.
 class NetworkDetector : public ObjectDetector {
  public:
-  /// Loads the network and runs it once on an empty picture, so that faults show before the first frame.
+  /// Loads the network and runs it once on an empty image, so that errors occur before the first frame.
   ///
-  /// OpenCV falls back to its own code in silence where a backend is missing; here that is an error. It has
-  /// one number of threads for the whole program, which this sets.
-  /// @throws InputError if a file is missing or broken, layout or number of classes do not fit, the backend
-  /// is not there, or none of the `dynamic_classes` (unless they are empty) is among the names
+  /// OpenCV silently falls back to its default backend if the requested one is not available; here that is an
+  /// error. Sets the number of OpenCV threads, which is global to the process.
+  /// @throws InputError if a file is missing or invalid, the layout or the number of classes does not match,
+  /// the backend is not available, or none of the `dynamic_classes` (unless empty) is among the names
   NetworkDetector(const DetectorConfig& config, std::span<const std::string> dynamic_classes);
 
   [[nodiscard]] DetectionSet detect(const Frame& frame) override;
@@ -30,7 +31,7 @@ class NetworkDetector : public ObjectDetector {
   [[nodiscard]] std::vector<cv::Mat> run(const cv::Mat& input);
 
   DetectorConfig config_;
-  OutputReader reader_;
+  DecodeOptions decode_options_;
   cv::dnn::Net net_;
   std::vector<std::string> output_names_;
   DetectorCounters counters_;

@@ -1,42 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Boxes from the numbers that a detection network puts out, for the usual layouts.
+/// Decoding of the outputs of YOLO networks to boxes.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
-#include "core/detector/detector_config.h"
+#include "core/config/detector_config.h"
 #include "core/types/detection.h"
 
 namespace stillpoint {
 
-/// How the outputs of one network are to be read.
+/// Output format of a network.
 ///
-/// With C classes, a box is centre x, centre y, width, height, then
-///   darknet: in shares of the input, an objectness, C scores (the objectness included); N x (5 + C), any
-///            number of outputs (Redmon 2018, as OpenCV's region layer writes it);
-///   yolov5:  in px of the input, an objectness, C scores to be multiplied by it; 1 x N x (5 + C);
-///   yolov8:  in px of the input, C scores; 1 x (4 + C) x N;
-///   yolox:   relative to the cells of grids of stride 8, 16 and 32, sizes as logarithms, otherwise like
-///            yolov5 (Ge 2021).
-struct OutputReader {
+/// With C classes and N boxes, a box is (center x, center y, width, height), followed by:
+///   darknet: objectness, C scores already multiplied by it; box relative to the input size; N x (5 + C), any
+///            number of outputs (Redmon 2018, as written by the region layer of OpenCV);
+///   yolov5:  objectness, C scores to be multiplied by it; box in px of the input; 1 x N x (5 + C);
+///   yolov8:  C scores; box in px of the input; 1 x (4 + C) x N;
+///   yolox:   as yolov5, with x, y relative to a grid cell of stride s and the log of width, height:
+///            center = (xy + cell) * s, size = exp(wh) * s, for s = 8, 16, 32 in this order (Ge 2021).
+struct DecodeOptions {
   NetworkLayout layout = NetworkLayout::kDarknet;
-  int input_px = 320;              ///< side of the network's input
-  std::vector<std::string> names;  ///< of the classes
+  int input_px = 320;              ///< side of the network input
+  std::vector<std::string> names;  ///< class names
   double score_threshold = 0.3;
 };
 
-/// Boxes in px of the network's input, in the order of the outputs; not suppressed yet.
-/// @param place names the network in errors
-/// @throws InputError if an output has another shape than the layout and the number of classes demand
-[[nodiscard]] std::vector<Detection> read_outputs(const OutputReader& reader,
-                                                  const std::vector<cv::Mat>& outputs,
-                                                  const std::string& place);
+/// Boxes in px of the network input, in the order of the outputs, before non-maximum suppression.
+/// @param source name of the network in error messages
+/// @throws InputError if the shape of an output does not match the layout and the number of classes
+[[nodiscard]] std::vector<Detection> decode_outputs(const DecodeOptions& options,
+                                                    const std::vector<cv::Mat>& outputs,
+                                                    const std::string& source);
 
-/// Non-maximum suppression class by class: by falling score, a box stays unless it overlaps one that stayed
-/// by more than `max_overlap` (IoU).
-[[nodiscard]] std::vector<Detection> without_duplicates(std::vector<Detection> detections,
-                                                        double max_overlap);
+/// Greedy non-maximum suppression per class: in order of decreasing score, a box is removed if its IoU with a
+/// remaining box exceeds `max_iou`.
+[[nodiscard]] std::vector<Detection> non_maximum_suppression(std::vector<Detection> detections,
+                                                             double max_iou);
 
 }  // namespace stillpoint

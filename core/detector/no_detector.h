@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Nobody looks.
+/// Null detector: processes no frame.
 #pragma once
 
 #include "core/detector/object_detector.h"
@@ -9,7 +9,7 @@ namespace stillpoint {
 class NoDetector : public ObjectDetector {
  public:
   [[nodiscard]] DetectionSet detect(const Frame& frame) override {
-    ++counters_.unlooked;
+    ++counters_.skipped;
     return {.t = frame.t, .state = DetectionState::kNone, .detections = {}};
   }
   [[nodiscard]] std::string description() const override { return "none"; }

@@ -11,7 +11,8 @@
 namespace stillpoint {
 namespace {
 
-std::unique_ptr<ObjectDetector> make_dense(const DetectorConfig& config, const DetectorInput& input) {
+std::unique_ptr<ObjectDetector> make_for_every_frame(const DetectorConfig& config,
+                                                     const DetectorInput& input) {
   switch (config.kind) {
     case DetectorKind::kNone:
       return std::make_unique<NoDetector>();
@@ -29,7 +30,7 @@ std::unique_ptr<ObjectDetector> make_dense(const DetectorConfig& config, const D
 
 std::unique_ptr<ObjectDetector> make_object_detector(const DetectorConfig& config,
                                                      const DetectorInput& input) {
-  std::unique_ptr<ObjectDetector> detector = make_dense(config, input);
+  std::unique_ptr<ObjectDetector> detector = make_for_every_frame(config, input);
   if (config.every_n_frames == 1) return detector;
   return std::make_unique<SparseDetector>(std::move(detector), config.every_n_frames);
 }

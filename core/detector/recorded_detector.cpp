@@ -9,7 +9,7 @@
 namespace stillpoint {
 namespace {
 
-/// The set nearest in time, the earlier of two; null if there are none.
+/// The set nearest in time, the earlier one of a tie; null if there are none.
 const DetectionSet* nearest(std::span<const DetectionSet> sets, Timestamp t) {
   const auto later = std::lower_bound(sets.begin(), sets.end(), t,
                                       [](const DetectionSet& set, Timestamp stamp) { return set.t < stamp; });
@@ -23,24 +23,24 @@ const DetectionSet* nearest(std::span<const DetectionSet> sets, Timestamp t) {
 
 RecordedDetector::RecordedDetector(std::span<const DetectionSet> sets, double max_time_difference_s)
     : sets_(sets), max_difference_s_(max_time_difference_s) {
-  require_rising(sets, "recorded detections");
+  require_increasing(sets, "recorded detections");
 }
 
 DetectionSet RecordedDetector::detect(const Frame& frame) {
   const DetectionSet* const found = nearest(sets_, frame.t);
   const bool fits = found != nullptr && std::abs(seconds_between(found->t, frame.t)) <= max_difference_s_;
   if (!fits || found->state != DetectionState::kPresent) {
-    ++counters_.unlooked;
+    ++counters_.skipped;
     return {.t = frame.t, .state = fits ? found->state : DetectionState::kNone, .detections = {}};
   }
-  ++counters_.looked;
+  ++counters_.processed;
   return {.t = frame.t,
           .state = DetectionState::kPresent,
           .detections = usable_boxes(found->detections, frame.gray.size(), counters_)};
 }
 
 std::string RecordedDetector::description() const {
-  return "recorded, " + std::to_string(sets_.size()) + " pictures";
+  return "recorded, " + std::to_string(sets_.size()) + " frames";
 }
 
 }  // namespace stillpoint

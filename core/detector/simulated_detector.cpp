@@ -14,21 +14,21 @@
 namespace stillpoint {
 namespace {
 
-/// What random numbers are for; each purpose has its own.
-enum class Purpose : std::uint32_t { kMiss = 1, kPhase, kJitter, kFalsePositive };
+/// Independent random streams.
+enum class Stream : std::uint32_t { kMiss = 1, kPhase, kJitter, kFalsePositive };
 
-/// Numbers that depend on what is named alone. The standard fixes what a seed sequence generates, so every
-/// machine draws the same.
-class Draw {
+/// Random numbers as a function of the constructor arguments only. The C++ standard specifies the output of
+/// std::seed_seq, so that they are equal on all platforms.
+class RandomStream {
  public:
-  Draw(int seed, Purpose purpose, const std::string& object, std::int64_t count) {
-    std::vector<std::uint32_t> key = {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(purpose),
+  RandomStream(int seed, Stream stream, const std::string& object, std::int64_t count) {
+    std::vector<std::uint32_t> key = {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(stream),
                                       static_cast<std::uint32_t>(count),
                                       static_cast<std::uint32_t>(count >> 32)};
     for (const char letter : object) key.push_back(static_cast<unsigned char>(letter));
     std::seed_seq(key.begin(), key.end()).generate(words_.begin(), words_.end());
   }
-  /// In [0, 1); eight of them to a draw.
+  /// In [0, 1); at most eight calls per stream.
   double uniform() {
     STILLPOINT_CHECK(next_ + 2 <= words_.size());
     const std::uint64_t high = words_[next_], low = words_[next_ + 1];
@@ -47,7 +47,7 @@ class Draw {
   std::size_t next_ = 0;
 };
 
-Box shaken(const Box& box, double sigma_px, Draw draw) {
+Box with_jitter(const Box& box, double sigma_px, RandomStream draw) {
   Box result = box;
   for (double* const edge : {&result.x_min, &result.y_min, &result.x_max, &result.y_max}) {
     *edge += sigma_px * draw.normal();
@@ -55,12 +55,12 @@ Box shaken(const Box& box, double sigma_px, Draw draw) {
   return result;
 }
 
-/// A person somewhere in the picture, a tenth to half as wide and a fifth to nine tenths as high.
-Detection ghost(Draw& draw, cv::Size picture) {
-  const double width = draw.uniform(0.1, 0.5) * picture.width;
-  const double height = draw.uniform(0.2, 0.9) * picture.height;
-  const double x = draw.uniform(0.0, picture.width - 1 - width);
-  const double y = draw.uniform(0.0, picture.height - 1 - height);
+/// Person at a random position, with a width of 10 to 50 % and a height of 20 to 90 % of the image.
+Detection false_positive(RandomStream& draw, cv::Size image) {
+  const double width = draw.uniform(0.1, 0.5) * image.width;
+  const double height = draw.uniform(0.2, 0.9) * image.height;
+  const double x = draw.uniform(0.0, image.width - 1 - width);
+  const double y = draw.uniform(0.0, image.height - 1 - height);
   return {.class_name = "person",
           .score = 0.5,
           .box = {.x_min = x, .y_min = y, .x_max = x + width, .y_max = y + height}};
@@ -71,10 +71,10 @@ Detection ghost(Draw& draw, cv::Size picture) {
 SimulatedDetector::SimulatedDetector(std::span<const DetectionSet> truth, const DetectorConfig& config,
                                      int seed)
     : truth_(truth), config_(config.simulated), max_difference_s_(config.max_time_difference_s), seed_(seed) {
-  require_rising(truth, "true boxes");
+  require_increasing(truth, "true boxes");
 }
 
-/// The last set up to a time, with the tolerance of stamps; null before the first and after the last.
+/// The last set up to time `t` plus the timestamp tolerance; null if there is none.
 const DetectionSet* SimulatedDetector::newest_at(Timestamp t) const {
   const Timestamp end = after(t, max_difference_s_);
   const auto later = std::upper_bound(truth_.begin(), truth_.end(), end,
@@ -83,38 +83,38 @@ const DetectionSet* SimulatedDetector::newest_at(Timestamp t) const {
 }
 
 bool SimulatedDetector::is_missed(std::int64_t frame_id, const std::string& object) const {
-  Draw phase(seed_, Purpose::kPhase, object, 0);
+  RandomStream phase(seed_, Stream::kPhase, object, 0);
   const auto offset = static_cast<std::int64_t>(phase.uniform() * config_.burst_frames);
-  Draw draw(seed_, Purpose::kMiss, object, (frame_id + offset) / config_.burst_frames);
+  RandomStream draw(seed_, Stream::kMiss, object, (frame_id + offset) / config_.burst_frames);
   return draw.uniform() < config_.miss_rate;
 }
 
 DetectionSet SimulatedDetector::detect(const Frame& frame) {
   const DetectionSet* const truth = newest_at(after(frame.t, -config_.latency_s));
   if (truth == nullptr) {
-    ++counters_.unlooked;
+    ++counters_.skipped;
     return {.t = frame.t, .state = DetectionState::kLate, .detections = {}};
   }
   std::vector<Detection> found;
-  std::map<std::string, int> seen_of_class;
+  std::map<std::string, int> count_of_class;
   for (const Detection& detection : truth->detections) {
     const std::string object =
-        detection.class_name + " " + std::to_string(seen_of_class[detection.class_name]++);
+        detection.class_name + " " + std::to_string(count_of_class[detection.class_name]++);
     if (is_missed(frame.id, object)) continue;
     found.push_back(detection);
     found.back().box =
-        shaken(detection.box, config_.jitter_px, Draw(seed_, Purpose::kJitter, object, frame.id));
+        with_jitter(detection.box, config_.jitter_px, RandomStream(seed_, Stream::kJitter, object, frame.id));
   }
-  Draw draw(seed_, Purpose::kFalsePositive, "", frame.id);
-  if (draw.uniform() < config_.false_positive_rate) found.push_back(ghost(draw, frame.gray.size()));
-  ++counters_.looked;
+  RandomStream draw(seed_, Stream::kFalsePositive, "", frame.id);
+  if (draw.uniform() < config_.false_positive_rate) found.push_back(false_positive(draw, frame.gray.size()));
+  ++counters_.processed;
   return {.t = frame.t,
           .state = DetectionState::kPresent,
           .detections = usable_boxes(std::move(found), frame.gray.size(), counters_)};
 }
 
 std::string SimulatedDetector::description() const {
-  return "simulated over " + std::to_string(truth_.size()) + " pictures of true boxes";
+  return "simulated over " + std::to_string(truth_.size()) + " frames of ground truth boxes";
 }
 
 }  // namespace stillpoint

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A detector made of true boxes and known faults, to learn what each fault costs.
+/// Simulated detector: ground truth boxes with configurable errors, to measure the effect of each error.
 #pragma once
 
 #include "core/detector/object_detector.h"
 
 namespace stillpoint {
 
-/// Misses objects in bursts, shakes edges, comes late, and sees people who are not there.
+/// Simulates missed detections in bursts, jitter of the box edges, latency, and false positives.
 ///
-/// The faults of a picture depend on the seed and on the picture's number alone, so runs that skip pictures
-/// meet the same ones. A miss takes whole bursts: an object's pictures are cut into spans of
-/// `burst_frames`, and in each span it is missed altogether or not at all. An object is its class and its
-/// place among the boxes of that class in a set.
+/// The errors in a frame depend only on the seed and the frame id, so that runs that skip frames get the same
+/// errors. Misses occur in bursts: the frames are divided into spans of `burst_frames`, and an object is
+/// missed in all frames of a span or in none. Objects are identified by their class and their index among the
+/// boxes of that class in a set.
 class SimulatedDetector : public ObjectDetector {
  public:
-  /// @param truth by rising time; outlives the detector
-  /// @throws InputError if the sets are not in order
+  /// @param truth by ascending time; must outlive the detector
+  /// @throws InputError if the sets are not in temporal order
   SimulatedDetector(std::span<const DetectionSet> truth, const DetectorConfig& config, int seed);
 
   [[nodiscard]] DetectionSet detect(const Frame& frame) override;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A detector that looks at each n-th picture only.
+/// Detector that processes every n-th frame only.
 #pragma once
 
 #include "core/detector/object_detector.h"
 
 namespace stillpoint {
 
-/// Passes pictures whose number is a multiple of n on to another detector; nobody looks at the others.
+/// Forwards frames whose id is a multiple of n to another detector, and skips the others.
 class SparseDetector : public ObjectDetector {
  public:
   /// @param every_n at least 1
@@ -17,22 +17,22 @@ class SparseDetector : public ObjectDetector {
     if (frame.id % every_n_ == 0) {
       DetectionSet found = detector_->detect(frame);
       counters_ = detector_->counters();
-      counters_.unlooked += undue_;
+      counters_.skipped += skipped_;
       return found;
     }
-    ++undue_;
-    ++counters_.unlooked;
+    ++skipped_;
+    ++counters_.skipped;
     return {.t = frame.t, .state = DetectionState::kNone, .detections = {}};
   }
   [[nodiscard]] std::string description() const override {
-    return detector_->description() + ", every " + std::to_string(every_n_) + " pictures";
+    return detector_->description() + ", every " + std::to_string(every_n_) + " frames";
   }
   [[nodiscard]] const DetectorCounters& counters() const override { return counters_; }
 
  private:
   std::unique_ptr<ObjectDetector> detector_;
   int every_n_;
-  std::int64_t undue_ = 0;
+  std::int64_t skipped_ = 0;
   DetectorCounters counters_;
 };
 

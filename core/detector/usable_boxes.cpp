@@ -6,14 +6,15 @@
 
 namespace stillpoint {
 
-std::vector<Detection> usable_boxes(std::vector<Detection> detections, cv::Size picture,
+std::vector<Detection> usable_boxes(std::vector<Detection> detections, cv::Size image_size,
                                     DetectorCounters& counters) {
-  const Box whole{.x_min = 0.0, .y_min = 0.0, .x_max = picture.width - 1.0, .y_max = picture.height - 1.0};
+  const Box image{
+      .x_min = 0.0, .y_min = 0.0, .x_max = image_size.width - 1.0, .y_max = image_size.height - 1.0};
   std::vector<Detection> usable;
   for (Detection& detection : detections) {
-    const Box inside = common_part(detection.box, whole);
+    const Box inside = intersection(detection.box, image);
     if (!has_area(detection.box) || !has_area(inside)) {
-      ++counters.unusable;
+      ++counters.rejected;
       continue;
     }
     if (inside != detection.box) ++counters.clipped;
@@ -24,11 +25,11 @@ std::vector<Detection> usable_boxes(std::vector<Detection> detections, cv::Size 
   return usable;
 }
 
-void require_rising(std::span<const DetectionSet> sets, const std::string& place) {
+void require_increasing(std::span<const DetectionSet> sets, const std::string& source) {
   for (std::size_t i = 1; i < sets.size(); ++i) {
     if (sets[i].t > sets[i - 1].t) continue;
-    throw InputError(place, "set " + std::to_string(i) + " at " + std::to_string(to_seconds(sets[i].t)) +
-                                " s is not after the one before it; sort the boxes by time");
+    throw InputError(source, "set " + std::to_string(i) + " at " + std::to_string(to_seconds(sets[i].t)) +
+                                 " s is not later than the previous one; sort the boxes by time");
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Boxes as detectors hand them out: with area, inside the picture, and counted where they were not.
+/// Validation of detected boxes and detection sets.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -9,11 +9,12 @@
 
 namespace stillpoint {
 
-/// Cuts boxes at the edge of the picture and leaves out those without area in it. Counts both, and the rest.
-[[nodiscard]] std::vector<Detection> usable_boxes(std::vector<Detection> detections, cv::Size picture,
+/// Clips boxes to the image, removes those without area inside it, and updates the counters.
+[[nodiscard]] std::vector<Detection> usable_boxes(std::vector<Detection> detections, cv::Size image_size,
                                                   DetectorCounters& counters);
 
-/// @throws InputError naming `place` unless the sets are by strictly rising time
-void require_rising(std::span<const DetectionSet> sets, const std::string& place);
+/// @param source name of the sets in error messages
+/// @throws InputError if the timestamps are not strictly ascending
+void require_increasing(std::span<const DetectionSet> sets, const std::string& source);
 
 }  // namespace stillpoint

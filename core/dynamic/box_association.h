@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which detected box is which known object. Paper Sec. III-D is silent on it.
+/// Data association of detected boxes with tracked objects. Paper Sec. III-D does not specify it.
 #pragma once
 
 #include <cstddef>
@@ -12,39 +12,42 @@
 
 namespace stillpoint {
 
-/// Where a known object should be in the present picture [px].
-struct ExpectedBox {
+/// Predicted position of a tracked object in the current image [px].
+struct PredictedBox {
   std::string class_name;
-  Box predicted;  ///< moved on by its velocity
-  Box reach;      ///< the same, grown by how far it may have strayed
+  Box box;   ///< last detected box, displaced by its velocity. Eq. (5)
+  Box gate;  ///< `box`, grown by the allowed position error
 };
 
-/// Joins objects and detections of the same class one to one. Kept between pictures for its memory only.
+/// Greedy one-to-one assignment of detections to objects of the same class. Stateless between calls; an
+/// instance only recycles its buffers.
 ///
-/// First pairs by falling overlap (IoU) of the detection with the predicted box, down to `min_iou`; then what
-/// is left by rising distance of the centres, where the detection's centre lies in the object's reach. Of
-/// equals, the earlier object comes first, then the earlier detection.
+/// Stage 1 assigns by decreasing overlap (IoU) of the detection with the predicted box, down to `min_iou`.
+/// Stage 2 assigns the remainder by increasing distance between the box centers, provided that the center of
+/// the detection lies inside the gate of the object. Ties are resolved by the lower object index, then by the
+/// lower detection index.
 class BoxAssociation {
  public:
-  /// @param objects    with area
-  /// @param detections with area
+  /// @param objects    with positive area
+  /// @param detections with positive area
   /// @param min_iou    in (0, 1]
-  /// @return for each detection the index of its object, or nothing; valid until the next call
+  /// @return for each detection the index of its object, or nullopt; valid until the next call
   [[nodiscard]] const std::vector<std::optional<std::size_t>>& associate(
-      std::span<const ExpectedBox> objects, std::span<const Detection> detections, double min_iou);
+      std::span<const PredictedBox> objects, std::span<const Detection> detections, double min_iou);
 
  private:
-  struct Pair {
+  struct Candidate {
     double cost = 0.0;
     std::size_t object = 0;
     std::size_t detection = 0;
   };
 
   template <class Cost>
-  void join(std::span<const ExpectedBox> objects, std::span<const Detection> detections, const Cost& cost);
+  void assign_greedily(std::span<const PredictedBox> objects, std::span<const Detection> detections,
+                       const Cost& cost);
 
-  std::vector<Pair> pairs_;
-  std::vector<bool> taken_;  ///< objects
+  std::vector<Candidate> candidates_;
+  std::vector<bool> object_assigned_;  ///< by object index
   std::vector<std::optional<std::size_t>> object_of_;
 };
 

@@ -11,42 +11,42 @@
 namespace stillpoint {
 namespace {
 
-bool is_dynamic(const FeatureVerdict& verdict) { return verdict.verdict != Verdict::kStable; }
+bool is_dynamic(const DynamicLabel& label) { return label.label != LabelClass::kStable; }
 
-/// Whether the floor may make it stable.
-bool may_be_lifted(const FeatureVerdict& verdict) {
-  return is_dynamic(verdict) && verdict.reason != VerdictReason::kInsideMask;
+/// Whether `enforce_min_stable` may relabel it as stable.
+bool can_be_relabeled(const DynamicLabel& label) {
+  return is_dynamic(label) && label.reason != LabelReason::kInsideMask;
 }
 
-/// The floor begins with the smallest.
-auto rank_of(const FeatureVerdict& verdict) {
-  return std::tuple(!may_be_lifted(verdict),
-                    verdict.residual_px.value_or(std::numeric_limits<double>::infinity()), verdict.id);
+/// Sort key of `enforce_min_stable`, ascending.
+auto relabel_order(const DynamicLabel& label) {
+  return std::tuple(!can_be_relabeled(label),
+                    label.residual_px.value_or(std::numeric_limits<double>::infinity()), label.id);
 }
 
-/// The verdict at the beginning of a new picture, before anything in it was looked at.
-FeatureVerdict carried_over(const FeatureVerdict& before) {
+/// Initial label in a new frame, from the label in the previous one.
+DynamicLabel propagated_label(const DynamicLabel& before) {
   return {.id = before.id,
-          .verdict = before.verdict,
-          .reason = is_dynamic(before) ? VerdictReason::kHistory : VerdictReason::kNothingSuspect};
+          .label = before.label,
+          .reason = is_dynamic(before) ? LabelReason::kHistory : LabelReason::kNone};
 }
 
-/// Calls `visit(feature, residual)` where both have the same id; both ranges are by rising id.
+/// Calls `visit(feature, residual)` where both have the same id; both ranges are sorted by id.
 template <class Features, class Visit>
 void for_each_match(Features& features, std::span<const ConsistencyResidual> residuals, const Visit& visit) {
   auto feature = features.begin();
   for (const ConsistencyResidual& residual : residuals) {
-    while (feature != features.end() && feature->verdict.id < residual.id) ++feature;
+    while (feature != features.end() && feature->label.id < residual.id) ++feature;
     if (feature == features.end()) return;
-    if (feature->verdict.id == residual.id) visit(*feature, residual);
+    if (feature->label.id == residual.id) visit(*feature, residual);
   }
 }
 
-/// A residual over the threshold: motion, unless an object was named already.
-void flag(FeatureVerdict& verdict, VerdictReason reason) {
-  if (is_dynamic(verdict)) return;
-  verdict.verdict = Verdict::kDynamicMotion;
-  verdict.reason = reason;
+/// Labels a feature with a residual above the threshold; features that are already dynamic keep their label.
+void label_as_moving(DynamicLabel& label, LabelReason reason) {
+  if (is_dynamic(label)) return;
+  label.label = LabelClass::kDynamicMotion;
+  label.reason = reason;
 }
 
 }  // namespace
@@ -55,91 +55,91 @@ bool FeatureRecognition::is_inside(const TrackedFeature& feature, const DepthVie
                                    const SemanticMask& mask) const {
   const double threshold = mask.threshold_at(feature.pixel);
   if (threshold <= 0.0) return false;
-  const double meters =
-      feature.depth > 0.0 ? feature.depth : robust_depth(depth, feature.pixel, config_.depth_window_px);
-  if (meters > 0.0) return mask.covers(feature.pixel, meters);
+  const double depth_m =
+      feature.depth > 0.0 ? feature.depth : median_depth(depth, feature.pixel, config_.depth_window_px);
+  if (depth_m > 0.0) return mask.covers(feature.pixel, depth_m);
   return config_.unmeasured_is_dynamic || std::isinf(threshold);
 }
 
-const std::vector<FeatureVerdict>& FeatureRecognition::judge(const TrackedFrame& frame,
-                                                             const SemanticMask& mask) {
+const std::vector<DynamicLabel>& FeatureRecognition::classify(const TrackedFrame& frame,
+                                                              const SemanticMask& mask) {
   const DepthView depth{.pixels = frame.depth, .units_per_m = frame.depth_units_per_m};
-  present_.clear();
+  next_features_.clear();
   auto known = features_.begin();
   for (const TrackedFeature& tracked : frame.features) {
-    while (known != features_.end() && known->verdict.id < tracked.id) ++known;
-    const bool is_known = known != features_.end() && known->verdict.id == tracked.id;
-    Feature feature{.verdict = FeatureVerdict{.id = tracked.id}};
-    if (is_known) feature = {.verdict = carried_over(known->verdict), .quiet = known->quiet};
+    while (known != features_.end() && known->label.id < tracked.id) ++known;
+    const bool is_known = known != features_.end() && known->label.id == tracked.id;
+    Feature feature{.label = DynamicLabel{.id = tracked.id}};
+    if (is_known) feature = {.label = propagated_label(known->label), .static_frames = known->static_frames};
     feature.inside_mask = is_inside(tracked, depth, mask);
     if (feature.inside_mask) {
-      feature.quiet = 0;
-      feature.verdict.verdict = Verdict::kDynamicObject;
-      feature.verdict.reason = VerdictReason::kInsideMask;
+      feature.static_frames = 0;
+      feature.label.label = LabelClass::kDynamicObject;
+      feature.label.reason = LabelReason::kInsideMask;
     }
-    present_.push_back(feature);
+    next_features_.push_back(feature);
   }
-  std::swap(features_, present_);
-  list_verdicts();
-  return verdicts_;
+  std::swap(features_, next_features_);
+  collect_labels();
+  return labels_;
 }
 
-const std::vector<FeatureVerdict>& FeatureRecognition::gate(std::span<const ConsistencyResidual> residuals) {
+const std::vector<DynamicLabel>& FeatureRecognition::gate(std::span<const ConsistencyResidual> residuals) {
   for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
-    feature.verdict.residual_px = residual.mean_px;
+    feature.label.residual_px = residual.mean_px;
     if (residual.mean_px > config_.gate_threshold_px)
-      flag(feature.verdict, VerdictReason::kPredictionResidual);
+      label_as_moving(feature.label, LabelReason::kPredictionResidual);
   });
-  list_verdicts();
-  verdicts_ = apply_floor(std::move(verdicts_), config_.min_stable_features);
-  return verdicts_;
+  collect_labels();
+  labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);
+  return labels_;
 }
 
-const std::vector<FeatureVerdict>& FeatureRecognition::check(std::span<const ConsistencyResidual> residuals,
-                                                             std::span<const std::int64_t> resting) {
-  for (Feature& feature : features_) ++feature.quiet;
+const std::vector<DynamicLabel>& FeatureRecognition::check(std::span<const ConsistencyResidual> residuals,
+                                                           std::span<const std::int64_t> readmitted) {
+  for (Feature& feature : features_) ++feature.static_frames;
   for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
-    feature.verdict.residual_px = residual.mean_px;
-    if (residual.mean_px > config_.quiet_px) feature.quiet = 0;
+    feature.label.residual_px = residual.mean_px;
+    if (residual.mean_px > config_.recycle_residual_px) feature.static_frames = 0;
     if (residual.mean_px > config_.mcc_threshold_px) {
-      flag(feature.verdict, VerdictReason::kResidual);
-    } else if (residual.compared + 1 >= config_.mcc_min_observations) {
+      label_as_moving(feature.label, LabelReason::kResidual);
+    } else if (residual.pair_count + 1 >= config_.mcc_min_observations) {
       recycle(feature);
     }
   });
-  if (config_.quiet_pictures > 0) {
+  if (config_.recycle_min_frames > 0) {
     for (Feature& feature : features_) {
-      if (feature.quiet >= config_.quiet_pictures) recycle(feature);
+      if (feature.static_frames >= config_.recycle_min_frames) recycle(feature);
     }
   }
   for (Feature& feature : features_) {
-    if (std::ranges::binary_search(resting, feature.verdict.id)) recycle(feature, VerdictReason::kRested);
+    if (std::ranges::binary_search(readmitted, feature.label.id)) recycle(feature, LabelReason::kStatic);
   }
-  list_verdicts();
-  verdicts_ = apply_floor(std::move(verdicts_), config_.min_stable_features);
-  return verdicts_;
+  collect_labels();
+  labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);
+  return labels_;
 }
 
-void FeatureRecognition::recycle(Feature& feature, VerdictReason reason) {
-  if (!is_dynamic(feature.verdict) || feature.inside_mask) return;
-  feature.verdict.verdict = Verdict::kStable;
-  feature.verdict.reason = reason;
+void FeatureRecognition::recycle(Feature& feature, LabelReason reason) {
+  if (!is_dynamic(feature.label) || feature.inside_mask) return;
+  feature.label.label = LabelClass::kStable;
+  feature.label.reason = reason;
 }
 
-void FeatureRecognition::list_verdicts() {
-  verdicts_.clear();
-  for (const Feature& feature : features_) verdicts_.push_back(feature.verdict);
+void FeatureRecognition::collect_labels() {
+  labels_.clear();
+  for (const Feature& feature : features_) labels_.push_back(feature.label);
 }
 
-std::vector<FeatureVerdict> apply_floor(std::vector<FeatureVerdict> verdicts, int min_stable) {
-  const auto stable = std::ranges::count_if(verdicts, std::not_fn(is_dynamic));
+std::vector<DynamicLabel> enforce_min_stable(std::vector<DynamicLabel> labels, int min_stable) {
+  const auto stable = std::ranges::count_if(labels, std::not_fn(is_dynamic));
   for (auto missing = min_stable - stable; missing > 0; --missing) {
-    const auto candidate = std::ranges::min_element(verdicts, {}, rank_of);
-    if (candidate == verdicts.end() || !may_be_lifted(*candidate)) break;
-    candidate->verdict = Verdict::kStable;
-    candidate->reason = VerdictReason::kFloor;
+    const auto candidate = std::ranges::min_element(labels, {}, relabel_order);
+    if (candidate == labels.end() || !can_be_relabeled(*candidate)) break;
+    candidate->label = LabelClass::kStable;
+    candidate->reason = LabelReason::kMinimumKept;
   }
-  return verdicts;
+  return labels;
 }
 
 }  // namespace stillpoint

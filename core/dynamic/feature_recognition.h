@@ -1,71 +1,74 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which features lie on something that moves, remembered from picture to picture. Paper Sec. III-C, III-E.
+/// Recognition of features on dynamic objects, with a label history per feature. Paper Sec. III-C, III-E.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "core/dynamic/dynamic_config.h"
+#include "core/config/dynamic_config.h"
 #include "core/dynamic/moving_consistency.h"
 #include "core/dynamic/semantic_mask.h"
-#include "core/types/feature_verdict.h"
+#include "core/types/dynamic_label.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {
 
-/// The history of every feature that is tracked at present.
+/// Labels of all currently tracked features.
 ///
-/// A feature inside the mask is dynamic. Once flagged, by the mask or by its motion, it stays so when it
-/// leaves the mask or was only born there, until the consistency check clears it (Sec. III-C: "historical
-/// dynamic feature"; III-E: "recycled"). The mask has the last word: nothing clears a feature inside it, so
-/// a person who sits still stays out of the estimate.
+/// A feature inside the mask is dynamic. A feature labeled dynamic, by the mask or by its motion, remains
+/// dynamic after it leaves the mask until the consistency check recycles it (Sec. III-C: "historical dynamic
+/// feature"; III-E: "recycled"). A feature inside the mask is never recycled, so that a sitting person
+/// remains excluded from the estimate.
 ///
-/// Calls for each picture: `judge`, then `gate` if the prediction is checked, then `check` after the solve.
-/// Each returns the verdicts of all features of the picture, by rising id; they are valid until the next
-/// call.
+/// Call order for each frame: `classify`, `gate` if the predicted pose is checked, `check` after the solve.
+/// Each returns the labels of all features of the frame, by ascending id, valid until the next call.
 class FeatureRecognition {
  public:
   explicit FeatureRecognition(DynamicConfig config) : config_(std::move(config)) {}
 
-  /// Compares each feature's depth with the mask; features no longer tracked are forgotten.
-  [[nodiscard]] const std::vector<FeatureVerdict>& judge(const TrackedFrame& frame, const SemanticMask& mask);
+  /// Compares the depth of each feature with the mask; removes features that are no longer tracked.
+  [[nodiscard]] const std::vector<DynamicLabel>& classify(const TrackedFrame& frame,
+                                                          const SemanticMask& mask);
 
-  /// Flags features that disagree with the predicted pose; clears none, since a prediction is no proof.
-  [[nodiscard]] const std::vector<FeatureVerdict>& gate(std::span<const ConsistencyResidual> residuals);
+  /// Labels features with a residual above `gate_threshold_px` as dynamic. Recycles none: the residuals are
+  /// computed at the predicted pose.
+  [[nodiscard]] const std::vector<DynamicLabel>& gate(std::span<const ConsistencyResidual> residuals);
 
-  /// Flags features whose residual is over the threshold, and recycles flagged ones whose residual is not,
-  /// seen often enough in the window, or that were quiet for long enough. A feature without a residual is
-  /// quiet: nothing is known of its depth, and so the estimate does not use it.
-  /// @param resting ids of features that stand still by now, whatever their older observations say; rising
-  [[nodiscard]] const std::vector<FeatureVerdict>& check(std::span<const ConsistencyResidual> residuals,
-                                                         std::span<const std::int64_t> resting = {});
+  /// Labels features with a residual r_k above `mcc_threshold_px` as dynamic. Recycles dynamic features
+  ///   - with r_k at or below the threshold and at least `mcc_min_observations` observations,
+  ///   - with r_k <= `recycle_residual_px` in `recycle_min_frames` consecutive frames; a frame without a
+  ///     residual counts, since a feature without depth does not enter the estimate,
+  ///   - listed in `readmitted`.
+  /// @param readmitted ids from StaticReadmission, ascending
+  [[nodiscard]] const std::vector<DynamicLabel>& check(std::span<const ConsistencyResidual> residuals,
+                                                       std::span<const std::int64_t> readmitted = {});
 
-  /// Forgets every feature.
+  /// Removes all features.
   void reset() { features_.clear(); }
 
  private:
   struct Feature {
-    FeatureVerdict verdict;
+    DynamicLabel label;
     bool inside_mask = false;
-    int quiet = 0;  ///< pictures in a row, outside of the mask, in which nothing spoke for motion
+    int static_frames = 0;  ///< consecutive, outside the mask, with r_k <= recycle_residual_px or without r_k
   };
 
   [[nodiscard]] bool is_inside(const TrackedFeature& feature, const DepthView& depth,
                                const SemanticMask& mask) const;
-  static void recycle(Feature& feature, VerdictReason reason = VerdictReason::kRecycled);
-  void list_verdicts();
+  static void recycle(Feature& feature, LabelReason reason = LabelReason::kRecycled);
+  void collect_labels();
 
   DynamicConfig config_;
-  std::vector<Feature> features_;         ///< by rising id
-  std::vector<Feature> present_;          ///< the list that is being made, kept for its memory
-  std::vector<FeatureVerdict> verdicts_;  ///< handed out last
+  std::vector<Feature> features_;       ///< by ascending id
+  std::vector<Feature> next_features_;  ///< scratch of `classify`
+  std::vector<DynamicLabel> labels_;    ///< last result
 };
 
-/// Keeps suspicion from starving the estimate: where fewer than `min_stable` verdicts are stable, the dynamic
-/// ones outside of the mask are made stable in order of rising residual (those without one last, then by id)
-/// until there are enough. The history does not learn of it: next time they are suspect as before.
-/// @param verdicts in any order; those inside the mask (`kInsideMask`) are never touched
-[[nodiscard]] std::vector<FeatureVerdict> apply_floor(std::vector<FeatureVerdict> verdicts, int min_stable);
+/// Guarantees a minimum number of features for the estimate: if fewer than `min_stable` labels are stable,
+/// dynamic features outside the mask are relabeled stable in order of ascending residual (features without a
+/// residual last, ties by id) until there are enough. The label history is not affected.
+/// @param labels in any order; labels with reason `kInsideMask` are not changed
+[[nodiscard]] std::vector<DynamicLabel> enforce_min_stable(std::vector<DynamicLabel> labels, int min_stable);
 
 }  // namespace stillpoint

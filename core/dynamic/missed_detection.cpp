@@ -8,14 +8,16 @@ namespace stillpoint {
 const std::vector<TrackedBox>& MissedDetectionCompensation::update(const DetectionSet& set) {
   select_dynamic_classes(set);
   if (!config_.missed_detection) objects_.clear();
-  advance(set.state == DetectionState::kPresent);
+  count_frame(set.state == DetectionState::kPresent);
   boxes_.clear();
-  take_up_detections();
-  give_up_lost();
+  assign_detections();
+  remove_abandoned();
   for (const Object& object : objects_) {
-    if (object.carried() == 0) continue;
-    boxes_.push_back(
-        {.id = object.id, .class_name = object.class_name, .box = carried_box(object), .compensated = true});
+    if (object.frames_since_detection() == 0) continue;
+    boxes_.push_back({.id = object.id,
+                      .class_name = object.class_name,
+                      .box = predicted_and_grown(object),
+                      .compensated = true});
   }
   return boxes_;
 }
@@ -30,34 +32,35 @@ void MissedDetectionCompensation::select_dynamic_classes(const DetectionSet& set
   }
 }
 
-/// Counts the new picture against every object, until a detection is found for it.
-void MissedDetectionCompensation::advance(bool watched) {
-  for (Object& object : objects_) ++(watched ? object.missed : object.unwatched);
+/// Counts the new frame as missed or skipped for every object; `assign_detections` resets the counters.
+void MissedDetectionCompensation::count_frame(bool has_detections) {
+  for (Object& object : objects_) ++(has_detections ? object.missed : object.skipped);
 }
 
-Box MissedDetectionCompensation::carried_box(const Object& object) const {
-  return grown(object.predicted(), object.carried() * config_.growth_px_per_miss);
+Box MissedDetectionCompensation::predicted_and_grown(const Object& object) const {
+  return expanded(object.predicted(), object.frames_since_detection() * config_.growth_px_per_miss);
 }
 
-/// Gives each detection its object, an old one or a new one, and hands its box out. Eqs. (3)-(4).
-void MissedDetectionCompensation::take_up_detections() {
-  expected_.clear();
+/// Assigns each detection to a known or new object, and updates its box and velocity. Eqs. (3)-(4).
+void MissedDetectionCompensation::assign_detections() {
+  predictions_.clear();
   for (const Object& object : objects_) {
-    expected_.push_back({object.class_name, object.predicted(), carried_box(object)});
+    predictions_.push_back({object.class_name, object.predicted(), predicted_and_grown(object)});
   }
   const std::vector<std::optional<std::size_t>>& object_of =
-      association_.associate(expected_, detections_, config_.min_iou);
+      association_.associate(predictions_, detections_, config_.min_iou);
   for (std::size_t i = 0; i < detections_.size(); ++i) {
     const Detection& detection = detections_[i];
     std::int64_t id = next_id_;
     if (object_of[i]) {
       Object& object = objects_[*object_of[i]];
       id = object.id;
-      const Eigen::Vector2d velocity = (center_of(detection.box) - center_of(object.box)) / object.carried();
+      const Eigen::Vector2d velocity =
+          (center_of(detection.box) - center_of(object.box)) / object.frames_since_detection();
       object.velocity = 0.5 * (velocity + object.velocity);
       object.box = detection.box;
       object.missed = 0;
-      object.unwatched = 0;
+      object.skipped = 0;
     } else {
       objects_.push_back({.id = next_id_++, .class_name = detection.class_name, .box = detection.box});
     }
@@ -65,9 +68,9 @@ void MissedDetectionCompensation::take_up_detections() {
   }
 }
 
-void MissedDetectionCompensation::give_up_lost() {
+void MissedDetectionCompensation::remove_abandoned() {
   std::erase_if(objects_, [&](const Object& object) {
-    return object.missed > config_.max_missed_frames || object.unwatched > config_.max_unwatched_frames;
+    return object.missed > config_.max_missed_frames || object.skipped > config_.max_skipped_frames;
   });
 }
 

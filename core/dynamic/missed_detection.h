@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Carries boxes over the pictures in which the detector misses them. Paper Sec. III-D, Eqs. (3)-(5).
+/// Missed detection compensation: propagates boxes through frames without a detection. Paper Sec. III-D.
+///
+/// With u_c^{c_j} the center [px] of the box of the K-th object in the current frame j, and j-1 the previous
+/// frame with a detection of it:
+///
+///   Eq. (3)  v^{c_j}         = u_c^{c_j} - u_c^{c_{j-1}}      pixel velocity [px/frame]
+///   Eq. (4)  v_hat^{c_{j+1}} = 1/2 (v^{c_j} + v_hat^{c_j})    weighted velocity; initially v_hat = 0
+///   Eq. (5)  Box^{c_{j+1}}   = Box^{c_j} + v_hat^{c_{j+1}}    if the object is not detected in frame j+1
+///
+/// Box denotes the corners u_tl, u_tr, u_bl, u_br of the bounding box; Eq. (5) displaces all of them. The
+/// paper assumes adjacent frames; over a gap of n frames Eq. (3) is divided by n. Eq. (5) is applied once per
+/// frame until the object is detected again or abandoned.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,68 +18,65 @@
 #include <string>
 #include <vector>
 
+#include "core/config/dynamic_config.h"
 #include "core/dynamic/box_association.h"
-#include "core/dynamic/dynamic_config.h"
 #include "core/types/box_geometry.h"
 #include "core/types/detection.h"
 
 namespace stillpoint {
 
-/// Where an object is in the present picture.
+/// Box of an object in the current frame.
 struct TrackedBox {
-  std::int64_t id = 0;  ///< of the object, unique in a run
+  std::int64_t id = 0;  ///< object id, unique within a run
   std::string class_name;
-  Box box;                   ///< detected, or carried and grown [px]; without the mask's margin
-  bool compensated = false;  ///< not detected in this picture
+  Box box;                   ///< detected, or predicted and grown [px]; without the margin of the mask
+  bool compensated = false;  ///< predicted: not detected in this frame
 };
 
-/// The table of moving objects, one call of `update` a picture.
-///
-/// Which box is which object: see `associate`. An object's reach is its carried box, growth included.
-///
-/// Velocity is per picture: over a gap of n pictures Eq. (3) is divided by n.
+/// Tracks the boxes of dynamic objects; one call of `update` per frame. Detections are assigned to objects by
+/// BoxAssociation, with the predicted and grown box as the gate of an object.
 class MissedDetectionCompensation {
  public:
   explicit MissedDetectionCompensation(DynamicConfig config) : config_(std::move(config)) {}
 
-  /// Takes what is known of the next picture.
+  /// Processes the detections of the next frame.
   ///
-  /// Where the set is present, objects without a detection count as missed; where it is late or nobody
-  /// looked, every object is carried, and counts as unwatched. Detections of classes that are not configured
-  /// and boxes without area are passed over.
-  /// @return boxes to mask: the detected ones in order of the set, then the carried ones by age. Without
-  ///         `missed_detection` the detected ones alone. Valid until the next call.
+  /// If the set is present, each object without a detection is counted as missed; if it is late or the frame
+  /// was not processed by the detector, each object is predicted and the frame counted as skipped. Detections
+  /// of other classes than configured and boxes without area are ignored.
+  /// @return boxes to mask: detected boxes in the order of the set, then predicted ones by age. Without
+  ///         `missed_detection` detected boxes only. Valid until the next call.
   [[nodiscard]] const std::vector<TrackedBox>& update(const DetectionSet& set);
 
-  /// Forgets every object; numbers are not used again.
+  /// Removes all objects; ids are not reused.
   void reset() { objects_.clear(); }
 
  private:
   struct Object {
     std::int64_t id = 0;
     std::string class_name;
-    Box box;                                             ///< as last detected
-    Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< weighted, Eq. (4) [px per picture]
-    int missed = 0;                                      ///< pictures since that were searched in vain
-    int unwatched = 0;                                   ///< pictures since that nobody looked at
-    [[nodiscard]] int carried() const { return missed + unwatched; }
-    /// Eq. (5) once for each picture since.
-    [[nodiscard]] Box predicted() const { return moved(box, carried() * velocity); }
+    Box box;                                             ///< last detection
+    Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< v_hat of Eq. (4) [px/frame]
+    int missed = 0;   ///< frames since then in which the detector did not find it
+    int skipped = 0;  ///< frames since then without detector output
+    [[nodiscard]] int frames_since_detection() const { return missed + skipped; }
+    /// Eq. (5), applied once for each frame since the last detection.
+    [[nodiscard]] Box predicted() const { return translated(box, frames_since_detection() * velocity); }
   };
 
   void select_dynamic_classes(const DetectionSet& set);
-  void advance(bool watched);
-  [[nodiscard]] Box carried_box(const Object& object) const;
-  void take_up_detections();
-  void give_up_lost();
+  void count_frame(bool has_detections);
+  [[nodiscard]] Box predicted_and_grown(const Object& object) const;
+  void assign_detections();
+  void remove_abandoned();
 
   DynamicConfig config_;
-  std::vector<Object> objects_;  ///< by rising id
+  std::vector<Object> objects_;  ///< by ascending id
   std::int64_t next_id_ = 0;
-  // Of the newest picture, kept for their memory.
-  std::vector<Detection> detections_;  ///< of classes that may move
-  std::vector<TrackedBox> boxes_;      ///< handed out
-  std::vector<ExpectedBox> expected_;
+  // Of the newest frame; members only to reuse the memory.
+  std::vector<Detection> detections_;  ///< of the configured classes
+  std::vector<TrackedBox> boxes_;      ///< last result
+  std::vector<PredictedBox> predictions_;
   BoxAssociation association_;
 };
 

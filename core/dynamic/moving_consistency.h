@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How far each feature's positions disagree with a world that stands still. Paper Sec. III-E, Eq. (6).
+/// Reprojection residuals of features under the assumption that they are static. Paper Sec. III-E, Eq. (6).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,28 +11,29 @@
 
 namespace stillpoint {
 
-/// One feature in one picture of the window.
+/// Observation of a feature in one frame of the window.
 struct ConsistencyObservation {
-  int frame = 0;                                      ///< position in ConsistencyView::T_w_c
-  Eigen::Vector2d bearing = Eigen::Vector2d::Zero();  ///< normalised plane
+  int frame = 0;                                      ///< index into ConsistencyView::T_w_c
+  Eigen::Vector2d bearing = Eigen::Vector2d::Zero();  ///< on the normalized image plane
   double depth = 0.0;                                 ///< [m]; 0 = not measured
 };
 
 struct ConsistencyFeature {
   std::int64_t id = 0;
-  double inverse_depth = 0.0;  ///< estimated, in the frame of the first observation [1/m]; 0 = unknown
-  std::size_t first = 0;       ///< of its observations, in ConsistencyView::observations
-  std::size_t count = 0;       ///< of them, > 0
+  double inverse_depth = 0.0;  ///< estimate in the frame of the first observation [1/m]; 0 = unknown
+  std::size_t first = 0;       ///< index of its first observation in ConsistencyView::observations
+  std::size_t count = 0;       ///< number of its observations, > 0
 };
 
-/// What the check needs of the window. Features of any verdict take part.
+/// Input of the check: the poses of the window, and features of any label.
 struct ConsistencyView {
-  std::vector<Pose> T_w_c;  ///< of each picture, oldest first
-  double focal_px = 0.0;    ///< of the camera, > 0: residuals are in its pixels
+  std::vector<Pose> T_w_c;  ///< camera pose of each frame, oldest first
+  double focal_px = 0.0;    ///< focal length [px], > 0; scales the residuals
   std::vector<ConsistencyFeature> features;
-  std::vector<ConsistencyObservation> observations;  ///< feature by feature, each by rising frame
+  std::vector<ConsistencyObservation> observations;  ///< sorted by feature, then frame
 
-  [[nodiscard]] std::span<const ConsistencyObservation> seen_of(const ConsistencyFeature& feature) const {
+  [[nodiscard]] std::span<const ConsistencyObservation> observations_of(
+      const ConsistencyFeature& feature) const {
     return std::span(observations).subspan(feature.first, feature.count);
   }
 };
@@ -40,24 +41,37 @@ struct ConsistencyView {
 struct ConsistencyResidual {
   std::int64_t id = 0;
   double mean_px = 0.0;  ///< r_k
-  int compared = 0;      ///< pairs of pictures in the mean: m
+  int pair_count = 0;    ///< m: number of frame pairs (i, j) in the mean
 };
 
-/// Eq. (6): the mean, over the later observations j, of the distance between the first observation and where
-/// the feature as seen in j should have been in the first picture.
+/// Average reprojection residual of each feature k over the window. Eq. (6):
 ///
-/// The place in j is its measured depth along its bearing; where none was measured, the depth that the
-/// estimate implies there; where neither is known, the pair is left out. A point that comes out behind the
-/// camera counts with `focal_px`, the error of half a right angle.
-/// @param memory for the result: a list that nobody needs any more
-/// @return one entry for each feature with at least one pair, in the order of the features
+///   r_k = 1/m * sum_{j != i} || u_k^{c_i} - pi(T_b^c T_w^{b_i} T_{b_j}^w T_c^b P_k^{c_j}) ||
+///
+///   i          frame of the first observation of feature k in the window
+///   j          the m other frames that observe feature k
+///   u_k^{c_i}  observation of the feature in frame i, on the normalized image plane
+///   P_k^{c_j}  3-D position of the feature in camera frame j: its depth times its bearing, see below
+///   T_c^b      extrinsics, camera to body (T_b_c in the code); T_b^c is its inverse
+///   T_{b_j}^w  pose of body frame j in the world (T_w_b); T_w^{b_i} is the inverse of that of frame i
+///   pi         camera projection
+///
+/// With camera poses T_w_c = T_w_b T_b_c the chain is T_w_ci^-1 T_w_cj. The residual is evaluated on the
+/// normalized plane and multiplied by the focal length: r_k is in px. A feature with r_k over a threshold is
+/// dynamic.
+///
+/// The depth in P_k^{c_j} is the measured depth in frame j; if invalid, the depth in frame j implied by the
+/// estimated inverse depth; if both are unknown, the pair (i, j) is omitted and m decreases. A point behind
+/// camera i contributes `focal_px` (45 degrees).
+/// @param recycled a result that is no longer needed; its memory is reused
+/// @return one entry for each feature with m > 0, in the order of the features
 [[nodiscard]] std::vector<ConsistencyResidual> consistency_residuals(
-    const ConsistencyView& view, std::vector<ConsistencyResidual> memory = {});
+    const ConsistencyView& view, std::vector<ConsistencyResidual> recycled = {});
 
-/// The same for the newest picture alone, whose pose is a prediction: the mean, over the earlier observations
-/// j, of the distance between the newest observation and where the feature as seen in j should be now.
-/// Features that the newest picture does not see have no entry.
+/// Eq. (6) with the newest frame, whose pose is a prediction, in place of frame i; j are the earlier frames.
+/// Features that are not observed in the newest frame have no entry.
+/// @param recycled as above
 [[nodiscard]] std::vector<ConsistencyResidual> gate_on_prediction(
-    const ConsistencyView& view, std::vector<ConsistencyResidual> memory = {});
+    const ConsistencyView& view, std::vector<ConsistencyResidual> recycled = {});
 
 }  // namespace stillpoint

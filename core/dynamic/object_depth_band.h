@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The depths that an object in a box takes up: our finer answer to the question of Paper Sec. III-C.
+/// Depth interval of the object in a box (`dynamic.mask = "depth_band"`): an alternative to Eq. (2) of Paper
+/// Sec. III-C; not part of the paper.
 #pragma once
 
 #include <limits>
@@ -15,13 +16,21 @@ struct DepthBand {
   double far_m = std::numeric_limits<double>::infinity();
 };
 
-/// Looks for the depth that most of the box's middle has, and takes in its neighbours as far as they are well
-/// filled. One corner or one centre pixel decides nothing, what stands before the object is kept, and a box
-/// whose centre shows the wall between two legs still finds the legs.
+/// Interval around the mode of a center-weighted depth histogram.
 ///
-/// @param box      with area; may reach beyond the picture
-/// @param extent_m the object reaches at most this far to either side of its most frequent depth, > 0
-/// @return everything where nothing in the box was measured
+///   h(b)   = sum of exp(-rho_k^2 / (2 * 0.6^2)) over the samples k whose depth lies in bin b
+///   b*     = argmax_b h(b)
+///   [l, u] = largest run of bins around b* with h(b) >= 0.1 h(b*) and |b - b*| <= ceil(extent_m / 0.1 m)
+///   result = [(l - 1) * 0.1 m, (u + 2) * 0.1 m)
+///
+/// with 24 x 24 samples k on a regular grid over the box, rho_k the distance of a sample from the box center
+/// in half side lengths, and bins b of 0.1 m up to 15 m. Unlike Eq. (2) it does not depend on single corner
+/// or center pixels, keeps features in front of the object, and finds legs in a box whose center shows the
+/// wall between them.
+///
+/// @param box      with positive area; may exceed the image
+/// @param extent_m maximum extent of the object to either side of the mode [m], > 0
+/// @return [0, inf) if the box has no valid depth
 [[nodiscard]] DepthBand object_depth_band(const DepthView& depth, const Box& box, double extent_m);
 
 }  // namespace stillpoint

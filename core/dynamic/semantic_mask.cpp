@@ -11,44 +11,46 @@
 namespace stillpoint {
 namespace {
 
-BoxDepths depths_on(const Box& box, const DepthView& depth, int window_px) {
-  const auto at = [&](double u, double v) { return robust_depth(depth, {u, v}, window_px); };
+BoxDepths sample_depths(const Box& box, const DepthView& depth, int window_px) {
+  const auto depth_at = [&](double u, double v) { return median_depth(depth, {u, v}, window_px); };
   const Eigen::Vector2d center = center_of(box);
-  return {.corners = {at(box.x_min, box.y_min), at(box.x_max, box.y_min), at(box.x_min, box.y_max),
-                      at(box.x_max, box.y_max)},
-          .center = at(center.x(), center.y())};
+  return {.corners = {depth_at(box.x_min, box.y_min), depth_at(box.x_max, box.y_min),
+                      depth_at(box.x_min, box.y_max), depth_at(box.x_max, box.y_max)},
+          .center = depth_at(center.x(), center.y())};
 }
 
-/// @param box the detected one with its margin, within the picture
-DepthBand depths_of(const Box& detected, const Box& box, const DepthView& depth,
-                    const DynamicConfig& config) {
+/// @param detected without the margin
+/// @param box      with the margin, clipped to the image
+DepthBand depth_range(const Box& detected, const Box& box, const DepthView& depth,
+                      const DynamicConfig& config) {
   if (config.mask == DynamicMask::kWholeBox) return {};
   if (config.mask == DynamicMask::kDepthBand) return object_depth_band(depth, detected, config.epsilon_m);
-  return {.far_m = object_depth_threshold(depths_on(box, depth, config.depth_window_px), config.epsilon_m)};
+  return {.far_m =
+              object_depth_threshold(sample_depths(box, depth, config.depth_window_px), config.epsilon_m)};
 }
 
 }  // namespace
 
 double object_depth_threshold(const BoxDepths& depths, double epsilon_m) {
   STILLPOINT_CHECK(epsilon_m > 0.0);
-  const double background = *std::max_element(depths.corners.begin(), depths.corners.end());
-  const double object = depths.center;
-  if (object > 0.0) {
-    const bool clear_gap = background - object > epsilon_m;
-    return clear_gap ? 0.5 * (background + object) : object + epsilon_m;
+  const double d_max = *std::max_element(depths.corners.begin(), depths.corners.end());
+  const double d_c = depths.center;
+  if (d_c > 0.0) {
+    const bool before_background = d_max - d_c > epsilon_m;
+    return before_background ? 0.5 * (d_max + d_c) : d_c + epsilon_m;
   }
-  return background > 0.0 ? background : std::numeric_limits<double>::infinity();
+  return d_max > 0.0 ? d_max : std::numeric_limits<double>::infinity();
 }
 
 void SemanticMask::assign(std::span<const Box> boxes, const DepthView& depth, cv::Size size,
                           const DynamicConfig& config) {
   boxes_.clear();
   if (config.mask == DynamicMask::kOff) return;
-  const Box picture{.x_min = 0.0, .y_min = 0.0, .x_max = size.width - 1.0, .y_max = size.height - 1.0};
+  const Box image{.x_min = 0.0, .y_min = 0.0, .x_max = size.width - 1.0, .y_max = size.height - 1.0};
   for (const Box& detected : boxes) {
-    const Box box = common_part(grown(detected, config.box_margin_px), picture);
+    const Box box = intersection(expanded(detected, config.box_margin_px), image);
     if (!has_area(detected) || !has_area(box)) continue;
-    const DepthBand band = depths_of(detected, box, depth, config);
+    const DepthBand band = depth_range(detected, box, depth, config);
     boxes_.push_back({.box = box, .threshold_m = band.far_m, .near_m = band.near_m});
   }
 }

@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Depth-aware masks for detected objects. Paper Sec. III-C, Eqs. (1)-(2).
+/// Segmentation-like masks from boxes and depth. Paper Sec. III-C, Eqs. (1)-(2).
+///
+/// A feature at pixel u with depth d is dynamic if u lies in the box of an object and d < d_bar, Eq. (2).
+///
+/// `dynamic.mask` selects how the depth range of an object is computed:
+///   "depth_threshold"  Eq. (2), the default of DynamicConfig: bench/configs/dynamic_vins.toml and
+///                      dynamic_vins_vo.toml
+///   "depth_band"       object_depth_band.h, not in the paper: bench/configs/stillpoint.toml (the default
+///                      configuration of the program) and the overlay ablations/depth_band.toml
+///   "whole_box"        d_bar = +inf: the overlay ablations/wo_seg_like_mask.toml
+///   "off"              no mask: baselines/vins_rgbd.toml and baselines/vins_mono.toml
+/// All other files in bench/configs/ are overlays that do not change the mask.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,53 +18,66 @@
 #include <span>
 #include <vector>
 
+#include "core/config/dynamic_config.h"
 #include "core/dynamic/depth_view.h"
-#include "core/dynamic/dynamic_config.h"
 #include "core/types/detection.h"
 
 namespace stillpoint {
 
-/// Depths sampled on one detection box [m]; 0 means "not measured".
+/// Depths sampled on one detection box [m]; 0 = invalid.
 struct BoxDepths {
-  std::array<double, 4> corners{};  ///< top-left, top-right, bottom-left, bottom-right
-  double center = 0.0;
+  std::array<double, 4> corners{};  ///< d_tl, d_tr, d_bl, d_br: top left, top right, bottom left and right
+  double center = 0.0;              ///< d_c
 };
 
-/// Depth below which a feature inside the box belongs to the object [m].
+/// Depth threshold d_bar of the K-th box; a feature inside the box with d < d_bar belongs to the object.
+///
+/// Eq. (1), the largest background depth:
+///
+///   d_max = max(d_tl, d_tr, d_bl, d_br)
+///
+/// Eq. (2):
+///
+///           | (d_max + d_c) / 2   if d_max - d_c >  epsilon and d_c > 0   clear gap to the background
+///   d_bar = | d_c + epsilon       if d_max - d_c <= epsilon and d_c > 0   object close to it or occluded
+///           | d_max               if d_max > 0 and d_c = 0                center not measured
+///           | +inf                otherwise                               nothing measured: whole box
+///
+/// with d_tl, d_tr, d_bl, d_br the depths at the corners of the box and d_c the depth at its center [m]; a
+/// depth of 0 means "not measured". epsilon is a predefined distance [m]: the typical depth extent of a
+/// dynamic object. The paper writes `<` in the second case, which would send d_max - d_c = epsilon to +inf. A
+/// valid center with invalid corners (d_max = 0) is the second case.
 ///
 /// @param depths    samples on the box, each finite and >= 0
-/// @param epsilon_m typical depth extent of a dynamic object [m], > 0
-/// @return threshold in (0, +inf]; +inf when nothing was measured
-///
-/// Read to the letter, Eq. (2) sends `d_max - d_c == epsilon` to +inf; here it falls to the second case. A
-/// measured centre before unmeasured corners (d_max = 0) satisfies the second case as it stands.
+/// @param epsilon_m epsilon, > 0
+/// @return d_bar in (0, +inf]
 [[nodiscard]] double object_depth_threshold(const BoxDepths& depths, double epsilon_m);
 
-/// The boxes of one picture, each with its depth threshold: the paper's mask picture, never drawn.
+/// Boxes of one frame, each with its depth range. Equivalent to the mask image of the paper, without
+/// rasterizing it.
 class SemanticMask {
  public:
   struct MaskedBox {
-    Box box;                   ///< margin included, ends at the picture's edges
-    double threshold_m = 0.0;  ///< nearer features belong to the object; in (0, +inf]
-    double near_m = 0.0;       ///< but not those nearer than this: they stand before it
+    Box box;                   ///< including the margin, clipped to the image
+    double threshold_m = 0.0;  ///< d_bar: upper end of the depth range of the object, exclusive; in (0, +inf]
+    double near_m = 0.0;       ///< lower end, inclusive; 0 except with "depth_band"
   };
 
-  /// The mask without objects.
+  /// An empty mask.
   SemanticMask() = default;
 
-  /// Takes up boxes with the margin of `config`; those without area in the picture are left out.
-  /// @param depth picture of the size `size`; empty = nothing measured
+  /// Adds the margin of `config` to each box; ignores boxes that do not overlap the image.
+  /// @param depth image of the size `size`; empty = no valid depth
   SemanticMask(std::span<const Box> boxes, const DepthView& depth, cv::Size size,
                const DynamicConfig& config) {
     assign(boxes, depth, size, config);
   }
 
-  /// The same as constructing anew, in the memory that is there.
+  /// Same as the constructor; reuses the allocated memory.
   void assign(std::span<const Box> boxes, const DepthView& depth, cv::Size size, const DynamicConfig& config);
-  /// Forgets every box.
   void clear() { boxes_.clear(); }
 
-  /// Threshold at a pixel [m]; the largest where boxes overlap; 0 = no object.
+  /// d_bar at a pixel [m]; the maximum where boxes overlap; 0 = no object.
   [[nodiscard]] double threshold_at(const Eigen::Vector2d& pixel) const;
 
   /// Whether a point at this pixel and depth belongs to an object.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Depth of a feature from the registered depth picture.
+/// Depth of a feature from the registered depth image.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,11 +7,12 @@
 
 namespace stillpoint {
 
-/// Depth at the nearest pixel [m], if the measured depths in the 3x3 pixels around it spread by no more than
-/// `max_spread` of it; 0 otherwise, when not measured, or outside the picture. On the edge of an object a
-/// corner in the colour picture may carry the depth of what lies before or behind it. The paper is silent.
-/// @param depth      CV_16UC1; may be empty: not measured
-/// @param max_spread (largest - smallest) / own depth; 0 = no check
+/// Depth d at the nearest pixel [m], or 0 if it was not measured, lies outside the image, or lies on a depth
+/// discontinuity: (d_max - d_min) / d > `max_spread`, with d_min and d_max over the measured depths of the
+/// 3x3 neighborhood. At an object boundary a corner of the color image may get the depth of the foreground
+/// or of the background. Not specified by the paper.
+/// @param depth      CV_16UC1; empty = not measured
+/// @param max_spread 0 = no check
 [[nodiscard]] double sample_depth(const cv::Mat& depth, double depth_units_per_m,
                                   const Eigen::Vector2d& pixel, double max_spread);
 

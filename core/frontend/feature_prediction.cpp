@@ -7,7 +7,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kMinCosine = 0.1;  // rays further than 84 degrees from the axis are not projected
+constexpr double kMinCosine = 0.1;  // rays more than 84 degrees off the optical axis are not projected
 
 cv::Point2f to_point(const Eigen::Vector2d& pixel) {
   return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
@@ -24,9 +24,9 @@ TrackerPrediction usable_prediction(TrackerPrediction wanted, const MotionPrior&
 
 std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks, const MotionPrior& prior,
                                         TrackerPrediction kind, const Camera& camera,
-                                        std::vector<cv::Point2f> memory) {
+                                        std::vector<cv::Point2f> recycled) {
   const Eigen::Matrix3d R_ccur_cprev = prior.T_ccur_cprev.R();
-  std::vector<cv::Point2f> pixels = std::move(memory);
+  std::vector<cv::Point2f> pixels = std::move(recycled);
   pixels.clear();
   for (const Track& track : tracks) {
     Eigen::Vector2d pixel = track.feature.pixel;

@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where features should appear in the next picture, by what the IMU says of the motion. Paper Sec. III-A.
+/// Prediction of feature positions in the next frame from the IMU. Paper Sec. III-A.
 #pragma once
 
 #include <opencv2/core/types.hpp>
 #include <span>
 #include <vector>
 
-#include "core/frontend/frontend_config.h"
+#include "core/config/frontend_config.h"
 #include "core/frontend/track.h"
 #include "core/geometry/camera.h"
 #include "core/types/motion_prior.h"
 
 namespace stillpoint {
 
-/// The part of `wanted` that the prior can carry: full falls to rotation without a valid translation, both to
-/// none without a valid rotation. A prior with numbers that are not finite is not valid.
+/// Most complete prediction up to `wanted` that the prior supports: kFull falls back to kRotation without a
+/// valid translation, and both to kNone without a valid rotation. Non-finite values make a prior invalid.
 [[nodiscard]] TrackerPrediction usable_prediction(TrackerPrediction wanted, const MotionPrior& prior);
 
-/// Predicted pixel of each track, distortion included; its present pixel where nothing can be said.
-/// With kFull a track moves by rotation and translation at its known depth, and by rotation alone without
-/// one; the paper speaks of preintegration without saying which, the published code rotates only.
-/// @param kind   what `usable_prediction` returned
-/// @param memory for the result
+/// Predicted pixel of each track, the initial guess of KLT in the current frame:
+///   kFull:     u_cur = proj(R_ccur_cprev m + t_ccur_cprev / d)
+///   kRotation: u_cur = proj(R_ccur_cprev m), also used by kFull for tracks without known depth
+///   kNone:     u_cur = u_prev
+/// where m = (x, y, 1) are the normalized coordinates of the track in the previous frame, d is its depth [m],
+/// and proj is `Camera::project`, including distortion. Tracks that would leave the field of view stay at
+/// u_prev. The paper does not state whether translation is used; the published code rotates only.
+/// @param kind     as returned by `usable_prediction`
+/// @param recycled buffer reused for the result
 [[nodiscard]] std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks, const MotionPrior& prior,
                                                       TrackerPrediction kind, const Camera& camera,
-                                                      std::vector<cv::Point2f> memory = {});
+                                                      std::vector<cv::Point2f> recycled = {});
 
 }  // namespace stillpoint

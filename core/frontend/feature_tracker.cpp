@@ -9,38 +9,38 @@
 
 #include "core/base/error.h"
 #include "core/frontend/depth_sampling.h"
-#include "core/frontend/feature_detector.h"
-#include "core/frontend/feature_mask.h"
+#include "core/frontend/detect/feature_detector.h"
+#include "core/frontend/detect/feature_mask.h"
 #include "core/frontend/feature_prediction.h"
-#include "core/frontend/outlier_rejection.h"
-#include "core/frontend/point_follower.h"
+#include "core/frontend/outliers/outlier_rejection.h"
+#include "core/frontend/point_tracker.h"
 #include "core/frontend/track.h"
 
 namespace stillpoint {
 namespace {
 
-constexpr double kClaheClip = 3.0;  // as VINS-Mono has it
+constexpr double kClaheClip = 3.0;  // as in VINS-Mono
 const cv::Size kClaheTiles(8, 8);
 
-using MovingIds = std::span<const std::int64_t>;
+using DynamicIds = std::span<const std::int64_t>;
 
 std::string size_text(const cv::Size& size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
 void check_frame(const Frame& frame, const Camera& camera) {
-  const std::string place = "frame " + std::to_string(frame.id);
+  const std::string location = "frame " + std::to_string(frame.id);
   const cv::Size expected(camera.width, camera.height);
   if (frame.gray.type() != CV_8UC1 || frame.gray.size() != expected) {
-    throw InputError(place, "gray picture is " + size_text(frame.gray.size()) + " " +
-                                cv::typeToString(frame.gray.type()) + ", the camera gives " +
-                                size_text(expected) + " CV_8UC1; check the calibration");
+    throw InputError(location, "gray image is " + size_text(frame.gray.size()) + " " +
+                                   cv::typeToString(frame.gray.type()) + ", expected " + size_text(expected) +
+                                   " CV_8UC1; check the calibration");
   }
   if (frame.depth.empty()) return;
   if (frame.depth.type() != CV_16UC1 || frame.depth.size() != expected) {
-    throw InputError(place, "depth picture is " + size_text(frame.depth.size()) + " " +
-                                cv::typeToString(frame.depth.type()) + ", not " + size_text(expected) +
-                                " CV_16UC1; register it to the colour picture");
+    throw InputError(location, "depth image is " + size_text(frame.depth.size()) + " " +
+                                   cv::typeToString(frame.depth.type()) + ", expected " +
+                                   size_text(expected) + " CV_16UC1; register it to the color image");
   }
 }
 
@@ -48,8 +48,8 @@ Eigen::Vector2d to_vector(const cv::Point2f& point) {
   return {static_cast<double>(point.x), static_cast<double>(point.y)};
 }
 
-std::vector<cv::Point2f> pixels_of(const std::vector<Track>& tracks, std::vector<cv::Point2f> memory) {
-  std::vector<cv::Point2f> pixels = std::move(memory);
+std::vector<cv::Point2f> pixels_of(const std::vector<Track>& tracks, std::vector<cv::Point2f> recycled) {
+  std::vector<cv::Point2f> pixels = std::move(recycled);
   pixels.clear();
   for (const Track& track : tracks) {
     pixels.emplace_back(static_cast<float>(track.feature.pixel.x()),
@@ -60,22 +60,22 @@ std::vector<cv::Point2f> pixels_of(const std::vector<Track>& tracks, std::vector
 
 }  // namespace
 
-/// Tracks are in order of their id, so also from the oldest to the youngest.
+/// Tracks are sorted by id, and therefore from the oldest to the newest.
 struct FeatureTracker::State {
   State(const FrontendConfig& frontend_config, const Camera& frontend_camera)
       : config(frontend_config), camera(frontend_camera), detector(make_feature_detector(frontend_config)) {
     if (config.equalize) equalizer = cv::createCLAHE(kClaheClip, kClaheTiles);
   }
 
-  void advance(const Frame& frame, const MotionPrior& prior, bool detect, MovingIds moving);
-  void follow_tracks(const MotionPrior& prior, double interval_s);
-  void match(TrackerPrediction kind);
-  void accept(double interval_s);
-  void reject_outliers(MovingIds moving);
+  void advance(const Frame& frame, const MotionPrior& prior, bool detect, DynamicIds dynamic_ids);
+  void track_features(const MotionPrior& prior, double interval_s);
+  void match_features(TrackerPrediction kind);
+  void update_tracks(double interval_s);
+  void reject_outliers(DynamicIds dynamic_ids);
   void apply_mask();
-  void find_new(const cv::Mat& gray);
+  void detect_features(const cv::Mat& gray);
   void measure_depth(const Frame& frame);
-  void remember_references();
+  void update_references();
 
   FrontendConfig config;
   Camera camera;
@@ -86,29 +86,29 @@ struct FeatureTracker::State {
   ImagePyramid current;
   Timestamp current_t;
   std::vector<Track> tracks;
-  // Where features were lost since the last detection: the predicted pixel where KLT failed, the present one
-  // where the motion did not fit. The paper's "failed to be tracked" may not mean the latter, the published
-  // code leaves them out; with them, features on movers are not born again at every detection.
+  // Pixels of features lost since the last detection: the predicted pixel of a KLT failure, the current pixel
+  // of a RANSAC outlier. The published code omits the outliers and the paper's "failed to be tracked" may
+  // not include them; with them, features on dynamic objects are not redetected at every detection.
   std::vector<cv::Point2f> unstable;
   FeatureMask mask;
-  OutlierSearch outliers;
+  OutlierRejector outlier_rejector;
   std::int64_t next_id = 0;
 
-  // Memory of what one step hands to the next.
+  // Buffers reused between calls.
   std::vector<cv::Point2f> pixels;
   std::vector<cv::Point2f> predicted;
-  KltResult matches;
-  KltResult back;
-  std::vector<Match> pairs;
+  KltResult forward;
+  KltResult backward;
+  std::vector<Match> correspondences;
 
-  // Of the present picture.
+  // Statistics of the current frame.
   int lost = 0;
   int detected = 0;
   ModuleTimings timings;
 };
 
 void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior, bool detect,
-                                    MovingIds moving) {
+                                    DynamicIds dynamic_ids) {
   lost = 0;
   detected = 0;
   if (equalizer) equalizer->apply(frame.gray, equalized);
@@ -117,43 +117,45 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
     const ScopedTimer timer(timings, Module::kFeatureTracking);
     std::swap(previous, current);
     rebuild_pyramid(config, gray, current);
-    if (!tracks.empty()) follow_tracks(prior, seconds_between(current_t, frame.t));
+    if (!tracks.empty()) track_features(prior, seconds_between(current_t, frame.t));
     current_t = frame.t;
   }
   if (detect) {
-    reject_outliers(moving);
+    reject_outliers(dynamic_ids);
     apply_mask();
-    find_new(gray);
+    detect_features(gray);
   }
   measure_depth(frame);
-  if (detect) remember_references();
+  if (detect) update_references();
 }
 
-void FeatureTracker::State::follow_tracks(const MotionPrior& prior, double interval_s) {
+void FeatureTracker::State::track_features(const MotionPrior& prior, double interval_s) {
   const TrackerPrediction kind = usable_prediction(config.prediction, prior);
   predicted = predict_pixels(tracks, prior, kind, camera, std::move(predicted));
-  match(kind);
-  accept(interval_s);
+  match_features(kind);
+  update_tracks(interval_s);
 }
 
-void FeatureTracker::State::match(TrackerPrediction kind) {
+void FeatureTracker::State::match_features(TrackerPrediction kind) {
   const bool predicts = kind != TrackerPrediction::kNone;
   const int levels = predicts ? config.pyramid_levels : config.unpredicted_pyramid_levels;
   pixels = pixels_of(tracks, std::move(pixels));
-  matches = follow(config, previous, current, {.points = pixels, .starts = predicted, .levels = levels},
-                   std::move(matches));
+  forward =
+      track_points(config, previous, current,
+                   {.points = pixels, .initial_guesses = predicted, .levels = levels}, std::move(forward));
   if (!config.forward_backward) return;
-  back = follow(config, current, previous, {.points = matches.pixels, .starts = pixels, .levels = 1},
-                std::move(back));
-  matches = keep_returning(pixels, std::move(matches), back, config.forward_backward_px);
+  backward =
+      track_points(config, current, previous,
+                   {.points = forward.pixels, .initial_guesses = pixels, .levels = 1}, std::move(backward));
+  forward = forward_backward_check(pixels, std::move(forward), backward, config.forward_backward_px);
 }
 
-void FeatureTracker::State::accept(double interval_s) {
+void FeatureTracker::State::update_tracks(double interval_s) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const Eigen::Vector2d pixel = to_vector(matches.pixels[i]);
+    const Eigen::Vector2d pixel = to_vector(forward.pixels[i]);
     const bool inside = pixel.allFinite() && camera.contains(pixel, config.border_px);
-    if (matches.found[i] != 0 && inside) {
+    if (forward.found[i] != 0 && inside) {
       Track& track = tracks[kept++];
       track = tracks[i];
       TrackedFeature& feature = track.feature;
@@ -171,26 +173,27 @@ void FeatureTracker::State::accept(double interval_s) {
   tracks.resize(kept);
 }
 
-void FeatureTracker::State::reject_outliers(MovingIds moving) {
+void FeatureTracker::State::reject_outliers(DynamicIds dynamic_ids) {
   const ScopedTimer timer(timings, Module::kOutlierRejection);
-  const auto is_spared = [&](const Track& track) {
-    return config.reject_among_still && std::ranges::binary_search(moving, track.feature.id);
+  const auto is_exempt = [&](const Track& track) {
+    return config.reject_static_only && std::ranges::binary_search(dynamic_ids, track.feature.id);
   };
   pixels = pixels_of(tracks, std::move(pixels));
-  pairs.clear();
+  correspondences.clear();
   for (const Track& track : tracks) {
-    if (is_spared(track)) continue;
-    pairs.push_back({track.reference_bearing, track.reference_depth, track.feature.bearing});
+    if (is_exempt(track)) continue;
+    correspondences.push_back({track.reference_bearing, track.reference_depth, track.feature.bearing});
   }
-  const Inliers& inliers = outliers.find(pairs, {.model = config.outlier_model,
-                                                 .threshold_px = config.ransac_threshold_px,
-                                                 .confidence = config.ransac_confidence,
-                                                 .min_inlier_share = config.ransac_min_inlier_share,
-                                                 .focal_px = camera.focal_px()});
+  const InlierMask& inliers =
+      outlier_rejector.find(correspondences, {.model = config.outlier_model,
+                                              .threshold_px = config.ransac_threshold_px,
+                                              .confidence = config.ransac_confidence,
+                                              .min_inlier_ratio = config.ransac_min_inlier_ratio,
+                                              .focal_px = camera.focal_px()});
   auto inlier = inliers.begin();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (is_spared(tracks[i]) || *inlier++ != 0) {
+    if (is_exempt(tracks[i]) || *inlier++ != 0) {
       tracks[kept++] = tracks[i];
     } else {
       unstable.push_back(pixels[i]);
@@ -207,15 +210,15 @@ void FeatureTracker::State::apply_mask() {
     pixels = pixels_of(tracks, std::move(pixels));
     std::size_t kept = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
-      if (mask.claim(pixels[i], config.min_distance_px)) tracks[kept++] = tracks[i];
+      if (mask.try_occupy(pixels[i], config.min_distance_px)) tracks[kept++] = tracks[i];
     }
     tracks.resize(kept);
-    for (const cv::Point2f& pixel : unstable) mask.take_circle(pixel, config.unstable_radius_px);
+    for (const cv::Point2f& pixel : unstable) mask.occupy_circle(pixel, config.unstable_radius_px);
   }
   unstable.clear();
 }
 
-void FeatureTracker::State::find_new(const cv::Mat& gray) {
+void FeatureTracker::State::detect_features(const cv::Mat& gray) {
   const ScopedTimer timer(timings, Module::kFeatureDetection);
   pixels = pixels_of(tracks, std::move(pixels));
   const std::vector<cv::Point2f>& corners =
@@ -242,7 +245,7 @@ void FeatureTracker::State::measure_depth(const Frame& frame) {
   }
 }
 
-void FeatureTracker::State::remember_references() {
+void FeatureTracker::State::update_references() {
   for (Track& track : tracks) {
     track.reference_bearing = track.feature.bearing;
     track.reference_depth = track.feature.depth;
@@ -255,14 +258,14 @@ FeatureTracker::FeatureTracker(const FrontendConfig& config, const Camera& camer
 FeatureTracker::~FeatureTracker() = default;
 
 TrackedFrame FeatureTracker::track(const Frame& frame, const MotionPrior& prior, bool detect,
-                                   std::span<const std::int64_t> moving, TrackedFrame memory) {
+                                   std::span<const std::int64_t> dynamic_ids, TrackedFrame recycled) {
   check_frame(frame, state_->camera);
-  TrackedFrame result = std::move(memory);
+  TrackedFrame result = std::move(recycled);
   state_->timings = std::move(result.timings);
   state_->timings.clear();
   {
     const ScopedTimer timer(state_->timings, Module::kTrackingThread);
-    state_->advance(frame, prior, detect, moving);
+    state_->advance(frame, prior, detect, dynamic_ids);
   }
   result.id = frame.id;
   result.t = frame.t;

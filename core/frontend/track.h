@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the tracker remembers of one feature between two pictures.
+/// State of one feature track between two frames.
 #pragma once
 
 #include "core/types/tracked_frame.h"
@@ -7,13 +7,12 @@
 namespace stillpoint {
 
 struct Track {
-  TrackedFeature feature;    ///< as the last picture saw it
-  double known_depth = 0.0;  ///< last depth ever measured [m]; 0 = never
-  /// Where it was at the last detection: outliers are looked for against that instead of the last picture,
-  /// which leaves no interval unchecked when pictures without detection lie between, and gives a longer
-  /// baseline.
+  TrackedFeature feature;    ///< observation in the last frame
+  double known_depth = 0.0;  ///< last measured depth [m]; 0 = never measured
+  /// Observation at the last detection. Outlier rejection compares with it instead of with the last frame, so
+  /// that frames without detection leave no interval unchecked; the baseline is longer, too.
   Eigen::Vector2d reference_bearing = Eigen::Vector2d::Zero();
-  double reference_depth = 0.0;  ///< [m] at that time; 0 = not measured
+  double reference_depth = 0.0;  ///< depth at the last detection [m]; 0 = not measured
 };
 
 }  // namespace stillpoint

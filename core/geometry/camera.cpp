@@ -9,7 +9,7 @@ namespace stillpoint {
 namespace {
 
 constexpr int kMaxNewtonSteps = 20;
-constexpr double kNewtonTolerance = 1e-10;  // [normalised plane]
+constexpr double kNewtonTolerance = 1e-10;  // [normalized plane]
 
 struct Distorted {
   Eigen::Vector2d point;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Central cameras: pinhole with radial-tangential distortion (Brown 1966), and Kannala-Brandt (2006)
-/// fisheye.
+/// Central camera models: pinhole with radial-tangential distortion (Brown 1966) and Kannala-Brandt (2006).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +15,15 @@ constexpr auto enum_names(CameraModel) {
                                     {CameraModel::kKannalaBrandt, "kannala-brandt"}}};
 }
 
-/// Intrinsics [px]. Distortion: k1 k2 p1 p2 k3 for radial-tangential, k1 k2 k3 k4 for Kannala-Brandt; zeros =
-/// none.
+/// Intrinsics [px] and distortion coefficients; all zero = no distortion.
+///
+/// With the normalized coordinates (x, y) of a point and r^2 = x^2 + y^2, the pixel is
+/// u = fx x_d + cx, v = fy y_d + cy, where
+/// radial-tangential (k1 k2 p1 p2 k3):
+///   x_d = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2)
+///   y_d = y (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 y^2) + 2 p2 x y
+/// Kannala-Brandt (k1 k2 k3 k4), with theta = atan(r):
+///   (x_d, y_d) = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8) / r * (x, y)
 struct Camera {
   int width = 0;
   int height = 0;
@@ -28,17 +34,16 @@ struct Camera {
   CameraModel model = CameraModel::kRadialTangential;
   std::array<double, 5> distortion{};
 
-  /// Mean focal length: thresholds in pixels are divided by it to reach the normalised plane.
+  /// Mean focal length; converts thresholds in pixels to the normalized plane.
   [[nodiscard]] double focal_px() const { return 0.5 * (fx + fy); }
 
-  /// Pixel of the point `p_c` in camera coordinates, p_c.z() > 0. Pixel centres are at whole numbers.
+  /// Pixel of the point `p_c` in camera coordinates, p_c.z() > 0. Pixel centers have integer coordinates.
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_c) const;
 
-  /// Undistorted normalised coordinates (x, y) of a pixel: the bearing is (x, y, 1). By Newton steps, to
-  /// 1e-10.
+  /// Undistorted normalized coordinates (x, y) of a pixel; the ray is (x, y, 1). Newton's method, to 1e-10.
   [[nodiscard]] Eigen::Vector2d unproject(const Eigen::Vector2d& pixel) const;
 
-  /// Whether the pixel lies in the picture, `border` px away from its edge.
+  /// Whether the pixel is inside the image, at least `border` px from its edge.
   [[nodiscard]] bool contains(const Eigen::Vector2d& pixel, double border = 0.0) const {
     return pixel.x() >= border && pixel.y() >= border && pixel.x() <= width - 1 - border &&
            pixel.y() <= height - 1 - border;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Rigid transforms. A `Pose T_a_b` takes coordinates in frame b to frame a; adjacent letters must match.
+/// Rigid transforms. `Pose T_a_b` maps coordinates from frame b to frame a: p_a = T_a_b * p_b.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace stillpoint {
 
-/// Rotation and translation [m]; `q` is kept of unit length by whoever writes it.
+/// Rotation and translation [m]; code that sets `q` must keep it normalized.
 struct Pose {
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -30,18 +30,17 @@ struct Pose {
   }
 };
 
-/// T_a_c from T_a_b and T_b_c.
+/// Composition: T_a_c = T_a_b * T_b_c.
 [[nodiscard]] inline Pose operator*(const Pose& T_a_b, const Pose& T_b_c) {
   return Pose{(T_a_b.q * T_b_c.q).normalized(), T_a_b.q * T_b_c.p + T_a_b.p};
 }
 
-/// A point's coordinates in a from those in b.
+/// Transforms a point: p_a = R_a_b p_b + t_a_b.
 [[nodiscard]] inline Eigen::Vector3d operator*(const Pose& T_a_b, const Eigen::Vector3d& p_b) {
   return T_a_b.q * p_b + T_a_b.p;
 }
 
-/// The pose a share `s` in [0, 1] of the way from `a` to `b`: slerp of the rotation, straight line of the
-/// position.
+/// Pose between `a` (s = 0) and `b` (s = 1): slerp of the rotation, linear interpolation of the position.
 [[nodiscard]] inline Pose interpolate(const Pose& a, const Pose& b, double s) {
   return Pose{a.q.slerp(s, b.q), (1.0 - s) * a.p + s * b.p};
 }

@@ -6,7 +6,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kSmallAngle = 1e-5;  // [rad]; below it the series are exact to machine precision
+constexpr double kSmallAngle = 1e-5;  // [rad]; below it the Taylor series are exact to machine precision
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Eigen::Quaterniond exp_so3(const Eigen::Vector3d& theta) {
 }
 
 Eigen::Vector3d log_so3(const Eigen::Quaterniond& q) {
-  const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and -q are one rotation; take the shorter way
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and -q are the same rotation; use the shorter one
   const double sine = q.vec().norm();
   if (sine < kSmallAngle) return 2.0 * sign * (1.0 + sine * sine / 6.0) * q.vec();
   return sign * (2.0 * std::atan2(sine, sign * q.w()) / sine) * q.vec();

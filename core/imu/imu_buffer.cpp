@@ -8,16 +8,15 @@ namespace {
 
 bool earlier(const ImuSample& sample, Timestamp t) { return sample.t < t; }
 
-/// Sample at `t` on the straight line from `before` to `behind`; before.t <= t <= behind.t, before.t <
-/// behind.t.
+/// Linear interpolation at `t`; requires before.t <= t <= behind.t and before.t < behind.t.
 ImuSample interpolate_at(const ImuSample& before, const ImuSample& behind, Timestamp t) {
-  const double share = seconds_between(before.t, t) / seconds_between(before.t, behind.t);
+  const double fraction = seconds_between(before.t, t) / seconds_between(before.t, behind.t);
   return {.t = t,
-          .gyro_b = (1.0 - share) * before.gyro_b + share * behind.gyro_b,
-          .accel_b = (1.0 - share) * before.accel_b + share * behind.accel_b};
+          .gyro_b = (1.0 - fraction) * before.gyro_b + fraction * behind.gyro_b,
+          .accel_b = (1.0 - fraction) * before.accel_b + fraction * behind.accel_b};
 }
 
-ImuSample held_at(const ImuSample& sample, Timestamp t) {
+ImuSample zero_order_hold(const ImuSample& sample, Timestamp t) {
   return {.t = t, .gyro_b = sample.gyro_b, .accel_b = sample.accel_b};
 }
 
@@ -33,19 +32,19 @@ void ImuBuffer::add(const ImuSample& sample) {
   }
 }
 
-void ImuBuffer::forget_before(Timestamp t) {
-  std::size_t spent = 0;
-  while (spent + 1 < samples_.size() && samples_[spent + 1].t <= t) ++spent;
-  samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(spent));
+void ImuBuffer::drop_before(Timestamp t) {
+  std::size_t expired = 0;
+  while (expired + 1 < samples_.size() && samples_[expired + 1].t <= t) ++expired;
+  samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(expired));
 }
 
 const std::vector<ImuSample>& ImuBuffer::samples_between(Timestamp begin, Timestamp end) {
-  cut_.clear();
-  cut_between(begin, end);
-  return cut_;
+  interval_.clear();
+  extract_interval(begin, end);
+  return interval_;
 }
 
-void ImuBuffer::cut_between(Timestamp begin, Timestamp end) {
+void ImuBuffer::extract_interval(Timestamp begin, Timestamp end) {
   if (samples_.empty() || begin >= end) return;
   if (samples_.front().t > begin || samples_.back().t < end) return;
 
@@ -58,31 +57,32 @@ void ImuBuffer::cut_between(Timestamp begin, Timestamp end) {
   const bool exact_begin = samples_[at_begin].t == begin;
   count_gaps(exact_begin ? at_begin : at_begin - 1, at_end);
 
-  if (!exact_begin) cut_.push_back(interpolate_at(samples_[at_begin - 1], samples_[at_begin], begin));
-  for (std::size_t i = at_begin; i < at_end; ++i) cut_.push_back(samples_[i]);
+  if (!exact_begin) interval_.push_back(interpolate_at(samples_[at_begin - 1], samples_[at_begin], begin));
+  for (std::size_t i = at_begin; i < at_end; ++i) interval_.push_back(samples_[i]);
   const bool exact_end = samples_[at_end].t == end;
-  cut_.push_back(exact_end ? samples_[at_end] : interpolate_at(samples_[at_end - 1], samples_[at_end], end));
+  interval_.push_back(exact_end ? samples_[at_end]
+                                : interpolate_at(samples_[at_end - 1], samples_[at_end], end));
 }
 
 const std::vector<ImuSample>& ImuBuffer::samples_up_to(Timestamp begin, Timestamp end) {
-  cut_.clear();
-  if (samples_.empty() || begin >= end || samples_.front().t > begin) return cut_;
+  interval_.clear();
+  if (samples_.empty() || begin >= end || samples_.front().t > begin) return interval_;
   const ImuSample last = samples_.back();
   if (last.t >= end) {
-    cut_between(begin, end);
+    extract_interval(begin, end);
   } else if (seconds_between(last.t, end) <= max_gap_s_) {
-    cut_between(begin, last.t);
-    if (cut_.empty()) cut_.push_back(held_at(last, begin));
-    cut_.push_back(held_at(last, end));
+    extract_interval(begin, last.t);
+    if (interval_.empty()) interval_.push_back(zero_order_hold(last, begin));
+    interval_.push_back(zero_order_hold(last, end));
   }
-  return cut_;
+  return interval_;
 }
 
-/// Counts the holes between samples_[first] and samples_[last] that no cut has counted before.
+/// Counts the gaps between samples_[first] and samples_[last] that were not counted before.
 void ImuBuffer::count_gaps(std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
-    const bool hole = seconds_between(samples_[i].t, samples_[i + 1].t) > max_gap_s_;
-    if (!hole || samples_[i].t < gaps_counted_until_) continue;
+    const bool is_gap = seconds_between(samples_[i].t, samples_[i + 1].t) > max_gap_s_;
+    if (!is_gap || samples_[i].t < gaps_counted_until_) continue;
     ++health_.gaps;
     gaps_counted_until_ = samples_[i + 1].t;
   }

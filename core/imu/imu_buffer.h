@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Inertial samples in order of time, and cuts out of them whose ends are interpolated.
+/// Buffer of inertial samples in temporal order; extracts intervals with interpolated ends.
 #pragma once
 
 #include <limits>
@@ -9,27 +9,27 @@
 
 namespace stillpoint {
 
-/// What adding and cutting met that is not as it should be; reported with the run, never hidden.
+/// Counts of irregularities in the IMU stream; reported with the run.
 struct ImuHealth {
   int rejected_samples = 0;  ///< not finite, out of order or repeated
-  int gaps = 0;              ///< holes longer than `max_gap_s` met while cutting; each counts once
+  int gaps = 0;              ///< gaps longer than `max_gap_s` in extracted intervals, each counted once
 };
 
 class ImuBuffer {
  public:
   explicit ImuBuffer(double max_gap_s = 0.05) : max_gap_s_(max_gap_s) {}
 
-  /// Appends a sample; one that is not finite or not later than the last is counted and dropped.
+  /// Appends a sample; samples that are not finite or not later than the last one are counted and dropped.
   void add(const ImuSample& sample);
-  /// Forgets samples that no cut from `t` on needs.
-  void forget_before(Timestamp t);
+  /// Drops samples that are not needed for intervals from `t` on.
+  void drop_before(Timestamp t);
 
-  /// Samples from `begin` to `end`, both ends interpolated so that the first is at begin and the last at end.
-  /// Empty if the buffer does not reach over both ends. Valid until the next cut.
+  /// Samples from `begin` to `end`; the first and last one are interpolated at exactly these times. Empty if
+  /// the buffer does not cover the interval. Valid until the next call.
   [[nodiscard]] const std::vector<ImuSample>& samples_between(Timestamp begin, Timestamp end);
 
-  /// Like `samples_between`, but the newest sample is held up to `end` when the buffer ends at most
-  /// `max_gap_s` before. Ends found this way are a guess: use them for predictions, not for factors.
+  /// Like `samples_between`, but extrapolates the newest sample (zero-order hold) to `end` if the buffer ends
+  /// at most `max_gap_s` before. For predictions only, not for factors.
   [[nodiscard]] const std::vector<ImuSample>& samples_up_to(Timestamp begin, Timestamp end);
 
   [[nodiscard]] bool empty() const { return samples_.empty(); }
@@ -37,12 +37,12 @@ class ImuBuffer {
   [[nodiscard]] const ImuHealth& health() const { return health_; }
 
  private:
-  void cut_between(Timestamp begin, Timestamp end);
+  void extract_interval(Timestamp begin, Timestamp end);
   void count_gaps(std::size_t first, std::size_t last);
 
   double max_gap_s_;
   std::vector<ImuSample> samples_;
-  std::vector<ImuSample> cut_;  ///< handed out last
+  std::vector<ImuSample> interval_;  ///< last returned interval
   Timestamp gaps_counted_until_{std::numeric_limits<std::int64_t>::min()};
   ImuHealth health_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One step of the midpoint rule between two inertial samples, shared by all who integrate. Qin et al. 2018
+/// One midpoint step between two inertial samples, shared by preintegration and propagation. Qin et al. 2018
 /// (VINS-Mono), Sec. IV-B.
 #pragma once
 
@@ -11,28 +11,29 @@
 
 namespace stillpoint {
 
-/// Biases to be taken off the samples: gyro [rad/s], accel [m/s^2].
+/// Biases to subtract from the samples: gyro [rad/s], accel [m/s^2].
 struct ImuBias {
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();
 };
 
-/// Rotation vector from one sample to the next at the mean of both rates [rad].
+/// Rotation vector theta = ((w_0 + w_1) / 2 - b_g) dt between two samples [rad].
 [[nodiscard]] inline Eigen::Vector3d midpoint_rotation(const ImuSample& from, const ImuSample& to,
                                                        const Eigen::Vector3d& gyro_bias) {
   const double dt = seconds_between(from.t, to.t);
   return (0.5 * (from.gyro_b + to.gyro_b) - gyro_bias) * dt;
 }
 
-/// What a step found, in the frame r in which the attitude is given.
+/// Result of a step; r is the reference frame of the attitude.
 struct MidpointStep {
   Eigen::Quaterniond q_r_b;  ///< attitude after the step
-  Eigen::Vector3d force_r;   ///< mean of the specific forces at both ends [m/s^2]
-  Eigen::Vector3d theta;     ///< rotation of the step, in the body [rad]
-  Eigen::Vector3d force_to;  ///< specific force at the end, bias taken off, in the body there [m/s^2]
+  Eigen::Vector3d force_r;   ///< mean specific force of both ends [m/s^2]
+  Eigen::Vector3d theta;     ///< rotation during the step, in the body frame [rad]
+  Eigen::Vector3d force_to;  ///< bias-corrected specific force at the end, in the body frame there [m/s^2]
 };
 
-/// @param q_r_b attitude at `from`
+/// q_1 = q_0 Exp(theta),  f = 1/2 (q_0 (a_0 - b_a) + q_1 (a_1 - b_a)), with 0 = `from`, 1 = `to`.
+/// @param q_r_b q_0: attitude at `from`
 [[nodiscard]] inline MidpointStep midpoint_step(const Eigen::Quaterniond& q_r_b, const ImuSample& from,
                                                 const ImuSample& to, const ImuBias& bias) {
   MidpointStep step;

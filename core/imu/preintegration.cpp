@@ -13,9 +13,9 @@ namespace {
 using Index = ImuErrorIndex;
 using Matrix9x6 = Eigen::Matrix<double, 9, 6>;
 
-/// The 3x3 blocks of one step's transition matrix F that are neither zero nor identity. Rows of position
-/// follow from those of velocity: p' = p + dt v + dt/2 (v' - v).
-struct StepBlocks {
+/// The 3x3 blocks of F (see Preintegration) that are neither zero nor identity. The position rows follow from
+/// the velocity rows: p' = p + dt v + dt/2 (v' - v).
+struct TransitionBlocks {
   double dt;
   Eigen::Matrix3d rotation_rotation;
   Eigen::Matrix3d rotation_gyro_bias;
@@ -24,12 +24,12 @@ struct StepBlocks {
   Eigen::Matrix3d velocity_accel_bias;
 };
 
-/// First order of the midpoint step for the error states; right perturbation, R <- R Exp(theta).
-StepBlocks linearize(const Eigen::Matrix3d& R_from, const Eigen::Vector3d& force_from,
-                     const MidpointStep& step, double dt) {
+/// Linearization of a midpoint step.
+TransitionBlocks linearize(const Eigen::Matrix3d& R_from, const Eigen::Vector3d& force_from,
+                           const MidpointStep& step, double dt) {
   const Eigen::Matrix3d R_to = step.q_r_b.toRotationMatrix();
   const Eigen::Matrix3d force_by_rotation_to = -0.5 * dt * R_to * skew(step.force_to);
-  StepBlocks blocks;
+  TransitionBlocks blocks;
   blocks.dt = dt;
   blocks.rotation_rotation = R_to.transpose() * R_from;
   blocks.rotation_gyro_bias = -dt * right_jacobian(step.theta);
@@ -40,10 +40,10 @@ StepBlocks linearize(const Eigen::Matrix3d& R_from, const Eigen::Vector3d& force
   return blocks;
 }
 
-/// The upper 9 rows of F * M. F is sparse: five 3x3 products instead of a 15x15 one.
+/// The upper 9 rows of F M, by products with the 3x3 blocks of F.
 template <int Columns>
-Eigen::Matrix<double, 9, Columns> transport(const StepBlocks& blocks,
-                                            const Eigen::Matrix<double, 15, Columns>& M) {
+Eigen::Matrix<double, 9, Columns> apply_transition(const TransitionBlocks& blocks,
+                                                   const Eigen::Matrix<double, 15, Columns>& M) {
   using Block = Eigen::Matrix<double, 3, Columns>;
   const Block rotation = M.template middleRows<3>(Index::kRotation);
   const Block velocity = M.template middleRows<3>(Index::kVelocity);
@@ -61,10 +61,9 @@ Eigen::Matrix<double, 9, Columns> transport(const StepBlocks& blocks,
   return result;
 }
 
-/// F times the variance of the mean of the step's samples, which acts like a bias during this step.
-/// Neighbouring steps share a sample, so the whole density belongs to each step: sigma^2 / dt for the mean,
-/// not half of it.
-Matrix9x6 noise_response(const StepBlocks& blocks, const ImuNoise& noise) {
+/// F N: response to the white noise of a step. Successive steps share a sample; for the accumulated variance
+/// to be sigma^2 T, the variance of the mean of two samples is taken as sigma^2 / dt, not half of it.
+Matrix9x6 noise_response(const TransitionBlocks& blocks, const ImuNoise& noise) {
   const double gyro_variance = noise.gyro_noise * noise.gyro_noise / blocks.dt;
   const double accel_variance = noise.accel_noise * noise.accel_noise / blocks.dt;
   Matrix9x6 response = Matrix9x6::Zero();
@@ -75,12 +74,12 @@ Matrix9x6 noise_response(const StepBlocks& blocks, const ImuNoise& noise) {
   return response;
 }
 
-/// P <- F P F^T + noise; biases walk by density^2 * dt.
-void propagate_covariance(const StepBlocks& blocks, const ImuNoise& noise, Matrix15& covariance) {
-  Eigen::Matrix<double, 9, 15> half = transport<15>(blocks, covariance);
+/// P <- F (P + N) F^T + W.
+void propagate_covariance(const TransitionBlocks& blocks, const ImuNoise& noise, Matrix15& covariance) {
+  Eigen::Matrix<double, 9, 15> half = apply_transition<15>(blocks, covariance);
   const Matrix9x6 cross = half.rightCols<6>();
   half.rightCols<6>() += noise_response(blocks, noise);
-  covariance.topLeftCorner<9, 9>() = transport<9>(blocks, half.transpose());
+  covariance.topLeftCorner<9, 9>() = apply_transition<9>(blocks, half.transpose());
   covariance.topRightCorner<9, 6>() = cross;
   covariance.bottomLeftCorner<6, 9>() = cross.transpose();
   covariance.diagonal().segment<3>(Index::kGyroBias).array() += noise.gyro_walk * noise.gyro_walk * blocks.dt;
@@ -91,8 +90,8 @@ void propagate_covariance(const StepBlocks& blocks, const ImuNoise& noise, Matri
 }  // namespace
 
 Preintegration::Preintegration(const ImuNoise& noise, const Eigen::Vector3d& gyro_bias,
-                               const Eigen::Vector3d& accel_bias, std::vector<ImuSample> memory)
-    : noise_(noise), samples_(std::move(memory)), gyro_bias_(gyro_bias), accel_bias_(accel_bias) {
+                               const Eigen::Vector3d& accel_bias, std::vector<ImuSample> recycled)
+    : noise_(noise), samples_(std::move(recycled)), gyro_bias_(gyro_bias), accel_bias_(accel_bias) {
   samples_.clear();
 }
 
@@ -107,13 +106,13 @@ void Preintegration::integrate(const std::vector<ImuSample>& samples) {
     step(samples_.back(), samples[i]);
     samples_.push_back(samples[i]);
   }
-  complete();
+  finalize();
 }
 
 void Preintegration::repropagate(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {
   reset(gyro_bias, accel_bias);
   for (std::size_t i = 1; i < samples_.size(); ++i) step(samples_[i - 1], samples_[i]);
-  complete();
+  finalize();
 }
 
 void Preintegration::reset(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {
@@ -131,11 +130,12 @@ void Preintegration::step(const ImuSample& from, const ImuSample& to) {
   STILLPOINT_CHECK(from.t < to.t);
   const double dt = seconds_between(from.t, to.t);
   const MidpointStep step = midpoint_step(delta_q_, from, to, {.gyro = gyro_bias_, .accel = accel_bias_});
-  const StepBlocks blocks = linearize(delta_q_.toRotationMatrix(), from.accel_b - accel_bias_, step, dt);
+  const TransitionBlocks blocks =
+      linearize(delta_q_.toRotationMatrix(), from.accel_b - accel_bias_, step, dt);
 
   propagate_covariance(blocks, noise_, covariance_);
   const Eigen::Matrix<double, 15, 6> bias_columns = jacobian_.rightCols<6>();
-  jacobian_.topRightCorner<9, 6>() = transport<6>(blocks, bias_columns);
+  jacobian_.topRightCorner<9, 6>() = apply_transition<6>(blocks, bias_columns);
 
   delta_p_ += delta_v_ * dt + 0.5 * dt * dt * step.force_r;
   delta_v_ += step.force_r * dt;
@@ -143,9 +143,9 @@ void Preintegration::step(const ImuSample& from, const ImuSample& to) {
   duration_s_ += dt;
 }
 
-/// The columns of p, theta and v need no accumulation: an error at i moves or turns the deltas as a whole,
-/// delta_p -> Exp(theta) delta_p + p + v T.
-void Preintegration::complete() {
+/// The columns of p, theta and v have a closed form, because an error at i transforms the deltas as a whole:
+/// delta_p -> Exp(theta) delta_p + p + v T. Also computes the square-root information.
+void Preintegration::finalize() {
   jacobian_.block<3, 3>(Index::kPosition, Index::kRotation) = -skew(delta_p_);
   jacobian_.block<3, 3>(Index::kVelocity, Index::kRotation) = -skew(delta_v_);
   jacobian_.block<3, 3>(Index::kRotation, Index::kRotation) = delta_q_.conjugate().toRotationMatrix();

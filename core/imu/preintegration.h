@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Midpoint preintegration of inertial samples between two moments. Paper Sec. II; Qin et al. 2018
-/// (VINS-Mono), Sec. IV-B; Forster et al. 2017.
+/// Midpoint preintegration of inertial samples between two times. Paper Sec. II; Qin et al. 2018 (VINS-Mono),
+/// Sec. IV-B; Forster et al. 2017.
 #pragma once
 
 #include <utility>
@@ -26,36 +26,69 @@ struct ImuErrorIndex {
 using Matrix15 = Eigen::Matrix<double, 15, 15>;
 using Vector15 = Eigen::Matrix<double, 15, 1>;
 
-/// Relative motion of the body from moment i to moment j as the IMU saw it, free of gravity and of the start
-/// state.
+/// Preintegrated motion of the body from time i to time j, independent of gravity and of the state at i.
+///
+/// State at j from the state at i, with T = t_j - t_i and gravity g in the world (`predict`):
+///
+///   q_j = q_i delta_q,    v_j = v_i + g T + q_i delta_v,    p_j = p_i + v_i T + 1/2 g T^2 + q_i delta_p.
+///
+/// Recursion over the samples (w_k, a_k), from identity and zero, with dt = t_(k+1) - t_k and biases b_g,
+/// b_a:
+///
+///   theta   = (1/2 (w_k + w_(k+1)) - b_g) dt
+///   delta_q' = delta_q Exp(theta)
+///   f       = 1/2 (delta_q (a_k - b_a) + delta_q' (a_(k+1) - b_a))
+///   delta_p' = delta_p + delta_v dt + 1/2 f dt^2
+///   delta_v' = delta_v + f dt.
+///
+/// Error state e = (dp, dtheta, dv, db_g, db_a), rotation on the right (R Exp(dtheta)). With R, R' the
+/// rotations before and after the step and [.]x the skew matrix, e' = F e + noise, where
+///
+///   F_qq = R'^T R,              F_qbg = -J_r(theta) dt        (J_r: right Jacobian of SO(3))
+///   F_vq = -dt/2 (R [a_k - b_a]x + R' [a_(k+1) - b_a]x F_qq)
+///   F_vbg = -dt/2 R' [a_(k+1) - b_a]x F_qbg,    F_vba = -dt/2 (R + R')
+///   F_pv = dt I,                F_px = dt/2 F_vx  (x = q, bg, ba),
+///
+/// and the remaining diagonal blocks are identity. Covariance and Jacobian are propagated by
+///
+///   P' = F (P + N) F^T + W,    J' = F J,    P = 0, J = I at i.
+///
+/// N = diag(0, 0, 0, s_g^2 / dt, s_a^2 / dt) is the white noise (densities s_g, s_a), which acts like a bias
+/// during the step and enters the p, theta and v rows only; W = diag(0, 0, 0, s_wg^2 dt, s_wa^2 dt) is the
+/// random walk of the biases. A later change of the biases is applied to first order by the bias columns of
+/// J:
+///
+///   delta_p(b) = delta_p + J_pbg (b_g - b_g0) + J_pba (b_a - b_a0),    same for delta_v,
+///   delta_q(b) = delta_q Exp(J_qbg (b_g - b_g0)),
+///
+/// where b_g0, b_a0, the linearization point, are the biases of the integration.
 class Preintegration {
  public:
-  /// @param memory for the samples: a list that nobody needs any more
+  /// @param recycled storage for the samples; its content is ignored
   Preintegration(const ImuNoise& noise, const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias,
-                 std::vector<ImuSample> memory = {});
+                 std::vector<ImuSample> recycled = {});
 
-  /// Adds samples of one interval: they must start at i and end at j (see `samples_between`), rising in time.
-  /// A second call continues where the first ended: its first sample is at the time of the last one before
-  /// (and is not kept: it is that one). Fewer than two samples add nothing to the motion.
+  /// Adds the samples of one interval, sorted by time, from i to j (see `ImuBuffer::samples_between`).
+  /// Further calls extend the interval: their first sample must have the time of the last one so far and is
+  /// not added again. Fewer than two samples add no motion.
   void integrate(const std::vector<ImuSample>& samples);
 
-  /// Integrates all samples again with other biases; for changes too large for the first-order correction.
+  /// Reintegrates all samples with other biases; for changes too large for the first-order correction.
   void repropagate(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias);
 
   [[nodiscard]] double duration_s() const { return duration_s_; }
   [[nodiscard]] const std::vector<ImuSample>& samples() const { return samples_; }
-  /// Gives them up, with their memory: the last call.
-  [[nodiscard]] std::vector<ImuSample> take_samples() { return std::move(samples_); }
-  [[nodiscard]] const Eigen::Vector3d& gyro_bias() const { return gyro_bias_; }    ///< linearisation point
-  [[nodiscard]] const Eigen::Vector3d& accel_bias() const { return accel_bias_; }  ///< linearisation point
+  /// Moves the samples out, for reuse of their storage; the object must not be used afterwards.
+  [[nodiscard]] std::vector<ImuSample> release_samples() { return std::move(samples_); }
+  [[nodiscard]] const Eigen::Vector3d& gyro_bias() const { return gyro_bias_; }    ///< linearization point
+  [[nodiscard]] const Eigen::Vector3d& accel_bias() const { return accel_bias_; }  ///< linearization point
   [[nodiscard]] const Matrix15& covariance() const { return covariance_; }  ///< of (p, theta, v, bg, ba)
-  /// Lower triangular W with W^T W = inverse of the covariance; valid once a positive time has passed.
+  /// Lower triangular W with W^T W = inverse of the covariance; valid for a positive duration.
   [[nodiscard]] const Matrix15& sqrt_information() const { return sqrt_information_; }
-  /// d (p, theta, v, bg, ba) at j / d the same at i, first order; columns 9..14 correct the deltas for
-  /// biases.
+  /// J = d e_j / d e_i; columns 9..14 correct the deltas for changed biases.
   [[nodiscard]] const Matrix15& jacobian() const { return jacobian_; }
 
-  /// Deltas corrected to first order for other biases.
+  /// Deltas corrected to first order for the given biases.
   [[nodiscard]] Eigen::Vector3d delta_p(const Eigen::Vector3d& gyro_bias,
                                         const Eigen::Vector3d& accel_bias) const;
   [[nodiscard]] Eigen::Vector3d delta_v(const Eigen::Vector3d& gyro_bias,
@@ -68,7 +101,7 @@ class Preintegration {
  private:
   void reset(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias);
   void step(const ImuSample& from, const ImuSample& to);
-  void complete();
+  void finalize();
 
   ImuNoise noise_;
   std::vector<ImuSample> samples_;

@@ -6,7 +6,7 @@
 namespace stillpoint {
 namespace {
 
-/// Nobody looks for objects that nobody masks.
+/// Disables the detector if the mask is off.
 std::unique_ptr<ObjectDetector> detector_for(const SensorInput& input, const OdometryConfig& config) {
   DetectorConfig detector = config.detector;
   if (config.dynamic.mask == DynamicMask::kOff) detector.kind = DetectorKind::kNone;
@@ -14,7 +14,7 @@ std::unique_ptr<ObjectDetector> detector_for(const SensorInput& input, const Odo
   if (simulated && input.true_boxes.empty()) {
     throw InputError(
         "detector.kind",
-        "\"simulated\" needs true boxes, which only rendered sequences have (true_boxes.txt); use "
+        "\"simulated\" requires true boxes, which only rendered sequences have (true_boxes.txt); use "
         "\"recorded\", \"network\" or \"none\"");
   }
   return make_object_detector(detector, {.boxes = simulated ? input.true_boxes : input.detections,

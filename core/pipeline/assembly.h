@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The stages put together from a configuration: the one place that branches on it.
+/// Construction of the stages from a configuration.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace stillpoint {
 
-/// One odometry over one sequence. The stages share nothing: each may live on a thread of its own.
+/// Stages of one odometry run. They share no state, so that each can run on its own thread.
 struct Stages {
   WindowRate rate;
   TrackingStage tracking;
@@ -20,7 +20,7 @@ struct Stages {
   OptimizationStage optimization;
 };
 
-/// @throws InputError if the input lacks what the configuration asks for, or a network cannot be loaded
+/// @throws InputError if the input lacks data that the configuration requires, or a network cannot be loaded
 [[nodiscard]] Stages assemble(const SensorInput& input, const OdometryConfig& config);
 
 }  // namespace stillpoint

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The window as the moving consistency check sees it. Paper Sec. III-E.
+/// Converts the sliding window to the input of the moving consistency check. Paper Sec. III-E.
 #pragma once
 
 #include <utility>
 
-#include "core/backend/depth_initialization.h"
-#include "core/backend/window.h"
+#include "core/backend/start/depth_initialization.h"
+#include "core/backend/window/window.h"
 #include "core/dynamic/moving_consistency.h"
 
 namespace stillpoint {
 
-/// Inverse depth in the host [1/m]; 0 = unknown. The solver knows nothing of features that are kept out of
-/// it: theirs is the depth at which they would stand still, if there is parallax enough to tell.
+/// Inverse depth in the host frame [1/m]; 0 = unknown. Dynamic landmarks are not optimized: their depth is
+/// triangulated under the assumption that they are static, and unknown if the parallax is too small.
 [[nodiscard]] inline double inverse_depth_of(const Window& window, const Landmark& landmark,
                                              double bearing_sigma) {
   if (!landmark.dynamic) return landmark.inverse_depth;
@@ -19,12 +19,12 @@ namespace stillpoint {
   return depth > 0.0 ? 1.0 / depth : 0.0;
 }
 
-/// Every feature that the newest picture sees, whatever its verdict; poses as they are in the window now.
-/// @param pixel_sigma_px of a feature's position
-/// @param memory for the result: a view that nobody needs any more
+/// All features observed in the newest frame, of any label, with the current poses of the window.
+/// @param pixel_sigma_px standard deviation of a feature position [px]
+/// @param recycled a result that is no longer needed; its memory is reused
 [[nodiscard]] inline ConsistencyView consistency_view(const Window& window, double focal_px,
-                                                      double pixel_sigma_px, ConsistencyView memory) {
-  ConsistencyView view = std::move(memory);
+                                                      double pixel_sigma_px, ConsistencyView recycled) {
+  ConsistencyView view = std::move(recycled);
   view.focal_px = focal_px;
   view.T_w_c.clear();
   view.features.clear();
@@ -37,8 +37,9 @@ namespace stillpoint {
                              .first = view.observations.size(),
                              .count = landmark.observations.size()});
     for (int frame = landmark.host; frame <= landmark.last(); ++frame) {
-      const Observation& seen = landmark.in(frame);
-      view.observations.push_back({.frame = frame, .bearing = seen.bearing, .depth = seen.depth});
+      const Observation& observation = landmark.observation_in(frame);
+      view.observations.push_back(
+          {.frame = frame, .bearing = observation.bearing, .depth = observation.depth});
     }
   }
   return view;

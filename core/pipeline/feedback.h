@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the optimisation tells the tracking of the pictures that follow.
+/// Feedback from the optimization stage to the tracking stage.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,8 @@
 namespace stillpoint {
 
 struct Feedback {
-  MotionKnowledge motion;
-  std::vector<std::int64_t>
-      moving;  ///< features that the newest verdicts keep out of the estimate, rising ids
+  MotionState motion;                     ///< for the motion prediction of the tracker
+  std::vector<std::int64_t> dynamic_ids;  ///< features currently labeled dynamic, ascending
 };
 
 }  // namespace stillpoint

@@ -12,19 +12,19 @@ namespace {
 
 using Kind = ScopedTimer::Kind;
 
-std::vector<Box> boxes_of(const std::vector<TrackedBox>& tracked, std::vector<Box> memory) {
-  std::vector<Box> boxes = std::move(memory);
+std::vector<Box> boxes_of(const std::vector<TrackedBox>& tracked, std::vector<Box> recycled) {
+  std::vector<Box> boxes = std::move(recycled);
   boxes.clear();
   for (const TrackedBox& object : tracked) boxes.push_back(object.box);
   return boxes;
 }
 
-std::vector<std::int64_t> dynamic_ids(const std::vector<FeatureVerdict>& verdicts,
-                                      std::vector<std::int64_t> memory) {
-  std::vector<std::int64_t> ids = std::move(memory);
+std::vector<std::int64_t> dynamic_ids(const std::vector<DynamicLabel>& labels,
+                                      std::vector<std::int64_t> recycled) {
+  std::vector<std::int64_t> ids = std::move(recycled);
   ids.clear();
-  for (const FeatureVerdict& verdict : verdicts) {
-    if (verdict.verdict != Verdict::kStable) ids.push_back(verdict.id);
+  for (const DynamicLabel& label : labels) {
+    if (label.label != LabelClass::kStable) ids.push_back(label.id);
   }
   return ids;
 }
@@ -36,9 +36,9 @@ OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& ri
       pixel_sigma_px_(config.backend.pixel_sigma_px),
       camera_(rig.camera),
       estimator_(config.backend, config.imu, rig, config.seed),
-      objects_(config.dynamic),
+      box_tracker_(config.dynamic),
       recognition_(config.dynamic),
-      resting_(config.dynamic.rest_pictures, config.dynamic.rest_px) {}
+      static_readmission_(config.dynamic.min_static_frames, config.dynamic.static_residual_px) {}
 
 void OptimizationStage::begin_update() {
   ModuleTimings timings = std::move(update_.timings);
@@ -52,19 +52,19 @@ OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const Dete
   {
     const ScopedTimer timer(update_.timings, Module::kOptimizationThread);
     estimator_.add(frame, update_);
-    look_for_objects(frame, detections, update_.timings);
-    look_for_motion_before(update_.timings);
+    apply_semantic_mask(frame, detections, update_.timings);
+    check_motion_before_solve(update_.timings);
     if (estimator_.refine(update_)) {
-      look_for_motion_after(update_.timings);
+      check_motion_after_solve(update_.timings);
     } else {
-      forget();
+      reset_recognition();
     }
     estimator_.finish(update_);
   }
-  moving_ = dynamic_ids(dynamic_.verdicts, std::move(moving_));
-  update_.counters.dynamic_features = static_cast<int>(moving_.size());
+  dynamic_ids_ = dynamic_ids(dynamic_.labels, std::move(dynamic_ids_));
+  update_.counters.dynamic_features = static_cast<int>(dynamic_ids_.size());
   update_.hashes = {.tracking = state_hash(frame.features),
-                    .dynamic = state_hash(dynamic_.verdicts),
+                    .dynamic = state_hash(dynamic_.labels),
                     .optimization = state_hash(update_.state)};
   return update_;
 }
@@ -76,60 +76,60 @@ OdometryUpdate& OptimizationStage::predict(const TrackedFrame& frame) {
   return update_;
 }
 
-Feedback OptimizationStage::feedback(Feedback memory) const {
-  Feedback said = std::move(memory);
-  said.motion = estimator_.knowledge();
-  said.moving = moving_;
-  return said;
+Feedback OptimizationStage::feedback(Feedback recycled) const {
+  Feedback result = std::move(recycled);
+  result.motion = estimator_.motion_state();
+  result.dynamic_ids = dynamic_ids_;
+  return result;
 }
 
 /// Sec. III-C and III-D.
-void OptimizationStage::look_for_objects(const TrackedFrame& frame, const DetectionSet& detections,
-                                         ModuleTimings& timings) {
+void OptimizationStage::apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections,
+                                            ModuleTimings& timings) {
   const ScopedTimer timer(timings, Module::kDynamicRecognition);
   if (config_.mask != DynamicMask::kOff) {
-    dynamic_.boxes = objects_.update(detections);
+    dynamic_.boxes = box_tracker_.update(detections);
     boxes_ = boxes_of(dynamic_.boxes, std::move(boxes_));
     dynamic_.mask.assign(boxes_, {.pixels = frame.depth, .units_per_m = frame.depth_units_per_m},
                          {camera_.width, camera_.height}, config_);
   }
-  take(recognition_.judge(frame, dynamic_.mask));
+  apply_labels(recognition_.classify(frame, dynamic_.mask));
 }
 
-/// Sec. III-E at the predicted pose, which only inertial data know before the solve.
-void OptimizationStage::look_for_motion_before(ModuleTimings& timings) {
+/// Sec. III-E at the predicted pose, which requires inertial data.
+void OptimizationStage::check_motion_before_solve(ModuleTimings& timings) {
   if (!config_.moving_consistency || !config_.gate_before_solve || !estimator_.window().inertial) return;
   const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
-  residuals_ = gate_on_prediction(look(), std::move(residuals_));
-  take(recognition_.gate(residuals_));
+  residuals_ = gate_on_prediction(update_view(), std::move(residuals_));
+  apply_labels(recognition_.gate(residuals_));
 }
 
-/// Sec. III-E at the refined poses.
-void OptimizationStage::look_for_motion_after(ModuleTimings& timings) {
+/// Sec. III-E at the optimized poses.
+void OptimizationStage::check_motion_after_solve(ModuleTimings& timings) {
   if (!config_.moving_consistency) return;
   const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
-  const ConsistencyView& seen = look();
-  std::span<const std::int64_t> resting;
-  if (config_.rest_pictures > 0) resting = resting_.update(seen);
-  residuals_ = consistency_residuals(seen, std::move(residuals_));
-  take(recognition_.check(residuals_, resting));
+  const ConsistencyView& view = update_view();
+  std::span<const std::int64_t> readmitted;
+  if (config_.min_static_frames > 0) readmitted = static_readmission_.update(view);
+  residuals_ = consistency_residuals(view, std::move(residuals_));
+  apply_labels(recognition_.check(residuals_, readmitted));
 }
 
-const ConsistencyView& OptimizationStage::look() {
+const ConsistencyView& OptimizationStage::update_view() {
   view_ = consistency_view(estimator_.window(), camera_.focal_px(), pixel_sigma_px_, std::move(view_));
   return view_;
 }
 
-void OptimizationStage::take(const std::vector<FeatureVerdict>& verdicts) {
-  dynamic_.verdicts = verdicts;
-  estimator_.mark_dynamic(dynamic_.verdicts);
+void OptimizationStage::apply_labels(const std::vector<DynamicLabel>& labels) {
+  dynamic_.labels = labels;
+  estimator_.mark_dynamic(dynamic_.labels);
 }
 
-/// After a failure nothing is known of anything.
-void OptimizationStage::forget() {
-  objects_.reset();
+/// After a tracking failure.
+void OptimizationStage::reset_recognition() {
+  box_tracker_.reset();
   recognition_.reset();
-  resting_.reset();
+  static_readmission_.reset();
 }
 
 }  // namespace stillpoint

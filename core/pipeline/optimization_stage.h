@@ -1,75 +1,76 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The optimisation thread's share of a picture: which features move, and where the camera is. Paper Sec. II,
+/// Optimization stage: dynamic feature recognition and state estimation for one frame. Paper Sec. II and
 /// III-C to III-E.
 #pragma once
 
 #include <vector>
 
 #include "core/backend/estimator.h"
+#include "core/config/odometry_config.h"
 #include "core/dynamic/feature_recognition.h"
 #include "core/dynamic/missed_detection.h"
-#include "core/dynamic/resting_features.h"
+#include "core/dynamic/static_readmission.h"
 #include "core/pipeline/feedback.h"
-#include "core/pipeline/odometry_config.h"
 
 namespace stillpoint {
 
-/// What the recognition of dynamic features made of the newest picture.
+/// Result of dynamic feature recognition for the newest frame.
 struct DynamicReport {
-  std::vector<TrackedBox> boxes;         ///< detected and carried; without margin
-  SemanticMask mask;                     ///< the boxes with their margin and depth thresholds
-  std::vector<FeatureVerdict> verdicts;  ///< of all features, by rising id
+  std::vector<TrackedBox> boxes;     ///< detected and predicted; without margin
+  SemanticMask mask;                 ///< the boxes with margin and depth thresholds
+  std::vector<DynamicLabel> labels;  ///< of all features, by ascending id
 
   void clear() {
     boxes.clear();
     mask.clear();
-    verdicts.clear();
+    labels.clear();
   }
 };
 
-/// Joins the estimator with the recognition of dynamic features. Knows nothing of threads.
+/// Combines the estimator with dynamic feature recognition. Single-threaded; the runners provide the threads.
 class OptimizationStage {
  public:
-  /// @throws InputError if the rig lacks what the configuration asks for
+  /// @throws InputError if the rig lacks a sensor that the configuration requires
   OptimizationStage(const OdometryConfig& config, const Rig& rig);
 
-  /// Samples in order of time; those up to a picture's exposure come before the picture.
+  /// Samples in temporal order; samples up to the exposure of a frame must be added before the frame.
   void add_imu(const ImuSample& sample) { estimator_.add_imu(sample); }
 
-  /// Takes a picture into the window.
-  /// @param detections of the picture; passed over where the mask is off
-  /// @return valid until the next picture; who takes part in it may add to it
+  /// Processes a frame that enters the window.
+  /// @param detections of the frame; ignored if the mask is off
+  /// @return valid until the next frame; the caller may add timings to it
   [[nodiscard]] OdometryUpdate& process(const TrackedFrame& frame, const DetectionSet& detections);
 
-  /// The pose at a picture that does not enter the window. @return as `process`
+  /// Predicts the pose of a frame that does not enter the window. @return as `process`
   [[nodiscard]] OdometryUpdate& predict(const TrackedFrame& frame);
 
-  [[nodiscard]] MotionKnowledge knowledge() const { return estimator_.knowledge(); }
-  /// @param memory for the result: what nobody needs any more
-  [[nodiscard]] Feedback feedback(Feedback memory = {}) const;
+  [[nodiscard]] MotionState motion_state() const { return estimator_.motion_state(); }
+  /// Feedback to the tracking stage.
+  /// @param recycled a result that is no longer needed; its memory is reused
+  [[nodiscard]] Feedback feedback(Feedback recycled = {}) const;
   [[nodiscard]] const ImuHealth& imu_health() const { return estimator_.imu_health(); }
   [[nodiscard]] const DynamicReport& dynamic() const { return dynamic_; }
 
  private:
   void begin_update();
-  void look_for_objects(const TrackedFrame& frame, const DetectionSet& detections, ModuleTimings& timings);
-  void look_for_motion_before(ModuleTimings& timings);
-  void look_for_motion_after(ModuleTimings& timings);
-  [[nodiscard]] const ConsistencyView& look();
-  void take(const std::vector<FeatureVerdict>& verdicts);
-  void forget();
+  void apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections, ModuleTimings& timings);
+  void check_motion_before_solve(ModuleTimings& timings);
+  void check_motion_after_solve(ModuleTimings& timings);
+  [[nodiscard]] const ConsistencyView& update_view();
+  void apply_labels(const std::vector<DynamicLabel>& labels);
+  void reset_recognition();
 
   DynamicConfig config_;
   double pixel_sigma_px_;
   Camera camera_;
   Estimator estimator_;
-  MissedDetectionCompensation objects_;
+  MissedDetectionCompensation box_tracker_;
   FeatureRecognition recognition_;
-  RestingFeatures resting_;
+  StaticReadmission static_readmission_;
   DynamicReport dynamic_;
-  std::vector<std::int64_t> moving_;  ///< of the last picture in the window
-  OdometryUpdate update_;             ///< of the last picture
-  // Kept for their memory.
+  std::vector<std::int64_t> dynamic_ids_;  ///< of the last frame that entered the window
+  OdometryUpdate update_;                  ///< of the last frame
+  // Members only to reuse the memory.
   std::vector<Box> boxes_;
   ConsistencyView view_;
   std::vector<ConsistencyResidual> residuals_;

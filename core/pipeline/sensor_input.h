@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A sequence as the runners see it.
+/// Sensor data of a sequence: the input of the runners.
 #pragma once
 
 #include <functional>
@@ -12,16 +12,16 @@
 
 namespace stillpoint {
 
-/// The spans outlive the run.
+/// The spans must outlive the run.
 struct SensorInput {
   Rig rig;
-  std::span<const Timestamp> frame_times;    ///< rising
-  std::span<const ImuSample> imu;            ///< rising; may be empty
+  std::span<const Timestamp> frame_times;    ///< ascending
+  std::span<const ImuSample> imu;            ///< ascending; may be empty
   std::span<const DetectionSet> detections;  ///< recorded boxes; may be empty
-  std::span<const DetectionSet> true_boxes;  ///< what a perfect detector sees; may be empty
-  std::function<Frame(std::size_t index)>
-      load_frame;  ///< throws InputError for a picture that cannot be had;
-                   ///< called by one thread at a time, by rising index
+  std::span<const DetectionSet> true_boxes;  ///< ground truth boxes; may be empty
+  /// Decodes a frame; called by one thread at a time, with ascending index.
+  /// @throws InputError for a frame that cannot be read
+  std::function<Frame(std::size_t index)> load_frame;
 };
 
 }  // namespace stillpoint

@@ -6,7 +6,7 @@
 namespace stillpoint {
 namespace {
 
-/// Takes numbers in, eight bytes at a time.
+/// FNV-1a over 64-bit words instead of bytes.
 class Fnv {
  public:
   void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ULL; }
@@ -34,12 +34,12 @@ std::uint64_t state_hash(std::span<const TrackedFeature> features) {
   return hash.value();
 }
 
-std::uint64_t state_hash(std::span<const FeatureVerdict> verdicts) {
+std::uint64_t state_hash(std::span<const DynamicLabel> labels) {
   Fnv hash;
-  for (const FeatureVerdict& verdict : verdicts) {
-    hash.add(verdict.id);
-    hash.add(static_cast<std::int64_t>(verdict.verdict));
-    hash.add(verdict.residual_px.value_or(-1.0));
+  for (const DynamicLabel& label : labels) {
+    hash.add(label.id);
+    hash.add(static_cast<std::int64_t>(label.label));
+    hash.add(label.residual_px.value_or(-1.0));
   }
   return hash.value();
 }

@@ -6,18 +6,18 @@
 namespace stillpoint {
 
 TrackingStage::TrackingStage(const OdometryConfig& config, const Rig& rig)
-    : predicts_(config.frontend.prediction != TrackerPrediction::kNone),
+    : uses_prediction_(config.frontend.prediction != TrackerPrediction::kNone),
       tracker_(config.frontend, rig.camera),
       imu_(config.imu.max_gap_s) {}
 
-TrackedFrame TrackingStage::process(const Frame& frame, bool full, const Feedback& feedback,
-                                    TrackedFrame memory) {
-  const MotionKnowledge& known = feedback.motion;
+TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, const Feedback& feedback,
+                                    TrackedFrame recycled) {
+  const MotionState& motion = feedback.motion;
   MotionPrior prior;
-  if (predicts_ && last_frame_) prior = motion_prior(known, imu_, *last_frame_, frame.t);
-  forget_spent(known, imu_);
+  if (uses_prediction_ && last_frame_) prior = motion_prior(motion, imu_, *last_frame_, frame.t);
+  drop_old_samples(motion, imu_);
   last_frame_ = frame.t;
-  return tracker_.track(frame, prior, full, feedback.moving, std::move(memory));
+  return tracker_.track(frame, prior, enters_window, feedback.dynamic_ids, std::move(recycled));
 }
 
 }  // namespace stillpoint

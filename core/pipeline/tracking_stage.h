@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The tracking thread's share of a picture. Paper Sec. II, III-A, III-B.
+/// Tracking stage: feature prediction, tracking and detection for one frame. Paper Sec. II, III-A, III-B.
 #pragma once
 
 #include <optional>
 
+#include "core/config/odometry_config.h"
 #include "core/frontend/feature_tracker.h"
 #include "core/pipeline/feedback.h"
-#include "core/pipeline/odometry_config.h"
 
 namespace stillpoint {
 
-/// Predicts where features went, and follows them. Knows nothing of threads: what comes from the optimisation
-/// comes as an argument.
+/// Predicts feature positions from IMU data and tracks the features. Single-threaded: the runners pass the
+/// feedback of the optimization stage as an argument.
 class TrackingStage {
  public:
   TrackingStage(const OdometryConfig& config, const Rig& rig);
 
-  /// Samples in order of time; those up to a picture's exposure come before the picture.
+  /// Samples in temporal order; samples up to the exposure of a frame must be added before the frame.
   void add_imu(const ImuSample& sample) { imu_.add(sample); }
 
-  /// @param full  whether the picture enters the window: lost features are replaced
-  /// @param feedback what the optimisation said last
-  /// @param memory for the result: a frame that nobody needs any more
-  [[nodiscard]] TrackedFrame process(const Frame& frame, bool full, const Feedback& feedback,
-                                     TrackedFrame memory = {});
+  /// @param enters_window whether the frame enters the window; if so, lost features are replaced by new ones
+  /// @param feedback      newest available feedback of the optimization stage
+  /// @param recycled      a result that is no longer needed; its memory is reused
+  [[nodiscard]] TrackedFrame process(const Frame& frame, bool enters_window, const Feedback& feedback,
+                                     TrackedFrame recycled = {});
 
  private:
-  bool predicts_;
+  bool uses_prediction_;
   FeatureTracker tracker_;
   ImuBuffer imu_;
   std::optional<Timestamp> last_frame_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which pictures enter the window; the others get a predicted pose.
+/// Selects the frames that enter the window; the other frames get a predicted pose.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@ namespace stillpoint {
 
 class WindowRate {
  public:
-  /// @param rate_hz 0 = every picture
+  /// @param rate_hz maximum rate of the window; 0 = every frame
   explicit WindowRate(double rate_hz) : rate_hz_(rate_hz) {}
 
-  /// Whether the picture is due; pictures come in order.
+  /// Whether the frame enters the window; call once per frame, in temporal order.
   [[nodiscard]] bool admits(Timestamp t) {
     const bool due = rate_hz_ <= 0.0 || !last_ || seconds_between(*last_, t) >= 1.0 / rate_hz_ - kSlack_s;
     if (due) last_ = t;
@@ -21,8 +21,8 @@ class WindowRate {
   }
 
  private:
-  /// A picture this much early still counts as due: cameras jitter, and 30 Hz is no multiple of 10 Hz in
-  /// nanoseconds.
+  /// Tolerance of the interval, for timestamp jitter and because three intervals of 30 Hz, rounded to
+  /// nanoseconds, are shorter than 0.1 s.
   static constexpr double kSlack_s = 0.005;
 
   double rate_hz_;

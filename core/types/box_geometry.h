@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Small arithmetic on boxes.
+/// Geometric operations on bounding boxes.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,35 +9,35 @@
 
 namespace stillpoint {
 
-/// False for inverted and empty boxes, and where any edge is not a number.
+/// False for inverted and empty boxes, and if any edge is NaN.
 [[nodiscard]] inline bool has_area(const Box& box) { return box.x_max > box.x_min && box.y_max > box.y_min; }
 
 [[nodiscard]] inline Eigen::Vector2d center_of(const Box& box) {
   return {0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)};
 }
 
-/// Edges belong to the box.
+/// The edges are part of the box.
 [[nodiscard]] inline bool contains(const Box& box, const Eigen::Vector2d& pixel) {
   return pixel.x() >= box.x_min && pixel.x() <= box.x_max && pixel.y() >= box.y_min && pixel.y() <= box.y_max;
 }
 
-[[nodiscard]] inline Box moved(const Box& box, const Eigen::Vector2d& by_px) {
-  return {.x_min = box.x_min + by_px.x(),
-          .y_min = box.y_min + by_px.y(),
-          .x_max = box.x_max + by_px.x(),
-          .y_max = box.y_max + by_px.y()};
+[[nodiscard]] inline Box translated(const Box& box, const Eigen::Vector2d& offset_px) {
+  return {.x_min = box.x_min + offset_px.x(),
+          .y_min = box.y_min + offset_px.y(),
+          .x_max = box.x_max + offset_px.x(),
+          .y_max = box.y_max + offset_px.y()};
 }
 
-/// Every side `margin_px` further out.
-[[nodiscard]] inline Box grown(const Box& box, double margin_px) {
+/// The box with every side moved outward by `margin_px`.
+[[nodiscard]] inline Box expanded(const Box& box, double margin_px) {
   return {.x_min = box.x_min - margin_px,
           .y_min = box.y_min - margin_px,
           .x_max = box.x_max + margin_px,
           .y_max = box.y_max + margin_px};
 }
 
-/// The part common to both; without area where they do not meet.
-[[nodiscard]] inline Box common_part(const Box& a, const Box& b) {
+/// Intersection of two boxes; has no area (see `has_area`) if they are disjoint.
+[[nodiscard]] inline Box intersection(const Box& a, const Box& b) {
   return {.x_min = std::max(a.x_min, b.x_min),
           .y_min = std::max(a.y_min, b.y_min),
           .x_max = std::min(a.x_max, b.x_max),
@@ -45,9 +45,9 @@ namespace stillpoint {
 }
 
 /// Intersection over union, in [0, 1]; both boxes have area.
-[[nodiscard]] inline double overlap(const Box& a, const Box& b) {
+[[nodiscard]] inline double intersection_over_union(const Box& a, const Box& b) {
   const auto area = [](const Box& box) { return (box.x_max - box.x_min) * (box.y_max - box.y_min); };
-  const Box common = common_part(a, b);
+  const Box common = intersection(a, b);
   if (!has_area(common)) return 0.0;
   return area(common) / (area(a) + area(b) - area(common));
 }

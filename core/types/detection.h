@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Boxes around objects that may move.
+/// Bounding boxes of potentially dynamic objects.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace stillpoint {
 
-/// Edges [px], max > min; may reach beyond the picture.
+/// Edges [px], max > min; may extend beyond the image.
 struct Box {
   double x_min = 0.0;
   double y_min = 0.0;
@@ -27,7 +27,8 @@ struct Detection {
 
 enum class DetectionState { kPresent, kLate, kNone };
 
-/// All boxes of one picture. `kNone`: nobody looked; `kPresent` with no boxes: looked and found nothing.
+/// All boxes of one image. `kNone`: the detector did not process it; `kPresent` with no boxes: processed,
+/// and nothing found.
 struct DetectionSet {
   Timestamp t;
   DetectionState state = DetectionState::kNone;

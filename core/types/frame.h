@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One moment of the RGB-D camera.
+/// One frame of an RGB-D camera.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace stillpoint {
 
-/// Pictures share their pixels when copied: nobody writes into them after the reader made them.
+/// Copies share their pixels; images are not modified after they were read.
 struct Frame {
   std::int64_t id = 0;  ///< position in the sequence, from 0
-  Timestamp t;          ///< stamp of the colour picture
+  Timestamp t;          ///< timestamp of the color image
   cv::Mat gray;         ///< CV_8UC1
   cv::Mat color;        ///< CV_8UC3, RGB; may be empty
-  cv::Mat depth;        ///< CV_16UC1 of the size of gray, registered to it; 0 = not measured; may be empty
+  cv::Mat depth;        ///< CV_16UC1, same size as gray, registered to it; 0 = not measured; may be empty
   double depth_units_per_m = 1000.0;
 };
 
-/// Depth at a pixel (rounded to the nearest) [m]; 0 when not measured or outside the picture.
+/// Depth at a pixel (rounded to the nearest) [m]; 0 if not measured or outside the image.
 [[nodiscard]] inline double depth_at(const cv::Mat& depth, double depth_units_per_m, double u_px,
                                      double v_px) {
   const int column = cvRound(u_px);

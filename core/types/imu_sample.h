@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One inertial measurement, and the noise of the sensor that made it.
+/// IMU sample and IMU noise parameters.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ struct ImuSample {
   Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();
 };
 
-/// Continuous-time noise densities, as a data sheet or an Allan plot gives them.
+/// Continuous-time noise densities, as given by a data sheet or an Allan deviation plot.
 struct ImuNoise {
   double gyro_noise = 1.6e-3;   ///< [rad/s/sqrt(Hz)]
   double accel_noise = 1.6e-2;  ///< [m/s^2/sqrt(Hz)]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What inertial data say about the camera's motion between two pictures.
+/// Camera motion between two frames, predicted from inertial data.
 #pragma once
 
 #include "core/geometry/pose.h"
@@ -10,7 +10,7 @@ namespace stillpoint {
 struct MotionPrior {
   Pose T_ccur_cprev;
   bool has_rotation = false;     ///< gyroscope samples cover the interval
-  bool has_translation = false;  ///< velocity and gravity are known too
+  bool has_translation = false;  ///< velocity and gravity are known as well
 };
 
 }  // namespace stillpoint

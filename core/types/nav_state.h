@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where the body is, how it moves, and what its IMU gets wrong.
+/// Navigation state: pose, velocity and IMU biases of the body.
 #pragma once
 
 #include <Eigen/Core>

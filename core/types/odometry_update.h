@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the estimator says after each picture.
+/// Output of the estimator after each frame.
 #pragma once
 
 #include <cstdint>
@@ -10,38 +10,38 @@
 
 namespace stillpoint {
 
-enum class OdometryStatus { kInitialising, kTracking, kLost };
+enum class OdometryStatus { kInitializing, kTracking, kLost };
 
-/// Stable names for files that people and programs read.
+/// Names used in output files.
 [[nodiscard]] constexpr std::string_view status_name(OdometryStatus status) {
-  constexpr std::string_view kNames[] = {"initialising", "tracking", "lost"};
+  constexpr std::string_view kNames[] = {"initializing", "tracking", "lost"};
   return kNames[static_cast<std::size_t>(status)];
 }
 
 struct OdometryCounters {
-  int tracked_features = 0;  ///< came from the tracker
-  int window_landmarks = 0;  ///< took part in the solve
+  int tracked_features = 0;  ///< received from the tracker
+  int window_landmarks = 0;  ///< included in the solve
   int depth_landmarks = 0;   ///< of those, with measured depth
-  int dynamic_features = 0;  ///< kept out as moving
+  int dynamic_features = 0;  ///< excluded as dynamic
   int solver_iterations = 0;
   bool keyframe = false;
-  bool reset = false;  ///< a failure was detected at this picture and the estimator begins anew
+  bool reset = false;  ///< a failure was detected in this frame; the estimator reinitializes
 };
 
-/// Fingerprints of what the modules hold after a picture, see core/pipeline/state_hash.h.
+/// Hashes of the modules' state after a frame, see core/pipeline/state_hash.h.
 struct StateHashes {
   std::uint64_t tracking = 0;      ///< features
-  std::uint64_t dynamic = 0;       ///< verdicts
+  std::uint64_t dynamic = 0;       ///< labels
   std::uint64_t optimization = 0;  ///< state
 };
 
-/// `state` is valid only while `status == kTracking`.
+/// `state` is valid only if `status == kTracking`.
 struct OdometryUpdate {
   std::int64_t frame_id = 0;
   NavState state;
-  Pose T_w_c;  ///< of the camera, with the extrinsics of that moment
-  OdometryStatus status = OdometryStatus::kInitialising;
-  double time_offset_s = 0.0;  ///< present estimate
+  Pose T_w_c;  ///< camera pose, by the extrinsics estimated at this frame
+  OdometryStatus status = OdometryStatus::kInitializing;
+  double time_offset_s = 0.0;  ///< current estimate
   OdometryCounters counters;
   StateHashes hashes;
   ModuleTimings timings;

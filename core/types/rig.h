@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Calibration of the sensors on one robot.
+/// Sensor calibration of one robot.
 #pragma once
 
 #include "core/geometry/camera.h"
@@ -10,12 +10,12 @@ namespace stillpoint {
 
 struct Rig {
   Camera camera;
-  double depth_units_per_m = 1000.0;  ///< raw depth value of one metre
+  double depth_units_per_m = 1000.0;  ///< raw depth value corresponding to 1 m
   bool has_imu = false;
-  Pose T_b_c;  ///< camera to body; identity without an IMU
+  Pose T_b_c;  ///< camera to body; identity if there is no IMU
   ImuNoise imu_noise;
-  double time_offset_s = 0.0;      ///< IMU time of an exposure minus the picture's stamp
-  double rolling_shutter_s = 0.0;  ///< read-out time from the first to the last row; 0 = global shutter
+  double time_offset_s = 0.0;      ///< IMU time of an exposure minus the timestamp of its image
+  double rolling_shutter_s = 0.0;  ///< readout time from the first to the last row; 0 = global shutter
 };
 
 }  // namespace stillpoint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A path as a list of stamped poses, and the name of the frame that moved along it.
+/// Trajectory: a list of timestamped poses of a named coordinate frame.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ namespace stillpoint {
 
 struct StampedPose {
   Timestamp t;
-  Pose T_w_f;  ///< frame f (see Trajectory::frame) in the world
+  Pose T_w_f;  ///< pose of frame f (see Trajectory::frame) in the world
 };
 
-/// Poses in strictly rising order of time.
+/// Poses in strictly increasing order of time.
 struct Trajectory {
   std::string frame;  ///< e.g. "camera", "imu", "base_link"
   std::vector<StampedPose> poses;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// EuRoC MAV data sets (Burri et al., IJRR 2016), ASL folder layout: left camera and IMU.
+/// EuRoC MAV datasets (Burri et al., IJRR 2016), ASL folder layout: left camera and IMU.
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
 #include "datasets/formats/formats.h"
-#include "datasets/imu_file.h"
-#include "datasets/sensor_yaml.h"
-#include "datasets/text_table.h"
-#include "datasets/trajectory_file.h"
+#include "datasets/io/imu_file.h"
+#include "datasets/io/sensor_yaml.h"
+#include "datasets/io/text_table.h"
+#include "datasets/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
-/// The folder that holds cam0 and imu0: `folder` itself or its mav0.
+/// The folder that contains cam0 and imu0: `folder` itself or its mav0.
 std::filesystem::path sensors_folder(const std::filesystem::path& folder) {
   return std::filesystem::exists(folder / "mav0") ? folder / "mav0" : folder;
 }
@@ -22,7 +22,7 @@ Camera camera_of(const SensorYaml& sensor) {
   Camera camera = sensor.with_distortion(Camera{});
   const std::vector<double> size = sensor.numbers("resolution");
   if (size.size() != 2 || size[0] < 1.0 || size[1] < 1.0)
-    sensor.fail("resolution", "must be width and height");
+    sensor.fail("resolution", "must be two positive numbers: width, height");
   camera.width = static_cast<int>(size[0]);
   camera.height = static_cast<int>(size[1]);
   const std::vector<double> values = sensor.numbers("intrinsics");
@@ -36,20 +36,20 @@ Camera camera_of(const SensorYaml& sensor) {
   return camera;
 }
 
-void add_pictures(const std::filesystem::path& camera_folder, SequenceContent& content, FaultLog& faults) {
+void add_images(const std::filesystem::path& camera_folder, SequenceContent& content, FaultLog& faults) {
   const TextTable table(camera_folder / "data.csv");
   std::vector<Timestamp>& times = content.info.frame_times;
   table.for_each(faults, [&](const TextRow& row) {
     const Timestamp t = table.nanoseconds(row, 0);
     const std::filesystem::path file = camera_folder / "data" / table.text(row, 1);
-    if (!times.empty()) table.require_rising(row, times.back(), t);
+    if (!times.empty()) table.require_increasing(row, times.back(), t);
     times.push_back(t);
-    content.pictures.push_back(PictureFiles{.color = file, .depth = {}, .depth_offset_s = 0.0});
+    content.frame_files.push_back(FrameFiles{.color = file, .depth = {}, .depth_offset_s = 0.0});
   });
-  if (times.empty()) table.fail("lists no pictures; is the sequence complete?");
+  if (times.empty()) table.fail("lists no images; is the sequence complete?");
 }
 
-/// @param T_body_b the IMU in EuRoC's body frame
+/// @param T_body_b pose of the IMU in the body frame of EuRoC
 void add_ground_truth(const std::filesystem::path& folder, const Pose& T_body_b, SequenceContent& content,
                       FaultLog& faults) {
   GroundTruth& truth = content.info.ground_truth;
@@ -71,7 +71,7 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  add_pictures(sensors / "cam0", content, faults);
+  add_images(sensors / "cam0", content, faults);
   content.info.imu = read_imu_file(sensors / "imu0" / "data.csv", TimeUnit::kNanoseconds, faults);
 
   const SensorYaml camera(sensors / "cam0" / "sensor.yaml");
@@ -89,13 +89,13 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   return content;
 }
 
-bool recognise(const std::filesystem::path& folder) {
+bool recognize(const std::filesystem::path& folder) {
   return std::filesystem::exists(sensors_folder(folder) / "cam0" / "data.csv");
 }
 
 }  // namespace
 
 const SequenceFormat kEurocFormat{
-    .name = "euroc", .mark = "mav0/cam0/data.csv", .recognise = recognise, .read = read};
+    .name = "euroc", .signature = "mav0/cam0/data.csv", .recognize = recognize, .read = read};
 
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

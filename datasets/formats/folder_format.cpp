@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bare pictures: color/NAME.{png,jpg} and depth/NAME.png, a pinhole calibration as JSON, no ground truth.
+/// Plain image folders: color/NAME.{png,jpg} and depth/NAME.png, pinhole calibration as JSON, no ground
+/// truth.
 #include <algorithm>
 #include <charconv>
 #include <fstream>
@@ -11,12 +12,12 @@
 #include "core/base/error.h"
 #include "datasets/formats/formats.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
 constexpr std::int64_t kFramesPerSecond = 30;
 
-bool is_picture(const std::filesystem::path& file) {
+bool is_image(const std::filesystem::path& file) {
   return file.extension() == ".png" || file.extension() == ".jpg" || file.extension() == ".jpeg";
 }
 
@@ -27,7 +28,7 @@ std::vector<std::filesystem::path> sorted_files(const std::filesystem::path& fol
   return files;
 }
 
-/// The number that the file's stem is, so that a missing picture leaves a gap in time.
+/// The file name as a number, so that a missing image results in a gap in time.
 std::optional<std::int64_t> number_of(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   std::int64_t number = 0;
@@ -36,23 +37,25 @@ std::optional<std::int64_t> number_of(const std::filesystem::path& file) {
   return number;
 }
 
-void add_pictures(SequenceContent& content) {
+void add_images(SequenceContent& content) {
   std::int64_t last = -1;
   for (const std::filesystem::path& color : sorted_files(content.info.folder / "color")) {
-    if (!is_picture(color)) continue;
+    if (!is_image(color)) continue;
     const std::int64_t number = number_of(color).value_or(last + 1);
     if (number <= last)
-      throw InputError(color.string(), "the names are neither numbers in order nor plain names");
+      throw InputError(color.string(),
+                       "the numbered file names are not in increasing order; rename the files");
     last = number;
     content.info.frame_times.push_back(
         Timestamp{(number * 1'000'000'000 + kFramesPerSecond / 2) / kFramesPerSecond});
-    content.pictures.push_back(PictureFiles{
+    content.frame_files.push_back(FrameFiles{
         .color = color, .depth = content.info.folder / "depth" / (color.stem().string() + ".png")});
   }
-  if (content.pictures.empty()) throw InputError(content.info.folder.string(), "color/ holds no pictures");
+  if (content.frame_files.empty())
+    throw InputError(content.info.folder.string(), "color/ contains no images");
 }
 
-/// Open3D's layout: width, height, and `intrinsic_matrix`, 3x3 column by column.
+/// Open3D's format: width, height, and the 3x3 `intrinsic_matrix` in column-major order.
 Camera read_camera(const std::filesystem::path& file) {
   std::ifstream in(file);
   const nlohmann::json root = nlohmann::json::parse(in, nullptr, false);
@@ -67,34 +70,34 @@ Camera read_camera(const std::filesystem::path& file) {
                         .model = CameraModel::kRadialTangential,
                         .distortion = {}};
     if (camera.width > 0 && camera.height > 0 && camera.fx > 0.0 && camera.fy > 0.0) return camera;
-  } catch (const std::exception&) {  // an absent key, a wrong type or too few numbers: the same remedy
+  } catch (const std::exception&) {  // missing key, wrong type or too few numbers: same message for all
   }
   throw InputError(file.string(),
-                   "is no camera: width, height and a 3x3 intrinsic_matrix (column by column) are needed");
+                   "is not a camera file; expected width, height and a column-major 3x3 intrinsic_matrix");
 }
 
 SequenceContent read(const std::filesystem::path& folder, FaultLog&) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  add_pictures(content);
+  add_images(content);
   for (const std::filesystem::path& file : sorted_files(folder)) {
     if (file.extension() != ".json") continue;
     content.info.rig.camera = read_camera(file);
     content.info.notes.push_back("calibration: " + file.filename().string());
     break;
   }
-  content.info.notes.push_back("time stamps: file number / 30, as the pictures carry none");
+  content.info.notes.push_back("timestamps: file number / 30 s, as the images have none");
   return content;
 }
 
-bool recognise(const std::filesystem::path& folder) {
+bool recognize(const std::filesystem::path& folder) {
   return std::filesystem::is_directory(folder / "color") && std::filesystem::is_directory(folder / "depth");
 }
 
 }  // namespace
 
 const SequenceFormat kFolderFormat{
-    .name = "folder", .mark = "color/ and depth/", .recognise = recognise, .read = read};
+    .name = "folder", .signature = "color/ and depth/", .recognize = recognize, .read = read};
 
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

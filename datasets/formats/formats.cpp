@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 
 std::span<const SequenceFormat* const> sequence_formats() {
   static constexpr std::array<const SequenceFormat*, 5> kAll{&kTumFormat, &kOpenLorisFormat, &kEurocFormat,
@@ -11,4 +11,4 @@ std::span<const SequenceFormat* const> sequence_formats() {
   return kAll;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

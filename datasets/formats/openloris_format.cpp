@@ -5,26 +5,26 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "datasets/calibration/transform_graph.h"
 #include "datasets/formats/formats.h"
-#include "datasets/formats/paired_pictures.h"
-#include "datasets/imu_file.h"
-#include "datasets/sensor_yaml.h"
-#include "datasets/trajectory_file.h"
-#include "datasets/transform_graph.h"
+#include "datasets/formats/paired_images.h"
+#include "datasets/io/imu_file.h"
+#include "datasets/io/sensor_yaml.h"
+#include "datasets/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
 constexpr const char* kCamera = "d400_color_optical_frame";
 constexpr const char* kGyroscope = "d400_gyroscope";
 constexpr const char* kAccelerometer = "d400_accelerometer";
 constexpr const char* kGroundTruthFrame = "base_link";
-constexpr double kSamePlace = 1e-3;  ///< [m, rad] by which the two inertial sensors' poses may differ
+constexpr double kMaxImuMisalignment = 1e-3;  ///< [m, rad] between the poses of gyroscope and accelerometer
 
 Camera camera_of(const SensorYaml& sensor) {
   Camera camera = sensor.with_distortion(Camera{});
-  camera.width = sensor.positive_whole("width");
-  camera.height = sensor.positive_whole("height");
+  camera.width = sensor.positive_int("width");
+  camera.height = sensor.positive_int("height");
   const std::vector<double> values = sensor.numbers("intrinsics");  // fx, cx, fy, cy
   if (values.size() != 4 || values[0] <= 0.0 || values[2] <= 0.0) {
     sensor.fail("intrinsics", "must be the four numbers fx, cx, fy, cy");
@@ -36,12 +36,12 @@ Camera camera_of(const SensorYaml& sensor) {
   return camera;
 }
 
-/// Density [unit/sqrt(Hz)] of the mean of the axes' variances.
+/// Noise density [unit/sqrt(Hz)]: square root of the mean variance of the axes.
 double density(const SensorYaml& sensor, const std::string& key) {
   const std::vector<double> variances = sensor.numbers(key);
   double sum = 0.0;
   for (const double variance : variances) sum += variance;
-  if (variances.empty() || !(sum > 0.0)) sensor.fail(key, "must hold variances greater than 0");
+  if (variances.empty() || !(sum > 0.0)) sensor.fail(key, "must contain variances greater than 0");
   return std::sqrt(sum / static_cast<double>(variances.size()));
 }
 
@@ -67,19 +67,19 @@ std::vector<NamedTransform> read_links(const std::filesystem::path& file) {
 Pose require_transform(const std::filesystem::path& file, const std::vector<NamedTransform>& links,
                        const std::string& a, const std::string& b) {
   const std::optional<Pose> T_a_b = find_transform(links, a, b);
-  if (!T_a_b) throw InputError(file.string(), "no chain of transforms joins " + a + " and " + b);
+  if (!T_a_b) throw InputError(file.string(), "no chain of transforms connects " + a + " and " + b);
   return *T_a_b;
 }
 
-/// The body is the gyroscope; an accelerometer elsewhere would need its lever arm.
+/// The body frame is that of the gyroscope; an accelerometer with another pose would require a lever arm.
 void set_extrinsics(SequenceContent& content, const std::filesystem::path& file) {
   const std::vector<NamedTransform> links = read_links(file);
   if (content.info.rig.has_imu) {
     const Pose T_g_a = require_transform(file, links, kGyroscope, kAccelerometer);
     const double angle = Eigen::AngleAxisd(T_g_a.q).angle();
-    if (T_g_a.p.norm() > kSamePlace || angle > kSamePlace) {
+    if (T_g_a.p.norm() > kMaxImuMisalignment || angle > kMaxImuMisalignment) {
       throw InputError(file.string(),
-                       "gyroscope and accelerometer sit at different poses, which is not supported");
+                       "gyroscope and accelerometer have different poses, which is not supported");
     }
     content.info.rig.T_b_c = require_transform(file, links, kGyroscope, kCamera);
   }
@@ -98,7 +98,7 @@ void add_imu(SequenceContent& content, FaultLog& faults) {
   content.info.rig.has_imu = true;
   faults.guard([&] {
     if (content.info.imu.empty()) {
-      throw InputError(gyro_file.string(), "no sample lies within the time of d400_accelerometer.txt");
+      throw InputError(gyro_file.string(), "no sample lies within the time span of d400_accelerometer.txt");
     }
   });
 }
@@ -107,7 +107,7 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  add_paired_pictures(folder / "color.txt", folder / "aligned_depth.txt", content, faults);
+  add_paired_images(folder / "color.txt", folder / "aligned_depth.txt", content, faults);
   add_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {
     content.info.ground_truth.trajectory =
@@ -120,14 +120,16 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   return content;
 }
 
-bool recognise(const std::filesystem::path& folder) {
+bool recognize(const std::filesystem::path& folder) {
   return std::filesystem::exists(folder / "color.txt") &&
          std::filesystem::exists(folder / "aligned_depth.txt");
 }
 
 }  // namespace
 
-const SequenceFormat kOpenLorisFormat{
-    .name = "openloris", .mark = "color.txt and aligned_depth.txt", .recognise = recognise, .read = read};
+const SequenceFormat kOpenLorisFormat{.name = "openloris",
+                                      .signature = "color.txt and aligned_depth.txt",
+                                      .recognize = recognize,
+                                      .read = read};
 
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

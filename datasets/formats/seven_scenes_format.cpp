@@ -10,22 +10,23 @@
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
 #include "datasets/formats/formats.h"
-#include "datasets/trajectory_file.h"
+#include "datasets/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
 constexpr std::string_view kPrefix = "frame-";
-constexpr std::int64_t kFramesPerSecond = 30;  ///< of the Kinect; the frames carry no stamps
+constexpr std::int64_t kFramesPerSecond = 30;  ///< of the Kinect; the frames have no timestamps
 constexpr std::uint16_t kNoDepth = 65535;
 
-/// The data set gives one focal length, that of the depth camera, and its poses are of the depth camera;
-/// colour is of another camera 23 mm beside it. Its values were estimated on "redkitchen", frames 0-399,
-/// without the poses given. Focal length, distortion, rotation and baseline are those that lay the steps of
-/// the depth pictures best on the edges of the colour pictures (which do not tell the principal point from a
-/// rotation). Principal point and rows' read-out, 0.76 of a frame, are those that let corners followed over
-/// 5 to 15 pictures agree best with a free motion of their registered depth for each pair of pictures. Every
-/// Kinect differs a little: rig.toml overrides.
+/// The dataset provides only the focal length of the depth camera, and its poses are those of the depth
+/// camera. The color camera is 23 mm beside it. Its calibration was estimated on "redkitchen", frames 0-399,
+/// without using the ground-truth poses. Focal length, distortion, rotation and baseline maximize the
+/// alignment of depth discontinuities with edges of the color images (this cannot separate the principal
+/// point from a rotation). Principal point and rolling-shutter readout time (0.76 of the frame interval)
+/// minimize the reprojection error of corners tracked over 5 to 15 frames, with registered depth and one
+/// estimated motion per frame pair. Kinects differ slightly from each other; a rig.toml overrides these
+/// values.
 constexpr Camera kDepthCamera{.width = 640,
                               .height = 480,
                               .fx = 585.0,
@@ -44,7 +45,7 @@ constexpr Camera kColorCamera{.width = 640,
                               .distortion = {0.0, -0.068}};
 constexpr double kRollingShutter_s = 0.0253;
 
-/// Depth camera to colour camera.
+/// Depth camera to color camera.
 Pose depth_to_color() { return Pose{exp_so3({0.0035, 0.0083, 0.0085}), {-0.023, -0.0005, 0.0}}; }
 
 struct NumberedFrame {
@@ -52,7 +53,7 @@ struct NumberedFrame {
   std::filesystem::path color;
 };
 
-/// The number of a colour picture's file name.
+/// The frame number in the file name of a color image; empty for other files.
 std::optional<std::int64_t> frame_number(const std::string& name) {
   if (!name.starts_with(kPrefix)) return std::nullopt;
   std::int64_t number = 0;
@@ -84,10 +85,10 @@ void add_frame(const NumberedFrame& frame, SequenceContent& content, FaultLog& f
   const std::string name = frame.color.filename().string();
   const std::filesystem::path stem = frame.color.parent_path() / name.substr(0, name.find('.'));
   if (!content.info.frame_times.empty() && content.info.frame_times.back() == t) {
-    throw InputError(frame.color.string(), "the frame is there both as PNG and as JPEG; remove one");
+    throw InputError(frame.color.string(), "the frame exists both as PNG and as JPEG; remove one of them");
   }
   content.info.frame_times.push_back(t);
-  content.pictures.push_back(PictureFiles{.color = frame.color, .depth = stem.string() + ".depth.png"});
+  content.frame_files.push_back(FrameFiles{.color = frame.color, .depth = stem.string() + ".depth.png"});
   const std::filesystem::path pose = stem.string() + ".pose.txt";
   if (!std::filesystem::exists(pose)) return;
   faults.guard([&] {
@@ -101,8 +102,8 @@ void set_calibration(SequenceContent& content) {
   content.info.rig.rolling_shutter_s = kRollingShutter_s;
   content.depth_camera = DepthCamera{.camera = kDepthCamera, .T_c_d = depth_to_color()};
   content.info.ground_truth.T_c_f = depth_to_color();
-  content.info.notes.push_back(
-      "calibration: depth (585 px) is registered to the colour camera (527.5 px, 23 mm beside it)");
+  content.info.notes.emplace_back(
+      "calibration: depth (585 px) is registered to the color camera (527.5 px, baseline 23 mm)");
 }
 
 SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
@@ -113,18 +114,18 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   for (const NumberedFrame& frame : list_frames(folder)) {
     faults.guard([&] { add_frame(frame, content, faults); });
   }
-  if (content.pictures.empty()) throw InputError(folder.string(), "holds no frame-N.color.png or .jpg");
+  if (content.frame_files.empty()) throw InputError(folder.string(), "contains no frame-N.color.png or .jpg");
   set_calibration(content);
   content.no_depth_value = kNoDepth;
-  content.info.notes.push_back("time stamps: frame number / 30, as the frames carry none");
+  content.info.notes.emplace_back("timestamps: frame number / 30 s, as the frames have none");
   return content;
 }
 
-bool recognise(const std::filesystem::path& folder) { return !list_frames(folder).empty(); }
+bool recognize(const std::filesystem::path& folder) { return !list_frames(folder).empty(); }
 
 }  // namespace
 
 const SequenceFormat kSevenScenesFormat{
-    .name = "7scenes", .mark = "frame-N.color.png or .jpg", .recognise = recognise, .read = read};
+    .name = "7scenes", .signature = "frame-N.color.png or .jpg", .recognize = recognize, .read = read};
 
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// TUM RGB-D benchmark (Sturm et al., IROS 2012) and folders laid out like it.
+/// TUM RGB-D benchmark (Sturm et al., IROS 2012) and folders with the same layout.
 #include <array>
 #include <string>
 #include <string_view>
 
 #include "datasets/formats/formats.h"
-#include "datasets/formats/paired_pictures.h"
-#include "datasets/imu_file.h"
-#include "datasets/trajectory_file.h"
+#include "datasets/formats/paired_images.h"
+#include "datasets/io/imu_file.h"
+#include "datasets/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
 constexpr double kTumDepthUnitsPerM = 5000.0;
 
-/// Colour camera of one of the benchmark's three Kinects.
+/// Color camera of one of the three Kinects of the benchmark.
 struct KinectCalibration {
   std::string_view name;
   Camera camera;
 };
 
-/// From the benchmark's page "File formats", section on intrinsic calibration (ROS default is not used; depth
-/// is already corrected in the published pictures).
+/// From the page "File Formats" of the benchmark, section on intrinsic calibration (not the ROS default; the
+/// published depth images are already scale-corrected).
 const std::array<KinectCalibration, 3>& kinects() {
   static const std::array<KinectCalibration, 3> kAll{
       {{"freiburg1",
@@ -60,21 +60,21 @@ void set_calibration(SequenceContent& content) {
   for (const KinectCalibration& kinect : kinects()) {
     if (content.info.name.find(kinect.name) == std::string::npos) continue;
     rig.camera = kinect.camera;
-    content.info.notes.push_back("calibration: the published one of " + std::string(kinect.name));
+    content.info.notes.push_back("calibration: published values of " + std::string(kinect.name));
     return;
   }
   rig.camera = kinects().back().camera;
-  content.calibration_assumed =
-      "calibration: the folder's name says none of freiburg1, freiburg2, freiburg3; freiburg3's is assumed";
+  content.assumed_calibration_note =
+      "calibration: freiburg3 assumed, as the folder name contains none of freiburg1, freiburg2, freiburg3";
 }
 
 void add_imu(SequenceContent& content, FaultLog& faults) {
-  const std::filesystem::path text = content.info.folder / "imu.txt";
-  const std::filesystem::path table = content.info.folder / "imu.csv";
-  if (std::filesystem::exists(text)) {
-    content.info.imu = read_imu_file(text, TimeUnit::kSeconds, faults);
-  } else if (std::filesystem::exists(table)) {
-    content.info.imu = read_imu_file(table, TimeUnit::kNanoseconds, faults);
+  const std::filesystem::path txt = content.info.folder / "imu.txt";
+  const std::filesystem::path csv = content.info.folder / "imu.csv";
+  if (std::filesystem::exists(txt)) {
+    content.info.imu = read_imu_file(txt, TimeUnit::kSeconds, faults);
+  } else if (std::filesystem::exists(csv)) {
+    content.info.imu = read_imu_file(csv, TimeUnit::kNanoseconds, faults);
   } else {
     return;
   }
@@ -86,7 +86,7 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  add_paired_pictures(folder / "rgb.txt", folder / "depth.txt", content, faults);
+  add_paired_images(folder / "rgb.txt", folder / "depth.txt", content, faults);
   set_calibration(content);
   add_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {
@@ -95,10 +95,10 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   return content;
 }
 
-bool recognise(const std::filesystem::path& folder) { return std::filesystem::exists(folder / "rgb.txt"); }
+bool recognize(const std::filesystem::path& folder) { return std::filesystem::exists(folder / "rgb.txt"); }
 
 }  // namespace
 
-const SequenceFormat kTumFormat{.name = "tum", .mark = "rgb.txt", .recognise = recognise, .read = read};
+const SequenceFormat kTumFormat{.name = "tum", .signature = "rgb.txt", .recognize = recognize, .read = read};
 
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

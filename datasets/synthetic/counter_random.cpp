@@ -4,15 +4,15 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillpoint {
+namespace stillpoint::synth {
 namespace {
 
 constexpr int kQuantiles = 4096;
 
-/// Upper-tail probability of the normal law.
+/// Upper-tail probability of the standard normal distribution.
 double normal_tail(double x) { return 0.5 * std::erfc(x / std::numbers::sqrt2); }
 
-/// Where the normal law's tail is `probability`, by bisection; probability in (0, 0.5].
+/// Inverse of `normal_tail` by bisection; probability in (0, 0.5].
 double normal_quantile(double probability) {
   double low = 0.0, high = 8.0;
   for (int step = 0; step < 60; ++step) {
@@ -48,4 +48,4 @@ double RandomSequence::normal() {
   return radius * std::cos(2.0 * std::numbers::pi * uniform());
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::synth

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Random numbers that depend on a key and a counter only: same seed, same bits, whatever the thread and
-/// order.
+/// Counter-based random numbers: a function of key and counter only, independent of threads and call order.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-namespace stillpoint {
+namespace stillpoint::synth {
 
-/// What a random stream is for; each purpose has its own numbers, so that adding one never shifts another.
+/// Independent random streams; draws of one stream do not affect the others. The values are part of the keys.
 enum class RandomStream : std::uint64_t {
   kColorNoise = 1,
   kDepthNoise,
@@ -22,7 +21,7 @@ enum class RandomStream : std::uint64_t {
   kDetector,
 };
 
-/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits look independent.
+/// Finalizer of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits look independent.
 [[nodiscard]] constexpr std::uint64_t mix_bits(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -30,13 +29,14 @@ enum class RandomStream : std::uint64_t {
   return x ^ (x >> 31);
 }
 
-/// Key of one stream of one seed; `index` parts it further (a frame, a person, a texture).
+/// Key of one stream of one seed; `index` selects a substream (a frame, a person, a texture).
 [[nodiscard]] constexpr std::uint64_t random_key(std::uint64_t seed, RandomStream stream,
                                                  std::uint64_t index = 0) {
   return mix_bits(mix_bits(seed ^ (static_cast<std::uint64_t>(stream) << 56)) + index);
 }
 
-/// Normal deviate of 12 random bits: the quantile of the middle of their cell. Tails end at 3.7 sigma.
+/// Standard normal deviate from the low 12 bits: the quantile at the center of one of 4096 equal-probability
+/// cells. The tails are cut at 3.7 sigma.
 [[nodiscard]] float normal_from_bits(std::uint64_t bits);
 
 /// A sequence of numbers for scene building and sensors with few draws.
@@ -59,4 +59,4 @@ class RandomSequence {
   std::uint64_t counter_ = 0;
 };
 
-}  // namespace stillpoint
+}  // namespace stillpoint::synth

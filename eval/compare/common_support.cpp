@@ -8,31 +8,32 @@
 #include "eval/metrics/coverage.h"
 #include "eval/metrics/strict_rpe.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-/// Parts of `whole` outside all of `lost`.
-std::vector<TimeSpan> outside(std::vector<TimeSpan> lost, const TimeSpan& whole) {
+/// Parts of `whole` that do not overlap any of `lost`.
+std::vector<TimeSpan> complement_of(std::vector<TimeSpan> lost, const TimeSpan& whole) {
   std::sort(lost.begin(), lost.end(), [](const TimeSpan& a, const TimeSpan& b) { return a.begin < b.begin; });
-  std::vector<TimeSpan> kept;
+  std::vector<TimeSpan> remaining;
   Timestamp from = whole.begin;
   for (const TimeSpan& span : lost) {
-    if (span.begin > from) kept.push_back({from, span.begin});
+    if (span.begin > from) remaining.push_back({from, span.begin});
     from = std::max(from, span.end);
   }
-  if (from < whole.end) kept.push_back({from, whole.end});
-  return kept;
+  if (from < whole.end) remaining.push_back({from, whole.end});
+  return remaining;
 }
 
-std::vector<MatchedPose> inside(std::span<const MatchedPose> matches, std::span<const TimeSpan> spans) {
-  std::vector<MatchedPose> chosen;
+std::vector<MatchedPose> matches_within(std::span<const MatchedPose> matches,
+                                        std::span<const TimeSpan> spans) {
+  std::vector<MatchedPose> selected;
   auto span = spans.begin();
   for (const MatchedPose& match : matches) {
     while (span != spans.end() && span->end < match.t) ++span;
     if (span == spans.end()) break;
-    if (match.t >= span->begin) chosen.push_back(match);
+    if (match.t >= span->begin) selected.push_back(match);
   }
-  return chosen;
+  return selected;
 }
 
 std::optional<double> ate_rmse(std::span<const MatchedPose> matches, Alignment alignment) {
@@ -51,7 +52,7 @@ bool ranks_before(const ComparedRun& a, const ComparedRun& b) {
 
 void fill_common(ComparedRun& run, std::span<const MatchedPose> matches, std::span<const TimeSpan> common,
                  Alignment alignment) {
-  const std::vector<MatchedPose> shared = inside(matches, common);
+  const std::vector<MatchedPose> shared = matches_within(matches, common);
   run.common_pairs = shared.size();
   run.common_ate_rmse_m = ate_rmse(shared, alignment);
   if (const StrictRpeResult rpe = strict_rpe(shared, 1.0); rpe.errors) {
@@ -79,7 +80,7 @@ Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs, co
     if (!compared.failed) lost_by_any.insert(lost_by_any.end(), lost.begin(), lost.end());
     comparison.ranking.push_back(compared);
   }
-  const std::vector<TimeSpan> common = outside(lost_by_any, whole);
+  const std::vector<TimeSpan> common = complement_of(lost_by_any, whole);
   for (const TimeSpan& span : common) comparison.common_s += seconds_between(span.begin, span.end);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!comparison.ranking[i].failed)
@@ -89,4 +90,4 @@ Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs, co
   return comparison;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Several runs on one sequence, compared where all of them have poses.
+/// Comparison of runs on one sequence over the time in which all of them have poses (common support).
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 #include "eval/trajectory/alignment.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 struct NamedRun {
   std::string name;
@@ -18,30 +18,30 @@ struct NamedRun {
 
 struct CompareOptions {
   Alignment alignment = Alignment::kSe3;
-  double max_hold_s = 1.0;    ///< how long a pose stands
-  double min_coverage = 0.5;  ///< of the ground truth's time; a run below it has failed
+  double max_hold_s = 1.0;    ///< validity of a pose, see coverage.h
+  double min_coverage = 0.5;  ///< runs with a smaller time coverage count as failed
 };
 
-/// One run's errors, on all it has and on what every run that did not fail has.
+/// Errors of one run, over all its poses (own) and over the common support of all runs that did not fail.
 struct ComparedRun {
   std::string name;
   bool failed = false;
-  double coverage = 0.0;  ///< share of the ground truth's time
+  double coverage = 0.0;  ///< fraction of the ground truth's duration
   std::optional<double> own_ate_rmse_m;
   std::optional<double> common_ate_rmse_m;
-  std::optional<double> common_rpe_m;  ///< strict, over 1 s; rmse
+  std::optional<double> common_rpe_m;  ///< RMSE of the strict RPE with delta 1 s
   std::optional<double> common_rpe_deg;
   std::size_t common_pairs = 0;
 };
 
 struct Comparison {
   std::vector<ComparedRun> ranking;  ///< by ATE on the common support; failed runs last, by coverage
-  double common_s = 0.0;             ///< time in which all runs that did not fail have a pose
+  double common_s = 0.0;             ///< duration of the common support
 };
 
-/// A run that lost most of its track cannot rank before one that kept it: failed runs stand last, and take no
-/// part in the common support. Equal errors keep the order of the input.
+/// Ranks runs by their ATE over the common support. Failed runs rank last and do not restrict the common
+/// support, so that a run that lost track early cannot rank first. Runs with equal errors keep their order.
 [[nodiscard]] Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs,
                                       const CompareOptions& options = {});
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

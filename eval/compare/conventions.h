@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Finds the usual mistakes of convention behind numbers that are too bad, or too strange, to be true.
+/// Detects violations of conventions (units, frames, quaternion order) that explain implausible errors.
 #pragma once
 
 #include <string>
@@ -7,24 +7,24 @@
 
 #include "core/types/trajectory.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 enum class Convention {
-  kStampUnit,         ///< milli-, micro- or nanoseconds taken for seconds, or another epoch
-  kTimeOffset,        ///< a constant offset of the clocks
-  kQuaternionOrder,   ///< qw first where qw last was expected
-  kInvertedPoses,     ///< T_f_w where T_w_f was expected
-  kBodyFrame,         ///< the poses are of another frame of the robot
-  kSwappedArguments,  ///< the first file looks like an estimate, the second like ground truth
+  kStampUnit,         ///< milli-, micro- or nanoseconds read as seconds, or another epoch
+  kTimeOffset,        ///< constant time offset
+  kQuaternionOrder,   ///< qw qx qy qz instead of qx qy qz qw
+  kInvertedPoses,     ///< T_f_w instead of T_w_f
+  kBodyFrame,         ///< poses of another body frame
+  kSwappedArguments,  ///< the ground truth looks like an estimate and vice versa
 };
 
 struct ConventionFinding {
   Convention convention = Convention::kStampUnit;
-  std::string sentence;  ///< what it looks like, the evidence, and what to do
+  std::string message;  ///< the suspected violation, the evidence, and a remedy
 };
 
-/// Findings in the order of the enum; empty when the numbers look as they should. Nothing is applied.
-[[nodiscard]] std::vector<ConventionFinding> find_convention_mistakes(const Trajectory& gt,
-                                                                      const Trajectory& est);
+/// Suspected violations in the order of the enum. The data are not modified.
+[[nodiscard]] std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt,
+                                                                        const Trajectory& est);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Reads a trajectory of whatever known format a path holds.
+/// Reads trajectories in any supported format.
 #pragma once
 
 #include <filesystem>
@@ -7,22 +7,23 @@
 
 #include "eval/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 struct TrajectorySource {
   std::filesystem::path path;
-  std::string format;           ///< tum, euroc, kitti, openloris, 7scenes; empty: recognised by content
-  std::filesystem::path times;  ///< KITTI's file of times
-  int sequence = 0;             ///< of an OpenLORIS file with several; 0: the only one
+  std::string format;           ///< tum, euroc, kitti, openloris, 7scenes; empty: detected from the content
+  std::filesystem::path times;  ///< file with the time stamps, for KITTI
+  int sequence = 0;             ///< sequence number, for OpenLORIS; 0: the only one
 };
 
-/// Reads by format. A folder is 7-Scenes; a file with a "seq:" line is OpenLORIS; rows of 12 numbers are
-/// KITTI; rows whose first field is a whole number of 16 digits or more are EuRoC; other rows are TUM.
+/// Reads a trajectory. Format detection: a folder is 7-Scenes; a file with a "key: value" line is OpenLORIS;
+/// rows of 12 numbers are KITTI; rows whose first field is an integer of 16 digits or more are EuRoC; other
+/// rows are TUM.
 /// @throws InputError for unreadable or malformed input, an unknown format, KITTI without times, or several
-/// sequences and no choice
+/// sequences without a sequence number
 [[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);
 
-/// The format that the text looks like; "tum" when nothing else fits.
-[[nodiscard]] std::string recognise_format(std::string_view text);
+/// The format of a text by the rules of `read_trajectory`.
+[[nodiscard]] std::string detect_format(std::string_view text);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

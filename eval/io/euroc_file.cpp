@@ -7,7 +7,7 @@
 #include "eval/io/pose_row.h"
 #include "eval/io/text_reader.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 LoadedTrajectory parse_euroc(std::string_view text, const std::string& name) {
   LoadedTrajectory loaded;
@@ -16,14 +16,16 @@ LoadedTrajectory parse_euroc(std::string_view text, const std::string& name) {
   while (const std::optional<std::string_view> line = lines.next()) {
     split_fields(*line, fields);
     if (fields.empty() || fields.front().front() == '#') continue;
-    const RowPlace place{name, lines.line_number()};
+    const RowLocation location{name, lines.line_number()};
     if (fields.size() < 8) {
-      throw place.error("a pose needs 8 numbers, found " + std::to_string(fields.size()) +
-                        "; expected \"ns,px,py,pz,qw,qx,qy,qz\"");
+      throw location.error("a pose needs 8 numbers, found " + std::to_string(fields.size()) +
+                           "; expected \"ns,px,py,pz,qw,qx,qy,qz\"");
     }
     const std::optional<Timestamp> t = parse_nanoseconds(fields[0]);
-    if (!t) throw place.error("the stamp is no whole number of nanoseconds; is this a file in seconds?");
-    append_row(loaded, *t, parse_pose(std::span(fields).subspan(1, 7), QuaternionOrder::kWxyz, place), place);
+    if (!t)
+      throw location.error("the stamp is not an integer number of nanoseconds; is the file in seconds?");
+    append_row(loaded, *t, parse_pose(std::span(fields).subspan(1, 7), QuaternionOrder::kWxyz, location),
+               location);
   }
   require_poses(loaded, name);
   return loaded;
@@ -41,4 +43,4 @@ std::string format_euroc(const Trajectory& trajectory) {
   return text;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

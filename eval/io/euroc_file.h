@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Trajectories in the EuRoC MAV csv format: `ns, px, py, pz, qw, qx, qy, qz, ...` a line.
+/// Trajectories in the EuRoC MAV CSV format: one row `ns, px, py, pz, qw, qx, qy, qz, ...` per pose.
 #pragma once
 
 #include <string>
@@ -7,14 +7,15 @@
 
 #include "eval/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// Lines that begin with '#' and empty lines are comments; columns after the quaternion (velocity, biases)
-/// are passed over. `name` stands for the file in messages.
-/// @throws InputError with file:line on a malformed row or a stamp that does not rise
+/// Parses a EuRoC trajectory. Empty lines, lines that begin with '#' and columns after the quaternion
+/// (velocity, biases) are ignored.
+/// @param name of the file, for error messages
+/// @throws InputError with file:line for a malformed row or a stamp that does not increase
 [[nodiscard]] LoadedTrajectory parse_euroc(std::string_view text, const std::string& name);
 
-/// The same path in this format, without velocities and biases; 9 decimals.
+/// The trajectory in this format with 9 decimals, without velocities and biases.
 [[nodiscard]] std::string format_euroc(const Trajectory& trajectory);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

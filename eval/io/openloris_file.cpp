@@ -12,7 +12,7 @@
 #include "eval/io/pose_row.h"
 #include "eval/io/text_reader.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 constexpr std::size_t kPoseColumns = 7;
@@ -33,68 +33,68 @@ class OpenlorisParser {
     file_.frame = "base_link";
   }
 
-  void take(std::string_view line, long line_number) {
+  void parse_line(std::string_view line, long line_number) {
     split_fields(line, fields_);
     if (fields_.empty() || fields_.front().front() == '#') return;
-    const RowPlace place{name_, line_number};
+    const RowLocation location{name_, line_number};
     const std::size_t colon = line.find(':');
     if (colon != std::string_view::npos) {
-      take_header(lower_case_trimmed(line.substr(0, colon)), lower_case_trimmed(line.substr(colon + 1)),
-                  place);
+      parse_header(lower_case_trimmed(line.substr(0, colon)), lower_case_trimmed(line.substr(colon + 1)),
+                   location);
     } else {
-      take_row(place);
+      parse_row(location);
     }
   }
 
   [[nodiscard]] OpenlorisFile finish() {
     if (file_.sequences.empty()) {
-      throw InputError(name_, "holds no \"seq:\" line; an OpenLORIS file has one before each sequence");
+      throw InputError(name_, "no \"seq:\" line found; an OpenLORIS file has one before each sequence");
     }
     return std::move(file_);
   }
 
  private:
-  void take_header(const std::string& key, const std::string& value, const RowPlace& place) {
+  void parse_header(const std::string& key, const std::string& value, const RowLocation& location) {
     if (key == "scene") file_.scene = value;
     if (key == "frame") file_.frame = value;
     if (key != "seq") return;
     int number = 0;
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
     if (error != std::errc() || end != value.data() + value.size()) {
-      throw place.error("sequence \"" + value + "\" is not a number");
+      throw location.error("sequence \"" + value + "\" is not a number");
     }
     const auto [entry, is_new] = file_.sequences.try_emplace(number);
-    if (!is_new) throw place.error("sequence " + value + " occurs twice; give each its own number");
+    if (!is_new) throw location.error("duplicate sequence " + value + "; expected unique numbers");
     sequence_ = &entry->second;
   }
 
-  void take_row(const RowPlace& place) {
-    if (sequence_ == nullptr) throw place.error("a pose stands before the first \"seq:\" line");
+  void parse_row(const RowLocation& location) {
+    if (sequence_ == nullptr) throw location.error("pose before the first \"seq:\" line");
     if (fields_.size() < 1 + kPoseColumns) {
-      throw place.error("a pose needs 8 numbers, found " + std::to_string(fields_.size()) +
-                        "; expected \"t tx ty tz qx qy qz qw\"");
+      throw location.error("a pose needs 8 numbers, found " + std::to_string(fields_.size()) +
+                           "; expected \"t tx ty tz qx qy qz qw\"");
     }
-    const Timestamp t = require_stamp(fields_.front(), place);
+    const Timestamp t = require_stamp(fields_.front(), location);
     const std::span<const std::string_view> columns = std::span(fields_).last(kPoseColumns);
-    const std::optional<Pose> pose = parse_pose(columns, QuaternionOrder::kXyzw, place);
+    const std::optional<Pose> pose = parse_pose(columns, QuaternionOrder::kXyzw, location);
     if (!pose) {
       ++file_.skipped_rows;
     } else if (repeated_ == RepeatedPoses::kDrop && repeats(columns)) {
       ++file_.repeated_poses;
     } else {
-      append(t, *pose, place);
+      append(t, *pose, location);
     }
   }
 
-  void append(Timestamp t, const Pose& pose, const RowPlace& place) {
+  void append(Timestamp t, const Pose& pose, const RowLocation& location) {
     LoadedTrajectory loaded;
     std::swap(loaded.trajectory, *sequence_);
-    append_row(loaded, t, pose, place);
+    append_row(loaded, t, pose, location);
     std::swap(loaded.trajectory, *sequence_);
   }
 
-  /// Whether the row's pose equals the last one in all numbers; remembers it. Not forgotten at a new
-  /// sequence.
+  /// Whether the pose equals that of the previous row. As in the OpenLORIS tools, the previous row may belong
+  /// to the previous sequence.
   [[nodiscard]] bool repeats(std::span<const std::string_view> columns) {
     std::array<double, kPoseColumns> values{};
     for (std::size_t i = 0; i < kPoseColumns; ++i) values[i] = *parse_number(columns[i]);
@@ -120,7 +120,8 @@ OpenlorisFile read_openloris(const std::filesystem::path& file, RepeatedPoses re
 OpenlorisFile parse_openloris(std::string_view text, const std::string& name, RepeatedPoses repeated) {
   OpenlorisParser parser(name, repeated);
   LineReader lines(text);
-  while (const std::optional<std::string_view> line = lines.next()) parser.take(*line, lines.line_number());
+  while (const std::optional<std::string_view> line = lines.next())
+    parser.parse_line(*line, lines.line_number());
   OpenlorisFile file = parser.finish();
   for (auto& [number, sequence] : file.sequences) sequence.frame = file.frame;
   return file;
@@ -134,4 +135,4 @@ std::string format_openloris(const OpenlorisFile& file) {
   return text;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -9,32 +9,34 @@
 
 #include "core/types/trajectory.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// What one file holds. A sequence without poses is one that was tried and failed.
+/// Contents of a file. A sequence without poses is a failed run.
 struct OpenlorisFile {
-  std::string scene;  ///< "home", "cafe", ..., in lower case
-  std::string frame;  ///< the frame that the poses are of, "base_link" where the file names none
+  std::string scene;                    ///< "home", "cafe", ..., in lower case
+  std::string frame;                    ///< body frame of the poses; "base_link" unless the file specifies it
   std::map<int, Trajectory> sequences;  ///< by number
-  std::size_t skipped_rows = 0;         ///< NaN or zero quaternion
-  std::size_t repeated_poses = 0;       ///< poses equal to the one before
+  std::size_t skipped_rows = 0;         ///< with NaN or a zero quaternion
+  std::size_t repeated_poses = 0;       ///< dropped poses equal to the previous one
 };
 
 enum class RepeatedPoses { kDrop, kKeep };
 
-/// Reads `scene:`, `frame:` and `seq:` lines and poses: the stamp is the first column of a row, the pose its
-/// last seven. Other header lines are passed over. A pose equal to the previous row's is dropped by default,
-/// as the OpenLORIS tools do (their -k keeps it): systems that lose track repeat their last pose.
-/// @throws InputError with file:line on a malformed row, a pose before the first `seq:`, or a sequence that
-/// occurs twice
+/// Reads `scene:`, `frame:` and `seq:` lines and poses: the first column of a row is the stamp, the last
+/// seven are the pose. Other header lines are ignored. A pose equal to that of the previous row is dropped by
+/// default, as in the OpenLORIS tools (their option -k keeps it), because systems repeat their last pose when
+/// tracking is lost.
+/// @throws InputError with file:line for a malformed row, a pose before the first `seq:`, or a duplicate
+/// sequence
 [[nodiscard]] OpenlorisFile read_openloris(const std::filesystem::path& file,
                                            RepeatedPoses repeated = RepeatedPoses::kDrop);
 
-/// `read_openloris` on a text already in memory; `name` stands for the file in messages.
+/// `read_openloris` for a text in memory.
+/// @param name of the file, for error messages
 [[nodiscard]] OpenlorisFile parse_openloris(std::string_view text, const std::string& name,
                                             RepeatedPoses repeated = RepeatedPoses::kDrop);
 
 /// The text of a file in this format.
 [[nodiscard]] std::string format_openloris(const OpenlorisFile& file);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

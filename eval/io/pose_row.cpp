@@ -6,64 +6,65 @@
 
 #include "eval/io/text_reader.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-constexpr double kLengthTolerance = 0.1;  // files with 3 decimals are off by 0.1 %; more is no quaternion
-constexpr double kMaxCoordinate = 1e9;    // [m]; beyond it a sum of squares loses its meaning
+constexpr double kNormTolerance = 0.1;  // rounding to 3 decimals changes the norm by 0.1 % only
+constexpr double kMaxCoordinate = 1e9;  // [m]; limits the loss of precision in sums of squares
 
 std::string quoted(std::string_view field) {
-  constexpr std::size_t kShown = 40;
-  return "\"" + std::string(field.substr(0, kShown)) + (field.size() > kShown ? "...\"" : "\"");
+  constexpr std::size_t kMaxLength = 40;
+  return "\"" + std::string(field.substr(0, kMaxLength)) + (field.size() > kMaxLength ? "...\"" : "\"");
 }
 
 }  // namespace
 
-Timestamp require_stamp(std::string_view field, const RowPlace& place) {
+Timestamp require_stamp(std::string_view field, const RowLocation& location) {
   const std::optional<Timestamp> t = parse_stamp(field);
   if (t) return *t;
   if (parse_number(field).value_or(0.0) > 1.0) {
-    throw place.error("stamp " + quoted(field) + " is beyond 292 years; nanoseconds instead of seconds?");
+    throw location.error("stamp " + quoted(field) +
+                         " exceeds 292 years; is it in nanoseconds instead of seconds?");
   }
-  throw place.error("stamp " + quoted(field) + " is not a number of seconds");
+  throw location.error("stamp " + quoted(field) + " is not a number of seconds");
 }
 
 std::optional<Pose> parse_pose(std::span<const std::string_view> fields, QuaternionOrder order,
-                               const RowPlace& place) {
+                               const RowLocation& location) {
   std::array<double, 7> v{};
   bool finite = true;
   for (std::size_t i = 0; i < v.size(); ++i) {
     const std::optional<double> value = parse_number(fields[i]);
-    if (!value) throw place.error(quoted(fields[i]) + " is not a number");
+    if (!value) throw location.error(quoted(fields[i]) + " is not a number");
     v[i] = *value;
     finite = finite && std::isfinite(v[i]);
   }
   if (!finite) return std::nullopt;
   const Eigen::Quaterniond q = order == QuaternionOrder::kXyzw ? Eigen::Quaterniond(v[6], v[3], v[4], v[5])
                                                                : Eigen::Quaterniond(v[3], v[4], v[5], v[6]);
-  const double length = q.norm();
-  if (length == 0.0) return std::nullopt;
-  if (std::abs(length - 1.0) > kLengthTolerance) {
-    throw place.error("quaternion of length " + std::to_string(length) +
-                      " is no rotation; are the columns in the order of the format?");
+  const double norm = q.norm();
+  if (norm == 0.0) return std::nullopt;
+  if (std::abs(norm - 1.0) > kNormTolerance) {
+    throw location.error("quaternion of norm " + std::to_string(norm) +
+                         " is not a rotation; check the order of the columns");
   }
   const Eigen::Vector3d p(v[0], v[1], v[2]);
   if (p.cwiseAbs().maxCoeff() > kMaxCoordinate) {
-    throw place.error("position is more than 1e9 m from the origin; is the file in metres?");
+    throw location.error("position exceeds 1e9 m; is the file in meters?");
   }
-  return Pose{Eigen::Quaterniond(q.coeffs() / length), p};
+  return Pose{Eigen::Quaterniond(q.coeffs() / norm), p};
 }
 
 void append_row(LoadedTrajectory& loaded, Timestamp t, const std::optional<Pose>& pose,
-                const RowPlace& place) {
+                const RowLocation& location) {
   std::vector<StampedPose>& poses = loaded.trajectory.poses;
   if (!pose) {
     ++loaded.skipped_rows;
     return;
   }
   if (!poses.empty() && t <= poses.back().t) {
-    throw place.error("stamp " + format_stamp(t) + " s does not rise after " + format_stamp(poses.back().t) +
-                      " s; sort the file and remove repeated stamps");
+    throw location.error("stamp " + format_stamp(t) + " s does not increase; the previous one is " +
+                         format_stamp(poses.back().t) + " s; sort the file and remove duplicate stamps");
   }
   poses.push_back({t, *pose});
 }
@@ -71,8 +72,8 @@ void append_row(LoadedTrajectory& loaded, Timestamp t, const std::optional<Pose>
 void require_poses(const LoadedTrajectory& loaded, const std::string& file) {
   if (!loaded.trajectory.poses.empty()) return;
   throw InputError(file, loaded.skipped_rows > 0
-                             ? "no row is a pose: every one holds NaN or a zero quaternion"
-                             : "holds no pose; expected rows \"t tx ty tz qx qy qz qw\"");
+                             ? "no valid pose: all rows have NaN or a zero quaternion"
+                             : "no poses found; expected rows \"t tx ty tz qx qy qz qw\"");
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One row of a trajectory file: what all text formats share.
+/// Parsing of one row of a trajectory file; common to all text formats.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@
 #include "core/base/error.h"
 #include "eval/io/trajectory_file.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// Where a row stands, for messages.
-struct RowPlace {
+/// Position of a row in its file, for error messages.
+struct RowLocation {
   const std::string& file;
   long line;
 
@@ -22,22 +22,23 @@ struct RowPlace {
 
 enum class QuaternionOrder { kXyzw, kWxyz };
 
-/// The stamp in seconds of one field.
-/// @throws InputError if the field is no number of seconds, with a hint when it looks like nanoseconds
-[[nodiscard]] Timestamp require_stamp(std::string_view field, const RowPlace& place);
+/// Parses a time stamp in seconds.
+/// @throws InputError if the field is not a number of seconds, with a hint if it may be in nanoseconds
+[[nodiscard]] Timestamp require_stamp(std::string_view field, const RowLocation& location);
 
-/// Position and quaternion, brought to unit length, of seven fields `tx ty tz` + quaternion; nothing if the
-/// row holds no pose (a value that is not finite, or a quaternion of length zero).
-/// @throws InputError if a field is no number, or if the quaternion's length is off by more than 10 %
+/// Parses the seven fields `tx ty tz` + quaternion and normalizes the quaternion.
+/// @return nullopt if the row has no pose (a value that is not finite, or a zero quaternion)
+/// @throws InputError if a field is not a number, or if the norm of the quaternion differs from 1 by more
+/// than 0.1
 [[nodiscard]] std::optional<Pose> parse_pose(std::span<const std::string_view> fields, QuaternionOrder order,
-                                             const RowPlace& place);
+                                             const RowLocation& location);
 
-/// Adds a row to what was loaded, or counts it as skipped.
-/// @throws InputError if the stamp does not rise
+/// Appends a row, or counts it as skipped if it has no pose.
+/// @throws InputError if the stamp does not increase
 void append_row(LoadedTrajectory& loaded, Timestamp t, const std::optional<Pose>& pose,
-                const RowPlace& place);
+                const RowLocation& location);
 
-/// @throws InputError if nothing was loaded
+/// @throws InputError if no pose was loaded
 void require_poses(const LoadedTrajectory& loaded, const std::string& file);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

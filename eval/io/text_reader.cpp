@@ -10,14 +10,14 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 constexpr std::string_view kSeparators = " \t,\r";
-constexpr int kDecimalsOfStamp = 9;
+constexpr int kStampDecimals = 9;
 constexpr int kMaxExponent = 64;
 
-/// A decimal number as its digits and the place of the point after digit `point`.
+/// A decimal number: its digits, with the decimal point after the first `point` of them.
 struct Decimal {
   bool negative = false;
   std::string digits;
@@ -44,14 +44,14 @@ std::optional<Decimal> parse_decimal(std::string_view field) {
     decimal.negative = true;
     field.remove_prefix(1);
   }
-  bool point_seen = false;
+  bool after_point = false;
   std::size_t i = 0;
   for (; i < field.size(); ++i) {
-    if (field[i] == '.' && !point_seen) {
-      point_seen = true;
+    if (field[i] == '.' && !after_point) {
+      after_point = true;
     } else if (field[i] >= '0' && field[i] <= '9') {
       decimal.digits.push_back(field[i]);
-      if (!point_seen) ++decimal.point;
+      if (!after_point) ++decimal.point;
     } else {
       break;
     }
@@ -70,21 +70,22 @@ std::optional<Decimal> parse_decimal(std::string_view field) {
 std::string read_text_file(const std::filesystem::path& file) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) {
-    throw InputError(file.string(), "is a folder; name a trajectory file");
+    throw InputError(file.string(), "is a folder; expected a file");
   }
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) throw InputError(file.string(), "cannot be opened; check the name and the permissions");
+  if (!stream) throw InputError(file.string(), "cannot be opened; check the path and the permissions");
   std::string text(static_cast<std::size_t>(stream.tellg()), '\0');
   stream.seekg(0);
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream) throw InputError(file.string(), "cannot be read to its end; the disk or the file is damaged");
+  if (!stream)
+    throw InputError(file.string(), "cannot be read completely; the file or the disk may be damaged");
   return text;
 }
 
 void write_text_file(const std::filesystem::path& file, std::string_view text) {
   const std::filesystem::path partial = file.string() + ".partial";
   std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
-  if (!stream) throw InputError(file.string(), "cannot be created; check the folder and its permissions");
+  if (!stream) throw InputError(file.string(), "cannot be created; check the path and the permissions");
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
   stream.close();
   std::error_code error;
@@ -92,7 +93,7 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
   if (!stream || error) {
     std::error_code ignored;
     std::filesystem::remove(partial, ignored);
-    throw InputError(file.string(), "cannot be written; is the disk full or the folder read-only?");
+    throw InputError(file.string(), "cannot be written; check for a full disk or a read-only folder");
   }
 }
 
@@ -128,15 +129,15 @@ std::optional<Timestamp> parse_stamp(std::string_view field) {
   std::optional<Decimal> decimal = parse_decimal(field);
   if (!decimal) return std::nullopt;
   constexpr std::int64_t kLimit = std::numeric_limits<std::int64_t>::max() / 10 - 1;
-  const int wanted = decimal->point + kDecimalsOfStamp;  // digits before the nanosecond's end
+  const int digit_count = decimal->point + kStampDecimals;  // digits down to the nanosecond
   std::int64_t ns = 0;
-  for (int i = 0; i < wanted; ++i) {
+  for (int i = 0; i < digit_count; ++i) {
     const bool beyond = static_cast<std::size_t>(i) >= decimal->digits.size();
     if (ns > kLimit) return std::nullopt;
     ns = 10 * ns + (beyond ? 0 : decimal->digits[static_cast<std::size_t>(i)] - '0');
   }
-  if (wanted >= 0 && static_cast<std::size_t>(wanted) < decimal->digits.size() &&
-      decimal->digits[static_cast<std::size_t>(wanted)] >= '5') {
+  if (digit_count >= 0 && static_cast<std::size_t>(digit_count) < decimal->digits.size() &&
+      decimal->digits[static_cast<std::size_t>(digit_count)] >= '5') {
     ++ns;
   }
   return Timestamp{decimal->negative ? -ns : ns};
@@ -162,4 +163,4 @@ std::string format_stamp(Timestamp t) {
   return buffer;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Text files taken apart into lines and fields, with exact time stamps.
+/// Text file input and output: lines, fields, numbers and exact time stamps.
 #pragma once
 
 #include <filesystem>
@@ -10,25 +10,25 @@
 
 #include "core/base/timestamp.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// A whole file as one string.
+/// Contents of a file.
 /// @throws InputError if the file cannot be read
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file);
 
-/// Writes `text` to `file`, whole or not at all: a file of another name is renamed when it is complete.
+/// Writes `text` to `file` atomically: to a temporary file that is renamed when complete.
 /// @throws InputError if the file cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
-/// Walks over the lines of a text; "\n" and "\r\n" both end a line.
+/// Iterates over the lines of a text, which end with "\n" or "\r\n".
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : rest_(text) {}
 
-  /// The next line without its end, or nothing after the last one.
+  /// The next line without its terminator; nullopt after the last one.
   [[nodiscard]] std::optional<std::string_view> next();
 
-  /// Number of the line returned last, counted from 1.
+  /// Number of the line returned last, starting at 1.
   [[nodiscard]] long line_number() const { return line_number_; }
 
  private:
@@ -36,20 +36,20 @@ class LineReader {
   long line_number_ = 0;
 };
 
-/// Splits a line at spaces, tabs and commas into `fields`, whose storage is used again from line to line.
+/// Splits a line at spaces, tabs and commas into `fields`, whose storage is reused.
 void split_fields(std::string_view line, std::vector<std::string_view>& fields);
 
-/// A decimal number, whole field; "nan" and "inf" are numbers too.
+/// Parses a decimal number, "nan" or "inf"; nullopt unless the whole field is a number.
 [[nodiscard]] std::optional<double> parse_number(std::string_view field);
 
-/// A decimal number of seconds as nanoseconds: exact up to 9 decimals, rounded to nearest beyond. Nothing if
-/// the field is no finite number or the stamp does not fit 64 bits (292 years).
+/// Parses a decimal number of seconds; exact up to 9 decimals, rounded to the nearest nanosecond beyond.
+/// @return nullopt if the field is not a finite number or the nanoseconds do not fit in 64 bits (292 years)
 [[nodiscard]] std::optional<Timestamp> parse_stamp(std::string_view field);
 
-/// A whole number of nanoseconds.
+/// Parses an integer number of nanoseconds.
 [[nodiscard]] std::optional<Timestamp> parse_nanoseconds(std::string_view field);
 
 /// Seconds with exactly 9 decimals: the inverse of `parse_stamp`.
 [[nodiscard]] std::string format_stamp(Timestamp t);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -8,7 +8,7 @@
 #include "eval/io/pose_row.h"
 #include "eval/io/text_reader.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 LoadedTrajectory read_tum(const std::filesystem::path& file, const std::string& frame) {
   return parse_tum(read_text_file(file), file.string(), frame);
@@ -22,13 +22,14 @@ LoadedTrajectory parse_tum(std::string_view text, const std::string& name, const
   while (const std::optional<std::string_view> line = lines.next()) {
     split_fields(*line, fields);
     if (fields.empty() || fields.front().front() == '#') continue;
-    const RowPlace place{name, lines.line_number()};
+    const RowLocation location{name, lines.line_number()};
     if (fields.size() < 8) {
-      throw place.error("a pose needs 8 numbers, found " + std::to_string(fields.size()) +
-                        "; expected \"t tx ty tz qx qy qz qw\"");
+      throw location.error("a pose needs 8 numbers, found " + std::to_string(fields.size()) +
+                           "; expected \"t tx ty tz qx qy qz qw\"");
     }
-    const Timestamp t = require_stamp(fields[0], place);
-    append_row(loaded, t, parse_pose(std::span(fields).subspan(1, 7), QuaternionOrder::kXyzw, place), place);
+    const Timestamp t = require_stamp(fields[0], location);
+    append_row(loaded, t, parse_pose(std::span(fields).subspan(1, 7), QuaternionOrder::kXyzw, location),
+               location);
   }
   require_poses(loaded, name);
   return loaded;
@@ -52,4 +53,4 @@ std::string format_tum(const Trajectory& trajectory) {
   return text;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 double rotation_angle(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.vec().norm(), std::abs(q.w()));
@@ -34,4 +34,4 @@ std::optional<AteResult> ate(const Trajectory& gt, const Trajectory& est, const 
                    .pairs = matches.size()};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "eval/metrics/ate.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp> expected,
                                double tolerance_s) {
@@ -63,7 +63,7 @@ double correct_seconds(std::span<const MatchedPose> matches, std::span<const dou
 
 std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
                                    const CorrectRateOptions& options, double offset_s) {
-  constexpr double kMaxGap = 0.5;  // [s], to either neighbour; the OpenLORIS tools' value
+  constexpr double kMaxGap = 0.5;  // [s], to each neighbor; value of the OpenLORIS tools
   if (gt.poses.size() < 2) return std::nullopt;
   std::vector<MatchedPose> matches =
       matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
@@ -75,4 +75,4 @@ std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
   return correct / seconds_between(gt.poses.front().t, gt.poses.back().t);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How much of a sequence has a pose at all, and how much has a correct one: what stands beside every error.
+/// Coverage (fraction of a sequence with a pose) and correct rate (fraction with a correct pose).
+///
+/// A pose at t_k is valid during [t_k, t_k + h_k], h_k = min(max_hold_s, t_(k+1) - t_k). With the ground
+/// truth over [t_first, t_last] and the errors e_k, theta_k of ate.h:
+///
+///   time coverage = sum_k h_k / (t_last - t_first)
+///   correct rate  = sum over {k: e_k <= max_translation_m, theta_k <= max_rotation_deg} of h_k
+///                   / (t_last - t_first)
+///
+/// Source of the correct rate: Shi et al., "Are We Ready for Service Robots? The OpenLORIS-Scene Datasets",
+/// ICRA 2020, with max_hold_s = 1.
 #pragma once
 
 #include <limits>
@@ -9,15 +19,15 @@
 
 #include "eval/trajectory/association.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// Share of the expected stamps with a pose at most `tolerance_s` away, each pose counted once. Nothing when
-/// nothing is expected.
-/// @param expected strictly rising, e.g. the frame times of the sequence
+/// Fraction of the expected time stamps that have a pose within `tolerance_s`; each pose counts once.
+/// @param expected strictly increasing, e.g. the frame times of the sequence
+/// @return nullopt if `expected` is empty
 [[nodiscard]] std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp> expected,
                                              double tolerance_s = 1e-3);
 
-/// Seconds from `start` to the first pose; nothing without a pose.
+/// Time from `start` to the first pose [s]; nullopt without a pose.
 [[nodiscard]] std::optional<double> first_pose_seconds(const Trajectory& est, Timestamp start);
 
 struct TimeSpan {
@@ -25,33 +35,33 @@ struct TimeSpan {
   Timestamp end;
 };
 
-/// Parts of `whole` in which no pose stands: a pose stands from its stamp to the next one, at most
-/// `max_hold_s`. In order of time.
+/// Intervals of `whole` without a valid pose, in order of time. A pose is valid from its stamp to the next
+/// one, for at most `max_hold_s`.
 [[nodiscard]] std::vector<TimeSpan> lost_spans(const Trajectory& est, const TimeSpan& whole,
                                                double max_hold_s);
 
-/// Share of `whole` outside the lost spans; nothing when it has no extent.
+/// Fraction of `whole` outside the lost spans; nullopt if `whole` has no duration.
 [[nodiscard]] std::optional<double> time_coverage(std::span<const TimeSpan> lost, const TimeSpan& whole);
 
-/// When a pose counts as correct, and for how long.
+/// Error thresholds of a correct pose, and how long a pose stays valid.
 struct CorrectRateOptions {
   double max_translation_m = std::numeric_limits<double>::infinity();
   double max_rotation_deg = std::numeric_limits<double>::infinity();
-  double max_hold_s = 1.0;  ///< a pose stands until the next one, at most this long
+  double max_hold_s = 1.0;  ///< a pose is valid until the next one, at most this long
 };
 
-/// Correct rate of OpenLORIS-Scene (Shi et al., ICRA 2020): the time for which a correct pose stands, over
-/// the time of the ground truth. The estimate is laid over the ground truth rigidly by all matches; ground
-/// truth is interpolated over gaps below 1 s. 0 when no pose matches; nothing when the ground truth has no
-/// extent.
+/// Correct rate as defined above, after SE(3) alignment over all matches. Ground truth is interpolated
+/// between neighbors that are both less than 0.5 s away.
+/// @return 0 if no pose matches; nullopt if the ground truth has fewer than two poses
 [[nodiscard]] std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
                                                  const CorrectRateOptions& options = {},
                                                  double offset_s = 0.0);
 
-/// Time [s] for which correct poses stand. `errors_m` and `errors_deg` belong to `matches`.
-/// @param end the last pose stands until here
+/// Numerator of the correct rate [s].
+/// @param errors_m, errors_deg e_k and theta_k of `matches`
+/// @param end end of the validity of the last pose, if `max_hold_s` does not end it before
 [[nodiscard]] double correct_seconds(std::span<const MatchedPose> matches, std::span<const double> errors_m,
                                      std::span<const double> errors_deg, Timestamp end,
                                      const CorrectRateOptions& options);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

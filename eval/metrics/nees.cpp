@@ -6,13 +6,14 @@
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-double squared_in(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, const char* what) {
+double squared_mahalanobis(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
+                           const char* quantity) {
   const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
   if (factor.info() != Eigen::Success) {
-    throw InputError(std::string(what) + " covariance", "is not positive definite");
+    throw InputError(std::string(quantity) + " covariance", "is not positive definite");
   }
   return error.dot(factor.solve(error));
 }
@@ -22,8 +23,8 @@ double squared_in(const Eigen::Vector3d& error, const Eigen::Matrix3d& covarianc
 Nees nees(const Pose& gt, const Pose& est, const Eigen::Matrix3d& rotation_covariance,
           const Eigen::Matrix3d& position_covariance) {
   const Eigen::Vector3d rotation_error = -log_so3(gt.q * est.q.conjugate());
-  return {squared_in(rotation_error, rotation_covariance, "rotation"),
-          squared_in(gt.p - est.p, position_covariance, "position")};
+  return {squared_mahalanobis(rotation_error, rotation_covariance, "rotation"),
+          squared_mahalanobis(gt.p - est.p, position_covariance, "position")};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

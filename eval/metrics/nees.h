@@ -1,24 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whether an estimate's covariance tells the truth: normalised estimation error squared.
+/// Normalized estimation error squared (NEES): consistency of an estimate with its covariance.
+///
+///   e_R = -Log(R_g R_e^T),  e_p = p_g - p_e,  NEES_R = e_R^T P_R^-1 e_R,  NEES_p = e_p^T P_p^-1 e_p
+///
+/// R_g, p_g: ground truth; R_e, p_e: estimate; P_R, P_p: covariances of rotation and position. Signs and
+/// frames as in OpenVINS ov_eval; definition: Bar-Shalom et al., "Estimation with Applications to Tracking
+/// and Navigation", 2001, Sec. 5.4.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "core/geometry/pose.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// Each has expectation 3 for a consistent estimate.
+/// The expectation of each is 3 (its degrees of freedom) for a consistent estimator.
 struct Nees {
   double rotation = 0.0;
   double position = 0.0;
 };
 
-/// As OpenVINS ov_eval: e_R = -Log(R_g R_e^T), e_p = p_g - p_e in the world, each e^T P^-1 e.
-/// @param rotation_covariance [rad^2], of the rotation error in the world; positive definite
-/// @param position_covariance [m^2]; positive definite
+/// @param gt, est in the same world frame: align them first
+/// @param rotation_covariance P_R [rad^2] of e_R, expressed in the world frame; positive definite
+/// @param position_covariance P_p [m^2]; positive definite
 /// @throws InputError if a covariance is not positive definite
 [[nodiscard]] Nees nees(const Pose& gt, const Pose& est, const Eigen::Matrix3d& rotation_covariance,
                         const Eigen::Matrix3d& position_covariance);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -8,16 +8,16 @@
 #include "core/base/error.h"
 #include "eval/metrics/ate.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// First angle of R = Rz(yaw) Ry(pitch) Rx(roll).
+/// Yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
 double yaw_of(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
 
-/// The first index from `begin` on whose length equals that of `index`: the path may stand still.
-std::size_t first_at(std::span<const double> lengths_m, std::size_t begin, std::size_t index) {
+/// First index >= `begin` with the path length of `index`; several poses have it where the camera rests.
+std::size_t first_with_length(std::span<const double> lengths_m, std::size_t begin, std::size_t index) {
   const auto first = lengths_m.begin();
   const auto last = first + static_cast<std::ptrdiff_t>(index);
   const auto found = std::lower_bound(first + static_cast<std::ptrdiff_t>(begin), last, lengths_m[index]);
@@ -26,23 +26,23 @@ std::size_t first_at(std::span<const double> lengths_m, std::size_t begin, std::
 
 }  // namespace
 
-std::vector<Motion> motions_over_frames(std::size_t poses, std::size_t step, bool every_start) {
+std::vector<PosePair> pairs_over_frames(std::size_t poses, std::size_t step, bool every_start) {
   STILLPOINT_CHECK(step > 0);
-  std::vector<Motion> motions;
-  for (std::size_t i = 0; i + step < poses; i += every_start ? 1 : step) motions.push_back({i, i + step});
-  return motions;
+  std::vector<PosePair> pairs;
+  for (std::size_t i = 0; i + step < poses; i += every_start ? 1 : step) pairs.push_back({i, i + step});
+  return pairs;
 }
 
-Motions motions_over_seconds(std::span<const MatchedPose> matches, double delta_s, double tolerance_s) {
-  Motions result;
+PosePairs pairs_over_seconds(std::span<const MatchedPose> matches, double delta_s, double tolerance_s) {
+  PosePairs result;
   std::size_t j = 0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Timestamp wanted = after(matches[i].t, delta_s);
-    const auto off = [&](std::size_t k) { return std::abs(seconds_between(wanted, matches[k].t)); };
+    const Timestamp target = after(matches[i].t, delta_s);
+    const auto difference = [&](std::size_t k) { return std::abs(seconds_between(target, matches[k].t)); };
     j = std::max(j, i);
-    while (j + 1 < matches.size() && off(j + 1) < off(j)) ++j;
-    if (j > i && off(j) <= tolerance_s) {
-      result.motions.push_back({i, j});
+    while (j + 1 < matches.size() && difference(j + 1) < difference(j)) ++j;
+    if (j > i && difference(j) <= tolerance_s) {
+      result.pairs.push_back({i, j});
     } else {
       ++result.dropped;
     }
@@ -63,22 +63,22 @@ std::vector<double> path_lengths(std::span<const MatchedPose> matches, PathOf of
   return lengths;
 }
 
-Motions motions_over_metres(std::span<const double> lengths_m, double delta_m, double tolerance_m) {
-  Motions result;
+PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, double tolerance_m) {
+  PosePairs result;
   std::size_t j = 0;
   for (std::size_t i = 0; i + 1 < lengths_m.size(); ++i) {
-    const auto off = [&](std::size_t k) { return std::abs(lengths_m[k] - lengths_m[i] - delta_m); };
+    const auto difference = [&](std::size_t k) { return std::abs(lengths_m[k] - lengths_m[i] - delta_m); };
     j = std::max(j, i + 1);
-    // The nearest is the first pose at or beyond the goal, or the first of those that stand before it.
+    // The closest is the first pose at or beyond the target length, or the last position before it.
     while (j + 1 < lengths_m.size() && lengths_m[j] - lengths_m[i] < delta_m) ++j;
     std::size_t best = j;
     if (lengths_m[j] - lengths_m[i] < delta_m) {
-      best = first_at(lengths_m, i + 1, j);
-    } else if (j > i + 1 && off(j - 1) <= off(j)) {
-      best = first_at(lengths_m, i + 1, j - 1);
+      best = first_with_length(lengths_m, i + 1, j);
+    } else if (j > i + 1 && difference(j - 1) <= difference(j)) {
+      best = first_with_length(lengths_m, i + 1, j - 1);
     }
-    if (off(best) <= tolerance_m) {
-      result.motions.push_back({i, best});
+    if (difference(best) <= tolerance_m) {
+      result.pairs.push_back({i, best});
     } else {
       ++result.dropped;
     }
@@ -86,9 +86,9 @@ Motions motions_over_metres(std::span<const double> lengths_m, double delta_m, d
   return result;
 }
 
-RelativeErrors relative_errors(std::span<const MatchedPose> matches, std::span<const Motion> motions) {
+RelativeErrors relative_errors(std::span<const MatchedPose> matches, std::span<const PosePair> pairs) {
   RelativeErrors errors;
-  for (const auto& [from, to] : motions) {
+  for (const auto& [from, to] : pairs) {
     const Pose gt_motion = matches[from].gt.inverse() * matches[to].gt;
     const Pose est_motion = matches[from].est.inverse() * matches[to].est;
     const Pose error = gt_motion.inverse() * est_motion;
@@ -100,4 +100,4 @@ RelativeErrors relative_errors(std::span<const MatchedPose> matches, std::span<c
   return errors;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

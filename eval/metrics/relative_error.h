@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Errors of relative motions between matched poses: over frames, seconds, metres and stretches of the path.
+/// Relative pose errors between pairs of matched poses that are a fixed time, path length or number of frames
+/// apart.
+///
+///   F_ij  = (G_i^-1 G_j)^-1 (E_i^-1 E_j)
+///   trans = |p(F_ij)|,  rot = angle(R(F_ij)),  yaw = |first ZYX Euler angle of R(E_j) R(F_ij) R(E_j)^T|
+///
+/// G, E: ground truth and estimate; i, j: start and end of the pair; p(.), R(.): translation, rotation.
+/// Sources: evo_rpe; Zhang and Scaramuzza, IROS 2018 (rpg_trajectory_evaluation), for the yaw error in the
+/// world frame.
 #pragma once
 
 #include <cstddef>
@@ -8,51 +16,50 @@
 
 #include "eval/trajectory/association.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// A relative motion: indices of the matches where it starts and ends.
-struct Motion {
+/// Start and end of a relative motion, as indices of matches.
+struct PosePair {
   std::size_t from = 0;
   std::size_t to = 0;
 
-  friend bool operator==(const Motion&, const Motion&) = default;
+  friend bool operator==(const PosePair&, const PosePair&) = default;
 };
 
-/// Motions that were found, and how many starts had no end within tolerance.
-struct Motions {
-  std::vector<Motion> motions;
+/// Pairs found, and the number of starts without an end within the tolerance.
+struct PosePairs {
+  std::vector<PosePair> pairs;
   std::size_t dropped = 0;
 };
 
-/// Starts 0, step, 2 step, ... with ends `step` poses on (evo's default), or every start (evo's all_pairs).
-[[nodiscard]] std::vector<Motion> motions_over_frames(std::size_t poses, std::size_t step, bool every_start);
+/// Pairs (i, i + step) for i = 0, step, 2 step, ... (default of evo), or for every i (evo's all_pairs).
+[[nodiscard]] std::vector<PosePair> pairs_over_frames(std::size_t poses, std::size_t step, bool every_start);
 
-/// From every start the pose nearest to `delta_s` later; dropped when it is off by more than `tolerance_s`,
-/// so that neither a gap nor a pose paired with itself passes for motion.
-[[nodiscard]] Motions motions_over_seconds(std::span<const MatchedPose> matches, double delta_s,
+/// Pairs every match with the one whose time is closest to `delta_s` later. Pairs that miss `delta_s` by more
+/// than `tolerance_s` are dropped, so a gap does not distort the error and no pose is paired with itself.
+[[nodiscard]] PosePairs pairs_over_seconds(std::span<const MatchedPose> matches, double delta_s,
                                            double tolerance_s);
 
-/// Length of the path from the first match to each [m].
+/// Path length from the first match to each [m].
 enum class PathOf { kGroundTruth, kEstimate };
 [[nodiscard]] std::vector<double> path_lengths(std::span<const MatchedPose> matches, PathOf of);
 
-/// From every start the later pose whose path is nearest to `delta_m` away; dropped when off by more than
-/// `tolerance_m`. The first of equally near ones. evo's all_pairs over metres, with 10 % tolerance.
-/// @param lengths_m rising, as from `path_lengths`
-[[nodiscard]] Motions motions_over_metres(std::span<const double> lengths_m, double delta_m,
+/// Pairs every match with the later one whose path length from it is closest to `delta_m`, the first of
+/// equally close ones. Pairs that miss `delta_m` by more than `tolerance_m` are dropped. Same pairs as evo's
+/// all_pairs in meters, which has a tolerance of 10 %.
+/// @param lengths_m non-decreasing, as from `path_lengths`
+[[nodiscard]] PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m,
                                           double tolerance_m);
 
-/// Errors of motions, in their order.
+/// trans, rot and yaw of every pair, in the order of the pairs.
 struct RelativeErrors {
   std::vector<double> translation_m;
   std::vector<double> rotation_deg;
-  std::vector<double> yaw_deg;  ///< part of the rotation about the world's z axis, in [0, 180]
+  std::vector<double> yaw_deg;  ///< about the world's z axis, in [0, 180]
 };
 
-/// E = (G_i^-1 G_j)^-1 (E_i^-1 E_j): |p(E)|, angle of R(E), and the yaw of E told in the axes of the world,
-/// R(E_j) R(E) R(E_j)^-1 (Zhang and Scaramuzza, IROS 2018). `matches` are aligned when the yaw is to mean the
-/// ground truth's vertical.
+/// @param matches aligned, if the yaw error shall refer to the vertical axis of the ground truth
 [[nodiscard]] RelativeErrors relative_errors(std::span<const MatchedPose> matches,
-                                             std::span<const Motion> motions);
+                                             std::span<const PosePair> pairs);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -7,7 +7,7 @@
 
 #include "eval/metrics/ate.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 std::vector<double> stamps_of(const Trajectory& trajectory) {
@@ -17,9 +17,9 @@ std::vector<double> stamps_of(const Trajectory& trajectory) {
   return stamps;
 }
 
-/// Index of the stamp nearest to t by halving, and of two equally near ones the one met first: ties are
-/// common (ground truth on a 10 ms grid) and the TUM tools decide them so. `stamps` is not empty.
-std::size_t nearest_by_halving(std::span<const double> stamps, double t) {
+/// Index of the stamp closest to t by binary search. Of two equally close ones it returns the first one
+/// probed, as the TUM tools do: ties are common (ground truth on a 10 ms grid). `stamps` is not empty.
+std::size_t nearest_by_bisection(std::span<const double> stamps, double t) {
   std::size_t begin = 0;
   std::size_t end = stamps.size();
   std::size_t best = 0;
@@ -46,7 +46,7 @@ double median_interval(std::span<const double> stamps) {
   return percentile(intervals, 0.5).value_or(0.0);
 }
 
-/// The coordinate in which delta is measured, one a pose.
+/// Per pose, the coordinate in which delta is measured.
 std::vector<double> axis_of(const Trajectory& est, RpeUnit unit) {
   if (unit == RpeUnit::kSeconds) return stamps_of(est);
   std::vector<double> axis;
@@ -60,14 +60,14 @@ std::vector<double> axis_of(const Trajectory& est, RpeUnit unit) {
   return axis;
 }
 
-/// The ground truth's stamps with the greatest difference at which one may stand for an estimate.
+/// Nearest-neighbor lookup of ground-truth stamps; the limit is that of the TUM tools.
 class GroundTruthLookup {
  public:
   explicit GroundTruthLookup(const Trajectory& gt)
       : stamps_(stamps_of(gt)), max_difference_s_(2.0 * median_interval(stamps_)) {}
 
   [[nodiscard]] std::optional<std::size_t> nearest(double t) const {
-    const std::size_t index = nearest_by_halving(stamps_, t);
+    const std::size_t index = nearest_by_bisection(stamps_, t);
     if (std::abs(stamps_[index] - t) > max_difference_s_) return std::nullopt;
     return index;
   }
@@ -88,7 +88,7 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
   std::vector<double> translation_m;
   std::vector<double> rotation_deg;
   for (std::size_t i = 0; i < axis.size(); ++i) {
-    const std::size_t j = nearest_by_halving(axis, axis[i] + options.delta);
+    const std::size_t j = nearest_by_bisection(axis, axis[i] + options.delta);
     if (j + 1 == axis.size()) continue;
     const std::optional<std::size_t> gt_i = lookup.nearest(stamps[i] + options.offset_s);
     const std::optional<std::size_t> gt_j = lookup.nearest(stamps[j] + options.offset_s);
@@ -109,4 +109,4 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

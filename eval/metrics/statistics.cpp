@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 std::optional<Statistics> statistics(std::span<const double> values) {
   if (values.empty()) return std::nullopt;
@@ -27,17 +27,17 @@ std::optional<Statistics> statistics(std::span<const double> values) {
   return result;
 }
 
-std::optional<double> percentile(std::span<const double> values, double share) {
+std::optional<double> percentile(std::span<const double> values, double fraction) {
   if (values.empty()) return std::nullopt;
-  std::vector<double> ordered(values.begin(), values.end());
-  const double rank = std::clamp(share, 0.0, 1.0) * static_cast<double>(ordered.size() - 1);
-  const auto lower = ordered.begin() + static_cast<std::ptrdiff_t>(std::floor(rank));
-  std::nth_element(ordered.begin(), lower, ordered.end());
+  std::vector<double> reordered(values.begin(), values.end());
+  const double rank = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(reordered.size() - 1);
+  const auto lower = reordered.begin() + static_cast<std::ptrdiff_t>(std::floor(rank));
+  std::nth_element(reordered.begin(), lower, reordered.end());
   const double low = *lower;
-  const double rest = rank - std::floor(rank);
-  if (rest == 0.0) return low;
-  const double high = *std::min_element(lower + 1, ordered.end());
-  return low + rest * (high - low);
+  const double weight = rank - std::floor(rank);
+  if (weight == 0.0) return low;
+  const double high = *std::min_element(lower + 1, reordered.end());
+  return low + weight * (high - low);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,29 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Summaries of a list of errors.
+/// Summary statistics of a list of errors, with the definitions of the TUM tools and evo.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <span>
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 /// In the unit of the values; `sse` in its square.
 struct Statistics {
   std::size_t count = 0;
   double rmse = 0.0;
   double mean = 0.0;
-  double median = 0.0;  ///< mean of the middle two for an even count
-  double std = 0.0;     ///< of the population: divided by n
+  double median = 0.0;  ///< mean of the two middle values if the count is even
+  double std = 0.0;     ///< of the population: sqrt(1/n sum (x - mean)^2)
   double min = 0.0;
   double max = 0.0;
-  double sse = 0.0;
+  double sse = 0.0;  ///< sum of squares
 };
 
-/// Nothing for an empty list: no data is "n/a", never 0.
+/// @return nullopt for an empty list, which is reported as "n/a", never as 0
 [[nodiscard]] std::optional<Statistics> statistics(std::span<const double> values);
 
-/// Linear interpolation between the closest ranks (NumPy's default). `share` in [0, 1].
-[[nodiscard]] std::optional<double> percentile(std::span<const double> values, double share);
+/// Percentile with linear interpolation between the closest ranks (NumPy's default).
+/// @param fraction in [0, 1]
+/// @return nullopt for an empty list
+[[nodiscard]] std::optional<double> percentile(std::span<const double> values, double fraction);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

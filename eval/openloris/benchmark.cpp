@@ -10,7 +10,7 @@
 #include "eval/openloris/robot_frames.h"
 #include "eval/trajectory/frames.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,18 +22,19 @@ std::vector<fs::path> sorted_entries(const fs::path& folder) {
   std::vector<fs::path> entries;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     entries.push_back(entry.path());
-  if (error) throw InputError(folder.string(), "cannot be listed; name a folder");
+  if (error) throw InputError(folder.string(), "cannot list the folder");
   std::sort(entries.begin(), entries.end());
   return entries;
 }
 
-CorrectRateOptions lifelong(const std::string& scene, CorrectRateOptions limits) {
+/// Thresholds of the lifelong SLAM challenge (OpenLORIS-Scene tools).
+CorrectRateOptions lifelong_thresholds(const std::string& scene, CorrectRateOptions limits) {
   limits.max_translation_m = scene == "office" ? 1.0 : scene == "home" || scene == "cafe" ? 3.0 : 5.0;
   limits.max_rotation_deg = 30.0;
   return limits;
 }
 
-/// Scores file after file.
+/// Accumulates the scores of result files.
 class Evaluator {
  public:
   Evaluator(const fs::path& ground_truth, const OpenlorisBenchmarkOptions& options) : options_(options) {
@@ -43,12 +44,12 @@ class Evaluator {
       OpenlorisFile truth = read_openloris(file);
       std::map<int, double>& durations = evaluation_.benchmark.gt_durations_s[scene];
       for (const auto& [number, path] : truth.sequences) {
-        if (path.poses.empty()) throw InputError(file.string(), "sequence without a pose is no ground truth");
+        if (path.poses.empty()) throw InputError(file.string(), "ground truth of a sequence has no poses");
         durations[number] = seconds_between(path.poses.front().t, path.poses.back().t);
       }
       truths_.emplace(scene, std::move(truth));
     }
-    if (truths_.empty()) throw InputError(ground_truth.string(), "holds no gt_<scene>_1.txt");
+    if (truths_.empty()) throw InputError(ground_truth.string(), "no gt_<scene>_1.txt found");
   }
 
   void add(const std::string& system, const fs::path& file) {
@@ -56,11 +57,11 @@ class Evaluator {
         read_openloris(file, options_.keep_repeated_poses ? RepeatedPoses::kKeep : RepeatedPoses::kDrop);
     const auto truth = truths_.find(result.scene);
     if (truth == truths_.end()) {
-      without_truth_.insert(result.scene);
+      scenes_without_truth_.insert(result.scene);
       return;
     }
-    const std::map<int, Trajectory> gt = moved_truth(truth->second, result);
-    const OpenlorisOptions metric = metric_of(system, result.scene);
+    const std::map<int, Trajectory> gt = truth_in_result_frame(truth->second, result);
+    const OpenlorisOptions metric = options_for(system, result.scene);
     const Similarity S_w_v = align_openloris(gt, result.sequences, metric);
     std::map<int, OpenlorisRun>& runs = evaluation_.benchmark.systems[system][result.scene].runs;
     for (const auto& [number, est] : result.sequences) {
@@ -69,8 +70,8 @@ class Evaluator {
         throw InputError(file.string(), "sequence " + std::to_string(number) + " is not in the ground truth");
       }
       if (!runs.emplace(number, score_openloris_run(path->second, est, S_w_v, metric)).second) {
-        throw InputError(file.string(), "a second result for sequence " + std::to_string(number) + " of " +
-                                            result.scene + "; keep one file for each");
+        throw InputError(file.string(), "duplicate result for sequence " + std::to_string(number) + " of " +
+                                            result.scene + "; expected one file per sequence");
       }
     }
   }
@@ -82,15 +83,15 @@ class Evaluator {
         scene.score = score_openloris_scene(scene.runs, durations);
       }
     }
-    for (const std::string& scene : without_truth_) {
-      evaluation_.skipped.push_back("scene \"" + scene + "\": no ground truth, results left out");
+    for (const std::string& scene : scenes_without_truth_) {
+      evaluation_.skipped.push_back("scene \"" + scene + "\": no ground truth, results skipped");
     }
     return std::move(evaluation_);
   }
 
  private:
-  [[nodiscard]] static std::map<int, Trajectory> moved_truth(const OpenlorisFile& truth,
-                                                             const OpenlorisFile& result) {
+  [[nodiscard]] static std::map<int, Trajectory> truth_in_result_frame(const OpenlorisFile& truth,
+                                                                       const OpenlorisFile& result) {
     const Pose T_base_gt = openloris_frame(result.scene, truth.frame);
     const Pose T_base_sensor = openloris_frame(result.scene, result.frame);
     std::map<int, Trajectory> moved;
@@ -101,18 +102,18 @@ class Evaluator {
     return moved;
   }
 
-  [[nodiscard]] OpenlorisOptions metric_of(const std::string& system, const std::string& scene) const {
+  [[nodiscard]] OpenlorisOptions options_for(const std::string& system, const std::string& scene) const {
     OpenlorisOptions metric = options_.metric;
     const std::vector<std::string>& scaled = options_.scaled_systems;
     if (std::find(scaled.begin(), scaled.end(), system) != scaled.end()) metric.scale = true;
-    if (options_.lifelong_thresholds) metric.correct = lifelong(scene, metric.correct);
+    if (options_.lifelong_thresholds) metric.correct = lifelong_thresholds(scene, metric.correct);
     return metric;
   }
 
   const OpenlorisBenchmarkOptions& options_;
   std::map<std::string, OpenlorisFile> truths_;
   OpenlorisEvaluation evaluation_;
-  std::set<std::string> without_truth_;
+  std::set<std::string> scenes_without_truth_;
 };
 
 }  // namespace
@@ -120,20 +121,20 @@ class Evaluator {
 OpenlorisEvaluation evaluate_openloris(const fs::path& results, const fs::path& ground_truth,
                                        const OpenlorisBenchmarkOptions& options) {
   Evaluator evaluator(ground_truth, options);
-  bool any = false;
+  bool found = false;
   for (const fs::path& folder : sorted_entries(results)) {
     if (!fs::is_directory(folder)) continue;
     for (const fs::path& file : sorted_entries(folder)) {
       if (file.extension() != ".txt") continue;
       evaluator.add(folder.filename().string(), file);
-      any = true;
+      found = true;
     }
   }
-  if (!any) {
+  if (!found) {
     throw InputError(results.string(),
-                     "holds no result; expected one folder a system with *.txt files in it");
+                     "no results found; expected one subfolder per system with *.txt files");
   }
   return evaluator.finish();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

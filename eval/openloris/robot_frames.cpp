@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 struct SensorFrame {
@@ -62,8 +62,8 @@ const RobotFrames& frames_of(std::string_view scene) {
     if (scene == known) return kOfficeRobot;
   }
   if (scene == "market") return kMarketRobot;
-  throw InputError("scene \"" + std::string(scene) +
-                   "\" is not of OpenLORIS; known are office, corridor, home, cafe and market");
+  throw InputError("unknown OpenLORIS scene \"" + std::string(scene) +
+                   "\"; expected one of: office, corridor, home, cafe, market");
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ Pose openloris_frame(std::string_view scene, std::string_view frame) {
     }
     known += ", " + std::string(sensor.name);
   }
-  throw InputError("frame \"" + std::string(frame) + "\" is not on the robot; known are " + known);
+  throw InputError("unknown frame \"" + std::string(frame) + "\"; expected one of: " + known);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -5,12 +5,12 @@
 
 #include "eval/metrics/strict_rpe.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 constexpr double kRpeDelta = 1.0;  // [s]
 
-/// A sum of weighted values that has no mean until something was added.
+/// Weighted mean; nullopt while the total weight is 0.
 class WeightedMean {
  public:
   void add(double value, double weight) {
@@ -94,4 +94,4 @@ OpenlorisSceneScore score_openloris_scene(const std::map<int, OpenlorisRun>& run
   return scene;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -7,19 +7,19 @@
 #include "core/base/error.h"
 #include "eval/metrics/ate.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 constexpr double kRelocalizationScale = 60.0;  // [s]
 
 std::optional<double> rmse(std::span<const double> values) {
-  const std::optional<Statistics> all = statistics(values);
-  if (!all) return std::nullopt;
-  return all->rmse;
+  const std::optional<Statistics> summary = statistics(values);
+  if (!summary) return std::nullopt;
+  return summary->rmse;
 }
 
-/// Which matches are correct.
-std::vector<bool> correct_ones(const AteErrors& errors, const CorrectRateOptions& limits) {
+/// Per match, whether it is correct.
+std::vector<bool> correct_mask(const AteErrors& errors, const CorrectRateOptions& limits) {
   std::vector<bool> correct;
   for (std::size_t i = 0; i < errors.translation_m.size(); ++i) {
     correct.push_back(errors.translation_m[i] <= limits.max_translation_m &&
@@ -28,10 +28,10 @@ std::vector<bool> correct_ones(const AteErrors& errors, const CorrectRateOptions
   return correct;
 }
 
-std::vector<double> chosen(std::span<const double> values, const std::vector<bool>& choice) {
+std::vector<double> select(std::span<const double> values, const std::vector<bool>& mask) {
   std::vector<double> result;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (choice[i]) result.push_back(values[i]);
+    if (mask[i]) result.push_back(values[i]);
   }
   return result;
 }
@@ -70,12 +70,12 @@ OpenlorisSequenceScore score_openloris_sequence(const Trajectory& gt, const Traj
   if (matches.empty()) return score;
 
   const AteErrors errors = ate_errors(matches, S_w_v);
-  const std::vector<bool> correct = correct_ones(errors, options.correct);
+  const std::vector<bool> correct = correct_mask(errors, options.correct);
   score.correct = static_cast<std::size_t>(std::count(correct.begin(), correct.end(), true));
   score.ate_rmse_m = rmse(errors.translation_m);
   score.aoe_rmse_deg = rmse(errors.rotation_deg);
-  score.correct_ate_rmse_m = rmse(chosen(errors.translation_m, correct));
-  score.correct_aoe_rmse_deg = rmse(chosen(errors.rotation_deg, correct));
+  score.correct_ate_rmse_m = rmse(select(errors.translation_m, correct));
+  score.correct_aoe_rmse_deg = rmse(select(errors.rotation_deg, correct));
 
   const Timestamp end = std::max(gt.poses.back().t, matches.back().t);
   score.tracked_spans = spans_of(matches, correct, gt, options.correct.max_hold_s);
@@ -103,4 +103,4 @@ Similarity align_openloris(const std::map<int, Trajectory>& gt, const std::map<i
   return {};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

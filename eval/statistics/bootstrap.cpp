@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "eval/metrics/statistics.h"
-#include "eval/statistics/draw.h"
+#include "eval/statistics/random_index.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 std::optional<Interval> median_interval(std::span<const double> values, const BootstrapOptions& options) {
   if (values.empty()) return std::nullopt;
@@ -17,7 +17,7 @@ std::optional<Interval> median_interval(std::span<const double> values, const Bo
   medians.reserve(options.resamples);
   std::vector<double> sample(values.size());
   for (std::size_t i = 0; i < options.resamples; ++i) {
-    std::generate(sample.begin(), sample.end(), [&] { return values[draw(random, values.size())]; });
+    std::generate(sample.begin(), sample.end(), [&] { return values[random_index(random, values.size())]; });
     medians.push_back(*percentile(sample, 0.5));
   }
   const double tail = 0.5 * (1.0 - options.confidence);
@@ -33,4 +33,4 @@ std::optional<Spread> spread(std::span<const double> values, const BootstrapOpti
                 .median_interval = *median_interval(values, options)};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

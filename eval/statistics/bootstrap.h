@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How sure a median is: percentile bootstrap (Efron 1979), with seeds, so that the same data give the same
-/// interval.
+/// Confidence interval of a median by the percentile bootstrap (Efron, Ann. Statist. 7, 1979):
+///
+///   m*_b = median of n values drawn from x_1 .. x_n with replacement,  b = 1 .. B
+///   interval = [q_(a/2)(m*), q_(1-a/2)(m*)],  a = 1 - confidence
+///
+/// q_p: p-quantile over the B resamples. The generator has a fixed seed, so equal data give equal intervals.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +12,7 @@
 #include <optional>
 #include <span>
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 struct Interval {
   double low = 0.0;
@@ -16,17 +20,17 @@ struct Interval {
 };
 
 struct BootstrapOptions {
-  std::size_t resamples = 2000;
+  std::size_t resamples = 2000;  ///< B
   double confidence = 0.95;
   std::uint64_t seed = 1;
 };
 
-/// Interval of the median. One value is its own interval: what it says of others is for the caller to judge.
-/// @return nothing for an empty list
+/// Confidence interval of the median. For a single value it has zero width.
+/// @return nullopt for an empty list
 [[nodiscard]] std::optional<Interval> median_interval(std::span<const double> values,
                                                       const BootstrapOptions& options = {});
 
-/// Summary of repeated runs of one thing. Never a mean: a single lost run would own it.
+/// Summary of repeated measurements by order statistics, which are robust to a single lost run.
 struct Spread {
   std::size_t count = 0;
   double median = 0.0;
@@ -35,8 +39,8 @@ struct Spread {
   Interval median_interval;
 };
 
-/// @return nothing for an empty list
+/// @return nullopt for an empty list
 [[nodiscard]] std::optional<Spread> spread(std::span<const double> values,
                                            const BootstrapOptions& options = {});
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -5,24 +5,24 @@
 #include <cmath>
 #include <random>
 
-#include "eval/statistics/draw.h"
+#include "eval/statistics/random_index.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-constexpr double kRounding = 1e-9;  // sums in another order are equal to this share
+constexpr double kRounding = 1e-9;  // relative; sums of permuted values differ by rounding
 
-/// Divides a segment into what lies before `index` and from it on.
+/// Bisection of a segment into [0, index) and [index, k).
 struct Split {
   std::size_t index = 0;
-  double divergence = 0.0;
+  double divergence = 0.0;  ///< Q
 };
 
 double pair_count(std::size_t values) {
   return 0.5 * static_cast<double>(values) * static_cast<double>(values - 1);
 }
 
-/// Sums of distances between all pairs of the first k values, at [k].
+/// Element k: sum of |x_i - x_j| over all pairs of the first k values.
 std::vector<double> leading_sums(std::span<const double> values) {
   std::vector<double> sums(values.size() + 1, 0.0);
   for (std::size_t k = 1; k <= values.size(); ++k) {
@@ -33,16 +33,16 @@ std::vector<double> leading_sums(std::span<const double> values) {
   return sums;
 }
 
-/// The largest scaled divergence between values [0, t) and [t, k), over all t and k.
+/// Maximum of Q over values [0, t) and [t, k), for all t and k.
 Split best_split(std::span<const double> values, std::size_t min_segment) {
   const std::size_t n = values.size();
   Split best;
   if (n < 2 * min_segment) return best;
   const std::vector<double> leading = leading_sums(values);
-  std::vector<double> to_later(n, 0.0);  // at j: distances of values [t, j) to value j
+  std::vector<double> to_later(n, 0.0);  // element j: sum of |x_i - x_j| for i in [t, j)
   for (std::size_t t = n; t-- > min_segment;) {
     for (std::size_t j = t + 1; j < n; ++j) to_later[j] += std::abs(values[t] - values[j]);
-    double within = 0.0;  // of values [t, k)
+    double within = 0.0;  // sum over all pairs of values [t, k)
     for (std::size_t k = t + 1; k <= n; ++k) {
       within += to_later[k - 1];
       if (k < t + min_segment) continue;
@@ -58,8 +58,8 @@ Split best_split(std::span<const double> values, std::size_t min_segment) {
   return best;
 }
 
-/// The best split of all segments; its index counts from the first value.
-/// @param bounds of the segments: their first values, and the end
+/// The best split of all segments; its index refers to the whole series.
+/// @param bounds index of the first value of each segment, and the number of values
 Split best_of_segments(std::span<const double> values, const std::vector<std::size_t>& bounds,
                        std::size_t min_segment) {
   Split best;
@@ -70,18 +70,18 @@ Split best_of_segments(std::span<const double> values, const std::vector<std::si
   return best;
 }
 
-/// Fisher and Yates.
+/// Fisher-Yates shuffle.
 void shuffle(std::span<double> values, std::mt19937_64& random) {
-  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[draw(random, i)]);
+  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random_index(random, i)]);
 }
 
-/// How often permuted values diverge as much; at least `significance` as soon as that is certain.
+/// p-value of the permutation test; ends early once it is certain to exceed `significance`.
 double p_value(std::span<const double> values, const std::vector<std::size_t>& bounds, double divergence,
                const ChangePointOptions& options) {
   const auto tests = static_cast<double>(options.permutations + 1);
   std::vector<double> permuted(values.begin(), values.end());
   std::mt19937_64 random(options.seed);
-  std::size_t reached = 1;  // by the values as they are
+  std::size_t reached = 1;  // counts the original order
   for (std::size_t done = 1; done <= options.permutations; ++done) {
     for (std::size_t i = 0; i + 1 < bounds.size(); ++i)
       shuffle(std::span(permuted).subspan(bounds[i], bounds[i + 1] - bounds[i]), random);
@@ -111,4 +111,4 @@ std::vector<ChangePoint> change_points(std::span<const double> values, const Cha
   return changes;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

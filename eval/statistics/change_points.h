@@ -1,6 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where the level of a series changes: E-divisive (Matteson and James, "A Nonparametric Approach for
-/// Multiple Change Point Analysis of Multivariate Data", JASA 109, 2014), for numbers, with exponent 1.
+/// Change points of a series of scalars by E-divisive (Matteson and James, "A Nonparametric Approach for
+/// Multiple Change Point Analysis of Multivariate Data", JASA 109, 2014) with exponent alpha = 1.
+///
+/// Divergence of two adjacent segments X = {x_1 .. x_n}, Y = {y_1 .. y_m} (their Sec. 2):
+///
+///   E(X, Y) = 2 / (n m) sum_(i,j) |x_i - y_j|
+///             - C(n,2)^-1 sum_(i<k) |x_i - x_k| - C(m,2)^-1 sum_(j<k) |y_j - y_k|
+///   Q(X, Y) = n m / (n + m) E(X, Y)
+///
+/// Each step bisects the current segment with the largest Q, at the index t = argmax over t and k of
+/// Q({x_1 .. x_t}, {x_(t+1) .. x_k}). The change is significant if p = (1 + #{r: Q_r >= Q}) / (R + 1) does
+/// not exceed the significance level; Q_r: maximum after permutation r of the values within all current
+/// segments, R: number of permutations. The procedure ends with the first change that is not significant.
 #pragma once
 
 #include <cstddef>
@@ -8,29 +19,27 @@
 #include <span>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 struct ChangePointOptions {
-  std::size_t min_segment = 3;  ///< values between two changes, >= 2; so many must follow a change to show it
-  double significance = 0.005;  ///< a change whose p-value is larger is none
-  std::size_t permutations = 999;
-  std::uint64_t seed = 1;  ///< of the permutations: the same values give the same changes
+  std::size_t min_segment = 3;     ///< minimum number of values before, between and after changes; >= 2
+  double significance = 0.005;     ///< largest p-value of a reported change
+  std::size_t permutations = 999;  ///< R
+  std::uint64_t seed = 1;          ///< of the permutations; fixed for reproducible results
 };
 
 struct ChangePoint {
-  std::size_t index = 0;  ///< of the first value of the new level
-  double p_value = 0.0;   ///< of the permutation test by which it was found
+  std::size_t index = 0;  ///< of the first value after the change
+  double p_value = 0.0;   ///< of the permutation test
 };
 
-/// Changes in the order of the values. The test permutes values within the segments found so far, and ends as
-/// soon as a change can no longer be significant (Besag and Clifford 1991). About 40 values are needed before
-/// a change that has `min_segment` values behind it can be significant at all: fewer have too few
-/// permutations.
+/// Significant change points in increasing order. A permutation test ends early once its change can no longer
+/// be significant (sequential Monte Carlo test, Besag and Clifford 1991). With fewer than about 40 values a
+/// change followed by only `min_segment` values cannot be significant.
 ///
-/// Time grows with the square of the number of values, and with the permutations for each change that is
-/// found.
+/// O(R n^2) for each change point, n: number of values.
 /// @param values finite
 [[nodiscard]] std::vector<ChangePoint> change_points(std::span<const double> values,
                                                      const ChangePointOptions& options = {});
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

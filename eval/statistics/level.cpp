@@ -7,9 +7,9 @@
 #include <random>
 
 #include "eval/metrics/statistics.h"
-#include "eval/statistics/draw.h"
+#include "eval/statistics/random_index.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 std::optional<double> ratio_change(double before, double after) {
@@ -20,12 +20,12 @@ std::optional<double> ratio_change(double before, double after) {
 double resampled_median(std::span<const double> values, std::vector<double>& sample,
                         std::mt19937_64& random) {
   sample.resize(values.size());
-  std::generate(sample.begin(), sample.end(), [&] { return values[draw(random, values.size())]; });
+  std::generate(sample.begin(), sample.end(), [&] { return values[random_index(random, values.size())]; });
   return *percentile(sample, 0.5);
 }
 
-/// Of Kendall's sum of signs, with ties: Kendall 1975, Rank Correlation Methods, chapter 4.
-double sign_sum_variance(std::span<const double> values) {
+/// Var(S) of the Mann-Kendall test: Kendall, Rank Correlation Methods, 1975, chapter 4.
+double mann_kendall_variance(std::span<const double> values) {
   const auto weight = [](double n) { return n * (n - 1.0) * (2.0 * n + 5.0); };
   std::map<double, std::size_t> ties;
   for (const double value : values) ++ties[value];
@@ -34,14 +34,14 @@ double sign_sum_variance(std::span<const double> values) {
   return sum / 18.0;
 }
 
-/// Smaller is better; a sum of distances of 0 fits perfectly.
-double criterion(double distances, std::size_t values, std::size_t parameters) {
+/// @param residuals sum of |r_i|; may be 0
+double bayesian_information_criterion(double residuals, std::size_t values, std::size_t parameters) {
   const auto n = static_cast<double>(values);
-  const double scale = std::max(distances / n, 1e-300);
+  const double scale = std::max(residuals / n, 1e-300);
   return 2.0 * n * std::log(scale) + static_cast<double>(parameters) * std::log(n);
 }
 
-double distances_to_median(std::span<const double> values) {
+double residuals_to_median(std::span<const double> values) {
   const double median = percentile(values, 0.5).value_or(0.0);
   double sum = 0.0;
   for (const double value : values) sum += std::abs(value - median);
@@ -71,8 +71,8 @@ std::optional<RelativeChange> level_change(std::span<const double> before, std::
 }
 
 std::optional<Trend> trend_of(std::span<const double> values) {
-  constexpr std::size_t kFewest = 4;
-  if (values.size() < kFewest) return std::nullopt;
+  constexpr std::size_t kMinValues = 4;
+  if (values.size() < kMinValues) return std::nullopt;
   std::vector<double> slopes;
   double signs = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -82,30 +82,31 @@ std::optional<Trend> trend_of(std::span<const double> values) {
       signs += rise > 0.0 ? 1.0 : (rise < 0.0 ? -1.0 : 0.0);
     }
   }
-  Trend trend{.slope = *percentile(slopes, 0.5), .start = 0.0, .p_value = 1.0};
-  std::vector<double> starts;
+  Trend trend{.slope = *percentile(slopes, 0.5), .intercept = 0.0, .p_value = 1.0};
+  std::vector<double> intercepts;
   for (std::size_t i = 0; i < values.size(); ++i)
-    starts.push_back(values[i] - trend.slope * static_cast<double>(i));
-  trend.start = *percentile(starts, 0.5);
-  const double variance = sign_sum_variance(values);
-  const double beyond = std::max(std::abs(signs) - 1.0, 0.0);  // corrected for continuity
-  if (variance > 0.0) trend.p_value = std::erfc(beyond / std::sqrt(2.0 * variance));
+    intercepts.push_back(values[i] - trend.slope * static_cast<double>(i));
+  trend.intercept = *percentile(intercepts, 0.5);
+  const double variance = mann_kendall_variance(values);
+  const double corrected = std::max(std::abs(signs) - 1.0, 0.0);  // for continuity
+  if (variance > 0.0) trend.p_value = std::erfc(corrected / std::sqrt(2.0 * variance));
   return trend;
 }
 
-bool line_fits_better(std::span<const double> values, const Trend& trend,
-                      const std::vector<std::size_t>& changes) {
+bool linear_trend_fits_better(std::span<const double> values, const Trend& trend,
+                              const std::vector<std::size_t>& changes) {
   double to_line = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i)
-    to_line += std::abs(values[i] - trend.start - trend.slope * static_cast<double>(i));
+    to_line += std::abs(values[i] - trend.intercept - trend.slope * static_cast<double>(i));
   double to_levels = 0.0;
   std::size_t first = 0;
   for (const std::size_t change : changes) {
-    to_levels += distances_to_median(values.subspan(first, change - first));
+    to_levels += residuals_to_median(values.subspan(first, change - first));
     first = change;
   }
-  to_levels += distances_to_median(values.subspan(first));
-  return criterion(to_line, values.size(), 2) < criterion(to_levels, values.size(), 2 * changes.size() + 1);
+  to_levels += residuals_to_median(values.subspan(first));
+  return bayesian_information_criterion(to_line, values.size(), 2) <
+         bayesian_information_criterion(to_levels, values.size(), 2 * changes.size() + 1);
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

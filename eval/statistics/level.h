@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How far two levels of a series lie apart, and whether a series creeps instead of stepping.
+/// Relative change between two levels of a series, and tests for a linear trend instead of steps.
+///
+/// Theil-Sen line (Theil 1950, Sen 1968) of values y_0 .. y_(n-1):
+///
+///   slope = median over i < k of (y_k - y_i) / (k - i),  intercept = median over i of (y_i - slope i)
+///
+/// Mann-Kendall test of no trend (Mann 1945, Kendall 1975), with ties and continuity correction:
+///
+///   S = sum over i < k of sign(y_k - y_i)
+///   Var(S) = (n (n-1) (2n+5) - sum over ties of t (t-1) (2t+5)) / 18,  t: number of equal values
+///   z = max(|S| - 1, 0) / sqrt(Var(S)),  p = erfc(z / sqrt(2))  (two-sided)
 #pragma once
 
 #include <optional>
@@ -8,29 +18,34 @@
 
 #include "eval/statistics/paired.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// Median of `after` over that of `before`, less 1; its interval resamples both sides.
-/// @return nothing if a side is empty, or the median of `before` is 0 and the other's is not; `count` is that
-/// of the shorter side
+/// (median(after) - median(before)) / |median(before)|, with a bootstrap interval that resamples both sides.
+/// @return nullopt if a side is empty, or if only the median of `before` is 0; `count` is the size of the
+/// smaller side
 [[nodiscard]] std::optional<RelativeChange> level_change(std::span<const double> before,
                                                          std::span<const double> after,
                                                          const BootstrapOptions& options = {});
 
-/// A straight line through a series, whatever its outliers.
+/// Robust linear fit of a series over its index.
 struct Trend {
-  double slope = 0.0;    ///< of one value to the next: median over all pairs (Theil 1950, Sen 1968)
-  double start = 0.0;    ///< of the line, at the first value
-  double p_value = 1.0;  ///< two-sided, of no trend (Mann 1945, Kendall 1975), with ties
+  double slope = 0.0;      ///< Theil-Sen, per index
+  double intercept = 0.0;  ///< at index 0
+  double p_value = 1.0;    ///< Mann-Kendall, two-sided
 };
 
-/// @return nothing for fewer than 4 values, which have no significant order
+/// @return nullopt for fewer than 4 values, which cannot be significant
 [[nodiscard]] std::optional<Trend> trend_of(std::span<const double> values);
 
-/// Whether the line fits better than the levels between the changes, by the information criterion of Schwarz
-/// (1978) for Laplace's errors: a level and its place are two numbers, as a line is.
-/// @param changes indices at which new levels begin
-[[nodiscard]] bool line_fits_better(std::span<const double> values, const Trend& trend,
-                                    const std::vector<std::size_t>& changes);
+/// Whether the line fits better than a piecewise constant function with steps at `changes`, by the Bayesian
+/// information criterion (Schwarz 1978) with Laplace-distributed residuals r_i:
+///
+///   BIC = 2 n ln(1/n sum_i |r_i|) + q ln n
+///
+/// q: number of parameters, 2 for the line and 2 c + 1 for c steps (c + 1 levels and c positions). Constant
+/// terms are omitted.
+/// @param changes indices of the first value of each new level
+[[nodiscard]] bool linear_trend_fits_better(std::span<const double> values, const Trend& trend,
+                                            const std::vector<std::size_t>& changes);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

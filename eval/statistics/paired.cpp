@@ -7,11 +7,9 @@
 
 #include "eval/metrics/statistics.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-/// Sum of the Wilcoxon ranks of growth minus that of shrinkage, of the sum of all. Ties share their ranks;
-/// pairs without difference have none.
 double rank_biserial(std::vector<double> differences) {
   std::erase(differences, 0.0);
   std::sort(differences.begin(), differences.end(),
@@ -55,4 +53,4 @@ std::optional<RelativeChange> relative_change(std::span<const Pair> pairs, const
   return RelativeChange{.count = changes.size(), .median = *percentile(changes, 0.5), .interval = *interval};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

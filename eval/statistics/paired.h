@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What changes between two variants that were run on the same things, pair by pair.
+/// Paired comparison of two variants that were measured under the same conditions.
+///
+/// Effect size: matched-pairs rank-biserial correlation (Kerby, Compr. Psychol. 3, 2014; ranks of Wilcoxon,
+/// Biometrics Bull. 1, 1945):
+///
+///   r = (sum of ranks of d_i > 0 - sum of ranks of d_i < 0) / (sum of all ranks)
+///
+/// d_i: difference of pair i, ranked by |d_i|; equal |d_i| share their mean rank, d_i = 0 has none.
 #pragma once
 
 #include <optional>
@@ -7,9 +14,9 @@
 
 #include "eval/statistics/bootstrap.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// One thing under both variants.
+/// One measurement under both variants.
 struct Pair {
   double base = 0.0;
   double changed = 0.0;
@@ -18,13 +25,11 @@ struct Pair {
 struct PairedDifference {
   std::size_t count = 0;
   double median = 0.0;  ///< of changed - base, in the unit of the values
-  Interval interval;    ///< of that median
-  /// Matched-pairs rank-biserial correlation (Kerby 2014, from Wilcoxon 1945): 1 when every pair grew, -1
-  /// when every pair shrank, 0 when growth and shrinkage weigh the same. Independent of the unit.
-  double effect = 0.0;
+  Interval interval;    ///< of the median
+  double effect = 0.0;  ///< r: 1 if every pair increased, -1 if every pair decreased
 };
 
-/// @return nothing without pairs
+/// @return nullopt without pairs
 [[nodiscard]] std::optional<PairedDifference> paired_difference(std::span<const Pair> pairs,
                                                                 const BootstrapOptions& options = {});
 
@@ -35,9 +40,9 @@ struct RelativeChange {
   Interval interval;
 };
 
-/// Pairs whose base is 0 are left out, except that 0 to 0 is no change.
-/// @return nothing without pairs that can be used
+/// Pairs with base 0 are excluded, unless both values are 0, which counts as no change.
+/// @return nullopt without usable pairs
 [[nodiscard]] std::optional<RelativeChange> relative_change(std::span<const Pair> pairs,
                                                             const BootstrapOptions& options = {});
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

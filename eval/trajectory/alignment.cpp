@@ -8,17 +8,17 @@
 
 #include "core/base/error.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 constexpr double kRankTolerance = 1e-9;  // of the largest singular value
 
-/// Means and the correlation of centred positions.
+/// First and second moments of the positions.
 struct Moments {
   Eigen::Vector3d mean_gt = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_est = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();  ///< mean of (g - g~)(e - e~)^T [m^2]
-  double variance_est = 0.0;                              ///< mean of |e - e~|^2 [m^2]
+  Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();  ///< C [m^2]
+  double variance_est = 0.0;                              ///< sigma_e^2 [m^2]
 };
 
 Moments moments_of(std::span<const MatchedPose> matches) {
@@ -41,7 +41,8 @@ Moments moments_of(std::span<const MatchedPose> matches) {
   return moments;
 }
 
-Similarity through_means(const Moments& moments, const Eigen::Quaterniond& q_w_v, double scale) {
+/// The similarity with t = g~ - s R e~.
+Similarity map_means(const Moments& moments, const Eigen::Quaterniond& q_w_v, double scale) {
   return {Pose{q_w_v, moments.mean_gt - q_w_v * (scale * moments.mean_est)}, scale};
 }
 
@@ -53,18 +54,18 @@ AlignmentResult fit_rotation(const Moments& moments, bool with_scale) {
   const Eigen::Vector3d& singular = svd.singularValues();
   const bool determined = singular(0) > 0.0 && singular(1) > kRankTolerance * singular(0);
   const double scale = with_scale && determined ? singular.dot(signs) / moments.variance_est : 1.0;
-  return {through_means(moments, Eigen::Quaterniond(R_w_v).normalized(), scale), determined};
+  return {map_means(moments, Eigen::Quaterniond(R_w_v).normalized(), scale), determined};
 }
 
 AlignmentResult fit_yaw(const Moments& moments) {
-  // trace(Rz(a) C^T) is greatest where a is the argument of (C00 + C11, C10 - C01).
+  // trace(Rz(a) C^T) = cosine cos a + sine sin a + C_22 is maximal at a = atan2(sine, cosine).
   const Eigen::Matrix3d& c = moments.correlation;
-  const double along = c(0, 0) + c(1, 1);
-  const double across = c(1, 0) - c(0, 1);
-  const bool determined = std::hypot(along, across) > kRankTolerance * c.norm();
+  const double cosine = c(0, 0) + c(1, 1);
+  const double sine = c(1, 0) - c(0, 1);
+  const bool determined = std::hypot(cosine, sine) > kRankTolerance * c.norm();
   const Eigen::Quaterniond q(
-      Eigen::AngleAxisd(determined ? std::atan2(across, along) : 0.0, Eigen::Vector3d::UnitZ()));
-  return {through_means(moments, q, 1.0), determined};
+      Eigen::AngleAxisd(determined ? std::atan2(sine, cosine) : 0.0, Eigen::Vector3d::UnitZ()));
+  return {map_means(moments, q, 1.0), determined};
 }
 
 std::string_view name_of(Alignment kind) {
@@ -89,12 +90,13 @@ AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind, std:
 }
 
 AlignmentResult align_or_throw(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n,
-                               const std::string& place) {
+                               const std::string& context) {
   const AlignmentResult result = align(matches, kind, first_n);
   if (result.determined) return result;
-  throw InputError(place, "alignment " + std::string(name_of(kind)) + " is not determined by " +
-                              std::to_string(matches.size()) +
-                              " matched poses (they stand still or lie on one line); use first_pose or none");
+  throw InputError(context, "alignment " + std::string(name_of(kind)) + " is not determined by " +
+                                std::to_string(matches.size()) +
+                                " matched poses (their positions coincide or are collinear); "
+                                "use first_pose or none");
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

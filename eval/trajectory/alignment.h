@@ -1,5 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The transform that lays an estimate over its ground truth.
+/// Alignment of an estimate to its ground truth by least squares over the positions:
+///
+///   (s, R, t) = argmin sum_i |g_i - (s R e_i + t)|^2
+///
+/// g_i, e_i: positions of ground truth and estimate, with means g~ and e~. Solution of Umeyama, IEEE PAMI 13,
+/// 1991, Eqs. 34-43 (for s = 1 also Horn, J. Opt. Soc. Am. A 4, 1987):
+///
+///   C = 1/n sum_i (g_i - g~)(e_i - e~)^T = U D V^T          (singular value decomposition)
+///   R = U S V^T,  S = diag(1, 1, sign(det U det V))
+///   s = trace(D S) / sigma_e^2,  sigma_e^2 = 1/n sum_i |e_i - e~|^2   (s = 1 for SE(3))
+///   t = g~ - s R e~
+///
+/// Yaw only (`posyaw` of rpg_trajectory_evaluation and ov_eval): R = Rz(a) with
+/// a = atan2(C_10 - C_01, C_00 + C_11), which maximizes trace(Rz(a) C^T).
 #pragma once
 
 #include <cstddef>
@@ -9,9 +22,9 @@
 #include "core/base/fields.h"
 #include "eval/trajectory/association.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// x_w = scale * R_w_v * x_v + p: world v of the estimate into world w of the ground truth.
+/// x_w = scale * R_w_v * x_v + p_w_v: from the world v of the estimate to the world w of the ground truth.
 struct Similarity {
   Pose T_w_v;
   double scale = 1.0;
@@ -25,11 +38,11 @@ struct Similarity {
 };
 
 enum class Alignment {
-  kNone,       ///< the worlds are taken as one
-  kFirstPose,  ///< the first matched poses fall together
-  kYaw,        ///< position and the angle about z: what an odometry that knows gravity leaves open
-  kSe3,        ///< position and rotation
-  kSim3,       ///< and scale
+  kNone,       ///< identity
+  kFirstPose,  ///< makes the first matched poses equal
+  kYaw,        ///< translation and yaw: the unobservable directions of visual-inertial odometry
+  kSe3,        ///< translation and rotation
+  kSim3,       ///< translation, rotation and scale
 };
 constexpr auto enum_names(Alignment) {
   return EnumNames<Alignment, 5>{{{Alignment::kNone, "none"},
@@ -39,22 +52,21 @@ constexpr auto enum_names(Alignment) {
                                   {Alignment::kSim3, "sim3"}}};
 }
 
-/// A fitted transform, and whether the data determine all of it: a path along a line leaves the rotation
-/// about the line open, a path that stands still leaves the whole rotation open.
+/// A fitted transform, and whether the positions determine it uniquely: if they are collinear, the rotation
+/// about the line is undetermined; if they coincide, the whole rotation is.
 struct AlignmentResult {
   Similarity S_w_v;
   bool determined = false;
 };
 
-/// Least-squares fit over positions; se3 and sim3 after Horn, J. Opt. Soc. Am. A 4, 1987, and Umeyama, IEEE
-/// PAMI 13, 1991. Identity for no matches.
-/// @param first_n fit over the first n matches only; 0 = all
+/// Alignment as defined above; identity without matches.
+/// @param first_n use the first n matches only; 0 = all
 [[nodiscard]] AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind,
                                     std::size_t first_n = 0);
 
-/// `align`, where an alignment that the data leave open is an error.
-/// @throws InputError if the fit is not determined; `place` names the estimate in the message
+/// `align`, but an undetermined alignment is an error.
+/// @throws InputError if the alignment is not determined; the message begins with `context`
 [[nodiscard]] AlignmentResult align_or_throw(std::span<const MatchedPose> matches, Alignment kind,
-                                             std::size_t first_n, const std::string& place);
+                                             std::size_t first_n, const std::string& context);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -5,36 +5,36 @@
 #include <cmath>
 #include <queue>
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// A pose of either trajectory on the common time axis; free ones form a doubly linked list.
+/// A pose of either trajectory on the common time axis. Unmatched ones form a doubly linked list.
 struct Event {
   std::size_t index;
   bool is_gt;
   std::size_t previous;
   std::size_t next;
-  bool taken = false;
+  bool matched = false;
 };
 
-/// Neighbours on the time axis, one of each trajectory.
+/// Neighbors on the time axis, one of each trajectory.
 struct Candidate {
   double difference_s;
   std::size_t left;  ///< event indices
   std::size_t right;
 };
 
-/// Greedy matching by difference. The closest free pair of all is always two neighbours on the time axis:
-/// anything between them would be closer to one of the two. So a heap of neighbours suffices, and taking a
-/// pair makes at most one new neighbourhood.
+/// Greedy matching by time difference. The closest unmatched pair always consists of neighbors on the time
+/// axis, because anything between them would be closer to one of the two. A heap of neighbors therefore
+/// suffices, and removing a pair creates at most one new pair of neighbors.
 class GreedyMatcher {
  public:
   GreedyMatcher(const Trajectory& gt, const Trajectory& est, const AssociationOptions& options)
       : gt_(gt), est_(est), options_(options) {
     merge();
-    for (std::size_t i = 0; i + 1 < events_.size(); ++i) offer(i, i + 1);
+    for (std::size_t i = 0; i + 1 < events_.size(); ++i) add_candidate(i, i + 1);
   }
 
   [[nodiscard]] std::vector<IndexPair> run() {
@@ -42,9 +42,9 @@ class GreedyMatcher {
     while (!heap_.empty()) {
       const Candidate best = heap_.top();
       heap_.pop();
-      if (events_[best.left].taken || events_[best.right].taken) continue;
+      if (events_[best.left].matched || events_[best.right].matched) continue;
       pairs.push_back(pair_of(best.left, best.right));
-      take(best);
+      remove(best);
     }
     std::sort(pairs.begin(), pairs.end(),
               [](const IndexPair& a, const IndexPair& b) { return a.est < b.est; });
@@ -65,8 +65,8 @@ class GreedyMatcher {
       const bool gt_first =
           e == est_.poses.size() ||
           (g < gt_.poses.size() && gt_.poses[g].t <= after(est_.poses[e].t, options_.offset_s));
-      const std::size_t here = events_.size();
-      events_.push_back({gt_first ? g++ : e++, gt_first, here == 0 ? kNone : here - 1, here + 1});
+      const std::size_t index = events_.size();
+      events_.push_back({gt_first ? g++ : e++, gt_first, index == 0 ? kNone : index - 1, index + 1});
     }
     if (!events_.empty()) events_.back().next = kNone;
   }
@@ -76,24 +76,24 @@ class GreedyMatcher {
                                : IndexPair{events_[right].index, events_[left].index};
   }
 
-  void offer(std::size_t left, std::size_t right) {
+  void add_candidate(std::size_t left, std::size_t right) {
     if (events_[left].is_gt == events_[right].is_gt) return;
     const IndexPair pair = pair_of(left, right);
     const double difference_s = difference(pair.gt, pair.est);
     if (difference_s < options_.max_difference_s) heap_.push({difference_s, left, right});
   }
 
-  void take(const Candidate& pair) {
-    events_[pair.left].taken = events_[pair.right].taken = true;
-    const std::size_t before = events_[pair.left].previous;
-    const std::size_t behind = events_[pair.right].next;
-    if (before != kNone) events_[before].next = behind;
-    if (behind != kNone) events_[behind].previous = before;
-    if (before != kNone && behind != kNone) offer(before, behind);
+  void remove(const Candidate& pair) {
+    events_[pair.left].matched = events_[pair.right].matched = true;
+    const std::size_t previous = events_[pair.left].previous;
+    const std::size_t next = events_[pair.right].next;
+    if (previous != kNone) events_[previous].next = next;
+    if (next != kNone) events_[next].previous = previous;
+    if (previous != kNone && next != kNone) add_candidate(previous, next);
   }
 
-  /// Orders the heap so that the smallest difference, then the earliest pair, is on top.
-  struct Later {
+  /// Heap order: the smallest difference is on top; among equal ones the earliest pair.
+  struct LowerPriority {
     bool operator()(const Candidate& a, const Candidate& b) const {
       if (a.difference_s != b.difference_s) return a.difference_s > b.difference_s;
       return a.left > b.left;
@@ -104,7 +104,7 @@ class GreedyMatcher {
   const Trajectory& est_;
   const AssociationOptions& options_;
   std::vector<Event> events_;
-  std::priority_queue<Candidate, std::vector<Candidate>, Later> heap_;
+  std::priority_queue<Candidate, std::vector<Candidate>, LowerPriority> heap_;
 };
 
 }  // namespace
@@ -148,9 +148,11 @@ std::vector<InterpolatedPair> associate_interpolated(const Trajectory& gt, const
       continue;
     }
     if (g + 1 == gt.poses.size()) break;
-    const double before = seconds_between(gt.poses[g].t, t);
-    const double behind = seconds_between(t, gt.poses[g + 1].t);
-    if (std::max(before, behind) < max_gap_s) pairs.push_back({g, e, before / (before + behind)});
+    const double to_previous = seconds_between(gt.poses[g].t, t);
+    const double to_next = seconds_between(t, gt.poses[g + 1].t);
+    if (std::max(to_previous, to_next) < max_gap_s) {
+      pairs.push_back({g, e, to_previous / (to_previous + to_next)});
+    }
   }
   return pairs;
 }
@@ -171,14 +173,15 @@ std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& e
   matches.reserve(pairs.size());
   for (const InterpolatedPair& pair : pairs) {
     const Pose& from = gt.poses[pair.gt].T_w_f;
-    const Pose at = pair.share > 0.0 ? interpolate(from, gt.poses[pair.gt + 1].T_w_f, pair.share) : from;
-    matches.push_back({est.poses[pair.est].t, at, est.poses[pair.est].T_w_f});
+    const Pose interpolated =
+        pair.fraction > 0.0 ? interpolate(from, gt.poses[pair.gt + 1].T_w_f, pair.fraction) : from;
+    matches.push_back({est.poses[pair.est].t, interpolated, est.poses[pair.est].T_w_f});
   }
   return matches;
 }
 
 double stamp_as_double(Timestamp t) {
-  // An 80-bit quotient, so that the second rounding meets the double nearest to the decimal text.
+  // Divides in extended precision, so that rounding to double gives the double closest to the decimal text.
   return static_cast<double>(static_cast<long double>(t.ns) / 1e9L);
 }
 
@@ -189,4 +192,4 @@ double stamp_difference(Timestamp a, Timestamp b, double b_offset_s, StampArithm
   return static_cast<double>(a.ns - after(b, b_offset_s).ns) / 1e9;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

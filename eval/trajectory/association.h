@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which pose of the ground truth belongs to which pose of the estimate.
+/// Association of estimated poses with ground truth by time stamp.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 #include "core/types/trajectory.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 /// Indices into the ground truth and the estimate.
 struct IndexPair {
@@ -18,60 +18,63 @@ struct IndexPair {
   friend bool operator==(const IndexPair&, const IndexPair&) = default;
 };
 
-/// How differences of stamps are computed. The public tools hold stamps in doubles, whose step is 0.24 us for
-/// Unix stamps; that decides ties, so reproducing a tool needs its arithmetic.
+/// How differences of stamps are computed: exactly, in nanoseconds, or in double precision as in the public
+/// tools. A double resolves Unix time to 0.24 us only; the rounding decides ties, so reproducing a tool needs
+/// its arithmetic.
 enum class StampArithmetic { kExact, kDouble };
 
 struct AssociationOptions {
-  double max_difference_s = 0.02;  ///< a pair's stamps differ by less (TUM) or at most (evo) this
+  double max_difference_s = 0.02;  ///< of the stamps of a pair; exclusive (TUM) or inclusive (evo)
   double offset_s = 0.0;           ///< added to the estimate's stamps
   StampArithmetic arithmetic = StampArithmetic::kExact;
 };
 
-/// Pairs of the TUM RGB-D tools: candidates |t_gt - (t_est + offset)| < max_difference_s, taken greedily from
-/// the smallest difference on, each pose at most once. In order of time. O((n + m) log(n + m)).
-/// @param gt, est poses with strictly rising stamps
+/// Association of the TUM RGB-D tools (associate.py): all candidates with
+/// |t_gt - (t_est + offset_s)| < max_difference_s, sorted by the difference, matched greedily and one-to-one.
+/// O((n + m) log(n + m)).
+/// @param gt, est poses with strictly increasing stamps
+/// @return pairs in order of time
 [[nodiscard]] std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
                                                    const AssociationOptions& options = {});
 
-/// Pairs of evo: each stamp of the shorter trajectory with the nearest of the longer, kept if at most
-/// max_difference_s apart. Not one-to-one: a pose of the longer trajectory may be taken twice. O(n + m).
+/// Association of evo: each stamp of the shorter trajectory with the closest stamp of the longer one, kept if
+/// at most max_difference_s apart. Not one-to-one: a pose of the longer trajectory may occur twice. O(n + m).
 [[nodiscard]] std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est,
                                                    const AssociationOptions& options = {});
 
-/// A pair whose ground truth is `share` of the way from pose `gt` to pose `gt + 1`.
+/// A pair whose ground truth is interpolated between the poses `gt` and `gt + 1`.
 struct InterpolatedPair {
   std::size_t gt = 0;
   std::size_t est = 0;
-  double share = 0.0;  ///< in [0, 1)
+  double fraction = 0.0;  ///< 0 at pose `gt`, 1 at pose `gt + 1`; in [0, 1)
 };
 
-/// Every estimate inside the ground truth's time whose two neighbours there are both nearer than `max_gap_s`.
-/// OpenLORIS tools (Shi et al., ICRA 2020) with max_gap_s = 0.5. O(n + m).
+/// One pair for each estimated pose whose two neighbors in the ground truth are both less than `max_gap_s`
+/// away. As in the OpenLORIS tools (Shi et al., ICRA 2020), with max_gap_s = 0.5. O(n + m).
 [[nodiscard]] std::vector<InterpolatedPair> associate_interpolated(const Trajectory& gt,
                                                                    const Trajectory& est, double max_gap_s,
                                                                    double offset_s = 0.0);
 
-/// Both poses at the estimate's stamp.
+/// Ground truth and estimate at the stamp of the estimate.
 struct MatchedPose {
   Timestamp t;  ///< of the estimate, as written in its file
   Pose gt;      ///< T_w_f, w the world of the ground truth
   Pose est;     ///< T_v_f, v the world of the estimate
 };
 
-/// The poses that pairs of indices stand for.
+/// The poses of the pairs.
 [[nodiscard]] std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,
                                                      std::span<const IndexPair> pairs);
 
-/// The same with the ground truth interpolated: slerp of the rotation, straight line of the position.
+/// The poses of the pairs; ground truth by slerp of the rotation and linear interpolation of the position.
 [[nodiscard]] std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,
                                                      std::span<const InterpolatedPair> pairs);
 
-/// The double that a program holds after reading the stamp's decimal text.
+/// The stamp in seconds, rounded as when its decimal text is parsed to a double.
 [[nodiscard]] double stamp_as_double(Timestamp t);
 
-/// a - (b + b_offset_s) [s]; in `kExact` by integers, rounded once.
+/// a - (b + b_offset_s) [s]; `kExact` subtracts integers and rounds once.
 [[nodiscard]] double stamp_difference(Timestamp a, Timestamp b, double b_offset_s,
                                       StampArithmetic arithmetic);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/trajectory/frames.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
 Trajectory move_to_frame(const Trajectory& trajectory, const Pose& T_f_g, const std::string& name) {
   Trajectory moved{.frame = name, .poses = trajectory.poses};
@@ -9,4 +9,4 @@ Trajectory move_to_frame(const Trajectory& trajectory, const Pose& T_f_g, const 
   return moved;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

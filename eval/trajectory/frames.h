@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The same motion told of another frame of the robot.
+/// Change of the body frame of a trajectory.
 #pragma once
 
 #include <string>
 
 #include "core/types/trajectory.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 
-/// Poses T_w_g from poses T_w_f: the frame g = `name` is fixed to f.
-/// @param T_f_g frame g in frame f
+/// T_w_g = T_w_f T_f_g for every pose; f and g are rigidly connected.
+/// @param T_f_g pose of frame g in frame f
+/// @param name of frame g
 [[nodiscard]] Trajectory move_to_frame(const Trajectory& trajectory, const Pose& T_f_g,
                                        const std::string& name);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

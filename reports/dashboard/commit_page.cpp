@@ -15,115 +15,122 @@
 #include "reports/page/html_parts.h"
 #include "reports/tables/escaping.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-constexpr std::size_t kMostRows = 300;  // the largest differences; all numbers are on the first page
+constexpr std::size_t kMaxRows = 300;  // the largest differences; the index page has all metrics
 
-/// A number of this commit and the one measured before it.
-struct BeforeAfter {
-  const HistorySeries* series = nullptr;
-  std::size_t commit_before = 0;
+/// A metric at this commit and at the previous measured commit.
+struct MetricDifference {
+  const bench::HistorySeries* series = nullptr;
+  std::size_t previous_commit = 0;
   double before = 0.0;
   double after = 0.0;
 
-  /// Relative; what was 0 and is not any more comes first.
+  /// Relative difference; infinite where the previous value is 0, so that it sorts first.
   [[nodiscard]] double difference() const {
     if (before == after) return 0.0;
     return before == 0.0 ? std::numeric_limits<double>::infinity() : (after - before) / std::abs(before);
   }
 };
 
-/// Of the metrics that have a good direction.
-std::vector<BeforeAfter> numbers_of(const CommitHistory& history, std::size_t commit) {
-  std::vector<BeforeAfter> numbers;
-  for (const HistorySeries& series : history.series) {
+/// Differences of the metrics that have a preferred direction, largest first.
+std::vector<MetricDifference> differences_at(const bench::CommitHistory& history, std::size_t commit) {
+  std::vector<MetricDifference> differences;
+  for (const bench::HistorySeries& series : history.series) {
     const auto found = std::lower_bound(series.commits.begin(), series.commits.end(), commit);
     if (!series.rule || found == series.commits.end() || *found != commit || found == series.commits.begin())
       continue;
     const auto i = static_cast<std::size_t>(found - series.commits.begin());
-    numbers.push_back({&series, series.commits[i - 1], series.values[i - 1], series.values[i]});
+    differences.push_back({&series, series.commits[i - 1], series.values[i - 1], series.values[i]});
   }
-  std::stable_sort(numbers.begin(), numbers.end(), [](const BeforeAfter& a, const BeforeAfter& b) {
-    return std::abs(a.difference()) > std::abs(b.difference());
-  });
-  return numbers;
+  std::stable_sort(differences.begin(), differences.end(),
+                   [](const MetricDifference& a, const MetricDifference& b) {
+                     return std::abs(a.difference()) > std::abs(b.difference());
+                   });
+  return differences;
 }
 
-std::string number_row(const CommitHistory& history, const BeforeAfter& number) {
-  const HistorySeries& series = *number.series;
-  const double difference = number.difference();
+std::string difference_row(const bench::CommitHistory& history, const MetricDifference& metric) {
+  const bench::HistorySeries& series = *metric.series;
+  const double difference = metric.difference();
   return fmt::format(
-      "<tr><th scope=\"row\">{}</th><td class=\"from\">{}</td><td "
-      "class=\"from\">{}</td><td class=\"from\">{}</td><td>{}</td>"
+      "<tr><th scope=\"row\">{}</th><td class=\"text\">{}</td><td "
+      "class=\"text\">{}</td><td class=\"text\">{}</td><td>{}</td>"
       "<td>{}</td><td>{}</td></tr>\n",
       escape_html(series.metric), escape_html(subject_label(series.subject)),
-      escape_html(series.subject.host), escape_html(commit_label(history.commits[number.commit_before].name)),
-      escape_html(number_label(number.before, series.unit)),
-      escape_html(number_label(number.after, series.unit)),
+      escape_html(series.subject.host),
+      escape_html(commit_label(history.commits[metric.previous_commit].name)),
+      escape_html(value_label(metric.before, series.unit)),
+      escape_html(value_label(metric.after, series.unit)),
       std::isfinite(difference) ? fmt::format("{:+.1f} %", 100.0 * difference) : "new");
 }
 
-std::string numbers_html(const CommitHistory& history, std::size_t commit) {
-  const std::vector<BeforeAfter> numbers = numbers_of(history, commit);
-  if (numbers.empty()) return "<p class=\"none\">No number of this commit was measured before it.</p>";
+std::string differences_html(const bench::CommitHistory& history, std::size_t commit) {
+  const std::vector<MetricDifference> differences = differences_at(history, commit);
+  if (differences.empty())
+    return "<p class=\"none\">No metric of this commit has an earlier measurement.</p>";
   std::string rows;
-  for (std::size_t i = 0; i < std::min(numbers.size(), kMostRows); ++i)
-    rows += number_row(history, numbers[i]);
+  for (std::size_t i = 0; i < std::min(differences.size(), kMaxRows); ++i)
+    rows += difference_row(history, differences[i]);
   const std::string left =
-      numbers.size() > kMostRows
-          ? fmt::format("; the {} smallest differences are left out", numbers.size() - kMostRows)
+      differences.size() > kMaxRows
+          ? fmt::format("; the {} smallest differences are omitted", differences.size() - kMaxRows)
           : "";
-  return html_table("numbers",
-                    fmt::format("{} numbers, the largest difference first{}", numbers.size(), left),
+  return html_table("metric-table",
+                    fmt::format("{} metrics compared with the previous measured commit, largest difference "
+                                "first{}",
+                                differences.size(), left),
                     {{"metric", true},
                      {"on", true},
                      {"machine", true},
-                     {"commit before", true},
-                     {"before"},
-                     {"here"},
+                     {"previous commit", true},
+                     {"previous value"},
+                     {"this commit"},
                      {"difference"}},
                     rows);
 }
 
-std::string shift_row(const CommitHistory& history, const LevelShift& shift) {
-  const HistorySeries& series = history.series[shift.series];
+std::string shift_row(const bench::CommitHistory& history, const bench::LevelShift& shift) {
+  const bench::HistorySeries& series = history.series[shift.series];
   return fmt::format(
       "<tr class=\"{0}\"><th scope=\"row\"><a href=\"../index.html#series={1}\">{2}</a></th>"
-      "<td class=\"from\">{3}</td><td>{4}</td><td>{5}</td><td>{6}</td><td>{7}</td><td "
-      "class=\"from\">{0}{8}</td>"
+      "<td class=\"text\">{3}</td><td>{4}</td><td>{5}</td><td>{6}</td><td>{7}</td><td "
+      "class=\"text\">{0}{8}</td>"
       "</tr>\n",
-      state_name(shift.state), shift.series, escape_html(series.metric),
-      escape_html(subject_label(series.subject)), escape_html(number_label(shift.level_before, series.unit)),
-      escape_html(number_label(shift.level_after, series.unit)), change_label(shift), interval_label(shift),
+      bench::state_name(shift.state), shift.series, escape_html(series.metric),
+      escape_html(subject_label(series.subject)), escape_html(value_label(shift.level_before, series.unit)),
+      escape_html(value_label(shift.level_after, series.unit)), change_label(shift), interval_label(shift),
       shift.reason.empty() ? "" : ": " + escape_html(shift.reason));
 }
 
-std::string shifts_html(const CommitHistory& history, const HistoryChanges& changes, std::size_t commit) {
+std::string shifts_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes,
+                        std::size_t commit) {
   std::string rows;
-  for (const LevelShift& shift : changes.shifts) {
+  for (const bench::LevelShift& shift : changes.shifts) {
     if (shift.after == commit) rows += shift_row(history, shift);
   }
-  if (rows.empty()) return "<p class=\"none\">No level changed here.</p>";
+  if (rows.empty()) return "<p class=\"none\">No change points at this commit.</p>";
   return html_table(
-      "shifts", "Levels before and after, medians over their commits",
+      "shifts", "Medians over the commits before and after the change point, and the relative change",
       {{"metric", true}, {"on", true}, {"before"}, {"after"}, {"change"}, {"95 % interval"}, {"state", true}},
       rows);
 }
 
-/// Links lead from page to page; all lie in one folder.
-std::string link_to(const CommitHistory& history, std::size_t commit, const std::string& what) {
+/// Link to the page of another commit; all pages are in one folder.
+std::string link_to(const bench::CommitHistory& history, std::size_t commit, const std::string& text) {
   if (commit >= history.commits.size()) return "";
-  const Commit& target = history.commits[commit];
+  const bench::Commit& target = history.commits[commit];
   return fmt::format("<a href=\"{}\">{} {}</a> ",
-                     std::filesystem::path(commit_file(target)).filename().string(), what,
+                     std::filesystem::path(commit_file(target)).filename().string(), text,
                      escape_html(commit_label(target.name)));
 }
 
 }  // namespace
 
-std::string commit_html(const CommitHistory& history, const HistoryChanges& changes, std::size_t commit) {
-  const Commit& subject = history.commits[commit];
+std::string commit_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes,
+                        std::size_t commit) {
+  const bench::Commit& subject = history.commits[commit];
   const std::size_t before = commit == 0 ? history.commits.size() : commit - 1;
   return filled_template(
       web_file("dashboard/commit.html"),
@@ -131,9 +138,9 @@ std::string commit_html(const CommitHistory& history, const HistoryChanges& chan
        {"name", escape_html(subject.name)},
        {"time", escape_html(subject.time)},
        {"styles", std::string(web_file("page.css")) + std::string(web_file("dashboard/dashboard.css"))},
-       {"neighbours", link_to(history, before, "before:") + link_to(history, commit + 1, "after:")},
+       {"neighbors", link_to(history, before, "previous:") + link_to(history, commit + 1, "next:")},
        {"shifts", shifts_html(history, changes, commit)},
-       {"numbers", numbers_html(history, commit)}});
+       {"metrics", differences_html(history, commit)}});
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

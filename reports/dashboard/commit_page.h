@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One commit: what changed with it, and its numbers beside those of the commit before.
+/// Page of one commit: its change points, and its metrics compared with the previous measurement.
 #pragma once
 
 #include <string>
 
-#include "bench/compare/history_changes.h"
+#include "bench/analysis/history_changes.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// A page that needs nothing but itself, and no scripts.
-/// @param commit index
-[[nodiscard]] std::string commit_html(const CommitHistory& history, const HistoryChanges& changes,
-                                      std::size_t commit);
+/// A self-contained page without scripts.
+/// @param commit index into `history.commits`
+[[nodiscard]] std::string commit_html(const bench::CommitHistory& history,
+                                      const bench::HistoryChanges& changes, std::size_t commit);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

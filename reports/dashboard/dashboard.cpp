@@ -15,104 +15,105 @@
 #include "reports/page/html_parts.h"
 #include "reports/tables/escaping.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-constexpr std::size_t kMostMembers = 20;  // of a group that are listed by name
+constexpr std::size_t kMaxMembers = 20;  // of a group that are listed individually
 
 std::string counted(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::string commit_link(const CommitHistory& history, std::size_t commit) {
-  const Commit& target = history.commits[commit];
+std::string commit_link(const bench::CommitHistory& history, std::size_t commit) {
+  const bench::Commit& target = history.commits[commit];
   return fmt::format("<a href=\"{}\">{}</a>", commit_file(target), escape_html(commit_label(target.name)));
 }
 
-std::string series_link(const CommitHistory& history, std::size_t series) {
+std::string series_link(const bench::CommitHistory& history, std::size_t series) {
   return fmt::format("<a href=\"#series={}\">{}</a>", series,
                      escape_html(subject_label(history.series[series].subject)));
 }
 
-std::string summary_html(const CommitHistory& history, const HistoryChanges& changes) {
+std::string summary_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   std::set<std::string> hosts;
-  for (const HistorySeries& series : history.series) hosts.insert(series.subject.host);
-  const std::size_t open = grouped_shifts(history, changes, ChangeState::kOpen).size();
-  const auto creeping = static_cast<std::size_t>(std::count_if(
-      changes.creeps.begin(), changes.creeps.end(), [](const Creep& creep) { return creep.worse; }));
-  std::string text = "<li>" + (open == 0 ? "No open regressions" : counted(open, "open regression")) +
-                     (creeping == 0 ? "" : "; " + counted(creeping, "number") + " creeping for the worse") +
-                     ".</li>";
-  text +=
-      fmt::format("<li>{} from {} to {}, {}, {} of machines.</li>", counted(history.commits.size(), "commit"),
-                  escape_html(history.commits.front().time), escape_html(history.commits.back().time),
-                  fmt::format("{} series", history.series.size()),
-                  hosts.size() == 1 ? "1 class" : fmt::format("{} classes", hosts.size()));
+  for (const bench::HistorySeries& series : history.series) hosts.insert(series.subject.host);
+  const std::size_t open = grouped_shifts(history, changes, bench::ChangeState::kOpen).size();
+  const auto drifting =
+      static_cast<std::size_t>(std::count_if(changes.drifts.begin(), changes.drifts.end(),
+                                             [](const bench::MetricDrift& drift) { return drift.worse; }));
+  std::string text =
+      "<li>" + (open == 0 ? "No open regressions" : counted(open, "open regression")) +
+      (drifting == 0 ? "" : "; " + counted(drifting, "metric") + " drifting for the worse over commits") +
+      ".</li>";
+  text += fmt::format("<li>{} from {} to {}, {}, {}.</li>", counted(history.commits.size(), "commit"),
+                      escape_html(history.commits.front().time), escape_html(history.commits.back().time),
+                      fmt::format("{} series", history.series.size()), counted(hosts.size(), "machine type"));
   return "<ul class=\"summary\">" + text + "</ul>";
 }
 
-/// The others of a group, below its largest.
-std::string members_html(const CommitHistory& history, const ShiftGroup& group) {
+/// The other members of a group, collapsed below its largest.
+std::string members_html(const bench::CommitHistory& history, const ShiftGroup& group) {
   if (group.shifts.size() < 2) return "";
   std::string items;
-  for (std::size_t i = 1; i < std::min(group.shifts.size(), kMostMembers); ++i) {
+  for (std::size_t i = 1; i < std::min(group.shifts.size(), kMaxMembers); ++i) {
     items += "<li>" + series_link(history, group.shifts[i]->series) + " " + change_label(*group.shifts[i]) +
              "</li>";
   }
-  const std::string left = group.shifts.size() > kMostMembers
-                               ? fmt::format("<li>{} more</li>", group.shifts.size() - kMostMembers)
+  const std::string left = group.shifts.size() > kMaxMembers
+                               ? fmt::format("<li>{} more</li>", group.shifts.size() - kMaxMembers)
                                : "";
   return fmt::format("<details><summary>and {} more series</summary><ul>{}{}</ul></details>",
                      group.shifts.size() - 1, items, left);
 }
 
-std::string group_row(const CommitHistory& history, const ShiftGroup& group) {
-  const LevelShift& largest = *group.shifts.front();
-  const HistorySeries& series = history.series[largest.series];
+std::string group_row(const bench::CommitHistory& history, const ShiftGroup& group) {
+  const bench::LevelShift& largest = *group.shifts.front();
+  const bench::HistorySeries& series = history.series[largest.series];
   return fmt::format(
-      "<tr><th scope=\"row\">{}</th><td class=\"from\">{} .. {}</td><td class=\"from\">{}{}</td>"
-      "<td class=\"from\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
-      "class=\"from\">{}</td></tr>\n",
+      "<tr><th scope=\"row\">{}</th><td class=\"text\">{} .. {}</td><td class=\"text\">{}{}</td>"
+      "<td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+      "class=\"text\">{}</td></tr>\n",
       escape_html(group.metric), commit_link(history, group.before), commit_link(history, group.after),
       series_link(history, largest.series), members_html(history, group), escape_html(series.subject.host),
-      escape_html(number_label(largest.level_before, series.unit)),
-      escape_html(number_label(largest.level_after, series.unit)), change_label(largest),
+      escape_html(value_label(largest.level_before, series.unit)),
+      escape_html(value_label(largest.level_after, series.unit)), change_label(largest),
       interval_label(largest), escape_html(largest.reason));
 }
 
-std::string groups_html(const CommitHistory& history, const HistoryChanges& changes, ChangeState state,
-                        const std::string& none) {
+std::string groups_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes,
+                        bench::ChangeState state, const std::string& none) {
   const std::vector<ShiftGroup> groups = grouped_shifts(history, changes, state);
   if (groups.empty()) return "<p class=\"none\">" + none + "</p>";
   std::string rows;
   for (const ShiftGroup& group : groups) rows += group_row(history, group);
-  return html_table(state_name(state) + "-changes", "",
+  return html_table(bench::state_name(state) + "-changes", "",
                     {{"metric", true},
-                     {"after .. up to", true},
-                     {"largest on", true},
+                     {"between commits", true},
+                     {"largest change on", true},
                      {"machine", true},
                      {"before"},
                      {"after"},
                      {"change"},
                      {"95 % interval"},
-                     {state == ChangeState::kAccepted ? "reason" : "", true}},
+                     {state == bench::ChangeState::kAccepted ? "reason" : "", true}},
                     rows);
 }
 
-std::string creeps_html(const CommitHistory& history, const HistoryChanges& changes) {
+std::string drifts_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   std::string rows;
-  for (const Creep& creep : changes.creeps) {
-    const HistorySeries& series = history.series[creep.series];
+  for (const bench::MetricDrift& drift : changes.drifts) {
+    const bench::HistorySeries& series = history.series[drift.series];
     rows += fmt::format(
-        "<tr><th scope=\"row\">{}</th><td class=\"from\">{}</td><td class=\"from\">{} .. {}</td><td>{:+.1f} "
+        "<tr><th scope=\"row\">{}</th><td class=\"text\">{}</td><td class=\"text\">{} .. {}</td><td>{:+.1f} "
         "%</td>"
-        "<td class=\"from\">{}</td></tr>\n",
-        escape_html(series.metric), series_link(history, creep.series), commit_link(history, creep.first),
-        commit_link(history, creep.last), 100.0 * creep.change, creep.worse ? "worse" : "better");
+        "<td class=\"text\">{}</td></tr>\n",
+        escape_html(series.metric), series_link(history, drift.series), commit_link(history, drift.first),
+        commit_link(history, drift.last), 100.0 * drift.change, drift.worse ? "worse" : "better");
   }
-  if (rows.empty()) return "<p class=\"none\">No number moves steadily by more than its margin.</p>";
-  return html_table("creeps", "", {{"metric", true}, {"on", true}, {"commits", true}, {"in all"}, {"", true}},
-                    rows);
+  if (rows.empty()) return "<p class=\"none\">No metric drifts by more than its margin.</p>";
+  return html_table(
+      "drifts", "",
+      {{"metric", true}, {"on", true}, {"commits", true}, {"total change"}, {"direction", true}}, rows);
 }
 
 std::string scripts_html() {
@@ -122,7 +123,7 @@ std::string scripts_html() {
   return text;
 }
 
-std::string index_html(const CommitHistory& history, const HistoryChanges& changes) {
+std::string index_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   std::string styles;
   for (const char* name : {"vendor/uPlot.min.css", "page.css", "dashboard/dashboard.css"})
     styles += web_file(name);
@@ -130,36 +131,36 @@ std::string index_html(const CommitHistory& history, const HistoryChanges& chang
       web_file("dashboard/dashboard.html"),
       {{"styles", styles},
        {"summary", summary_html(history, changes)},
-       {"open", groups_html(history, changes, ChangeState::kOpen, "None.")},
-       {"accepted", groups_html(history, changes, ChangeState::kAccepted, "None.")},
-       {"improved", groups_html(history, changes, ChangeState::kImproved, "None.")},
-       {"ended", groups_html(history, changes, ChangeState::kEnded, "None.")},
-       {"creeps", creeps_html(history, changes)},
-       {"licences", preformatted(std::string(web_file("vendor/LICENSE.uPlot")))},
+       {"open", groups_html(history, changes, bench::ChangeState::kOpen, "None.")},
+       {"accepted", groups_html(history, changes, bench::ChangeState::kAccepted, "None.")},
+       {"improved", groups_html(history, changes, bench::ChangeState::kImproved, "None.")},
+       {"resolved", groups_html(history, changes, bench::ChangeState::kResolved, "None.")},
+       {"drifts", drifts_html(history, changes)},
+       {"licenses", preformatted(std::string(web_file("vendor/LICENSE.uPlot")))},
        {"data", data_script("index", dashboard_data(history, changes)) + data_script("files", "[]")},
        {"scripts", scripts_html()}});
 }
 
 }  // namespace
 
-JudgedHistory judged_history(const Store& store) {
-  JudgedHistory judged{.history = commit_history(store), .changes = {}};
-  if (judged.history.commits.empty())
+AnalyzedHistory analyze_history(const bench::Store& store) {
+  AnalyzedHistory analyzed{.history = bench::commit_history(store), .changes = {}};
+  if (analyzed.history.commits.empty())
     throw InputError(
         store.file().string(),
-        "holds no ended run of the odometry; make some with `stillpoint bench PLAN --store FILE`");
-  judged.changes = history_changes(judged.history, store.acceptances());
-  return judged;
+        "contains no finished runs of stillpoint; create some with `stillpoint bench PLAN --store FILE`");
+  analyzed.changes = bench::history_changes(analyzed.history, store.acceptances());
+  return analyzed;
 }
 
-std::vector<OutputFile> dashboard_files(const Store& store) {
-  const auto [history, changes] = judged_history(store);
-  std::vector<OutputFile> files = {{"index.html", index_html(history, changes)},
-                                   {"regressions.md", regressions_markdown(history, changes)},
-                                   {"regressions.json", regressions_json(history, changes)}};
+std::vector<bench::OutputFile> dashboard_files(const bench::Store& store) {
+  const auto [history, changes] = analyze_history(store);
+  std::vector<bench::OutputFile> files = {{"index.html", index_html(history, changes)},
+                                          {"regressions.md", regressions_markdown(history, changes)},
+                                          {"regressions.json", regressions_json(history, changes)}};
   for (std::size_t i = 0; i < history.commits.size(); ++i)
     files.push_back({commit_file(history.commits[i]), commit_html(history, changes, i)});
   return files;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Every number over commits as static files: a pure function of the store.
+/// Dashboard of all metrics over commits as static files; a pure function of the store.
 #pragma once
 
 #include <vector>
 
-#include "bench/compare/history_changes.h"
+#include "bench/analysis/history_changes.h"
 #include "bench/record/output_folder.h"
 #include "bench/store/store.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-struct JudgedHistory {
-  CommitHistory history;
-  HistoryChanges changes;
+struct AnalyzedHistory {
+  bench::CommitHistory history;
+  bench::HistoryChanges changes;
 };
 
-/// What a store says of its commits.
-/// @throws InputError if no run of our odometry has ended: that nothing became worse would be no news
-[[nodiscard]] JudgedHistory judged_history(const Store& store);
+/// Commit history of a store with its change points and drifts.
+/// @throws InputError if the store has no finished runs of Stillpoint
+[[nodiscard]] AnalyzedHistory analyze_history(const bench::Store& store);
 
-/// index.html, regressions.md, regressions.json, and a page for each commit in commits/.
-/// @throws InputError as `judged_history`
-[[nodiscard]] std::vector<OutputFile> dashboard_files(const Store& store);
+/// index.html, regressions.md, regressions.json, and one page per commit in commits/.
+/// @throws InputError as `analyze_history`
+[[nodiscard]] std::vector<bench::OutputFile> dashboard_files(const bench::Store& store);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -9,25 +9,25 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/record/content_hash.h"
+#include "bench/model/content_hash.h"
 #include "reports/dashboard/history_text.h"
 #include "reports/tables/escaping.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A number at the precision that charts show, so that a page is no heavier than it has to be.
+/// Rounds to 6 significant digits, the precision of the charts, to keep the page small.
 double rounded(double value) { return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr); }
 
-/// Names by the order of their first appearance.
-class Names {
+/// Assigns indices to names in order of first appearance.
+class NameTable {
  public:
   std::size_t index(const std::string& name) {
-    const auto [place, is_new] = indices_.insert({name, names_.size()});
+    const auto [entry, is_new] = indices_.insert({name, names_.size()});
     if (is_new) names_.push_back(clean_line(name));
-    return place->second;
+    return entry->second;
   }
   [[nodiscard]] const std::vector<std::string>& all() const { return names_; }
 
@@ -36,14 +36,14 @@ class Names {
   std::vector<std::string> names_;
 };
 
-std::string family_name(const std::optional<MetricRule>& rule) {
+std::string family_name(const std::optional<bench::MetricRule>& rule) {
   if (!rule) return "other";
-  return rule->family == MetricFamily::kAccuracy ? "accuracy" : "cost";
+  return rule->family == bench::MetricFamily::kAccuracy ? "accuracy" : "cost";
 }
 
-Json commits_json(const std::vector<Commit>& commits) {
+Json commits_json(const std::vector<bench::Commit>& commits) {
   Json list = Json::array();
-  for (const Commit& commit : commits) {
+  for (const bench::Commit& commit : commits) {
     list.push_back({{"name", clean_line(commit.name)},
                     {"label", commit_label(commit.name)},
                     {"time", clean_line(commit.time)},
@@ -52,7 +52,7 @@ Json commits_json(const std::vector<Commit>& commits) {
   return list;
 }
 
-Json series_json(const HistorySeries& series, std::size_t subject) {
+Json series_json(const bench::HistorySeries& series, std::size_t subject) {
   Json values = Json::array();
   for (const double value : series.values) values.push_back(rounded(value));
   return {{"subject", subject},
@@ -64,7 +64,7 @@ Json series_json(const HistorySeries& series, std::size_t subject) {
           {"runs", series.runs}};
 }
 
-Json shift_json(const LevelShift& shift) {
+Json shift_json(const bench::LevelShift& shift) {
   Json json = {{"series", shift.series},
                {"before", shift.before},
                {"after", shift.after},
@@ -72,34 +72,34 @@ Json shift_json(const LevelShift& shift) {
                {"to", rounded(shift.level_after)},
                {"change", change_label(shift)},
                {"interval", interval_label(shift)},
-               {"state", state_name(shift.state)}};
+               {"state", bench::state_name(shift.state)}};
   if (!shift.reason.empty()) json["reason"] = clean_line(shift.reason);
   return json;
 }
 
 }  // namespace
 
-std::string commit_file(const Commit& commit) {
+std::string commit_file(const bench::Commit& commit) {
   std::string name;
   for (const char letter : commit.name.substr(0, 12)) {
     if (std::isalnum(static_cast<unsigned char>(letter)) != 0) name += letter;
   }
-  return "commits/" + name + "-" + hash_text(content_hash(commit.name)) + ".html";
+  return "commits/" + name + "-" + bench::hash_text(bench::content_hash(commit.name)) + ".html";
 }
 
-std::vector<HistorySubject> subjects_of(const CommitHistory& history) {
-  std::vector<HistorySubject> subjects;
-  for (const HistorySeries& series : history.series) {
+std::vector<bench::HistorySubject> subjects_of(const bench::CommitHistory& history) {
+  std::vector<bench::HistorySubject> subjects;
+  for (const bench::HistorySeries& series : history.series) {
     if (subjects.empty() || subjects.back() != series.subject) subjects.push_back(series.subject);
   }
   return subjects;
 }
 
-std::string dashboard_data(const CommitHistory& history, const HistoryChanges& changes) {
-  Names plans;
-  Names hosts;
+std::string dashboard_data(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
+  NameTable plans;
+  NameTable hosts;
   Json subjects = Json::array();
-  for (const HistorySubject& subject : subjects_of(history)) {
+  for (const bench::HistorySubject& subject : subjects_of(history)) {
     subjects.push_back({{"label", subject_label(subject)},
                         {"data", clean_line(subject.sequence_id)},
                         {"host", hosts.index(subject.host)},
@@ -108,22 +108,22 @@ std::string dashboard_data(const CommitHistory& history, const HistoryChanges& c
   Json all_series = Json::array();
   std::size_t subject = 0;
   for (std::size_t i = 0; i < history.series.size(); ++i) {
-    const HistorySeries& series = history.series[i];
+    const bench::HistorySeries& series = history.series[i];
     if (i > 0 && series.subject != history.series[i - 1].subject) ++subject;
     all_series.push_back(series_json(series, subject));
     if (!subjects[subject]["plans"].empty()) continue;
     for (const std::string& plan : series.plans) subjects[subject]["plans"].push_back(plans.index(plan));
   }
   Json shifts = Json::array();
-  for (const LevelShift& shift : changes.shifts) shifts.push_back(shift_json(shift));
-  Json creeps = Json::array();
-  for (const Creep& creep : changes.creeps) {
-    creeps.push_back({{"series", creep.series},
-                      {"first", creep.first},
-                      {"last", creep.last},
-                      {"from", rounded(creep.start)},
-                      {"to", rounded(creep.end)},
-                      {"worse", creep.worse}});
+  for (const bench::LevelShift& shift : changes.shifts) shifts.push_back(shift_json(shift));
+  Json drifts = Json::array();
+  for (const bench::MetricDrift& drift : changes.drifts) {
+    drifts.push_back({{"series", drift.series},
+                      {"first", drift.first},
+                      {"last", drift.last},
+                      {"from", rounded(drift.start)},
+                      {"to", rounded(drift.end)},
+                      {"worse", drift.worse}});
   }
   const Json json = {{"commits", commits_json(history.commits)},
                      {"plans", plans.all()},
@@ -131,8 +131,8 @@ std::string dashboard_data(const CommitHistory& history, const HistoryChanges& c
                      {"subjects", subjects},
                      {"series", all_series},
                      {"shifts", shifts},
-                     {"creeps", creeps}};
+                     {"drifts", drifts}};
   return json.dump();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

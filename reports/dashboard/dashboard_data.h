@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the scripts of the dashboard read.
+/// JSON data of the dashboard.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "bench/compare/history_changes.h"
+#include "bench/analysis/history_changes.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// File of a commit's page below the dashboard, of harmless letters whatever the commit's name.
-[[nodiscard]] std::string commit_file(const Commit& commit);
+/// Path of a commit's page relative to the dashboard; contains only [A-Za-z0-9./-] for any commit name.
+[[nodiscard]] std::string commit_file(const bench::Commit& commit);
 
-/// Subjects in the order of the series: those of one subject follow each other.
-[[nodiscard]] std::vector<HistorySubject> subjects_of(const CommitHistory& history);
+/// Distinct subjects in the order of the series; series of one subject are contiguous.
+[[nodiscard]] std::vector<bench::HistorySubject> subjects_of(const bench::CommitHistory& history);
 
-/// JSON: commits, plans, machines, subjects, series, shifts and creeps, which name each other by their
-/// indices.
-[[nodiscard]] std::string dashboard_data(const CommitHistory& history, const HistoryChanges& changes);
+/// JSON: commits, plans, machines, subjects, series, shifts and drifts; they refer to each other by index.
+[[nodiscard]] std::string dashboard_data(const bench::CommitHistory& history,
+                                         const bench::HistoryChanges& changes);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

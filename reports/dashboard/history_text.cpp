@@ -8,23 +8,23 @@
 
 #include "reports/tables/escaping.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 constexpr std::size_t kHashDigits = 10;
-constexpr std::size_t kMostLetters = 24;
+constexpr std::size_t kMaxCharacters = 24;
 
 bool is_git_hash(const std::string& text) {
   return text.size() == 40 && std::all_of(text.begin(), text.end(),
                                           [](unsigned char letter) { return std::isxdigit(letter) != 0; });
 }
 
-/// The first letters of valid UTF-8, whole.
-std::string first_letters(const std::string& text, std::size_t count) {
+/// The first `count` characters of valid UTF-8 text.
+std::string first_characters(const std::string& text, std::size_t count) {
   std::size_t end = 0;
   for (; end < text.size(); ++end) {
-    const bool begins_letter = (static_cast<unsigned char>(text[end]) & 0xC0) != 0x80;
-    if (begins_letter && count-- == 0) return text.substr(0, end);
+    const bool starts_character = (static_cast<unsigned char>(text[end]) & 0xC0) != 0x80;
+    if (starts_character && count-- == 0) return text.substr(0, end);
   }
   return text;
 }
@@ -35,10 +35,11 @@ std::string commit_label(const std::string& name) {
   const std::size_t plus = name.find('+');
   std::string base = name.substr(0, plus);
   if (is_git_hash(base)) base.resize(kHashDigits);
-  return first_letters(clean_line(plus == std::string::npos ? base : base + name.substr(plus)), kMostLetters);
+  return first_characters(clean_line(plus == std::string::npos ? base : base + name.substr(plus)),
+                          kMaxCharacters);
 }
 
-std::string subject_label(const HistorySubject& subject) {
+std::string subject_label(const bench::HistorySubject& subject) {
   std::string label = clean_line(subject.variant) + " on " + clean_line(subject.sequence);
   if (!subject.axis.empty()) label += fmt::format(", {} = {}", clean_line(subject.axis), subject.axis_value);
   if (subject.seed != 1) label += fmt::format(", seed {}", subject.seed);
@@ -48,18 +49,18 @@ std::string subject_label(const HistorySubject& subject) {
   return label;
 }
 
-std::string change_label(const LevelShift& shift) {
+std::string change_label(const bench::LevelShift& shift) {
   return shift.change ? fmt::format("{:+.1f} %", 100.0 * shift.change->median) : "new";
 }
 
-std::string interval_label(const LevelShift& shift) {
+std::string interval_label(const bench::LevelShift& shift) {
   if (!shift.change) return "";
-  const Interval& interval = shift.change->interval;
+  const eval::Interval& interval = shift.change->interval;
   return fmt::format("{:+.1f} to {:+.1f} %", 100.0 * interval.low, 100.0 * interval.high);
 }
 
-std::string number_label(double value, const std::string& unit) {
+std::string value_label(double value, const std::string& unit) {
   return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", clean_line(unit));
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

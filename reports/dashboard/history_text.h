@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How a history of commits is put into words.
+/// Labels of commits, subjects and changes.
 #pragma once
 
 #include <string>
 
-#include "bench/compare/history_changes.h"
+#include "bench/analysis/history_changes.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// A commit as short as readers know it: ten digits of its hash, and what follows a "+"; at most 24 letters.
+/// Short commit name: ten digits of the hash, plus a suffix that starts with "+"; at most 24 characters.
 [[nodiscard]] std::string commit_label(const std::string& name);
 
-/// "vo on office", and what else sets it apart: point of a sweep, seed, mode, kind, cores.
-[[nodiscard]] std::string subject_label(const HistorySubject& subject);
+/// "vo on office", followed by non-default sweep point, seed, mode, kind and cores.
+[[nodiscard]] std::string subject_label(const bench::HistorySubject& subject);
 
-/// "+5.2 %", or "new" where there was nothing before.
-[[nodiscard]] std::string change_label(const LevelShift& shift);
+/// "+5.2 %", or "new" if there is no earlier level.
+[[nodiscard]] std::string change_label(const bench::LevelShift& shift);
 
 /// "+4.1 to +6.0 %", the 95 % interval; empty if there is none.
-[[nodiscard]] std::string interval_label(const LevelShift& shift);
+[[nodiscard]] std::string interval_label(const bench::LevelShift& shift);
 
-/// Four digits and the unit.
-[[nodiscard]] std::string number_label(double value, const std::string& unit);
+/// Four significant digits and the unit.
+[[nodiscard]] std::string value_label(double value, const std::string& unit);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -11,18 +11,18 @@
 #include "reports/dashboard/history_text.h"
 #include "reports/tables/escaping.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// New failures come before any change of a number.
-double size_of(const LevelShift& shift) {
+/// Sort key: newly failing runs rank above any change of a metric.
+double magnitude(const bench::LevelShift& shift) {
   return shift.change ? std::abs(shift.change->median) : std::numeric_limits<double>::infinity();
 }
 
-Json subject_json(const CommitHistory& history, const HistorySeries& series) {
-  const HistorySubject& subject = series.subject;
+Json subject_json(const bench::CommitHistory& history, const bench::HistorySeries& series) {
+  const bench::HistorySubject& subject = series.subject;
   Json json = {{"metric", clean_line(series.metric)},      {"variant", clean_line(subject.variant)},
                {"sequence", clean_line(subject.sequence)}, {"seed", subject.seed},
                {"mode", clean_line(subject.mode)},         {"kind", clean_line(subject.kind)},
@@ -33,11 +33,11 @@ Json subject_json(const CommitHistory& history, const HistorySeries& series) {
   return json;
 }
 
-Json shift_json(const CommitHistory& history, const LevelShift& shift) {
-  const HistorySeries& series = history.series[shift.series];
+Json shift_json(const bench::CommitHistory& history, const bench::LevelShift& shift) {
+  const bench::HistorySeries& series = history.series[shift.series];
   Json json = subject_json(history, series);
-  json["after_commit"] = clean_line(history.commits[shift.before].name);
-  json["up_to_commit"] = clean_line(history.commits[shift.after].name);
+  json["last_commit_before"] = clean_line(history.commits[shift.before].name);
+  json["first_commit_after"] = clean_line(history.commits[shift.after].name);
   json["unit"] = clean_line(series.unit);
   json["before"] = shift.level_before;
   json["after"] = shift.level_after;
@@ -48,49 +48,49 @@ Json shift_json(const CommitHistory& history, const LevelShift& shift) {
   return json;
 }
 
-Json creep_json(const CommitHistory& history, const Creep& creep) {
-  Json json = subject_json(history, history.series[creep.series]);
-  json["from_commit"] = clean_line(history.commits[creep.first].name);
-  json["to_commit"] = clean_line(history.commits[creep.last].name);
-  json["change"] = creep.change;
-  json["p_value"] = creep.p_value;
+Json drift_json(const bench::CommitHistory& history, const bench::MetricDrift& drift) {
+  Json json = subject_json(history, history.series[drift.series]);
+  json["from_commit"] = clean_line(history.commits[drift.first].name);
+  json["to_commit"] = clean_line(history.commits[drift.last].name);
+  json["change"] = drift.change;
+  json["p_value"] = drift.p_value;
   return json;
 }
 
-std::string group_row(const CommitHistory& history, const ShiftGroup& group) {
-  const LevelShift& largest = *group.shifts.front();
-  const HistorySeries& series = history.series[largest.series];
+std::string group_row(const bench::CommitHistory& history, const ShiftGroup& group) {
+  const bench::LevelShift& largest = *group.shifts.front();
+  const bench::HistorySeries& series = history.series[largest.series];
   return fmt::format("| {} | {}..{} | {} | {} | {} to {} | {} | {} |\n", escape_markdown(group.metric),
                      escape_markdown(commit_label(history.commits[group.before].name)),
                      escape_markdown(commit_label(history.commits[group.after].name)), group.shifts.size(),
                      escape_markdown(subject_label(series.subject)),
-                     escape_markdown(number_label(largest.level_before, series.unit)),
-                     escape_markdown(number_label(largest.level_after, series.unit)), change_label(largest),
+                     escape_markdown(value_label(largest.level_before, series.unit)),
+                     escape_markdown(value_label(largest.level_after, series.unit)), change_label(largest),
                      interval_label(largest));
 }
 
-std::string creeps_markdown(const CommitHistory& history, const HistoryChanges& changes) {
+std::string drifts_markdown(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   std::string rows;
-  for (const Creep& creep : changes.creeps) {
-    if (!creep.worse) continue;
-    const HistorySeries& series = history.series[creep.series];
+  for (const bench::MetricDrift& drift : changes.drifts) {
+    if (!drift.worse) continue;
+    const bench::HistorySeries& series = history.series[drift.series];
     rows += fmt::format("| {} | {}..{} | {} | {:+.1f} % |\n", escape_markdown(series.metric),
-                        escape_markdown(commit_label(history.commits[creep.first].name)),
-                        escape_markdown(commit_label(history.commits[creep.last].name)),
-                        escape_markdown(subject_label(series.subject)), 100.0 * creep.change);
+                        escape_markdown(commit_label(history.commits[drift.first].name)),
+                        escape_markdown(commit_label(history.commits[drift.last].name)),
+                        escape_markdown(subject_label(series.subject)), 100.0 * drift.change);
   }
   if (rows.empty()) return "";
-  return "\nCreeping, by little at each commit (shown, not counted):\n\n| metric | commits | on | in all "
+  return "\nDrift over commits (not counted as regressions):\n\n| metric | commits | on | total change "
          "|\n|---|---|---|---:|\n" +
          rows;
 }
 
 }  // namespace
 
-std::vector<ShiftGroup> grouped_shifts(const CommitHistory& history, const HistoryChanges& changes,
-                                       ChangeState state) {
+std::vector<ShiftGroup> grouped_shifts(const bench::CommitHistory& history,
+                                       const bench::HistoryChanges& changes, bench::ChangeState state) {
   std::vector<ShiftGroup> groups;
-  for (const LevelShift& shift : changes.shifts) {
+  for (const bench::LevelShift& shift : changes.shifts) {
     if (shift.state != state) continue;
     const std::string& metric = history.series[shift.series].metric;
     auto group = std::find_if(groups.begin(), groups.end(), [&](const ShiftGroup& known) {
@@ -100,36 +100,38 @@ std::vector<ShiftGroup> grouped_shifts(const CommitHistory& history, const Histo
     group->shifts.push_back(&shift);
   }
   for (ShiftGroup& group : groups) {
-    std::stable_sort(group.shifts.begin(), group.shifts.end(),
-                     [](const LevelShift* a, const LevelShift* b) { return size_of(*a) > size_of(*b); });
+    std::stable_sort(
+        group.shifts.begin(), group.shifts.end(),
+        [](const bench::LevelShift* a, const bench::LevelShift* b) { return magnitude(*a) > magnitude(*b); });
   }
   std::stable_sort(groups.begin(), groups.end(), [](const ShiftGroup& a, const ShiftGroup& b) {
-    return a.after != b.after ? a.after > b.after : size_of(*a.shifts.front()) > size_of(*b.shifts.front());
+    return a.after != b.after ? a.after > b.after
+                              : magnitude(*a.shifts.front()) > magnitude(*b.shifts.front());
   });
   return groups;
 }
 
-std::string regressions_markdown(const CommitHistory& history, const HistoryChanges& changes) {
-  const std::vector<ShiftGroup> groups = grouped_shifts(history, changes, ChangeState::kOpen);
+std::string regressions_markdown(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
+  const std::vector<ShiftGroup> groups = grouped_shifts(history, changes, bench::ChangeState::kOpen);
   std::string text = "No open regressions.\n";
   if (!groups.empty()) {
     text =
-        "| metric | commits | series | largest on | from, to | change | 95 % interval |\n"
+        "| metric | between commits | series | largest change on | before, after | change | 95 % interval |\n"
         "|---|---|---:|---|---|---:|---|\n";
     for (const ShiftGroup& group : groups) text += group_row(history, group);
   }
-  return text + creeps_markdown(history, changes);
+  return text + drifts_markdown(history, changes);
 }
 
-std::string regressions_json(const CommitHistory& history, const HistoryChanges& changes) {
-  Json json = {{"open", Json::array()}, {"creeping", Json::array()}};
-  for (const ShiftGroup& group : grouped_shifts(history, changes, ChangeState::kOpen)) {
-    for (const LevelShift* shift : group.shifts) json["open"].push_back(shift_json(history, *shift));
+std::string regressions_json(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
+  Json json = {{"open", Json::array()}, {"drifting", Json::array()}};
+  for (const ShiftGroup& group : grouped_shifts(history, changes, bench::ChangeState::kOpen)) {
+    for (const bench::LevelShift* shift : group.shifts) json["open"].push_back(shift_json(history, *shift));
   }
-  for (const Creep& creep : changes.creeps) {
-    if (creep.worse) json["creeping"].push_back(creep_json(history, creep));
+  for (const bench::MetricDrift& drift : changes.drifts) {
+    if (drift.worse) json["drifting"].push_back(drift_json(history, drift));
   }
   return json.dump(2) + "\n";
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -1,30 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The regressions that someone still has to look at, for people and for CI.
+/// List of open regressions as Markdown and as JSON for CI.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "bench/compare/history_changes.h"
+#include "bench/analysis/history_changes.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// One metric that changed at one commit, on whatever it changed.
+/// All shifts of one metric between the same two commits, over all subjects.
 struct ShiftGroup {
   std::string metric;
-  std::size_t before = 0;  ///< commits, as in `LevelShift`
+  std::size_t before = 0;  ///< commit indices, as in `LevelShift`
   std::size_t after = 0;
-  std::vector<const LevelShift*> shifts;  ///< the largest first
+  std::vector<const bench::LevelShift*> shifts;  ///< the largest first
 };
 
-/// The newest commit first; of one commit what fails, then the largest change.
-[[nodiscard]] std::vector<ShiftGroup> grouped_shifts(const CommitHistory& history,
-                                                     const HistoryChanges& changes, ChangeState state);
+/// Newest commit first; within a commit failures first, then by falling change.
+[[nodiscard]] std::vector<ShiftGroup> grouped_shifts(const bench::CommitHistory& history,
+                                                     const bench::HistoryChanges& changes,
+                                                     bench::ChangeState state);
 
-/// A table of open regressions, and what creeps for the worse below it.
-[[nodiscard]] std::string regressions_markdown(const CommitHistory& history, const HistoryChanges& changes);
+/// A table of open regressions, followed by metrics that drift for the worse.
+[[nodiscard]] std::string regressions_markdown(const bench::CommitHistory& history,
+                                               const bench::HistoryChanges& changes);
 
-/// {"open": [...], "creeping": [...]}: every series by itself.
-[[nodiscard]] std::string regressions_json(const CommitHistory& history, const HistoryChanges& changes);
+/// {"open": [...], "drifting": [...]}: one entry per series.
+[[nodiscard]] std::string regressions_json(const bench::CommitHistory& history,
+                                           const bench::HistoryChanges& changes);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

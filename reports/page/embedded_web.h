@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The files of reports/web, carried inside the program: template, styles, scripts, libraries and their
-/// licences.
+/// The files of reports/web embedded in the binary: templates, style sheets, scripts, libraries and licenses.
 #pragma once
 
 #include <string_view>
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// @param name below reports/web, e.g. "page.css"; a name that is not there is a fault of the program
+/// @param name relative to reports/web, e.g. "page.css"; must be listed in reports/CMakeLists.txt
 [[nodiscard]] std::string_view web_file(std::string_view name);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -5,7 +5,7 @@
 
 #include "reports/tables/escaping.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
 std::string filled_template(std::string_view text, const TemplateParts& parts) {
   constexpr std::string_view kOpen = "<!--";
@@ -37,7 +37,7 @@ std::string html_table(const std::string& id, const std::string& caption,
                        const std::vector<ColumnHead>& heads, const std::string& rows) {
   std::string head;
   for (const ColumnHead& column : heads) {
-    head += fmt::format("<th scope=\"col\"{}>{}</th>", column.is_text ? " class=\"from\"" : "", column.text);
+    head += fmt::format("<th scope=\"col\"{}>{}</th>", column.is_text ? " class=\"text\"" : "", column.text);
   }
   return fmt::format(
       "<div class=\"table\"><table id=\"{}\">{}<thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>",
@@ -48,4 +48,4 @@ std::string data_script(const std::string& id, const std::string& json) {
   return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, json_for_script(json));
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

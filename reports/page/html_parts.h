@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The parts that every page is put together from.
+/// HTML building blocks shared by all pages.
 #pragma once
 
 #include <functional>
@@ -8,30 +8,30 @@
 #include <string_view>
 #include <vector>
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// Texts by the names under which a template has them.
+/// Texts by placeholder name.
 using TemplateParts = std::map<std::string, std::string, std::less<>>;
 
-/// Replaces each <!--NAME--> of a template; a part that is not there is empty.
+/// Replaces each placeholder <!--NAME--> of a template; missing parts become empty.
 [[nodiscard]] std::string filled_template(std::string_view text, const TemplateParts& parts);
 
-/// For a pre element, which keeps the lines that `escape_html` makes spaces.
+/// Escapes text for a pre element; keeps the line breaks that `escape_html` would replace by spaces.
 [[nodiscard]] std::string preformatted(const std::string& text);
 
-/// Heading of a column.
+/// Column heading.
 struct ColumnHead {
   std::string text;
-  bool is_text = false;  ///< its cells are words, not numbers
+  bool is_text = false;  ///< cells contain text, not numbers
 };
 
-/// A table that scrolls by itself where it is wider than the page; its texts are put in as they are.
-/// @param id of harmless letters
-/// @param rows the rows of its body
+/// A table that scrolls horizontally where it is wider than the page. No argument is escaped.
+/// @param id   letters, digits and "-" only
+/// @param rows HTML of the table body
 [[nodiscard]] std::string html_table(const std::string& id, const std::string& caption,
                                      const std::vector<ColumnHead>& heads, const std::string& rows);
 
-/// JSON that scripts find by its id.
+/// A script element with JSON, looked up by id.
 [[nodiscard]] std::string data_script(const std::string& id, const std::string& json);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

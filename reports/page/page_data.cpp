@@ -8,29 +8,29 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/profile/timeline.h"
-#include "reports/page/flame_stacks.h"
-#include "reports/page/page_pictures.h"
-#include "reports/page/run_series.h"
-#include "reports/page/segment_curves.h"
+#include "reports/page/charts/flame_stacks.h"
+#include "reports/page/charts/run_series.h"
+#include "reports/page/charts/segment_curves.h"
+#include "reports/page/page_images.h"
 #include "reports/page/series_text.h"
 #include "reports/tables/escaping.h"
 #include "reports/tables/run_cells.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxTruthPoints = 2000;     // more than the eye needs
-constexpr std::size_t kPictureRoom = 12'000'000;  // bytes: a page with them can still be mailed
+constexpr std::size_t kMaxTruthPoints = 2000;          // more than a plot can resolve
+constexpr std::size_t kImageBudgetBytes = 12'000'000;  // small enough to send the page by mail
 constexpr const char* kModulePrefix = "ms:";
 
-std::string dumped(const Json& json) {
+std::string dump_replacing_invalid_utf8(const Json& json) {
   return json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace);
 }
 
-Json run_json(const StoredRun& run) {
-  const RunIdentity& identity = run.identity;
+Json run_json(const bench::StoredRun& run) {
+  const bench::RunIdentity& identity = run.identity;
   Json json = {{"key", run.key},
                {"label", clean_line(system_label(identity))},
                {"sequence", clean_line(identity.sequence)},
@@ -40,15 +40,15 @@ Json run_json(const StoredRun& run) {
                {"kind", clean_line(identity.kind)},
                {"build", clean_line(identity.build)},
                {"config", identity.config_hash},
-               {"outcome", outcome_name(run.outcome)},
+               {"outcome", bench::outcome_name(run.outcome)},
                {"detail", clean_line(run.detail)},
                {"manifest", run.manifest_hash}};
   if (!identity.axis.empty())
     json["sweep"] = {{"axis", clean_line(identity.axis)}, {"value", identity.axis_value}};
   Json metrics = Json::array();
-  for (const Metric& metric : run.metrics) {
+  for (const bench::Metric& metric : run.metrics) {
     metrics.push_back(
-        {clean_line(metric.name), metric.value, clean_line(metric.unit), clean_line(metric.recipe)});
+        {clean_line(metric.name), metric.value, clean_line(metric.unit), clean_line(metric.protocol)});
   }
   json["metrics"] = metrics;
   const auto truth = run.blobs.find("truth");
@@ -84,10 +84,10 @@ Json series_json(const RunSeries& series) {
           {"columns", columns}};
 }
 
-/// Times of all frames of a variant in a module.
+/// Times [ms] of all frames by module and variant.
 using ModuleTimes = std::map<std::pair<std::string, std::string>, std::vector<double>>;
 
-void gather_times(ModuleTimes& times, const RunSeries& series, const std::string& label) {
+void add_times(ModuleTimes& times, const RunSeries& series, const std::string& label) {
   for (const SeriesColumn& column : series.columns) {
     if (!column.name.starts_with(kModulePrefix)) continue;
     std::vector<double>& values = times[{column.name.substr(std::string_view(kModulePrefix).size()), label}];
@@ -104,14 +104,14 @@ std::vector<PlotBox> boxes_of(const ModuleTimes& times) {
   return boxes;
 }
 
-/// Stacks of all runs of a variant, and over how many frames they were taken.
+/// Summed stacks of all runs of a variant, and the number of frames they cover.
 struct Flame {
   StackTimes stacks;
   std::size_t frames = 0;
 };
 
-void gather_stacks(std::map<std::string, Flame>& flames, const Store& store, const StoredRun& run,
-                   std::size_t frames) {
+void add_run_stacks(std::map<std::string, Flame>& flames, const bench::Store& store,
+                    const bench::StoredRun& run, std::size_t frames) {
   const std::string folded = store.attachment(run, "stacks");
   if (folded.empty()) return;
   Flame& flame = flames[clean_line(system_label(run.identity))];
@@ -122,9 +122,10 @@ void gather_stacks(std::map<std::string, Flame>& flames, const Store& store, con
 Json flames_json(std::map<std::string, Flame> flames) {
   Json json = Json::array();
   for (auto& [label, flame] : flames) {
-    // Reading pictures is input, done beside and mostly waiting: it would hide everything else.
-    std::erase_if(flame.stacks,
-                  [&](const auto& stack) { return stack.first.starts_with(track_name(Track::kDecoding)); });
+    // The decoding thread runs in parallel and mostly waits for input; it would dominate the chart.
+    std::erase_if(flame.stacks, [&](const auto& stack) {
+      return stack.first.starts_with(bench::track_name(bench::Track::kDecoding));
+    });
     json.push_back({{"label", label}, {"frames", flame.frames}, {"stacks", flame.stacks}});
   }
   return json;
@@ -148,21 +149,21 @@ Json segments_json(const std::vector<SegmentFigure>& figures) {
 
 }  // namespace
 
-PageData page_data(const Store& store, std::span<const StoredRun> runs) {
+PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> runs) {
   PageData data;
   Json index = {{"runs", Json::array()}, {"truths", Json::object()}, {"manifests", Json::object()}};
   ModuleTimes times;
   std::map<std::string, Flame> flames;
   std::vector<RunSeries> all;
-  for (const StoredRun& run : runs) {
+  for (const bench::StoredRun& run : runs) {
     const RunSeries& series = all.emplace_back(run_series(store, run));
     Json& entry = index["runs"].emplace_back(run_json(run));
     entry["frames"] = series.t_s.size();
-    entry["pictures"] = series.pictures.size();
-    data.series.push_back(dumped(series_json(series)));
-    if (tells_times(runs, run)) {
-      gather_times(times, series, system_label(run.identity));
-      gather_stacks(flames, store, run, series.t_s.size());
+    entry["images"] = series.images.size();
+    data.series.push_back(dump_replacing_invalid_utf8(series_json(series)));
+    if (is_timing_source(runs, run)) {
+      add_times(times, series, system_label(run.identity));
+      add_run_stacks(flames, store, run, series.t_s.size());
     }
     if (entry["truth"].is_string() && !index["truths"].contains(entry["truth"].get<std::string>())) {
       index["truths"][entry["truth"].get<std::string>()] = truth_json(store.truth(run));
@@ -173,10 +174,10 @@ PageData page_data(const Store& store, std::span<const StoredRun> runs) {
   }
   index["flames"] = flames_json(flames);
   index["segments"] = segments_json(segment_figures(store, runs));
-  data.index = dumped(index);
+  data.index = dump_replacing_invalid_utf8(index);
   data.module_boxes = boxes_of(times);
-  data.pictures = page_pictures(store, runs, all, kPictureRoom);
+  data.images = page_images(store, runs, all, kImageBudgetBytes);
   return data;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

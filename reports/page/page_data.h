@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the scripts of a page read: the list of runs, their series, true paths and manifests.
+/// JSON data of a report page: list of runs, time series, ground truths and manifests.
 #pragma once
 
 #include <map>
@@ -8,18 +8,18 @@
 #include <vector>
 
 #include "bench/store/store.h"
-#include "reports/page/box_plot.h"
+#include "reports/page/charts/box_plot.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
 struct PageData {
-  std::string index;                  ///< JSON: runs; truths and manifests by name; flames; segments
+  std::string index;                  ///< JSON: runs; truths and manifests by hash; flames; segments
   std::vector<std::string> series;    ///< JSON of each run, in the order of the index
-  std::vector<std::string> pictures;  ///< likewise: annotated pictures by position of their frame
-  std::vector<PlotBox> module_boxes;  ///< time of each frame in each module [ms], by variant
+  std::vector<std::string> images;    ///< JSON of each run: annotated images by frame index
+  std::vector<PlotBox> module_boxes;  ///< time per frame and module [ms], by variant
 };
 
 /// @throws InputError if files of a run are missing or damaged
-[[nodiscard]] PageData page_data(const Store& store, std::span<const StoredRun> runs);
+[[nodiscard]] PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> runs);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

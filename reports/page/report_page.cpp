@@ -4,46 +4,46 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/compare/comparison.h"
-#include "reports/openloris_figure.h"
+#include "bench/analysis/comparison.h"
+#include "reports/drawing/openloris_figure.h"
+#include "reports/drawing/svg_drawing.h"
+#include "reports/page/charts/heat_map.h"
+#include "reports/page/charts/openloris_runs.h"
 #include "reports/page/embedded_web.h"
-#include "reports/page/heat_map.h"
 #include "reports/page/html_parts.h"
-#include "reports/page/openloris_runs.h"
 #include "reports/page/page_data.h"
 #include "reports/page/summary.h"
-#include "reports/svg_drawing.h"
 #include "reports/tables/escaping.h"
 #include "reports/tables/table_formats.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kLibraries[] = {"vendor/uPlot.iife.min.js", "vendor/d3-flamegraph.iife.min.js"};
-constexpr const char* kLicences[] = {"vendor/LICENSE.uPlot", "vendor/LICENSE.d3-flame-graph",
+constexpr const char* kLicenses[] = {"vendor/LICENSE.uPlot", "vendor/LICENSE.d3-flame-graph",
                                      "vendor/LICENSE.d3"};
 constexpr const char* kScripts[] = {"unpack.js",    "charts.js",     "curves.js",   "paths.js",
                                     "inspector.js", "histograms.js", "explorer.js", "flames.js",
                                     "downloads.js", "page.js"};
 constexpr const char* kHeatMetrics[] = {"ate_rmse_m", "rpe_trans_rmse_m_per_s", "rpe_rot_rmse_deg_per_s"};
 
-/// Runs of the latest other build, which a change is told against; empty without one.
-std::vector<StoredRun> previous_runs(const ReportSubject& subject) {
+/// Runs of the latest other build, the baseline of the change summary; empty without one.
+std::vector<bench::StoredRun> previous_runs(const ReportSubject& subject) {
   if (subject.other_runs.empty()) return {};
   const std::string build = subject.other_runs.back().identity.build;
   if (build == subject.runs.back().identity.build) return {};
-  std::vector<StoredRun> runs = subject.other_runs;
-  std::erase_if(runs, [&](const StoredRun& run) { return run.identity.build != build; });
+  std::vector<bench::StoredRun> runs = subject.other_runs;
+  std::erase_if(runs, [&](const bench::StoredRun& run) { return run.identity.build != build; });
   return runs;
 }
 
 std::string summary_html(const ReportSubject& subject) {
   std::vector<std::string> sentences = outcome_sentences(subject.runs);
   if (const std::string best = best_sentence(subject.runs); !best.empty()) sentences.push_back(best);
-  if (const std::vector<StoredRun> previous = previous_runs(subject); !previous.empty()) {
-    const Comparison comparison = compare_runs(previous, subject.runs);
+  if (const std::vector<bench::StoredRun> previous = previous_runs(subject); !previous.empty()) {
+    const bench::Comparison comparison = bench::compare_runs(previous, subject.runs);
     if (comparison.pairs > 0) {
       for (const std::string& sentence : change_sentences(previous.front().identity.build, comparison))
         sentences.push_back(sentence);
@@ -54,15 +54,15 @@ std::string summary_html(const ReportSubject& subject) {
   return "<ul class=\"summary\">" + text + "</ul>";
 }
 
-/// The first tables open, the others a click away.
-std::string tables_html(const std::vector<ReportTable>& tables, bool quoted) {
-  const char* none = quoted ? "No runs here share a sequence with a quoted table."
-                            : "Every run here is a point of a sweep: see its curves below.";
+/// The first table is expanded, the others are collapsed.
+std::string tables_html(const std::vector<ReportTable>& tables, bool published) {
+  const char* none = published ? "No run shares a sequence with a published table."
+                               : "All runs are sweep points; see the curves below.";
   constexpr std::size_t kOpen = 1;
   std::string text;
   std::size_t shown = 0;
   for (const ReportTable& table : tables) {
-    if (table.name.starts_with("beside_") != quoted) continue;
+    if (table.name.starts_with("published_") != published) continue;
     text += fmt::format("<details{}><summary>{}</summary>{}</details>\n", shown++ < kOpen ? " open" : "",
                         escape_html(table.title), table_html(table));
   }
@@ -73,34 +73,34 @@ std::string heat_html(const ReportSubject& subject) {
   const std::string base = base_variant(subject.runs);
   std::string text;
   for (const char* metric : kHeatMetrics) text += heat_map_html(subject.runs, base, metric);
-  return text.empty() ? "<p class=\"none\">One variant alone has nothing to be compared with.</p>" : text;
+  return text.empty() ? "<p class=\"none\">At least two variants are required for a comparison.</p>" : text;
 }
 
-std::string plans_html(const Store& store, const ReportSubject& subject) {
+std::string plans_html(const bench::Store& store, const ReportSubject& subject) {
   std::string text;
-  for (const StoredPlan& plan : subject.plans) {
+  for (const bench::StoredPlan& plan : subject.plans) {
     text += fmt::format(
         "<h3>{}</h3><pre class=\"command\">stillpoint bench {} --store {}</pre>"
-        "<details><summary>The plan</summary><pre>{}</pre></details>\n",
+        "<details><summary>Plan file</summary><pre>{}</pre></details>\n",
         escape_html(plan.title.empty() ? plan.name : plan.title), escape_html(plan.name),
         escape_html(store.file().filename().string()), preformatted(plan.text));
   }
   return text;
 }
 
-std::string openloris_html(const Store& store, const ReportSubject& subject) {
-  const OpenlorisBenchmark benchmark = openloris_of_runs(store, subject.runs);
+std::string openloris_html(const bench::Store& store, const ReportSubject& subject) {
+  const eval::OpenlorisBenchmark benchmark = openloris_of_runs(store, subject.runs);
   if (benchmark.systems.empty()) return "";
   std::string svg = svg_text(openloris_figure(benchmark));
-  return "<h3>Correct rates, as the OpenLORIS figure of the paper has them</h3><figure class=\"openloris\" "
-         "role=\"img\" aria-label=\"Time lines of correct poses by system and scene\">" +
+  return "<h3>Correct rate per scene (OpenLORIS figure of the paper)</h3><figure class=\"openloris\" "
+         "role=\"img\" aria-label=\"Timelines of correct poses by system and scene\">" +
          svg.substr(svg.find("<svg")) + "</figure>";
 }
 
-/// Which plan makes which runs, for the command that repeats one.
-std::string plans_json(const std::vector<StoredPlan>& plans) {
+/// Run keys of each plan; used to build the command that repeats a run.
+std::string plans_json(const std::vector<bench::StoredPlan>& plans) {
   Json json = Json::array();
-  for (const StoredPlan& plan : plans)
+  for (const bench::StoredPlan& plan : plans)
     json.push_back({{"name", clean_line(plan.name)}, {"runs", plan.run_keys}});
   return json.dump();
 }
@@ -109,14 +109,14 @@ std::string data_html(const PageData& data, const ReportSubject& subject,
                       const std::vector<ReportTable>& tables) {
   Json files = Json::array();
   for (const ReportTable& table : tables) {
-    for (const OutputFile& file : table_files(table))
+    for (const bench::OutputFile& file : table_files(table))
       files.push_back({{"name", file.name}, {"text", file.text}});
   }
   std::string text = data_script("index", data.index) + data_script("plans", plans_json(subject.plans));
   text += data_script("files", files.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace));
   for (std::size_t i = 0; i < data.series.size(); ++i) {
     text += data_script(fmt::format("series-{}", i), data.series[i]);
-    text += data_script(fmt::format("pictures-{}", i), data.pictures[i]);
+    text += data_script(fmt::format("images-{}", i), data.images[i]);
   }
   return text;
 }
@@ -128,15 +128,15 @@ std::string scripts_html() {
   return text;
 }
 
-std::string licences_html() {
+std::string licenses_html() {
   std::string text;
-  for (const char* name : kLicences) text += preformatted(std::string(web_file(name))) + "\n";
+  for (const char* name : kLicenses) text += preformatted(std::string(web_file(name))) + "\n";
   return text;
 }
 
 }  // namespace
 
-std::string report_html(const Store& store, const ReportSubject& subject) {
+std::string report_html(const bench::Store& store, const ReportSubject& subject) {
   const PageData data = page_data(store, subject.runs);
   const std::vector<ReportTable> tables = report_tables(subject);
   return filled_template(
@@ -148,11 +148,11 @@ std::string report_html(const Store& store, const ReportSubject& subject) {
        {"heat", heat_html(subject)},
        {"published", tables_html(tables, true)},
        {"openloris", openloris_html(store, subject)},
-       {"boxes", box_plot_svg(data.module_boxes, "Time of each frame in each module", "ms")},
+       {"boxes", box_plot_svg(data.module_boxes, "Time per frame and module", "ms")},
        {"plans", plans_html(store, subject)},
-       {"licences", licences_html()},
+       {"licenses", licenses_html()},
        {"data", data_html(data, subject, tables)},
        {"scripts", scripts_html()}});
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

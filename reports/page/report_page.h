@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One page about a store that needs nothing but itself, and its tables as files: a pure function of the
-/// store.
+/// A self-contained HTML report of a store, and its tables as files; a pure function of the store.
 #pragma once
 
 #include <string>
@@ -10,30 +9,30 @@
 #include "bench/store/store.h"
 #include "reports/tables/report_table.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// What a page is about.
+/// Contents of a report page.
 struct ReportSubject {
   std::string title;
-  std::vector<StoredPlan> plans;       ///< the benchmarks that the runs belong to
-  std::vector<StoredRun> runs;         ///< those of the page
-  std::vector<StoredRun> other_runs;   ///< of other builds, to tell what changed
-  std::vector<std::string> published;  ///< names of quoted tables to stand beside
-  std::vector<ReportTable> paper;      ///< the paper's tables whose plans are among those of the page
+  std::vector<bench::StoredPlan> plans;      ///< the plans that the runs belong to
+  std::vector<bench::StoredRun> runs;        ///< shown on the page
+  std::vector<bench::StoredRun> other_runs;  ///< of other builds, for the comparison
+  std::vector<std::string> published;        ///< names of published tables to compare with
+  std::vector<ReportTable> paper;            ///< the paper's tables that plans of the page reproduce
 };
 
-/// Everything in the store, or one plan of it; the newest runs of each plan.
+/// All plans of the store or a single one; of each plan the runs of the newest build.
 /// @param plan name; empty: all plans, or all runs where there are no plans
-/// @throws InputError if the store has no such plan, or no runs
-[[nodiscard]] ReportSubject report_subject(const Store& store, const std::string& plan);
+/// @throws InputError if the store has no such plan or no finished runs
+[[nodiscard]] ReportSubject report_subject(const bench::Store& store, const std::string& plan);
 
-/// Tables of a subject: the paper's, metrics, module times, beside quoted ones.
+/// Paper tables, metric tables, module times, and comparisons with published tables.
 [[nodiscard]] std::vector<ReportTable> report_tables(const ReportSubject& subject);
 
-/// A table as NAME.md, NAME.tex, NAME.csv, NAME.json.
-[[nodiscard]] std::vector<OutputFile> table_files(const ReportTable& table);
+/// A table as NAME.md, NAME.tex, NAME.csv and NAME.json.
+[[nodiscard]] std::vector<bench::OutputFile> table_files(const ReportTable& table);
 
 /// index.html.
-[[nodiscard]] std::string report_html(const Store& store, const ReportSubject& subject);
+[[nodiscard]] std::string report_html(const bench::Store& store, const ReportSubject& subject);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -7,47 +7,48 @@
 
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
-#include "reports/page/names_apart.h"
+#include "reports/page/disambiguate_names.h"
 #include "reports/page/report_page.h"
 #include "reports/tables/paper_tables.h"
 #include "reports/tables/result_tables.h"
 #include "reports/tables/table_formats.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 constexpr const char* kOwnSystem = "stillpoint";
 
-std::vector<StoredPlan> chosen_plans(const Store& store, const std::string& plan) {
-  std::vector<StoredPlan> plans = store.plans();
-  if (!plan.empty()) std::erase_if(plans, [&](const StoredPlan& stored) { return stored.name != plan; });
+std::vector<bench::StoredPlan> chosen_plans(const bench::Store& store, const std::string& plan) {
+  std::vector<bench::StoredPlan> plans = store.plans();
+  if (!plan.empty())
+    std::erase_if(plans, [&](const bench::StoredPlan& stored) { return stored.name != plan; });
   return plans;
 }
 
-std::string title_of(const Store& store, const std::vector<StoredPlan>& plans) {
+std::string title_of(const bench::Store& store, const std::vector<bench::StoredPlan>& plans) {
   std::string title;
-  for (const StoredPlan& plan : plans)
+  for (const bench::StoredPlan& plan : plans)
     title += (title.empty() ? "" : "; ") + (plan.title.empty() ? plan.name : plan.title);
   return title.empty() ? "Runs of " + store.file().filename().string() : title;
 }
 
-/// Of builds that share a plan the one that was begun last: numbers of two builds are never put together.
-std::string newest_build(const std::vector<StoredRun>& runs) {
+/// The build whose first run is the latest; numbers of different builds are never combined.
+std::string newest_build(const std::vector<bench::StoredRun>& runs) {
   std::map<std::string, std::int64_t> first_run;
-  for (const StoredRun& run : runs) {
+  for (const bench::StoredRun& run : runs) {
     if (run.identity.system != kOwnSystem) continue;
-    const auto [place, is_new] = first_run.insert({run.identity.build, run.id});
-    if (!is_new) place->second = std::min(place->second, run.id);
+    const auto [entry, is_new] = first_run.insert({run.identity.build, run.id});
+    if (!is_new) entry->second = std::min(entry->second, run.id);
   }
   const auto newest = std::max_element(first_run.begin(), first_run.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
   return newest == first_run.end() ? "" : newest->first;
 }
 
-/// Leaves the newest build of our odometry, and what other systems made.
-void set_older_builds_apart(ReportSubject& subject) {
+/// Moves runs of older Stillpoint builds to `other_runs`; runs of other systems stay.
+void separate_older_builds(ReportSubject& subject) {
   const std::string newest = newest_build(subject.runs);
-  const auto is_older = [&](const StoredRun& run) {
+  const auto is_older = [&](const bench::StoredRun& run) {
     return run.identity.system == kOwnSystem && run.identity.build != newest;
   };
   std::copy_if(subject.runs.begin(), subject.runs.end(), std::back_inserter(subject.other_runs), is_older);
@@ -56,11 +57,11 @@ void set_older_builds_apart(ReportSubject& subject) {
 
 std::vector<ReportTable> paper_tables(const ReportSubject& subject) {
   std::vector<ReportTable> tables;
-  for (const StoredPlan& plan : subject.plans) {
+  for (const bench::StoredPlan& plan : subject.plans) {
     const std::optional<PaperTable> table = paper_table_of(plan.name);
     if (!table) continue;
-    std::vector<StoredRun> runs = subject.runs;
-    std::erase_if(runs, [&](const StoredRun& run) {
+    std::vector<bench::StoredRun> runs = subject.runs;
+    std::erase_if(runs, [&](const bench::StoredRun& run) {
       return std::find(plan.run_keys.begin(), plan.run_keys.end(), run.key) == plan.run_keys.end();
     });
     ReportTable paper = paper_table(*table, runs);
@@ -72,31 +73,31 @@ std::vector<ReportTable> paper_tables(const ReportSubject& subject) {
 
 }  // namespace
 
-ReportSubject report_subject(const Store& store, const std::string& plan) {
+ReportSubject report_subject(const bench::Store& store, const std::string& plan) {
   ReportSubject subject;
   subject.plans = chosen_plans(store, plan);
   subject.title = title_of(store, subject.plans);
   if (!plan.empty() && subject.plans.empty())
-    static_cast<void>(store.plan_runs(plan));  // says which there are
+    static_cast<void>(store.plan_runs(plan));  // throws and lists the known plans
   std::set<std::string> keys;
-  for (const StoredPlan& stored : subject.plans) {
-    for (StoredRun& run : store.plan_runs(stored.name)) {
+  for (const bench::StoredPlan& stored : subject.plans) {
+    for (bench::StoredRun& run : store.plan_runs(stored.name)) {
       if (keys.insert(run.key).second) subject.runs.push_back(std::move(run));
     }
   }
-  for (StoredRun& run : store.runs()) {
+  for (bench::StoredRun& run : store.runs()) {
     if (keys.contains(run.key)) continue;
     (subject.plans.empty() ? subject.runs : subject.other_runs).push_back(std::move(run));
   }
   if (subject.runs.empty())
     throw InputError(store.file().string(),
-                     "holds no ended run; make some with `stillpoint bench PLAN --store FILE`");
-  set_older_builds_apart(subject);
+                     "contains no finished runs; create some with `stillpoint bench PLAN --store FILE`");
+  separate_older_builds(subject);
   subject.paper = paper_tables(subject);
-  const NameChanges changes = names_apart(subject.plans, subject.runs);
+  const NameChanges changes = disambiguate_names(subject.plans, subject.runs);
   subject.runs = renamed(std::move(subject.runs), changes);
   subject.other_runs = renamed(std::move(subject.other_runs), changes);
-  subject.published = published_names();
+  subject.published = bench::published_names();
   return subject;
 }
 
@@ -105,16 +106,16 @@ std::vector<ReportTable> report_tables(const ReportSubject& subject) {
   for (ReportTable& table : metric_tables(subject.runs)) tables.push_back(std::move(table));
   tables.push_back(cost_table(subject.runs));
   for (const std::string& name : subject.published)
-    tables.push_back(beside_table(subject.runs, load_published(name)));
+    tables.push_back(published_comparison_table(subject.runs, bench::load_published(name)));
   std::erase_if(tables, [](const ReportTable& table) { return table.rows.empty(); });
   return tables;
 }
 
-std::vector<OutputFile> table_files(const ReportTable& table) {
+std::vector<bench::OutputFile> table_files(const ReportTable& table) {
   return {{table.name + ".md", table_markdown(table, TableDetail::kSpread)},
           {table.name + ".tex", table_latex(table)},
           {table.name + ".csv", table_csv(table)},
           {table.name + ".json", table_json(table).dump(2) + "\n"}};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 constexpr std::uint16_t kNone = 0xFFFF;
@@ -17,14 +17,14 @@ constexpr double kSteps = 65534.0;
 }  // namespace
 
 std::string base64(std::span<const unsigned char> bytes) {
-  constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
     std::uint32_t group = 0;
     for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kLetters[group >> (18 - 6 * k) & 0x3F] : '=';
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kAlphabet[group >> (18 - 6 * k) & 0x3F] : '=';
   }
   return text;
 }
@@ -50,4 +50,4 @@ nlohmann::ordered_json packed_series(std::span<const double> values) {
   return {{"low", low}, {"step", step}, {"data", base64(bytes)}};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Series as text that a page carries and unpacks only when it shows them.
+/// Compact text encoding of time series for embedding in a page.
 #pragma once
 
 #include <span>
@@ -7,13 +7,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace stillpoint {
+namespace stillpoint::report {
 
 /// RFC 4648, with padding.
 [[nodiscard]] std::string base64(std::span<const unsigned char> bytes);
 
-/// {"low", "step", "data"}: value = low + step * (16-bit little-endian number), 65535 = none. The error is at
-/// most 1/131068 of the range.
+/// {"low", "step", "data"}: value = low + step * (16-bit little-endian number), 65535 = missing. The
+/// quantization error is at most 1/131068 of the range.
 [[nodiscard]] nlohmann::ordered_json packed_series(std::span<const double> values);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The sentences that matter about a benchmark: what was run, what failed, what is best, what changed.
+/// Summary sentences of a report: number of runs, failures, best variant, changes since an earlier build.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/compare/comparison.h"
-#include "bench/store/stored_run.h"
+#include "bench/analysis/comparison.h"
+#include "bench/model/stored_run.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// How many runs of what, and those that did not end well: at most five by name.
-[[nodiscard]] std::vector<std::string> outcome_sentences(std::span<const StoredRun> runs);
+/// Number of runs, and the failed ones; at most five are listed individually.
+[[nodiscard]] std::vector<std::string> outcome_sentences(std::span<const bench::StoredRun> runs);
 
-/// Which variant has the smallest median error on most sequences; empty with fewer than two variants.
-[[nodiscard]] std::string best_sentence(std::span<const StoredRun> runs);
+/// The variant with the smallest median ATE on most sequences; empty with fewer than two variants.
+[[nodiscard]] std::string best_sentence(std::span<const bench::StoredRun> runs);
 
-/// What became better or worse since an earlier build.
+/// Metrics that improved or regressed since an earlier build.
 /// @param base name of that build
 [[nodiscard]] std::vector<std::string> change_sentences(const std::string& base,
-                                                        const Comparison& comparison);
+                                                        const bench::Comparison& comparison);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

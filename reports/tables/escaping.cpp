@@ -5,21 +5,23 @@
 
 #include <fmt/format.h>
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 constexpr std::uint32_t kReplacement = 0xFFFD;
-/// Of Latin-1's upper half: signs of arithmetic, eth and thorn.
-constexpr std::u32string_view kNotInOldFonts = U"\u00D7\u00F7\u00D0\u00DE\u00F0\u00FE";
+/// Latin-1 characters that LaTeX's default fonts lack: multiplication, division, eth and thorn.
+constexpr std::u32string_view kMissingInDefaultFonts = U"\u00D7\u00F7\u00D0\u00DE\u00F0\u00FE";
 
-/// One code point and the bytes that it took.
+/// One code point and its length in bytes.
 struct CodePoint {
   std::uint32_t value = kReplacement;
   std::size_t length = 1;
 };
 
-/// Smallest code point that needs `length` bytes: shorter ones spelled longer are not valid.
-std::uint32_t smallest(std::size_t length) { return length == 2 ? 0x80 : length == 3 ? 0x800 : 0x10000; }
+/// Smallest code point that needs `length` bytes; overlong encodings are invalid.
+std::uint32_t smallest_code_point(std::size_t length) {
+  return length == 2 ? 0x80 : length == 3 ? 0x800 : 0x10000;
+}
 
 CodePoint code_point_at(std::string_view text) {
   const auto byte = [&](std::size_t i) {
@@ -35,28 +37,28 @@ CodePoint code_point_at(std::string_view text) {
     value = value << 6 | (byte(i) & 0x3F);
   }
   const bool is_surrogate = value >= 0xD800 && value < 0xE000;
-  if (value < smallest(length) || value > 0x10FFFF || is_surrogate) return {};
+  if (value < smallest_code_point(length) || value > 0x10FFFF || is_surrogate) return {};
   return {value, length};
 }
 
-/// Calls `take(code point, its bytes)` for each letter of cleaned text.
-template <class Take>
-void for_each_letter(std::string_view text, Take&& take) {
+/// Calls `visit(code point, its bytes)` for each character of the sanitized text.
+template <class Visit>
+void for_each_character(std::string_view text, Visit&& visit) {
   while (!text.empty()) {
     const CodePoint point = code_point_at(text);
     const bool is_control = point.value < 0x20 || (point.value >= 0x7F && point.value < 0xA0);
     if (is_control) {
-      take(std::uint32_t{' '}, std::string_view(" "));
+      visit(std::uint32_t{' '}, std::string_view(" "));
     } else {
-      const bool is_broken = point.value == kReplacement;
-      take(point.value, is_broken ? std::string_view("\xEF\xBF\xBD") : text.substr(0, point.length));
+      const bool is_invalid = point.value == kReplacement;
+      visit(point.value, is_invalid ? std::string_view("\xEF\xBF\xBD") : text.substr(0, point.length));
     }
     text.remove_prefix(point.length);
   }
 }
 
-std::string_view latex_letter(std::uint32_t letter) {
-  switch (letter) {
+std::string_view latex_escape(std::uint32_t character) {
+  switch (character) {
     case '\\':
       return "\\textbackslash{}";
     case '{':
@@ -98,14 +100,14 @@ std::string_view latex_letter(std::uint32_t letter) {
 
 std::string clean_line(std::string_view text) {
   std::string result;
-  for_each_letter(text, [&](std::uint32_t, std::string_view bytes) { result += bytes; });
+  for_each_character(text, [&](std::uint32_t, std::string_view bytes) { result += bytes; });
   return result;
 }
 
 std::string escape_html(std::string_view text) {
   std::string result;
-  for_each_letter(text, [&](std::uint32_t letter, std::string_view bytes) {
-    switch (letter) {
+  for_each_character(text, [&](std::uint32_t character, std::string_view bytes) {
+    switch (character) {
       case '&':
         result += "&amp;";
         break;
@@ -130,16 +132,16 @@ std::string escape_html(std::string_view text) {
 
 std::string escape_latex(std::string_view text) {
   std::string result;
-  for_each_letter(text, [&](std::uint32_t letter, std::string_view bytes) {
-    const bool is_latin_letter =
-        letter >= 0xC0 && letter <= 0xFF && kNotInOldFonts.find(letter) == kNotInOldFonts.npos;
-    const std::string_view special = latex_letter(letter);
+  for_each_character(text, [&](std::uint32_t character, std::string_view bytes) {
+    const bool is_latin1_letter = character >= 0xC0 && character <= 0xFF &&
+                                  kMissingInDefaultFonts.find(character) == kMissingInDefaultFonts.npos;
+    const std::string_view special = latex_escape(character);
     if (!special.empty()) {
       result += special;
-    } else if (letter < 0x80 || is_latin_letter) {
+    } else if (character < 0x80 || is_latin1_letter) {
       result += bytes;
     } else {
-      result += fmt::format("\\texttt{{U+{:04X}}}", letter);
+      result += fmt::format("\\texttt{{U+{:04X}}}", character);
     }
   });
   return result;
@@ -148,8 +150,9 @@ std::string escape_latex(std::string_view text) {
 std::string escape_markdown(std::string_view text) {
   constexpr std::string_view kSpecial = "\\`*_{}[]<>|#!~$&";
   std::string result;
-  for_each_letter(text, [&](std::uint32_t letter, std::string_view bytes) {
-    if (letter < 0x80 && kSpecial.find(static_cast<char>(letter)) != std::string_view::npos) result += '\\';
+  for_each_character(text, [&](std::uint32_t character, std::string_view bytes) {
+    if (character < 0x80 && kSpecial.find(static_cast<char>(character)) != std::string_view::npos)
+      result += '\\';
     result += bytes;
   });
   return result;
@@ -162,9 +165,9 @@ std::string csv_field(std::string_view text) {
   }
   if (line.find_first_of(",\"'") == std::string::npos) return line;
   std::string quoted(1, '"');
-  for (const char letter : line) {
-    if (letter == '"') quoted += '"';
-    quoted += letter;
+  for (const char character : line) {
+    if (character == '"') quoted += '"';
+    quoted += character;
   }
   quoted += '"';
   return quoted;
@@ -173,14 +176,14 @@ std::string csv_field(std::string_view text) {
 std::string json_for_script(const std::string& json) {
   std::string result;
   result.reserve(json.size());
-  for (const char letter : json) {
-    if (letter == '<') {
+  for (const char character : json) {
+    if (character == '<') {
       result += "\\u003c";
     } else {
-      result += letter;
+      result += character;
     }
   }
   return result;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

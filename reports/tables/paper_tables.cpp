@@ -7,60 +7,60 @@
 #include "bench/systems/published_table.h"
 #include "reports/tables/run_cells.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-/// A group of columns: a system of the paper, and the variant that stands for it here.
+/// A column group: a system of the paper and the variant that corresponds to it.
 struct PaperSystem {
   const char* heading;
   const char* published;
-  const char* variant;  ///< empty: not run here
+  const char* variant;  ///< empty: no such variant
 };
 
 struct PaperMetric {
   const char* name;
   const char* unit;
-  PublishedTable published;
+  bench::PublishedTable published;
 };
 using PaperMetrics = std::array<PaperMetric, 3>;
 
 constexpr std::array<const char*, 4> kSequences = {"walking_xyz", "walking_static", "walking_rpy",
                                                    "walking_halfsphere"};
-constexpr const char* kCopySlip =
-    "the paper prints the same three numbers for another sequence: a copy slip, not to be used as a target";
+constexpr const char* kDuplicateNote =
+    "the paper prints the same three numbers for another sequence: a copying error, not used as a target";
 
-const PublishedRow* paper_row(const PublishedTable& table, const std::string& system) {
-  for (const PublishedRow& row : table.rows) {
+const bench::PublishedRow* paper_row(const bench::PublishedTable& table, const std::string& system) {
+  for (const bench::PublishedRow& row : table.rows) {
     if (row.source == "paper" && row.system == system) return &row;
   }
   return nullptr;
 }
 
-std::optional<double> quoted(const PaperMetric& metric, const PaperSystem& system,
-                             const std::string& sequence) {
-  const PublishedRow* row = paper_row(metric.published, system.published);
+std::optional<double> published_value(const PaperMetric& metric, const PaperSystem& system,
+                                      const std::string& sequence) {
+  const bench::PublishedRow* row = paper_row(metric.published, system.published);
   if (row == nullptr) return std::nullopt;
   const auto found = row->values.find(sequence);
   return found == row->values.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// Whether another sequence of that system has the same three numbers: no two recordings give that.
-bool is_copy_slip(const PaperMetrics& metrics, const PaperSystem& system, const std::string& sequence) {
+/// Whether the paper gives the same three numbers for another sequence of that system, which is implausible.
+bool is_duplicate(const PaperMetrics& metrics, const PaperSystem& system, const std::string& sequence) {
   return std::any_of(kSequences.begin(), kSequences.end(), [&](const std::string& other) {
     return other != sequence && std::all_of(metrics.begin(), metrics.end(), [&](const PaperMetric& metric) {
-             const std::optional<double> value = quoted(metric, system, sequence);
-             return value && value == quoted(metric, system, other);
+             const std::optional<double> value = published_value(metric, system, sequence);
+             return value && value == published_value(metric, system, other);
            });
   });
 }
 
 TableCell published_cell(const PaperMetrics& metrics, std::size_t metric, const PaperSystem& system,
                          const std::string& sequence) {
-  TableCell cell{.number = quoted(metrics[metric], system, sequence)};
+  TableCell cell{.number = published_value(metrics[metric], system, sequence)};
   if (!cell.number) return cell;
   cell.state = CellState::kOk;
-  cell.is_suspicious = is_copy_slip(metrics, system, sequence);
-  if (cell.is_suspicious) cell.note = kCopySlip;
+  cell.is_suspicious = is_duplicate(metrics, system, sequence);
+  if (cell.is_suspicious) cell.note = kDuplicateNote;
   return cell;
 }
 
@@ -73,7 +73,7 @@ TableCell difference_cell(const TableCell& ours, const TableCell& published) {
 }
 
 /// Published, ours and difference of one sequence.
-std::vector<TableRow> sequence_rows(std::span<const StoredRun> runs, const std::string& sequence,
+std::vector<TableRow> sequence_rows(std::span<const bench::StoredRun> runs, const std::string& sequence,
                                     const PaperMetrics& metrics, std::span<const PaperSystem> systems) {
   std::vector<TableRow> rows = {
       {sequence, "published", {}}, {sequence, "ours", {}}, {sequence, "difference", {}}};
@@ -100,8 +100,8 @@ void mark_best_systems(TableRow& row) {
   }
 }
 
-ReportTable accuracy_table(ReportTable table, std::span<const StoredRun> runs, const PaperMetrics& metrics,
-                           std::span<const PaperSystem> systems) {
+ReportTable accuracy_table(ReportTable table, std::span<const bench::StoredRun> runs,
+                           const PaperMetrics& metrics, std::span<const PaperSystem> systems) {
   table.row_heading = "sequence";
   for (const PaperSystem& system : systems) {
     for (const PaperMetric& metric : metrics)
@@ -110,25 +110,24 @@ ReportTable accuracy_table(ReportTable table, std::span<const StoredRun> runs, c
   }
   for (const char* sequence : kSequences) {
     for (TableRow& row : sequence_rows(runs, sequence, metrics, systems)) {
-      if (row.from != "difference") mark_best_systems(row);
+      if (row.source != "difference") mark_best_systems(row);
       table.rows.push_back(std::move(row));
     }
   }
+  table.notes.emplace_back("Bold: best of a row. Ours: median over runs. Difference: ours minus published.");
   table.notes.emplace_back(
-      "Bold: the best of a row. Ours: medians over runs; difference: ours less published.");
-  table.notes.emplace_back(
-      "Where ours was run on rendered sequences, these have the motions of the recordings and not their "
-      "pictures: the numbers stand beside each other and do not compete.");
+      "Rendered sequences reproduce the motions of the recordings but not their images; results on them are "
+      "not directly comparable with the published ones.");
   return table;
 }
 
 PaperMetrics metrics_of(const std::string& prefix) {
-  return {{{"ATE", "m", load_published(prefix + "_ate")},
-           {"T.RPE", "m/s", load_published(prefix + "_rpe_trans")},
-           {"R.RPE", "deg/s", load_published(prefix + "_rpe_rot")}}};
+  return {{{"ATE", "m", bench::load_published(prefix + "_ate")},
+           {"T.RPE", "m/s", bench::load_published(prefix + "_rpe_trans")},
+           {"R.RPE", "deg/s", bench::load_published(prefix + "_rpe_rot")}}};
 }
 
-ReportTable table1(std::span<const StoredRun> runs) {
+ReportTable table1(std::span<const bench::StoredRun> runs) {
   constexpr PaperSystem kSystems[] = {{"ORB-SLAM2", "ORB-SLAM2", ""},
                                       {"DS-SLAM", "DS-SLAM", ""},
                                       {"Ji et al.", "Ji et al. 2021", ""},
@@ -138,7 +137,7 @@ ReportTable table1(std::span<const StoredRun> runs) {
       metrics_of("tum_fr3"), kSystems);
 }
 
-ReportTable table2(std::span<const StoredRun> runs) {
+ReportTable table2(std::span<const bench::StoredRun> runs) {
   constexpr PaperSystem kSystems[] = {
       {"W/O circular mask", "Dynamic-VINS wo_circular_mask", "dynamic_vins_vo+wo_circular_mask"},
       {"W/O object detection", "Dynamic-VINS wo_object_detection", "dynamic_vins_vo+wo_object_detection"},
@@ -161,19 +160,19 @@ constexpr PaperModule kModules[] = {
     {"state_optimization", "State Optimization"}, {"optimization_thread", "Optimization Thread*"},
     {"object_detection", "Object Detection*"}};
 
-ReportTable table3(std::span<const StoredRun> runs) {
+ReportTable table3(std::span<const bench::StoredRun> runs) {
   ReportTable table{
       .name = "table3",
       .title = "Table III: average computation time of each module and thread on OpenLORIS market",
       .row_heading = "method"};
   for (const PaperModule& module : kModules)
     table.columns.push_back({.group = "", .name = module.heading, .unit = "ms", .decimals = 4});
-  for (const PublishedRow& quoted : load_published("runtime_market").rows) {
-    TableRow& row = table.rows.emplace_back(TableRow{quoted.system, "published", {}});
+  for (const bench::PublishedRow& published : bench::load_published("runtime_market").rows) {
+    TableRow& row = table.rows.emplace_back(TableRow{published.system, "published", {}});
     for (const PaperModule& module : kModules) {
       TableCell& cell = row.cells.emplace_back();
-      const auto found = quoted.values.find(module.module);
-      if (found == quoted.values.end()) continue;
+      const auto found = published.values.find(module.module);
+      if (found == published.values.end()) continue;
       cell.number = found->second;
       cell.state = CellState::kOk;
     }
@@ -184,11 +183,11 @@ ReportTable table3(std::span<const StoredRun> runs) {
       row.cells.push_back(cost_cell(runs_of(runs, label, ""), module.module));
   }
   table.notes = {
-      "* a thread of its own, averaged per frame; modules are averaged per call.",
-      "Dynamic Feature Recognition sums up recognition, missed detection compensation and moving "
+      "* separate thread, averaged per frame; modules are averaged per call.",
+      "Dynamic Feature Recognition is the sum of recognition, missed detection compensation and moving "
       "consistency check.",
-      "Other boards than ours: ratios between rows of one machine can be compared, times cannot; so there "
-      "is no difference."};
+      "Published times are from other devices: only ratios between rows of one device are comparable, hence "
+      "no difference."};
   return table;
 }
 
@@ -201,7 +200,7 @@ std::optional<PaperTable> paper_table_of(std::string_view plan) {
   return std::nullopt;
 }
 
-ReportTable paper_table(PaperTable table, std::span<const StoredRun> runs) {
+ReportTable paper_table(PaperTable table, std::span<const bench::StoredRun> runs) {
   switch (table) {
     case PaperTable::kTable1:
       return table1(runs);
@@ -213,4 +212,4 @@ ReportTable paper_table(PaperTable table, std::span<const StoredRun> runs) {
   return {};
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace stillpoint {
+namespace stillpoint::report {
 
 std::string cell_state_name(CellState state) {
   switch (state) {
@@ -61,4 +61,4 @@ void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better) {
   for (TableCell* cell : cells) cell->is_best = counts(*cell) && cell->number == best;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A table of numbers before it has a format: what each number is, where it comes from, what is odd about it.
+/// Format-independent table: numbers with unit, source, uncertainty and footnotes.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 #include "eval/statistics/bootstrap.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
 struct TableColumn {
-  std::string group;  ///< heading over several columns, e.g. the system; may be empty
+  std::string group;  ///< heading above several columns, e.g. the system; may be empty
   std::string name;
   std::string unit;
   int decimals = 4;
@@ -20,9 +20,9 @@ struct TableColumn {
 
 enum class CellState {
   kOk,
-  kPartial,  ///< some of its runs did not end well
-  kFailed,   ///< all of its runs did not end well
-  kEmpty,    ///< there is nothing to say
+  kPartial,  ///< some of its runs failed
+  kFailed,   ///< all of its runs failed
+  kEmpty,    ///< no data
 };
 
 /// "ok", "partial", "failed" or "empty".
@@ -32,26 +32,26 @@ struct TableCell {
   std::optional<double> number;  ///< absent unless kOk or kPartial
   CellState state = CellState::kEmpty;
   bool is_best = false;        ///< printed bold
-  bool is_suspicious = false;  ///< a quoted number that is not to be used as a target
-  std::string note;            ///< footnote; the same text is printed once
-  std::size_t count = 0;       ///< runs behind the number; 0 for quoted ones
-  std::optional<Interval> interval;
-  std::vector<std::string> run_keys;  ///< of these runs
-  std::string recipe;                 ///< how the number was made
+  bool is_suspicious = false;  ///< a published number that must not be used as a target
+  std::string note;            ///< footnote; equal texts share one footnote
+  std::size_t count = 0;       ///< number of runs; 0 for published numbers
+  std::optional<eval::Interval> interval;
+  std::vector<std::string> run_keys;  ///< keys of these runs
+  std::string protocol;               ///< evaluation protocol of the number
 };
 
 struct TableRow {
   std::string label;
-  std::string from;  ///< "ours", "published" or "difference"; may be empty
+  std::string source;  ///< "ours", "published" or "difference"; may be empty
   std::vector<TableCell> cells;
 };
 
 struct ReportTable {
-  std::string name;  ///< of its files, e.g. "table2"
+  std::string name;  ///< base name of its files, e.g. "table2"
   std::string title;
   std::string row_heading;
   std::vector<TableColumn> columns;
-  std::vector<TableRow> rows;  ///< each with a cell for every column
+  std::vector<TableRow> rows;  ///< each with one cell per column
   std::vector<std::string> notes;
 };
 
@@ -60,10 +60,10 @@ enum class TableDetail {
   kSpread,  ///< also the number of runs and the interval of the median
 };
 
-/// A cell's number as every format prints it; "failed" or "-" where there is none.
+/// A cell's number as printed in every format; "failed" or "-" without a number.
 [[nodiscard]] std::string number_text(const TableColumn& column, const TableCell& cell);
 
-/// `number_text`, and the spread where it is asked for and known.
+/// `number_text`, plus the spread if requested and available.
 [[nodiscard]] std::string cell_text(const TableColumn& column, const TableCell& cell, TableDetail detail);
 
 /// Footnotes of the cells in order of first appearance.
@@ -72,7 +72,7 @@ enum class TableDetail {
 /// 1, 2, ... of a cell's footnote in `notes`; 0 for none.
 [[nodiscard]] std::size_t footnote_number(const std::vector<std::string>& notes, const TableCell& cell);
 
-/// Marks the best number of each list of cells; cells without a number and suspicious ones are not counted.
+/// Marks the best number among `cells`; ignores cells without a number and suspicious ones.
 void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

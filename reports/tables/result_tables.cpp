@@ -5,10 +5,10 @@
 
 #include "reports/tables/run_cells.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-/// A metric as tables show it.
+/// Display properties of a metric.
 struct ShownMetric {
   const char* name;
   const char* title;
@@ -17,30 +17,34 @@ struct ShownMetric {
   enum class Best { kSmallest, kLargest, kNone } best;
 };
 constexpr ShownMetric kShown[] = {
-    {"ate_rmse_m", "RMSE of the absolute trajectory error", "m", 4, ShownMetric::Best::kSmallest},
-    {"rpe_trans_rmse_m_per_s", "RMSE of the translational drift", "m/s", 4, ShownMetric::Best::kSmallest},
-    {"rpe_rot_rmse_deg_per_s", "RMSE of the rotational drift", "deg/s", 4, ShownMetric::Best::kSmallest},
+    {"ate_rmse_m", "Absolute trajectory error (ATE), RMSE", "m", 4, ShownMetric::Best::kSmallest},
+    {"rpe_trans_rmse_m_per_s", "Translational relative pose error (RPE) over 1 s, RMSE", "m/s", 4,
+     ShownMetric::Best::kSmallest},
+    {"rpe_rot_rmse_deg_per_s", "Rotational relative pose error (RPE) over 1 s, RMSE", "deg/s", 4,
+     ShownMetric::Best::kSmallest},
     {"correct_rate", "Correct rate", "", 4, ShownMetric::Best::kLargest},
-    {"coverage", "Share of the pictures with a pose", "", 4, ShownMetric::Best::kLargest},
-    {"first_pose_s", "Time of the first pose", "s", 3, ShownMetric::Best::kSmallest},
-    {"resets", "Resets of the estimator", "", 0, ShownMetric::Best::kNone},
-    {"process_cpu_s", "Processor time of a run", "s", 2, ShownMetric::Best::kNone},
-    {"peak_memory_mb", "Peak memory of a run", "MB", 1, ShownMetric::Best::kNone}};
+    {"coverage", "Coverage: fraction of the frames with a pose", "", 4, ShownMetric::Best::kLargest},
+    {"first_pose_s", "Time until the first pose", "s", 3, ShownMetric::Best::kSmallest},
+    {"resets", "Estimator resets", "", 0, ShownMetric::Best::kNone},
+    {"process_cpu_s", "CPU time per run", "s", 2, ShownMetric::Best::kNone},
+    {"peak_memory_mb", "Peak memory per run", "MB", 1, ShownMetric::Best::kNone}};
 
-bool is_outside_sweeps(const StoredRun& run) { return run.identity.axis.empty(); }
+bool is_outside_sweeps(const bench::StoredRun& run) { return run.identity.axis.empty(); }
 
-bool has_metric(std::span<const StoredRun> runs, const std::string& name) {
-  return std::any_of(runs.begin(), runs.end(), [&](const StoredRun& run) {
-    return is_outside_sweeps(run) && metric_value(run, name).has_value();
+bool has_metric(std::span<const bench::StoredRun> runs, const std::string& name) {
+  return std::any_of(runs.begin(), runs.end(), [&](const bench::StoredRun& run) {
+    return is_outside_sweeps(run) && bench::metric_value(run, name).has_value();
   });
 }
 
-std::vector<std::string> labels_of(std::span<const StoredRun> runs) { return distinct(runs, system_label); }
-std::vector<std::string> sequences_of(std::span<const StoredRun> runs) {
-  return distinct(runs, [](const RunIdentity& identity) { return identity.sequence; });
+std::vector<std::string> labels_of(std::span<const bench::StoredRun> runs) {
+  return distinct(runs, system_label);
+}
+std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
+  return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
 }
 
-/// In each column by itself.
+/// Marks the best number of each column.
 void mark_best_in_columns(ReportTable& table, bool larger_is_better) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     std::vector<TableCell*> cells;
@@ -49,7 +53,7 @@ void mark_best_in_columns(ReportTable& table, bool larger_is_better) {
   }
 }
 
-ReportTable metric_table(std::span<const StoredRun> runs, const ShownMetric& metric) {
+ReportTable metric_table(std::span<const bench::StoredRun> runs, const ShownMetric& metric) {
   ReportTable table{.name = metric.name, .title = metric.title, .row_heading = "variant"};
   const std::vector<std::string> sequences = sequences_of(runs);
   for (const std::string& sequence : sequences) {
@@ -57,21 +61,21 @@ ReportTable metric_table(std::span<const StoredRun> runs, const ShownMetric& met
         {.group = "", .name = sequence, .unit = metric.unit, .decimals = metric.decimals});
   }
   for (const std::string& label : labels_of(runs)) {
-    TableRow row{.label = label, .from = "", .cells = {}};
+    TableRow row{.label = label, .source = "", .cells = {}};
     for (const std::string& sequence : sequences)
       row.cells.push_back(metric_cell(runs_of(runs, label, sequence), metric.name));
     table.rows.push_back(std::move(row));
   }
   if (metric.best != ShownMetric::Best::kNone)
     mark_best_in_columns(table, metric.best == ShownMetric::Best::kLargest);
-  table.notes = {"Medians over the runs that ended well; bold: the best of a column."};
+  table.notes = {"Medians over the successful runs; bold: best of a column."};
   return table;
 }
 
-std::vector<std::string> modules_of(std::span<const StoredRun> runs) {
+std::vector<std::string> modules_of(std::span<const bench::StoredRun> runs) {
   std::vector<std::string> modules;
-  for (const StoredRun& run : runs) {
-    for (const ModuleCost& cost : run.costs) {
+  for (const bench::StoredRun& run : runs) {
+    for (const bench::ModuleCost& cost : run.costs) {
       if (std::find(modules.begin(), modules.end(), cost.module) == modules.end())
         modules.push_back(cost.module);
     }
@@ -79,44 +83,45 @@ std::vector<std::string> modules_of(std::span<const StoredRun> runs) {
   return modules;
 }
 
-/// Columns that some quoted row and some run have.
-std::vector<std::string> shared_columns(std::span<const StoredRun> runs, const PublishedTable& published) {
+/// Columns that occur both in a published row and in a run.
+std::vector<std::string> shared_columns(std::span<const bench::StoredRun> runs,
+                                        const bench::PublishedTable& published) {
   std::vector<std::string> names = published.metric == "mean_ms" ? modules_of(runs) : sequences_of(runs);
   std::erase_if(names, [&](const std::string& name) {
     return std::none_of(published.rows.begin(), published.rows.end(),
-                        [&](const PublishedRow& row) { return row.values.contains(name); });
+                        [&](const bench::PublishedRow& row) { return row.values.contains(name); });
   });
   return names;
 }
 
-TableRow quoted_row(const PublishedRow& quoted, const std::vector<std::string>& columns) {
-  TableRow row{.label = quoted.system + ", " + quoted.source, .from = "published", .cells = {}};
+TableRow published_row(const bench::PublishedRow& published, const std::vector<std::string>& columns) {
+  TableRow row{.label = published.system + ", " + published.source, .source = "published", .cells = {}};
   for (const std::string& column : columns) {
     TableCell& cell = row.cells.emplace_back();
-    const auto found = quoted.values.find(column);
-    if (found == quoted.values.end()) continue;
+    const auto found = published.values.find(column);
+    if (found == published.values.end()) continue;
     cell.number = found->second;
     cell.state = CellState::kOk;
-    cell.note = quoted.note;
+    cell.note = published.note;
   }
   return row;
 }
 
 }  // namespace
 
-std::vector<ReportTable> metric_tables(std::span<const StoredRun> runs) {
-  std::vector<StoredRun> shown(runs.begin(), runs.end());
-  std::erase_if(shown, [](const StoredRun& run) { return !is_outside_sweeps(run); });
+std::vector<ReportTable> metric_tables(std::span<const bench::StoredRun> runs) {
+  std::vector<bench::StoredRun> shown(runs.begin(), runs.end());
+  std::erase_if(shown, [](const bench::StoredRun& run) { return !is_outside_sweeps(run); });
   std::vector<ReportTable> tables;
   for (const ShownMetric& metric : kShown) {
-    // The first is there even when every run failed: it says so.
+    // The ATE table is kept even if every run failed, to show the failures.
     if (&metric == &kShown[0] ? !shown.empty() : has_metric(shown, metric.name))
       tables.push_back(metric_table(shown, metric));
   }
   return tables;
 }
 
-ReportTable cost_table(std::span<const StoredRun> runs) {
+ReportTable cost_table(std::span<const bench::StoredRun> runs) {
   ReportTable table{
       .name = "module_times", .title = "Mean time of modules and threads", .row_heading = "variant"};
   const std::vector<std::string> modules = modules_of(runs);
@@ -124,30 +129,31 @@ ReportTable cost_table(std::span<const StoredRun> runs) {
     table.columns.push_back({.group = "", .name = module, .unit = "ms", .decimals = 3});
   if (modules.empty()) return table;
   for (const std::string& label : labels_of(runs)) {
-    TableRow row{.label = label, .from = "", .cells = {}};
+    TableRow row{.label = label, .source = "", .cells = {}};
     for (const std::string& module : modules)
       row.cells.push_back(cost_cell(timed_runs_of(runs, label), module));
     table.rows.push_back(std::move(row));
   }
-  table.notes = {"Modules are averaged per call, threads per frame; medians over all runs of a variant."};
+  table.notes = {"Modules are averaged per call, threads per frame; median over all runs of a variant."};
   return table;
 }
 
-ReportTable beside_table(std::span<const StoredRun> runs, const PublishedTable& published) {
+ReportTable published_comparison_table(std::span<const bench::StoredRun> runs,
+                                       const bench::PublishedTable& published) {
   const bool is_cost = published.metric == "mean_ms";
-  ReportTable table{.name = "beside_" + published.name, .title = published.title, .row_heading = "system"};
+  ReportTable table{.name = "published_" + published.name, .title = published.title, .row_heading = "system"};
   const std::vector<std::string> columns = shared_columns(runs, published);
   for (const std::string& column : columns)
     table.columns.push_back({.group = "", .name = column, .unit = published.unit, .decimals = 4});
   if (columns.empty()) return table;
-  for (const PublishedRow& quoted : published.rows) {
-    TableRow row = quoted_row(quoted, columns);
+  for (const bench::PublishedRow& source : published.rows) {
+    TableRow row = published_row(source, columns);
     const bool has_number = std::any_of(row.cells.begin(), row.cells.end(),
                                         [](const TableCell& cell) { return cell.number.has_value(); });
     if (has_number) table.rows.push_back(std::move(row));
   }
   for (const std::string& label : labels_of(runs)) {
-    TableRow row{.label = label, .from = "ours", .cells = {}};
+    TableRow row{.label = label, .source = "ours", .cells = {}};
     for (const std::string& column : columns) {
       row.cells.push_back(is_cost ? cost_cell(timed_runs_of(runs, label), column)
                                   : metric_cell(runs_of(runs, label, column), published.metric));
@@ -159,4 +165,4 @@ ReportTable beside_table(std::span<const StoredRun> runs, const PublishedTable& 
   return table;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -5,54 +5,54 @@
 
 #include <fmt/format.h>
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-/// "2 of 3 runs did not end well: crashed (ended by signal 11)".
-std::string failure_note(std::size_t failed, std::size_t all, const StoredRun& first) {
-  std::string note =
-      fmt::format("{} of {} runs did not end well: {}", failed, all, outcome_name(first.outcome));
+/// "2 of 3 runs failed: crashed (ended by signal 11)".
+std::string failure_note(std::size_t failed, std::size_t all, const bench::StoredRun& first) {
+  std::string note = fmt::format("{} of {} runs failed: {}", failed, all, bench::outcome_name(first.outcome));
   if (!first.detail.empty()) note += " (" + first.detail + ")";
   return note;
 }
 
 }  // namespace
 
-std::string system_label(const RunIdentity& identity) {
+std::string system_label(const bench::RunIdentity& identity) {
   if (identity.system == "stillpoint") return identity.variant;
   return identity.variant.empty() ? identity.system : identity.system + " " + identity.variant;
 }
 
-std::vector<std::string> distinct(std::span<const StoredRun> runs,
-                                  const std::function<std::string(const RunIdentity&)>& name) {
+std::vector<std::string> distinct(std::span<const bench::StoredRun> runs,
+                                  const std::function<std::string(const bench::RunIdentity&)>& name) {
   std::vector<std::string> names;
-  for (const StoredRun& run : runs) {
+  for (const bench::StoredRun& run : runs) {
     const std::string value = name(run.identity);
     if (std::find(names.begin(), names.end(), value) == names.end()) names.push_back(value);
   }
   return names;
 }
 
-TableCell run_cell(const std::vector<const StoredRun*>& runs, const RunNumber& number) {
+TableCell run_cell(const std::vector<const bench::StoredRun*>& runs, const RunNumber& number) {
   TableCell cell;
   std::vector<double> values;
   std::size_t failed = 0;
-  for (const StoredRun* run : runs) {
+  for (const bench::StoredRun* run : runs) {
     cell.run_keys.push_back(run->key);
-    const std::optional<double> value = run->outcome == Outcome::kOk ? number(*run) : std::nullopt;
+    const std::optional<double> value = run->outcome == bench::Outcome::kOk ? number(*run) : std::nullopt;
     if (value) values.push_back(*value);
-    failed += run->outcome == Outcome::kOk ? 0 : 1;
+    failed += run->outcome == bench::Outcome::kOk ? 0 : 1;
   }
   if (failed > 0) {
-    const auto first = std::find_if(runs.begin(), runs.end(),
-                                    [](const StoredRun* run) { return run->outcome != Outcome::kOk; });
+    const auto first = std::find_if(runs.begin(), runs.end(), [](const bench::StoredRun* run) {
+      return run->outcome != bench::Outcome::kOk;
+    });
     cell.note = failure_note(failed, runs.size(), **first);
   }
-  const std::optional<Spread> summary = spread(values);
+  const std::optional<eval::Spread> summary = eval::spread(values);
   if (summary) {
     cell.number = summary->median;
     cell.count = summary->count;
-    if (summary->count > 1) cell.interval = summary->median_interval;  // one run does not say how others are
+    if (summary->count > 1) cell.interval = summary->median_interval;  // undefined for a single run
     cell.state = failed > 0 ? CellState::kPartial : CellState::kOk;
   } else {
     cell.state = failed > 0 ? CellState::kFailed : CellState::kEmpty;
@@ -60,47 +60,50 @@ TableCell run_cell(const std::vector<const StoredRun*>& runs, const RunNumber& n
   return cell;
 }
 
-TableCell metric_cell(const std::vector<const StoredRun*>& runs, const std::string& metric) {
-  TableCell cell = run_cell(runs, [&](const StoredRun& run) { return metric_value(run, metric); });
-  for (const StoredRun* run : runs) {
-    for (const Metric& candidate : run->metrics) {
-      if (candidate.name == metric && cell.recipe.empty()) cell.recipe = candidate.recipe;
+TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, const std::string& metric) {
+  TableCell cell =
+      run_cell(runs, [&](const bench::StoredRun& run) { return bench::metric_value(run, metric); });
+  for (const bench::StoredRun* run : runs) {
+    for (const bench::Metric& candidate : run->metrics) {
+      if (candidate.name == metric && cell.protocol.empty()) cell.protocol = candidate.protocol;
     }
   }
   return cell;
 }
 
-TableCell cost_cell(const std::vector<const StoredRun*>& runs, const std::string& module) {
-  return run_cell(runs, [&](const StoredRun& run) -> std::optional<double> {
-    for (const ModuleCost& cost : run.costs) {
+TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs, const std::string& module) {
+  return run_cell(runs, [&](const bench::StoredRun& run) -> std::optional<double> {
+    for (const bench::ModuleCost& cost : run.costs) {
       if (cost.module == module) return cost.mean_ms;
     }
     return std::nullopt;
   });
 }
 
-std::vector<const StoredRun*> runs_of(std::span<const StoredRun> runs, const std::string& label,
-                                      const std::string& sequence) {
-  std::vector<const StoredRun*> found;
-  for (const StoredRun& run : runs) {
-    const bool is_on_it = sequence.empty() || run.identity.sequence == sequence;
-    if (is_on_it && run.identity.axis.empty() && system_label(run.identity) == label) found.push_back(&run);
+std::vector<const bench::StoredRun*> runs_of(std::span<const bench::StoredRun> runs, const std::string& label,
+                                             const std::string& sequence) {
+  std::vector<const bench::StoredRun*> found;
+  for (const bench::StoredRun& run : runs) {
+    const bool matches_sequence = sequence.empty() || run.identity.sequence == sequence;
+    if (matches_sequence && run.identity.axis.empty() && system_label(run.identity) == label)
+      found.push_back(&run);
   }
   return found;
 }
 
-bool tells_times(std::span<const StoredRun> runs, const StoredRun& run) {
-  const auto is_timed = [](const StoredRun& other) { return other.identity.kind == "timing"; };
+bool is_timing_source(std::span<const bench::StoredRun> runs, const bench::StoredRun& run) {
+  const auto is_timed = [](const bench::StoredRun& other) { return other.identity.kind == "timing"; };
   const std::string label = system_label(run.identity);
-  return is_timed(run) || std::none_of(runs.begin(), runs.end(), [&](const StoredRun& other) {
+  return is_timed(run) || std::none_of(runs.begin(), runs.end(), [&](const bench::StoredRun& other) {
            return is_timed(other) && system_label(other.identity) == label;
          });
 }
 
-std::vector<const StoredRun*> timed_runs_of(std::span<const StoredRun> runs, const std::string& label) {
-  std::vector<const StoredRun*> found = runs_of(runs, label, "");
-  std::erase_if(found, [&](const StoredRun* run) { return !tells_times(runs, *run); });
+std::vector<const bench::StoredRun*> timed_runs_of(std::span<const bench::StoredRun> runs,
+                                                   const std::string& label) {
+  std::vector<const bench::StoredRun*> found = runs_of(runs, label, "");
+  std::erase_if(found, [&](const bench::StoredRun* run) { return !is_timing_source(runs, *run); });
   return found;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

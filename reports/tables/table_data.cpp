@@ -5,7 +5,7 @@
 #include "reports/tables/escaping.h"
 #include "reports/tables/table_formats.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 Json cell_json(const TableColumn& column, const TableCell& cell) {
   Json json;
   json["state"] = cell_state_name(cell.state);
-  // The printed number and no other: who reads the page and who reads the file see the same.
+  // The number as printed, so that the file and the page agree.
   json["value"] = cell.number ? Json::parse(number_text(column, cell)) : Json(nullptr);
   json["exact"] = cell.number ? Json(*cell.number) : Json(nullptr);
   json["n"] = cell.count;
@@ -21,7 +21,7 @@ Json cell_json(const TableColumn& column, const TableCell& cell) {
   json["best"] = cell.is_best;
   if (cell.is_suspicious) json["suspicious"] = true;
   if (!cell.note.empty()) json["note"] = clean_line(cell.note);
-  if (!cell.recipe.empty()) json["recipe"] = clean_line(cell.recipe);
+  if (!cell.protocol.empty()) json["protocol"] = clean_line(cell.protocol);
   json["runs"] = cell.run_keys;
   return json;
 }
@@ -29,14 +29,14 @@ Json cell_json(const TableColumn& column, const TableCell& cell) {
 }  // namespace
 
 std::string table_csv(const ReportTable& table) {
-  std::string text = "row,from,group,column,unit,value,n,low,high,state,note\n";
+  std::string text = "row,source,group,column,unit,value,n,low,high,state,note\n";
   for (const TableRow& row : table.rows) {
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const TableColumn& column = table.columns[i];
       const TableCell& cell = row.cells[i];
       const std::string number = cell.number ? number_text(column, cell) : "";
       const auto limit = [&](double value) { return fmt::format("{:.{}f}", value, column.decimals); };
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.label), csv_field(row.from),
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.label), csv_field(row.source),
                           csv_field(column.group), csv_field(column.name), csv_field(column.unit), number,
                           cell.count, cell.interval ? limit(cell.interval->low) : "",
                           cell.interval ? limit(cell.interval->high) : "", cell_state_name(cell.state),
@@ -63,11 +63,11 @@ Json table_json(const ReportTable& table) {
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       cells.push_back(cell_json(table.columns[i], row.cells[i]));
     json["rows"].push_back(
-        {{"label", clean_line(row.label)}, {"from", clean_line(row.from)}, {"cells", cells}});
+        {{"label", clean_line(row.label)}, {"source", clean_line(row.source)}, {"cells", cells}});
   }
   json["notes"] = Json::array();
   for (const std::string& note : table.notes) json["notes"].push_back(clean_line(note));
   return json;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace stillpoint {
+namespace stillpoint::report {
 
 std::vector<ColumnGroup> column_groups(const ReportTable& table) {
   std::vector<ColumnGroup> groups;
@@ -22,7 +22,7 @@ bool has_groups(const ReportTable& table) {
 
 bool has_sources(const ReportTable& table) {
   return std::any_of(table.rows.begin(), table.rows.end(),
-                     [](const TableRow& row) { return !row.from.empty(); });
+                     [](const TableRow& row) { return !row.source.empty(); });
 }
 
 std::string column_heading(const TableColumn& column) {
@@ -38,4 +38,4 @@ std::string note_letter(std::size_t number) {
   return letters;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What all formats of a table need to know about its head.
+/// Table header layout shared by all formats.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 #include "reports/tables/report_table.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 
-/// Neighbouring columns under one heading.
+/// Consecutive columns under one heading.
 struct ColumnGroup {
   std::string name;
   std::size_t columns = 0;
@@ -17,10 +17,10 @@ struct ColumnGroup {
 
 [[nodiscard]] std::vector<ColumnGroup> column_groups(const ReportTable& table);
 
-/// Whether some column has a heading above it.
+/// Whether any column belongs to a named group.
 [[nodiscard]] bool has_groups(const ReportTable& table);
 
-/// Whether some row says where its numbers come from.
+/// Whether any row names its source.
 [[nodiscard]] bool has_sources(const ReportTable& table);
 
 /// "ATE [m]"; the name alone for a column without unit.
@@ -29,4 +29,4 @@ struct ColumnGroup {
 /// Footnote 1 is "a"; after "z" comes "aa".
 [[nodiscard]] std::string note_letter(std::size_t number);
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -5,7 +5,7 @@
 #include "reports/tables/table_formats.h"
 #include "reports/tables/table_head.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 std::string attribute(const char* name, const std::string& value) {
@@ -18,10 +18,10 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// What a pointer that rests on a number is told.
-std::string tip(const TableColumn& column, const TableCell& cell) {
+/// Tooltip of a number.
+std::string tooltip(const TableColumn& column, const TableCell& cell) {
   std::string text = cell.count > 0 ? cell_text(column, cell, TableDetail::kSpread) : "";
-  for (const std::string& part : {cell.recipe, cell.note}) {
+  for (const std::string& part : {cell.protocol, cell.note}) {
     if (!part.empty()) text += (text.empty() ? "" : "; ") + part;
   }
   return text;
@@ -47,14 +47,15 @@ struct HtmlTable {
                           cell.interval->low, column.decimals, cell.interval->high, column.decimals);
     }
     const std::string classes = cell_state_name(cell.state) + (cell.is_suspicious ? " suspicious" : "");
-    return "<td" + attribute("class", classes) + attribute("title", tip(column, cell)) + ">" + text + "</td>";
+    return "<td" + attribute("class", classes) + attribute("title", tooltip(column, cell)) + ">" + text +
+           "</td>";
   }
 
   [[nodiscard]] std::string head() const {
     const char* span = has_groups(table) ? " rowspan=\"2\"" : "";
     std::string text =
         fmt::format("<thead><tr><th scope=\"col\"{}>{}</th>", span, escape_html(table.row_heading));
-    if (has_sources(table)) text += fmt::format("<th scope=\"col\"{}>from</th>", span);
+    if (has_sources(table)) text += fmt::format("<th scope=\"col\"{}>source</th>", span);
     if (has_groups(table)) {
       for (const ColumnGroup& group : column_groups(table)) {
         text += fmt::format("<th scope=\"colgroup\" colspan=\"{}\">{}</th>", group.columns,
@@ -70,8 +71,8 @@ struct HtmlTable {
 
   [[nodiscard]] std::string row(const TableRow& row) const {
     std::string text =
-        "<tr" + attribute("class", row.from) + "><th scope=\"row\">" + escape_html(row.label) + "</th>";
-    if (has_sources(table)) text += "<td class=\"from\">" + escape_html(row.from) + "</td>";
+        "<tr" + attribute("class", row.source) + "><th scope=\"row\">" + escape_html(row.label) + "</th>";
+    if (has_sources(table)) text += "<td class=\"text\">" + escape_html(row.source) + "</td>";
     for (std::size_t i = 0; i < row.cells.size(); ++i) text += cell(table.columns[i], row.cells[i]);
     return text + "</tr>\n";
   }
@@ -98,4 +99,4 @@ std::string table_html(const ReportTable& table) {
   return text + "</tbody></table></div>\n" + html.foot();
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -5,7 +5,7 @@
 #include "reports/tables/table_formats.h"
 #include "reports/tables/table_head.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 std::string marked_cell(const TableColumn& column, const TableCell& cell, TableDetail detail,
@@ -17,7 +17,7 @@ std::string marked_cell(const TableColumn& column, const TableCell& cell, TableD
   return note == 0 ? text : text + "$^{\\mathrm{" + note_letter(note) + "}}$";
 }
 
-/// The line of headings over several columns, and the rules below them.
+/// The line of group headings and the rules below it.
 std::string group_line(const ReportTable& table, std::size_t lead) {
   std::string line(lead - 1, '&');
   std::string rules;
@@ -33,7 +33,7 @@ std::string group_line(const ReportTable& table, std::size_t lead) {
 
 std::string heading_line(const ReportTable& table) {
   std::string line = escape_latex(table.row_heading);
-  if (has_sources(table)) line += " & from";
+  if (has_sources(table)) line += " & source";
   for (const TableColumn& column : table.columns) line += " & " + escape_latex(column_heading(column));
   return line + " \\\\\n\\midrule\n";
 }
@@ -65,7 +65,7 @@ std::string table_latex(const ReportTable& table, TableDetail detail) {
     if (lead == 2 && row.label != label) text += "\\addlinespace\n";
     label = row.label;
     text += escape_latex(row.label);
-    if (lead == 2) text += " & " + escape_latex(row.from);
+    if (lead == 2) text += " & " + escape_latex(row.source);
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       text += " & " + marked_cell(table.columns[i], row.cells[i], detail, notes);
     }
@@ -80,4 +80,4 @@ std::string latex_document(const std::string& tables) {
          tables + "\\end{document}\n";
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

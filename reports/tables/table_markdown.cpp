@@ -2,9 +2,9 @@
 #include "reports/tables/escaping.h"
 #include "reports/tables/table_formats.h"
 #include "reports/tables/table_head.h"
-#include "reports/text_table.h"
+#include "reports/tables/text_table.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 std::string marked_cell(const TableColumn& column, const TableCell& cell, TableDetail detail,
@@ -21,7 +21,7 @@ std::string table_markdown(const ReportTable& table, TableDetail detail) {
   const std::vector<std::string> notes = footnotes(table);
   TableRows rows(1);
   rows.front().push_back(escape_markdown(table.row_heading));
-  if (has_sources(table)) rows.front().emplace_back("from");
+  if (has_sources(table)) rows.front().emplace_back("source");
   for (const TableColumn& column : table.columns) {
     const std::string group = column.group.empty() ? "" : column.group + ": ";
     rows.front().push_back(escape_markdown(group + column_heading(column)));
@@ -29,7 +29,7 @@ std::string table_markdown(const ReportTable& table, TableDetail detail) {
   for (const TableRow& row : table.rows) {
     std::vector<std::string>& cells = rows.emplace_back();
     cells.push_back(escape_markdown(row.label));
-    if (has_sources(table)) cells.push_back(escape_markdown(row.from));
+    if (has_sources(table)) cells.push_back(escape_markdown(row.source));
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       cells.push_back(marked_cell(table.columns[i], row.cells[i], detail, notes));
     }
@@ -43,4 +43,4 @@ std::string table_markdown(const ReportTable& table, TableDetail detail) {
   return text;
 }
 
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Linked charts over the time of one run: a pointer or a zoom in one is in all.
+// Time series charts of one run with synchronized cursor and zoom.
 "use strict";
 (function (page) {
   const STACKED = ["feature_tracking", "feature_detection", "dynamic_recognition", "state_optimization", "object_detection"];
@@ -14,7 +14,7 @@
   page.line = (label, color, extra) => ({ label, stroke: page.color(color), width: 1.4, value: page.number, spanGaps: false, points: { show: false }, ...extra });
   const { line, number } = page;
 
-  // Each layer upon the ones below; a frame without any stays empty.
+  // Cumulative sums of the module times, top layer first; missing values count as 0.
   function stacked(series) {
     const names = STACKED.filter((name) => series.columns["ms:" + name]);
     let sum = new Array(series.frames).fill(0);
@@ -23,16 +23,16 @@
       sum = sum.map((value, i) => value + (column[i] || 0));
       return { name, top: sum };
     });
-    return layers.reverse(); // the widest first, so that the others are drawn over it
+    return layers.reverse(); // largest sum first, so that the smaller ones are drawn on top
   }
 
-  // Median time between frames [ms]: who takes longer falls behind.
-  page.deadline = function (series) {
+  // Median frame interval [ms], the limit for real-time operation.
+  page.frameInterval = function (series) {
     const gaps = series.t.slice(1).map((t, i) => t - series.t[i]).sort((a, b) => a - b);
     return gaps.length ? 1000 * gaps[Math.floor(gaps.length / 2)] : null;
   };
 
-  // Where the odometry had no pose, the ground of a chart is red.
+  // Red background where the odometry has no pose.
   function shadeLost(plot, series) {
     const lost = series.columns.x;
     if (!lost) return;
@@ -52,25 +52,25 @@
     const has = (name) => series.columns[name] !== undefined;
     const charts = [];
     if (has("error_m"))
-      charts.push({ id: "error", title: "Position error after alignment", unit: "m", lines: [line("error [m]", "c0")], data: [series.columns.error_m] });
+      charts.push({ id: "error", title: "Position error after alignment (ATE)", unit: "m", lines: [line("error [m]", "c0")], data: [series.columns.error_m] });
     if (has("features"))
-      charts.push({ id: "features", title: "Features", unit: "count", lines: [line("tracked", "c0"), line("in the window", "c2")],
+      charts.push({ id: "features", title: "Features", unit: "count", lines: [line("tracked", "c0"), line("landmarks in the window", "c2")],
         data: [series.columns.features, series.columns.landmarks] });
     if (has("dynamic"))
-      charts.push({ id: "dynamic", title: "Share of the features that are held to move", unit: "share", lines: [line("dynamic", "c1")], data: [series.columns.dynamic] });
+      charts.push({ id: "dynamic", title: "Fraction of the features labeled dynamic", unit: "fraction", lines: [line("dynamic", "c1")], data: [series.columns.dynamic] });
     const layers = stacked(series);
     if (layers.length) {
-      const limit = page.deadline(series);
+      const limit = page.frameInterval(series);
       const own = (name) => (u, value, s, i) => number(u, i === null ? null : series.columns["ms:" + name][i]);
-      charts.push({ id: "modules", title: "Time of the modules, stacked; dashed: the time until the next picture", unit: "ms",
+      charts.push({ id: "modules", title: "Module times, stacked; dashed: frame interval", unit: "ms",
         lines: layers.map((layer, i) => line(layer.name + " [ms]", "c" + i, { fill: page.color("c" + i) + "55", value: own(layer.name) }))
-          .concat([line("next picture [ms]", "bad", { dash: [6, 4] })]),
+          .concat([line("frame interval [ms]", "bad", { dash: [6, 4] })]),
         data: layers.map((layer) => layer.top).concat([new Array(series.frames).fill(limit)]) });
     }
     return charts;
   }
 
-  // Draws all charts of a run into `place`; onFrame(index) hears the pointer, onZoom(min, max) the zoom.
+  // Draws all charts of a run into `place`. Calls onFrame(index) when the pointer moves and onZoom(min, max) on zoom.
   page.drawCharts = function (place, series, onFrame, onZoom) {
     place.replaceChildren();
     const plots = [];
@@ -100,12 +100,12 @@
     }
     return {
       plots,
-      // Puts the pointer of every chart at a frame.
+      // Moves the cursor of every chart to a frame.
       point(frame) {
         for (const plot of plots) plot.setCursor({ left: plot.valToPos(series.t[frame], "x"), top: plot.over.clientHeight / 2 }, false);
       },
       zoom: zoomAll,
-      whole() { zoomAll(series.t[0], series.t[series.t.length - 1]); },
+      resetZoom() { zoomAll(series.t[0], series.t[series.t.length - 1]); },
       resize() { for (const plot of plots) plot.setSize({ width: place.clientWidth, height: plot.height }); },
     };
   };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curves over something else than time: values of a sweep, lengths of the way.
+// Curves over sweep values and over segment lengths.
 "use strict";
 (function (page) {
-  // Of each {title, across, unit, values, names, data} a figure with a line of `data` for each of `names`, over
-  // `values`. All figures stand before the first chart is drawn: they share the width.
+  // One figure per {title, xLabel, unit, values, names, data}: a line of `data` for each of `names` over `values`.
+  // All figures are inserted before the first chart is drawn because the layout determines their width.
   function drawAll(place, charts) {
     const figures = charts.map((curves) => {
       const figure = page.element("figure");
@@ -18,14 +18,14 @@
   function draw(figure, curves) {
     const lines = curves.names.map((name, i) => page.line(name, "c" + (i % 7), { points: { show: true, size: 6 }, spanGaps: true, dash: i < 7 ? [] : [5, 4] }));
     const axes = page.axes(curves.unit);
-    axes[0].label = curves.across;
-    new uPlot({ width: figure.clientWidth || 900, height: 220, scales: { x: { time: false } }, axes, series: [{ label: curves.across, value: page.number }, ...lines] },
+    axes[0].label = curves.xLabel;
+    new uPlot({ width: figure.clientWidth || 900, height: 220, scales: { x: { time: false } }, axes, series: [{ label: curves.xLabel, value: page.number }, ...lines] },
       [curves.values, ...curves.data], figure);
   }
 
-  const middle = (numbers) => { const known = numbers.filter((n) => n !== null).sort((a, b) => a - b); return known.length ? known[Math.floor((known.length - 1) / 2)] : null; };
+  const median = (numbers) => { const finite = numbers.filter((n) => n !== null).sort((a, b) => a - b); return finite.length ? finite[Math.floor((finite.length - 1) / 2)] : null; };
 
-  // One chart for each axis, one line for each variant and sequence. @return number of charts
+  // One chart per sweep axis, one line per variant and sequence. @return number of charts
   page.drawSweeps = function (place) {
     const swept = page.index.runs.filter((run) => run.sweep);
     const axes = [...new Set(swept.map((run) => run.sweep.axis))];
@@ -34,14 +34,14 @@
       const runs = swept.filter((run) => run.sweep.axis === axis);
       const values = [...new Set(runs.map((run) => run.sweep.value))].sort((a, b) => a - b);
       const names = [...new Set(runs.map((run) => run.label + ", " + run.sequence))];
-      const data = names.map((name) => values.map((value) => middle(runs.filter((run) => run.sweep.value === value && run.label + ", " + run.sequence === name).map(error))));
-      return { title: "RMSE of the position error over " + axis, across: axis, unit: "m", values, names, data };
+      const data = names.map((name) => values.map((value) => median(runs.filter((run) => run.sweep.value === value && run.label + ", " + run.sequence === name).map(error))));
+      return { title: "ATE RMSE over " + axis, xLabel: axis, unit: "m", values, names, data };
     }));
   };
 
-  // One chart for each sequence, one line for each variant. @return number of charts
+  // One chart per sequence, one line per variant. @return number of charts
   page.drawSegments = function (place) {
-    return drawAll(place, page.index.segments.map((figure) => ({ title: figure.sequence, across: "length of the stretch [m]", unit: "% of the length",
+    return drawAll(place, page.index.segments.map((figure) => ({ title: figure.sequence, xLabel: "segment length [m]", unit: "% of the length",
       values: figure.lengths, names: figure.curves.map((curve) => curve.label), data: figure.curves.map((curve) => curve.errors) })));
   };
 })(window.stillpoint);

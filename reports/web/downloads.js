@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables and series as files, made from what the page carries.
+// Download of tables and time series from the data embedded in the page.
 "use strict";
 (function (page) {
   function save(name, text) {
@@ -8,7 +8,7 @@
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
 
-  // The series of the selected run as CSV, a line for each frame.
+  // Time series of a run as CSV, one line per frame.
   page.seriesText = function (run) {
     const series = page.series(run);
     const names = Object.keys(series.columns);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One run at a time: its paths, charts, numbers and manifest, and the frame that everything points at.
+// Explorer of a single run: paths, charts, metrics, manifest, and the selected frame.
 "use strict";
 (function (page) {
   const byId = (id) => document.getElementById(id);
@@ -15,14 +15,14 @@
     const add = (label, text) => { const part = page.element("span"); part.append(page.element("b", {}, label + " "), text); place.append(part); };
     add("frame", String(frame));
     add("time", series.t[frame].toFixed(3) + " s");
-    const shown = { error_m: "error [m]", growth_m: "error grew by [m]", error_deg: "error [deg]", features: "features", landmarks: "in the window", dynamic: "dynamic share" };
+    const shown = { error_m: "error [m]", frame_to_frame_error_m: "frame-to-frame error [m]", error_deg: "error [deg]", features: "features", landmarks: "landmarks in the window", dynamic: "dynamic fraction" };
     for (const [column, values] of Object.entries(series.columns)) {
       const label = column.startsWith("ms:") ? column.slice(3) + " [ms]" : shown[column];
       if (label) add(label, values[frame] === null ? "-" : Number(values[frame].toPrecision(4)).toString());
     }
   }
 
-  // Everything points at a frame; the charts follow unless the pointer is in one of them.
+  // Selects a frame in all views; the chart cursors are left alone if the pointer is in a chart.
   function point(frame, fromChart) {
     if (state.moving || state.run < 0) return;
     state.moving = true;
@@ -38,24 +38,24 @@
   function showMetrics(run) {
     const table = page.element("table");
     const head = page.element("tr");
-    for (const title of ["number", "value", "unit", "recipe"]) head.append(page.element("th", { scope: "col" }, title));
+    for (const title of ["metric", "value", "unit", "protocol"]) head.append(page.element("th", { scope: "col" }, title));
     table.append(head);
-    for (const [metric, value, unit, recipe] of run.metrics) {
+    for (const [metric, value, unit, protocol] of run.metrics) {
       const row = page.element("tr");
       row.append(page.element("th", { scope: "row" }, metric), page.element("td", {}, Number(value.toPrecision(6)).toString()),
-        page.element("td", {}, unit), page.element("td", {}, recipe));
+        page.element("td", {}, unit), page.element("td", {}, protocol));
       table.append(row);
     }
     byId("metrics").replaceChildren(table);
   }
 
-  // What makes this run again, with its seeds and repetitions; empty for runs without a plan.
+  // Command that repeats this run with its seeds and repetitions; empty for runs without a plan.
   function command(run) {
     const plan = JSON.parse(byId("plans").textContent).find((candidate) => candidate.runs.includes(run.key));
     if (!plan) return "";
     const quoted = (text) => "'" + text.replaceAll("'", "'\\''") + "'", own = " (" + plan.name + ")";
     const bare = (text) => (text.endsWith(own) ? text.slice(0, -own.length) : text);
-    return "stillpoint bench " + quoted(plan.name) + " --filter " + quoted(bare(run.label)) + " --filter " + quoted(bare(run.sequence)) + " --store again.sqlite";
+    return "stillpoint bench " + quoted(plan.name) + " --filter " + quoted(bare(run.label)) + " --filter " + quoted(bare(run.sequence)) + " --store repeated.sqlite";
   }
 
   page.selectRun = function (index) {
@@ -65,7 +65,7 @@
     state.frame = null;
     state.worstAt = -1;
     byId("run").value = state.run;
-    byId("outcome").textContent = run.outcome === "ok" ? (series.frames ? "" : "This run has no frames in the store.") : run.outcome + ": " + run.detail;
+    byId("outcome").textContent = run.outcome === "ok" ? (series.frames ? "" : "The store has no frames of this run.") : run.outcome + ": " + run.detail;
     showMetrics(run);
     byId("repeat-run").textContent = command(run);
     byId("manifest").textContent = JSON.stringify(page.index.manifests[run.manifest] || null, null, 2);
@@ -76,7 +76,7 @@
     state.views.show(series, page.truth(state.run, series.start));
     readout(series, 0);
     state.inspector.select(state.run, series);
-    byId("spread-of-times").hidden = page.drawHistograms(byId("histograms"), series) === 0;
+    byId("time-histograms").hidden = page.drawHistograms(byId("histograms"), series) === 0;
     byId("runs").dataset.run = run.key;
   };
 
@@ -92,21 +92,21 @@
     point(worst[state.worstAt], false);
   }
 
-  // The runs behind a number of a table, and how it was made of them.
-  function showBehind(link) {
+  // Lists the runs and the protocol of a number in a table.
+  function showSourceRuns(link) {
     const keys = link.dataset.runs.split(" ");
-    const place = byId("behind"), recipe = link.closest("td").title;
-    place.replaceChildren("The number " + link.textContent + " is of " + (keys.length === 1 ? "one run: " : "the median of these " + keys.length + " runs, as far as they ended well: "));
+    const place = byId("source-runs"), protocol = link.closest("td").title;
+    place.replaceChildren("Source of " + link.textContent + ": " + (keys.length === 1 ? "one run: " : "median of the successful ones of " + keys.length + " runs: "));
     for (const key of keys) {
       const run = page.index.runs.find((candidate) => candidate.key === key);
       if (run) place.append(page.element("a", { href: "#run=" + key }, name(run)), " ");
     }
-    if (recipe) place.append(page.element("span", { class: "recipe" }, "Recipe: " + recipe));
+    if (protocol) place.append(page.element("span", { class: "protocol" }, "Protocol: " + protocol));
   }
 
   const KEYS = {
     ArrowRight: (event) => step(event.shiftKey ? 10 : 1), ArrowLeft: (event) => step(event.shiftKey ? -10 : -1),
-    n: () => page.selectRun(state.run + 1), p: () => page.selectRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: () => state.charts.whole(),
+    n: () => page.selectRun(state.run + 1), p: () => page.selectRun(state.run - 1), w: () => stepWorst(1), W: () => stepWorst(-1), 0: () => state.charts.resetZoom(),
   };
 
   function onKey(event) {
@@ -135,8 +135,8 @@
     byId("next").addEventListener("click", () => page.selectRun(state.run + 1));
     byId("worst").addEventListener("click", () => stepWorst(1));
     state.inspector = page.inspector((frame) => { state.worstAt = page.series(state.run).worst.indexOf(frame); point(frame, false); });
-    document.addEventListener("click", (event) => { const link = event.target.closest("a[data-runs]"); if (link) showBehind(link); });
-    byId("whole").addEventListener("click", () => state.charts.whole());
+    document.addEventListener("click", (event) => { const link = event.target.closest("a[data-runs]"); if (link) showSourceRuns(link); });
+    byId("reset-zoom").addEventListener("click", () => state.charts.resetZoom());
     document.addEventListener("keydown", onKey);
     window.addEventListener("hashchange", fromHash);
     window.addEventListener("resize", () => { state.charts.resize(); state.views.redraw(); });

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the time of a variant goes: its folded stacks as a flame chart, and as a table.
+// Time per frame of a variant from its folded stacks, as a flame chart and as a table.
 "use strict";
 (function (page) {
   const byId = (id) => document.getElementById(id);
 
-  // {"outer;inner": ns} -> a tree whose values are the ms of a frame.
+  // {"outer;inner": ns} -> tree with values in ms per frame.
   function treeOf(flame) {
-    const root = { name: "a frame", value: 0, children: [] };
+    const root = { name: "frame", value: 0, children: [] };
     for (const [stack, ns] of Object.entries(flame.stacks)) {
       const ms = ns / 1e6 / Math.max(flame.frames, 1);
       let node = root;
@@ -26,7 +26,7 @@
   function tableOf(flame) {
     const table = page.element("table");
     const head = page.element("tr");
-    for (const title of ["stack", "ms of a frame, without what is within"]) head.append(page.element("th", { scope: "col" }, title));
+    for (const title of ["stack", "self time per frame [ms]"]) head.append(page.element("th", { scope: "col" }, title));
     table.append(head);
     for (const [stack, ns] of Object.entries(flame.stacks).sort((a, b) => b[1] - a[1])) {
       const row = page.element("tr");
@@ -42,8 +42,8 @@
     const chart = d3flame.flamegraph().width(place.clientWidth || 900).cellHeight(20).inverted(true).transitionDuration(0).tooltip(false)
       .selfValue(false).setLabelHandler(label).setColorMapper((node) => page.color("c" + ((node.depth + node.data.name.length) % 7)));
     d3flame.select(place).datum(tree).call(chart);
-    place.setAttribute("aria-label", "Flame chart of " + flame.label + ": " + tree.value.toPrecision(3) + " ms a frame");
-    byId("flame-text").textContent = tree.value.toPrecision(3) + " ms a frame, mean over " + flame.frames + " frames";
+    place.setAttribute("aria-label", "Flame chart of " + flame.label + ": " + tree.value.toPrecision(3) + " ms per frame");
+    byId("flame-text").textContent = tree.value.toPrecision(3) + " ms per frame, mean over " + flame.frames + " frames";
     byId("flame-table").replaceChildren(tableOf(flame));
     byId("flames").dataset.variant = flame.label;
   }

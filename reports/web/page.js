@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puts the page together when it is open.
+// Initializes the report page.
 "use strict";
 (function (page) {
   const root = document.documentElement;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The path of a run from above and from the side, coloured by its error, over the true path.
+// Top and side view of a trajectory, colored by its error, over the ground truth.
 "use strict";
 (function (page) {
   const MARGIN = 26;
-  const VIEWS = [{ id: "plan", title: "From above: x to the right, y up [m]", across: "x", up: "y" },
-    { id: "side", title: "From the side: x to the right, z up [m]", across: "x", up: "z" }];
-  // Dark to light in brightness too, so that it reads without colours.
+  const VIEWS = [{ id: "plan", title: "Top view: x to the right, y up [m]", across: "x", up: "y" },
+    { id: "side", title: "Side view: x to the right, z up [m]", across: "x", up: "z" }];
+  // Monotonic in brightness, so that it can be read without color.
   const RAMP = [[98, 66, 158], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
-  function rampColor(share) {
-    const place = Math.max(0, Math.min(1, share)) * (RAMP.length - 1);
+  function rampColor(fraction) {
+    const place = Math.max(0, Math.min(1, fraction)) * (RAMP.length - 1);
     const low = Math.min(Math.floor(place), RAMP.length - 2);
     const mix = RAMP[low].map((value, i) => Math.round(value + (place - low) * (RAMP[low + 1][i] - value)));
     return "rgb(" + mix.join(",") + ")";
@@ -21,7 +21,7 @@
     return low <= high ? [low, high] : [0, 1];
   }
 
-  // Same scale for both axes.
+  // Equal scale on both axes.
   function projection(canvas, across, up) {
     const [lowX, highX] = extent(across), [lowY, highY] = extent(up);
     const width = canvas.clientWidth - 2 * MARGIN, height = canvas.clientHeight - 2 * MARGIN;
@@ -98,7 +98,7 @@
       scaleBar(context, canvas, this.shown);
     }
 
-    // Where the odometry had no pose the true path is thick and red.
+    // The ground truth is thick and red where the odometry has no pose.
     drawTruth(context) {
       const { truth, series, view, shown } = this;
       context.strokeStyle = page.color("faint");
@@ -134,7 +134,7 @@
     drawLegend(context, largest) {
       for (let i = 0; i < 100; ++i) { context.fillStyle = rampColor(i / 99); context.fillRect(12 + i, 10, 1.5, 8); }
       context.fillStyle = page.color("faint");
-      context.fillText("error 0 to " + largest.toPrecision(3) + " m" + (this.truth ? "; grey: ground truth, red: lost" : ""), 120, 18);
+      context.fillText("error 0 to " + largest.toPrecision(3) + " m" + (this.truth ? "; grey: ground truth, red: tracking lost" : ""), 120, 18);
     }
 
     drawFrame(context) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The data that the page carries, unpacked when it is asked for.
+// Access to the data embedded in the page; series are decoded on demand.
 "use strict";
 window.stillpoint = {};
 (function (page) {
@@ -20,7 +20,7 @@ window.stillpoint = {};
     return numbers;
   };
 
-  // Series of a run: {start, frames, t, columns: {name: numbers}}; at most a few are kept.
+  // Series of a run: {start, frames, t, worst, columns: {name: numbers}}; a few are cached.
   const cache = new Map();
   page.series = function (run) {
     if (!cache.has(run)) {
@@ -34,9 +34,9 @@ window.stillpoint = {};
   };
 
   // {frame: JPEG in base64} of a run.
-  page.pictures = (run) => (document.getElementById("pictures-" + run) ? parse("pictures-" + run) : {});
+  page.images = (run) => (document.getElementById("images-" + run) ? parse("images-" + run) : {});
 
-  // True path of a run, its times counted from the first frame; null if it has none.
+  // Ground truth of a run, with times relative to its first frame; null without one.
   page.truth = function (run, start) {
     const packed = page.index.truths[page.index.runs[run].truth];
     if (!packed) return null;

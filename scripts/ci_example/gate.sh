@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# What the workflows beside this file run for a merge request: build base and head, judge the change on the same
-# machine, and write a page about it. Exit 1 if something became worse.
+# Regression gate for merge requests, called by the workflows in this folder: builds base and head, compares them on the
+# same machine, and writes a report. Exit code 1 if a metric is worse.
 #   scripts/ci_example/gate.sh BASE_COMMIT OUT
 set -euo pipefail
 base="$1" out="$(realpath -m "$2")"
@@ -15,9 +15,9 @@ git worktree add --detach "$tree" "$base"
 build
 
 store="$out/store.sqlite"
-verdict=0
+result=0
 build/release/stillpoint compare "$tree/build/release/stillpoint" build/release/stillpoint \
-  --plan quick --pairs 5 --store "$store" --out "$out" || verdict=$?
+  --plan quick --pairs 5 --store "$store" --out "$out" || result=$?
 build/release/stillpoint report "$store" --out "$out/page"
-((verdict != 3)) || { echo "the change could not be judged: too few pairs or a busy machine"; exit 0; }
-exit "$verdict"
+((result != 3)) || { echo "inconclusive: too few pairs or a busy machine"; exit 0; }
+exit "$result"

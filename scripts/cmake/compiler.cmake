@@ -24,8 +24,10 @@ else()
 endif()
 
 add_library(stillpoint_warnings INTERFACE)
+# Off: designated initializers leave the other fields at their defaults; and two warnings that g++ 12 raises for correct
+# uses of std::string and Eigen at -O3.
 target_compile_options(stillpoint_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion
-                       -Wno-missing-field-initializers)  # designated initialisers leave the rest at their defaults
+                       -Wno-missing-field-initializers -Wno-array-bounds -Wno-restrict)
 # Warnings are errors except under sanitizers, whose instrumentation makes g++ 12 see flows that do not exist.
 if(STILLPOINT_SANITIZE)
   target_compile_options(stillpoint_warnings INTERFACE -Wno-maybe-uninitialized)
@@ -52,9 +54,21 @@ if(STILLPOINT_SANITIZE)
   endif()
 endif()
 
-# stillpoint_library(NAME SOURCES a.cpp ... [PUBLIC libs...] [PRIVATE libs...]): one module of the house.
+# stillpoint_library(NAME [SOURCES a.cpp ...] [EXCLUDE regex] [HEADERS set] [PUBLIC libs...] [PRIVATE libs...]): one module.
+# Without SOURCES: every .cpp file below the current folder whose path does not match EXCLUDE.
+# HEADERS: the set of precompiled headers (default: core), see precompiled.cmake.
 function(stillpoint_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "EXCLUDE;HEADERS" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  if(NOT ARG_SOURCES)
+    file(GLOB_RECURSE ARG_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+    if(ARG_EXCLUDE)
+      list(FILTER ARG_SOURCES EXCLUDE REGEX ${ARG_EXCLUDE})
+    endif()
+  endif()
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC stillpoint_options ${ARG_PUBLIC} PRIVATE stillpoint_warnings ${ARG_PRIVATE})
+  if(NOT ARG_HEADERS)
+    set(ARG_HEADERS core)
+  endif()
+  stillpoint_precompile(${name} ${ARG_HEADERS})
 endfunction()

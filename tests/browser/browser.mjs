@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of pages share: a browser whose every request and complaint is kept, and checks of any page.
+// Shared by the page tests: a browser that records requests, warnings and errors, and checks for any page.
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
 
@@ -11,30 +11,30 @@ export async function test(name, action) {
 }
 
 export const ready = (page) => page.waitForFunction(() => document.documentElement.dataset.readyMs !== undefined, null, { timeout: 10000 })
-  .catch(() => assert.fail("not ready: " + page.faults.join("; ")));
+  .catch(() => assert.fail("not ready: " + page.problems.join("; ")));
 
-// A page of a file. Only `isOwn` requests, beside the file itself, are no faults.
-export async function open(file, options = {}, isOwn = () => false) {
+// Opens a file. Requests other than the file itself are recorded as problems unless `isAllowed` accepts them.
+export async function open(file, options = {}, isAllowed = () => false) {
   const page = await browser.newPage({ viewport: { width: 1300, height: 900 }, ...options });
-  page.faults = [];
-  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) page.faults.push(message.text()); });
-  page.on("pageerror", (error) => page.faults.push(error.message));
-  page.on("dialog", (dialog) => { page.faults.push("dialog " + dialog.message()); dialog.dismiss(); });
+  page.problems = [];
+  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) page.problems.push(message.text()); });
+  page.on("pageerror", (error) => page.problems.push(error.message));
+  page.on("dialog", (dialog) => { page.problems.push("dialog " + dialog.message()); dialog.dismiss(); });
   page.on("request", (request) => {
-    if (request.url() !== "file://" + file && !isOwn(request) && !/^(data|blob):/.test(request.url())) page.faults.push("request " + request.url());
+    if (request.url() !== "file://" + file && !isAllowed(request) && !/^(data|blob):/.test(request.url())) page.problems.push("request " + request.url());
   });
   await page.goto("file://" + file);
   await ready(page);
   return page;
 }
 
-// What a page's section points at, after it has drawn.
-export const pointedAt = (page, section) => page.evaluate(async (id) => {
+// The data attributes of a section after the next redraw: selected run, frame, zoom etc.
+export const selection = (page, section) => page.evaluate(async (id) => {
   for (let i = 0; i < 2; ++i) await new Promise((drawn) => requestAnimationFrame(drawn));
   return { ...document.getElementById(id).dataset };
 }, section);
 
-// Names of the charts below a selector; none of them is blank.
+// Names of the charts below a selector, after checking that none is blank.
 export async function drawnCharts(page, selector) {
   const charts = await page.$$eval(selector + " figure", (figures) => figures.map((figure) => {
     const canvas = figure.querySelector("canvas");
@@ -48,9 +48,9 @@ export async function drawnCharts(page, selector) {
 }
 
 export async function lightAndDarkDiffer(page) {
-  const ground = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
-  const light = await ground();
+  const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await background();
   await page.click("#theme");
-  assert.notEqual(await ground(), light);
+  assert.notEqual(await background(), light);
   await page.click("#theme");
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Shared by the scripts of this folder: sourced with their arguments. Sets `program`, `work`, `here` and `browser`.
-# Exit 77 with a reason where a real headless browser is not to be had.
+# Sourced by the scripts of this folder with their arguments. Sets `program`, `work`, `here` and `browser`.
+# Prints a reason and exits with 77 if no headless browser is available.
 set -euo pipefail
 program="$(realpath "$1")"
 work="${2:-$(mktemp -d)}"

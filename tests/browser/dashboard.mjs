@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The dashboard as its readers meet it. Run by dashboard.sh, with the store of history_store.mjs.
+// Tests of the dashboard page. Run by dashboard.sh with the store of history_store.mjs.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
-import { browser, drawnCharts, lightAndDarkDiffer, open, pointedAt, ready, test } from "./browser.mjs";
+import { browser, drawnCharts, lightAndDarkDiffer, open, selection, ready, test } from "./browser.mjs";
 
 const { PAGE, STILLPOINT_SCREENSHOTS } = process.env;
 const OPEN_MS = 2000;
 const folder = "file://" + PAGE.slice(0, PAGE.lastIndexOf("/") + 1);
 
-// Its pages may lead to each other.
+// Navigation between the pages of the dashboard is allowed.
 const openDashboard = (options) => open(PAGE, options, (request) => request.isNavigationRequest() && request.url().startsWith(folder));
-const shown = (page) => pointedAt(page, "history");
+const shown = (page) => selection(page, "history");
 const page = await openDashboard();
 
-await test("the page opens quickly and weighs little besides its data", async () => {
+await test("the page opens quickly and is small apart from its data", async () => {
   const ms = Number(await page.evaluate(() => document.documentElement.dataset.readyMs));
   const data = await page.evaluate(() => document.getElementById("index").textContent.length);
   console.log(`    open after ${ms} ms; ${((statSync(PAGE).size - data) / 1e3).toFixed(0)} kB without its data`);
   assert.ok(ms < OPEN_MS && statSync(PAGE).size - data < 400e3);
 });
 
-await test("every chart has data, and accuracy and cost share one time line", async () => {
+await test("every chart has data, and accuracy and cost share one chart", async () => {
   const charts = await drawnCharts(page, "#history");
   assert.equal(charts[0], "timeline");
   assert.deepEqual(charts.slice(1).sort(),
@@ -28,17 +28,17 @@ await test("every chart has data, and accuracy and cost share one time line", as
   assert.deepEqual(await page.$$eval("#timeline .u-legend .u-label", (labels) => labels.map((label) => label.textContent)), ["commit", "ate_rmse_m", "process_cpu_s"]);
 });
 
-await test("the known regression is open with its commits, and the accepted one has its reason", async () => {
+await test("the known regression is listed as open with its commits, and the accepted change with its reason", async () => {
   const row = page.locator("#open-changes tr", { hasText: "state_optimization" });
   const commits = await page.evaluate(() => window.stillpoint.index.commits.map((commit) => commit.label));
   const text = await row.textContent();
   assert.ok(text.includes(`${commits[39]} .. ${commits[40]}`), text);
   assert.match(await page.locator("#accepted-changes").textContent(), /a faster solver <b>"worth" it<\/b>/);
-  assert.match(await page.locator("#creeps").textContent(), /ate_rmse_m.*worse/s);
+  assert.match(await page.locator("#drifts").textContent(), /ate_rmse_m.*worse/s);
   assert.equal(await page.locator("#open-changes tr", { hasText: "ate_rmse_m" }).count(), 0);
 });
 
-await test("hovering one chart moves all and tells the commit", async () => {
+await test("hovering one chart moves the cursor of all charts and shows the commit", async () => {
   const over = page.locator("#timeline .u-over");
   await over.scrollIntoViewIfNeeded();
   const box = await over.boundingBox();
@@ -47,7 +47,7 @@ await test("hovering one chart moves all and tells the commit", async () => {
   await page.mouse.move(box.x + box.width * 0.6, box.y + box.height / 2, { steps: 5 });
   assert.notEqual((await shown(page)).commit, first);
   assert.match(await page.textContent("#readout"), /commit .*ate_rmse_m/s);
-  const cursors = await page.$$eval("#numbers .u-cursor-x", (lines) => lines.map((line) => line.style.transform));
+  const cursors = await page.$$eval("#metric-charts .u-cursor-x", (lines) => lines.map((line) => line.style.transform));
   assert.equal(new Set(cursors).size, 1, cursors.join(" "));
 });
 
@@ -64,7 +64,7 @@ await test("dragging zooms all charts, and 0 shows all commits", async () => {
   assert.deepEqual((await shown(page)).zoom, "-0.50 59.50");
 });
 
-await test("keys step commits, change what is shown and go through regressions", async () => {
+await test("keys step through commits, subjects and open regressions", async () => {
   await page.mouse.move(2, 2);
   const at = (page) => shown(page).then((state) => page.evaluate((name) => window.stillpoint.index.commits.findIndex((commit) => commit.name === name), state.commit));
   const before = await at(page);
@@ -82,19 +82,19 @@ await test("keys step commits, change what is shown and go through regressions",
   assert.equal(await at(page), 40);
 });
 
-await test("plans and machines choose what is shown", async () => {
+await test("plan and machine filter the subjects", async () => {
   const subjects = () => page.$$eval("#subject option", (options) => options.map((option) => option.textContent));
   await page.selectOption("#plan", "0");
   assert.deepEqual(await subjects(), ["vo on walking_xyz, Desktop, 2 processors"]);
   await page.selectOption("#plan", "");
-  const small = await page.evaluate(() => window.stillpoint.index.hosts.findIndex((host) => host.startsWith("Small board")));
+  const small = await page.evaluate(() => window.stillpoint.index.hosts.findIndex((host) => host.startsWith("Small device")));
   await page.selectOption("#host", String(small));
-  assert.deepEqual(await subjects(), ["vo on walking_xyz, Small board, 2 processors"]);
+  assert.deepEqual(await subjects(), ["vo on walking_xyz, Small device, 2 processors"]);
   await page.selectOption("#host", "");
   assert.equal((await subjects()).length, 4);
 });
 
-await test("Enter opens the commit's page, with what changed and the numbers before it", async () => {
+await test("Enter opens the commit's page with its change points and differences", async () => {
   await page.evaluate(() => document.activeElement.blur());
   await page.keyboard.press("r");
   const target = (await shown(page)).commit;
@@ -102,13 +102,13 @@ await test("Enter opens the commit's page, with what changed and the numbers bef
   await page.waitForSelector("#shifts");
   assert.match(await page.textContent("h1"), new RegExp(target));
   assert.match(await page.textContent("#shifts"), /state_optimization.*open|process_cpu_s.*open/s);
-  assert.ok(await page.locator("#numbers tbody tr").count() > 4);
+  assert.ok(await page.locator("#metric-table tbody tr").count() > 4);
   await page.locator("#shifts a").first().click();
   await ready(page);
   assert.notEqual((await shown(page)).series, undefined);
 });
 
-await test("names that people would not choose stay text", async () => {
+await test("hostile names are shown as text", async () => {
   const at = await page.evaluate(() => window.stillpoint.index.subjects.findIndex((subject) => subject.label.includes("onerror")));
   await page.evaluate((subject) => window.stillpoint.showSubject(subject), at);
   assert.match((await shown(page)).subject, /"><img src=x onerror=alert\(1\)>/);
@@ -124,9 +124,9 @@ await test("names that people would not choose stay text", async () => {
   await ready(page);
 });
 
-await test("light and dark differ, and the switch changes between them", () => lightAndDarkDiffer(page));
+await test("the theme button switches between light and dark", () => lightAndDarkDiffer(page));
 
-await test("nothing was asked of the network and nothing complained", () => assert.deepEqual(page.faults, []));
+await test("no network requests, warnings or errors occurred", () => assert.deepEqual(page.problems, []));
 
 if (STILLPOINT_SCREENSHOTS) {
   for (const colorScheme of ["light", "dark"]) {

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Opens pages in a real headless browser. Exit 77 with a reason where that is not to be had.
+# Tests the report page in a headless browser. Exits with 77 if none is available.
 #   tests/browser/pages.sh STILLPOINT [WORK]
-# STILLPOINT_SCREENSHOTS=DIR keeps pictures of the page, STILLPOINT_REPORT_STORE=FILE takes a store that is there.
+# STILLPOINT_SCREENSHOTS=DIR saves screenshots of the page, STILLPOINT_REPORT_STORE=FILE uses an existing store.
 source "$(dirname "${BASH_SOURCE[0]}")/browser.sh"
 
 store="${STILLPOINT_REPORT_STORE:-$work/store.sqlite}"

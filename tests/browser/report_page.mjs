@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The offline page as its readers meet it. Run by pages.sh.
+// Tests of the report page. Run by pages.sh.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { browser, drawnCharts, lightAndDarkDiffer, open, pointedAt, test } from "./browser.mjs";
+import { browser, drawnCharts, lightAndDarkDiffer, open, selection, test } from "./browser.mjs";
 
 const { PAGE, WORK, STILLPOINT_SCREENSHOTS } = process.env;
 const OPEN_MS = 2000;
 
-const runs = (page) => pointedAt(page, "runs");
+const runs = (page) => selection(page, "runs");
 const page = await open(PAGE);
 
 await test("every chart has data", async () => {
   assert.deepEqual(await drawnCharts(page, "#series"), ["error", "features", "dynamic", "modules"]);
 });
 
-await test("hovering one chart moves all and tells the frame", async () => {
+await test("hovering one chart moves the cursor of all charts and shows the frame", async () => {
   const over = page.locator("[data-chart=error] .u-over");
   await over.scrollIntoViewIfNeeded();
   const box = await over.boundingBox();
@@ -28,7 +28,7 @@ await test("hovering one chart moves all and tells the frame", async () => {
   assert.equal(new Set(cursors).size, 1);
 });
 
-await test("hovering the path moves the charts", async () => {
+await test("hovering the path selects a frame", async () => {
   const canvas = page.locator("#path-plan");
   await canvas.scrollIntoViewIfNeeded();
   const at = await page.evaluate(() => {
@@ -44,7 +44,7 @@ await test("hovering the path moves the charts", async () => {
   assert.notEqual((await runs(page)).frame, "");
 });
 
-await test("dragging zooms all charts, and 0 shows the whole time", async () => {
+await test("dragging zooms all charts, and 0 resets the zoom", async () => {
   const over = page.locator("[data-chart=features] .u-over");
   await over.scrollIntoViewIfNeeded();
   const box = await over.boundingBox();
@@ -59,7 +59,7 @@ await test("dragging zooms all charts, and 0 shows the whole time", async () => 
   assert.equal(start, 0);
 });
 
-await test("keys step frames, find the worst and change the run", async () => {
+await test("keys step through frames, worst frames and runs", async () => {
   const before = Number((await runs(page)).frame);
   await page.keyboard.press("ArrowRight");
   assert.equal(Number((await runs(page)).frame), before + 1);
@@ -76,8 +76,8 @@ await test("keys step frames, find the worst and change the run", async () => {
   assert.equal((await runs(page)).run, run);
 });
 
-await test("keys step through annotated pictures of the worst frames", async () => {
-  const shown = () => page.$eval("#picture", async (image) => { await image.decode(); return [image.naturalWidth, image.src.length, image.alt]; });
+await test("keys step through annotated images of the worst frames", async () => {
+  const shown = () => page.$eval("#frame-image", async (image) => { await image.decode(); return [image.naturalWidth, image.src.length, image.alt]; });
   await page.evaluate(() => window.stillpoint.redrawExplorer());
   const ranks = [];
   for (const key of ["w", "w", "W"]) {
@@ -85,21 +85,21 @@ await test("keys step through annotated pictures of the worst frames", async () 
     const [width, bytes, alt] = await shown();
     assert.ok(width >= 320 && bytes > 4000, `${width} px, ${bytes} bytes`);
     ranks.push(Number(/, (\d+) of the/.exec(alt)[1]));
-    assert.equal((await runs(page)).picture, (await runs(page)).frame);
+    assert.equal((await runs(page)).image, (await runs(page)).frame);
   }
   assert.deepEqual(ranks, [1, 2, 1]);
   assert.equal(await page.locator("#worst-list button").count(), 20);
   await page.locator("#worst-list button").nth(2).press("Enter");
-  assert.match(await page.textContent("#picture-caption"), /, 3 of the 20 worst/);
+  assert.match(await page.textContent("#frame-caption"), /, 3 of the 20 worst/);
 });
 
-await test("the flame chart has frames, zooms at a click and changes with the variant", async () => {
+await test("the flame chart has entries, zooms on click and changes with the variant", async () => {
   const widths = () => page.$$eval("#flame rect", (rects) => rects.map((rect) => Number(rect.getAttribute("width"))));
-  const whole = await widths();
-  assert.ok(whole.length > 5, whole.length + " frames");
+  const initial = await widths();
+  assert.ok(initial.length > 5, initial.length + " entries");
   await page.locator("#flame g").filter({ hasText: "optimization" }).first().click();
-  // d3 draws after the click has returned.
-  await page.waitForFunction((before) => JSON.stringify([...document.querySelectorAll("#flame rect")].map((rect) => Number(rect.getAttribute("width")))) !== before, JSON.stringify(whole));
+  // d3 redraws asynchronously after the click.
+  await page.waitForFunction((before) => JSON.stringify([...document.querySelectorAll("#flame rect")].map((rect) => Number(rect.getAttribute("width")))) !== before, JSON.stringify(initial));
   const first = await page.getAttribute("#flames", "data-variant");
   await page.selectOption("#flame-variant", { index: 1 });
   assert.notEqual(await page.getAttribute("#flames", "data-variant"), first);
@@ -112,19 +112,19 @@ await test("each module of the run has a histogram", async () => {
   for (const [name, count] of bars) assert.ok(count > 1, name);
 });
 
-await test("relative errors have a curve, and OpenLORIS scenes their figure", async () => {
+await test("relative pose errors have a curve, and OpenLORIS scenes have their figure", async () => {
   assert.ok(await page.locator("#segment-curves canvas").count() > 0);
   const scenes = await page.evaluate(() => window.stillpoint.index.runs.some((run) => /^(market|corridor)/.test(run.sequence)));
   assert.equal(await page.locator("figure.openloris svg circle").count() > 0, scenes);
 });
 
-await test("a number of the table leads to its run", async () => {
+await test("a number in a table links to its run", async () => {
   const link = page.locator("#table-ate_rmse_m td a").last();
   const key = (await link.getAttribute("href")).slice("#run=".length);
   await link.click();
   await page.waitForFunction((wanted) => document.getElementById("runs").dataset.run === wanted, key);
-  assert.equal(await page.locator(`#behind a[href="#run=${key}"]`).count(), 1);
-  assert.match(await page.textContent("#behind"), /Recipe: /);
+  assert.equal(await page.locator(`#source-runs a[href="#run=${key}"]`).count(), 1);
+  assert.match(await page.textContent("#source-runs"), /Protocol: /);
   assert.match(await page.textContent("#repeat-run"), /^stillpoint bench '\w+' --filter '[^']+' --filter '\w+' --store/);
 });
 
@@ -142,9 +142,9 @@ await test("sweeps have a curve", async () => {
   assert.equal(await page.locator("#curves canvas").count() > 0, swept);
 });
 
-await test("light and dark differ, and the switch changes between them", () => lightAndDarkDiffer(page));
+await test("the theme button switches between light and dark", () => lightAndDarkDiffer(page));
 
-await test("nothing was asked of the network and nothing complained", () => assert.deepEqual(page.faults, []));
+await test("no network requests, warnings or errors occurred", () => assert.deepEqual(page.problems, []));
 
 if (STILLPOINT_SCREENSHOTS) {
   for (const colorScheme of ["light", "dark"]) {
@@ -158,7 +158,7 @@ if (STILLPOINT_SCREENSHOTS) {
   }
 }
 
-// The page with 1,000 runs of 1,000 frames each, made of the run that it has.
+// The page with 1,000 runs of 1,000 frames each, replicated from its first run.
 function grown(text) {
   const script = (id) => new RegExp(`(<script type="application/json" id="${id}">)(.*?)(</script>)`, "s");
   const index = JSON.parse(script("index").exec(text)[2]);
@@ -172,11 +172,11 @@ function grown(text) {
   for (const column of Object.values(series.columns)) column.data = bytes(column);
   const runs = Array.from({ length: 1000 }, (_, i) => ({ ...index.runs[one], key: i.toString(16), frames }));
   const all = runs.map((_, i) => `<script type="application/json" id="series-${i}">${JSON.stringify(series)}</script>`).join("\n");
-  const bare = text.replace(/<script type="application\/json" id="(series|pictures)-\d+">.*?<\/script>/gs, "");
+  const bare = text.replace(/<script type="application\/json" id="(series|images)-\d+">.*?<\/script>/gs, "");
   return bare.replace(script("index"), (_, open, __, close) => open + JSON.stringify({ ...index, runs }) + close + "\n" + all);
 }
 
-// The page with names that would like to be more than text, wherever the scripts take them from.
+// The page with markup in all names that the scripts read.
 function hostile(text) {
   const name = "<img src=x onerror='window.broken=1'>\"'&\u202e\\{}%$" + "long ".repeat(200);
   return text.replace(/(<script type="application\/json" id="index">)(.*?)(<\/script>)/s, (_, open, json, close) => {
@@ -188,16 +188,16 @@ function hostile(text) {
   });
 }
 
-await test("hostile names stay text and keep the page within its width", async () => {
+await test("hostile names are shown as text and do not widen the page", async () => {
   const file = WORK + "/hostile.html";
   writeFileSync(file, hostile(readFileSync(PAGE, "utf8")));
   const opened = await open(file);
   for (const key of ["n", "w"]) await opened.keyboard.press(key);
   await opened.locator("#table-ate_rmse_m td a").last().click();
-  assert.equal(await opened.locator("img:not(#picture)").count(), 0);
+  assert.equal(await opened.locator("img:not(#frame-image)").count(), 0);
   assert.equal(await opened.evaluate(() => window.broken), undefined);
   assert.ok(await opened.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "wider than the window");
-  assert.deepEqual(opened.faults, []);
+  assert.deepEqual(opened.problems, []);
   await opened.close();
 });
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Replays the fuzz target on seeds built here and on their mutations; the generator's seed is fixed.
+/// Runs the fuzz target on generated seeds and random mutations of them, with a fixed random seed.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 int run_target(const std::string& text) {
@@ -39,7 +39,7 @@ std::vector<std::string> seeds() {
           "seq: 1\n" + std::string(10000, ' ') + "1"};
 }
 
-/// One change: a byte, a removed stretch, a doubled stretch, or a stretch of another seed.
+/// One mutation: a changed byte, a removed or duplicated substring, or a substring of another seed.
 std::string mutated(std::string text, const std::string& other, std::mt19937& random) {
   const auto below = [&random](std::size_t n) { return n == 0 ? 0 : random() % n; };
   const std::size_t at = below(text.size());
@@ -57,11 +57,11 @@ std::string mutated(std::string text, const std::string& other, std::mt19937& ra
   }
 }
 
-TEST(TrajectoryText, SeedsAreReadOrRefused) {
+TEST(TrajectoryText, SeedsAreParsedOrRejected) {
   for (const std::string& seed : seeds()) EXPECT_EQ(run_target(seed), 0);
 }
 
-TEST(TrajectoryText, MutatedSeedsAreReadOrRefused) {
+TEST(TrajectoryText, MutatedSeedsAreParsedOrRejected) {
   std::mt19937 random(1);
   const std::vector<std::string> all = seeds();
   for (int round = 0; round < 300; ++round) {
@@ -74,4 +74,4 @@ TEST(TrajectoryText, MutatedSeedsAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

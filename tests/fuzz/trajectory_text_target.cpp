@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Any bytes as trajectory text: a reader may refuse them with an InputError, and nothing else may happen.
+/// Fuzz target that parses arbitrary bytes as every trajectory format. A parser may throw InputError only.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -10,48 +10,49 @@
 #include "eval/io/euroc_file.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
-#include "eval/recipes/recipe.h"
+#include "eval/protocols/protocol.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-constexpr std::size_t kMaxPosesToScore = 64;
+constexpr std::size_t kMaxPosesToEvaluate = 64;
 
-/// Scores a path against itself: what was accepted must be fit for use.
-void score_itself(const Trajectory& path) {
-  if (path.poses.size() > kMaxPosesToScore) return;
-  for (const Recipe& recipe : recipes()) {
+/// Evaluates a path against itself: accepted input must not fail in later stages.
+void evaluate_itself(const Trajectory& path) {
+  if (path.poses.size() > kMaxPosesToEvaluate) return;
+  for (const Protocol& protocol : protocols()) {
     try {
-      static_cast<void>(recipe.evaluate({path, path, RecipeOptions{}}));
-    } catch (const InputError&) {  // an alignment that the path leaves open
+      static_cast<void>(protocol.evaluate({path, path, ProtocolOptions{}}));
+    } catch (const InputError&) {  // alignment not determined
     }
   }
 }
 
 template <class Parse>
-void try_to(const Parse& parse) {
+void ignore_input_error(const Parse& parse) {
   try {
     parse();
-  } catch (const InputError&) {  // the one way to refuse
+  } catch (const InputError&) {  // rejected
   }
 }
 
-void read_as_every_format(std::string_view text) {
-  static_cast<void>(recognise_format(text));
-  try_to([&] { score_itself(parse_tum(text, "fuzz").trajectory); });
-  try_to([&] { score_itself(parse_euroc(text, "fuzz").trajectory); });
+void parse_as_every_format(std::string_view text) {
+  static_cast<void>(detect_format(text));
+  ignore_input_error([&] { evaluate_itself(parse_tum(text, "fuzz").trajectory); });
+  ignore_input_error([&] { evaluate_itself(parse_euroc(text, "fuzz").trajectory); });
   const std::size_t middle = text.size() / 2;
-  try_to(
-      [&] { score_itself(parse_kitti(text.substr(0, middle), "p", text.substr(middle), "t").trajectory); });
-  try_to([&] {
-    for (const auto& [number, path] : parse_openloris(text, "fuzz").sequences) score_itself(path);
+  ignore_input_error([&] {
+    evaluate_itself(parse_kitti(text.substr(0, middle), "p", text.substr(middle), "t").trajectory);
+  });
+  ignore_input_error([&] {
+    for (const auto& [number, path] : parse_openloris(text, "fuzz").sequences) evaluate_itself(path);
   });
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  stillpoint::read_as_every_format({reinterpret_cast<const char*>(data), size});
+  stillpoint::eval::parse_as_every_format({reinterpret_cast<const char*>(data), size});
   return 0;
 }

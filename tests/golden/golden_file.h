@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the public tools printed on the shared trajectories.
+/// Access to the reference output of public tools on the shared trajectories.
 #pragma once
 
 #include <cmath>
@@ -14,8 +14,8 @@
 
 namespace stillpoint::test {
 
-/// A golden file (Python's NaN and Infinity as null) from the folder beside the real data (see test_data.h),
-/// or nothing where it is absent.
+/// A golden file from the folder next to the real data (see test_data.h), with Python's NaN and Infinity
+/// replaced by null; nullopt if the file does not exist.
 inline std::optional<nlohmann::json> golden_file(const std::string& name) {
   const std::optional<std::filesystem::path> path = find_test_data("../golden/" + name);
   if (!path) return std::nullopt;
@@ -24,7 +24,7 @@ inline std::optional<nlohmann::json> golden_file(const std::string& name) {
   return nlohmann::json::parse(std::regex_replace(text, std::regex(": (NaN|Infinity)"), ": null"));
 }
 
-/// A number as the tools print it: in units of the sixth decimal.
+/// A number rounded to six decimals, as printed by the tools, in units of 1e-6.
 inline long long printed(double value) { return std::llround(value * 1e6); }
 
 }  // namespace stillpoint::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Nine systems on fifteen OpenLORIS sequences, against what the OpenLORIS tools print.
+/// Compares the scores of nine systems on fifteen OpenLORIS sequences with the output of the OpenLORIS tools.
 #include <gtest/gtest.h>
 
 #include "eval/io/openloris_file.h"
@@ -10,12 +10,13 @@
 #include "tests/golden/golden_file.h"
 #include "tests/support/test_data.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 using nlohmann::json;
 
-/// "per-seq/ds-slam/Corridor-1-2.txt#2" without its folder and number; some files begin with a space.
+/// Path of the result file of a key like "per-seq/ds-slam/Corridor-1-2.txt#2"; some file names begin with a
+/// space.
 std::filesystem::path result_file(const std::filesystem::path& folder, const std::string& key) {
   const std::filesystem::path plain = folder / "icra20_results" / key.substr(0, key.find('#'));
   if (std::filesystem::exists(plain)) return plain;
@@ -24,7 +25,7 @@ std::filesystem::path result_file(const std::filesystem::path& folder, const std
   return plain.parent_path() / name;
 }
 
-TEST(OpenlorisGolden, EverySequenceOfEverySystemAgrees) {
+TEST(OpenlorisGolden, SequenceScoresAgreeWithTheTools) {
   const std::optional<json> golden = test::golden_file("openloris_icra20.json");
   const auto folder = find_test_data("openloris");
   if (!golden || !folder) GTEST_SKIP() << missing_test_data("openloris and ../golden");
@@ -35,7 +36,7 @@ TEST(OpenlorisGolden, EverySequenceOfEverySystemAgrees) {
   for (const auto& [key, theirs] : golden->items()) {
     SCOPED_TRACE(key);
     const OpenlorisFile result = read_openloris(result_file(*folder, key));
-    // The tools estimate the scale of DSO, which has none.
+    // The tools align monocular DSO by Sim(3).
     OpenlorisOptions options;
     options.scale = theirs.at("alg") == "dso";
     const int number = std::stoi(key.substr(key.find('#') + 1));
@@ -50,7 +51,7 @@ TEST(OpenlorisGolden, EverySequenceOfEverySystemAgrees) {
     EXPECT_NEAR(ours.tracked_rate, value("track_cr"), 1e-6);
     EXPECT_NEAR(ours.gt_duration_s, value("gt_duration"), 1e-6);
     EXPECT_NEAR(ours.relocalization_score, value("reloc_score"), 1e-6);
-    if (ours.poses == 0) {  // a failed run; for some of these the tool prints one match with an error of 0
+    if (ours.poses == 0) {  // a failed run; for some of them the tool prints one match with zero error
       EXPECT_FALSE(ours.ate_rmse_m);
       EXPECT_FALSE(ours.relocalization_time_s);
       continue;
@@ -59,8 +60,8 @@ TEST(OpenlorisGolden, EverySequenceOfEverySystemAgrees) {
     EXPECT_EQ(ours.correct, static_cast<std::size_t>(value("c_ate_num")));
     EXPECT_NEAR(*ours.ate_rmse_m, value("ate_rmse"), 5e-4);
     EXPECT_NEAR(*ours.correct_ate_rmse_m, value("c_ate_rmse"), 5e-4);
-    // Not part of the agreement: the tool interpolates rotations in a way of its own, which shows where the
-    // ground truth is coarse (10 Hz in home) and turns fast. In this one of 134, of 15 poses, by 1.3 degrees.
+    // The tool interpolates rotations differently, which matters for fast rotations and a coarse ground truth
+    // (10 Hz in home): by 1.3 degrees in this one of 134 runs, which has 15 poses.
     if (key != "per-seq/ds-slam/home-1-2.txt#2") {
       EXPECT_NEAR(*ours.aoe_rmse_deg, value("aoe_rmse"), 0.25);
     }
@@ -76,7 +77,7 @@ struct SceneValues {
   double pooled_ate_m;
 };
 
-/// The table "Scene values to reproduce" of metrics.md.
+/// Reference values of the scenes, from the same tools.
 constexpr SceneValues kSceneValues[] = {
     {"vins_mono_color_imu_with_loop", "home", 95.2, .5413, .5550},
     {"vins_mono_color_imu_with_loop", "cafe", 90.2, .4858, .4867},
@@ -92,7 +93,7 @@ constexpr SceneValues kSceneValues[] = {
     {"ds-slam", "market", 44.6, 2.2742, 0.0},
 };
 
-TEST(OpenlorisGolden, SceneValuesAgree) {
+TEST(OpenlorisGolden, SceneScoresAgreeWithTheTools) {
   const auto folder = find_test_data("openloris");
   if (!folder) GTEST_SKIP() << missing_test_data("openloris");
   const OpenlorisEvaluation evaluation =
@@ -118,4 +119,4 @@ TEST(OpenlorisGolden, SceneValuesAgree) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

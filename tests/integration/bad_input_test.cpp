@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever is wrong with what `stillpoint run` is given: one clear error, exit code 2, nothing half-written.
+// Invalid input of `stillpoint run`: one error line, exit code 2, no partial output.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/program.h"
-#include "tests/support/refusal.h"
+#include "tests/support/rejection.h"
 #include "tests/support/rendered_sequence.h"
 
 namespace stillpoint {
@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A fault that is put into a copy of a good sequence.
-struct Fault {
+/// A defect to introduce into a copy of a valid sequence.
+struct Defect {
   std::string name;
-  std::function<void(const fs::path& sequence)> spoil;
+  std::function<void(const fs::path& sequence)> introduce;
   std::vector<std::string> message_parts;
 };
 
@@ -31,23 +31,23 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 void append(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::app) << text; }
 
-/// Files that hold nothing but one line, far away in time.
-void move_in_time(const fs::path& sequence) {
+/// IMU samples from a time far before the images.
+void shift_imu_time(const fs::path& sequence) {
   replace_file(sequence / "d400_gyroscope.txt", "1.0 0 0 0\n1.1 0 0 0\n");
   replace_file(sequence / "d400_accelerometer.txt", "1.0 0 0 9.8\n1.1 0 0 9.8\n");
 }
 
-void spoil_all_pictures(const fs::path& sequence) {
-  for (const fs::path& file : files_in(sequence / "color")) replace_file(file, "no picture");
+void corrupt_all_images(const fs::path& sequence) {
+  for (const fs::path& file : files_in(sequence / "color")) replace_file(file, "not an image");
 }
 
-/// Every depth picture becomes one of 1x1.
+/// Replaces all depth images by images of 1x1 pixels.
 void shrink_depth(const fs::path& sequence) {
   const std::string tiny_pgm = "P5\n1 1\n65535\n\1\1";
   for (const fs::path& file : files_in(sequence / "aligned_depth")) replace_file(file, tiny_pgm);
 }
 
-const Fault kFaults[] = {
+const Defect kDefects[] = {
     {"EmptyImu",
      [](const fs::path& s) { replace_file(s / "d400_gyroscope.txt", ""); },
      {"d400_gyroscope.txt"}},
@@ -57,48 +57,48 @@ const Fault kFaults[] = {
     {"NanRow",
      [](const fs::path& s) { append(s / "d400_accelerometer.txt", "1700000009.0 nan 0 0\n"); },
      {"d400_accelerometer.txt:"}},
-    {"NoOverlapInTime", move_in_time, {"overlap"}},
+    {"NoTemporalOverlap", shift_imu_time, {"overlap"}},
     {"UnreadableCalibration",
      [](const fs::path& s) { replace_file(s / "sensors.yaml", "{ no: [yaml"); },
      {"sensors.yaml"}},
     {"MissingCalibration", [](const fs::path& s) { fs::remove(s / "sensors.yaml"); }, {"sensors.yaml"}},
-    {"NoPictureReadable", spoil_all_pictures, {"color/"}},
-    {"DepthOfAnotherSize", shrink_depth, {"aligned_depth/"}},
-    {"MissingPictures", [](const fs::path& s) { fs::remove_all(s / "color"); }, {"color/"}},
+    {"NoReadableImage", corrupt_all_images, {"color/"}},
+    {"DepthImagesOfAnotherSize", shrink_depth, {"aligned_depth/"}},
+    {"MissingImages", [](const fs::path& s) { fs::remove_all(s / "color"); }, {"color/"}},
 };
 
-class SpoiltSequence : public testing::TestWithParam<Fault> {};
+class DefectiveSequence : public testing::TestWithParam<Defect> {};
 
-TEST_P(SpoiltSequence, IsRefused) {
+TEST_P(DefectiveSequence, IsRejected) {
   const TemporaryFolder folder;
   const fs::path sequence = copy_of_rendered_sequence(folder);
-  GetParam().spoil(sequence);
+  GetParam().introduce(sequence);
   const fs::path out = folder.path() / "out";
   const ProgramResult result = run_program({"run", sequence.string(), "--out", out.string()});
-  expect_refused(result, out, GetParam().message_parts);
+  expect_rejected(result, out, GetParam().message_parts);
 }
 
-INSTANTIATE_TEST_SUITE_P(BadInput, SpoiltSequence, testing::ValuesIn(kFaults),
-                         [](const auto& fault) { return fault.param.name; });
+INSTANTIATE_TEST_SUITE_P(BadInput, DefectiveSequence, testing::ValuesIn(kDefects),
+                         [](const auto& defect) { return defect.param.name; });
 
 TEST(BadInput, MissingFolder) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
-  expect_refused(run_program({"run", "/no/such/folder", "--out", out.string()}), out,
-                 {"sequence \"/no/such/folder\"", "neither a folder nor a preset"});
+  expect_rejected(run_program({"run", "/no/such/folder", "--out", out.string()}), out,
+                  {"sequence \"/no/such/folder\"", "neither a folder nor a preset"});
 }
 
-TEST(BadInput, FolderThatIsNoSequence) {
+TEST(BadInput, FolderIsNotASequence) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
-  expect_refused(run_program({"run", folder.path().string(), "--out", out.string()}), out,
-                 {folder.path().string()});
+  expect_rejected(run_program({"run", folder.path().string(), "--out", out.string()}), out,
+                  {folder.path().string()});
 }
 
 TEST(BadInput, UnknownVariant) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
-  expect_refused(
+  expect_rejected(
       run_program({"run", rendered_sequence().string(), "--variant", "wo_mask", "--out", out.string()}), out,
       {"config \"wo_mask\"", "did you mean \"ablations/wo_circular_mask\"?"});
 }
@@ -107,7 +107,7 @@ TEST(BadInput, UnknownConfigKey) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
   const std::string config = folder.write("mine.toml", "\n[frontend]\nmax_feature = 3").string();
-  expect_refused(
+  expect_rejected(
       run_program({"run", rendered_sequence().string(), "--config", config, "--out", out.string()}), out,
       {config + ":3: unknown key \"frontend.max_feature\"; did you mean \"frontend.max_features\"?"});
 }
@@ -115,23 +115,23 @@ TEST(BadInput, UnknownConfigKey) {
 TEST(BadInput, UnknownMode) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
-  expect_refused(
-      run_program({"run", rendered_sequence().string(), "--mode", "psychic", "--out", out.string()}), out,
-      {"--mode: \"psychic\" is not known"});
+  expect_rejected(
+      run_program({"run", rendered_sequence().string(), "--mode", "offline", "--out", out.string()}), out,
+      {"--mode: \"offline\" is unknown"});
 }
 
 TEST(BadInput, UnwritableOutput) {
   const TemporaryFolder folder;
   const fs::path out = folder.write("file", "") / "out";
-  expect_refused(run_program({"run", rendered_sequence().string(), "--out", out.string()}), out,
-                 {out.string() + ": cannot be made", "--out"});
+  expect_rejected(run_program({"run", rendered_sequence().string(), "--out", out.string()}), out,
+                  {out.string() + ": cannot be created", "--out"});
 }
 
 TEST(BadInput, FullDisk) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
   ProgramOptions options;
-  options.file_limit_bytes = 2000;  // less than the trajectory of 90 frames needs
+  options.file_limit_bytes = 2000;  // smaller than the trajectory of 90 frames
   const ProgramResult result =
       run_program({"run", rendered_sequence().string(), "--variant", "vo", "--out", out.string()}, options);
   EXPECT_EQ(result.exit_code, 2);

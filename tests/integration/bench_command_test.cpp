@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stillpoint bench` with a plan of its own.
+// `stillpoint bench` with a plan file.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -11,13 +11,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A plan over the rendered sequence, which stands in for a recorded one.
+/// A plan for the rendered sequence, used as a recorded one, and a missing sequence.
 std::string plan_text(const std::string& variants) {
   return "title = \"Test\"\n[recorded]\nsequences = [\"" + rendered_sequence().filename().string() +
-         "\", \"not_at_hand\"]\nvariants = [" + variants + "]\nrequired = false\n";
+         "\", \"not_available\"]\nvariants = [" + variants + "]\nrequired = false\n";
 }
 
-ProgramResult bench(const TemporaryFolder& folder, const std::string& variants, ProgramOptions options = {}) {
+ProgramResult run_bench(const TemporaryFolder& folder, const std::string& variants,
+                        ProgramOptions options = {}) {
   const fs::path plan = folder.write("plan.toml", plan_text(variants));
   options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()};
   return run_program({"bench", plan.string(), "--out", (folder.path() / "out").string(), "--store",
@@ -29,28 +30,28 @@ nlohmann::json rows_of(const TemporaryFolder& folder) {
   return nlohmann::json::parse(std::ifstream(folder.path() / "out" / "table.json"))["rows"];
 }
 
-TEST(BenchCommand, RunsSequencesTimesVariantsAndPrintsOneTable) {
+TEST(BenchCommand, ExecutesAllVariantsOnAllSequencesAndPrintsATable) {
   const TemporaryFolder folder;
-  const ProgramResult result = bench(folder, "\"stillpoint\", \"vo\"");
+  const ProgramResult result = run_bench(folder, "\"stillpoint\", \"vo\"");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json rows = rows_of(folder);
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0]["variant"], "stillpoint");
   EXPECT_EQ(rows[0]["status"], "ok");
   EXPECT_LT(rows[0]["ate_rmse_m"], 0.05);
-  EXPECT_EQ(rows[3]["sequence"], "not_at_hand");
+  EXPECT_EQ(rows[3]["sequence"], "not_available");
   EXPECT_EQ(rows[3]["status"], "skipped");
   std::ifstream markdown(folder.path() / "out" / "table.md");
   const std::string text{std::istreambuf_iterator<char>(markdown), {}};
-  EXPECT_NE(text.find("| office      | vo         | ok      |"), std::string::npos) << text;
-  EXPECT_NE(result.out.find("| office      | vo         | ok      |"), std::string::npos) << result.out;
+  EXPECT_NE(text.find("| office        | vo         | ok      |"), std::string::npos) << text;
+  EXPECT_NE(result.out.find("| office        | vo         | ok      |"), std::string::npos) << result.out;
 }
 
-TEST(BenchCommand, ShowsAFailedRunWithItsReason) {
+TEST(BenchCommand, ReportsAFailedRunWithItsReason) {
   const TemporaryFolder folder;
-  // An absolute path instead of a name: the recording has no readable gyroscope file.
-  const fs::path spoilt = copy_of_rendered_sequence(folder);
-  std::ofstream(spoilt / "d400_gyroscope.txt", std::ios::trunc).close();
+  // The gyroscope file of the recording is empty.
+  const fs::path defective = copy_of_rendered_sequence(folder);
+  std::ofstream(defective / "d400_gyroscope.txt", std::ios::trunc).close();
   const fs::path plan =
       folder.write("plan.toml", "[recorded]\nsequences = [\"copy\"]\nvariants = [\"stillpoint\"]");
   ProgramOptions options;
@@ -65,21 +66,21 @@ TEST(BenchCommand, ShowsAFailedRunWithItsReason) {
   EXPECT_NE(result.out.find("copy stillpoint bad_data: "), std::string::npos);
 }
 
-TEST(BenchCommand, CtrlCLeavesAMarkedTableOfTheRunsSoFar) {
+TEST(BenchCommand, CtrlCWritesATableThatIsMarkedAsInterrupted) {
   const TemporaryFolder folder;
   ProgramOptions options;
   options.interrupt_after = "run office stillpoint";
-  const ProgramResult result = bench(folder, "\"stillpoint\", \"vo\"", options);
+  const ProgramResult result = run_bench(folder, "\"stillpoint\", \"vo\"", options);
   EXPECT_EQ(result.exit_code, 130);
-  EXPECT_NE(result.out.find("Test (interrupted: not every run was made)"), std::string::npos) << result.out;
-  EXPECT_NE(rows_of(folder)[1]["status"], "ok");  // the second run was not made
+  EXPECT_NE(result.out.find("Test (interrupted: not all runs were executed)"), std::string::npos)
+      << result.out;
+  EXPECT_NE(rows_of(folder)[1]["status"], "ok");  // the second run was not executed
 }
 
-TEST(BenchCommand, RefusesAnUnknownPlan) {
+TEST(BenchCommand, RejectsAnUnknownPlan) {
   const ProgramResult result = run_program({"bench", "quik"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(result.err,
-            "stillpoint: error: plan \"quik\": there is none of this name; did you mean \"quick\"?\n");
+  EXPECT_EQ(result.err, "stillpoint: error: unknown plan \"quik\"; did you mean \"quick\"?\n");
 }
 
 }  // namespace

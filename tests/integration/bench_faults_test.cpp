@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Benchmarks over plans, data and stores that are not as they should be: one clear error, and no stored row
-// lost.
+// Benchmarks with defective plans, data and stores: one error line, and no stored run is lost.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -10,7 +9,7 @@
 #include "bench/store/database.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
-#include "tests/support/refusal.h"
+#include "tests/support/rejection.h"
 #include "tests/support/replay_bench.h"
 
 namespace stillpoint {
@@ -18,59 +17,59 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with a plan of two runs, and a store that has them.
+/// A folder with a plan of two runs, and a store that contains them.
 struct FilledStore {
   TemporaryFolder folder;
   fs::path plan = write_replay_plan(folder, 1, "");
   fs::path store = folder.path() / "store.sqlite";
   FilledStore() { EXPECT_EQ(replay_bench(folder, plan, store).exit_code, 0); }
 
-  /// As the plan, with more runs to make.
+  /// The plan with additional runs.
   [[nodiscard]] fs::path longer_plan(int repetitions = 3) const {
     return write_replay_plan(folder, repetitions, "");
   }
 };
 
-TEST(BenchFaults, AMalformedPlanIsRefusedBeforeAnyRun) {
+TEST(BenchFaults, AMalformedPlanIsRejectedBeforeAnyRun) {
   const TemporaryFolder folder;
   const fs::path store = folder.path() / "store.sqlite";
   const fs::path broken = folder.write("broken.toml", "title = \"x\"\nsequences = [\n");
-  expect_refused(replay_bench(folder, broken, store), {"broken.toml:"});
+  expect_rejected(replay_bench(folder, broken, store), {"broken.toml:"});
   const fs::path unknown = folder.write("unknown.toml", "repetition = 3\n");
-  expect_refused(replay_bench(folder, unknown, store),
-                 {"unknown.toml:1: unknown key \"repetition\"; did you mean \"repetitions\"?"});
+  expect_rejected(replay_bench(folder, unknown, store),
+                  {"unknown.toml:1: unknown key \"repetition\"; did you mean \"repetitions\"?"});
   const fs::path wrong = folder.write("wrong.toml", "repetitions = \"many\"\n");
-  expect_refused(replay_bench(folder, wrong, store), {"wrong.toml:1", "repetitions"});
+  expect_rejected(replay_bench(folder, wrong, store), {"wrong.toml:1", "repetitions"});
   EXPECT_FALSE(fs::exists(store));
 }
 
-TEST(BenchFaults, AnUnknownSequenceIsRefusedBeforeAnyRun) {
+TEST(BenchFaults, AnUnknownSequenceIsRejectedBeforeAnyRun) {
   const TemporaryFolder folder;
   const fs::path store = folder.path() / "store.sqlite";
   const fs::path recorded = folder.write("recorded.toml", "[recorded]\nsequences = [\"nowhere\"]\n");
-  expect_refused(replay_bench(folder, recorded, store), {"nowhere"});
+  expect_rejected(replay_bench(folder, recorded, store), {"nowhere"});
   const fs::path rendered = folder.write("rendered.toml", "[rendered]\nsequences = [\"walking_xyy\"]\n");
-  expect_refused(replay_bench(folder, rendered, store), {"walking_xyy"});
+  expect_rejected(replay_bench(folder, rendered, store), {"walking_xyy"});
   EXPECT_FALSE(fs::exists(store));
 }
 
-TEST(BenchFaults, DataThatHaveVanishedAreNamedAndCostNoStoredRow) {
+TEST(BenchFaults, MissingDataAreReportedAndNoStoredRunIsLost) {
   const FilledStore filled;
   const fs::path plan = filled.folder.write(
-      "vanished.toml",
+      "missing.toml",
       "systems = [\"" + (filled.folder.path() / "replay.toml").string() +
           "\"]\nrepetitions = 2\n[recorded]\nsequences = [\"freiburg1_a\", \"freiburg1_b\"]\n");
   fs::remove_all(filled.folder.path() / "freiburg1_b");
-  expect_refused(replay_bench(filled.folder, plan, filled.store), {"freiburg1_b"});
-  EXPECT_EQ(Store(filled.store).runs().size(), 2u);
+  expect_rejected(replay_bench(filled.folder, plan, filled.store), {"freiburg1_b"});
+  EXPECT_EQ(bench::Store(filled.store).runs().size(), 2u);
 }
 
-TEST(BenchFaults, DataThatVanishDuringABenchmarkCostOnlyTheirRuns) {
+TEST(BenchFaults, DataRemovedDuringABenchmarkFailOnlyTheirRuns) {
   const TemporaryFolder folder;
   const fs::path plan = write_replay_plan(folder, 1, "");
-  // The first system takes the other sequence away.
+  // The system removes the second sequence during its run on the first one.
   folder.write("replay.toml",
-               "name = \"thief\"\nversion = \"1\"\nlayout = \"as_is\"\ncommand = [\"/bin/sh\", \"-c\", "
+               "name = \"deleting\"\nversion = \"1\"\nlayout = \"as_is\"\ncommand = [\"/bin/sh\", \"-c\", "
                "\"rm -rf " +
                    (folder.path() / "freiburg1_b").string() + "; exit 1\"]\n");
   const fs::path store = folder.path() / "store.sqlite";
@@ -79,30 +78,30 @@ TEST(BenchFaults, DataThatVanishDuringABenchmarkCostOnlyTheirRuns) {
       {.environment = {"STILLPOINT_DATA=" + folder.path().string(),
                        "STILLPOINT_REGISTRY=" + (folder.path() / "none.json").string()}});
   EXPECT_EQ(result.exit_code, 1) << result.err;
-  const std::vector<StoredRun> runs = Store(store).runs();
+  const std::vector<bench::StoredRun> runs = bench::Store(store).runs();
   ASSERT_EQ(runs.size(), 2u);
-  EXPECT_EQ(runs[1].outcome, Outcome::kBadData);
+  EXPECT_EQ(runs[1].outcome, bench::Outcome::kBadData);
   EXPECT_NE(runs[1].detail.find("freiburg1_b"), std::string::npos) << runs[1].detail;
 }
 
-TEST(BenchFaults, AFullDiskLosesNoStoredRowAndTheNextCallGoesOn) {
+TEST(BenchFaults, AFullDiskLosesNoStoredRunAndTheNextCallContinues) {
   const FilledStore filled;
   const fs::path plan = filled.longer_plan(60);
   ProgramOptions full;
-  full.file_limit_bytes = 120'000;  // the store and its log grow beyond it before all is done
+  full.file_limit_bytes = 120'000;  // exceeded by the store and its log before all runs are executed
   const ProgramResult result = replay_bench(filled.folder, plan, filled.store, full);
-  expect_refused(result, {"free space"});
-  const std::size_t kept = Store(filled.store).runs().size();
-  EXPECT_GE(kept, 2u);
-  EXPECT_LT(kept, 120u);
-  EXPECT_EQ(replay_bench(filled.folder, plan, filled.store).exit_code, 0);  // there is space again
-  EXPECT_EQ(Store(filled.store).runs().size(), 120u);
+  expect_rejected(result, {"free space"});
+  const std::size_t stored = bench::Store(filled.store).runs().size();
+  EXPECT_GE(stored, 2u);
+  EXPECT_LT(stored, 120u);
+  EXPECT_EQ(replay_bench(filled.folder, plan, filled.store).exit_code, 0);  // without the limit
+  EXPECT_EQ(bench::Store(filled.store).runs().size(), 120u);
 }
 
-TEST(BenchFaults, AStoreThatMayOnlyBeReadIsListedAndNotFilled) {
+TEST(BenchFaults, AReadOnlyStoreIsListedAndNotFilled) {
   const FilledStore filled;
   const fs::path plan = filled.longer_plan();
-  const ProgramOptions reader{.may_only_read = true};
+  const ProgramOptions reader{.without_write_access = true};
   fs::permissions(filled.store, fs::perms(0444));
   fs::permissions(filled.folder.path(), fs::perms(0555));
   const ProgramResult list = run_program({"store", "list", "--store", filled.store.string()}, reader);
@@ -112,41 +111,42 @@ TEST(BenchFaults, AStoreThatMayOnlyBeReadIsListedAndNotFilled) {
       {"bench", plan.string(), "--store", filled.store.string(), "--out", (out.path() / "out").string()},
       {.environment = {"STILLPOINT_DATA=" + filled.folder.path().string(),
                        "STILLPOINT_REGISTRY=" + (filled.folder.path() / "none.json").string()},
-       .may_only_read = true});
+       .without_write_access = true});
   fs::permissions(filled.folder.path(), fs::perms::owner_all);
-  if (list.exit_code == 127) GTEST_SKIP() << "another user cannot start the program where it was built";
+  if (list.exit_code == 127) GTEST_SKIP() << "another user cannot execute the program in the build folder";
   EXPECT_EQ(list.exit_code, 0) << list.err;
-  expect_refused(result, {"store.sqlite", "Permission denied", "must be writable"});
-  EXPECT_EQ(Store(filled.store).runs().size(), 2u);
+  expect_rejected(result, {"store.sqlite", "Permission denied", "must be writable"});
+  EXPECT_EQ(bench::Store(filled.store).runs().size(), 2u);
 }
 
-TEST(BenchFaults, AStoreOfANewerVersionIsRefusedByEveryCommand) {
+TEST(BenchFaults, AStoreOfANewerVersionIsRejectedByAllCommands) {
   const FilledStore filled;
-  Database(filled.store, DatabaseAccess::kWrite)
-      .execute("PRAGMA user_version = " + std::to_string(schema_version() + 1));
+  bench::Database(filled.store, bench::DatabaseAccess::kWrite)
+      .execute("PRAGMA user_version = " + std::to_string(bench::schema_version() + 1));
   const std::string store = filled.store.string();
-  expect_refused(replay_bench(filled.folder, filled.longer_plan(), filled.store), {"newer version"});
-  expect_refused(run_program({"store", "list", "--store", store}), {"newer version"});
-  expect_refused(run_program({"stats", "summary", "--store", store}), {"newer version"});
-  expect_refused(run_program({"compare", store, store}), {"newer version"});
-  Database(filled.store, DatabaseAccess::kWrite)
-      .execute("PRAGMA user_version = " + std::to_string(schema_version()));
-  EXPECT_EQ(Store(filled.store).runs().size(), 2u);  // nothing was changed
+  expect_rejected(replay_bench(filled.folder, filled.longer_plan(), filled.store), {"newer version"});
+  expect_rejected(run_program({"store", "list", "--store", store}), {"newer version"});
+  expect_rejected(run_program({"stats", "summary", "--store", store}), {"newer version"});
+  expect_rejected(run_program({"compare", store, store}), {"newer version"});
+  bench::Database(filled.store, bench::DatabaseAccess::kWrite)
+      .execute("PRAGMA user_version = " + std::to_string(bench::schema_version()));
+  EXPECT_EQ(bench::Store(filled.store).runs().size(), 2u);  // nothing was changed
 }
 
-TEST(BenchFaults, ADamagedStoreIsRefusedAndNotWrittenTo) {
+TEST(BenchFaults, ADamagedStoreIsRejectedAndNotModified) {
   const FilledStore filled;
   {
     std::fstream stream(filled.store, std::ios::in | std::ios::out | std::ios::binary);
-    stream.seekp(4096);  // the second page, a table's
+    stream.seekp(4096);  // the second page, which belongs to a table
     stream << std::string(4096, '\xff');
   }
   const auto size = fs::file_size(filled.store);
-  expect_refused(replay_bench(filled.folder, filled.longer_plan(), filled.store),
-                 {"store.sqlite", "damaged"});
+  expect_rejected(replay_bench(filled.folder, filled.longer_plan(), filled.store),
+                  {"store.sqlite", "damaged"});
   EXPECT_EQ(fs::file_size(filled.store), size);
   const fs::path text = filled.folder.write("notes.sqlite", std::string(5000, 'n'));
-  expect_refused(replay_bench(filled.folder, filled.longer_plan(), text), {"notes.sqlite", "not a database"});
+  expect_rejected(replay_bench(filled.folder, filled.longer_plan(), text),
+                  {"notes.sqlite", "not a database"});
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Benchmarks that are killed, shared, or fed with systems that fail, over the stand-in system.
+// Benchmarks of the replay system that are killed, executed by several workers, or have failing runs.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -25,7 +25,7 @@ constexpr const char* kProgram = STILLPOINT_BINARY_DIR "/stillpoint";
 constexpr int kRuns = 200;
 constexpr int kKills = 20;
 
-/// Starts the benchmark, and kills it after a while. @return whether it was still at work
+/// Starts the benchmark, and kills it after a delay. @return whether it was still running
 bool kill_after(const TemporaryFolder& folder, const fs::path& plan, const fs::path& store,
                 int milliseconds) {
   const pid_t child = fork();
@@ -34,10 +34,10 @@ bool kill_after(const TemporaryFolder& folder, const fs::path& plan, const fs::p
     setenv("STILLPOINT_REGISTRY", (folder.path() / "none.json").c_str(), 1);
     static_cast<void>(!std::freopen("/dev/null", "w", stdout));
     static_cast<void>(!std::freopen("/dev/null", "w", stderr));
-    std::vector<std::string> words = replay_arguments(folder, plan, store);
-    words.insert(words.begin(), "stillpoint");
+    std::vector<std::string> arguments = replay_arguments(folder, plan, store);
+    arguments.insert(arguments.begin(), "stillpoint");
     std::vector<char*> pointers;
-    for (std::string& word : words) pointers.push_back(word.data());
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
     execv(kProgram, pointers.data());
     _exit(127);
@@ -49,45 +49,46 @@ bool kill_after(const TemporaryFolder& folder, const fs::path& plan, const fs::p
   return WIFSIGNALED(status);
 }
 
-/// What of a store must not depend on how often it was interrupted: everything but times, and what the
-/// replays drew as theirs.
+/// The content of a store that must not depend on interruptions: everything except measured times and the
+/// random times of the replay program.
 std::map<std::string, std::string> content_of(const fs::path& file) {
   std::map<std::string, std::string> content;
-  const Store store(file);
-  for (const StoredRun& run : store.runs()) {
-    content[run.key] = run.identity.sequence + " " + std::to_string(run.identity.repetition) + " " +
-                       outcome_name(run.outcome) + " " + run.detail + " " + run.blobs.at("trajectory") + " " +
-                       std::to_string(*metric_value(run, "ate_rmse_m")) + " " + run.manifest_hash + " " +
-                       std::to_string(run.costs.size()) + " " +
-                       std::to_string(store.trajectory(run).poses.size());
+  const bench::Store store(file);
+  for (const bench::StoredRun& run : store.runs()) {
+    content[run.key] =
+        run.identity.sequence + " " + std::to_string(run.identity.repetition) + " " +
+        bench::outcome_name(run.outcome) + " " + run.detail + " " + run.blobs.at("trajectory") + " " +
+        std::to_string(*bench::metric_value(run, "ate_rmse_m")) + " " + run.manifest_hash + " " +
+        std::to_string(run.costs.size()) + " " + std::to_string(store.trajectory(run).poses.size());
   }
   return content;
 }
 
-TEST(BenchKill, TwentyKillsLeaveWhatOneUndisturbedBenchmarkLeaves) {
+TEST(BenchKill, TwentyKillsGiveTheSameStoreAsAnUninterruptedBenchmark) {
   const TemporaryFolder folder;
   const std::string log = (folder.path() / "log").string();
   const fs::path plan = write_replay_plan(folder, kRuns / 2, "\"--log\", \"" + log + "\", ");
-  const fs::path calm = folder.path() / "calm.sqlite";
+  const fs::path uninterrupted = folder.path() / "uninterrupted.sqlite";
   const auto start = std::chrono::steady_clock::now();
-  ASSERT_EQ(replay_bench(folder, plan, calm).exit_code, 0);
-  const std::chrono::duration<double, std::milli> calm_ms = std::chrono::steady_clock::now() - start;
+  ASSERT_EQ(replay_bench(folder, plan, uninterrupted).exit_code, 0);
+  const std::chrono::duration<double, std::milli> uninterrupted_ms = std::chrono::steady_clock::now() - start;
   fs::remove(log);
 
   const fs::path killed = folder.path() / "killed.sqlite";
   std::mt19937 random(5);
-  // Of the time it needs on this machine: on average the kills are spread over three quarters of it.
-  std::uniform_real_distribution<double> share(0.0, 1.5 / kKills);
+  // Fraction of the uninterrupted duration before each kill: 3/4 of the duration in total, on average.
+  std::uniform_real_distribution<double> fraction(0.0, 1.5 / kKills);
   int interrupted = 0;
   for (int i = 0; i < kKills; ++i)
     interrupted +=
-        kill_after(folder, plan, killed, static_cast<int>(share(random) * calm_ms.count())) ? 1 : 0;
-  EXPECT_GE(interrupted, kKills / 2);  // otherwise the benchmark is too short to be disturbed
+        kill_after(folder, plan, killed, static_cast<int>(fraction(random) * uninterrupted_ms.count())) ? 1
+                                                                                                        : 0;
+  EXPECT_GE(interrupted, kKills / 2);  // otherwise the benchmark is too short to be killed
   const ProgramResult last = replay_bench(folder, plan, killed);
   EXPECT_EQ(last.exit_code, 0) << last.err;
 
-  EXPECT_EQ(Store(killed).unfinished(), 0);
-  const std::map<std::string, std::string> content = content_of(calm);
+  EXPECT_EQ(bench::Store(killed).unfinished(), 0);
+  const std::map<std::string, std::string> content = content_of(uninterrupted);
   EXPECT_EQ(content.size(), static_cast<std::size_t>(kRuns));
   EXPECT_EQ(content, content_of(killed));
   std::size_t finished = 0;
@@ -95,18 +96,18 @@ TEST(BenchKill, TwentyKillsLeaveWhatOneUndisturbedBenchmarkLeaves) {
   for (std::string line; std::getline(lines, line);) ++finished;
   EXPECT_GE(finished, static_cast<std::size_t>(kRuns));
   EXPECT_LE(finished,
-            static_cast<std::size_t>(kRuns + 2 * kKills));  // at most the two in flight were made again
+            static_cast<std::size_t>(kRuns + 2 * kKills));  // each kill repeats at most the two active runs
 }
 
-TEST(BenchKill, TheSecondCallMakesNothing) {
+TEST(BenchKill, TheSecondCallExecutesNothing) {
   const TemporaryFolder folder;
   const fs::path plan = write_replay_plan(folder, 2, "");
   const fs::path store = folder.path() / "store.sqlite";
-  EXPECT_NE(replay_bench(folder, plan, store).out.find("4 runs made, 0 were there"), std::string::npos);
-  EXPECT_NE(replay_bench(folder, plan, store).out.find("0 runs made, 4 were there"), std::string::npos);
+  EXPECT_NE(replay_bench(folder, plan, store).out.find("4 of 4 runs executed, 0 cached"), std::string::npos);
+  EXPECT_NE(replay_bench(folder, plan, store).out.find("0 of 4 runs executed, 4 cached"), std::string::npos);
 }
 
-TEST(BenchKill, TwoDriversShareTheWork) {
+TEST(BenchKill, TwoWorkersExecuteEachRunOnce) {
   const TemporaryFolder folder;
   const std::string log = (folder.path() / "log").string();
   const fs::path plan = write_replay_plan(folder, 20, "\"--log\", \"" + log + "\", ");
@@ -117,34 +118,34 @@ TEST(BenchKill, TwoDriversShareTheWork) {
   int status = 0;
   waitpid(other, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 0);
-  EXPECT_EQ(Store(store).runs().size(), 40u);
+  EXPECT_EQ(bench::Store(store).runs().size(), 40u);
   std::multiset<std::string> finished;
   std::ifstream lines(log);
   for (std::string line; std::getline(lines, line);) finished.insert(line);
-  EXPECT_EQ(finished.size(), 40u);  // no run was made twice
+  EXPECT_EQ(finished.size(), 40u);  // no run was executed twice
 }
 
-StoredRun first_run(const fs::path& store) { return Store(store).runs().front(); }
+bench::StoredRun first_run(const fs::path& store) { return bench::Store(store).runs().front(); }
 
-TEST(BenchKill, TellsHowARunEnded) {
+TEST(BenchKill, RecordsTheSignalOfACrashedRun) {
   const TemporaryFolder folder;
   const fs::path store = folder.path() / "store.sqlite";
   EXPECT_EQ(replay_bench(folder, write_replay_plan(folder, 1, "\"--crash-after\", \"7\", "), store).exit_code,
             1);
-  EXPECT_EQ(first_run(store).outcome, Outcome::kCrashed);
+  EXPECT_EQ(first_run(store).outcome, bench::Outcome::kCrashed);
   EXPECT_NE(first_run(store).detail.find("signal 11"), std::string::npos);
 }
 
-TEST(BenchKill, EndsARunAtItsTimeLimit) {
+TEST(BenchKill, TerminatesARunAtItsTimeLimit) {
   const TemporaryFolder folder;
   const fs::path store = folder.path() / "store.sqlite";
   EXPECT_EQ(replay_bench(folder, write_replay_plan(folder, 1, "\"--hang\", ", "time_limit_s = 0.3\n"), store)
                 .exit_code,
             1);
-  EXPECT_EQ(first_run(store).outcome, Outcome::kTimedOut);
+  EXPECT_EQ(first_run(store).outcome, bench::Outcome::kTimedOut);
 }
 
-TEST(BenchKill, EndsARunAtItsMemoryLimit) {
+TEST(BenchKill, TerminatesARunAtItsMemoryLimit) {
   const TemporaryFolder folder;
   const fs::path store = folder.path() / "store.sqlite";
   EXPECT_EQ(
@@ -152,7 +153,7 @@ TEST(BenchKill, EndsARunAtItsMemoryLimit) {
                    store)
           .exit_code,
       1);
-  EXPECT_EQ(first_run(store).outcome, Outcome::kOutOfMemory);
+  EXPECT_EQ(first_run(store).outcome, bench::Outcome::kOutOfMemory);
 }
 
 }  // namespace

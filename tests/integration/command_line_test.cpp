@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Help, usage errors, and the small commands.
+// Help, usage errors, and small commands.
 #include <gtest/gtest.h>
 
 #include "tests/support/program.h"
@@ -10,7 +10,7 @@ namespace {
 
 class HelpOf : public testing::TestWithParam<std::vector<std::string>> {};
 
-TEST_P(HelpOf, ShowsAnExampleOfTheCommand) {
+TEST_P(HelpOf, ShowsAnExample) {
   std::vector<std::string> arguments = GetParam();
   std::string command = "  stillpoint";
   for (const std::string& word : arguments) command += " " + word;
@@ -41,13 +41,13 @@ TEST_P(WrongUsage, IsOneErrorLineAndExitCodeTwo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(CommandLine, WrongUsage,
-                         testing::Values(std::vector<std::string>{}, std::vector<std::string>{"walk"},
+                         testing::Values(std::vector<std::string>{}, std::vector<std::string>{"unknown"},
                                          std::vector<std::string>{"run"},
                                          std::vector<std::string>{"run", "a", "b"},
                                          std::vector<std::string>{"run", "a", "--sped", "3"},
                                          std::vector<std::string>{"run", "a", "--max-frames", "many"}));
 
-TEST(ConfigCommand, ShowsTheResolvedValuesOfAVariant) {
+TEST(ConfigCommand, PrintsTheResolvedValuesOfAVariant) {
   const ProgramResult result =
       run_program({"config", "show", "--config", "dynamic_vins", "--variant", "vo", "--set", "seed=5"});
   EXPECT_EQ(result.exit_code, 0);
@@ -69,7 +69,7 @@ TEST(EvalCommand, ScoresATrajectoryAgainstItself) {
   EXPECT_NE(result.out.find("\"ate_pairs\": 30"), std::string::npos) << result.out;
 }
 
-TEST(EvalCommand, NamesTheLineOfAMalformedFile) {
+TEST(EvalCommand, ReportsTheLineOfAMalformedFile) {
   const TemporaryFolder folder;
   const std::string file = folder.write("a.tum", "1 0 0 0 0 0 0 1\n2 0 0\n").string();
   const ProgramResult result = run_program({"eval", file, file});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gate: finds what was made worse, and raises no alarm where nothing was. Programs are the stand-in
-// behind scripts.
+// `stillpoint compare` detects regressions and reports none for equal programs. The programs are scripts that
+// call the replay program.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -17,31 +17,31 @@ namespace fs = std::filesystem;
 
 constexpr const char* kReplay = STILLPOINT_BINARY_DIR "/tests/replay_program";
 
-/// A program that is the stand-in with flags.
-std::string program(const TemporaryFolder& folder, const std::string& name, const std::string& flags) {
+/// A script that calls the replay program with additional options.
+std::string write_program(const TemporaryFolder& folder, const std::string& name, const std::string& flags) {
   const fs::path file =
       folder.write(name, "#!/bin/sh\nexec " + std::string(kReplay) + " " + flags + " \"$@\"\n");
   fs::permissions(file, fs::perms::owner_all);
   return file.string();
 }
 
-/// What a comparison said, and how it ended.
-struct Judgement {
+/// Output and exit code of a comparison.
+struct CompareResult {
   int exit_code = 0;
   std::string out;
   nlohmann::json json;
 };
 
-class Gate {
+class CompareFixture {
  public:
-  Gate() {
-    fake_sequence(folder_, "freiburg1_calm");
+  CompareFixture() {
+    fake_sequence(folder_, "freiburg1_slow");
     fake_sequence(folder_, "freiburg1_fast");
     plan_ = folder_.write("plan.toml",
                           "variants = [\"stillpoint\"]\n[recorded]\nsequences = [\"freiburg1_*\"]\n");
   }
 
-  [[nodiscard]] Judgement compare(const std::string& base, const std::string& head, int pairs) const {
+  [[nodiscard]] CompareResult compare(const std::string& base, const std::string& head, int pairs) const {
     const fs::path out = folder_.path() / "out";
     ProgramOptions options;
     options.environment = {"STILLPOINT_DATA=" + folder_.path().string(),
@@ -62,75 +62,75 @@ class Gate {
   fs::path plan_;
 };
 
-/// Verdict on a metric of the subjects whose names contain `subject`.
-std::string verdict_on(const nlohmann::json& comparison, const std::string& metric,
-                       const std::string& subject = "") {
+/// Class of the change of a metric, for the first subject whose name contains `subject`.
+std::string change_class(const nlohmann::json& comparison, const std::string& metric,
+                         const std::string& subject = "") {
   for (const nlohmann::json& change : comparison["changes"]) {
     const bool is_subject = change["subject"].get<std::string>().find(subject) != std::string::npos;
-    if (change["metric"] == metric && is_subject) return change["verdict"];
+    if (change["metric"] == metric && is_subject) return change["result"];
   }
-  return "not judged";
+  return "not compared";
 }
 
-TEST(Gate, FindsAModuleThatIsFivePercentSlower) {
-  const Gate gate;
-  const std::string base = program(gate.folder(), "base", "");
-  const std::string head = program(gate.folder(), "head", "--slow feature_tracking 1.05");
-  const Judgement judgement = gate.compare(base, head, 10);
-  EXPECT_EQ(judgement.exit_code, 1) << judgement.out;
-  EXPECT_EQ(verdict_on(judgement.json, "feature_tracking"), "worse") << judgement.out;
-  EXPECT_NE(verdict_on(judgement.json, "state_optimization"), "worse") << judgement.out;
-  EXPECT_EQ(judgement.json["bit_equal"], judgement.json["pairs"]);  // accuracy is proven equal
-  EXPECT_EQ(verdict_on(judgement.json, "ate_rmse_m"), "not judged");
+TEST(CompareCommand, DetectsAModuleThatIsFivePercentSlower) {
+  const CompareFixture fixture;
+  const std::string base = write_program(fixture.folder(), "base", "");
+  const std::string head = write_program(fixture.folder(), "head", "--slow feature_tracking 1.05");
+  const CompareResult result = fixture.compare(base, head, 10);
+  EXPECT_EQ(result.exit_code, 1) << result.out;
+  EXPECT_EQ(change_class(result.json, "feature_tracking"), "worse") << result.out;
+  EXPECT_NE(change_class(result.json, "state_optimization"), "worse") << result.out;
+  EXPECT_EQ(result.json["bit_equal"], result.json["pairs"]);  // accuracy is identical
+  EXPECT_EQ(change_class(result.json, "ate_rmse_m"), "not compared");
 }
 
-TEST(Gate, FindsAPathErrorThatIsTenPercentLargerOnOneMotion) {
-  const Gate gate;
-  const std::string base = program(gate.folder(), "base", "");
-  const std::string head = program(gate.folder(), "head", "--worse freiburg1_fast 1.1");
-  const Judgement judgement = gate.compare(base, head, 3);
-  EXPECT_EQ(judgement.exit_code, 1) << judgement.out;
-  EXPECT_EQ(verdict_on(judgement.json, "ate_rmse_m", "freiburg1_fast"), "worse") << judgement.out;
-  EXPECT_EQ(verdict_on(judgement.json, "ate_rmse_m", "freiburg1_calm"), "same") << judgement.out;
-  const std::ifstream file(gate.folder().path() / "out" / "compare.xml");
+TEST(CompareCommand, DetectsATenPercentLargerErrorOnOneSequence) {
+  const CompareFixture fixture;
+  const std::string base = write_program(fixture.folder(), "base", "");
+  const std::string head = write_program(fixture.folder(), "head", "--worse freiburg1_fast 1.1");
+  const CompareResult result = fixture.compare(base, head, 3);
+  EXPECT_EQ(result.exit_code, 1) << result.out;
+  EXPECT_EQ(change_class(result.json, "ate_rmse_m", "freiburg1_fast"), "worse") << result.out;
+  EXPECT_EQ(change_class(result.json, "ate_rmse_m", "freiburg1_slow"), "same") << result.out;
+  const std::ifstream file(fixture.folder().path() / "out" / "compare.xml");
   std::ostringstream junit;
   junit << file.rdbuf();
   EXPECT_NE(junit.str().find("<failure message="), std::string::npos);
 }
 
-TEST(Gate, RaisesNoAlarmInTwentyComparisonsOfAProgramWithItself) {
-  const Gate gate;
+TEST(CompareCommand, ReportsNoRegressionInTwentyComparisonsOfEqualPrograms) {
+  const CompareFixture fixture;
   for (int i = 0; i < 20; ++i) {
-    // Each pair of programs draws other times, because programs are known by their content.
+    // Different contents, so that each pair of programs is another build and has other simulated times.
     const std::string number = std::to_string(i);
-    const std::string base = program(gate.folder(), "base", "--out base" + number);
-    const std::string head = program(gate.folder(), "head", "--out head" + number);
-    const Judgement judgement = gate.compare(base, head, 5);
-    EXPECT_NE(judgement.exit_code, 1) << judgement.out;
-    EXPECT_NE(judgement.exit_code, 2) << judgement.out;
+    const std::string base = write_program(fixture.folder(), "base", "--out base" + number);
+    const std::string head = write_program(fixture.folder(), "head", "--out head" + number);
+    const CompareResult result = fixture.compare(base, head, 5);
+    EXPECT_NE(result.exit_code, 1) << result.out;
+    EXPECT_NE(result.exit_code, 2) << result.out;
   }
 }
 
-TEST(Gate, SaysThatACommitIsTheSameAsItself) {
-  const Gate gate;
-  const std::string base = program(gate.folder(), "base", "");
-  static_cast<void>(gate.compare(base, base, 1));
-  const std::string build = gate.store().string() + "@base-";
+TEST(CompareCommand, ACommitIsTheSameAsItself) {
+  const CompareFixture fixture;
+  const std::string base = write_program(fixture.folder(), "base", "");
+  static_cast<void>(fixture.compare(base, base, 1));
+  const std::string build = fixture.store().string() + "@base-";
   const ProgramResult result = run_program({"compare", build, build});
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
   EXPECT_NE(result.out.find(": same\n"), std::string::npos) << result.out;
 }
 
-TEST(Gate, IsWorseWhereARunIsNewlyLost) {
-  const Gate gate;
-  const std::string base = program(gate.folder(), "base", "");
-  const std::string head = program(gate.folder(), "head", "--crash-after 5");
-  const Judgement judgement = gate.compare(base, head, 1);
-  EXPECT_EQ(judgement.exit_code, 1);
-  EXPECT_EQ(judgement.json["newly_lost"], 4);  // two sequences, base and head twice each
+TEST(CompareCommand, ANewlyFailedRunIsARegression) {
+  const CompareFixture fixture;
+  const std::string base = write_program(fixture.folder(), "base", "");
+  const std::string head = write_program(fixture.folder(), "head", "--crash-after 5");
+  const CompareResult result = fixture.compare(base, head, 1);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.json["newly_failed"], 4);  // two sequences, base and head twice each
 }
 
-TEST(Gate, RefusesWhatItCannotCompare) {
+TEST(CompareCommand, RejectsAMissingStore) {
   const TemporaryFolder folder;
   const ProgramResult result =
       run_program({"compare", "abc", "def", "--store", (folder.path() / "no").string()});

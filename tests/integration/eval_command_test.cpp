@@ -14,14 +14,14 @@
 namespace stillpoint {
 namespace {
 
-/// A ground truth at 100 Hz and an estimate at 20 Hz of one smooth path of 20 s.
+/// Ground truth at 100 Hz and estimate at 20 Hz of a smooth path of 20 s.
 struct PathFiles {
   TemporaryFolder folder;
-  std::string gt = folder.write("gt.txt", format_tum(test::smooth_path(2001, 0.01))).string();
-  std::string est = folder.write("est.txt", format_tum(test::smooth_path(401, 0.05))).string();
+  std::string gt = folder.write("gt.txt", eval::format_tum(test::smooth_path(2001, 0.01))).string();
+  std::string est = folder.write("est.txt", eval::format_tum(test::smooth_path(401, 0.05))).string();
 };
 
-TEST(EvalCommand, ExplainsItsRecipes) {
+TEST(EvalCommand, ExplainsItsProtocols) {
   const PathFiles files;
   const ProgramResult result = run_program({"eval", files.gt, files.est, "--explain"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -29,9 +29,10 @@ TEST(EvalCommand, ExplainsItsRecipes) {
   EXPECT_NE(result.out.find("\nstrict:se3 (version 1): "), std::string::npos);
 }
 
-TEST(EvalCommand, RanksALostRunLast) {
+TEST(EvalCommand, RanksAFailedRunLast) {
   const PathFiles files;
-  const std::string lost = files.folder.write("lost.txt", format_tum(test::smooth_path(41, 0.05))).string();
+  const std::string lost =
+      files.folder.write("lost.txt", eval::format_tum(test::smooth_path(41, 0.05))).string();
   const ProgramResult result = run_program({"eval", files.gt, lost, files.est, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto ranking = nlohmann::json::parse(result.out).at("comparison").at("ranking");
@@ -40,11 +41,11 @@ TEST(EvalCommand, RanksALostRunLast) {
   EXPECT_EQ(ranking.at(1).at("failed"), true);
 }
 
-TEST(EvalCommand, WritesAPlotAndTheErrorOfEveryPose) {
+TEST(EvalCommand, WritesAPlotAndTheErrorsOfAllPoses) {
   const PathFiles files;
   const std::filesystem::path plot = files.folder.path() / "plot.svg";
   const std::filesystem::path errors = files.folder.path() / "errors.csv";
-  const ProgramResult result = run_program({"eval", files.gt, files.est, "--recipe", "strict:se3", "--plot",
+  const ProgramResult result = run_program({"eval", files.gt, files.est, "--protocol", "strict:se3", "--plot",
                                             plot.string(), "--per-pose", errors.string()});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   std::ifstream svg(plot);
@@ -54,54 +55,65 @@ TEST(EvalCommand, WritesAPlotAndTheErrorOfEveryPose) {
   std::ifstream csv(errors);
   long lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
-  EXPECT_EQ(lines, 1 + 401);  // the header and every pose
+  EXPECT_EQ(lines, 1 + 401);  // the header and all poses
 }
 
-TEST(EvalCommand, RefusesAnUnknownRecipe) {
+TEST(EvalCommand, RejectsAnUnknownProtocol) {
   const PathFiles files;
-  const ProgramResult result = run_program({"eval", files.gt, files.est, "--recipe", "tum"});
+  const ProgramResult result = run_program({"eval", files.gt, files.est, "--protocol", "tum"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("--recipe tum: is not known; there are compat:tum, "), std::string::npos);
+  EXPECT_NE(result.err.find("--protocol tum: unknown protocol; expected one of: compat:tum, "),
+            std::string::npos);
 }
 
-TEST(EvalCommand, LeavesOutTheStrictNumbersOfALineUnlessTheyWereAskedFor) {
+TEST(EvalCommand, AcceptsTheFormerNameOfTheProtocolOption) {
+  const PathFiles files;
+  const ProgramResult result = run_program(
+      {"eval", files.gt, files.est, "--recipe", "compat:evo", "--protocol", "compat:tum", "--csv"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("compat:tum"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("compat:evo"), std::string::npos) << result.out;
+  EXPECT_EQ(run_program({"eval", "--help"}).out.find("--recipe"), std::string::npos);
+}
+
+TEST(EvalCommand, OmitsTheStrictProtocolForAStraightLineUnlessRequested) {
   const TemporaryFolder folder;
   std::string text;
   for (int i = 0; i < 30; ++i) text += std::to_string(0.1 * i) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
   const std::string line = folder.write("line.txt", text).string();
   const ProgramResult by_default = run_program({"eval", line, line, "--csv"});
   EXPECT_EQ(by_default.exit_code, 0);
-  EXPECT_NE(by_default.err.find("left out: strict recipe: alignment se3 is not determined"),
+  EXPECT_NE(by_default.err.find("omitted: strict protocol: alignment se3 is not determined"),
             std::string::npos);
-  EXPECT_EQ(run_program({"eval", line, line, "--recipe", "strict:se3"}).exit_code, 2);
+  EXPECT_EQ(run_program({"eval", line, line, "--protocol", "strict:se3"}).exit_code, 2);
 }
 
 TEST(EvalOpenlorisCommand, PrintsTheSceneTableAndDrawsTheFigure) {
   const TemporaryFolder folder;
-  const OpenlorisFile truth{
+  const eval::OpenlorisFile truth{
       .scene = "cafe", .frame = "base_link", .sequences = {{1, test::smooth_path(2001, 0.01)}}};
-  const OpenlorisFile result{
+  const eval::OpenlorisFile result{
       .scene = "cafe", .frame = "base_link", .sequences = {{1, test::smooth_path(201, 0.05)}}};
-  folder.write("truth/gt_cafe_1.txt", format_openloris(truth));
-  folder.write("results/mine/cafe-1-1.txt", format_openloris(result));
+  folder.write("truth/gt_cafe_1.txt", eval::format_openloris(truth));
+  folder.write("results/mine/cafe-1-1.txt", eval::format_openloris(result));
   const std::string figure = (folder.path() / "figure").string();
   const ProgramResult run =
       run_program({"eval", "openloris", (folder.path() / "results").string(), "--ground-truth",
                    (folder.path() / "truth").string(), "--csv", "--figure", figure});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  // 10 s of poses and the second that the last one stands, of 20 s.
+  // 10 s of poses, and the last pose counts for 1 s more, of 20 s.
   EXPECT_NE(run.out.find("\nmine,cafe,1/1,55.0,55.0,0.0000,0.0000,0.0000,0.000,"), std::string::npos)
       << run.out;
   EXPECT_TRUE(std::filesystem::exists(figure + ".svg"));
   EXPECT_TRUE(std::filesystem::exists(figure + ".png"));
 }
 
-TEST(EvalOpenlorisCommand, SaysWhichFolderHoldsNothing) {
+TEST(EvalOpenlorisCommand, RejectsAFolderWithoutGroundTruth) {
   const TemporaryFolder folder;
   const ProgramResult run =
       run_program({"eval", "openloris", folder.path().string(), "--ground-truth", folder.path().string()});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("holds no gt_<scene>_1.txt"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("no gt_<scene>_1.txt found"), std::string::npos) << run.err;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Other programs as systems: sequences exported for them, their trajectories and times read back.
+// External programs as benchmark systems: exported sequences, and import of their trajectories and times.
 #include <gtest/gtest.h>
 
 #include "bench/store/store.h"
@@ -13,12 +13,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kReplay = STILLPOINT_BINARY_DIR "/tests/replay_program";
 
-/// Runs the stand-in over the rendered sequence. @param keys further lines of its template
-ProgramResult bench(const TemporaryFolder& folder, const std::string& keys, const std::string& flags = "") {
+/// Benchmarks the replay program on the rendered sequence. @param keys additional lines of its system file
+ProgramResult run_bench(const TemporaryFolder& folder, const std::string& keys,
+                        const std::string& flags = "") {
   folder.write("replay.toml", "name = \"replay\"\n" + keys + "command = [\"" + kReplay + "\", " + flags +
                                   "\"run\", \"{sequence}\", \"--out\", \"{out}\"]\n");
   const fs::path plan = folder.write("plan.toml", "systems = [\"" + (folder.path() / "replay.toml").string() +
-                                                      "\"]\nrecipes = [\"strict:se3\"]\n" +
+                                                      "\"]\nprotocols = [\"strict:se3\"]\n" +
                                                       "[recorded]\nsequences = [\"office\"]\n");
   ProgramOptions options;
   options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string(),
@@ -29,36 +30,36 @@ ProgramResult bench(const TemporaryFolder& folder, const std::string& keys, cons
                      options);
 }
 
-StoredRun run_of(const TemporaryFolder& folder) {
-  return Store(folder.path() / "store.sqlite").runs().front();
+bench::StoredRun run_of(const TemporaryFolder& folder) {
+  return bench::Store(folder.path() / "store.sqlite").runs().front();
 }
 
 TEST(ExternalSystem, ReadsAnExportedSequenceAndIsScored) {
   const TemporaryFolder folder;
   const ProgramResult result =
-      bench(folder, "layout = \"tum\"\ntimings = \"result.json\"\n", "\"--error\", \"0.01\", ");
+      run_bench(folder, "layout = \"tum\"\ntimings = \"result.json\"\n", "\"--error\", \"0.01\", ");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  const StoredRun run = run_of(folder);
+  const bench::StoredRun run = run_of(folder);
   EXPECT_EQ(run.identity.system, "replay");
-  EXPECT_EQ(run.outcome, Outcome::kOk) << run.detail;
-  // A wave of 0.01 m has an RMS of 0.01 / sqrt(2) = 0.0071 m; aligning takes a little of it away.
-  EXPECT_NEAR(*metric_value(run, "ate_rmse_m"), 0.0071, 0.0003);
-  EXPECT_NEAR(*metric_value(run, "strict:se3/ate_rmse_m"), 0.0071, 0.0003);
-  EXPECT_GT(*metric_value(run, "process_wall_s"), 0.0);
-  EXPECT_GT(*metric_value(run, "peak_memory_mb"), 1.0);
+  EXPECT_EQ(run.outcome, bench::Outcome::kOk) << run.detail;
+  // A sine of amplitude 0.01 m has an RMS of 0.01 / sqrt(2) = 0.0071 m; the alignment reduces it slightly.
+  EXPECT_NEAR(*bench::metric_value(run, "ate_rmse_m"), 0.0071, 0.0003);
+  EXPECT_NEAR(*bench::metric_value(run, "strict:se3/ate_rmse_m"), 0.0071, 0.0003);
+  EXPECT_GT(*bench::metric_value(run, "process_wall_s"), 0.0);
+  EXPECT_GT(*bench::metric_value(run, "peak_memory_mb"), 1.0);
   EXPECT_EQ(run.costs.size(), 2u);
   EXPECT_TRUE(fs::exists(folder.path() / "cache" / "exports"));
   EXPECT_NE(result.out.find("| office   | replay"), std::string::npos) << result.out;
 }
 
-TEST(ExternalSystem, ThatLeavesNoTrajectoryIsLost) {
+TEST(ExternalSystem, WithoutTrajectoryIsLost) {
   const TemporaryFolder folder;
-  EXPECT_EQ(bench(folder, "layout = \"tum\"\ntrajectory = \"elsewhere.txt\"\n").exit_code, 1);
-  EXPECT_EQ(run_of(folder).outcome, Outcome::kLost);
-  EXPECT_EQ(run_of(folder).detail, "left no elsewhere.txt");
+  EXPECT_EQ(run_bench(folder, "layout = \"tum\"\ntrajectory = \"elsewhere.txt\"\n").exit_code, 1);
+  EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kLost);
+  EXPECT_EQ(run_of(folder).detail, "wrote no elsewhere.txt");
 }
 
-TEST(ExternalSystem, IsRefusedWithoutACommand) {
+TEST(ExternalSystem, IsRejectedWithoutACommand) {
   const TemporaryFolder folder;
   const auto system = folder.write("s.toml", "name = \"s\"\n");
   const auto plan = folder.write(
@@ -68,7 +69,7 @@ TEST(ExternalSystem, IsRefusedWithoutACommand) {
   EXPECT_NE(result.err.find("s.toml: has no command"), std::string::npos) << result.err;
 }
 
-TEST(ExternalSystem, BenchRefusesStoresThatItCannotFill) {
+TEST(ExternalSystem, BenchRejectsFilesThatAreNotStores) {
   const TemporaryFolder folder;
   const auto plan = folder.write("plan.toml", "variants = [\"vo\"]\n[rendered]\nsequences = [\"market\"]\n");
   const auto notes = folder.write("notes.txt", std::string(3000, 'n'));
@@ -79,7 +80,7 @@ TEST(ExternalSystem, BenchRefusesStoresThatItCannotFill) {
   EXPECT_EQ(fs::file_size(notes), 3000u);
 }
 
-TEST(RegisteredSequence, IsRefusedOnceItsFilesHaveChanged) {
+TEST(RegisteredSequence, IsRejectedAfterItsFilesHaveChanged) {
   const TemporaryFolder folder;
   const fs::path copy = copy_of_rendered_sequence(folder);
   const auto plan = folder.write("plan.toml", "variants = [\"vo\"]\n[recorded]\nsequences = [\"named\"]\n");
@@ -92,7 +93,7 @@ TEST(RegisteredSequence, IsRefusedOnceItsFilesHaveChanged) {
   std::ofstream(copy / "groundtruth.txt", std::ios::app) << "# one more line\n";
   const ProgramResult changed = run_program({"plan", "show", plan.string()}, options);
   EXPECT_EQ(changed.exit_code, 2);
-  EXPECT_NE(changed.err.find("when it was registered"), std::string::npos) << changed.err;
+  EXPECT_NE(changed.err.find("as registered"), std::string::npos) << changed.err;
 }
 
 }  // namespace

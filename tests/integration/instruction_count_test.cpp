@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Instructions counted under callgrind: the same in every run, stored, and judged by the gate.
+// Instruction counts of callgrind: reproducible, stored, and compared.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -24,9 +24,9 @@ class Instructions : public testing::Test {
   }
 };
 
-/// Stages of a short profile into a folder of that name.
-json counted(const TemporaryFolder& folder, const std::string& name, const ProgramOptions& options,
-             const std::string& variant = "") {
+/// Counts by stage of a short profile, written to the folder `name`.
+json count_instructions(const TemporaryFolder& folder, const std::string& name, const ProgramOptions& options,
+                        const std::string& variant = "") {
   const fs::path out = folder.path() / name;
   const ProgramResult result = run_program({"profile", rendered_sequence().string(), "--instructions",
                                             "--max-frames", "3", "--out", out.string(), "--variant", variant},
@@ -35,20 +35,20 @@ json counted(const TemporaryFolder& folder, const std::string& name, const Progr
   return json::parse(std::ifstream(out / "instructions.json")).at("stages");
 }
 
-TEST_F(Instructions, AreTheSameToTheDigitInTwoRuns) {
+TEST_F(Instructions, AreEqualInTwoRuns) {
   const TemporaryFolder folder;
   ProgramOptions larger_environment;
   larger_environment.environment = {"SOMETHING=" + std::string(1000, 'x'), "LC_ALL=de_DE.UTF-8"};
-  const json first = counted(folder, "a", {});
-  const json second = counted(folder, "a_folder_with_a_longer_name", larger_environment);
+  const json first = count_instructions(folder, "a", {});
+  const json second = count_instructions(folder, "a_folder_with_a_longer_name", larger_environment);
   EXPECT_EQ(first, second);
-  EXPECT_GT(first.at("tracking"), 1'000'000);  // three pictures of 320x240, each read at least once
+  EXPECT_GT(first.at("tracking"), 1'000'000);  // three images of 320x240, each read at least once
 }
 
 /// The store of a plan of one run.
-std::string store_of_plan(const TemporaryFolder& folder, const std::string& variant, int pictures) {
+std::string store_of_plan(const TemporaryFolder& folder, const std::string& variant, int frames) {
   const fs::path plan =
-      folder.write("plan.toml", "kind = \"instructions\"\nmax_frames = " + std::to_string(pictures) +
+      folder.write("plan.toml", "kind = \"instructions\"\nmax_frames = " + std::to_string(frames) +
                                     "\nvariants = [\"" + variant + "\"]\n[recorded]\nsequences = [\"" +
                                     rendered_sequence().filename().string() + "\"]\n");
   std::string store = (folder.path() / "store.sqlite").string();
@@ -63,10 +63,10 @@ std::string store_of_plan(const TemporaryFolder& folder, const std::string& vari
 TEST_F(Instructions, OfAPlanAreStoredAndCompared) {
   const TemporaryFolder folder;
   const std::string store = store_of_plan(folder, "stillpoint", 15);
-  const StoredRun run = Store(store).runs().at(0);
-  EXPECT_GT(metric_value(run, "instructions").value_or(0.0), 1e6);
-  EXPECT_TRUE(run.costs.empty());  // times under valgrind say nothing
-  EXPECT_FALSE(metric_value(run, "process_cpu_s"));
+  const bench::StoredRun run = bench::Store(store).runs().at(0);
+  EXPECT_GT(bench::metric_value(run, "instructions").value_or(0.0), 1e6);
+  EXPECT_TRUE(run.costs.empty());  // times under valgrind are not meaningful
+  EXPECT_FALSE(bench::metric_value(run, "process_cpu_s"));
 
   const std::string baseline = (folder.path() / "baseline.json").string();
   ASSERT_EQ(run_program({"store", "export", baseline, "--numbers", "--store", store}).exit_code, 0);
@@ -76,17 +76,17 @@ TEST_F(Instructions, OfAPlanAreStoredAndCompared) {
   EXPECT_NE(same.out.find("instructions"), std::string::npos) << same.out;
 }
 
-/// A library that shares its work among threads would hide what the others execute from its stage.
-TEST_F(Instructions, OfAPlanAreThoseOfAProfile) {
+/// Instructions of library worker threads would be missing in the counts of their stage.
+TEST_F(Instructions, OfAPlanEqualThoseOfAProfile) {
   constexpr const char* kOpenCvTracker = "vo+dynamic_vins";
   const TemporaryFolder folder;
-  const StoredRun run = Store(store_of_plan(folder, kOpenCvTracker, 3)).runs().at(0);
-  const double of_plan = metric_value(run, "instructions_tracking").value_or(0.0);
-  const double of_profile = counted(folder, "p", {}, kOpenCvTracker).at("tracking");
-  EXPECT_NEAR(of_plan / of_profile, 1.0, 0.002);  // other arguments, another heap
+  const bench::StoredRun run = bench::Store(store_of_plan(folder, kOpenCvTracker, 3)).runs().at(0);
+  const double of_plan = bench::metric_value(run, "instructions_tracking").value_or(0.0);
+  const double of_profile = count_instructions(folder, "p", {}, kOpenCvTracker).at("tracking");
+  EXPECT_NEAR(of_plan / of_profile, 1.0, 0.002);  // different arguments and heap
 }
 
-TEST_F(Instructions, ThatGrowAreFoundByTheGate) {
+TEST_F(Instructions, IncreaseIsDetectedByCompare) {
   const TemporaryFolder folder;
   const auto exported = [&](const std::string& name, double instructions) {
     const json run = {
@@ -109,22 +109,22 @@ TEST_F(Instructions, ThatGrowAreFoundByTheGate) {
         {"detail", ""},
         {"started", ""},
         {"ended", ""},
-        {"metrics", {{{"name", "instructions"}, {"recipe", ""}, {"unit", ""}, {"value", instructions}}}},
+        {"metrics", {{{"name", "instructions"}, {"protocol", ""}, {"unit", ""}, {"value", instructions}}}},
         {"costs", json::array()},
         {"attachments", json::object()},
         {"manifest", ""}};
     return folder
         .write(name + ".json",
-               json{{"stillpoint_store", 1}, {"plans", json::array()}, {"runs", {run}}}.dump())
+               json{{"stillpoint_store", 2}, {"plans", json::array()}, {"runs", {run}}}.dump())
         .string();
   };
   const std::string base = exported("base", 1e9);
-  // One pair is enough: counts repeat. The margin is 1 %.
+  // One pair is sufficient, as counts are reproducible. The margin is 1 %.
   EXPECT_EQ(run_program({"compare", base, exported("slower", 1.02e9)}).exit_code, 1);
   EXPECT_EQ(run_program({"compare", base, exported("same", 1.005e9)}).exit_code, 0);
 }
 
-TEST(InstructionsWithoutValgrind, NameThePackage) {
+TEST(InstructionsWithoutValgrind, ReportTheRequiredPackage) {
   const TemporaryFolder folder;
   ProgramOptions options;
   options.environment = {"PATH=" + folder.path().string()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stillpoint profile`: where the time of a run goes.
+// `stillpoint profile`: profile of one run.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -18,11 +18,11 @@ using nlohmann::json;
 
 constexpr int kFrames = 40;
 
-ProgramResult profile(const TemporaryFolder& folder, std::vector<std::string> further = {}) {
+ProgramResult profile(const TemporaryFolder& folder, std::vector<std::string> more = {}) {
   std::vector<std::string> arguments = {"profile",      rendered_sequence().string(),
                                         "--out",        folder.path().string(),
                                         "--max-frames", std::to_string(kFrames)};
-  arguments.insert(arguments.end(), further.begin(), further.end());
+  arguments.insert(arguments.end(), more.begin(), more.end());
   return run_program(arguments);
 }
 
@@ -35,7 +35,7 @@ json module_of(const json& profile, const std::string& name) {
   return nullptr;
 }
 
-TEST(ProfileCommand, TimesEveryPicture) {
+TEST(ProfileCommand, TimesEveryFrame) {
   const TemporaryFolder folder;
   const ProgramResult result = profile(folder, {"--frame-budget-ms", "1e-6"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -45,34 +45,34 @@ TEST(ProfileCommand, TimesEveryPicture) {
   ASSERT_FALSE(tracking.is_null());
   EXPECT_EQ(tracking.at("calls"), kFrames);
   EXPECT_GT(tracking.at("per_frame_ms").at("median").get<double>(), 0.0);
-  // No picture is tracked in a picosecond.
+  // The budget of 1 ps is exceeded by all frames.
   EXPECT_EQ(profiled.at("deadline").at("missed_by_a_thread_per_stage"), kFrames);
 }
 
-TEST(ProfileCommand, WritesAValidTraceOfOneThreadAndOfSeveral) {
+TEST(ProfileCommand, WritesAValidTraceInSequentialAndPipelinedMode) {
   for (const char* mode : {"sequential", "pipelined"}) {
     const TemporaryFolder folder;
     const ProgramResult result = profile(folder, {"--mode", mode});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json trace = read_json(folder.path() / "trace.json");
-    EXPECT_EQ(trace_faults(trace), std::vector<std::string>{}) << mode;
+    EXPECT_EQ(trace_format_errors(trace), std::vector<std::string>{}) << mode;
     int tracked = 0;
     for (const json& event : trace.at("traceEvents")) tracked += event.at("name") == "tracking_thread";
     EXPECT_EQ(tracked, kFrames) << mode;
   }
 }
 
-TEST(ProfileCommand, TellsWhatTheProcessTook) {
+TEST(ProfileCommand, ReportsTheResourceUsageOfTheProcess) {
   const TemporaryFolder folder;
   const ProgramResult result = profile(folder, {"--cores", "0"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json process = read_json(folder.path() / "profile.json").at("process");
   EXPECT_GT(process.at("user_s").get<double>(), 0.0);
   EXPECT_GT(process.at("peak_memory_bytes").get<std::int64_t>(), 1'000'000);
-  EXPECT_GE(process.at("threads").size(), 2U);  // the odometry, and the decoding ahead of it
+  EXPECT_GE(process.at("threads").size(), 2U);  // odometry and image decoding
 }
 
-TEST(ProfileCommand, TellsWhereThreadsWaited) {
+TEST(ProfileCommand, ReportsTheWaitsOfThreads) {
   const TemporaryFolder folder;
   ASSERT_EQ(profile(folder, {"--mode", "pipelined"}).exit_code, 0);
   const json profiled = read_json(folder.path() / "profile.json");
@@ -81,20 +81,20 @@ TEST(ProfileCommand, TellsWhereThreadsWaited) {
     channels.push_back(wait.at("channel"));
     EXPECT_GE(wait.at("for_items").at("ns").get<std::int64_t>(), 0);
   }
-  EXPECT_EQ(channels, (std::vector<std::string>{"pictures to detect in", "tracked pictures", "detections",
-                                                "feedback to the tracker", "decoded pictures"}));
+  EXPECT_EQ(channels, (std::vector<std::string>{"frames to detect", "tracked frames", "detections",
+                                                "feedback to the tracker", "decoded frames"}));
 }
 
-TEST(ProfileCommand, MeasuresItsOwnRecorder) {
+TEST(ProfileCommand, MeasuresTheOverheadOfItsRecorder) {
   const TemporaryFolder folder;
   ASSERT_EQ(profile(folder).exit_code, 0);
   const json recorder = read_json(folder.path() / "profile.json").at("recorder");
   EXPECT_GT(recorder.at("timer_ns").get<double>(), 0.0);
   EXPECT_GT(recorder.at("timers_per_frame").get<double>(), 1.0);
-  EXPECT_LT(recorder.at("share").get<double>(), 0.01);
+  EXPECT_LT(recorder.at("fraction").get<double>(), 0.01);
 }
 
-TEST(ProfileCommand, SaysWhatItCannotMeasure) {
+TEST(ProfileCommand, ReportsUnavailableMeasurements) {
   const TemporaryFolder folder;
   const ProgramResult result = profile(folder);
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -107,7 +107,7 @@ TEST(ProfileCommand, SaysWhatItCannotMeasure) {
   EXPECT_NE(energy, result.out.find("energy: n/a: ") != std::string::npos) << result.out;
 }
 
-TEST(ProfileCommand, CountsAllocationsInTheProgramThatCanDoSo) {
+TEST(ProfileCommand, CountsAllocationsInTheCountingProgram) {
   const TemporaryFolder folder;
   const std::string command = std::string(STILLPOINT_BINARY_DIR) + "/stillpoint_counting profile " +
                               rendered_sequence().string() + " --max-frames 20 --out " +
@@ -115,43 +115,43 @@ TEST(ProfileCommand, CountsAllocationsInTheProgramThatCanDoSo) {
   ASSERT_EQ(std::system(command.c_str()), 0);
   const json counted = read_json(folder.path() / "profile.json").at("allocations_per_frame");
   ASSERT_TRUE(counted.is_object());
-  EXPECT_GT(counted.at("median"), 0);  // at least the picture itself
+  EXPECT_GT(counted.at("median"), 0);  // at least the image itself
   EXPECT_GE(counted.at("largest"), counted.at("median"));
 }
 
-TEST(ProfileCommand, JudgesABoardByItsPublishedCosts) {
+TEST(ProfileCommand, SimulatesADeviceWithItsPublishedStageCosts) {
   const TemporaryFolder folder;
   const TemporaryFolder again;
-  const std::vector<std::string> board = {"--board", "atlas_200", "--set", "backend.rate_hz=0"};
-  const ProgramResult result = profile(folder, board);
+  const std::vector<std::string> device = {"--device", "atlas_200", "--set", "backend.rate_hz=0"};
+  const ProgramResult result = profile(folder, device);
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json judged = read_json(folder.path() / "board.json");
-  // The last of 40 pictures comes after 1.3 s: until then 1300 / 82.5 = 15 are optimised and the 16th begun;
-  // four more wait at most, two of them for the tracker.
-  EXPECT_GE(judged.at("dropped").get<int>(), kFrames - 20);
-  EXPECT_LE(judged.at("dropped").get<int>(), kFrames - 16);
-  EXPECT_GT(judged.at("latency_ms").at("median").get<double>(), 82.0);
-  EXPECT_GT(judged.at("beyond_budget").get<int>(), 0);
-  EXPECT_TRUE(judged.at("score").at("ate_rmse_m").is_number());
-  ASSERT_EQ(profile(again, board).exit_code, 0);
-  EXPECT_EQ(read_json(again.path() / "board.json"), judged);  // costs are fixed, so every run is the same
+  const json report = read_json(folder.path() / "device.json");
+  // The last of 40 frames arrives after 1.3 s. Until then 1300 / 82.5 = 15 frames are optimized and the 16th
+  // is started; at most four more are queued, two of them for the tracker.
+  EXPECT_GE(report.at("dropped").get<int>(), kFrames - 20);
+  EXPECT_LE(report.at("dropped").get<int>(), kFrames - 16);
+  EXPECT_GT(report.at("latency_ms").at("median").get<double>(), 82.0);
+  EXPECT_GT(report.at("beyond_budget").get<int>(), 0);
+  EXPECT_TRUE(report.at("score").at("ate_rmse_m").is_number());
+  ASSERT_EQ(profile(again, device).exit_code, 0);
+  EXPECT_EQ(read_json(again.path() / "device.json"), report);  // deterministic, as the costs are fixed
 }
 
-TEST(ProfileCommand, RefusesABoardThatIsNotThere) {
+TEST(ProfileCommand, RejectsAnUnknownDevice) {
   const TemporaryFolder folder;
-  const ProgramResult result = profile(folder, {"--board", "atlas_300"});
+  const ProgramResult result = profile(folder, {"--device", "atlas_300"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("did you mean \"atlas_200\"?"), std::string::npos) << result.err;
 }
 
-TEST(ProfileCommand, RefusesProcessorsThatAreNotThere) {
+TEST(ProfileCommand, RejectsAnUnknownProcessor) {
   const TemporaryFolder folder;
   const ProgramResult result = profile(folder, {"--cores", "99999"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("no processor of this machine"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("not a processor of this machine"), std::string::npos) << result.err;
 }
 
-TEST(ProfileCommand, RefusesABudgetOfNothing) {
+TEST(ProfileCommand, RejectsAZeroBudget) {
   const TemporaryFolder folder;
   const ProgramResult result = profile(folder, {"--frame-budget-ms", "0"});
   EXPECT_EQ(result.exit_code, 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stillpoint run`, from a folder of sensor files to results.
+// `stillpoint run`: output files, modes and error handling.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -34,7 +34,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-/// Arguments of a run over the rendered sequence.
+/// Arguments of `run` for a sequence.
 std::vector<std::string> run_of(const fs::path& sequence, const fs::path& out,
                                 const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments = {"run", sequence.string(), "--out", out.string()};
@@ -53,7 +53,7 @@ TEST(RunCommand, WritesTrajectoryResultAndManifest) {
   EXPECT_EQ(scores["status"], "ok");
   EXPECT_EQ(scores["frames"], kFrames);
   EXPECT_GT(scores["coverage"], 0.5);
-  EXPECT_LT(scores["ate_rmse_m"], 0.05);  // a sanity bound; accuracy is judged at full size
+  EXPECT_LT(scores["ate_rmse_m"], 0.05);  // a sanity bound; accuracy is tested at full resolution
   EXPECT_GT(scores["timings"]["modules"]["state_optimization"]["median"], 0.0);
   EXPECT_EQ(scores["timings"]["threads"]["tracking_thread"]["calls"], kFrames);
   EXPECT_EQ(scores["timings"]["modules"]["image_decoding"]["calls"], kFrames);
@@ -63,7 +63,7 @@ TEST(RunCommand, WritesTrajectoryResultAndManifest) {
   EXPECT_FALSE(manifest["build"]["git_commit"].get<std::string>().empty());
 }
 
-TEST(RunCommand, IsTheSameToTheBitTwiceAndWithTwoPoolThreads) {
+TEST(RunCommand, IsBitEqualInTwoRunsAndWithTwoPoolThreads) {
   const TemporaryFolder out;
   for (const char* name : {"first", "second"}) {
     ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path() / name)).exit_code, 0);
@@ -78,7 +78,7 @@ TEST(RunCommand, IsTheSameToTheBitTwiceAndWithTwoPoolThreads) {
   EXPECT_EQ(first, text_of(out.path() / "pool" / "trajectory.tum"));
 }
 
-TEST(RunCommand, PipelinedWritesTheFileThatSequentialWrites) {
+TEST(RunCommand, PipelinedAndSequentialModeWriteEqualTrajectories) {
   const TemporaryFolder out;
   for (const char* mode : {"sequential", "pipelined"}) {
     ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path() / mode,
@@ -90,29 +90,29 @@ TEST(RunCommand, PipelinedWritesTheFileThatSequentialWrites) {
             text_of(out.path() / "pipelined" / "trajectory.tum"));
 }
 
-TEST(RunCommand, RealtimeReportsHowItKeptUpWithTheClock) {
+TEST(RunCommand, RealtimeModeReportsLatency) {
   const TemporaryFolder out;
   ASSERT_EQ(
       run_program(run_of(rendered_sequence(), out.path(), {"--mode", "realtime", "--speed", "4"})).exit_code,
       0);
-  const nlohmann::json clock = json_of(out.path() / "result.json")["realtime"];
-  EXPECT_NEAR(clock["deadline_ms"], 1e3 / 30.0 / 4.0, 0.01);
-  EXPECT_GT(clock["latency_ms"]["p50"], 0.0);
-  EXPECT_LE(clock["latency_ms"]["p50"], clock["latency_ms"]["p99"]);
+  const nlohmann::json realtime = json_of(out.path() / "result.json")["realtime"];
+  EXPECT_NEAR(realtime["deadline_ms"], 1e3 / 30.0 / 4.0, 0.01);
+  EXPECT_GT(realtime["latency_ms"]["p50"], 0.0);
+  EXPECT_LE(realtime["latency_ms"]["p50"], realtime["latency_ms"]["p99"]);
 }
 
-TEST(RunCommand, DumpsEveryVerdict) {
+TEST(RunCommand, DumpsAllLabels) {
   const TemporaryFolder out;
-  ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path(), {"--dump", "verdicts", "--max-frames", "20"}))
+  ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path(), {"--dump", "labels", "--max-frames", "20"}))
                 .exit_code,
             0);
-  const std::string dump = text_of(out.path() / "verdicts.csv");
-  EXPECT_TRUE(dump.starts_with("frame,t,id,u_px,v_px,depth_m,age,verdict,reason,residual_px\n"));
-  EXPECT_GT(std::count(dump.begin(), dump.end(), '\n'), 20 * 20);  // more than 20 features in each picture
-  EXPECT_NE(dump.find(",stable,nothing_suspect,"), std::string::npos);
+  const std::string dump = text_of(out.path() / "labels.csv");
+  EXPECT_TRUE(dump.starts_with("frame,t,id,u_px,v_px,depth_m,age,label,reason,residual_px\n"));
+  EXPECT_GT(std::count(dump.begin(), dump.end(), '\n'), 20 * 20);  // more than 20 features per frame
+  EXPECT_NE(dump.find(",stable,none,"), std::string::npos);
 }
 
-TEST(RunCommand, WritesAnnotatedPicturesAndAVideo) {
+TEST(RunCommand, WritesAnnotatedFramesAndAVideo) {
   const TemporaryFolder out;
   const std::string video = (out.path() / "video").string();
   ASSERT_EQ(
@@ -123,14 +123,14 @@ TEST(RunCommand, WritesAnnotatedPicturesAndAVideo) {
   EXPECT_EQ(names_in(out.path() / "video" / "frames").size(), 20u);
 }
 
-TEST(RunCommand, WritesPicturesOfTheWorstFramesOnly) {
+TEST(RunCommand, WritesImagesOfTheWorstFramesOnly) {
   const TemporaryFolder out;
-  const ProgramResult result = run_program(run_of(rendered_sequence(), out.path(), {"--pictures", "3"}));
+  const ProgramResult result = run_program(run_of(rendered_sequence(), out.path(), {"--images", "3"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(names_in(out.path() / "pictures").size(), 3u);
+  EXPECT_EQ(names_in(out.path() / "images").size(), 3u);
 }
 
-TEST(RunCommand, EachVariantHasItsFolder) {
+TEST(RunCommand, WritesEachVariantToItsOwnFolder) {
   const TemporaryFolder out;
   const ProgramResult result = run_program(
       run_of(rendered_sequence(), out.path(),
@@ -144,22 +144,21 @@ TEST(RunCommand, EachVariantHasItsFolder) {
   EXPECT_EQ(json_of(out.path() / "vo" / "result.json")["frames"], 20);
 }
 
-TEST(RunCommand, SkipsCountsAndReportsOneBadPicture) {
+TEST(RunCommand, SkipsAndReportsAnUnreadableImage) {
   const TemporaryFolder folder;
   const fs::path sequence = copy_of_rendered_sequence(folder);
-  const fs::path picture = sequence / "color" / names_in(sequence / "color")[40];
-  fs::remove(picture);
-  folder.write("copy/color/" + picture.filename().string(), "no picture");
+  const fs::path image = sequence / "color" / names_in(sequence / "color")[40];
+  fs::remove(image);
+  folder.write("copy/color/" + image.filename().string(), "not an image");
   const ProgramResult result = run_program(run_of(sequence, folder.path() / "out", {"--variant", "vo"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("warning: frame 40 skipped: " + picture.string()), std::string::npos)
-      << result.err;
+  EXPECT_NE(result.err.find("warning: frame 40 skipped: " + image.string()), std::string::npos) << result.err;
   const nlohmann::json skipped = json_of(folder.path() / "out" / "result.json")["skipped_frames"];
   ASSERT_EQ(skipped.size(), 1u);
   EXPECT_EQ(skipped[0]["index"], 40);
 }
 
-TEST(RunCommand, CtrlCLeavesAMarkedPartialResult) {
+TEST(RunCommand, CtrlCWritesAPartialResultThatIsMarkedAsInterrupted) {
   const TemporaryFolder out;
   std::vector<std::string> arguments = {"--verbose"};
   const std::vector<std::string> run = run_of(rendered_sequence(), out.path(), {"--variant", "vo"});

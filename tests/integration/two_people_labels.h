@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Outlines of the two people in four pictures of the set two_people_d435, drawn by hand.
+/// Manually drawn outlines of the two people in four frames of the sequence two_people_d435.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -7,8 +7,8 @@
 
 namespace stillpoint {
 
-/// One picture; the outlines are closed, in pixels of the picture at one and a half times its size.
-struct LabelledPicture {
+/// One frame. The outlines are closed polygons, in pixels of the image scaled by `kLabelScale`.
+struct LabelledFrame {
   int frame = 0;
   std::vector<cv::Point> seated;
   std::vector<cv::Point> standing;
@@ -16,8 +16,8 @@ struct LabelledPicture {
 
 constexpr double kLabelScale = 1.5;
 
-inline const std::vector<LabelledPicture>& two_people_labels() {
-  static const std::vector<LabelledPicture> kLabels = {
+inline const std::vector<LabelledFrame>& two_people_labels() {
+  static const std::vector<LabelledFrame> kLabels = {
       {0,
        {{275, 240}, {285, 240}, {303, 290}, {320, 320}, {378, 345}, {368, 305}, {372, 275},
         {400, 260}, {430, 275}, {432, 310}, {425, 345}, {470, 370}, {485, 440}, {482, 530},

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What must hold for any trajectory, tried on random ones; the seed is the test's parameter.
+/// Invariants of the metrics on random trajectories; the test parameter is the random seed.
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "eval/compare/time_offset.h"
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
 #include "eval/metrics/strict_rpe.h"
-#include "eval/trajectory/time_offset.h"
 #include "tests/support/smooth_path.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 class EvalProperty : public testing::TestWithParam<unsigned> {
@@ -21,9 +21,9 @@ class EvalProperty : public testing::TestWithParam<unsigned> {
   [[nodiscard]] Eigen::Vector3d vector(double size) {
     return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
   }
-  [[nodiscard]] Pose rigid_motion() { return Pose{exp_so3(vector(1.5)), vector(20.0)}; }
+  [[nodiscard]] Pose rigid_transform() { return Pose{exp_so3(vector(1.5)), vector(20.0)}; }
 
-  /// The path with noise of a few centimetres and degrees.
+  /// The path with noise of up to 3 cm and 0.02 rad per axis.
   [[nodiscard]] Trajectory noisy(const Trajectory& path) {
     Trajectory result = path;
     for (StampedPose& pose : result.poses) {
@@ -43,63 +43,63 @@ class EvalProperty : public testing::TestWithParam<unsigned> {
   Trajectory est_ = noisy(gt_);
 };
 
-TEST_P(EvalProperty, AteDoesNotChangeWithARigidMotionOfTheEstimate) {
-  const AteResult before = *ate(gt_, est_);
-  const AteResult behind = *ate(gt_, moved(rigid_motion(), 1.0, est_));
-  EXPECT_NEAR(behind.translation_m.rmse, before.translation_m.rmse, 1e-10);
-  EXPECT_NEAR(behind.rotation_deg.rmse, before.rotation_deg.rmse, 1e-7);
+TEST_P(EvalProperty, AteIsInvariantToARigidTransformOfTheEstimate) {
+  const AteResult original = *ate(gt_, est_);
+  const AteResult transformed = *ate(gt_, moved(rigid_transform(), 1.0, est_));
+  EXPECT_NEAR(transformed.translation_m.rmse, original.translation_m.rmse, 1e-10);
+  EXPECT_NEAR(transformed.rotation_deg.rmse, original.rotation_deg.rmse, 1e-7);
 }
 
-TEST_P(EvalProperty, AteDoesNotChangeWithARigidMotionOfTheGroundTruth) {
-  EXPECT_NEAR(ate(moved(rigid_motion(), 1.0, gt_), est_)->translation_m.rmse,
+TEST_P(EvalProperty, AteIsInvariantToARigidTransformOfTheGroundTruth) {
+  EXPECT_NEAR(ate(moved(rigid_transform(), 1.0, gt_), est_)->translation_m.rmse,
               ate(gt_, est_)->translation_m.rmse, 1e-10);
 }
 
-TEST_P(EvalProperty, AlignmentIsNeverWorseThanNone) {
+TEST_P(EvalProperty, MoreDegreesOfFreedomNeverIncreaseTheAte) {
   const auto matches = matched_poses(gt_, est_, associate_tum(gt_, est_));
   double last = 1e300;
   for (const Alignment kind : {Alignment::kNone, Alignment::kYaw, Alignment::kSe3, Alignment::kSim3}) {
     const AlignmentResult fit = align(matches, kind);
     const double rmse = statistics(ate_errors(matches, fit.S_w_v).translation_m)->rmse;
-    EXPECT_LE(rmse, last + 1e-12);  // each has all freedom of the one before
+    EXPECT_LE(rmse, last + 1e-12);  // the degrees of freedom include those of the previous alignment
     last = rmse;
   }
 }
 
-TEST_P(EvalProperty, RpeDoesNotChangeWithACommonLeftTransform) {
-  const RpeResult before = *rpe(gt_, est_);
-  const Pose T_v_w = rigid_motion();
-  const RpeResult behind = *rpe(moved(T_v_w, 1.0, gt_), moved(T_v_w, 1.0, est_));
-  EXPECT_NEAR(behind.translation_m.rmse, before.translation_m.rmse, 1e-10);
-  EXPECT_NEAR(behind.rotation_deg.rmse, before.rotation_deg.rmse, 1e-9);
+TEST_P(EvalProperty, RpeIsInvariantToACommonLeftTransform) {
+  const RpeResult original = *rpe(gt_, est_);
+  const Pose T_v_w = rigid_transform();
+  const RpeResult transformed = *rpe(moved(T_v_w, 1.0, gt_), moved(T_v_w, 1.0, est_));
+  EXPECT_NEAR(transformed.translation_m.rmse, original.translation_m.rmse, 1e-10);
+  EXPECT_NEAR(transformed.rotation_deg.rmse, original.rotation_deg.rmse, 1e-9);
 }
 
 TEST_P(EvalProperty, RpeIsZeroOnlyForEqualMotion) {
-  EXPECT_NEAR(rpe(gt_, moved(rigid_motion(), 1.0, gt_))->translation_m.max, 0.0, 1e-12);
+  EXPECT_NEAR(rpe(gt_, moved(rigid_transform(), 1.0, gt_))->translation_m.max, 0.0, 1e-12);
   EXPECT_GT(rpe(gt_, est_)->translation_m.min, 0.0);
-  Trajectory one_off = gt_;
-  one_off.poses[200].T_w_f.p.x() += 1e-3;
-  EXPECT_NEAR(rpe(gt_, one_off)->translation_m.max, 1e-3, 1e-9);
-  EXPECT_NEAR(strict_rpe(strict_matches(gt_, one_off), 1.0).errors->translation_m.max, 1e-3, 1e-9);
+  Trajectory outlier = gt_;
+  outlier.poses[200].T_w_f.p.x() += 1e-3;
+  EXPECT_NEAR(rpe(gt_, outlier)->translation_m.max, 1e-3, 1e-9);
+  EXPECT_NEAR(strict_rpe(strict_matches(gt_, outlier), 1.0).errors->translation_m.max, 1e-3, 1e-9);
 }
 
 TEST_P(EvalProperty, Sim3RecoversAKnownScale) {
   const double scale = uniform(0.1, 10.0);
-  const Trajectory est = moved(rigid_motion(), scale, gt_);
+  const Trajectory est = moved(rigid_transform(), scale, gt_);
   const auto matches = matched_poses(gt_, est, associate_tum(gt_, est));
   const AlignmentResult fit = align(matches, Alignment::kSim3);
   EXPECT_NEAR(fit.S_w_v.scale * scale, 1.0, 1e-10);
   EXPECT_LT(statistics(ate_errors(matches, fit.S_w_v).translation_m)->max, 1e-9);
 }
 
-TEST_P(EvalProperty, YawRecoversATurnAboutTheVertical) {
+TEST_P(EvalProperty, YawRecoversARotationAboutTheVertical) {
   const Pose T_v_w{exp_so3({0.0, 0.0, uniform(-3.0, 3.0)}), vector(20.0)};
   const Trajectory est = moved(T_v_w, 1.0, gt_);
   const auto matches = matched_poses(gt_, est, associate_tum(gt_, est));
   EXPECT_LT(statistics(ate_errors(matches, align(matches, Alignment::kYaw).S_w_v).translation_m)->max, 1e-9);
 }
 
-TEST_P(EvalProperty, ACommonShiftOfTimeChangesNothing) {
+TEST_P(EvalProperty, AteIsInvariantToACommonTimeShift) {
   const double shift = uniform(-1e6, 1e6);
   Trajectory gt = gt_;
   Trajectory est = est_;
@@ -109,7 +109,7 @@ TEST_P(EvalProperty, ACommonShiftOfTimeChangesNothing) {
   EXPECT_DOUBLE_EQ(ate(gt, est)->translation_m.rmse, ate(gt_, est_)->translation_m.rmse);
 }
 
-TEST_P(EvalProperty, TheOffsetOfAShiftedEstimateIsFound) {
+TEST_P(EvalProperty, TimeOffsetOfAShiftedEstimateIsRecovered) {
   const double shift = uniform(-0.3, 0.3);
   Trajectory shifted = gt_;
   for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, shift);
@@ -118,20 +118,19 @@ TEST_P(EvalProperty, TheOffsetOfAShiftedEstimateIsFound) {
   EXPECT_NEAR(found->offset_s, -shift, 5e-4);
 }
 
-TEST_P(EvalProperty, EveryTenthPoseHasTheErrorsOfItsPoses) {
-  // The errors of a decimated estimate are those of the poses it keeps, if the alignment is the same.
+TEST_P(EvalProperty, ErrorsOfADecimatedEstimateAreThoseOfItsPoses) {
   const auto all = matched_poses(gt_, est_, associate_tum(gt_, est_));
   Trajectory tenth;
   for (std::size_t i = 0; i < est_.poses.size(); i += 10) tenth.poses.push_back(est_.poses[i]);
-  const auto few = matched_poses(gt_, tenth, associate_tum(gt_, tenth));
-  const AteErrors of_all = ate_errors(all, {});
-  const AteErrors of_few = ate_errors(few, {});
-  ASSERT_EQ(few.size(), tenth.poses.size());
-  for (std::size_t i = 0; i < few.size(); ++i)
-    EXPECT_EQ(of_few.translation_m[i], of_all.translation_m[10 * i]);
+  const auto decimated = matched_poses(gt_, tenth, associate_tum(gt_, tenth));
+  const AteErrors all_errors = ate_errors(all, {});
+  const AteErrors decimated_errors = ate_errors(decimated, {});
+  ASSERT_EQ(decimated.size(), tenth.poses.size());
+  for (std::size_t i = 0; i < decimated.size(); ++i)
+    EXPECT_EQ(decimated_errors.translation_m[i], all_errors.translation_m[10 * i]);
 }
 
-/// All candidates sorted by difference: the TUM tool's own way, quadratic.
+/// Reference implementation with all candidates sorted by difference, as in the TUM tool; quadratic.
 std::vector<IndexPair> associate_by_sorting(const Trajectory& gt, const Trajectory& est,
                                             double max_difference_s) {
   struct Candidate {
@@ -160,7 +159,7 @@ std::vector<IndexPair> associate_by_sorting(const Trajectory& gt, const Trajecto
   return pairs;
 }
 
-TEST_P(EvalProperty, AssociationIsThatOfSortingAllCandidates) {
+TEST_P(EvalProperty, AssociationEqualsTheReferenceImplementation) {
   const auto random_stamps = [this](std::size_t count) {
     Trajectory path;
     std::int64_t ms = 0;
@@ -178,4 +177,4 @@ TEST_P(EvalProperty, AssociationIsThatOfSortingAllCandidates) {
 INSTANTIATE_TEST_SUITE_P(Seeds, EvalProperty, testing::Range(0u, 25u));
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

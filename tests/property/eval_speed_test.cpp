@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A million poses: time must grow with n log n at most.
+/// Run time on a million poses: O(n log n) at most.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -7,16 +7,16 @@
 #include <memory>
 
 #include "eval/io/trajectory_file.h"
-#include "eval/recipes/recipe.h"
+#include "eval/protocols/protocol.h"
 #include "eval/score.h"
 #include "tests/support/smooth_path.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 constexpr std::size_t kMillion = 1'000'000;
 
-/// Processor time, so that a busy machine does not count.
+/// CPU time, which is independent of other processes.
 template <class Action>
 double seconds_of(const Action& action) {
   const std::clock_t begin = std::clock();
@@ -38,7 +38,7 @@ class MillionPoses : public testing::Test {
   static inline std::unique_ptr<Trajectory> est_;
 };
 
-TEST_F(MillionPoses, AteAndRpeTakeThreeSecondsAtMost) {
+TEST_F(MillionPoses, ScoreTakesAtMostThreeSeconds) {
   Score result;
   const double seconds = seconds_of([&] { result = score(*gt_, *est_); });
   RecordProperty("seconds", std::to_string(seconds));
@@ -48,24 +48,24 @@ TEST_F(MillionPoses, AteAndRpeTakeThreeSecondsAtMost) {
   EXPECT_LE(seconds, 3.0);
 }
 
-TEST_F(MillionPoses, EveryRecipeEndsInTenSeconds) {
-  for (const Recipe& recipe : recipes()) {
+TEST_F(MillionPoses, EveryProtocolTakesAtMostTenSeconds) {
+  for (const Protocol& protocol : protocols()) {
     const double seconds = seconds_of([&] {
-      static_cast<void>(evaluate(recipe.name, {*gt_, *est_, RecipeOptions{}}));
+      static_cast<void>(evaluate(protocol.name, {*gt_, *est_, ProtocolOptions{}}));
     });
-    std::printf("%s: %.2f s\n", std::string(recipe.name).c_str(), seconds);
-    EXPECT_LE(seconds, 10.0) << recipe.name;
+    std::printf("%s: %.2f s\n", std::string(protocol.name).c_str(), seconds);
+    EXPECT_LE(seconds, 10.0) << protocol.name;
   }
 }
 
-TEST_F(MillionPoses, TextIsReadInFiveSeconds) {
+TEST_F(MillionPoses, ParsingTakesAtMostFiveSeconds) {
   const std::string text = format_tum(*gt_);
   const double seconds =
       seconds_of([&] { EXPECT_EQ(parse_tum(text, "a").trajectory.poses.size(), kMillion); });
-  std::printf("reading 1,000,000 poses (%.0f MB): %.2f s\n", static_cast<double>(text.size()) * 1e-6,
+  std::printf("parsing 1,000,000 poses (%.0f MB): %.2f s\n", static_cast<double>(text.size()) * 1e-6,
               seconds);
   EXPECT_LE(seconds, 5.0);
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Asserts that bad input is refused, and that the message says where and what.
+/// Asserts that invalid input is rejected with a message that contains given parts.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace stillpoint {
 
-/// Runs `action`, which must throw an InputError whose message contains every one of `parts`.
+/// Runs `action`, which must throw an InputError whose message contains all of `parts`.
 template <class Action>
 void expect_input_error(const Action& action, const std::vector<std::string>& parts) {
   try {

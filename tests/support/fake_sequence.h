@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// TUM folders without pictures, for runs of the stand-in system: they take no time to make or to read.
+/// TUM sequence folders without image files, for the replay system: fast to write and to read.
 #pragma once
 
 #include <cmath>
@@ -9,18 +9,18 @@
 
 namespace stillpoint {
 
-/// `name` below the folder: 60 frames at 30 Hz along a curved path of about 2 m.
+/// Writes the sequence `name` into the folder: 60 frames at 30 Hz along a curved path of about 2 m.
 inline std::filesystem::path fake_sequence(const TemporaryFolder& folder, const std::string& name) {
-  std::string pictures;
+  std::string images;
   std::string poses;
   for (int i = 0; i < 60; ++i) {
     const double t = 1000.0 + i / 30.0;
     const std::string stamp = std::to_string(t);
-    pictures += stamp + " rgb/" + stamp + ".png\n";
+    images += stamp + " rgb/" + stamp + ".png\n";
     poses += stamp + " " + std::to_string(std::cos(t)) + " " + std::to_string(std::sin(t)) + " 0 0 0 0 1\n";
   }
-  folder.write(name + "/rgb.txt", pictures);
-  folder.write(name + "/depth.txt", pictures);
+  folder.write(name + "/rgb.txt", images);
+  folder.write(name + "/depth.txt", images);
   folder.write(name + "/groundtruth.txt", poses);
   return folder.path() / name;
 }

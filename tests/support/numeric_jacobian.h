@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Numeric Jacobians on the tangent space, to hold the analytic ones against.
+/// Numeric Jacobians on the tangent space, for comparison with analytic ones.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Runs the program `stillpoint` as its users do.
+/// Executes the program `stillpoint`.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,20 @@
 namespace stillpoint {
 
 struct ProgramResult {
-  int exit_code = 0;  ///< 128 + the signal's number when a signal ended it
+  int exit_code = 0;  ///< 128 + signal number if terminated by a signal
   std::string out;
   std::string err;
 };
 
-/// Circumstances of a run; what is empty is as usual.
+/// Environment of an execution.
 struct ProgramOptions {
-  std::vector<std::string> environment;           ///< "NAME=value", besides the test's own
-  std::optional<std::uint64_t> file_limit_bytes;  ///< no file grows beyond it, as on a full disk
-  bool may_only_read = false;                     ///< runs as "nobody" where the tests run as root
-  std::string interrupt_after;                    ///< SIGINT is sent once when stderr contains this
+  std::vector<std::string> environment;           ///< "NAME=value", added to the environment of the test
+  std::optional<std::uint64_t> file_limit_bytes;  ///< maximum file size; simulates a full disk
+  bool without_write_access = false;              ///< executes as "nobody" if the tests run as root
+  std::string interrupt_after;                    ///< send SIGINT once stderr contains this
 };
 
-/// @param arguments without the program's name
+/// @param arguments without the program name
 [[nodiscard]] ProgramResult run_program(const std::vector<std::string>& arguments,
                                         const ProgramOptions& options = {});
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/rendered_sequence.h"
 
-#include "datasets/synthetic/render_sequence.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint {
 namespace {
@@ -11,17 +11,17 @@ namespace fs = std::filesystem;
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 
-/// Renders on construction; the folder goes when the test program ends.
+/// Renders on construction; the folder is removed when the test program ends.
 struct Rendering {
   TemporaryFolder folder;
   fs::path sequence = folder.path() / "office";
   Rendering() {
-    SynthRequest request = preset_request("walking_xyz_empty");
+    synth::SynthRequest request = synth::preset_request("walking_xyz_empty");
     request.seconds = 3.0;
     request.focal_px *= static_cast<double>(kWidth) / request.width;
     request.width = kWidth;
     request.height = kHeight;
-    render_sequence(request, sequence);
+    synth::render_sequence(request, sequence);
   }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A small sequence with an IMU, rendered once for a test program, and copies of it that may be spoiled.
+/// A small rendered sequence with IMU data, created once per test program, and modifiable copies of it.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace stillpoint {
 
-/// Folder of 3 s of an empty office at 320x240 and 30 Hz in OpenLORIS layout. Read only.
+/// Folder of a 3 s sequence of an empty office at 320x240 and 30 Hz in OpenLORIS layout. Read-only.
 [[nodiscard]] const std::filesystem::path& rendered_sequence();
 
-/// A copy whose text files may be changed; its pictures are hard links: replace, never rewrite them.
+/// A copy for modification. Its images are hard links: replace them, do not write to them.
 [[nodiscard]] std::filesystem::path copy_of_rendered_sequence(const TemporaryFolder& folder);
 
 }  // namespace stillpoint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Benchmarks of the stand-in system over two sequences.
+/// Benchmarks of the replay system (replay_program.cpp) over two sequences.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +12,9 @@
 
 namespace stillpoint {
 
-/// A plan, its sequences and its system in a folder.
-/// @param flags  of the stand-in: words of TOML, each with a comma after it
-/// @param limits lines of the plan
+/// Writes a plan, its sequences and its system definition into a folder.
+/// @param flags  options of the replay program: quoted TOML strings, each followed by a comma
+/// @param limits additional lines of the plan
 inline std::filesystem::path write_replay_plan(const TemporaryFolder& folder, int repetitions,
                                                const std::string& flags, const std::string& limits = "") {
   fake_sequence(folder, "freiburg1_a");
@@ -37,7 +37,7 @@ inline std::vector<std::string> replay_arguments(const TemporaryFolder& folder,
           "--jobs", "2",           "--out",   (folder.path() / "out").string()};
 }
 
-/// Runs the plan with the folder as that of recorded sequences.
+/// Runs the plan with `folder` as STILLPOINT_DATA.
 inline ProgramResult replay_bench(const TemporaryFolder& folder, const std::filesystem::path& plan,
                                   const std::filesystem::path& store, ProgramOptions options = {}) {
   options.environment = {"STILLPOINT_DATA=" + folder.path().string(),

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stand-in for a SLAM system: follows the true path of a TUM folder with an error of its own, and says how
-// long it would have taken. It understands the command line of `stillpoint run` as far as benchmarks use it,
-// and before it:
-//   --error M          path error, a wave of this amplitude [m]; default 0.01
-//   --worse SEQ F      multiplies that error by F on the sequence of this name
+// A fake SLAM system for benchmark tests: writes the ground truth of a TUM folder plus a simulated error, and
+// simulated timings. It accepts the options of `stillpoint run` that benchmarks use, preceded by:
+//   --error M          amplitude of the sinusoidal trajectory error [m]; default 0.01
+//   --worse SEQ F      multiplies the error by F on the sequence of this name
 //   --slow MODULE F    multiplies the time of a module by F
-//   --noise SHARE      spread of the times, drawn from seed and repetition; default 0.02
-//   --crash-after N    ends by a signal after N poses
-//   --hang             never ends
-//   --fill MB          takes so much memory
-//   --log FILE         adds a line when it ends well
+//   --noise SIGMA      relative standard deviation of the times, seeded by seed and repetition; default 0.02
+//   --crash-after N    terminates by a signal after N poses
+//   --hang             never terminates
+//   --fill MB          allocates this amount of memory and never terminates
+//   --log FILE         appends a line on success
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -71,7 +70,7 @@ Options parse(const std::vector<std::string>& words) {
   return options;
 }
 
-/// The true path with a wave on it: a rigid motion cannot take it away, so the ATE is proportional to it.
+/// The true trajectory plus a sinusoidal error, which alignment cannot remove: the ATE is proportional to it.
 Trajectory replay(const Trajectory& truth, const Options& options) {
   const bool is_worse = fs::path(options.sequence).filename() == options.worse_sequence;
   const double amplitude = options.error_m * (is_worse ? options.worse : 1.0);
@@ -83,7 +82,7 @@ Trajectory replay(const Trajectory& truth, const Options& options) {
   return path;
 }
 
-/// Times of two modules [ms]; the same run of the same program has the same times.
+/// Times of two modules [ms]; deterministic for a run.
 std::string timings_text(const Options& options) {
   std::string text;
   std::mt19937_64 random(std::hash<std::string>{}(options.seed + options.out.filename().string()));
@@ -96,7 +95,7 @@ std::string timings_text(const Options& options) {
   return text;
 }
 
-void write_result(const Score& score, const Options& options) {
+void write_result(const eval::Score& score, const Options& options) {
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : "null";
   };
@@ -111,10 +110,11 @@ int run(const Options& options) {
   while (options.hang) pause();
   const std::vector<char> filled(options.fill_mb << 20, 'x');
   while (!filled.empty() && filled[filled.size() / 2] == 'x') pause();
-  const Trajectory truth = read_tum(fs::path(options.sequence) / "groundtruth.txt", "camera").trajectory;
+  const Trajectory truth =
+      eval::read_tum(fs::path(options.sequence) / "groundtruth.txt", "camera").trajectory;
   const Trajectory path = replay(truth, options);
-  write_tum(path, options.out / "trajectory.tum");
-  write_result(score(truth, path), options);
+  eval::write_tum(path, options.out / "trajectory.tum");
+  write_result(eval::score(truth, path), options);
   if (!options.log.empty())
     std::ofstream(options.log, std::ios::app) << options.out.filename().string() + "\n";
   return 0;

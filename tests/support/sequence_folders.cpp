@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
 
 namespace stillpoint {
 namespace {
@@ -15,12 +15,12 @@ constexpr int kFrames = 3;
 
 void write_color(const std::filesystem::path& file, int width, int height) {
   std::filesystem::create_directories(file.parent_path());
-  write_png(file, cv::Mat(height, width, CV_8UC3, cv::Scalar(255, 0, 0)));
+  datasets::write_png(file, cv::Mat(height, width, CV_8UC3, cv::Scalar(255, 0, 0)));
 }
 
 void write_depth(const std::filesystem::path& file, int width, int height, int value) {
   std::filesystem::create_directories(file.parent_path());
-  write_png(file, cv::Mat(height, width, CV_16UC1, cv::Scalar(value)));
+  datasets::write_png(file, cv::Mat(height, width, CV_16UC1, cv::Scalar(value)));
 }
 
 /// Rows `t x 0 0 0 0 0 1` every 10 ms from `start` over 0.3 s, x growing at 1 m/s.
@@ -31,11 +31,11 @@ std::string truth_rows(double start) {
   return text;
 }
 
-/// Rows `t value value value` at `rate` from `start` over 0.3 s; the value is the time since the start.
-std::string sensor_rows(double start, double rate) {
+/// Rows `t value value value` at `rate_hz` from `start` over 0.3 s; the value is the time since the start.
+std::string sensor_rows(double start, double rate_hz) {
   std::string text = "#Time x y z\n";
-  for (int i = 0; i <= static_cast<int>(0.3 * rate); ++i) {
-    text += fmt::format("{0:.6f} {1:.6f} {1:.6f} {1:.6f}\n", start + i / rate, i / rate);
+  for (int i = 0; i <= static_cast<int>(0.3 * rate_hz); ++i) {
+    text += fmt::format("{0:.6f} {1:.6f} {1:.6f} {1:.6f}\n", start + i / rate_hz, i / rate_hz);
   }
   return text;
 }
@@ -92,7 +92,8 @@ void write_openloris_folder(const TemporaryFolder& folder) {
                "    data: [0.1, 0, 0, 0, 0]\n  intrinsics:\n    data: [10, 3.5, 11, 2.5]\n" +
                    sensor_block("d400_gyroscope", 4e-6, 1e-10) +
                    sensor_block("d400_accelerometer", 9e-4, 4e-8));
-  // Gyroscope and accelerometer 0.1 m right of the camera, camera 1 m above base_link (y points down).
+  // Gyroscope and accelerometer are 0.1 m right of the camera, the camera is 1 m above base_link (y points
+  // down).
   folder.write(
       "trans_matrix.yaml",
       "%YAML:1.0\ntrans_matrix:\n" +
@@ -102,13 +103,13 @@ void write_openloris_folder(const TemporaryFolder& folder) {
 }
 
 void write_euroc_folder(const TemporaryFolder& folder) {
-  std::string pictures = "#timestamp [ns],filename\n";
+  std::string images = "#timestamp [ns],filename\n";
   for (int i = 0; i < kFrames; ++i) {
     const long stamp = 1'000'000'000 + 50'000'000L * i;
-    pictures += fmt::format("{0},{0}.png\r\n", stamp);
+    images += fmt::format("{0},{0}.png\r\n", stamp);
     const std::filesystem::path file = folder.path() / "mav0/cam0/data" / fmt::format("{}.png", stamp);
     std::filesystem::create_directories(file.parent_path());
-    write_png(file, cv::Mat(6, 8, CV_8UC1, cv::Scalar(7)));
+    datasets::write_png(file, cv::Mat(6, 8, CV_8UC1, cv::Scalar(7)));
   }
   std::string imu = "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n";
   std::string truth = "#timestamp, p_x, p_y, p_z, q_w, q_x, q_y, q_z, v_x, v_y, v_z, b...\n";
@@ -117,7 +118,7 @@ void write_euroc_folder(const TemporaryFolder& folder) {
     imu += fmt::format("{},0.1,0.2,0.3,1,2,9.8\n", stamp);
     truth += fmt::format("{},{},0,0,0,1,0,0,0,0,0,0,0,0,0,0,0\n", stamp, 0.01 * i);
   }
-  folder.write("mav0/cam0/data.csv", pictures);
+  folder.write("mav0/cam0/data.csv", images);
   folder.write("mav0/imu0/data.csv", imu);
   folder.write("mav0/state_groundtruth_estimate0/data.csv", truth);
   const std::string identity = "T_BS:\n  cols: 4\n  rows: 4\n  data: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n";

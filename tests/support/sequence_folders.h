@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Tiny sequence folders, true to their formats, for tests that read them or spoil them first.
+/// Writes small sequence folders of each format for tests.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +8,18 @@
 
 namespace stillpoint {
 
-/// Three 8x6 colour and depth pictures at 1.00, 1.04, 1.08 s (depth 5 ms later, raw value 5000) and ground
-/// truth along x at 1 m/s from 0.9 to 1.2 s.
+/// Three 8x6 color and depth images at 1.00, 1.04, 1.08 s (depth 5 ms later, raw value 5000) and ground truth
+/// along x at 1 m/s from 0.9 to 1.2 s.
 void write_tum_folder(const TemporaryFolder& folder);
 
-/// Three 8x6 pictures at 100.00, 100.04, 100.08 s, gyroscope at 400 Hz and accelerometer at 250 Hz from 99.9
-/// s on, ground truth of base_link, which sits 1 m below the camera.
+/// Three 8x6 frames at 100.00, 100.04, 100.08 s, gyroscope at 400 Hz and accelerometer at 250 Hz from 99.9 s
+/// on, ground truth of base_link, which is 1 m below the camera.
 void write_openloris_folder(const TemporaryFolder& folder);
 
-/// Three 8x6 gray pictures at 20 Hz from 1 s on, IMU at 200 Hz, ground truth of the body.
+/// Three 8x6 gray images at 20 Hz from 1 s on, IMU at 200 Hz, ground truth of the body.
 void write_euroc_folder(const TemporaryFolder& folder);
 
-/// Frames 0 to 2 of 640x480, depth 1 m, poses along x at 1 cm a frame.
+/// Frames 0 to 2 of 640x480, depth 1 m, poses along x at 1 cm per frame.
 void write_seven_scenes_folder(const TemporaryFolder& folder);
 
 /// color/ and depth/ 00007 to 00009 of 8x6, and a camera.json.

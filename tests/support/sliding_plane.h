@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A camera that slides sideways before a printed wall: true pictures without a renderer.
+/// A camera translating parallel to a textured plane: exact images without a renderer.
 #pragma once
 
 #include <vector>
@@ -9,38 +9,37 @@
 
 namespace stillpoint {
 
-/// Pictures of 160x120 px at 30 Hz; each shows the wall, 2 m away, `kStep_px` further left than the one
-/// before.
+/// Images of 160x120 px at 30 Hz; in each, the plane at 2 m is `kStep_px` further left than in the previous.
 class SlidingPlane {
  public:
   static constexpr double kDepth_m = 2.0;
   static constexpr double kFocal_px = 150.0;
   static constexpr int kStep_px = 2;
 
-  explicit SlidingPlane(int pictures) : wall_(kHeight, kWidth + kStep_px * pictures, CV_8UC1) {
+  explicit SlidingPlane(int frame_count) : texture_(kHeight, kWidth + kStep_px * frame_count, CV_8UC1) {
     Random random(3);
-    for (int row = 0; row < wall_.rows; row += kBlock_px) {
-      for (int column = 0; column < wall_.cols; column += kBlock_px) {
+    for (int row = 0; row < texture_.rows; row += kBlock_px) {
+      for (int column = 0; column < texture_.cols; column += kBlock_px) {
         const cv::Rect block(column, row, kBlock_px, kBlock_px);
-        wall_(block & cv::Rect(0, 0, wall_.cols, wall_.rows)) = random.uniform(20.0, 235.0);
+        texture_(block & cv::Rect(0, 0, texture_.cols, texture_.rows)) = random.uniform(20.0, 235.0);
       }
     }
-    for (int i = 0; i < pictures; ++i) times_.push_back(Timestamp{1'000'000'000 + i * 33'333'333LL});
+    for (int i = 0; i < frame_count; ++i) times_.push_back(Timestamp{1'000'000'000 + i * 33'333'333LL});
   }
 
-  /// How far the camera has moved along its x axis at a picture [m].
-  static double moved_m(std::int64_t picture) {
-    return static_cast<double>(picture) * kStep_px * kDepth_m / kFocal_px;
+  /// Position of the camera along its x axis at a frame [m].
+  static double camera_x_m(std::int64_t frame) {
+    return static_cast<double>(frame) * kStep_px * kDepth_m / kFocal_px;
   }
 
-  [[nodiscard]] Frame picture(std::size_t index) const {
+  [[nodiscard]] Frame frame(std::size_t index) const {
     Frame frame{.id = static_cast<std::int64_t>(index), .t = times_[index]};
-    frame.gray = wall_(cv::Rect(kStep_px * static_cast<int>(index), 0, kWidth, kHeight)).clone();
+    frame.gray = texture_(cv::Rect(kStep_px * static_cast<int>(index), 0, kWidth, kHeight)).clone();
     frame.depth = cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(1000.0 * kDepth_m));
     return frame;
   }
 
-  /// Valid while this lives.
+  /// References this object, which must outlive the input.
   [[nodiscard]] SensorInput input() const {
     SensorInput input;
     input.rig.camera = {.width = kWidth,
@@ -50,7 +49,7 @@ class SlidingPlane {
                         .cx = 0.5 * (kWidth - 1),
                         .cy = 0.5 * (kHeight - 1)};
     input.frame_times = times_;
-    input.load_frame = [this](std::size_t index) { return picture(index); };
+    input.load_frame = [this](std::size_t index) { return frame(index); };
     return input;
   }
 
@@ -59,7 +58,7 @@ class SlidingPlane {
   static constexpr int kHeight = 120;
   static constexpr int kBlock_px = 8;
 
-  cv::Mat wall_;
+  cv::Mat texture_;
   std::vector<Timestamp> times_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A folder that lives as long as the test that made it.
+/// Temporary folder that is removed at the end of the test.
 #pragma once
 
 #include <stdlib.h>
@@ -27,7 +27,7 @@ class TemporaryFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// Writes a text file, making the folders above it.
+  /// Writes a text file and creates its parent folders.
   std::filesystem::path write(const std::filesystem::path& relative, const std::string& text) const {
     const std::filesystem::path file = path_ / relative;
     std::filesystem::create_directories(file.parent_path());

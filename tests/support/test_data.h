@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where tests find the real data that the project does not carry.
+/// Location of real datasets that are not part of the repository.
 #pragma once
 
 #include <cstdlib>
@@ -9,8 +9,8 @@
 
 namespace stillpoint {
 
-/// `relative` below the folder named by the environment variable STILLPOINT_DATA, else below ../shared/data
-/// beside the sources; nothing where it is in neither.
+/// `relative` in the folder given by the environment variable STILLPOINT_DATA, by default ../shared/data next
+/// to the sources; nullopt if it does not exist.
 inline std::optional<std::filesystem::path> find_test_data(const std::string& relative) {
   const char* const named = std::getenv("STILLPOINT_DATA");
   const std::filesystem::path beside = std::filesystem::path(STILLPOINT_SOURCE_DIR) / "../shared/data";
@@ -19,9 +19,9 @@ inline std::optional<std::filesystem::path> find_test_data(const std::string& re
   return path;
 }
 
-/// What a test says when it is skipped for want of `relative`.
+/// Message of a test that is skipped because `relative` is missing.
 inline std::string missing_test_data(const std::string& relative) {
-  return relative + " is not at hand; set STILLPOINT_DATA to the folder of the real data";
+  return relative + " is not available; set STILLPOINT_DATA to the folder of the datasets";
 }
 
 }  // namespace stillpoint

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// An ONNX network that puts out the same numbers whatever it sees, to test what is done with them.
+/// An ONNX network with constant output, for tests of the output decoding.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace stillpoint {
 
-/// Fields of a protocol buffer message, in the wire format.
+/// Writer of a protocol buffer message in the wire format.
 class ProtoMessage {
  public:
   ProtoMessage& number(int field, std::uint64_t value) {
@@ -34,8 +34,8 @@ class ProtoMessage {
   std::string text_;
 };
 
-/// Content of a .onnx file: average over the picture, times nothing, plus `numbers`, in the shape `shape`.
-/// Field numbers are those of onnx.proto.
+/// Content of a .onnx file whose output has the values `numbers` in the shape `shape`: global average
+/// pooling, zero weights, bias `numbers`. Field numbers are those of onnx.proto.
 inline std::string constant_onnx(const std::vector<float>& numbers, const std::vector<std::int64_t>& shape,
                                  int input_px) {
   constexpr int kFloat = 1, kInt64 = 7;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A quick visual odometry for tests of runners.
+/// Fast visual odometry configuration for tests of runners.
 #pragma once
 
-#include "core/pipeline/odometry_config.h"
+#include "core/config/odometry_config.h"
 
 namespace stillpoint {
 

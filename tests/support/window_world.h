@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A window over a few points and poses without noise, for tests of the backend.
+/// A noise-free window of a few poses and points, for tests of the backend.
 #pragma once
 
-#include "core/backend/window.h"
+#include "core/backend/window/window.h"
 #include "core/geometry/so3.h"
 #include "tests/support/random.h"
 
 namespace stillpoint {
 
-/// `frames` cameras on a gentle curve before `points` points 2-4 m away; every camera sees every point, with
-/// depth.
+/// `frames` cameras on a curve and `points` points 2-4 m away; every camera observes every point with depth.
 inline Window visual_window(int frames, int points) {
   Random random(3);
   Window window;

@@ -15,14 +15,14 @@ constexpr int kBa = ImuErrorIndex::kAccelBias;
 using PoseJacobian = Eigen::Matrix<double, 15, 7, Eigen::RowMajor>;
 using SpeedBiasJacobian = Eigen::Matrix<double, 15, 9, Eigen::RowMajor>;
 
-/// Read-only view on the two states' blocks, and the terms that residual and Jacobians share.
+/// Read-only view of the parameter blocks, and the terms shared by residual and Jacobians.
 struct States {
   Eigen::Map<const Eigen::Vector3d> p_i, v_i, bg_i, ba_i, p_j, v_j, bg_j, ba_j;
   Eigen::Quaterniond q_i, q_j;
   Eigen::Matrix3d R_i_t;       ///< R_i transposed
-  Eigen::Vector3d moved_bi;    ///< R_i^T (p_j - p_i - v_i dt - g dt^2 / 2)
-  Eigen::Vector3d speeded_bi;  ///< R_i^T (v_j - v_i - g dt)
-  Eigen::Vector3d rotation;    ///< residual of the rotation
+  Eigen::Vector3d delta_p_bi;  ///< R_i^T (p_j - p_i - v_i dt - g dt^2 / 2)
+  Eigen::Vector3d delta_v_bi;  ///< R_i^T (v_j - v_i - g dt)
+  Eigen::Vector3d rotation;    ///< r_q
 
   States(double const* const* x, const Preintegration& imu, const Eigen::Vector3d& gravity_w)
       : p_i(x[0]),
@@ -37,8 +37,8 @@ struct States {
         q_j(x[2] + 3),
         R_i_t(q_i.toRotationMatrix().transpose()) {
     const double dt = imu.duration_s();
-    moved_bi = R_i_t * (p_j - p_i - v_i * dt - 0.5 * gravity_w * dt * dt);
-    speeded_bi = R_i_t * (v_j - v_i - gravity_w * dt);
+    delta_p_bi = R_i_t * (p_j - p_i - v_i * dt - 0.5 * gravity_w * dt * dt);
+    delta_v_bi = R_i_t * (v_j - v_i - gravity_w * dt);
     rotation = log_so3(imu.delta_q(bg_i).conjugate() * (q_i.conjugate() * q_j));
   }
 };
@@ -46,9 +46,9 @@ struct States {
 PoseJacobian jacobian_pose_i(const States& s) {
   PoseJacobian J = PoseJacobian::Zero();
   J.block<3, 3>(kP, 0) = -s.R_i_t;
-  J.block<3, 3>(kP, 3) = skew(s.moved_bi);
+  J.block<3, 3>(kP, 3) = skew(s.delta_p_bi);
   J.block<3, 3>(kR, 3) = -right_jacobian_inverse(s.rotation) * (s.q_j.conjugate() * s.q_i).toRotationMatrix();
-  J.block<3, 3>(kV, 3) = skew(s.speeded_bi);
+  J.block<3, 3>(kV, 3) = skew(s.delta_v_bi);
   return J;
 }
 
@@ -91,9 +91,9 @@ void evaluate_imu_residual(const Preintegration& imu, const Eigen::Vector3d& gra
                            double const* const* parameters, double* residuals, double** jacobians) {
   const States s(parameters, imu, gravity_w);
   Vector15 r;
-  r.segment<3>(kP) = s.moved_bi - imu.delta_p(s.bg_i, s.ba_i);
+  r.segment<3>(kP) = s.delta_p_bi - imu.delta_p(s.bg_i, s.ba_i);
   r.segment<3>(kR) = s.rotation;
-  r.segment<3>(kV) = s.speeded_bi - imu.delta_v(s.bg_i, s.ba_i);
+  r.segment<3>(kV) = s.delta_v_bi - imu.delta_v(s.bg_i, s.ba_i);
   r.segment<3>(kBg) = s.bg_j - s.bg_i;
   r.segment<3>(kBa) = s.ba_j - s.ba_i;
   const Matrix15& W = imu.sqrt_information();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What is known of the window's states from frames that have left it: a linearised residual.
+/// Linear prior on the window's states, as left by marginalization: a linearized residual.
 #pragma once
 
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "core/backend/kept_matrix.h"
+#include "core/backend/factors/reusable_matrix.h"
 
 namespace stillpoint {
 
@@ -20,26 +20,34 @@ enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset };
   return kind == BlockKind::kSpeedBias ? 9 : kind == BlockKind::kTimeOffset ? 1 : 6;
 }
 
-/// Values of one block, or its tangent vector: at most nine, held in place.
+/// Values of one block, or its tangent vector: at most nine, stored inline.
 using BlockVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9, 1>;
 
-/// One state that the prior speaks of, and where it was linearised.
+/// One parameter block of the prior and its linearization point x0.
 struct PriorBlock {
   BlockKind kind = BlockKind::kPose;
   int frame = -1;             ///< index in the window; -1 for calibration
   BlockVector linearization;  ///< `global_size(kind)` values
 };
 
-/// residual(x) = residual + jacobian * (x [-] linearization), blocks side by side in the order of `blocks`.
+/// Cost 1/2 |r(x)|^2 with the linearized residual
+///
+///   r(x) = r0 + J (x [-] x0)
+///
+/// where x stacks the states in the order of `blocks`, x0 is their linearization point, J = `jacobian` and r0
+/// = `residual`. J and r0 are computed once, at x0, and never relinearized (first-estimates Jacobian): only
+/// the difference x [-] x0 follows the states. The normal equations of the prior at x are J^T J dx = -J^T
+/// r(x). See marginalization.h for how J and r0 are obtained.
 struct LinearPrior {
   std::vector<PriorBlock> blocks;
-  KeptMatrix<Eigen::MatrixXd> jacobian;
-  KeptVector residual;
+  ReusableMatrix<Eigen::MatrixXd> jacobian;
+  ReusableVector residual;
 
   [[nodiscard]] bool empty() const { return blocks.empty(); }
 };
 
-/// x [-] origin in the tangent space at origin; poses as (p, q xyzw) with the rotation on the right.
+/// x [-] origin, in the tangent space at `origin`: for poses (p - p0, Log(q0^-1 q)), the inverse of
+/// PoseManifold::Plus; for other blocks x - x0.
 [[nodiscard]] BlockVector block_difference(BlockKind kind, const double* x, const BlockVector& origin);
 
 }  // namespace stillpoint

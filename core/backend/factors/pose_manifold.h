@@ -7,7 +7,7 @@
 namespace stillpoint {
 
 /// The factors write their Jacobians with respect to the tangent space into the first six of seven columns,
-/// so the Jacobian of Plus is [I; 0]: one product less per residual.
+/// so the Jacobian of Plus is [I; 0]: saves one matrix product per residual.
 class PoseManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 7; }

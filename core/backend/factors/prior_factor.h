@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The marginalisation prior as a residual of the solve.
+/// The marginalization prior as a Ceres cost function.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -8,9 +8,10 @@
 
 namespace stillpoint {
 
-/// One parameter block for each of `prior.blocks`, in their order. The Jacobian of the rotation is taken as
-/// that at the linearisation point: first estimates, so that marginalised information is not counted as new
-/// (Huang et al. 2009).
+/// r(x) = r0 + J (x [-] x0), with one parameter block for each of `prior.blocks`, in their order. The
+/// Jacobian is always J, that is, the derivative of [-] is approximated by the one at x0. Keeping the
+/// linearization point of the marginalization (first-estimates Jacobian, Huang et al. 2009) preserves the
+/// nullspace of the prior: unobservable directions do not gain spurious information.
 class PriorFactor final : public ceres::CostFunction {
  public:
   /// @param prior not empty; must outlive the factor

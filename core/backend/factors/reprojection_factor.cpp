@@ -9,18 +9,18 @@ namespace {
 
 Pose pose_of(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Vector3d(x)}; }
 
-/// The landmark on its way from camera i to camera j, times its inverse depth lambda: so it has no pole at
-/// infinity, and goes on smoothly to negative lambda. Letters p as points are called in their frames.
-struct Transfer {
+/// The landmark transformed from camera i to camera j, scaled by its inverse depth lambda so that it is
+/// smooth at infinity and for negative lambda. p_x is the scaled point in frame x.
+struct TransferredPoint {
   Pose T_w_bi, T_w_bj, T_b_c;
   double lambda;
   Eigen::Matrix3d R_cj_w;  ///< R_b_c^T R_w_bj^T
   Eigen::Matrix3d R_cj_bi;
-  Eigen::Vector3d ray_i;             ///< bearing at the state's time, z = 1
+  Eigen::Vector3d ray_i;             ///< bearing at the time of state i, z = 1
   Eigen::Vector3d p_bi, p_bj, p_cj;  ///< each times lambda
-  Eigen::Vector3d p_cj_ci;           ///< where j sees the camera i; not scaled
+  Eigen::Vector3d p_cj_ci;           ///< position of camera i in camera j; not scaled
 
-  Transfer(double const* const* x, const Eigen::Vector2d& bearing_i)
+  TransferredPoint(double const* const* x, const Eigen::Vector2d& bearing_i)
       : T_w_bi(pose_of(x[0])), T_w_bj(pose_of(x[1])), T_b_c(pose_of(x[2])), lambda(x[4][0]) {
     const Eigen::Matrix3d R_bi = T_w_bi.R();
     const Eigen::Matrix3d R_bj_t = T_w_bj.R().transpose();
@@ -37,31 +37,31 @@ struct Transfer {
 
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
-Matrix36 point_by_pose_i(const Transfer& t) {
+Matrix36 J_point_pose_i(const TransferredPoint& t) {
   Matrix36 J;
   J << t.lambda * t.R_cj_w, -t.R_cj_bi * skew(t.p_bi);
   return J;
 }
 
-Matrix36 point_by_pose_j(const Transfer& t) {
+Matrix36 J_point_pose_j(const TransferredPoint& t) {
   Matrix36 J;
   J << -t.lambda * t.R_cj_w, t.T_b_c.R().transpose() * skew(t.p_bj);
   return J;
 }
 
-Matrix36 point_by_extrinsics(const Transfer& t) {
+Matrix36 J_point_extrinsics(const TransferredPoint& t) {
   const Eigen::Matrix3d R_bc = t.T_b_c.R();
   Matrix36 J;
   J << t.lambda * (t.R_cj_bi - R_bc.transpose()), -t.R_cj_bi * R_bc * skew(t.ray_i) + skew(t.p_cj);
   return J;
 }
 
-/// Writes d residual / d pose, tangent in the first six columns of seven.
+/// Writes d residual / d pose; the tangent space is in the first six of seven columns.
 template <int Rows>
-void write_pose_jacobian(double* out, const Eigen::Matrix<double, Rows, 3>& by_point,
-                         const Matrix36& point_by_pose) {
+void write_pose_jacobian(double* out, const Eigen::Matrix<double, Rows, 3>& J_point,
+                         const Matrix36& J_point_pose) {
   Eigen::Map<Eigen::Matrix<double, Rows, 7, Eigen::RowMajor>> J(out);
-  J.template leftCols<6>() = by_point * point_by_pose;
+  J.template leftCols<6>() = J_point * J_point_pose;
   J.col(6).setZero();
 }
 
@@ -73,27 +73,27 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   const double time_offset = x[3][0];
   const Eigen::Vector2d bearing_i = m.bearing_i - (time_offset + m.exposure_i_s) * m.velocity_i;
   const Eigen::Vector2d bearing_j = m.bearing_j - (time_offset + m.exposure_j_s) * m.velocity_j;
-  const Transfer t(x, bearing_i);
+  const TransferredPoint t(x, bearing_i);
   const ReprojectionRows rows = reprojection_rows(
       t.p_cj, t.lambda, {.bearing = bearing_j, .inverse_depth = m.inverse_depth_j, .has_depth = Rows == 3},
       noise_);
   Eigen::Map<Eigen::Matrix<double, Rows, 1>>{residuals} = rows.residual.template head<Rows>();
-  const Eigen::Matrix<double, Rows, 3> by_point = rows.by_point.template topRows<Rows>();
+  const Eigen::Matrix<double, Rows, 3> J_point = rows.J_point.template topRows<Rows>();
   if (jacobians == nullptr) return true;
 
-  if (jacobians[0] != nullptr) write_pose_jacobian<Rows>(jacobians[0], by_point, point_by_pose_i(t));
-  if (jacobians[1] != nullptr) write_pose_jacobian<Rows>(jacobians[1], by_point, point_by_pose_j(t));
-  if (jacobians[2] != nullptr) write_pose_jacobian<Rows>(jacobians[2], by_point, point_by_extrinsics(t));
+  if (jacobians[0] != nullptr) write_pose_jacobian<Rows>(jacobians[0], J_point, J_point_pose_i(t));
+  if (jacobians[1] != nullptr) write_pose_jacobian<Rows>(jacobians[1], J_point, J_point_pose_j(t));
+  if (jacobians[2] != nullptr) write_pose_jacobian<Rows>(jacobians[2], J_point, J_point_extrinsics(t));
   if (jacobians[3] != nullptr) {
-    const Eigen::Matrix<double, Rows, 3> by_ray = by_point * t.R_cj_bi * t.T_b_c.R();
+    const Eigen::Matrix<double, Rows, 3> J_ray = J_point * t.R_cj_bi * t.T_b_c.R();
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[3]);
-    J = by_ray.template leftCols<2>() * -m.velocity_i;
+    J = J_ray.template leftCols<2>() * -m.velocity_i;
     J.template head<2>() += m.velocity_j / noise_.bearing;
   }
   if (jacobians[4] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[4]);
-    J = by_point * t.p_cj_ci;
-    if constexpr (Rows == 3) J[2] += rows.depth_by_lambda;
+    J = J_point * t.p_cj_ci;
+    if constexpr (Rows == 3) J[2] += rows.J_depth_lambda;
   }
   return true;
 }

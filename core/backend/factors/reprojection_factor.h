@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Residual between where a landmark's host says it is and where, and how deep, another frame saw it.
+/// Reprojection residual of a landmark between its host frame and another frame, optionally with a depth row.
 #pragma once
 
 #include <ceres/sized_cost_function.h>
@@ -9,26 +9,36 @@
 
 namespace stillpoint {
 
-/// One landmark seen by its host i and by frame j.
+/// Observations of one landmark in its host frame i and in frame j.
 struct ReprojectionMeasurement {
-  Eigen::Vector2d bearing_i = Eigen::Vector2d::Zero();  ///< normalised plane
+  Eigen::Vector2d bearing_i = Eigen::Vector2d::Zero();  ///< normalized image plane
   Eigen::Vector2d bearing_j = Eigen::Vector2d::Zero();
   Eigen::Vector2d velocity_i = Eigen::Vector2d::Zero();  ///< of the bearing [1/s]
   Eigen::Vector2d velocity_j = Eigen::Vector2d::Zero();
-  double exposure_i_s = 0.0;  ///< exposure of the observation minus the time of state i, less the time offset
+  double exposure_i_s = 0.0;  ///< row readout offset minus the time offset at which state i is defined
   double exposure_j_s = 0.0;
-  double inverse_depth_j = 0.0;  ///< measured in j [1/m]; read by the depth row only
+  double inverse_depth_j = 0.0;  ///< measured in j [1/m]; used by the depth row only
 };
 
-/// Two rows of bearing error and, with `Rows == 3`, one of inverse depth. Blocks: pose i, pose j, camera in
-/// body (p, q xyzw each), time offset, inverse depth in the host. Qin et al. 2018, Eq. (25), in the
-/// normalised plane.
+/// Two rows of bearing error and, with `Rows == 3`, one of inverse depth. Qin et al. 2018, Eq. (25), on the
+/// normalized image plane instead of the unit sphere. With the bearings u_i, u_j and their velocities, td the
+/// time offset, e_k the row readout offset minus the time offset at which state k is defined, and lambda the
+/// inverse depth in the host:
 ///
-/// The depth row is bounded, d / sqrt(1 + (d/c)^2) (Geman & McClure 1985): one depth on an object's edge must
-/// not cost the landmark its good bearing.
+///   u_k(td) = u_k - (td + e_k) du_k/dt,  k = i, j         (shifted to the time of the state)
+///   P       = T_c_b T_bj_w T_w_bi T_b_c [u_i(td); 1; lambda]
+///   r_u     = (P_xy / P_z - u_j(td)) / sigma_u
+///   r_d     = rho((lambda / P_z - lambda_j) / sigma_d),   rho(d) = d / sqrt(1 + (d/c)^2)
 ///
-/// Defined for every inverse depth, zero and negative ones too, and for points behind camera j: a step of the
-/// solver that throws one bad point beyond infinity must not be refused for all the others.
+/// P is homogeneous: lambda times the point in camera j.
+/// lambda_j is the inverse depth measured in j; lambda / P_z is the predicted one. The bounded rho (Geman &
+/// McClure 1985) keeps a depth measured across an object's edge from outweighing the bearing.
+///
+/// Scaling the point by lambda removes the pole at infinity: the residual is defined for every inverse depth,
+/// including zero and negative values, and for points behind camera j. One outlier therefore cannot make the
+/// solver reject a step.
+///
+/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, lambda.
 template <int Rows>
 class ReprojectionFactor final : public ceres::SizedCostFunction<Rows, 7, 7, 7, 1, 1> {
   static_assert(Rows == 2 || Rows == 3);
@@ -46,7 +56,7 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<Rows, 7, 7, 7, 
 extern template class ReprojectionFactor<2>;
 extern template class ReprojectionFactor<3>;
 
-/// Depth measured by the host itself: (inverse depth - measured) / sigma, bounded in the same way.
+/// Depth measured in the host: r = rho((lambda - lambda_i) / sigma_d), with rho as above.
 class HostDepthFactor final : public ceres::SizedCostFunction<1, 1> {
  public:
   HostDepthFactor(double measured_inverse_depth, const ReprojectionNoise& noise)

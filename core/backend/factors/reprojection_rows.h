@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The rows of one reprojection residual and how they follow the point that camera j sees: what the factor
-/// and the Schur solver share.
+/// Rows of one reprojection residual and their derivatives with respect to the point in camera j, shared by
+/// the Ceres factor and the Schur solver. Equations: see ReprojectionFactor.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,15 +9,15 @@
 
 namespace stillpoint {
 
-/// Standard deviations that scale the rows.
+/// Standard deviations by which the rows are whitened.
 struct ReprojectionNoise {
-  double bearing = 1.0;        ///< of a bearing [normalised plane]
+  double bearing = 1.0;        ///< of a bearing [normalized image plane]
   double inverse_depth = 1.0;  ///< of a measured inverse depth [1/m]
   double depth_outlier = 2.0;  ///< the depth row saturates at this many standard deviations
 };
 
-/// A whitened depth error, bounded at `c`: d / sqrt(1 + (d/c)^2) (Geman & McClure 1985), and the bound's
-/// slope.
+/// Bounded error rho(d) = d / sqrt(1 + (d/c)^2) of a whitened error d (Geman & McClure 1985), |rho| < c, and
+/// its derivative rho'(d).
 struct BoundedError {
   double value;
   double slope;
@@ -28,48 +28,48 @@ struct BoundedError {
   return {d / root, 1.0 / (inner * root)};
 }
 
-/// What frame j saw of a landmark.
-struct Sighting {
-  Eigen::Vector2d bearing = Eigen::Vector2d::Zero();  ///< at the state's time, normalised plane
+/// Measurement of a landmark in frame j.
+struct MeasuredPoint {
+  Eigen::Vector2d bearing = Eigen::Vector2d::Zero();  ///< at the time of the state, normalized image plane
   double inverse_depth = 0.0;                         ///< measured [1/m]
-  bool has_depth = false;                             ///< whether the third row is wanted
+  bool has_depth = false;                             ///< whether the depth row is evaluated
 };
 
-/// Whitened rows: two of bearing and one of inverse depth, the latter zero unless wanted.
+/// Whitened rows: two of bearing and one of inverse depth, the latter zero without a depth measurement.
 struct ReprojectionRows {
   Eigen::Vector3d residual;
-  Eigen::Matrix3d by_point;      ///< derivatives with respect to the point times its inverse depth
-  double depth_by_lambda = 0.0;  ///< of the depth row by the inverse depth, beyond what the point tells
+  Eigen::Matrix3d J_point;      ///< with respect to the scaled point P in camera j
+  double J_depth_lambda = 0.0;  ///< depth row: partial derivative by lambda at constant P
 };
 
-/// Ratio of the depths in j and in the host below which the point counts as in the plane of camera j: nearer
-/// ones, and those behind it, are read as if they lay there.
+/// Lower clamp of P_z, the ratio of the depths in j and in the host: smaller values, including points behind
+/// camera j, are evaluated at this ratio.
 inline constexpr double kMinDepthRatio = 0.01;
 
-/// @param p_cj the landmark in camera j times its inverse depth `lambda` in the host
+/// @param p_cj P: the landmark in camera j times its inverse depth `lambda` in the host
 [[nodiscard]] inline ReprojectionRows reprojection_rows(const Eigen::Vector3d& p_cj, double lambda,
-                                                        const Sighting& sighting,
+                                                        const MeasuredPoint& observation,
                                                         const ReprojectionNoise& noise) {
-  const bool before_camera = p_cj.z() > kMinDepthRatio;
-  const double inverse_z = 1.0 / (before_camera ? p_cj.z() : kMinDepthRatio);
-  const double by_z = before_camera ? -inverse_z : 0.0;  // d log(1/z) / dz
+  const bool in_front = p_cj.z() > kMinDepthRatio;
+  const double inverse_z = 1.0 / (in_front ? p_cj.z() : kMinDepthRatio);
+  const double dlog_dz = in_front ? -inverse_z : 0.0;  // d log(1/z) / dz
   const double weight = 1.0 / noise.bearing;
-  const Eigen::Vector2d seen = p_cj.head<2>() * inverse_z;
+  const Eigen::Vector2d projected = p_cj.head<2>() * inverse_z;
 
   ReprojectionRows rows;
-  rows.residual.head<2>() = weight * (seen - sighting.bearing);
+  rows.residual.head<2>() = weight * (projected - observation.bearing);
   rows.residual[2] = 0.0;
-  rows.by_point << weight * inverse_z, 0.0, weight * seen.x() * by_z,  //
-      0.0, weight * inverse_z, weight * seen.y() * by_z,               //
+  rows.J_point << weight * inverse_z, 0.0, weight * projected.x() * dlog_dz,  //
+      0.0, weight * inverse_z, weight * projected.y() * dlog_dz,              //
       0.0, 0.0, 0.0;
-  if (sighting.has_depth) {
+  if (observation.has_depth) {
     const double inverse_depth = lambda * inverse_z;
     const BoundedError depth =
-        bounded_error((inverse_depth - sighting.inverse_depth) / noise.inverse_depth, noise.depth_outlier);
+        bounded_error((inverse_depth - observation.inverse_depth) / noise.inverse_depth, noise.depth_outlier);
     const double slope = depth.slope / noise.inverse_depth;
     rows.residual[2] = depth.value;
-    rows.by_point(2, 2) = slope * inverse_depth * by_z;
-    rows.depth_by_lambda = slope * inverse_z;
+    rows.J_point(2, 2) = slope * inverse_depth * dlog_dz;
+    rows.J_depth_lambda = slope * inverse_z;
   }
   return rows;
 }

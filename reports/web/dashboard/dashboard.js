@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of the history is shown: one subject at a time, its accuracy and cost on one time line, and each of its numbers.
+// History view: one subject at a time, with its accuracy and cost in one chart and one chart per metric.
 "use strict";
 (function (page) {
   const { commits, plans, hosts, subjects, series, shifts } = page.index;
@@ -18,7 +18,7 @@
     if (entries.some(([value]) => String(value) === String(wanted))) list.value = wanted;
   }
 
-  // Subjects of one label differ in their machine or their data: then these are told too.
+  // Subjects with equal labels differ in machine or data, which are appended then.
   function subjectText(i) {
     const same = subjects.filter((other) => other.label === subjects[i].label);
     if (same.length === 1) return subjects[i].label;
@@ -27,8 +27,8 @@
     return subjects[i].label + data + host;
   }
 
-  // Of the newest commit until another is pointed at. Every number has its place at every commit, so that charts do not
-  // move away from below the pointer.
+  // Values at the selected commit, by default the newest. The layout is the same at every commit, so that the charts
+  // below do not move under the pointer.
   function readout() {
     const place = byId("readout");
     place.replaceChildren();
@@ -56,7 +56,7 @@
 
   const open = (commit) => { location.href = commits[commit].page; };
 
-  // The chosen accuracy and cost; where a subject lacks them, the first that it has.
+  // The selected metric of a family, or the first one available for the subject. @return index of its series
   function chosen(family) {
     const list = byId(family), own = seriesOf(state.subject).filter((i) => series[i].family === family);
     const names = own.map((i) => series[i].metric);
@@ -68,18 +68,18 @@
   function draw() {
     if (state.charts) state.charts.destroy();
     byId("timeline").replaceChildren();
-    byId("numbers").replaceChildren();
+    byId("metric-charts").replaceChildren();
     const accuracy = chosen("accuracy"), cost = chosen("cost");
     const lines = [];
     if (accuracy !== undefined) lines.push({ index: accuracy, scale: "accuracy", color: "c0" });
     if (cost !== undefined) lines.push({ index: cost, scale: "cost", color: "c1" });
-    const groups = [{ place: byId("timeline"), id: "timeline", title: "Accuracy and cost on one time line", lines, height: 260 }];
+    const groups = [{ place: byId("timeline"), id: "timeline", title: "Accuracy and cost over commits", lines, height: 260 }];
     for (const index of seriesOf(state.subject)) {
       const unit = series[index].unit ? " [" + series[index].unit + "]" : "";
-      groups.push({ place: byId("numbers"), id: series[index].metric, title: series[index].metric + unit, height: 130, lines: [{ index, scale: "y", color: series[index].family === "cost" ? "c1" : "c0" }] });
+      groups.push({ place: byId("metric-charts"), id: series[index].metric, title: series[index].metric + unit, height: 130, lines: [{ index, scale: "y", color: series[index].family === "cost" ? "c1" : "c0" }] });
     }
     state.charts = page.drawHistory(groups, (commit) => point(commit, true), open, (min, max) => { byId("history").dataset.zoom = min.toFixed(2) + " " + max.toFixed(2); });
-    // A chart knows where a commit is once it has been drawn.
+    // Cursor positions are defined only after the first draw.
     requestAnimationFrame(() => { if (state.commit !== null) state.charts.point(state.commit); });
   }
 
@@ -91,7 +91,7 @@
     readout();
   };
 
-  // A series by its index: its subject is shown, its chart marked.
+  // Shows the subject of a series and highlights its chart.
   page.showSeries = function (index) {
     const subject = series[index].subject;
     byId("plan").value = "";
@@ -100,7 +100,7 @@
     const family = series[index].family;
     if (family !== "other") { chosen(family); byId(family).value = series[index].metric; draw(); }
     byId("history").dataset.series = index;
-    const figure = [...byId("numbers").children].find((child) => child.dataset.chart === series[index].metric);
+    const figure = [...byId("metric-charts").children].find((child) => child.dataset.chart === series[index].metric);
     if (figure) figure.classList.add("selected");
     byId("history").scrollIntoView();
   };
@@ -132,7 +132,7 @@
 
   const KEYS = {
     ArrowRight: (event) => stepCommit(event.shiftKey ? 10 : 1), ArrowLeft: (event) => stepCommit(event.shiftKey ? -10 : -1),
-    n: () => stepSubject(1), p: () => stepSubject(-1), r: nextRegression, 0: () => state.charts.whole(),
+    n: () => stepSubject(1), p: () => stepSubject(-1), r: nextRegression, 0: () => state.charts.resetZoom(),
     Enter: () => { if (state.commit !== null) open(state.commit); },
   };
 
@@ -159,7 +159,7 @@
     draw();
   }
 
-  // Where something is open, else what was measured most often.
+  // The subject of the first open regression, else the one with the most measurements.
   function firstSubject() {
     const regressed = shifts.find((shift) => shift.state === "open");
     if (regressed) return series[regressed.series].subject;
@@ -174,7 +174,7 @@
   byId("previous").addEventListener("click", () => stepSubject(-1));
   byId("next").addEventListener("click", () => stepSubject(1));
   byId("regression").addEventListener("click", nextRegression);
-  byId("whole").addEventListener("click", () => state.charts.whole());
+  byId("reset-zoom").addEventListener("click", () => state.charts.resetZoom());
   byId("theme").addEventListener("click", toggleTheme);
   document.addEventListener("keydown", onKey);
   window.addEventListener("hashchange", fromHash);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Charts of numbers over commits: a pointer or a zoom in one is in all.
+// Charts of metrics over commits with synchronized cursor and zoom.
 "use strict";
 (function (page) {
   const cursor = uPlot.sync("commits");
-  const COLORS = { open: "bad", accepted: "faint", improved: "c2", ended: "c4", neutral: "c3" };
+  const COLORS = { open: "bad", accepted: "faint", improved: "c2", resolved: "c4", neutral: "c3" };
   const label = (i) => (page.index.commits[i] ? page.index.commits[i].label : "");
   const number = (u, value) => (value === null || value === undefined ? "-" : Number(value.toPrecision(4)).toString());
 
-  // Values at every commit, null where it was not measured.
+  // Values by commit, null where not measured.
   page.valuesOf = function (series) {
     const values = new Array(page.index.commits.length).fill(null);
     series.commits.forEach((commit, i) => { values[commit] = series.values[i]; });
@@ -16,7 +16,7 @@
 
   const shiftsOf = (index) => page.index.shifts.filter((shift) => shift.series === index);
 
-  // Where the levels to both sides of a shift end: at the shifts beside it.
+  // [first commit, last commit, level] of each segment between shifts.
   function levelSpans(index) {
     const series = page.index.series[index], shifts = shiftsOf(index);
     const spans = [];
@@ -38,7 +38,7 @@
     u.ctx.stroke();
   }
 
-  // A line where each change is, the levels between changes, and the slope of a creep.
+  // A vertical line at each shift, dashed levels between shifts, and dotted drift lines.
   function drawChanges(u, line) {
     const { left, top, width, height } = u.bbox;
     u.ctx.save();
@@ -50,9 +50,9 @@
       const x = u.valToPos((shift.before + shift.after) / 2, "x", true);
       strokeLine(u, page.color(COLORS[shift.state]), [], [x, top], [x, top + height]);
     }
-    for (const creep of page.index.creeps.filter((one) => one.series === line.index)) {
-      strokeLine(u, page.color(creep.worse ? "worse" : "better"), [1, 4], [u.valToPos(creep.first, "x", true), u.valToPos(creep.from, line.scale, true)],
-        [u.valToPos(creep.last, "x", true), u.valToPos(creep.to, line.scale, true)]);
+    for (const drift of page.index.drifts.filter((one) => one.series === line.index)) {
+      strokeLine(u, page.color(drift.worse ? "worse" : "better"), [1, 4], [u.valToPos(drift.first, "x", true), u.valToPos(drift.from, line.scale, true)],
+        [u.valToPos(drift.last, "x", true), u.valToPos(drift.to, line.scale, true)]);
     }
     for (const [start, end, level] of levelSpans(line.index)) {
       const y = u.valToPos(level, line.scale, true);
@@ -65,7 +65,7 @@
     return { stroke: page.color("faint"), grid: { stroke: page.color("line"), width: 1 }, ticks: { stroke: page.color("line") }, ...extra };
   }
 
-  // A little more than the values take; equal values in the middle.
+  // The value range plus a margin.
   function valueRange(u, min, max) {
     if (min === null) return [0, 1];
     const margin = max > min ? 0.08 * (max - min) : Math.abs(min) * 0.1 || 1;
@@ -79,7 +79,7 @@
     lines.forEach((line, i) => {
       scales[line.scale] = { range: valueRange };
       const unit = page.index.series[line.index].unit;
-      axes.push(axis({ scale: line.scale, side: i === 0 ? 3 : 1, size: 62, values: (u, splits) => splits.map((at) => Number(at.toPrecision(5)).toString()), label: lines.length > 1 ? unit || "share" : undefined, labelSize: 16, grid: { show: i === 0, stroke: page.color("line"), width: 1 } }));
+      axes.push(axis({ scale: line.scale, side: i === 0 ? 3 : 1, size: 62, values: (u, splits) => splits.map((at) => Number(at.toPrecision(5)).toString()), label: lines.length > 1 ? unit || "ratio" : undefined, labelSize: 16, grid: { show: i === 0, stroke: page.color("line"), width: 1 } }));
     });
     const shown = lines.map((line) => ({ label: page.index.series[line.index].metric, scale: line.scale, stroke: page.color(line.color), width: 1.3,
       spanGaps: true, value: number, points: { show: true, size: 5, fill: page.color(line.color) } }));
@@ -95,14 +95,14 @@
     };
     const commits = page.index.commits.map((_, i) => i);
     const plot = new uPlot(options, [commits, ...lines.map((line) => page.valuesOf(page.index.series[line.index]))], figure);
-    // A click that drags nothing opens the commit; a drag zooms.
+    // A click without dragging opens the commit; a drag zooms.
     let down = 0;
     plot.over.addEventListener("mousedown", (event) => { down = event.clientX; });
     plot.over.addEventListener("click", (event) => { if (Math.abs(event.clientX - down) < 3 && plot.cursor.idx !== null) hooks.onOpen(plot.cursor.idx); });
     return plot;
   }
 
-  // Draws groups [{place, title, id, lines, height}] as one set of linked charts.
+  // Draws groups [{place, title, id, lines, height}] as charts with synchronized cursor and zoom.
   page.drawHistory = function (groups, onCommit, onOpen, onZoomed) {
     const plots = [];
     let zooming = false;
@@ -120,10 +120,10 @@
       plots.push(chart(figure, group.lines, group.height, { onCommit, onOpen, onZoom: zoom }));
     }
     const last = page.index.commits.length - 1;
-    const whole = () => zoom(-0.5, Math.max(last, 1) + 0.5);
-    whole();
+    const resetZoom = () => zoom(-0.5, Math.max(last, 1) + 0.5);
+    resetZoom();
     return {
-      zoom, whole,
+      zoom, resetZoom,
       point(commit) { for (const plot of plots) plot.setCursor({ left: plot.valToPos(commit, "x"), top: plot.over.clientHeight / 2 }, false); },
       resize() { for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.height }); },
       destroy() { for (const plot of plots) plot.destroy(); },

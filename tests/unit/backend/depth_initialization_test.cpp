@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/depth_initialization.h"
+#include "core/backend/start/depth_initialization.h"
 
 #include <gtest/gtest.h>
 
@@ -17,26 +17,25 @@ TEST(DepthInitialization, TriangulatesExactTracks) {
   }
 }
 
-TEST(DepthInitialization, RefusesToTriangulateWithoutParallax) {
+TEST(DepthInitialization, ReturnsZeroWithoutParallax) {
   Window window = visual_window(6, 1);
   for (WindowFrame& frame : window.frames) frame.state.T_w_b.p.setZero();
   EXPECT_EQ(triangulate_depth(window, window.landmarks[0], 1.5 / kFocal_px), 0.0);
 }
 
-TEST(DepthInitialization, LeavesOutAMeasurementThatNoOtherViewConfirms) {
+TEST(DepthInitialization, IgnoresADepthThatNoOtherViewConfirms) {
   Window window = visual_window(6, 1);
   Landmark& landmark = window.landmarks[0];
   const double truth = 1.0 / landmark.inverse_depth;
   landmark.inverse_depth = 0.0;
-  landmark.observations[0].depth =
-      0.5;  // an edge: other views would see the point elsewhere by far more than 10 px
+  landmark.observations[0].depth = 0.5;  // at a depth edge: reprojection errors far above 10 px
   for (std::size_t i = 2; i < landmark.observations.size(); ++i) landmark.observations[i].depth = 0.0;
   initialize_depths({}, kFocal_px, window);
-  EXPECT_NEAR(1.0 / landmark.inverse_depth, truth, 1e-9);  // from the one good depth, that of frame 1
+  EXPECT_NEAR(1.0 / landmark.inverse_depth, truth, 1e-9);  // from the only correct depth, in frame 1
   EXPECT_EQ(landmark.source, DepthSource::kMeasured);
 }
 
-TEST(DepthInitialization, DoesNotBelieveDepthsBeyondTheLimit) {
+TEST(DepthInitialization, IgnoresDepthsBeyondTheLimit) {
   Window window = visual_window(6, 1);
   Landmark& landmark = window.landmarks[0];
   landmark.inverse_depth = 0.0;

@@ -11,7 +11,7 @@ namespace {
 
 const Eigen::Vector3d kGravity(0.0, 0.0, -9.81);
 
-Preintegration turning_motion() {
+Preintegration rotating_motion() {
   Preintegration imu(ImuNoise{}, Eigen::Vector3d(0.01, -0.02, 0.03), Eigen::Vector3d(0.1, 0.0, -0.1));
   std::vector<ImuSample> samples;
   for (int i = 0; i <= 20; ++i) {
@@ -27,8 +27,8 @@ std::vector<double> pose_block(const Eigen::Vector3d& p, const Eigen::Vector3d& 
   return {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
-TEST(ImuFactor, JacobiansEqualNumericOnes) {
-  const Preintegration imu = turning_motion();
+TEST(ImuFactor, JacobiansMatchNumericDifferentiation) {
+  const Preintegration imu = rotating_motion();
   const ImuFactor factor(imu, kGravity);
   const Blocks blocks = {pose_block({1.0, 2.0, 3.0}, {0.1, -0.4, 0.9}),
                          {0.5, -0.2, 0.1, 0.012, -0.019, 0.028, 0.15, -0.05, -0.08},
@@ -37,8 +37,8 @@ TEST(ImuFactor, JacobiansEqualNumericOnes) {
   EXPECT_LT(jacobian_error(factor, blocks), 1e-6);
 }
 
-TEST(ImuFactor, IsZeroForTheMotionThatWasMeasured) {
-  const Preintegration imu = turning_motion();
+TEST(ImuFactor, IsZeroForTheMeasuredMotion) {
+  const Preintegration imu = rotating_motion();
   NavState start;
   start.T_w_b = Pose{exp_so3({0.1, -0.4, 0.9}), {1.0, 2.0, 3.0}};
   start.v_w = {0.5, -0.2, 0.1};

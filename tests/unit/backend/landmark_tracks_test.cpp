@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/landmark_tracks.h"
+#include "core/backend/window/landmark_tracks.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace stillpoint {
 namespace {
 
-TEST(LandmarkTracks, KeepTheirPlaceWhenTheOldestFrameGoes) {
+TEST(LandmarkTracks, KeepTheirPositionWhenTheOldestFrameIsRemoved) {
   Window window = visual_window(5, 10);
   const Eigen::Vector3d before = window.position(window.landmarks[3]);
   remove_oldest_frame(window);
@@ -18,18 +18,18 @@ TEST(LandmarkTracks, KeepTheirPlaceWhenTheOldestFrameGoes) {
   EXPECT_LT((window.position(window.landmarks[3]) - before).norm(), 1e-9);
 }
 
-TEST(LandmarkTracks, LoseOneObservationWhenTheSecondNewestFrameGoes) {
+TEST(LandmarkTracks, LoseOneObservationWhenTheSecondNewestFrameIsRemoved) {
   Window window = visual_window(5, 10);
   const Eigen::Vector2d newest = window.landmarks[0].observations.back().bearing;
   remove_second_newest_frame(window);
   EXPECT_EQ(window.landmarks[0].last(), 3);
-  EXPECT_EQ(window.landmarks[0].in(3).bearing, newest);
+  EXPECT_EQ(window.landmarks[0].observation_in(3).bearing, newest);
 }
 
-TEST(LandmarkTracks, MoveToTheNewestFrameWhenTheirHostGoes) {
+TEST(LandmarkTracks, AreHostedInTheNewestFrameWhenTheirHostIsRemoved) {
   Window window = visual_window(5, 1);
   Landmark& landmark = window.landmarks[0];
-  landmark.host = 3;  // seen by frames 3 and 4 only
+  landmark.host = 3;  // observed in frames 3 and 4 only
   landmark.observations = {landmark.observations[3], landmark.observations[4]};
   landmark.inverse_depth = 1.0 / landmark.observations[0].depth;
   const double depth_in_newest = landmark.observations[1].depth;
@@ -39,18 +39,18 @@ TEST(LandmarkTracks, MoveToTheNewestFrameWhenTheirHostGoes) {
   EXPECT_NEAR(1.0 / window.landmarks[0].inverse_depth, depth_in_newest, 1e-9);
 }
 
-TEST(LandmarkTracks, BeginAnewWhenTheirPastIsForgotten) {
+TEST(LandmarkTracks, KeepOnlyTheNewestObservationAfterARestart) {
   Window window = visual_window(5, 1);
   Landmark& landmark = window.landmarks[0];
   const Eigen::Vector2d newest = landmark.observations.back().bearing;
-  forget_past(landmark);
+  restart_track(landmark);
   EXPECT_EQ(landmark.host, 4);
   ASSERT_EQ(landmark.observations.size(), 1u);
   EXPECT_EQ(landmark.observations[0].bearing, newest);
   EXPECT_EQ(landmark.inverse_depth, 0.0);
 }
 
-TEST(LandmarkTracks, JoinByIdAndStartWhereTheTrackerFoundThem) {
+TEST(LandmarkTracks, AreExtendedByIdAndNewOnesAreHostedInTheNewestFrame) {
   Window window = visual_window(3, 2);
   window.frames.push_back(window.frames.back());
   TrackedFrame frame;
@@ -59,52 +59,52 @@ TEST(LandmarkTracks, JoinByIdAndStartWhereTheTrackerFoundThem) {
   ASSERT_EQ(window.landmarks.size(), 3u);
   EXPECT_EQ(window.landmarks[1].observations.size(), 4u);
   EXPECT_EQ(window.landmarks[2].host, 3);
-  EXPECT_EQ(window.landmarks[2].observations[0].depth, 0.0);  // nearer than min_m: not believed
+  EXPECT_EQ(window.landmarks[2].observations[0].depth, 0.0);  // below min_m: ignored
 }
 
-/// A camera at rest: frames 0.1 s apart that see the same `landmarks` at the same places.
-Window resting_window(int landmarks) {
+/// A static camera: frames 0.1 s apart with identical observations of `landmarks` landmarks.
+Window static_camera_window(int landmarks) {
   Window window = visual_window(4, landmarks);
   for (Landmark& landmark : window.landmarks) {
-    for (Observation& seen : landmark.observations) seen = landmark.observations[0];
+    for (Observation& observation : landmark.observations) observation = landmark.observations[0];
   }
   return window;
 }
 
-TEST(LandmarkTracks, AStillCameraMakesNoKeyframe) {
-  const Window window = resting_window(30);
+TEST(LandmarkTracks, AStaticCameraTriggersNoKeyframe) {
+  const Window window = static_camera_window(30);
   EXPECT_FALSE(is_second_newest_keyframe(window, {}, 500.0));
   EXPECT_TRUE(
       is_second_newest_keyframe(window, {.keyframe_max_interval_s = 0.15}, 500.0));  // 0.2 s have passed
 }
 
-TEST(LandmarkTracks, AStillCameraMakesAKeyframeForTheNewLandmarks) {
-  const BackendConfig config{.keyframe_min_tracked = 0, .keyframe_min_shared = 0.5};
-  Window window = resting_window(30);
-  const auto let_newest_find = [&](int count) {  // not seen by frame 1, the last keyframe
+TEST(LandmarkTracks, NewLandmarksTriggerAKeyframeOfAStaticCamera) {
+  const BackendConfig config{.keyframe_min_tracked = 0, .keyframe_min_shared_ratio = 0.5};
+  Window window = static_camera_window(30);
+  const auto hide_from_last_keyframe = [&](int count) {  // not observed in frame 1, the last keyframe
     for (int i = 0; i < count; ++i) {
       Landmark& landmark = window.landmarks[static_cast<std::size_t>(i)];
       landmark.host = 2;
       landmark.observations.resize(2);
     }
   };
-  let_newest_find(15);  // half of them new: 15 of 30 shared
+  hide_from_last_keyframe(15);  // half of them new: 15 of 30 shared
   EXPECT_FALSE(is_second_newest_keyframe(window, config, 500.0));
-  let_newest_find(16);
+  hide_from_last_keyframe(16);
   EXPECT_TRUE(is_second_newest_keyframe(window, config, 500.0));
 }
 
-TEST(LandmarkTracks, AMovingThingNeitherMakesNorSparesAKeyframe) {
+TEST(LandmarkTracks, DynamicLandmarksDoNotAffectTheKeyframeDecision) {
   const BackendConfig config{.keyframe_min_tracked = 20};
-  Window window = resting_window(30);
-  for (std::size_t i = 0; i < 10; ++i) {  // on a person: 100 px a frame
+  Window window = static_camera_window(30);
+  for (std::size_t i = 0; i < 10; ++i) {  // on a person: 100 px per frame
     window.landmarks[i].dynamic = true;
     for (std::size_t k = 0; k < 4; ++k)
       window.landmarks[i].observations[k].bearing.x() += 0.2 * static_cast<double>(k);
   }
-  EXPECT_FALSE(is_second_newest_keyframe(window, config, 500.0));  // 20 others stand still
+  EXPECT_FALSE(is_second_newest_keyframe(window, config, 500.0));  // 20 static ones
   window.landmarks[10].dynamic = true;
-  EXPECT_TRUE(is_second_newest_keyframe(window, config, 500.0));  // 19 are too few to hold on to
+  EXPECT_TRUE(is_second_newest_keyframe(window, config, 500.0));  // 19 are too few
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/marginalization.h"
+#include "core/backend/marginalization/marginalization.h"
 
 #include <gtest/gtest.h>
 
-#include "core/backend/initializer.h"
-#include "core/backend/landmark_tracks.h"
-#include "core/backend/window_solver.h"
+#include "core/backend/solvers/window_solver.h"
+#include "core/backend/start/initializer.h"
+#include "core/backend/window/landmark_tracks.h"
 #include "tests/support/window_world.h"
 
 namespace stillpoint {
@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kFocal_px = 500.0;
 
-TEST(Marginalization, ExactDataGiveAPriorWithoutResidual) {
+TEST(Marginalization, ExactDataGiveAZeroResidual) {
   Window window = visual_window(5, 30);
-  window.prior = first_prior(window, InitializerConfig{});
+  window.prior = initial_prior(window, InitializerConfig{});
   const LinearPrior prior = marginalize_oldest(window, {}, kFocal_px);
   EXPECT_EQ(prior.blocks.size(), 4u);  // poses 1..4, now 0..3
   EXPECT_EQ(prior.blocks.front().frame, 0);
@@ -27,10 +27,10 @@ TEST(Marginalization, ThePriorPullsADisplacedFrameBack) {
   Window window = truth;
   BackendConfig config;
   config.depth.usage = DepthUsage::kWeighted;
-  window.prior = first_prior(window, config.initializer);
+  window.prior = initial_prior(window, config.initializer);
   window.prior = marginalize_oldest(window, config, kFocal_px);
   remove_oldest_frame(window);
-  window.landmarks.clear();  // the prior alone must know where everything is
+  window.landmarks.clear();  // the prior alone must constrain the poses
   for (WindowFrame& frame : window.frames) frame.state.T_w_b.p += Eigen::Vector3d(0.01, -0.02, 0.015);
   ASSERT_TRUE(solve_window(window, config, kFocal_px).usable);
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
@@ -38,9 +38,9 @@ TEST(Marginalization, ThePriorPullsADisplacedFrameBack) {
   }
 }
 
-TEST(Marginalization, AFrameThatNothingTiesToOthersLeavesNoPrior) {
+TEST(Marginalization, AnUnconnectedFrameLeavesAnEmptyPrior) {
   Window window = visual_window(5, 30);
-  window.prior = first_prior(window, InitializerConfig{});  // of frame 0 alone
+  window.prior = initial_prior(window, InitializerConfig{});  // of frame 0 alone
   window.landmarks.clear();
   for (const WindowSolverKind kind : {WindowSolverKind::kCeres, WindowSolverKind::kSchur}) {
     BackendConfig config;
@@ -49,9 +49,8 @@ TEST(Marginalization, AFrameThatNothingTiesToOthersLeavesNoPrior) {
   }
 }
 
-TEST(Marginalization, DroppingAFrameFromAPriorKeepsTheOthersMarginals) {
-  // Two scalars-as-offsets would do, but blocks are poses: x0 - x1 = 0 and x1 = 0 known with unit weight in
-  // p.
+TEST(Marginalization, RemovingAFrameFromAPriorPreservesTheMarginalsOfTheOthers) {
+  // x0 - x1 = 0 and x1 = 0, both with unit weight.
   Eigen::VectorXd origin(7);
   origin << 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0;
   LinearPrior prior;
@@ -61,10 +60,10 @@ TEST(Marginalization, DroppingAFrameFromAPriorKeepsTheOthersMarginals) {
   prior.jacobian.topRightCorner<6, 6>() = -Eigen::MatrixXd::Identity(6, 6);
   prior.jacobian.bottomRightCorner<6, 6>().setIdentity();
   prior.residual = Eigen::VectorXd::Zero(12);
-  LinearPrior left = prior;
-  FrameMarginalizer().remove(1, left);
-  ASSERT_EQ(left.blocks.size(), 1u);
-  const Eigen::MatrixXd information = left.jacobian.transpose() * left.jacobian;
+  LinearPrior remaining = prior;
+  FrameMarginalizer().remove(1, remaining);
+  ASSERT_EQ(remaining.blocks.size(), 1u);
+  const Eigen::MatrixXd information = remaining.jacobian.transpose() * remaining.jacobian;
   // variances add: 1 + 1 = 2, so the information is 1/2
   EXPECT_LT((information - 0.5 * Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-9);
 }

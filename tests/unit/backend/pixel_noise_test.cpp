@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/pixel_noise.h"
+#include "core/backend/window/pixel_noise.h"
 
 #include <gtest/gtest.h>
 
@@ -10,48 +10,48 @@ namespace {
 
 constexpr double kFocal_px = 500.0;
 
-BackendConfig watchful() {
+BackendConfig adaptive_config() {
   BackendConfig config;
   config.pixel_sigma_px = 1.5;
-  config.pixel_misfit_px = 0.5;
+  config.reprojection_error_px = 0.5;
   return config;
 }
 
-double sigma_after(const std::vector<double>& misfits, const BackendConfig& config) {
+double sigma_after(const std::vector<double>& errors_px, const BackendConfig& config) {
   PixelNoise noise;
-  for (const double misfit : misfits) noise.observe(misfit, config);
+  for (const double error_px : errors_px) noise.observe(error_px, config);
   return noise.applied_to(config).pixel_sigma_px;
 }
 
-TEST(MedianMisfit, IsTheDistanceByWhichAllSightingsAreOff) {
+TEST(MedianReprojectionError, EqualsACommonErrorOfAllObservations) {
   Window window = visual_window(4, 30);
-  EXPECT_NEAR(MisfitMeter().median_px(window, kFocal_px), 0.0, 1e-9);
+  EXPECT_NEAR(ReprojectionErrorMonitor().median_px(window, kFocal_px), 0.0, 1e-9);
   for (Landmark& landmark : window.landmarks) {
     for (std::size_t i = 1; i < landmark.observations.size(); ++i) {
       landmark.observations[i].bearing += Eigen::Vector2d(3.0, 4.0) / kFocal_px;  // 5 px
     }
   }
-  EXPECT_NEAR(MisfitMeter().median_px(window, kFocal_px), 5.0, 1e-9);
+  EXPECT_NEAR(ReprojectionErrorMonitor().median_px(window, kFocal_px), 5.0, 1e-9);
 }
 
-TEST(MedianMisfit, IsUnknownWithFewSightings) {
-  EXPECT_EQ(MisfitMeter().median_px(visual_window(2, 19), kFocal_px), 0.0);
+TEST(MedianReprojectionError, IsZeroWithTooFewObservations) {
+  EXPECT_EQ(ReprojectionErrorMonitor().median_px(visual_window(2, 19), kFocal_px), 0.0);
 }
 
-TEST(PixelNoise, StaysNominalUpToTheNominalMisfit) {
-  EXPECT_DOUBLE_EQ(sigma_after(std::vector<double>(50, 0.4), watchful()), 1.5);
+TEST(PixelNoise, StaysNominalUpToTheNominalReprojectionError) {
+  EXPECT_DOUBLE_EQ(sigma_after(std::vector<double>(50, 0.4), adaptive_config()), 1.5);
 }
 
-TEST(PixelNoise, GrowsWithTheSquareOfTheMisfitAndIsBounded) {
-  // (0.75 / 0.5)^2 = 2.25, reached to 1 - 0.9^100; far beyond, 4 is the bound
-  EXPECT_NEAR(sigma_after(std::vector<double>(100, 0.75), watchful()), 1.5 * 2.25, 1e-3);
-  EXPECT_NEAR(sigma_after(std::vector<double>(100, 50.0), watchful()), 1.5 * 4.0, 1e-3);
+TEST(PixelNoise, GrowsWithTheSquareOfTheErrorUpToABound) {
+  // (0.75 / 0.5)^2 = 2.25, up to 0.9^100; the upper bound is 4
+  EXPECT_NEAR(sigma_after(std::vector<double>(100, 0.75), adaptive_config()), 1.5 * 2.25, 1e-3);
+  EXPECT_NEAR(sigma_after(std::vector<double>(100, 50.0), adaptive_config()), 1.5 * 4.0, 1e-3);
 }
 
-TEST(PixelNoise, IsLeftAloneWhereTheMisfitIsUnknownOrTheSettingOff) {
-  EXPECT_DOUBLE_EQ(sigma_after({0.0, 0.0}, watchful()), 1.5);
-  BackendConfig off = watchful();
-  off.pixel_misfit_px = 0.0;
+TEST(PixelNoise, IsUnchangedIfTheErrorIsUnknownOrTheOptionIsOff) {
+  EXPECT_DOUBLE_EQ(sigma_after({0.0, 0.0}, adaptive_config()), 1.5);
+  BackendConfig off = adaptive_config();
+  off.reprojection_error_px = 0.0;
   EXPECT_DOUBLE_EQ(sigma_after({5.0, 5.0}, off), 1.5);
 }
 

@@ -19,12 +19,12 @@ LinearPrior pose_and_offset_prior() {
   return prior;
 }
 
-TEST(PriorFactor, JacobiansEqualNumericOnesAtTheLinearizationPoint) {
+TEST(PriorFactor, JacobiansMatchNumericDifferentiationAtTheLinearizationPoint) {
   const LinearPrior prior = pose_and_offset_prior();
   EXPECT_LT(jacobian_error(PriorFactor(prior), {{1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0}, {0.01}}), 1e-8);
 }
 
-TEST(PriorFactor, GivesItsOwnResidualAtTheLinearizationPoint) {
+TEST(PriorFactor, ReturnsR0AtTheLinearizationPoint) {
   const LinearPrior prior = pose_and_offset_prior();
   const Eigen::VectorXd residual =
       residual_at(PriorFactor(prior), {{1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0}, {0.01}});

@@ -34,15 +34,15 @@ Blocks blocks_at(double time_offset) {
   return {block(kTwBi), block(kTwBj), block(kTbC), {time_offset}, {kInverseDepth}};
 }
 
-TEST(ReprojectionFactor, JacobiansEqualNumericOnesWithoutDepth) {
+TEST(ReprojectionFactor, JacobiansMatchNumericDifferentiationWithoutDepth) {
   EXPECT_LT(jacobian_error(ReprojectionFactor<2>(measurement(), kNoise), blocks_at(0.002)), 1e-6);
 }
 
-TEST(ReprojectionFactor, JacobiansEqualNumericOnesWithDepth) {
+TEST(ReprojectionFactor, JacobiansMatchNumericDifferentiationWithDepth) {
   EXPECT_LT(jacobian_error(ReprojectionFactor<3>(measurement(), kNoise), blocks_at(0.002)), 1e-6);
 }
 
-TEST(ReprojectionFactor, GoesOnSmoothlyBeyondInfinity) {
+TEST(ReprojectionFactor, IsSmoothAtInfinity) {
   for (const double inverse_depth : {0.0, -0.2}) {
     Blocks blocks = blocks_at(0.002);
     blocks.back() = {inverse_depth};
@@ -52,7 +52,7 @@ TEST(ReprojectionFactor, GoesOnSmoothlyBeyondInfinity) {
 
 TEST(ReprojectionFactor, IsFiniteForAPointBehindTheCamera) {
   Blocks blocks = blocks_at(0.0);
-  blocks.back() = {20.0};  // 5 cm before the host, and j stands 20 cm further on
+  blocks.back() = {20.0};  // 5 cm in front of the host; j is 20 cm ahead
   const ReprojectionFactor<3> factor(measurement(), kNoise);
   double residual[3];
   EXPECT_TRUE(factor.Evaluate(addresses(blocks).data(), residual, nullptr));
@@ -60,7 +60,7 @@ TEST(ReprojectionFactor, IsFiniteForAPointBehindTheCamera) {
   EXPECT_LT(jacobian_error(factor, blocks), 1e-6);
 }
 
-TEST(ReprojectionFactor, IsZeroWhereTheLandmarkReallyIs) {
+TEST(ReprojectionFactor, IsZeroAtTheTrueLandmark) {
   ReprojectionMeasurement m = measurement();
   m.velocity_i = m.velocity_j = Eigen::Vector2d::Zero();
   const Eigen::Vector3d p_ci = m.bearing_i.homogeneous() / kInverseDepth;
@@ -72,12 +72,12 @@ TEST(ReprojectionFactor, IsZeroWhereTheLandmarkReallyIs) {
 
 TEST(ReprojectionFactor, DepthRowIsBounded) {
   ReprojectionMeasurement m = measurement();
-  m.inverse_depth_j = 100.0;  // 1 cm: absurd
+  m.inverse_depth_j = 100.0;  // 1 cm: an outlier
   const double depth_row = residual_at(ReprojectionFactor<3>(m, kNoise), blocks_at(0.0))[2];
   EXPECT_NEAR(std::abs(depth_row), kNoise.depth_outlier, 1e-3);  // d / sqrt(1 + (d/c)^2) tends to c
 }
 
-TEST(HostDepthFactor, JacobianEqualsNumericOne) {
+TEST(HostDepthFactor, JacobianMatchesNumericDifferentiation) {
   EXPECT_LT(jacobian_error(HostDepthFactor(0.51, kNoise), {{kInverseDepth}}), 1e-6);
 }
 

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "bench/profile/allocation_counter.h"
-#include "core/backend/schur/schur_solver.h"
-#include "tests/support/flown_window.h"
+#include "bench/profile/meters/allocation_counter.h"
+#include "core/backend/solvers/schur_solver.h"
+#include "tests/support/simulated_window.h"
 
 namespace stillpoint {
 namespace {
 
-TEST(SchurSolver, ASecondSolveAllocatesNothing) {
-  FlownOptions options{.pictures = 14, .points = 80};
+TEST(SchurSolver, ASecondSolveDoesNotAllocate) {
+  SimulatedWindowOptions options{.frames = 14, .points = 80};
   options.config.solver = WindowSolverKind::kSchur;
-  const Window start = flown_window(options);
+  const Window start = simulated_window(options);
   SchurSolver solver;
   Window first = start;
   Window second = start;
-  const std::size_t before = allocation_count();
-  ASSERT_TRUE(solver.solve(first, options.config, kFlownFocal_px).usable);
-  const std::size_t between = allocation_count();
-  ASSERT_TRUE(solver.solve(second, options.config, kFlownFocal_px).usable);
-  EXPECT_EQ(allocation_count(), between);
-  EXPECT_GT(between, before);  // the counter counts
+  const std::size_t before = bench::allocation_count();
+  ASSERT_TRUE(solver.solve(first, options.config, kSimulatedFocal_px).usable);
+  const std::size_t between = bench::allocation_count();
+  ASSERT_TRUE(solver.solve(second, options.config, kSimulatedFocal_px).usable);
+  EXPECT_EQ(bench::allocation_count(), between);
+  EXPECT_GT(between, before);  // the counter works
 }
 
 }  // namespace

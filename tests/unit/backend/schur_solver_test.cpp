@@ -1,59 +1,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Schur solver is held against Ceres and its cost functions, which have tests of their own.
-#include "core/backend/schur/schur_solver.h"
+// Compares the Schur solver with Ceres and its cost functions, which have separate tests.
+#include "core/backend/solvers/schur_solver.h"
 
 #include <gtest/gtest.h>
 
-#include "core/backend/marginalization.h"
-#include "core/backend/normal_equations.h"
-#include "tests/support/flown_window.h"
+#include "core/backend/marginalization/marginalization.h"
+#include "core/backend/marginalization/normal_equations.h"
+#include "tests/support/simulated_window.h"
 
 namespace stillpoint {
 namespace {
 
-/// A kind of window that the solver must serve.
+/// A window configuration.
 struct Case {
   const char* name;
-  FlownOptions flown;
-  double read_out_s = 0.0;  // of a rolling shutter, top to bottom
+  SimulatedWindowOptions options;
+  double readout_offset_s = 0.0;  // of a rolling shutter, top to bottom
 
   [[nodiscard]] Window window() const {
-    Window made = flown_window(flown);
-    for (Landmark& landmark : made.landmarks) {
-      for (Observation& o : landmark.observations) o.read_out_s = read_out_s * o.bearing.y();
+    Window result = simulated_window(options);
+    for (Landmark& landmark : result.landmarks) {
+      for (Observation& o : landmark.observations) o.readout_offset_s = readout_offset_s * o.bearing.y();
     }
-    return made;
+    return result;
   }
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
-Case make_case(const char* name, const std::function<void(FlownOptions&)>& change, double read_out_s = 0.0) {
-  Case made{.name = name, .flown = {.pictures = 14, .points = 80}, .read_out_s = read_out_s};
-  made.flown.config.solver = WindowSolverKind::kSchur;
-  change(made.flown);
-  return made;
+Case make_case(const char* name, const std::function<void(SimulatedWindowOptions&)>& change,
+               double readout_offset_s = 0.0) {
+  Case result{.name = name, .options = {.frames = 14, .points = 80}, .readout_offset_s = readout_offset_s};
+  result.options.config.solver = WindowSolverKind::kSchur;
+  change(result.options);
+  return result;
 }
 
 const std::vector<Case> kCases = {
-    make_case("WeightedDepth", [](FlownOptions&) {}),
-    make_case("FixedDepth", [](FlownOptions& o) { o.config.depth.usage = DepthUsage::kFixed; }),
-    make_case("FarDepthUnknown", [](FlownOptions& o) { o.config.depth.max_m = 3.5; }),
-    make_case("VisualOnly", [](FlownOptions& o) { o.inertial = false; }),
-    make_case("WithoutTimeOffset", [](FlownOptions& o) { o.config.estimate_time_offset = false; }),
-    make_case("WithExtrinsics", [](FlownOptions& o) { o.config.estimate_extrinsics = true; }),
+    make_case("WeightedDepth", [](SimulatedWindowOptions&) {}),
+    make_case("FixedDepth", [](SimulatedWindowOptions& o) { o.config.depth.usage = DepthUsage::kFixed; }),
+    make_case("FarDepthUnknown", [](SimulatedWindowOptions& o) { o.config.depth.max_m = 3.5; }),
+    make_case("VisualOnly", [](SimulatedWindowOptions& o) { o.inertial = false; }),
+    make_case("WithoutTimeOffset", [](SimulatedWindowOptions& o) { o.config.estimate_time_offset = false; }),
+    make_case("WithExtrinsics", [](SimulatedWindowOptions& o) { o.config.estimate_extrinsics = true; }),
     make_case(
-        "RollingShutter", [](FlownOptions&) {}, 0.02),
-    make_case("FewFrames", [](FlownOptions& o) { o.pictures = 6; })};
+        "RollingShutter", [](SimulatedWindowOptions&) {}, 0.02),
+    make_case("FewFrames", [](SimulatedWindowOptions& o) { o.frames = 6; })};
 
-class SchurSolverOn : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(Windows, SchurSolverOn, testing::ValuesIn(kCases),
+class SchurSolverCase : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Windows, SchurSolverCase, testing::ValuesIn(kCases),
                          [](const auto& tested) { return tested.param.name; });
 
-/// All residuals of a window summed by the cost functions that Ceres is given, landmarks eliminated.
+/// Normal equations of the Ceres cost functions, landmarks eliminated.
 NormalEquations reference_system(const Window& window, const BackendConfig& config, ParameterBlocks& blocks) {
   NormalEquations equations(static_cast<int>(window.frames.size()));
-  ResidualBuilder builder(window, config, kFlownFocal_px);
+  ResidualBuilder builder(window, config, kSimulatedFocal_px);
   std::vector<Residual> group;
   builder.add_prior(group);
   builder.add_calibration(group);
@@ -63,22 +64,22 @@ NormalEquations reference_system(const Window& window, const BackendConfig& conf
     if (!is_usable(window.landmarks[i])) continue;
     group.clear();
     builder.add_landmark(static_cast<int>(i), group);
-    equations.add(group, blocks, is_held(window.landmarks[i], config));
+    equations.add(group, blocks, has_constant_depth(window.landmarks[i], config));
   }
   return equations;
 }
 
-/// The same by the terms of the Schur solver.
+/// Same, by the terms of the Schur solver.
 ReducedSystem reduced_system(const Window& window, const BackendConfig& config, ParameterBlocks& blocks) {
   VisualTerms visual;
   PriorTerm prior;
   PriorTerm calibration;
   ReducedSystem system;
-  visual.read(window, config, kFlownFocal_px, LandmarkPart::kAll);
+  visual.read(window, config, kSimulatedFocal_px, LandmarkSelection::kAll);
   prior.read(window.prior);
   calibration.read(window.calibration);
   system.reset(ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
-                             free_calibration(window, config)));
+                             variable_calibration(window, config)));
   prior.add_to(system, blocks);
   calibration.add_to(system, blocks);
   for (int frame = 1; frame <= window.newest(); ++frame) {
@@ -91,7 +92,7 @@ ReducedSystem reduced_system(const Window& window, const BackendConfig& config, 
   return system;
 }
 
-/// Columns of every free state in both layouts, side by side.
+/// Columns of every variable state in both layouts.
 struct ColumnPairs {
   std::vector<int> reference;
   std::vector<int> reduced;
@@ -114,9 +115,9 @@ ColumnPairs matching_columns(const Window& window, const ReducedLayout& reduced)
   return pairs;
 }
 
-TEST_P(SchurSolverOn, NormalEquationsAreThoseOfTheCostFunctions) {
+TEST_P(SchurSolverCase, NormalEquationsEqualThoseOfTheCostFunctions) {
   const Window window = GetParam().window();
-  const BackendConfig& config = GetParam().flown.config;
+  const BackendConfig& config = GetParam().options.config;
   ParameterBlocks blocks(window);
   const NormalEquations reference = reference_system(window, config, blocks);
   const ReducedSystem reduced = reduced_system(window, config, blocks);
@@ -126,20 +127,20 @@ TEST_P(SchurSolverOn, NormalEquationsAreThoseOfTheCostFunctions) {
   const Eigen::MatrixXd H = full(columns.reduced, columns.reduced);
   const Eigen::MatrixXd H_reference = reference.H(columns.reference, columns.reference);
   const Eigen::VectorXd axis = H_reference.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  // each entry as a share of the root of its row's and column's diagonals
+  // entries relative to the square root of the diagonal entries of row and column
   EXPECT_LT((axis.asDiagonal() * (H - H_reference) * axis.asDiagonal()).cwiseAbs().maxCoeff(), 1e-9);
   const Eigen::VectorXd g = axis.cwiseProduct(reduced.g(columns.reduced));
   const Eigen::VectorXd g_reference = axis.cwiseProduct(reference.b(columns.reference));
   EXPECT_LT((g - g_reference).norm(), 1e-9 * g_reference.norm());
 }
 
-TEST_P(SchurSolverOn, ReachesTheCostThatCeresReaches) {
-  BackendConfig config = GetParam().flown.config;
+TEST_P(SchurSolverCase, ReachesTheCostOfCeres) {
+  BackendConfig config = GetParam().options.config;
   Window by_schur = GetParam().window();
   Window by_ceres = by_schur;
-  const SolveReport schur = solve_window(by_schur, config, kFlownFocal_px);
+  const SolveReport schur = solve_window(by_schur, config, kSimulatedFocal_px);
   config.solver = WindowSolverKind::kCeres;
-  const SolveReport ceres = solve_window(by_ceres, config, kFlownFocal_px);
+  const SolveReport ceres = solve_window(by_ceres, config, kSimulatedFocal_px);
   ASSERT_TRUE(schur.usable && ceres.usable);
   EXPECT_EQ(schur.landmarks, ceres.landmarks);
   EXPECT_EQ(schur.depth_landmarks, ceres.depth_landmarks);
@@ -151,12 +152,12 @@ TEST_P(SchurSolverOn, ReachesTheCostThatCeresReaches) {
   }
 }
 
-TEST_P(SchurSolverOn, MarginalisationKeepsTheSameInformation) {
+TEST_P(SchurSolverCase, MarginalizationYieldsTheSameInformation) {
   const Window window = GetParam().window();
-  BackendConfig config = GetParam().flown.config;
-  const LinearPrior root = marginalize_oldest(window, config, kFlownFocal_px);
+  BackendConfig config = GetParam().options.config;
+  const LinearPrior root = marginalize_oldest(window, config, kSimulatedFocal_px);
   config.solver = WindowSolverKind::kCeres;
-  const LinearPrior reference = marginalize_oldest(window, config, kFlownFocal_px);
+  const LinearPrior reference = marginalize_oldest(window, config, kSimulatedFocal_px);
   ASSERT_EQ(root.blocks.size(), reference.blocks.size());
   for (std::size_t i = 0; i < root.blocks.size(); ++i) {
     EXPECT_EQ(root.blocks[i].kind, reference.blocks[i].kind);
@@ -171,43 +172,43 @@ TEST_P(SchurSolverOn, MarginalisationKeepsTheSameInformation) {
   EXPECT_LT((g - g_reference).norm(), 1e-6 * g_reference.norm());
 }
 
-TEST(SchurSolver, TheResultDoesNotDependOnWhatWasSolvedBefore) {
+TEST(SchurSolver, TheResultDoesNotDependOnEarlierSolves) {
   const Window start = kCases[0].window();
-  const BackendConfig& config = kCases[0].flown.config;
+  const BackendConfig& config = kCases[0].options.config;
   Window fresh = start;
   SchurSolver solver;
-  static_cast<void>(solver.solve(fresh, config, kFlownFocal_px));
+  static_cast<void>(solver.solve(fresh, config, kSimulatedFocal_px));
   Window other = kCases[3].window();
-  static_cast<void>(solver.solve(other, kCases[3].flown.config, kFlownFocal_px));
+  static_cast<void>(solver.solve(other, kCases[3].options.config, kSimulatedFocal_px));
   Window again = start;
-  static_cast<void>(solver.solve(again, config, kFlownFocal_px));
-  for (std::size_t i = 0; i < fresh.frames.size(); ++i) {  // to the bit
+  static_cast<void>(solver.solve(again, config, kSimulatedFocal_px));
+  for (std::size_t i = 0; i < fresh.frames.size(); ++i) {  // bitwise
     EXPECT_EQ(fresh.frames[i].state.T_w_b.p, again.frames[i].state.T_w_b.p);
     EXPECT_EQ(fresh.frames[i].state.T_w_b.q.coeffs(), again.frames[i].state.T_w_b.q.coeffs());
     EXPECT_EQ(fresh.frames[i].state.v_w, again.frames[i].state.v_w);
   }
 }
 
-TEST(SchurSolver, AStepThatMakesThingsWorseIsTakenBackAndShortened) {
-  // Turned by 70 degrees the newest camera sees every point far off: Newton steps overshoot.
+TEST(SchurSolver, AStepThatIncreasesTheCostIsRejected) {
+  // With the newest camera rotated by 70 degrees all residuals are large and Newton steps overshoot.
   const Case& c = kCases[3];
   Window window = c.window();
   window.frames.back().state.T_w_b.q = window.frames.back().state.T_w_b.q * exp_so3({0.0, 0.0, 1.2});
-  BackendConfig config = c.flown.config;
-  config.cauchy_scale = 100.0;  // nearly squares: a Cauchy loss this far out has no pull
+  BackendConfig config = c.options.config;
+  config.cauchy_scale = 100.0;  // nearly quadratic: at unit scale the Cauchy gradient vanishes this far out
   config.max_iterations = 40;
   SchurSolver solver;
-  const SolveReport report = solver.solve(window, config, kFlownFocal_px);
+  const SolveReport report = solver.solve(window, config, kSimulatedFocal_px);
   EXPECT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, 0.01 * report.initial_cost);
 }
 
-TEST(SchurSolver, LeavesTheWindowAsItWasWhenTheCostIsNotANumber) {
+TEST(SchurSolver, LeavesTheWindowUnchangedIfTheCostIsNan) {
   Window window = kCases[0].window();
   window.frames.back().state.T_w_b.p.x() = std::numeric_limits<double>::quiet_NaN();
   const Eigen::Vector3d before = window.frames.front().state.T_w_b.p;
   SchurSolver solver;
-  EXPECT_FALSE(solver.solve(window, kCases[0].flown.config, kFlownFocal_px).usable);
+  EXPECT_FALSE(solver.solve(window, kCases[0].options.config, kSimulatedFocal_px).usable);
   EXPECT_EQ(window.frames.front().state.T_w_b.p, before);
 }
 

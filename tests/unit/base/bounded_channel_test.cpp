@@ -9,7 +9,7 @@
 namespace stillpoint {
 namespace {
 
-TEST(BoundedChannel, CarriesEverythingInOrderBetweenThreads) {
+TEST(BoundedChannel, TransfersAllItemsInOrderBetweenThreads) {
   constexpr int kItems = 10000;
   BoundedChannel<int> channel(3);
   const std::jthread producer([&channel] {
@@ -20,7 +20,7 @@ TEST(BoundedChannel, CarriesEverythingInOrderBetweenThreads) {
   EXPECT_EQ(channel.pop(), std::nullopt);
 }
 
-TEST(BoundedChannel, DropsTheOldestWhenItMustNotWait) {
+TEST(BoundedChannel, PushDroppingOldestDropsTheOldestItemWhenFull) {
   BoundedChannel<int> channel(2);
   EXPECT_EQ(channel.push_dropping_oldest(1), std::nullopt);
   EXPECT_EQ(channel.push_dropping_oldest(2), std::nullopt);
@@ -29,7 +29,7 @@ TEST(BoundedChannel, DropsTheOldestWhenItMustNotWait) {
   EXPECT_EQ(channel.pop(), 3);
 }
 
-TEST(BoundedChannel, ClosedTakesNothingAndGivesWhatIsInside) {
+TEST(BoundedChannel, RejectsPushesAfterCloseButPopsRemainingItems) {
   BoundedChannel<int> channel(2);
   channel.push(1);
   channel.close();
@@ -39,7 +39,7 @@ TEST(BoundedChannel, ClosedTakesNothingAndGivesWhatIsInside) {
   EXPECT_EQ(channel.pop(), std::nullopt);
 }
 
-TEST(BoundedChannel, ClosingWakesWhoWaitsForRoomOrForItems) {
+TEST(BoundedChannel, CloseWakesBlockedProducersAndConsumers) {
   BoundedChannel<int> full(1), empty(1);
   full.push(1);
   bool pushed = true;
@@ -54,7 +54,7 @@ TEST(BoundedChannel, ClosingWakesWhoWaitsForRoomOrForItems) {
   EXPECT_EQ(popped, std::nullopt);
 }
 
-TEST(BoundedChannel, WaitsNoLongerThanItIsTold) {
+TEST(BoundedChannel, PopForReturnsNothingAfterTheTimeout) {
   BoundedChannel<int> channel(1);
   EXPECT_EQ(channel.pop_for(std::chrono::milliseconds(1)), std::nullopt);
   channel.push(7);

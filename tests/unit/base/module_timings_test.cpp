@@ -6,7 +6,7 @@
 namespace stillpoint {
 namespace {
 
-TEST(ModuleTimings, KeepTheSpansOfTimersThatEnded) {
+TEST(ModuleTimings, RecordTheSpansOfScopedTimers) {
   ModuleTimings timings;
   {
     const ScopedTimer outer(timings, Module::kStateOptimization);
@@ -22,7 +22,7 @@ TEST(ModuleTimings, KeepTheSpansOfTimersThatEnded) {
   EXPECT_EQ(timings[Module::kWindowSolve].calls, 0);
 }
 
-TEST(ModuleTimings, TakeInTheSpansOfOthers) {
+TEST(ModuleTimings, AddIncludesTheSpansOfTheOther) {
   ModuleTimings timings;
   ModuleTimings other;
   other.add({.module = Module::kFeatureMask, .elapsed = std::chrono::nanoseconds(7)}, 1);

@@ -6,13 +6,13 @@
 namespace stillpoint {
 namespace {
 
-TEST(Timestamp, SpansAreExactToTheNanosecondFarFromTheEpoch) {
+TEST(Timestamp, DurationsAreExactToTheNanosecondFarFromTheEpoch) {
   const Timestamp t{1'403'715'888'379'060'000};
   EXPECT_EQ(seconds_between(t, Timestamp{t.ns + 1}), 1e-9);
   EXPECT_EQ(seconds_between(Timestamp{t.ns + 500'000'000}, t), -0.5);
 }
 
-TEST(Timestamp, SpansBeyond64BitsOfNanosecondsDoNotOverflow) {
+TEST(Timestamp, DurationsBeyond64BitsOfNanosecondsDoNotOverflow) {
   // 9e18 - (-9e18) ns = 1.8e19 ns, more than 2^63 = 9.2e18.
   EXPECT_DOUBLE_EQ(
       seconds_between(Timestamp{-9'000'000'000'000'000'000}, Timestamp{9'000'000'000'000'000'000}), 1.8e10);

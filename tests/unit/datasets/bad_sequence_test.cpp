@@ -1,159 +1,159 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whole sequences with one thing wrong: a clear error, at opening or at the frame concerned.
+/// Sequences with one fault each: the error is reported on opening, or for the affected frame only.
 #include <gtest/gtest.h>
 
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
 #include "datasets/sensor_stream.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/sequence_folders.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
-void expect_refused(const TemporaryFolder& folder, const std::vector<std::string>& parts) {
+void expect_rejected(const TemporaryFolder& folder, const std::vector<std::string>& parts) {
   expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); }, parts);
 }
 
-void expect_only_frame_refused(const TemporaryFolder& folder, std::size_t index,
-                               const std::vector<std::string>& parts) {
+void expect_only_frame_rejected(const TemporaryFolder& folder, std::size_t index,
+                                const std::vector<std::string>& parts) {
   const auto stream = open_sequence(folder.path());
   expect_input_error([&] { static_cast<void>(stream->load_frame(index)); }, parts);
   EXPECT_NO_THROW(static_cast<void>(stream->load_frame(0)));
 }
 
-TEST(BadSequence, AMissingPictureSpoilsItsFrameOnly) {
+TEST(BadSequence, AMissingImageAffectsItsFrameOnly) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   std::filesystem::remove(folder.path() / "rgb/1.040000.png");
-  expect_only_frame_refused(folder, 1, {"1.040000.png", "no such picture"});
+  expect_only_frame_rejected(folder, 1, {"1.040000.png", "no such image"});
 }
 
-TEST(BadSequence, ATruncatedPictureSpoilsItsFrameOnly) {
+TEST(BadSequence, ATruncatedImageAffectsItsFrameOnly) {
   const TemporaryFolder folder;
   write_seven_scenes_folder(folder);
   const auto file = folder.path() / "frame-000002.depth.png";
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-  expect_only_frame_refused(folder, 2, {"frame-000002.depth.png", "truncated"});
+  expect_only_frame_rejected(folder, 2, {"frame-000002.depth.png", "truncated"});
 }
 
-TEST(BadSequence, DepthOfAnotherSizeSpoilsItsFrameOnly) {
+TEST(BadSequence, DepthOfAnotherSizeAffectsItsFrameOnly) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
   write_png(folder.path() / "aligned_depth/100.040000.png", cv::Mat(5, 8, CV_16UC1, cv::Scalar(1)));
-  expect_only_frame_refused(folder, 1, {"100.040000.png", "is 8x5", "says 8x6"});
+  expect_only_frame_rejected(folder, 1, {"100.040000.png", "is 8x5", "calibration is for 8x6"});
 }
 
 TEST(BadSequence, EmptyAndUnsortedImuFilesAreErrors) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
   folder.write("d400_gyroscope.txt", "#Time Gx Gy Gz\n");
-  expect_refused(folder, {"d400_gyroscope.txt", "holds no samples"});
+  expect_rejected(folder, {"d400_gyroscope.txt", "contains no samples"});
   folder.write("d400_gyroscope.txt", "100.0 0 0 0\n99.0 0 0 0\n");
-  expect_refused(folder, {"d400_gyroscope.txt:2", "sort the file"});
+  expect_rejected(folder, {"d400_gyroscope.txt:2", "sort the file"});
   std::filesystem::remove(folder.path() / "d400_gyroscope.txt");
-  expect_refused(folder, {"d400_gyroscope.txt", "cannot be opened"});
+  expect_rejected(folder, {"d400_gyroscope.txt", "cannot be opened"});
 }
 
-TEST(BadSequence, NotFiniteRowsAreErrors) {
+TEST(BadSequence, NonFiniteRowsAreErrors) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
   folder.write("d400_accelerometer.txt", "99.9 0 0 0\n100.0 0 nan 0\n");
-  expect_refused(folder, {"d400_accelerometer.txt:2", "\"nan\" is not finite"});
+  expect_rejected(folder, {"d400_accelerometer.txt:2", "\"nan\" is not finite"});
   write_openloris_folder(folder);
   folder.write("groundtruth.txt", "100.0 inf 0 0 0 0 0 1\n");
-  expect_refused(folder, {"groundtruth.txt:1", "\"inf\" is not finite"});
+  expect_rejected(folder, {"groundtruth.txt:1", "\"inf\" is not finite"});
 }
 
-TEST(BadSequence, QuaternionsThatAreNoRotationAreErrors) {
+TEST(BadSequence, NonUnitQuaternionsAreErrors) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   folder.write("groundtruth.txt", "1.0 0 0 0 0 0 0 0\n");
-  expect_refused(folder, {"groundtruth.txt:1", "quaternion has length 0"});
+  expect_rejected(folder, {"groundtruth.txt:1", "quaternion has norm 0"});
 }
 
-TEST(BadSequence, PosesThatAreNoRigidTransformAreErrors) {
+TEST(BadSequence, NonRigidPosesAreErrors) {
   const TemporaryFolder folder;
   write_seven_scenes_folder(folder);
   folder.write("frame-000001.pose.txt", "0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 1\n");
-  expect_refused(folder, {"frame-000001.pose.txt", "not a rigid transform"});
+  expect_rejected(folder, {"frame-000001.pose.txt", "not a rigid transform"});
   folder.write("frame-000001.pose.txt", "1 0 0 0\n");
-  expect_refused(folder, {"frame-000001.pose.txt", "4 numbers, not 16"});
+  expect_rejected(folder, {"frame-000001.pose.txt", "4 numbers, expected 16"});
   folder.write("frame-000001.pose.txt", "nan 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
-  expect_refused(folder, {"frame-000001.pose.txt:1", "not finite"});
+  expect_rejected(folder, {"frame-000001.pose.txt:1", "not finite"});
 }
 
 TEST(BadSequence, NoOverlapInTimeIsAnError) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
   folder.write("groundtruth.txt", "500.0 0 0 0 0 0 0 1\n");
-  expect_refused(folder, {"the ground truth covers 500", "no overlap in time"});
+  expect_rejected(folder, {"the ground truth covers 500", "no overlap in time"});
   write_openloris_folder(folder);
   folder.write("d400_gyroscope.txt", "500.0 0 0 0\n501 0 0 0\n");
   folder.write("d400_accelerometer.txt", "500.0 0 0 0\n501 0 0 0\n");
-  expect_refused(folder, {"the IMU covers 500", "no overlap in time"});
+  expect_rejected(folder, {"the IMU covers 500", "no overlap in time"});
   folder.write("d400_accelerometer.txt", "10.0 0 0 0\n11 0 0 0\n");
-  expect_refused(folder, {"no sample lies within the time of d400_accelerometer.txt"});
+  expect_rejected(folder, {"no sample lies within the time span of d400_accelerometer.txt"});
 }
 
-TEST(BadSequence, DepthOfAnotherTimeIsAnError) {
+TEST(BadSequence, DepthWithoutMatchingColorTimesIsAnError) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   folder.write("depth.txt", "7.0 depth/1.005000.png\n");
-  expect_refused(folder, {"depth.txt", "within 20 ms"});
+  expect_rejected(folder, {"depth.txt", "within 20 ms"});
 }
 
 TEST(BadSequence, UnreadableCalibrationIsAnError) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
   folder.write("sensors.yaml", "d400_color_optical_frame: [1, 2\n");
-  expect_refused(folder, {"sensors.yaml", "not readable as YAML"});
+  expect_rejected(folder, {"sensors.yaml", "not valid YAML"});
   folder.write("sensors.yaml", "something: 1\n");
-  expect_refused(folder, {"sensors.yaml", "\"d400_color_optical_frame\" is missing"});
+  expect_rejected(folder, {"sensors.yaml", "\"d400_color_optical_frame\" is missing"});
   std::filesystem::remove(folder.path() / "sensors.yaml");
-  expect_refused(folder, {"sensors.yaml", "cannot be opened"});
+  expect_rejected(folder, {"sensors.yaml", "cannot be opened"});
 }
 
-TEST(BadSequence, CalibrationThatMakesNoSenseIsAnError) {
+TEST(BadSequence, InvalidCalibrationIsAnError) {
   const TemporaryFolder folder;
   write_euroc_folder(folder);
   const std::string identity = "T_BS:\n  data: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n";
   const std::string rest = "resolution: [8, 6]\ndistortion_model: radial-tangential\n";
   const auto with = [&](const std::string& text) { folder.write("mav0/cam0/sensor.yaml", text); };
   with(identity + rest + "distortion_coefficients: [0, 0, 0, 0]\nintrinsics: [10, .nan, 3, 2]\n");
-  expect_refused(folder, {"sensor.yaml", "\"intrinsics\" must hold finite numbers"});
+  expect_rejected(folder, {"sensor.yaml", "\"intrinsics\" must contain finite numbers"});
   with(identity + rest + "distortion_coefficients: [0, 0, 0, 0]\nintrinsics: [10, 10]\n");
-  expect_refused(folder, {"sensor.yaml", "fu, fv, cu, cv"});
+  expect_rejected(folder, {"sensor.yaml", "fu, fv, cu, cv"});
   with("T_BS:\n  data: [1, 2, 3]\n" + rest + "distortion_coefficients: [0]\nintrinsics: [10, 10, 3, 2]\n");
-  expect_refused(folder, {"sensor.yaml", "\"T_BS\" must have 16 numbers"});
+  expect_rejected(folder, {"sensor.yaml", "\"T_BS\" must have 16 numbers"});
   with(identity +
        "resolution: [8, 6]\ndistortion_model: fov\ndistortion_coefficients: [1]\nintrinsics: [1, 1, 1, 1]\n");
-  expect_refused(folder, {"sensor.yaml", "\"fov\" is not known"});
+  expect_rejected(folder, {"sensor.yaml", "is unknown: \"fov\""});
 }
 
-TEST(BadSequence, FramesThatNoTransformJoinsAreAnError) {
+TEST(BadSequence, UnconnectedCoordinateFramesAreAnError) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
   folder.write("trans_matrix.yaml",
                "trans_matrix:\n  - parent_frame: a\n    child_frame: b\n    matrix:\n"
                "      data: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n");
-  expect_refused(folder, {"trans_matrix.yaml", "no chain of transforms joins"});
+  expect_rejected(folder, {"trans_matrix.yaml", "no chain of transforms connects"});
 }
 
-TEST(BadSequence, AFolderWithoutCalibrationAsksForARigFile) {
+TEST(BadSequence, MissingCalibrationErrorSuggestsARigFile) {
   const TemporaryFolder folder;
   write_plain_folder(folder);
   folder.write("camera.json", "{}");
-  expect_refused(folder, {"camera.json", "intrinsic_matrix"});
+  expect_rejected(folder, {"camera.json", "intrinsic_matrix"});
   std::filesystem::remove(folder.path() / "camera.json");
-  expect_refused(folder, {"rig.toml"});
+  expect_rejected(folder, {"rig.toml"});
 }
 
 TEST(BadSequence, FaultyRecordedBoxesAreAnError) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   folder.write("detections.txt", "1.0 person 0.9 30 20 10 40\n");
-  expect_refused(folder, {"detections.txt:1", "inverted"});
+  expect_rejected(folder, {"detections.txt:1", "inverted"});
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
 
 #include <gtest/gtest.h>
 
@@ -8,17 +8,17 @@
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
-cv::Mat ramp(int type) {
-  cv::Mat picture(48, 64, type);
-  std::uint32_t state = 1;  // incompressible, so that a cut file lacks pixels
-  for (std::size_t i = 0; i < picture.total() * picture.elemSize(); ++i) {
+cv::Mat noise_image(int type) {
+  cv::Mat image(48, 64, type);
+  std::uint32_t state = 1;  // incompressible, so that a truncated file lacks pixels
+  for (std::size_t i = 0; i < image.total() * image.elemSize(); ++i) {
     state = state * 1664525U + 1013904223U;
-    picture.data[i] = static_cast<std::uint8_t>(state >> 24);
+    image.data[i] = static_cast<std::uint8_t>(state >> 24);
   }
-  return picture;
+  return image;
 }
 
 bool equal(const cv::Mat& a, const cv::Mat& b) {
@@ -26,36 +26,36 @@ bool equal(const cv::Mat& a, const cv::Mat& b) {
          std::equal(a.data, a.data + a.total() * a.elemSize(), b.data);
 }
 
-void cut_in_half(const std::filesystem::path& file) {
+void truncate_by_half(const std::filesystem::path& file) {
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
 }
 
-TEST(ImageIo, PngRoundTripKeepsEveryBit) {
+TEST(ImageIo, PngRoundTripIsLossless) {
   const TemporaryFolder folder;
   for (const int type : {CV_8UC1, CV_8UC3}) {
-    write_png(folder.path() / "picture.png", ramp(type));
-    EXPECT_TRUE(equal(read_picture(folder.path() / "picture.png"), ramp(type)));
+    write_png(folder.path() / "image.png", noise_image(type));
+    EXPECT_TRUE(equal(read_image(folder.path() / "image.png"), noise_image(type)));
   }
-  write_png(folder.path() / "depth.png", ramp(CV_16UC1));
-  EXPECT_TRUE(equal(read_depth(folder.path() / "depth.png"), ramp(CV_16UC1)));
+  write_png(folder.path() / "depth.png", noise_image(CV_16UC1));
+  EXPECT_TRUE(equal(read_depth(folder.path() / "depth.png"), noise_image(CV_16UC1)));
 }
 
-TEST(ImageIo, WritesAViewWithGapsBetweenItsRows) {
+TEST(ImageIo, WritesAViewWithNonContiguousRows) {
   const TemporaryFolder folder;
-  const cv::Mat view = ramp(CV_16UC1)(cv::Rect(3, 5, 20, 10));
+  const cv::Mat view = noise_image(CV_16UC1)(cv::Rect(3, 5, 20, 10));
   write_png(folder.path() / "view.png", view);
   EXPECT_TRUE(equal(read_depth(folder.path() / "view.png"), view.clone()));
 }
 
-TEST(ImageIo, JpegKeepsAPlainColourNearlyAndSmall) {
+TEST(ImageIo, JpegApproximatesAUniformColorInASmallFile) {
   const TemporaryFolder folder;
-  const cv::Mat plain(48, 64, CV_8UC3, cv::Scalar(200, 120, 40));
-  write_jpeg(folder.path() / "plain.jpg", plain);
-  const cv::Vec3b pixel = read_picture(folder.path() / "plain.jpg").at<cv::Vec3b>(20, 30);
-  EXPECT_NEAR(pixel[0], 200, 3);  // rounding of the colour transform and of one coefficient
+  const cv::Mat uniform(48, 64, CV_8UC3, cv::Scalar(200, 120, 40));
+  write_jpeg(folder.path() / "uniform.jpg", uniform);
+  const cv::Vec3b pixel = read_image(folder.path() / "uniform.jpg").at<cv::Vec3b>(20, 30);
+  EXPECT_NEAR(pixel[0], 200, 3);  // rounding of the color transform and of one coefficient
   EXPECT_NEAR(pixel[1], 120, 3);
   EXPECT_NEAR(pixel[2], 40, 3);
-  EXPECT_LT(std::filesystem::file_size(folder.path() / "plain.jpg"), 48u * 64u);
+  EXPECT_LT(std::filesystem::file_size(folder.path() / "uniform.jpg"), 48u * 64u);
 }
 
 TEST(ImageIo, JpegIntoAMissingFolderIsAnError) {
@@ -74,56 +74,56 @@ TEST(ImageIo, GrayIsTheRoundedLuma) {
   EXPECT_EQ(gray.at<std::uint8_t>(0, 2), 255);
 }
 
-TEST(ImageIo, MissingPictureIsAnError) {
+TEST(ImageIo, MissingImageIsAnError) {
   const TemporaryFolder folder;
-  expect_input_error([&] { static_cast<void>(read_picture(folder.path() / "no.png")); },
-                     {"no.png", "no such picture"});
+  expect_input_error([&] { static_cast<void>(read_image(folder.path() / "no.png")); },
+                     {"no.png", "no such image"});
 }
 
-TEST(ImageIo, TruncatedPicturesAreErrors) {
+TEST(ImageIo, TruncatedImagesAreErrors) {
   const TemporaryFolder folder;
-  write_png(folder.path() / "a.png", ramp(CV_8UC3));
-  write_png(folder.path() / "b.png", ramp(CV_16UC1));
-  cut_in_half(folder.path() / "a.png");
-  cut_in_half(folder.path() / "b.png");
-  expect_input_error([&] { static_cast<void>(read_picture(folder.path() / "a.png")); },
-                     {"a.png", "truncated"});
+  write_png(folder.path() / "a.png", noise_image(CV_8UC3));
+  write_png(folder.path() / "b.png", noise_image(CV_16UC1));
+  truncate_by_half(folder.path() / "a.png");
+  truncate_by_half(folder.path() / "b.png");
+  expect_input_error([&] { static_cast<void>(read_image(folder.path() / "a.png")); }, {"a.png", "truncated"});
   expect_input_error([&] { static_cast<void>(read_depth(folder.path() / "b.png")); }, {"b.png", "truncated"});
 }
 
 TEST(ImageIo, TextAndEmptyFilesAreErrors) {
   const TemporaryFolder folder;
-  const auto text = folder.write("text.png", "this is no picture");
+  const auto text = folder.write("text.png", "not an image");
   const auto empty = folder.write("empty.jpg", "");
-  expect_input_error([&] { static_cast<void>(read_picture(text)); }, {"text.png", "no PNG"});
-  expect_input_error([&] { static_cast<void>(read_picture(empty)); }, {"empty.jpg", "cannot be decoded"});
+  expect_input_error([&] { static_cast<void>(read_image(text)); }, {"text.png", "not a PNG"});
+  expect_input_error([&] { static_cast<void>(read_image(empty)); }, {"empty.jpg", "cannot be decoded"});
 }
 
-TEST(ImageIo, ColourAndDepthAreNotMistakenForEachOther) {
+TEST(ImageIo, ReadingColorAsDepthOrDepthAsColorIsAnError) {
   const TemporaryFolder folder;
-  write_png(folder.path() / "color.png", ramp(CV_8UC3));
-  write_png(folder.path() / "depth.png", ramp(CV_16UC1));
+  write_png(folder.path() / "color.png", noise_image(CV_8UC3));
+  write_png(folder.path() / "depth.png", noise_image(CV_16UC1));
   expect_input_error([&] { static_cast<void>(read_depth(folder.path() / "color.png")); },
                      {"3 channel(s) of 8 bits"});
-  expect_input_error([&] { static_cast<void>(read_picture(folder.path() / "depth.png")); },
+  expect_input_error([&] { static_cast<void>(read_image(folder.path() / "depth.png")); },
                      {"16 bits per channel"});
 }
 
-TEST(ImageIo, AFullDiskIsAnErrorAndLeavesNothing) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+TEST(ImageIo, AFullDiskIsAnErrorAndLeavesNoFile) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "/dev/full does not exist";
   const TemporaryFolder folder;
-  // What write_png writes first is the name with ".part": a link there makes the disk full.
+  // write_png first writes to the name with the suffix ".part"; a link to /dev/full simulates a full disk.
   std::filesystem::create_symlink("/dev/full", folder.path() / "a.png.part");
-  expect_input_error([&] { write_png(folder.path() / "a.png", ramp(CV_8UC3)); }, {"a.png", "disk not full"});
+  expect_input_error([&] { write_png(folder.path() / "a.png", noise_image(CV_8UC3)); },
+                     {"a.png", "disk is not full"});
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(ImageIo, AFileThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
+TEST(ImageIo, AMissingOutputFolderIsAnErrorAndLeavesNoFile) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "absent" / "a.png";
-  expect_input_error([&] { write_png(file, ramp(CV_8UC1)); }, {"a.png", "cannot be written"});
+  expect_input_error([&] { write_png(file, noise_image(CV_8UC1)); }, {"a.png", "cannot be written"});
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

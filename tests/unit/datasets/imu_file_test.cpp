@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/imu_file.h"
+#include "datasets/io/imu_file.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
 std::vector<VectorSample> samples_ms(std::initializer_list<std::pair<std::int64_t, double>> values) {
@@ -17,7 +17,7 @@ std::vector<VectorSample> samples_ms(std::initializer_list<std::pair<std::int64_
   return samples;
 }
 
-TEST(MergeOntoGyro, InterpolatesBetweenNeighboursAndDropsWhatLiesOutside) {
+TEST(MergeOntoGyro, InterpolatesLinearlyAndDropsSamplesOutsideTheTimeSpan) {
   const auto gyro = samples_ms({{0, 1}, {5, 2}, {10, 3}, {11, 4}, {20, 5}, {21, 6}});
   const auto accel = samples_ms({{1, 0}, {9, 8}, {11, 20}, {20, 2}});
   const std::vector<ImuSample> merged = merge_onto_gyro(gyro, accel);
@@ -30,7 +30,7 @@ TEST(MergeOntoGyro, InterpolatesBetweenNeighboursAndDropsWhatLiesOutside) {
   EXPECT_TRUE(merge_onto_gyro(gyro, {}).empty());
 }
 
-TEST(ImuFile, BadRowsAreErrorsWithTheirLine) {
+TEST(ImuFile, FaultyRowErrorsNameTheLine) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text) {
     return [&folder, text] {
@@ -38,15 +38,15 @@ TEST(ImuFile, BadRowsAreErrorsWithTheirLine) {
       static_cast<void>(read_imu_file(folder.write("imu.csv", text), TimeUnit::kNanoseconds, strict));
     };
   };
-  expect_input_error(read("#t\n"), {"imu.csv", "holds no samples"});
+  expect_input_error(read("#t\n"), {"imu.csv", "contains no samples"});
   expect_input_error(read("2,0,0,0,0,0,9\n1,0,0,0,0,0,9\n"), {"imu.csv:2", "sort the file"});
   expect_input_error(read("2,0,0,0,0,0,9\n2,0,0,0,0,0,9\n"), {"imu.csv:2", "repeats"});
   expect_input_error(read("2,0,nan,0,0,0,9\n"), {"imu.csv:1", "not finite"});
   expect_input_error(read("2,0,0,0,0,0\n"), {"imu.csv:1", "6 field(s)"});
-  expect_input_error(read("2.5,0,0,0,0,0,9\n"), {"imu.csv:1", "whole nanoseconds"});
+  expect_input_error(read("2.5,0,0,0,0,0,9\n"), {"imu.csv:1", "integer time in nanoseconds"});
 }
 
-TEST(ImuFile, ACollectingLogKeepsTheGoodRows) {
+TEST(ImuFile, ACollectingLogSkipsFaultyRowsOnly) {
   const TemporaryFolder folder;
   FaultLog faults(FaultLog::Mode::kCollect);
   const auto samples =
@@ -57,4 +57,4 @@ TEST(ImuFile, ACollectingLogKeepsTheGoodRows) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

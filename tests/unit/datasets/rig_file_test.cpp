@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/rig_file.h"
+#include "datasets/io/rig_file.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
-void expect_refused(const std::string& text, const std::vector<std::string>& parts) {
+void expect_rejected(const std::string& text, const std::vector<std::string>& parts) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.write("rig.toml", text);
   expect_input_error([&] { static_cast<void>(apply_rig_file(file, Rig{})); }, parts);
@@ -59,7 +59,7 @@ time_offset_s = -0.005
   EXPECT_EQ(rig.time_offset_s, -0.005);
 }
 
-TEST(RigFile, LeavesWhatItDoesNotName) {
+TEST(RigFile, KeepsValuesThatItDoesNotSet) {
   const TemporaryFolder folder;
   Rig before;
   before.camera.fx = 123.0;
@@ -73,32 +73,32 @@ TEST(RigFile, LeavesWhatItDoesNotName) {
   EXPECT_EQ(result.rig.imu_noise.gyro_noise, 0.7);
 }
 
-TEST(RigFile, UnknownKeysAreErrorsWithTheirLine) {
-  expect_refused("[camera]\nfx = 500\nfocal = 3\n", {"rig.toml:3", "\"focal\"", "width, height, fx"});
-  expect_refused("[lidar]\nrange = 3\n", {"rig.toml:1", "\"lidar\"", "camera, depth, imu"});
-  expect_refused("\n[imu]\nnoise = 1\n", {"rig.toml:3", "\"noise\""});
+TEST(RigFile, UnknownKeyErrorsNameTheLine) {
+  expect_rejected("[camera]\nfx = 500\nfocal = 3\n", {"rig.toml:3", "\"focal\"", "width, height, fx"});
+  expect_rejected("[lidar]\nrange = 3\n", {"rig.toml:1", "\"lidar\"", "camera, depth, imu"});
+  expect_rejected("\n[imu]\nnoise = 1\n", {"rig.toml:3", "\"noise\""});
 }
 
-TEST(RigFile, WrongTypesAndRangesAreErrorsWithTheirLine) {
-  expect_refused("[camera]\nfx = \"500\"\n", {"rig.toml:2", "\"fx\" must be a finite number"});
-  expect_refused("[camera]\nfx = -1\n", {"rig.toml:2", "greater than 0"});
-  expect_refused("[camera]\nwidth = 640.5\n", {"rig.toml:2", "whole number"});
-  expect_refused("[camera]\nfx = nan\n", {"rig.toml:2", "finite"});
-  expect_refused("[camera]\nmodel = \"fov\"\n", {"rig.toml:2", "radial-tangential"});
-  expect_refused("[camera]\ndistortion = [1,2,3,4,5,6]\n", {"rig.toml:2", "more than 5"});
-  expect_refused("[camera]\nrolling_shutter_s = -0.1\n", {"rig.toml:2", "must not be negative"});
-  expect_refused("[depth]\nscale = 0\n", {"rig.toml:2", "greater than 0"});
-  expect_refused("[imu]\nT_b_c = [1, 0]\n", {"rig.toml:2", "16 numbers"});
-  expect_refused("[imu]\nT_b_c = [2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n",
-                 {"rig.toml:2", "not a rigid transform"});
-  expect_refused("camera = 3\n", {"rig.toml:1", "must be a table"});
+TEST(RigFile, TypeAndRangeErrorsNameTheLine) {
+  expect_rejected("[camera]\nfx = \"500\"\n", {"rig.toml:2", "\"fx\" must be a finite number"});
+  expect_rejected("[camera]\nfx = -1\n", {"rig.toml:2", "greater than 0"});
+  expect_rejected("[camera]\nwidth = 640.5\n", {"rig.toml:2", "integer"});
+  expect_rejected("[camera]\nfx = nan\n", {"rig.toml:2", "finite"});
+  expect_rejected("[camera]\nmodel = \"fov\"\n", {"rig.toml:2", "radial-tangential"});
+  expect_rejected("[camera]\ndistortion = [1,2,3,4,5,6]\n", {"rig.toml:2", "more than 5"});
+  expect_rejected("[camera]\nrolling_shutter_s = -0.1\n", {"rig.toml:2", "must not be negative"});
+  expect_rejected("[depth]\nscale = 0\n", {"rig.toml:2", "greater than 0"});
+  expect_rejected("[imu]\nT_b_c = [1, 0]\n", {"rig.toml:2", "16 numbers"});
+  expect_rejected("[imu]\nT_b_c = [2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n",
+                  {"rig.toml:2", "not a rigid transform"});
+  expect_rejected("camera = 3\n", {"rig.toml:1", "must be a table"});
 }
 
-TEST(RigFile, BrokenTomlAndMissingFilesAreErrors) {
-  expect_refused("[camera\n", {"rig.toml:1"});
+TEST(RigFile, InvalidTomlAndMissingFilesAreErrors) {
+  expect_rejected("[camera\n", {"rig.toml:1"});
   expect_input_error([] { static_cast<void>(apply_rig_file("/nonexistent/rig.toml", Rig{})); },
                      {"no such rig file"});
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

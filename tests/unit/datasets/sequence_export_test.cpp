@@ -6,11 +6,11 @@
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
-/// Three frames of 8x6 pixels whose brightness tells their number, an IMU, and a truth told of a frame beside
-/// the camera.
+/// Three frames of 8x6 pixels whose intensity encodes their index, an IMU, and ground truth of a marker frame
+/// with an offset to the camera.
 class SmallStream : public SensorStream {
  public:
   SmallStream() {
@@ -45,14 +45,14 @@ class SmallStream : public SensorStream {
   SequenceInfo info_;
 };
 
-/// Where the camera truly was at the last frame: 0.5 m behind the marker, which is at x = 2.
-void expect_same_path(const SequenceInfo& info) {
+/// Expects the camera at the last frame 0.5 m behind the marker, which is at x = 2.
+void expect_same_trajectory(const SequenceInfo& info) {
   ASSERT_EQ(info.ground_truth.trajectory.poses.size(), 3u);
   const Pose T_w_c = info.ground_truth.trajectory.poses.back().T_w_f * info.ground_truth.T_c_f.inverse();
   EXPECT_NEAR((T_w_c.p - Eigen::Vector3d(2.0, 0.0, -0.5)).norm(), 0.0, 1e-8);
 }
 
-TEST(SequenceExport, ATumFolderIsReadBackAsItWas) {
+TEST(SequenceExport, TumRoundTripPreservesTheSequence) {
   const TemporaryFolder folder;
   const SmallStream stream;
   export_tum(stream, folder.path() / "out");
@@ -66,10 +66,10 @@ TEST(SequenceExport, ATumFolderIsReadBackAsItWas) {
   EXPECT_NEAR((read->info().rig.T_b_c.p - stream.info().rig.T_b_c.p).norm(), 0.0, 1e-12);
   EXPECT_EQ(read->load_frame(2).gray.at<std::uint8_t>(0, 0), 20);
   EXPECT_EQ(read->load_frame(2).depth.at<std::uint16_t>(5, 7), 1000);
-  expect_same_path(read->info());
+  expect_same_trajectory(read->info());
 }
 
-TEST(SequenceExport, AnEurocFolderIsReadBackAsItWas) {
+TEST(SequenceExport, EurocRoundTripPreservesTheSequence) {
   const TemporaryFolder folder;
   const SmallStream stream;
   export_euroc(stream, folder.path() / "out");
@@ -79,17 +79,17 @@ TEST(SequenceExport, AnEurocFolderIsReadBackAsItWas) {
   EXPECT_EQ(read->info().rig.camera.width, 8);
   EXPECT_NEAR((read->info().rig.T_b_c.p - stream.info().rig.T_b_c.p).norm(), 0.0, 1e-12);
   EXPECT_EQ(read->load_frame(1).gray.at<std::uint8_t>(0, 0), 10);
-  expect_same_path(read->info());
+  expect_same_trajectory(read->info());
 }
 
-TEST(SequenceExport, EurocNeedsAnImu) {
+TEST(SequenceExport, EurocRequiresAnImu) {
   const TemporaryFolder folder;
   SmallStream stream;
   stream.info_.imu.clear();
   expect_input_error([&] { export_euroc(stream, folder.path() / "out"); }, {"has no IMU"});
 }
 
-TEST(SequenceExport, LeavesNothingBehindWhenItFails) {
+TEST(SequenceExport, LeavesNoFilesOnFailure) {
   const TemporaryFolder folder;
   folder.write("file", "no folder");
   expect_input_error([&] { export_tum(SmallStream(), folder.path() / "file" / "out"); },
@@ -98,4 +98,4 @@ TEST(SequenceExport, LeavesNothingBehindWhenItFails) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <functional>
 
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
 #include "datasets/sequence_content.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/sequence_folders.h"
 #include "tests/support/test_data.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
 bool has_note(const SequenceInfo& info, const std::string& part) {
@@ -18,7 +18,7 @@ bool has_note(const SequenceInfo& info, const std::string& part) {
                      [&](const std::string& note) { return note.find(part) != std::string::npos; });
 }
 
-/// A TUM folder named like one of the benchmark's, without a rig file.
+/// A TUM folder whose name ends with the name of a benchmark sequence, without a rig file.
 SequenceInfo tum_info(const std::string& name) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
@@ -30,7 +30,7 @@ SequenceInfo tum_info(const std::string& name) {
   return info;
 }
 
-TEST(TumFormat, PairsPicturesAndStampsThemByColour) {
+TEST(TumFormat, PairsImagesAndUsesColorTimestamps) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   const auto stream = open_sequence(folder.path());
@@ -59,29 +59,29 @@ TEST(TumFormat, GroundTruthIsOfTheCamera) {
   EXPECT_TRUE(truth.T_c_f.matrix().isIdentity());
 }
 
-TEST(TumFormat, TakesThePublishedCalibrationByName) {
+TEST(TumFormat, SelectsThePublishedCalibrationByName) {
   EXPECT_EQ(tum_info("rgbd_dataset_freiburg1_xyz").rig.camera.fx, 517.3);
   EXPECT_EQ(tum_info("rgbd_dataset_freiburg2_desk").rig.camera.distortion[1], -0.7849);
   EXPECT_EQ(tum_info("rgbd_dataset_freiburg3_walking_xyz").rig.camera.fy, 539.2);
 }
 
-TEST(TumFormat, SaysSoWhenItAssumesFreiburg3) {
+TEST(TumFormat, NotesThatFreiburg3IsAssumed) {
   const SequenceInfo info = tum_info("mine");
   EXPECT_EQ(info.rig.camera.fx, 535.4);
-  EXPECT_TRUE(has_note(info, "freiburg3's is assumed"));
+  EXPECT_TRUE(has_note(info, "freiburg3 assumed"));
 }
 
-TEST(TumFormat, LeavesOutColourWithoutDepthAndSaysSo) {
+TEST(TumFormat, DropsColorImagesWithoutDepthAndNotesTheirNumber) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   folder.write("depth.txt",
                "1.005 depth/1.005000.png\n1.0605 depth/1.045000.png\n1.085 depth/1.085000.png\n");
   const auto stream = open_sequence(folder.path());
   EXPECT_EQ(stream->info().frame_times.size(), 2U);  // 1.0605 is 20.5 ms from 1.04 and 19.5 ms from 1.08
-  EXPECT_TRUE(has_note(stream->info(), "1 of 3 colour pictures"));
+  EXPECT_TRUE(has_note(stream->info(), "1 of 3 color images"));
 }
 
-TEST(TumFormat, ReadsAnImuWhoseRigIsKnown) {
+TEST(TumFormat, ReadsAnImuIfTheRigFileHasTheExtrinsic) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   folder.write("imu.txt", "0.9 1 2 3 4 5 6\n1.2 1 2 3 4 5 6\n");
@@ -97,7 +97,7 @@ TEST(TumFormat, ReadsAnImuWhoseRigIsKnown) {
   EXPECT_EQ(stream->info().imu[0].accel_b, Eigen::Vector3d(4, 5, 6));
 }
 
-TEST(OpenLorisFormat, ReadsCalibrationAndWalksTheTransforms) {
+TEST(OpenLorisFormat, ReadsCalibrationAndChainsTheTransforms) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
   const auto stream = open_sequence(folder.path());
@@ -107,7 +107,7 @@ TEST(OpenLorisFormat, ReadsCalibrationAndWalksTheTransforms) {
   EXPECT_EQ(info.rig.camera.cx, 3.5);
   EXPECT_EQ(info.rig.camera.fy, 11.0);
   EXPECT_EQ(info.rig.camera.distortion[0], 0.1);
-  EXPECT_NEAR(info.rig.T_b_c.p.x(), -0.1, 1e-12);            // the IMU sits 0.1 m right of the camera
+  EXPECT_NEAR(info.rig.T_b_c.p.x(), -0.1, 1e-12);            // the IMU is 0.1 m right of the camera
   EXPECT_NEAR(info.rig.imu_noise.gyro_noise, 2e-3, 1e-12);   // sqrt(4e-6)
   EXPECT_NEAR(info.rig.imu_noise.accel_noise, 3e-2, 1e-12);  // sqrt(9e-4)
   EXPECT_NEAR(info.rig.imu_noise.gyro_walk, 1e-5, 1e-15);
@@ -117,7 +117,7 @@ TEST(OpenLorisFormat, ReadsCalibrationAndWalksTheTransforms) {
   EXPECT_EQ(stream->load_frame(2).depth.at<std::uint16_t>(0, 0), 1000);
 }
 
-TEST(OpenLorisFormat, InterpolatesAccelerationOntoTheGyroscope) {
+TEST(OpenLorisFormat, InterpolatesAccelerationAtGyroscopeTimes) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
   const auto stream = open_sequence(folder.path());
@@ -150,7 +150,7 @@ TEST(EurocFormat, ReadsLeftCameraImuAndStateEstimate) {
   EXPECT_TRUE(frame.depth.empty());
 }
 
-TEST(EurocFormat, TakesGroundTruthBesideMav0WhereThereIsNoEstimate) {
+TEST(EurocFormat, ReadsGroundTruthBesideMav0IfThereIsNoStateEstimate) {
   const TemporaryFolder folder;
   write_euroc_folder(folder);
   std::filesystem::remove_all(folder.path() / "mav0/state_groundtruth_estimate0");
@@ -159,7 +159,7 @@ TEST(EurocFormat, TakesGroundTruthBesideMav0WhereThereIsNoEstimate) {
   EXPECT_EQ(open_sequence(folder.path() / "mav0")->info().ground_truth.trajectory.frame, "imu");
 }
 
-TEST(SevenScenesFormat, StampsFramesByTheirNumber) {
+TEST(SevenScenesFormat, DerivesTimestampsFromFrameNumbers) {
   const TemporaryFolder folder;
   write_seven_scenes_folder(folder);
   const auto stream = open_sequence(folder.path());
@@ -170,7 +170,7 @@ TEST(SevenScenesFormat, StampsFramesByTheirNumber) {
   EXPECT_EQ(info.ground_truth.trajectory.poses[2].T_w_f.p.x(), 0.02);
 }
 
-TEST(SevenScenesFormat, TakesTheLargestRawDepthForNotMeasured) {
+TEST(SevenScenesFormat, ReadsTheLargestRawDepthAsNotMeasured) {
   const TemporaryFolder folder;
   write_seven_scenes_folder(folder);
   write_png(folder.path() / "frame-000000.depth.png", cv::Mat(480, 640, CV_16UC1, cv::Scalar(65535)));
@@ -179,7 +179,7 @@ TEST(SevenScenesFormat, TakesTheLargestRawDepthForNotMeasured) {
   EXPECT_EQ(depth.at<std::uint16_t>(240, 320), 0);
 }
 
-TEST(SevenScenesFormat, RegistersDepthToTheColourCamera) {
+TEST(SevenScenesFormat, RegistersDepthToTheColorCamera) {
   const TemporaryFolder folder;
   write_seven_scenes_folder(folder);
   const auto stream = open_sequence(folder.path());
@@ -187,9 +187,9 @@ TEST(SevenScenesFormat, RegistersDepthToTheColourCamera) {
   EXPECT_NEAR(info.rig.camera.fx, 527.5, 1e-9);
   EXPECT_NEAR(info.ground_truth.T_c_f.p.x(), -0.023, 1e-9);  // the poses are of the depth camera
   const cv::Mat depth = stream->load_frame(0).depth;
-  // A wall at 1 m ends at 320 / 585 m to either side; the camera 23 mm beside it and turned by 8.3 mrad sees
-  // the ends at 0.534 and -0.559, so 527.5 px times that from column 315: at the columns 597 and 20, and two
-  // pixels further in by distortion.
+  // The depth image of a plane at 1 m extends 320 / 585 m to either side; in the color camera, 23 mm beside
+  // and rotated by 8.3 mrad, its borders are at x/z = 0.534 and -0.559, i.e. at the columns 315 + 527.5 x/z =
+  // 597 and 20, and two pixels further inside with distortion.
   EXPECT_NEAR(depth.at<std::uint16_t>(240, 320), 1000, 1);
   EXPECT_GT(depth.at<std::uint16_t>(240, 585), 0);
   EXPECT_EQ(depth.at<std::uint16_t>(240, 600), 0);
@@ -197,7 +197,7 @@ TEST(SevenScenesFormat, RegistersDepthToTheColourCamera) {
   EXPECT_EQ(depth.at<std::uint16_t>(240, 15), 0);
 }
 
-TEST(FolderFormat, PairsByNameAndReadsTheJsonCamera) {
+TEST(FolderFormat, PairsImagesByNameAndReadsTheJsonCamera) {
   const TemporaryFolder folder;
   write_plain_folder(folder);
   const auto stream = open_sequence(folder.path());
@@ -209,17 +209,17 @@ TEST(FolderFormat, PairsByNameAndReadsTheJsonCamera) {
   EXPECT_EQ(stream->load_frame(2).depth.at<std::uint16_t>(0, 0), 1000);
 }
 
-TEST(OpenSequence, NamesTheKnownFormatsWhenItRecognisesNone) {
+TEST(OpenSequence, UnknownFormatErrorListsTheSupportedFormats) {
   const TemporaryFolder folder;
   expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); },
-                     {"no sequence of a known format", "rgb.txt", "mav0"});
+                     {"not a sequence of a supported format", "rgb.txt", "mav0"});
   expect_input_error(
       [&] { static_cast<void>(open_sequence(folder.path(), {.format = "kitti", .rig_file = {}})); },
       {"kitti", "tum, openloris, euroc, 7scenes, folder"});
   expect_input_error([&] { static_cast<void>(open_sequence(folder.path() / "absent")); }, {"no such folder"});
 }
 
-TEST(RealData, EveryFolderAtHandOpensAndDecodes) {
+TEST(RealData, EveryAvailableFolderOpensAndDecodes) {
   const std::array<std::pair<const char*, const char*>, 3> folders{
       {{"kitchen_rgbd", "7scenes"}, {"two_people_d435", "folder"}, {"euroc_v101_micro", "euroc"}}};
   const std::array<std::size_t, 3> frames{400, 40, 95};
@@ -233,20 +233,20 @@ TEST(RealData, EveryFolderAtHandOpensAndDecodes) {
   }
 }
 
-TEST(RealData, TheOpenLorisExampleGivesTheD435iExtrinsic) {
+TEST(RealData, TheOpenLorisExampleHasTheD435iExtrinsic) {
   const auto folder = find_test_data("openloris/package_example");
   if (!folder) GTEST_SKIP() << missing_test_data("openloris/package_example");
   FaultLog faults(FaultLog::Mode::kCollect);
   const SequenceContent content = read_sequence(*folder, {}, faults);
-  // The inverse of the file's pose of the gyroscope in the camera, to its 6 digits: -R^T t.
+  // Inverse of the pose of the gyroscope in the camera frame given by the file: -R^T t.
   EXPECT_TRUE(content.info.rig.T_b_c.p.isApprox(Eigen::Vector3d(0.02030, -0.00510, -0.01120), 1e-2));
   EXPECT_NEAR(content.info.rig.imu_noise.gyro_noise, 1.8e-4, 1e-9);  // sqrt(3.24e-8)
   EXPECT_EQ(content.info.frame_times.size(), 5U);
   EXPECT_EQ(content.info.imu.size(), 3U);   // the first of the four lies before the accelerometer's first
-  ASSERT_EQ(faults.messages().size(), 2U);  // an excerpt: neither IMU nor ground truth reaches the pictures
+  ASSERT_EQ(faults.messages().size(), 2U);  // an excerpt: neither IMU nor ground truth overlaps the images
   EXPECT_NE(faults.messages()[0].find("the IMU covers"), std::string::npos);
   EXPECT_NE(faults.messages()[1].find("the ground truth covers"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

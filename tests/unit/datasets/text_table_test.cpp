@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/text_table.h"
+#include "datasets/io/text_table.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::datasets {
 namespace {
 
-TEST(ParseSeconds, KeepsEveryNanosecondOfAUnixStamp) {
+TEST(ParseSeconds, IsExactToTheNanosecondForUnixTimestamps) {
   // As a double, 1560000000.123456789 would be off by up to 120 ns.
   EXPECT_EQ(parse_seconds("1560000000.123456789"), Timestamp{1'560'000'000'123'456'789});
   EXPECT_EQ(parse_seconds("1700000000.00130010"), Timestamp{1'700'000'000'001'300'100});
 }
 
-TEST(ParseSeconds, TakesEveryDecimalSpelling) {
+TEST(ParseSeconds, AcceptsAllDecimalNotations) {
   EXPECT_EQ(parse_seconds("7"), Timestamp{7'000'000'000});
   EXPECT_EQ(parse_seconds(".5"), Timestamp{500'000'000});
   EXPECT_EQ(parse_seconds("0.000000001"), Timestamp{1});
@@ -31,7 +31,7 @@ TEST(ParseSeconds, RoundsBelowTheNanosecond) {
   EXPECT_EQ(parse_seconds("0.0000000006"), Timestamp{1});
 }
 
-TEST(ParseSeconds, RefusesWhatIsNoTime) {
+TEST(ParseSeconds, RejectsInvalidTimes) {
   for (const char* const text :
        {"", "-", ".", "abc", "1.2.3", "1e", "1 2", "nan", "inf", "9300000000", "1e99"}) {
     EXPECT_FALSE(parse_seconds(text).has_value()) << text;
@@ -56,17 +56,19 @@ TEST(TextTable, ErrorsNameFileAndLine) {
   expect_input_error(number(0, 1), {"a.txt:1", "\"x\" is not a number"});
   expect_input_error(number(1, 1), {"a.txt:2", "\"nan\" is not finite"});
   expect_input_error(number(2, 1), {"a.txt:3", "\"inf\" is not finite"});
-  expect_input_error(number(2, 2), {"a.txt:3", "2 field(s), at least 3 expected"});
+  expect_input_error(number(2, 2), {"a.txt:3", "2 field(s), expected at least 3"});
 }
 
-TEST(TextTable, TellsRepeatedStampsFromThoseThatFallBack) {
+TEST(TextTable, DistinguishesRepeatedFromDecreasingTimestamps) {
   const TemporaryFolder folder;
   const TextTable table(folder.write("a.txt", "2\n1\n"));
   const TextRow& row = table.rows()[1];
-  expect_input_error([&] { table.require_rising(row, Timestamp{5}, Timestamp{5}); }, {"a.txt:2", "repeats"});
-  expect_input_error([&] { table.require_rising(row, Timestamp{2'000'000'000}, Timestamp{1'500'000'000}); },
-                     {"a.txt:2", "0.500000 s before"});
-  EXPECT_NO_THROW(table.require_rising(row, Timestamp{5}, Timestamp{6}));
+  expect_input_error([&] { table.require_increasing(row, Timestamp{5}, Timestamp{5}); },
+                     {"a.txt:2", "repeats"});
+  expect_input_error(
+      [&] { table.require_increasing(row, Timestamp{2'000'000'000}, Timestamp{1'500'000'000}); },
+      {"a.txt:2", "0.500000 s earlier"});
+  EXPECT_NO_THROW(table.require_increasing(row, Timestamp{5}, Timestamp{6}));
 }
 
 TEST(TextTable, AMissingFileIsAnError) {
@@ -75,4 +77,4 @@ TEST(TextTable, AMissingFileIsAnError) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::datasets

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A picture for detectors that need only its time, its number and its size.
+/// A black image for detectors that use only the time, id and size of a frame.
 #pragma once
 
 #include "core/types/frame.h"
@@ -9,7 +9,7 @@ namespace stillpoint {
 inline constexpr int kBlankWidth = 640;
 inline constexpr int kBlankHeight = 480;
 
-/// The `id`-th picture at 30 Hz.
+/// Frame `id` at 30 Hz.
 inline Frame blank_frame(std::int64_t id) {
   Frame frame;
   frame.id = id;

@@ -15,40 +15,40 @@ std::vector<DetectionSet> recorded(int frames) {
   return sets;
 }
 
-TEST(MakeObjectDetector, MakesWhatTheConfigNames) {
+TEST(MakeObjectDetector, CreatesTheConfiguredDetector) {
   const auto sets = recorded(2);
   DetectorConfig config;
-  EXPECT_EQ(make_object_detector(config, {.boxes = sets})->description(), "recorded, 2 pictures");
+  EXPECT_EQ(make_object_detector(config, {.boxes = sets})->description(), "recorded, 2 frames");
   config.kind = DetectorKind::kNone;
   EXPECT_EQ(make_object_detector(config, {.boxes = sets})->description(), "none");
   config.kind = DetectorKind::kSimulated;
   EXPECT_EQ(make_object_detector(config, {.boxes = sets})->description(),
-            "simulated over 2 pictures of true boxes");
+            "simulated over 2 frames of ground truth boxes");
   config.kind = DetectorKind::kNetwork;
   expect_input_error([&] { static_cast<void>(make_object_detector(config, {.boxes = sets})); },
                      {"detector.names"});
 }
 
-TEST(MakeObjectDetector, NoneNeverLooks) {
+TEST(MakeObjectDetector, NoneSkipsEveryFrame) {
   DetectorConfig config;
   config.kind = DetectorKind::kNone;
   const auto detector = make_object_detector(config, {});
   EXPECT_EQ(detector->detect(blank_frame(0)).state, DetectionState::kNone);
-  EXPECT_EQ(detector->counters().unlooked, 1);
+  EXPECT_EQ(detector->counters().skipped, 1);
 }
 
-TEST(MakeObjectDetector, LooksAtEveryNthPictureOnly) {
+TEST(MakeObjectDetector, ProcessesEveryNthFrameOnly) {
   const auto sets = recorded(7);
   DetectorConfig config;
   config.every_n_frames = 3;
   const auto detector = make_object_detector(config, {.boxes = sets});
-  std::vector<std::int64_t> looked;
+  std::vector<std::int64_t> processed;
   for (int id = 0; id < 7; ++id) {
-    if (detector->detect(blank_frame(id)).state == DetectionState::kPresent) looked.push_back(id);
+    if (detector->detect(blank_frame(id)).state == DetectionState::kPresent) processed.push_back(id);
   }
-  EXPECT_EQ(looked, (std::vector<std::int64_t>{0, 3, 6}));
-  EXPECT_EQ(detector->counters().looked, 3);
-  EXPECT_EQ(detector->counters().unlooked, 4);
+  EXPECT_EQ(processed, (std::vector<std::int64_t>{0, 3, 6}));
+  EXPECT_EQ(detector->counters().processed, 3);
+  EXPECT_EQ(detector->counters().skipped, 4);
 }
 
 }  // namespace

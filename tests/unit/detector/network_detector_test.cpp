@@ -16,7 +16,7 @@ constexpr int kInput = 64;
 /// One box (x, y, w, h), objectness and two scores, in the layout of YOLOv5.
 std::string one_person_onnx() { return constant_onnx({16, 24, 16, 16, 1.0F, 0.1F, 0.8F}, {1, 1, 7}, kInput); }
 
-/// A network in a folder of its own.
+/// A network in a temporary folder.
 struct NetworkFiles {
   TemporaryFolder folder;
   DetectorConfig config;
@@ -33,15 +33,15 @@ struct NetworkFiles {
 
 const std::vector<std::string> kPerson = {"person"};
 
-void expect_refused(const DetectorConfig& config, const std::vector<std::string>& parts,
-                    std::span<const std::string> dynamic_classes = kPerson) {
+void expect_rejected(const DetectorConfig& config, const std::vector<std::string>& parts,
+                     std::span<const std::string> dynamic_classes = kPerson) {
   expect_input_error([&] { NetworkDetector(config, dynamic_classes); }, parts);
 }
 
-TEST(NetworkDetector, RunsAnOnnxNetworkAndKeepsProportions) {
+TEST(NetworkDetector, RunsAnOnnxNetworkAndKeepsTheAspectRatio) {
   const NetworkFiles files;
   NetworkDetector detector(files.config, kPerson);
-  // 640 px become 64: each box times 10. Centre (160, 240), size (160, 160).
+  // 640 px are scaled to 64: boxes times 10. Center (160, 240), size (160, 160).
   const DetectionSet found = detector.detect(blank_frame(3));
   EXPECT_EQ(found.t, blank_frame(3).t);
   EXPECT_EQ(found.state, DetectionState::kPresent);
@@ -54,7 +54,7 @@ TEST(NetworkDetector, RunsAnOnnxNetworkAndKeepsProportions) {
   EXPECT_NEAR(found.detections[0].box.y_max, 320.0, 1e-3);
 }
 
-TEST(NetworkDetector, SaysWhatIsReallyAtWork) {
+TEST(NetworkDetector, DescribesTheActualImplementation) {
   const NetworkFiles files;
   const NetworkDetector detector(files.config, kPerson);
   const std::string text = detector.description();
@@ -62,58 +62,59 @@ TEST(NetworkDetector, SaysWhatIsReallyAtWork) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " / " << text;
 }
 
-TEST(NetworkDetector, RefusesMissingFiles) {
+TEST(NetworkDetector, RejectsMissingFiles) {
   NetworkFiles files;
   files.config.weights = "";
-  expect_refused(files.config, {"detector.weights", "not set"});
+  expect_rejected(files.config, {"detector.weights", "not set"});
   files.config.weights = "/nowhere/net.onnx";
-  expect_refused(files.config, {"/nowhere/net.onnx", "is no file"});
+  expect_rejected(files.config, {"/nowhere/net.onnx", "is not a file"});
   NetworkFiles darknet;
   darknet.config.layout = NetworkLayout::kDarknet;
-  expect_refused(darknet.config, {"detector.cfg", "not set"});
+  expect_rejected(darknet.config, {"detector.cfg", "not set"});
   NetworkFiles nameless;
   nameless.config.names = "/nowhere/net.names";
-  expect_refused(nameless.config, {"/nowhere/net.names", "detector.names"});
+  expect_rejected(nameless.config, {"/nowhere/net.names", "detector.names"});
 }
 
-TEST(NetworkDetector, RefusesFilesThatAreNoNetwork) {
-  const NetworkFiles garbage("this is no network");
-  expect_refused(garbage.config, {"net.onnx", "no network"});
+TEST(NetworkDetector, RejectsFilesThatAreNotANetwork) {
+  const NetworkFiles garbage("this is not a network file");
+  expect_rejected(garbage.config, {"net.onnx", "not a network"});
   const NetworkFiles truncated(one_person_onnx().substr(0, 120));
-  expect_refused(truncated.config, {"net.onnx"});
+  expect_rejected(truncated.config, {"net.onnx"});
   NetworkFiles darknet;
   darknet.config.layout = NetworkLayout::kDarknet;
   darknet.config.cfg = darknet.folder.write("net.cfg", "[net]\nwidth=oops\n[nonsense]\n").string();
-  expect_refused(darknet.config, {"net.onnx", "no network"});
+  expect_rejected(darknet.config, {"net.onnx", "not a network"});
 }
 
-TEST(NetworkDetector, RefusesAnotherNumberOfClasses) {
+TEST(NetworkDetector, RejectsAWrongNumberOfClasses) {
   const NetworkFiles files(one_person_onnx(), "cat\nperson\ndog\n");
-  expect_refused(files.config, {"net.onnx", "1 x 1 x 7", "3 classes"});
+  expect_rejected(files.config, {"net.onnx", "1 x 1 x 7", "3 classes"});
 }
 
-TEST(NetworkDetector, RefusesAnotherLayout) {
+TEST(NetworkDetector, RejectsAWrongLayout) {
   NetworkFiles files;
   files.config.layout = NetworkLayout::kYolov8;
-  expect_refused(files.config, {"net.onnx", "detector.layout"});
+  expect_rejected(files.config, {"net.onnx", "detector.layout"});
 }
 
-TEST(NetworkDetector, RefusesEmptyNames) {
+TEST(NetworkDetector, RejectsEmptyNames) {
   const NetworkFiles files(one_person_onnx(), "\n\n");
-  expect_refused(files.config, {"net.names", "no class names"});
+  expect_rejected(files.config, {"net.names", "no class names"});
 }
 
-TEST(NetworkDetector, RefusesNetworksThatKnowNoDynamicClass) {
+TEST(NetworkDetector, RejectsNetworksWithoutAnyDynamicClass) {
   const NetworkFiles files;
-  expect_refused(files.config, {"net.names", "dynamic.classes", "\"cat\""}, std::vector<std::string>{"body"});
+  expect_rejected(files.config, {"net.names", "dynamic.classes", "\"cat\""},
+                  std::vector<std::string>{"body"});
   EXPECT_NO_THROW(NetworkDetector(files.config, {}));
 }
 
-TEST(NetworkDetector, RefusesABackendThatIsNotThereInsteadOfFallingBack) {
+TEST(NetworkDetector, RejectsAnUnavailableBackendInsteadOfFallingBack) {
   NetworkFiles files;
   files.config.backend = NetworkBackend::kCuda;
-  if (!cv::dnn::getAvailableTargets(cv::dnn::DNN_BACKEND_CUDA).empty()) GTEST_SKIP() << "CUDA is there";
-  expect_refused(files.config, {"detector.backend", "opencv"});
+  if (!cv::dnn::getAvailableTargets(cv::dnn::DNN_BACKEND_CUDA).empty()) GTEST_SKIP() << "CUDA is available";
+  expect_rejected(files.config, {"detector.backend", "opencv"});
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kHalfFrame = 0.016;  // [s]
+constexpr double kTolerance_s = 0.016;
 
-/// A set `shift_s` after the `id`-th picture, with one box of the width `width`.
+/// A set `shift_s` after frame `id`, with one box of width `width`.
 DetectionSet set_near(std::int64_t id, double shift_s, double width) {
   return {.t = after(blank_frame(id).t, shift_s),
           .state = DetectionState::kPresent,
@@ -25,63 +25,63 @@ double width_of(const DetectionSet& set) {
   return set.detections.empty() ? 0.0 : set.detections[0].box.x_max - set.detections[0].box.x_min;
 }
 
-TEST(RecordedDetector, FindsTheSetOfTheExactStamp) {
+TEST(RecordedDetector, FindsTheSetWithTheExactTimestamp) {
   const std::vector sets = {set_near(0, 0.0, 20), set_near(1, 0.0, 30), set_near(2, 0.0, 40)};
-  RecordedDetector detector(sets, kHalfFrame);
+  RecordedDetector detector(sets, kTolerance_s);
   const DetectionSet found = detector.detect(blank_frame(1));
   EXPECT_EQ(found.state, DetectionState::kPresent);
   EXPECT_EQ(found.t, blank_frame(1).t);
   EXPECT_EQ(width_of(found), 30.0);
 }
 
-TEST(RecordedDetector, TakesTheNearestWithinHalfAFrame) {
+TEST(RecordedDetector, UsesTheNearestSetWithinTheTolerance) {
   const std::vector sets = {set_near(1, -0.012, 20), set_near(1, 0.010, 30)};
-  RecordedDetector detector(sets, kHalfFrame);
+  RecordedDetector detector(sets, kTolerance_s);
   const DetectionSet found = detector.detect(blank_frame(1));
   EXPECT_EQ(width_of(found), 30.0);
   EXPECT_EQ(found.t, blank_frame(1).t);
   EXPECT_EQ(width_of(detector.detect(blank_frame(1))), 30.0);
 }
 
-TEST(RecordedDetector, SaysThatNobodyLookedWhereNothingIsNear) {
+TEST(RecordedDetector, ReturnsNoneOutsideTheTolerance) {
   const std::vector sets = {set_near(1, 0.0, 20)};
-  RecordedDetector detector(sets, kHalfFrame);
+  RecordedDetector detector(sets, kTolerance_s);
   for (const std::int64_t id : {0, 2, 100}) {
     EXPECT_EQ(detector.detect(blank_frame(id)).state, DetectionState::kNone) << id;
   }
-  EXPECT_EQ(detector.counters().unlooked, 3);
-  EXPECT_EQ(detector.counters().looked, 0);
+  EXPECT_EQ(detector.counters().skipped, 3);
+  EXPECT_EQ(detector.counters().processed, 0);
 }
 
 TEST(RecordedDetector, WorksWithoutAnyBoxes) {
-  RecordedDetector detector({}, kHalfFrame);
+  RecordedDetector detector({}, kTolerance_s);
   EXPECT_EQ(detector.detect(blank_frame(0)).state, DetectionState::kNone);
 }
 
-TEST(RecordedDetector, PassesOnThatNothingWasFound) {
+TEST(RecordedDetector, ReturnsAnEmptyRecordedSet) {
   const std::vector sets = {DetectionSet{.t = blank_frame(0).t, .state = DetectionState::kPresent}};
-  RecordedDetector detector(sets, kHalfFrame);
+  RecordedDetector detector(sets, kTolerance_s);
   const DetectionSet found = detector.detect(blank_frame(0));
   EXPECT_EQ(found.state, DetectionState::kPresent);
   EXPECT_TRUE(found.detections.empty());
 }
 
-TEST(RecordedDetector, PassesOnThatTheDetectorWasLate) {
+TEST(RecordedDetector, ReturnsARecordedLateSet) {
   const std::vector sets = {DetectionSet{.t = blank_frame(0).t, .state = DetectionState::kLate}};
-  RecordedDetector detector(sets, kHalfFrame);
+  RecordedDetector detector(sets, kTolerance_s);
   EXPECT_EQ(detector.detect(blank_frame(0)).state, DetectionState::kLate);
 }
 
-TEST(RecordedDetector, CutsBoxesAtThePicture) {
+TEST(RecordedDetector, ClipsBoxesToTheImage) {
   const std::vector sets = {set_near(0, 0.0, 5000)};
-  RecordedDetector detector(sets, kHalfFrame);
+  RecordedDetector detector(sets, kTolerance_s);
   EXPECT_EQ(detector.detect(blank_frame(0)).detections.at(0).box.x_max, kBlankWidth - 1);
   EXPECT_EQ(detector.counters().clipped, 1);
 }
 
-TEST(RecordedDetector, RefusesBoxesOutOfOrder) {
+TEST(RecordedDetector, RejectsSetsOutOfOrder) {
   const std::vector sets = {set_near(2, 0.0, 20), set_near(1, 0.0, 20)};
-  expect_input_error([&] { RecordedDetector(sets, kHalfFrame); }, {"recorded detections", "sort"});
+  expect_input_error([&] { RecordedDetector(sets, kTolerance_s); }, {"recorded detections", "sort"});
 }
 
 }  // namespace

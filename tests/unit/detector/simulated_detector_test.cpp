@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kFrames = 3000;
 
-/// A person who moves 0.1 px a picture, and a dog.
+/// A person moving 0.1 px per frame, and a dog.
 std::vector<DetectionSet> truth() {
   std::vector<DetectionSet> sets;
   for (int id = 0; id < kFrames; ++id) {
@@ -27,15 +27,15 @@ std::vector<DetectionSet> truth() {
   return sets;
 }
 
-DetectorConfig faultless() {
+DetectorConfig without_errors() {
   DetectorConfig config;
   config.simulated = {
       .miss_rate = 0.0, .burst_frames = 1, .latency_s = 0.0, .jitter_px = 0.0, .false_positive_rate = 0.0};
   return config;
 }
 
-/// Whether each picture's set has the class.
-std::vector<bool> seen(SimulatedDetector& detector, const std::string& class_name) {
+/// For each frame whether the class was detected.
+std::vector<bool> detected(SimulatedDetector& detector, const std::string& class_name) {
   std::vector<bool> result;
   for (int id = 0; id < kFrames; ++id) {
     bool found = false;
@@ -46,13 +46,14 @@ std::vector<bool> seen(SimulatedDetector& detector, const std::string& class_nam
   return result;
 }
 
-double share_missed(const std::vector<bool>& seen) {
-  return static_cast<double>(std::count(seen.begin(), seen.end(), false)) / static_cast<double>(seen.size());
+double miss_rate(const std::vector<bool>& detected) {
+  return static_cast<double>(std::count(detected.begin(), detected.end(), false)) /
+         static_cast<double>(detected.size());
 }
 
-TEST(SimulatedDetector, WithoutFaultsItTellsTheTruth) {
+TEST(SimulatedDetector, ReturnsTheGroundTruthWithoutErrors) {
   const auto sets = truth();
-  SimulatedDetector detector(sets, faultless(), 1);
+  SimulatedDetector detector(sets, without_errors(), 1);
   const DetectionSet found = detector.detect(blank_frame(40));
   EXPECT_EQ(found.state, DetectionState::kPresent);
   ASSERT_EQ(found.detections.size(), 2U);
@@ -60,23 +61,23 @@ TEST(SimulatedDetector, WithoutFaultsItTellsTheTruth) {
   EXPECT_EQ(found.detections[1].class_name, "dog");
 }
 
-TEST(SimulatedDetector, MissesTheShareThatWasAskedFor) {
+TEST(SimulatedDetector, HasTheConfiguredMissRate) {
   const auto sets = truth();
-  DetectorConfig config = faultless();
+  DetectorConfig config = without_errors();
   config.simulated.miss_rate = 0.15;
   SimulatedDetector detector(sets, config, 1);
-  // 3000 draws: standard deviation sqrt(0.15 * 0.85 / 3000) = 0.0065; four of them.
-  EXPECT_NEAR(share_missed(seen(detector, "person")), 0.15, 0.026);
+  // 3000 draws: standard deviation sqrt(0.15 * 0.85 / 3000) = 0.0065; tolerance 4 sigma.
+  EXPECT_NEAR(miss_rate(detected(detector, "person")), 0.15, 0.026);
 }
 
 TEST(SimulatedDetector, MissesInBursts) {
   const auto sets = truth();
-  DetectorConfig config = faultless();
+  DetectorConfig config = without_errors();
   config.simulated.miss_rate = 0.15;
   config.simulated.burst_frames = 6;
   SimulatedDetector detector(sets, config, 1);
-  const std::vector<bool> person = seen(detector, "person");
-  std::vector<int> lengths;  // of the bursts that begin and end within the sequence
+  const std::vector<bool> person = detected(detector, "person");
+  std::vector<int> lengths;  // of bursts that start and end within the sequence
   for (std::size_t i = 1, run = 0; i < person.size(); ++i) {
     if (!person[i]) ++run;
     if (person[i] && run > 0 && i > run) lengths.push_back(static_cast<int>(run));
@@ -84,12 +85,12 @@ TEST(SimulatedDetector, MissesInBursts) {
   }
   ASSERT_GT(lengths.size(), 20U);
   for (const int length : lengths) EXPECT_EQ(length % 6, 0) << length;
-  EXPECT_NE(person, seen(detector, "dog")) << "each object has misses of its own";
+  EXPECT_NE(person, detected(detector, "dog")) << "misses of different objects are independent";
 }
 
-TEST(SimulatedDetector, APictureMeetsTheSameFaultsInWhateverOrder) {
+TEST(SimulatedDetector, ErrorsOfAFrameDoNotDependOnTheOrder) {
   const auto sets = truth();
-  DetectorConfig config = faultless();
+  DetectorConfig config = without_errors();
   config.simulated = {
       .miss_rate = 0.3, .burst_frames = 3, .latency_s = 0.0, .jitter_px = 3.0, .false_positive_rate = 0.3};
   SimulatedDetector forward(sets, config, 7), backward(sets, config, 7), other_seed(sets, config, 8);
@@ -107,9 +108,9 @@ TEST(SimulatedDetector, APictureMeetsTheSameFaultsInWhateverOrder) {
   EXPECT_TRUE(differs);
 }
 
-TEST(SimulatedDetector, ShakesEdgesByTheirDeviation) {
+TEST(SimulatedDetector, JittersEdgesWithTheConfiguredDeviation) {
   const auto sets = truth();
-  DetectorConfig config = faultless();
+  DetectorConfig config = without_errors();
   config.simulated.jitter_px = 2.0;
   SimulatedDetector detector(sets, config, 1);
   double sum = 0.0, squares = 0.0;
@@ -118,24 +119,24 @@ TEST(SimulatedDetector, ShakesEdgesByTheirDeviation) {
     sum += error;
     squares += error * error;
   }
-  // Standard errors of 3000 draws: mean 2 / sqrt(3000) = 0.037, deviation 2 / sqrt(6000) = 0.026; four of
-  // them.
+  // Standard errors of 3000 draws: mean 2 / sqrt(3000) = 0.037, deviation 2 / sqrt(6000) = 0.026; tolerance 4
+  // sigma.
   EXPECT_NEAR(sum / kFrames, 0.0, 0.15);
   EXPECT_NEAR(std::sqrt(squares / kFrames), 2.0, 0.11);
 }
 
-TEST(SimulatedDetector, BoxesAreAsOldAsTheLatency) {
+TEST(SimulatedDetector, DelaysBoxesByTheLatency) {
   const auto sets = truth();
-  DetectorConfig config = faultless();
-  config.simulated.latency_s = 0.1;  // three pictures
+  DetectorConfig config = without_errors();
+  config.simulated.latency_s = 0.1;  // three frames
   SimulatedDetector detector(sets, config, 1);
   EXPECT_EQ(detector.detect(blank_frame(2)).state, DetectionState::kLate);
   EXPECT_EQ(detector.detect(blank_frame(40)).detections.at(0).box, sets[37].detections[0].box);
-  EXPECT_EQ(detector.counters().unlooked, 1);
+  EXPECT_EQ(detector.counters().skipped, 1);
 }
 
-TEST(SimulatedDetector, SeesPeopleWhoAreNotThere) {
-  DetectorConfig config = faultless();
+TEST(SimulatedDetector, AddsFalsePositives) {
+  DetectorConfig config = without_errors();
   config.simulated.false_positive_rate = 0.2;
   const std::vector empty_room = {DetectionSet{.t = blank_frame(0).t, .state = DetectionState::kPresent}};
   SimulatedDetector detector(empty_room, config, 1);
@@ -143,7 +144,7 @@ TEST(SimulatedDetector, SeesPeopleWhoAreNotThere) {
     for (const Detection& detection : detector.detect(blank_frame(id)).detections)
       EXPECT_EQ(detection.class_name, "person");
   }
-  // Standard deviation sqrt(0.2 * 0.8 / 3000) = 0.0073; four of them.
+  // Standard deviation sqrt(0.2 * 0.8 / 3000) = 0.0073; tolerance 4 sigma.
   EXPECT_NEAR(static_cast<double>(detector.counters().boxes) / kFrames, 0.2, 0.03);
   EXPECT_EQ(detector.counters().clipped, 0);
 }

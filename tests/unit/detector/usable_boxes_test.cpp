@@ -10,7 +10,7 @@
 namespace stillpoint {
 namespace {
 
-const cv::Size kPicture(100, 80);
+const cv::Size kImageSize(100, 80);
 
 Detection detection(double x_min, double y_min, double x_max, double y_max) {
   return {.class_name = "person",
@@ -18,44 +18,44 @@ Detection detection(double x_min, double y_min, double x_max, double y_max) {
           .box = {.x_min = x_min, .y_min = y_min, .x_max = x_max, .y_max = y_max}};
 }
 
-TEST(UsableBoxes, KeepsBoxesInsideThePicture) {
+TEST(UsableBoxes, KeepsBoxesInsideTheImage) {
   DetectorCounters counters;
-  const auto boxes = usable_boxes({detection(0, 0, 99, 79)}, kPicture, counters);
+  const auto boxes = usable_boxes({detection(0, 0, 99, 79)}, kImageSize, counters);
   ASSERT_EQ(boxes.size(), 1U);
   EXPECT_EQ(boxes[0].box.x_max, 99.0);
   EXPECT_EQ(counters.boxes, 1);
   EXPECT_EQ(counters.clipped, 0);
-  EXPECT_EQ(counters.unusable, 0);
+  EXPECT_EQ(counters.rejected, 0);
 }
 
-TEST(UsableBoxes, CutsAndCountsBoxesThatReachBeyond) {
+TEST(UsableBoxes, ClipsAndCountsBoxesThatExceedTheImage) {
   DetectorCounters counters;
-  const auto boxes = usable_boxes({detection(-20, 10, 50, 500)}, kPicture, counters);
+  const auto boxes = usable_boxes({detection(-20, 10, 50, 500)}, kImageSize, counters);
   ASSERT_EQ(boxes.size(), 1U);
   EXPECT_EQ(boxes[0].box, (Box{.x_min = 0, .y_min = 10, .x_max = 50, .y_max = 79}));
   EXPECT_EQ(counters.clipped, 1);
 }
 
-TEST(UsableBoxes, LeavesOutAndCountsBoxesThatCannotBe) {
+TEST(UsableBoxes, RejectsAndCountsInvalidBoxes) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   DetectorCounters counters;
   const auto boxes = usable_boxes({detection(50, 10, 20, 40), detection(150, 10, 200, 40),
                                    detection(10, 10, 10, 40), detection(10, kNan, 20, 40)},
-                                  kPicture, counters);
+                                  kImageSize, counters);
   EXPECT_TRUE(boxes.empty());
-  EXPECT_EQ(counters.unusable, 4);
+  EXPECT_EQ(counters.rejected, 4);
   EXPECT_EQ(counters.boxes, 0);
 }
 
-TEST(RequireRising, RefusesSetsOutOfOrder) {
+TEST(RequireIncreasing, RejectsSetsOutOfOrder) {
   const auto at = [](std::int64_t ns) { return DetectionSet{.t = Timestamp{ns}}; };
-  EXPECT_NO_THROW(require_rising(std::vector{at(1), at(2)}, "boxes"));
+  EXPECT_NO_THROW(require_increasing(std::vector{at(1), at(2)}, "boxes"));
   expect_input_error(
       [&] {
-        require_rising(std::vector{at(2'000'000'000), at(1'000'000'000)}, "boxes");
+        require_increasing(std::vector{at(2'000'000'000), at(1'000'000'000)}, "boxes");
       },
       {"boxes", "set 1 at 1.0", "sort"});
-  expect_input_error([&] { require_rising(std::vector{at(1), at(1)}, "boxes"); }, {"boxes"});
+  expect_input_error([&] { require_increasing(std::vector{at(1), at(1)}, "boxes"); }, {"boxes"});
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A real network on real people: Yolo-Fastest 1.1 on 40 pictures of two people in a living room.
+// Real network on real data: Yolo-Fastest 1.1 on 40 images of two people in a living room.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -17,7 +17,7 @@ constexpr const char* kPeople = "two_people_d435";
 constexpr const char* kKitchen = "kitchen_rgbd";
 constexpr const char* kDetectors = "detectors";
 
-/// Yolo-Fastest trained on COCO, with the values of its authors.
+/// Yolo-Fastest trained on COCO, with the settings of its authors.
 DetectorConfig yolo_fastest(const std::filesystem::path& folder) {
   DetectorConfig config;
   config.kind = DetectorKind::kNetwork;
@@ -34,11 +34,11 @@ int people_in(const DetectionSet& set) {
                                         [](const Detection& found) { return found.class_name == "person"; }));
 }
 
-TEST(YoloFastest, SeesBothPeople) {
+TEST(YoloFastest, DetectsBothPeople) {
   const auto sequence = find_test_data(kPeople);
   const auto detectors = find_test_data(kDetectors);
   if (!sequence || !detectors) GTEST_SKIP() << missing_test_data(sequence ? kDetectors : kPeople);
-  const auto stream = open_sequence(*sequence);
+  const auto stream = datasets::open_sequence(*sequence);
   NetworkDetector detector(yolo_fastest(*detectors), kPerson);
   int frames_with_two = 0;
   for (std::size_t i = 0; i < 40; ++i) {
@@ -46,21 +46,21 @@ TEST(YoloFastest, SeesBothPeople) {
   }
   RecordProperty("frames_with_two", frames_with_two);
   EXPECT_GE(frames_with_two, 38);
-  EXPECT_EQ(detector.counters().looked, 40);
+  EXPECT_EQ(detector.counters().processed, 40);
 }
 
-TEST(YoloFastest, SeesNobodyInAnEmptyKitchen) {
+TEST(YoloFastest, DetectsNoPeopleInAnEmptyKitchen) {
   const auto sequence = find_test_data(kKitchen);
   const auto detectors = find_test_data(kDetectors);
   if (!sequence || !detectors) GTEST_SKIP() << missing_test_data(sequence ? kDetectors : kKitchen);
-  const auto stream = open_sequence(*sequence);
+  const auto stream = datasets::open_sequence(*sequence);
   NetworkDetector detector(yolo_fastest(*detectors), kPerson);
   for (std::size_t i = 0; i < 400; i += 20) {
-    EXPECT_EQ(people_in(detector.detect(stream->load_frame(i))), 0) << "picture " << i;
+    EXPECT_EQ(people_in(detector.detect(stream->load_frame(i))), 0) << "frame " << i;
   }
 }
 
-TEST(YoloFastest, AFileOfWeightsThatLacksItsEndIsRefused) {
+TEST(YoloFastest, RejectsATruncatedWeightsFile) {
   const auto detectors = find_test_data(kDetectors);
   if (!detectors) GTEST_SKIP() << missing_test_data(kDetectors);
   DetectorConfig config = yolo_fastest(*detectors);

@@ -20,13 +20,13 @@ DynamicConfig config() {
   return config;
 }
 
-/// Threshold 3 m in kBox: the object's centre reads 2 m, the wall 2 m behind does not matter (2 + 1).
+/// Threshold 3 m in kBox: center depth 2 m, no gap to the background: 2 + epsilon.
 SemanticMask person_at_2m() {
   const cv::Mat depth(kSize, CV_16UC1, cv::Scalar(2000));
   return SemanticMask(std::vector{kBox}, {.pixels = depth}, kSize, config());
 }
 
-/// Infinite threshold in kBox: nothing measured.
+/// Infinite threshold in kBox: no valid depth.
 SemanticMask unmeasured_person() { return SemanticMask(std::vector{kBox}, {}, kSize, config()); }
 
 TrackedFrame frame_with(const std::vector<TrackedFeature>& features) {
@@ -43,197 +43,200 @@ TrackedFeature feature(std::int64_t id, const Eigen::Vector2d& pixel, double dep
   return tracked;
 }
 
-/// The verdict on a feature alone in its picture.
-FeatureVerdict judge_one(FeatureRecognition& recognition, const TrackedFeature& tracked,
-                         const SemanticMask& mask) {
-  return recognition.judge(frame_with({tracked}), mask).at(0);
+/// Label of the only feature of a frame.
+DynamicLabel classify_one(FeatureRecognition& recognition, const TrackedFeature& tracked,
+                          const SemanticMask& mask) {
+  return recognition.classify(frame_with({tracked}), mask).at(0);
 }
 
-FeatureVerdict check_one(FeatureRecognition& recognition, double mean_px, int compared) {
+DynamicLabel check_one(FeatureRecognition& recognition, double mean_px, int pair_count) {
   return recognition
-      .check(std::vector{ConsistencyResidual{.id = 1, .mean_px = mean_px, .compared = compared}})
+      .check(std::vector{ConsistencyResidual{.id = 1, .mean_px = mean_px, .pair_count = pair_count}})
       .at(0);
 }
 
-void expect_verdict(const FeatureVerdict& found, Verdict verdict, VerdictReason reason) {
-  EXPECT_EQ(verdict_name(found.verdict), verdict_name(verdict));
-  EXPECT_EQ(reason_name(found.reason), reason_name(reason));
+void expect_label(const DynamicLabel& actual, LabelClass label, LabelReason reason) {
+  EXPECT_EQ(label_name(actual.label), label_name(label));
+  EXPECT_EQ(reason_name(actual.reason), reason_name(reason));
 }
 
-TEST(FeatureRecognition, FlagsWhatIsNearerThanTheThreshold) {
+TEST(FeatureRecognition, LabelsFeaturesNearerThanTheThresholdAsDynamic) {
   FeatureRecognition recognition{config()};
-  expect_verdict(judge_one(recognition, feature(1, kInBox, 2.9), person_at_2m()), Verdict::kDynamicObject,
-                 VerdictReason::kInsideMask);
+  expect_label(classify_one(recognition, feature(1, kInBox, 2.9), person_at_2m()), LabelClass::kDynamicObject,
+               LabelReason::kInsideMask);
 }
 
-TEST(FeatureRecognition, KeepsBackgroundInsideTheBox) {
+TEST(FeatureRecognition, KeepsBackgroundFeaturesInsideTheBoxStable) {
   FeatureRecognition recognition{config()};
-  expect_verdict(judge_one(recognition, feature(1, kInBox, 3.0), person_at_2m()), Verdict::kStable,
-                 VerdictReason::kNothingSuspect);
+  expect_label(classify_one(recognition, feature(1, kInBox, 3.0), person_at_2m()), LabelClass::kStable,
+               LabelReason::kNone);
 }
 
-TEST(FeatureRecognition, KeepsWhatIsOutsideOfEveryBox) {
+TEST(FeatureRecognition, KeepsFeaturesOutsideAllBoxesStable) {
   FeatureRecognition recognition{config()};
-  expect_verdict(judge_one(recognition, feature(1, kOutside, 0.5), person_at_2m()), Verdict::kStable,
-                 VerdictReason::kNothingSuspect);
+  expect_label(classify_one(recognition, feature(1, kOutside, 0.5), person_at_2m()), LabelClass::kStable,
+               LabelReason::kNone);
 }
 
-TEST(FeatureRecognition, TakesUnmeasuredDepthInABoxAsNear) {
+TEST(FeatureRecognition, LabelsFeaturesWithoutDepthInsideABoxAsDynamic) {
   FeatureRecognition recognition{config()};
-  expect_verdict(judge_one(recognition, feature(1, kInBox, 0.0), person_at_2m()), Verdict::kDynamicObject,
-                 VerdictReason::kInsideMask);
+  expect_label(classify_one(recognition, feature(1, kInBox, 0.0), person_at_2m()), LabelClass::kDynamicObject,
+               LabelReason::kInsideMask);
 }
 
-TEST(FeatureRecognition, UnmeasuredDepthMayBeKeptUnlessTheThresholdIsInfinite) {
-  DynamicConfig published = config();
-  published.unmeasured_is_dynamic = false;
-  FeatureRecognition recognition{published};
-  EXPECT_EQ(judge_one(recognition, feature(1, kInBox, 0.0), person_at_2m()).verdict, Verdict::kStable);
-  EXPECT_EQ(judge_one(recognition, feature(1, kInBox, 0.0), unmeasured_person()).verdict,
-            Verdict::kDynamicObject);
+TEST(FeatureRecognition, CanKeepFeaturesWithoutDepthUnlessTheThresholdIsInfinite) {
+  DynamicConfig published_code = config();
+  published_code.unmeasured_is_dynamic = false;
+  FeatureRecognition recognition{published_code};
+  EXPECT_EQ(classify_one(recognition, feature(1, kInBox, 0.0), person_at_2m()).label, LabelClass::kStable);
+  EXPECT_EQ(classify_one(recognition, feature(1, kInBox, 0.0), unmeasured_person()).label,
+            LabelClass::kDynamicObject);
 }
 
-TEST(FeatureRecognition, RemembersWhatWasDynamicWhenItLeavesTheMask) {
+TEST(FeatureRecognition, KeepsTheDynamicLabelOfFeaturesThatLeaveTheMask) {
   FeatureRecognition recognition{config()};
-  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
   for (int i = 0; i < 3; ++i) {
-    expect_verdict(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()), Verdict::kDynamicObject,
-                   VerdictReason::kHistory);
+    expect_label(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()),
+                 LabelClass::kDynamicObject, LabelReason::kHistory);
   }
 }
 
-TEST(FeatureRecognition, ForgetsFeaturesThatAreNoLongerTracked) {
+TEST(FeatureRecognition, RemovesFeaturesThatAreNoLongerTracked) {
   FeatureRecognition recognition{config()};
-  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
-  EXPECT_TRUE(recognition.judge(frame_with({}), SemanticMask()).empty());
-  EXPECT_EQ(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()).verdict, Verdict::kStable);
+  static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  EXPECT_TRUE(recognition.classify(frame_with({}), SemanticMask()).empty());
+  EXPECT_EQ(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()).label, LabelClass::kStable);
 }
 
-TEST(FeatureRecognition, ResetForgetsEverything) {
+TEST(FeatureRecognition, ResetRemovesAllFeatures) {
   FeatureRecognition recognition{config()};
-  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
   recognition.reset();
-  EXPECT_EQ(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()).verdict, Verdict::kStable);
+  EXPECT_EQ(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()).label, LabelClass::kStable);
 }
 
-TEST(FeatureRecognition, JudgesEachFeatureByItsOwnHistory) {
+TEST(FeatureRecognition, KeepsAHistoryPerFeature) {
   FeatureRecognition recognition{config()};
-  static_cast<void>(recognition.judge(
+  static_cast<void>(recognition.classify(
       frame_with({feature(1, kOutside, 2.0), feature(2, kInBox, 2.0), feature(5, kInBox, 9.0)}),
       person_at_2m()));
-  const auto verdicts = recognition.judge(
+  const auto labels = recognition.classify(
       frame_with({feature(2, kOutside, 2.0), feature(4, kOutside, 2.0), feature(5, kOutside, 2.0)}),
       SemanticMask());
-  ASSERT_EQ(verdicts.size(), 3U);
-  EXPECT_EQ(verdicts[0].verdict, Verdict::kDynamicObject);
-  EXPECT_EQ(verdicts[1].verdict, Verdict::kStable);
-  EXPECT_EQ(verdicts[2].verdict, Verdict::kStable);
+  ASSERT_EQ(labels.size(), 3U);
+  EXPECT_EQ(labels[0].label, LabelClass::kDynamicObject);
+  EXPECT_EQ(labels[1].label, LabelClass::kStable);
+  EXPECT_EQ(labels[2].label, LabelClass::kStable);
 }
 
-TEST(FeatureRecognition, CheckFlagsResidualsOverTheThreshold) {
+TEST(FeatureRecognition, CheckLabelsResidualsAboveTheThresholdAsDynamic) {
   FeatureRecognition recognition{config()};
-  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
-  const FeatureVerdict at_threshold = check_one(recognition, 5.0, 4);
-  expect_verdict(at_threshold, Verdict::kStable, VerdictReason::kNothingSuspect);
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
+  const DynamicLabel at_threshold = check_one(recognition, 5.0, 4);
+  expect_label(at_threshold, LabelClass::kStable, LabelReason::kNone);
   EXPECT_EQ(at_threshold.residual_px, 5.0);
-  expect_verdict(check_one(recognition, 5.1, 1), Verdict::kDynamicMotion, VerdictReason::kResidual);
-  expect_verdict(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()), Verdict::kDynamicMotion,
-                 VerdictReason::kHistory);
+  expect_label(check_one(recognition, 5.1, 1), LabelClass::kDynamicMotion, LabelReason::kResidual);
+  expect_label(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()),
+               LabelClass::kDynamicMotion, LabelReason::kHistory);
 }
 
 TEST(FeatureRecognition, CheckRecyclesAfterEnoughObservations) {
   FeatureRecognition recognition{config()};
-  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
-  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
-  expect_verdict(check_one(recognition, 1.0, 1), Verdict::kDynamicObject, VerdictReason::kHistory);  // two
-  expect_verdict(check_one(recognition, 1.0, 2), Verdict::kStable, VerdictReason::kRecycled);  // three views
-  expect_verdict(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()), Verdict::kStable,
-                 VerdictReason::kNothingSuspect);
+  static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
+  expect_label(check_one(recognition, 1.0, 1), LabelClass::kDynamicObject, LabelReason::kHistory);  // two
+  expect_label(check_one(recognition, 1.0, 2), LabelClass::kStable, LabelReason::kRecycled);        // three
+  expect_label(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()), LabelClass::kStable,
+               LabelReason::kNone);
 }
 
 TEST(FeatureRecognition, CheckDoesNotRecycleInsideTheMask) {
   FeatureRecognition recognition{config()};
-  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
-  expect_verdict(check_one(recognition, 0.0, 10), Verdict::kDynamicObject, VerdictReason::kInsideMask);
+  static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  expect_label(check_one(recognition, 0.0, 10), LabelClass::kDynamicObject, LabelReason::kInsideMask);
 }
 
-TEST(FeatureRecognition, CheckNeedsAResidualToChangeAnything) {
+TEST(FeatureRecognition, CheckDoesNotChangeFeaturesWithoutResidual) {
   FeatureRecognition recognition{config()};
   static_cast<void>(
-      recognition.judge(frame_with({feature(1, kInBox, 2.0), feature(3, kOutside, 2.0)}), person_at_2m()));
-  const auto verdicts =
-      recognition.check(std::vector{ConsistencyResidual{.id = 2, .mean_px = 99.0, .compared = 9}});
-  ASSERT_EQ(verdicts.size(), 2U);
-  EXPECT_EQ(verdicts[0].verdict, Verdict::kDynamicObject);
-  EXPECT_EQ(verdicts[1].verdict, Verdict::kStable);
-  EXPECT_FALSE(verdicts[1].residual_px.has_value());
+      recognition.classify(frame_with({feature(1, kInBox, 2.0), feature(3, kOutside, 2.0)}), person_at_2m()));
+  const auto labels =
+      recognition.check(std::vector{ConsistencyResidual{.id = 2, .mean_px = 99.0, .pair_count = 9}});
+  ASSERT_EQ(labels.size(), 2U);
+  EXPECT_EQ(labels[0].label, LabelClass::kDynamicObject);
+  EXPECT_EQ(labels[1].label, LabelClass::kStable);
+  EXPECT_FALSE(labels[1].residual_px.has_value());
 }
 
-TEST(FeatureRecognition, GateFlagsAgainstItsOwnThresholdAndClearsNothing) {
+TEST(FeatureRecognition, GateUsesItsOwnThresholdAndRecyclesNothing) {
   FeatureRecognition recognition{config()};
   static_cast<void>(
-      recognition.judge(frame_with({feature(1, kInBox, 2.0), feature(2, kOutside, 2.0)}), person_at_2m()));
-  static_cast<void>(
-      recognition.judge(frame_with({feature(1, kOutside, 2.0), feature(2, kOutside, 2.0)}), SemanticMask()));
-  const auto verdicts = recognition.gate(std::vector<ConsistencyResidual>{
-      {.id = 1, .mean_px = 0.0, .compared = 9}, {.id = 2, .mean_px = 8.1, .compared = 1}});
-  expect_verdict(verdicts.at(0), Verdict::kDynamicObject, VerdictReason::kHistory);
-  expect_verdict(verdicts.at(1), Verdict::kDynamicMotion, VerdictReason::kPredictionResidual);
+      recognition.classify(frame_with({feature(1, kInBox, 2.0), feature(2, kOutside, 2.0)}), person_at_2m()));
+  static_cast<void>(recognition.classify(frame_with({feature(1, kOutside, 2.0), feature(2, kOutside, 2.0)}),
+                                         SemanticMask()));
+  const auto labels = recognition.gate(std::vector<ConsistencyResidual>{
+      {.id = 1, .mean_px = 0.0, .pair_count = 9}, {.id = 2, .mean_px = 8.1, .pair_count = 1}});
+  expect_label(labels.at(0), LabelClass::kDynamicObject, LabelReason::kHistory);
+  expect_label(labels.at(1), LabelClass::kDynamicMotion, LabelReason::kPredictionResidual);
 }
 
-TEST(FeatureRecognition, CheckClearsWhatTheGateSuspectedWrongly) {
+TEST(FeatureRecognition, CheckRecyclesFeaturesThatTheGateRejectedWrongly) {
   FeatureRecognition recognition{config()};
-  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
   static_cast<void>(
-      recognition.gate(std::vector{ConsistencyResidual{.id = 1, .mean_px = 20.0, .compared = 4}}));
-  expect_verdict(check_one(recognition, 0.5, 4), Verdict::kStable, VerdictReason::kRecycled);
+      recognition.gate(std::vector{ConsistencyResidual{.id = 1, .mean_px = 20.0, .pair_count = 4}}));
+  expect_label(check_one(recognition, 0.5, 4), LabelClass::kStable, LabelReason::kRecycled);
 }
 
-TEST(FeatureRecognition, TheFloorDoesNotRewriteHistory) {
-  DynamicConfig with_floor = config();
-  with_floor.min_stable_features = 1;
-  FeatureRecognition recognition{with_floor};
-  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
-  expect_verdict(check_one(recognition, 20.0, 4), Verdict::kStable, VerdictReason::kFloor);
-  expect_verdict(judge_one(recognition, feature(1, kOutside, 2.0), SemanticMask()), Verdict::kDynamicMotion,
-                 VerdictReason::kHistory);
+TEST(FeatureRecognition, MinimumOfStableFeaturesDoesNotChangeTheHistory) {
+  DynamicConfig with_minimum = config();
+  with_minimum.min_stable_features = 1;
+  FeatureRecognition recognition{with_minimum};
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
+  expect_label(check_one(recognition, 20.0, 4), LabelClass::kStable, LabelReason::kMinimumKept);
+  expect_label(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()),
+               LabelClass::kDynamicMotion, LabelReason::kHistory);
 }
 
-TEST(FeatureRecognition, RecyclesWhatWasQuietForLongEnough) {
-  DynamicConfig patient = config();
-  patient.quiet_pictures = 2;
-  FeatureRecognition recognition(patient);
-  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
-  const std::vector<double> residuals_px = {0.5, 1.5, 0.5, 0.5};  // the second one is not quiet: count anew
-  std::vector<std::string_view> verdicts;
+TEST(FeatureRecognition, RecyclesAfterEnoughFramesWithASmallResidual) {
+  DynamicConfig with_frame_count = config();
+  with_frame_count.recycle_min_frames = 2;
+  FeatureRecognition recognition(with_frame_count);
+  static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  const std::vector<double> residuals_px = {0.5, 1.5, 0.5, 0.5};  // the second one resets the count
+  std::vector<std::string_view> labels;
   for (const double residual_px : residuals_px) {
-    static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), {}));
-    verdicts.push_back(verdict_name(check_one(recognition, residual_px, 1).verdict));
+    static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), {}));
+    labels.push_back(label_name(check_one(recognition, residual_px, 1).label));
   }
-  EXPECT_EQ(verdicts,
+  EXPECT_EQ(labels,
             (std::vector<std::string_view>{"dynamic_object", "dynamic_object", "dynamic_object", "stable"}));
 }
 
-TEST(FeatureRecognition, CountsAFeatureWithoutResidualAsQuietOutsideTheMaskOnly) {
-  DynamicConfig patient = config();
-  patient.quiet_pictures = 1;
-  FeatureRecognition recognition(patient);
-  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
-  EXPECT_EQ(recognition.check({}).at(0).verdict, Verdict::kDynamicObject);
-  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), {}));
-  EXPECT_EQ(recognition.check({}).at(0).verdict, Verdict::kStable);
+TEST(FeatureRecognition, CountsFramesWithoutResidualOutsideTheMaskOnly) {
+  DynamicConfig with_frame_count = config();
+  with_frame_count.recycle_min_frames = 1;
+  FeatureRecognition recognition(with_frame_count);
+  static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  EXPECT_EQ(recognition.check({}).at(0).label, LabelClass::kDynamicObject);
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), {}));
+  EXPECT_EQ(recognition.check({}).at(0).label, LabelClass::kStable);
 }
 
-TEST(FeatureRecognition, ClearsWhatRestsWhateverItsOlderObservationsSayOutsideTheMaskOnly) {
+TEST(FeatureRecognition, RecyclesReadmittedFeaturesOutsideTheMaskOnly) {
   FeatureRecognition recognition(config());
-  const std::vector<std::int64_t> resting = {1};
-  const std::vector slid = {ConsistencyResidual{.id = 1, .mean_px = 25.0, .compared = 6}};
-  static_cast<void>(judge_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
-  expect_verdict(recognition.check(slid, resting).at(0), Verdict::kDynamicObject, VerdictReason::kInsideMask);
-  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), {}));
-  expect_verdict(recognition.check(slid, {}).at(0), Verdict::kDynamicObject, VerdictReason::kHistory);
-  static_cast<void>(judge_one(recognition, feature(1, kOutside, 2.0), {}));
-  expect_verdict(recognition.check(slid, resting).at(0), Verdict::kStable, VerdictReason::kRested);
+  const std::vector<std::int64_t> readmitted = {1};
+  const std::vector large_residual = {ConsistencyResidual{.id = 1, .mean_px = 25.0, .pair_count = 6}};
+  static_cast<void>(classify_one(recognition, feature(1, kInBox, 2.0), person_at_2m()));
+  expect_label(recognition.check(large_residual, readmitted).at(0), LabelClass::kDynamicObject,
+               LabelReason::kInsideMask);
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), {}));
+  expect_label(recognition.check(large_residual, {}).at(0), LabelClass::kDynamicObject,
+               LabelReason::kHistory);
+  static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), {}));
+  expect_label(recognition.check(large_residual, readmitted).at(0), LabelClass::kStable,
+               LabelReason::kStatic);
 }
 
 }  // namespace

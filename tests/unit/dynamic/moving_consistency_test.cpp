@@ -12,20 +12,20 @@ constexpr double kFocal = 500.0;  // [px]
 
 Pose at_x(double x) { return Pose{Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}}; }
 
-/// Cameras at x = 0, 0.1 and 0.2 m that look along z.
+/// Cameras at x = 0, 0.1 and 0.2 m, optical axes along z.
 ConsistencyView sideways_motion() {
   return {.T_w_c = {at_x(0.0), at_x(0.1), at_x(0.2)}, .focal_px = kFocal, .features = {}, .observations = {}};
 }
 
 /// The only feature of a view.
-struct SeenFeature {
+struct ObservedFeature {
   std::vector<ConsistencyObservation> observations;
   double inverse_depth = 0.0;
 };
 
-/// A point seen by cameras `first`.. of the view, at `p_w[k]` when camera first + k looked; with depth.
-SeenFeature seen_at(const ConsistencyView& view, int first, const std::vector<Eigen::Vector3d>& p_w) {
-  SeenFeature feature;
+/// A point observed with depth by the cameras from index `first` on; at `p_w[k]` for camera first + k.
+ObservedFeature observed_at(const ConsistencyView& view, int first, const std::vector<Eigen::Vector3d>& p_w) {
+  ObservedFeature feature;
   for (std::size_t k = 0; k < p_w.size(); ++k) {
     const int frame = first + static_cast<int>(k);
     const Eigen::Vector3d p_c = view.T_w_c[static_cast<std::size_t>(frame)].inverse() * p_w[k];
@@ -34,115 +34,115 @@ SeenFeature seen_at(const ConsistencyView& view, int first, const std::vector<Ei
   return feature;
 }
 
-ConsistencyView with(ConsistencyView view, const SeenFeature& feature) {
+ConsistencyView with(ConsistencyView view, const ObservedFeature& feature) {
   view.features = {
       {.id = 7, .inverse_depth = feature.inverse_depth, .first = 0, .count = feature.observations.size()}};
   view.observations = feature.observations;
   return view;
 }
 
-std::vector<ConsistencyResidual> residuals_of(const ConsistencyView& view, const SeenFeature& feature) {
+std::vector<ConsistencyResidual> residuals_of(const ConsistencyView& view, const ObservedFeature& feature) {
   return consistency_residuals(with(view, feature));
 }
 
-TEST(MovingConsistency, AStillPointHasNoResidual) {
+TEST(MovingConsistency, AStaticPointHasZeroResidual) {
   ConsistencyView view = sideways_motion();
   view.T_w_c[1].q = exp_so3({0.1, -0.2, 0.05});
-  const Eigen::Vector3d still(0.3, -0.2, 2.0);
-  const auto residuals = residuals_of(view, seen_at(view, 0, {still, still, still}));
+  const Eigen::Vector3d static_point(0.3, -0.2, 2.0);
+  const auto residuals = residuals_of(view, observed_at(view, 0, {static_point, static_point, static_point}));
   ASSERT_EQ(residuals.size(), 1U);
   EXPECT_EQ(residuals[0].id, 7);
-  EXPECT_EQ(residuals[0].compared, 2);
+  EXPECT_EQ(residuals[0].pair_count, 2);
   EXPECT_NEAR(residuals[0].mean_px, 0.0, 1e-9);
 }
 
-TEST(MovingConsistency, AMoverHasTheMeanOfItsDisplacements) {
+TEST(MovingConsistency, AMovingPointHasTheMeanOfItsDisplacements) {
   const ConsistencyView view = sideways_motion();
   // In the first camera at depth 2: displacements of 0.02 m and 0.06 m are 500 * 0.02 / 2 = 5 px and 15 px.
   const auto residuals =
-      residuals_of(view, seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}, {0.0, 0.06, 2.0}}));
+      residuals_of(view, observed_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}, {0.0, 0.06, 2.0}}));
   ASSERT_EQ(residuals.size(), 1U);
   EXPECT_NEAR(residuals[0].mean_px, 10.0, 1e-9);
 }
 
-TEST(MovingConsistency, AFeatureSeenFirstLaterIsHeldAgainstThatPicture) {
+TEST(MovingConsistency, TheReferenceIsTheFirstFrameThatObservesTheFeature) {
   const ConsistencyView view = sideways_motion();
-  const auto residuals = residuals_of(view, seen_at(view, 1, {{0.1, 0.0, 2.0}, {0.1, 0.02, 2.0}}));
+  const auto residuals = residuals_of(view, observed_at(view, 1, {{0.1, 0.0, 2.0}, {0.1, 0.02, 2.0}}));
   ASSERT_EQ(residuals.size(), 1U);
-  EXPECT_EQ(residuals[0].compared, 1);
+  EXPECT_EQ(residuals[0].pair_count, 1);
   EXPECT_NEAR(residuals[0].mean_px, 5.0, 1e-9);
 }
 
-TEST(MovingConsistency, UsesTheEstimatedDepthWhereNoneWasMeasured) {
+TEST(MovingConsistency, UsesTheEstimatedDepthIfNoneWasMeasured) {
   const ConsistencyView view = sideways_motion();
-  SeenFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.0, 0.02, 2.0}, {0.0, 0.06, 2.0}});
-  for (ConsistencyObservation& seen : feature.observations) seen.depth = 0.0;
+  ObservedFeature feature = observed_at(view, 0, {{0.0, 0.0, 2.0}, {0.0, 0.02, 2.0}, {0.0, 0.06, 2.0}});
+  for (ConsistencyObservation& observation : feature.observations) observation.depth = 0.0;
   feature.inverse_depth = 0.5;  // 2 m: same depth in every camera, so as above
   EXPECT_NEAR(residuals_of(view, feature).at(0).mean_px, 10.0, 1e-9);
 }
 
-TEST(MovingConsistency, MeasuredDepthGoesBeforeTheEstimatedOne) {
+TEST(MovingConsistency, PrefersMeasuredOverEstimatedDepth) {
   const ConsistencyView view = sideways_motion();
-  SeenFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}});
+  ObservedFeature feature = observed_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}});
   feature.inverse_depth = 2.0;  // wrong
   EXPECT_NEAR(residuals_of(view, feature).at(0).mean_px, 5.0, 1e-9);
 }
 
-TEST(MovingConsistency, LeavesOutPairsOfUnknownDepth) {
+TEST(MovingConsistency, OmitsPairsWithoutDepth) {
   const ConsistencyView view = sideways_motion();
-  SeenFeature feature = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}, {0.06, 0.0, 2.0}});
+  ObservedFeature feature = observed_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}, {0.06, 0.0, 2.0}});
   feature.observations[2].depth = 0.0;
   const auto residuals = residuals_of(view, feature);
   ASSERT_EQ(residuals.size(), 1U);
-  EXPECT_EQ(residuals[0].compared, 1);
+  EXPECT_EQ(residuals[0].pair_count, 1);
   EXPECT_NEAR(residuals[0].mean_px, 5.0, 1e-9);
 }
 
-TEST(MovingConsistency, SaysNothingOfWhatCannotBeCompared) {
+TEST(MovingConsistency, HasNoEntryForFeaturesWithoutPairs) {
   const ConsistencyView view = sideways_motion();
-  SeenFeature without_depth = seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}});
-  for (ConsistencyObservation& seen : without_depth.observations) seen.depth = 0.0;
+  ObservedFeature without_depth = observed_at(view, 0, {{0.0, 0.0, 2.0}, {0.02, 0.0, 2.0}});
+  for (ConsistencyObservation& observation : without_depth.observations) observation.depth = 0.0;
   EXPECT_TRUE(residuals_of(view, without_depth).empty());
-  EXPECT_TRUE(residuals_of(view, seen_at(view, 0, {{0.0, 0.0, 2.0}})).empty());
+  EXPECT_TRUE(residuals_of(view, observed_at(view, 0, {{0.0, 0.0, 2.0}})).empty());
 }
 
-TEST(MovingConsistency, APointBehindTheFirstCameraCountsWithTheFocalLength) {
+TEST(MovingConsistency, APointBehindTheReferenceCameraHasAResidualOfTheFocalLength) {
   ConsistencyView view = sideways_motion();
-  view.T_w_c[1] = Pose{exp_so3({0.0, M_PI, 0.0}), Eigen::Vector3d::Zero()};  // looks back
-  SeenFeature feature;
+  view.T_w_c[1] = Pose{exp_so3({0.0, M_PI, 0.0}), Eigen::Vector3d::Zero()};  // faces backwards
+  ObservedFeature feature;
   feature.observations = {{.frame = 0, .bearing = {0.0, 0.0}, .depth = 2.0},
                           {.frame = 1, .bearing = {0.0, 0.0}, .depth = 2.0}};
   EXPECT_NEAR(residuals_of(view, feature).at(0).mean_px, kFocal, 1e-9);
 }
 
-TEST(MovingConsistency, DepthThatMovesAlongTheRayIsSeenFromTheSide) {
+TEST(MovingConsistency, MotionAlongTheRayIsVisibleFromOtherFramesOnly) {
   const ConsistencyView view = sideways_motion();
-  // Straight before camera 0 at 2 m, later at 1 m before camera 1: comes out at x / z = 0 in camera 0, since
-  // it stays on that camera's axis; from camera 1 its ray changed from -0.05 to -0.1.
-  EXPECT_NEAR(residuals_of(view, seen_at(view, 0, {{0, 0, 2}, {0, 0, 1}})).at(0).mean_px, 0.0, 1e-9);
-  // Held against camera 1 instead, the difference shows: 500 * |-0.05 + 0.1| = 25 px.
-  EXPECT_NEAR(residuals_of(view, seen_at(view, 1, {{0, 0, 2}, {0, 0, 1}})).at(0).mean_px, 25.0, 1e-9);
+  // On the axis of camera 0 at 2 m, later at 1 m: x / z = 0 in camera 0 for both. Camera 1 observes it under
+  // -0.05 and -0.1.
+  EXPECT_NEAR(residuals_of(view, observed_at(view, 0, {{0, 0, 2}, {0, 0, 1}})).at(0).mean_px, 0.0, 1e-9);
+  // With camera 1 as reference: 500 * |-0.05 + 0.1| = 25 px.
+  EXPECT_NEAR(residuals_of(view, observed_at(view, 1, {{0, 0, 2}, {0, 0, 1}})).at(0).mean_px, 25.0, 1e-9);
 }
 
-TEST(GateOnPrediction, ComparesTheNewestPictureOnly) {
+TEST(GateOnPrediction, UsesTheNewestFrameAsReference) {
   const ConsistencyView view = sideways_motion();
-  // Moved 0.06 m and back again: the earlier pictures disagree with each other, and by 0 px and 15 px with
-  // the newest one.
-  const auto residuals =
-      gate_on_prediction(with(view, seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.06, 0.0, 2.0}, {0.0, 0.0, 2.0}})));
+  // Moved by 0.06 m and back: the earlier frames differ from the newest one by 0 px and 15 px.
+  const auto residuals = gate_on_prediction(
+      with(view, observed_at(view, 0, {{0.0, 0.0, 2.0}, {0.06, 0.0, 2.0}, {0.0, 0.0, 2.0}})));
   ASSERT_EQ(residuals.size(), 1U);
-  EXPECT_EQ(residuals[0].compared, 2);
+  EXPECT_EQ(residuals[0].pair_count, 2);
   EXPECT_NEAR(residuals[0].mean_px, 7.5, 1e-9);
 }
 
-TEST(GateOnPrediction, SaysNothingOfFeaturesThatTheNewestPictureDoesNotSee) {
+TEST(GateOnPrediction, HasNoEntryForFeaturesNotObservedInTheNewestFrame) {
   const ConsistencyView view = sideways_motion();
-  EXPECT_TRUE(gate_on_prediction(with(view, seen_at(view, 0, {{0.0, 0.0, 2.0}, {0.06, 0.0, 2.0}}))).empty());
+  EXPECT_TRUE(
+      gate_on_prediction(with(view, observed_at(view, 0, {{0.0, 0.0, 2.0}, {0.06, 0.0, 2.0}}))).empty());
 }
 
-TEST(GateOnPrediction, NeedsNoDepthInTheNewestPicture) {
+TEST(GateOnPrediction, NeedsNoDepthInTheNewestFrame) {
   const ConsistencyView view = sideways_motion();
-  SeenFeature feature = seen_at(view, 1, {{0.0, 0.0, 2.0}, {0.0, 0.04, 2.0}});
+  ObservedFeature feature = observed_at(view, 1, {{0.0, 0.0, 2.0}, {0.0, 0.04, 2.0}});
   feature.observations.back().depth = 0.0;
   EXPECT_NEAR(gate_on_prediction(with(view, feature)).at(0).mean_px, 10.0, 1e-9);  // 500 * 0.04 / 2
 }

@@ -19,17 +19,17 @@ void fill(cv::Mat& depth, int rows_from, int rows_to, int columns_from, int colu
   depth(cv::Range(rows_from, rows_to), cv::Range(columns_from, columns_to)) = cv::Scalar(mm);
 }
 
-TEST(ObjectDepthBand, HoldsThePersonAndNeitherTheWallNorTheTableBefore) {
+TEST(ObjectDepthBand, ContainsThePersonButNotTheWallOrTheTableInFront) {
   cv::Mat depth = wall_at(4050);
   fill(depth, 15, 80, 30, 60, 2050);  // the person
-  fill(depth, 60, 80, 0, 100, 1250);  // a table that hides the legs
+  fill(depth, 60, 80, 0, 100, 1250);  // a table in front of the legs
   const DepthBand band = object_depth_band({depth, 1000.0}, kBox, kExtent_m);
-  // The bin of 2.05 m is [2.0, 2.1), a bin more on either side.
+  // The bin of 2.05 m is [2.0, 2.1), plus one bin on either side.
   EXPECT_NEAR(band.near_m, 1.9, 1e-9);
   EXPECT_NEAR(band.far_m, 2.2, 1e-9);
 }
 
-TEST(ObjectDepthBand, FindsLegsAroundACentreThatShowsTheWall) {
+TEST(ObjectDepthBand, FindsLegsIfTheCenterShowsTheWall) {
   cv::Mat depth = wall_at(4050);
   fill(depth, 10, 80, 25, 42, 2050);
   fill(depth, 10, 80, 48, 65, 2150);
@@ -39,22 +39,22 @@ TEST(ObjectDepthBand, FindsLegsAroundACentreThatShowsTheWall) {
   EXPECT_LT(band.far_m, 4.0);
 }
 
-TEST(ObjectDepthBand, EndsAtTheExtentOnAFloorThatRunsOn) {
+TEST(ObjectDepthBand, IsLimitedByTheExtentOnAContinuousFloor) {
   cv::Mat depth = wall_at(2050);
   for (int row = 0; row < depth.rows; ++row) depth.row(row) = 1000 + 50 * row;  // 1 m to 5 m, no gap anywhere
   const DepthBand band = object_depth_band({depth, 1000.0}, kBox, kExtent_m);
-  // At most 6 bins to either side of the fullest, and one more: 15 bins.
+  // At most 6 bins plus one to either side of the mode: 15 bins.
   EXPECT_LE(band.far_m - band.near_m, 1.5 + 1e-9);
 }
 
-TEST(ObjectDepthBand, IsEverythingWhereNothingWasMeasured) {
+TEST(ObjectDepthBand, IsUnboundedWithoutValidDepth) {
   const DepthBand band = object_depth_band({cv::Mat::zeros(80, 100, CV_16UC1), 1000.0}, kBox, kExtent_m);
   EXPECT_EQ(band.near_m, 0.0);
   EXPECT_TRUE(std::isinf(band.far_m));
   EXPECT_TRUE(std::isinf(object_depth_band({cv::Mat(), 1000.0}, kBox, kExtent_m).far_m));
 }
 
-TEST(ObjectDepthBand, OfAMaskCoversItsDepthsAlone) {
+TEST(ObjectDepthBand, LimitsTheMaskToItsDepthRange) {
   cv::Mat depth = wall_at(4050);
   fill(depth, 15, 80, 30, 60, 2050);
   DynamicConfig config;

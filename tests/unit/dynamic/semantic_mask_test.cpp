@@ -12,46 +12,46 @@ namespace {
 constexpr double kEpsilon = 0.5;  // [m]
 const cv::Size kSize(100, 80);
 
-TEST(ObjectDepthThreshold, SplitsAClearGapInTheMiddle) {
+TEST(ObjectDepthThreshold, IsTheMeanOfObjectAndBackgroundForAClearGap) {
   const BoxDepths person_before_wall{.corners = {4.0, 3.9, 0.0, 4.0}, .center = 2.0};
   EXPECT_DOUBLE_EQ(object_depth_threshold(person_before_wall, kEpsilon), 3.0);  // (4 + 2) / 2
 }
 
-TEST(ObjectDepthThreshold, ReachesEpsilonBehindAnObjectCloseToItsBackground) {
+TEST(ObjectDepthThreshold, IsEpsilonBehindAnObjectCloseToItsBackground) {
   const BoxDepths close{.corners = {2.3, 2.2, 0.0, 0.0}, .center = 2.0};  // gap 0.3 < 0.5
   EXPECT_DOUBLE_EQ(object_depth_threshold(close, kEpsilon), 2.5);
 }
 
-TEST(ObjectDepthThreshold, ReachesEpsilonBehindAnObjectThatIsBehindAnother) {
+TEST(ObjectDepthThreshold, IsEpsilonBehindAnOccludedObject) {
   const BoxDepths behind{.corners = {1.0, 1.0, 1.0, 1.0}, .center = 2.0};  // gap -1 < 0.5
   EXPECT_DOUBLE_EQ(object_depth_threshold(behind, kEpsilon), 2.5);
 }
 
-TEST(ObjectDepthThreshold, TakesTheSecondCaseWhenTheGapIsEpsilon) {
+TEST(ObjectDepthThreshold, UsesTheSecondCaseIfTheGapEqualsEpsilon) {
   const BoxDepths equal{.corners = {2.5, 0.0, 0.0, 0.0}, .center = 2.0};
   EXPECT_DOUBLE_EQ(object_depth_threshold(equal, kEpsilon), 2.5);  // not (2.5 + 2) / 2 = 2.25
 }
 
-TEST(ObjectDepthThreshold, TakesTheSecondCaseWhenNoCornerWasMeasured) {
+TEST(ObjectDepthThreshold, UsesTheSecondCaseIfNoCornerWasMeasured) {
   EXPECT_DOUBLE_EQ(object_depth_threshold({.corners = {}, .center = 2.0}, kEpsilon), 2.5);
 }
 
-TEST(ObjectDepthThreshold, IsTheBackgroundWhenTheCentreWasNotMeasured) {
+TEST(ObjectDepthThreshold, IsTheBackgroundDepthIfTheCenterWasNotMeasured) {
   EXPECT_DOUBLE_EQ(object_depth_threshold({.corners = {0.0, 3.0, 1.0, 0.0}, .center = 0.0}, kEpsilon), 3.0);
 }
 
-TEST(ObjectDepthThreshold, MasksTheWholeBoxWhenNothingWasMeasured) {
+TEST(ObjectDepthThreshold, IsInfiniteIfNothingWasMeasured) {
   EXPECT_TRUE(std::isinf(object_depth_threshold({.corners = {}, .center = 0.0}, kEpsilon)));
 }
 
-/// A wall 4 m away; an object of 2 m covers columns 30..60, rows 20..70.
+/// A wall at 4 m, and an object at 2 m in columns 30..60, rows 20..70.
 cv::Mat person_before_wall() {
   cv::Mat depth(kSize, CV_16UC1, cv::Scalar(4000));
   depth(cv::Range(20, 71), cv::Range(30, 61)) = cv::Scalar(2000);
   return depth;
 }
 
-/// Its detection: the box (20, 10)..(70, 79) holds wall at each corner and the object at (45, 44.5).
+/// Its detection: the corners of the box show the wall, the center (45, 44.5) the object.
 constexpr Box kPersonBox{.x_min = 20, .y_min = 10, .x_max = 70, .y_max = 79};
 
 DynamicConfig tight() {
@@ -64,45 +64,45 @@ SemanticMask mask_of(const std::vector<Box>& boxes, const cv::Mat& depth, const 
   return SemanticMask(boxes, DepthView{.pixels = depth}, kSize, config);
 }
 
-TEST(RobustDepth, IsThePixelItselfInAWindowOfOne) {
+TEST(MedianDepth, IsTheDepthOfThePixelForAWindowOfOne) {
   cv::Mat depth(kSize, CV_16UC1, cv::Scalar(4000));
   depth.at<std::uint16_t>(10, 20) = 1234;
-  EXPECT_DOUBLE_EQ(robust_depth({depth, 1000.0}, {20.4, 9.6}, 1), 1.234);  // rounds to column 20, row 10
+  EXPECT_DOUBLE_EQ(median_depth({depth, 1000.0}, {20.4, 9.6}, 1), 1.234);  // rounds to column 20, row 10
   depth.at<std::uint16_t>(10, 20) = 0;
-  EXPECT_EQ(robust_depth({depth, 1000.0}, {20.0, 10.0}, 1), 0.0);
+  EXPECT_EQ(median_depth({depth, 1000.0}, {20.0, 10.0}, 1), 0.0);
 }
 
-TEST(RobustDepth, IsTheMedianOfWhatWasMeasured) {
+TEST(MedianDepth, IsTheMedianOfTheValidDepths) {
   cv::Mat depth = cv::Mat::zeros(kSize, CV_16UC1);
   depth.at<std::uint16_t>(9, 19) = 9000;
   depth.at<std::uint16_t>(10, 21) = 2100;
   depth.at<std::uint16_t>(11, 20) = 2000;
-  EXPECT_DOUBLE_EQ(robust_depth({depth, 1000.0}, {20.0, 10.0}, 3), 2.1);  // of 2.0, 2.1, 9.0
+  EXPECT_DOUBLE_EQ(median_depth({depth, 1000.0}, {20.0, 10.0}, 3), 2.1);  // of 2.0, 2.1, 9.0
   depth.at<std::uint16_t>(9, 19) = 0;
-  EXPECT_DOUBLE_EQ(robust_depth({depth, 1000.0}, {20.0, 10.0}, 3), 2.1);  // the upper one of 2.0, 2.1
+  EXPECT_DOUBLE_EQ(median_depth({depth, 1000.0}, {20.0, 10.0}, 3), 2.1);  // upper median of 2.0, 2.1
 }
 
-TEST(RobustDepth, EndsAtTheEdgeOfThePicture) {
+TEST(MedianDepth, ClipsTheWindowToTheImage) {
   cv::Mat depth(kSize, CV_16UC1, cv::Scalar(3000));
-  EXPECT_DOUBLE_EQ(robust_depth({depth, 1000.0}, {0.0, 0.0}, 5), 3.0);
-  EXPECT_EQ(robust_depth({depth, 1000.0}, {-50.0, 0.0}, 5), 0.0);
-  EXPECT_EQ(robust_depth({cv::Mat(), 1000.0}, {10.0, 10.0}, 5), 0.0);
+  EXPECT_DOUBLE_EQ(median_depth({depth, 1000.0}, {0.0, 0.0}, 5), 3.0);
+  EXPECT_EQ(median_depth({depth, 1000.0}, {-50.0, 0.0}, 5), 0.0);
+  EXPECT_EQ(median_depth({cv::Mat(), 1000.0}, {10.0, 10.0}, 5), 0.0);
 }
 
-TEST(RobustDepth, UsesTheUnitsOfTheSensor) {
+TEST(MedianDepth, UsesTheUnitsOfTheSensor) {
   const cv::Mat depth(kSize, CV_16UC1, cv::Scalar(10000));
-  EXPECT_DOUBLE_EQ(robust_depth({depth, 5000.0}, {5.0, 5.0}, 1), 2.0);  // TUM: 5000 a metre
+  EXPECT_DOUBLE_EQ(median_depth({depth, 5000.0}, {5.0, 5.0}, 1), 2.0);  // TUM: 5000 per meter
 }
 
-TEST(SemanticMask, HoldsTheThresholdInsideTheBoxAndZeroOutside) {
+TEST(SemanticMask, HasTheThresholdInsideTheBoxAndZeroOutside) {
   const SemanticMask mask = mask_of({kPersonBox}, person_before_wall(), tight());
   EXPECT_DOUBLE_EQ(mask.threshold_at({45.0, 40.0}), 3.0);  // gap 2 > 1: (4 + 2) / 2
-  EXPECT_DOUBLE_EQ(mask.threshold_at({20.0, 10.0}), 3.0);  // the edge belongs to it
+  EXPECT_DOUBLE_EQ(mask.threshold_at({20.0, 10.0}), 3.0);  // edges are inside
   EXPECT_EQ(mask.threshold_at({19.9, 40.0}), 0.0);
   EXPECT_EQ(mask.threshold_at({45.0, 9.9}), 0.0);
 }
 
-TEST(SemanticMask, GrowsBoxesByTheMargin) {
+TEST(SemanticMask, EnlargesBoxesByTheMargin) {
   DynamicConfig config = tight();
   config.box_margin_px = 10.0;
   const SemanticMask mask = mask_of({kPersonBox}, person_before_wall(), config);
@@ -111,9 +111,9 @@ TEST(SemanticMask, GrowsBoxesByTheMargin) {
   EXPECT_GT(mask.threshold_at({80.0, 0.0}), 0.0);
 }
 
-TEST(SemanticMask, OverlappingBoxesTakeTheLargerThreshold) {
-  // The second box reads 2 m at its centre (45, 45) and at its corners: 2 + 1 = 3; the first one, all wall,
-  // reads 4 m everywhere: 4 + 1 = 5.
+TEST(SemanticMask, HasTheLargerThresholdWhereBoxesOverlap) {
+  // Second box: 2 m at the center (45, 45) and at the corners: 2 + 1 = 3. First box: 4 m everywhere: 4 + 1
+  // = 5.
   const Box wall{.x_min = 0, .y_min = 0, .x_max = 50, .y_max = 79};
   const Box inner{.x_min = 40, .y_min = 40, .x_max = 50, .y_max = 50};
   cv::Mat depth = person_before_wall();
@@ -125,7 +125,7 @@ TEST(SemanticMask, OverlappingBoxesTakeTheLargerThreshold) {
   EXPECT_DOUBLE_EQ(mask_of({inner}, depth, tight()).threshold_at({45.0, 45.0}), 3.0);
 }
 
-TEST(SemanticMask, WholeBoxIsInfinitelyDeep) {
+TEST(SemanticMask, WholeBoxHasAnInfiniteThreshold) {
   DynamicConfig config = tight();
   config.mask = DynamicMask::kWholeBox;
   const SemanticMask mask = mask_of({kPersonBox}, person_before_wall(), config);
@@ -133,27 +133,27 @@ TEST(SemanticMask, WholeBoxIsInfinitelyDeep) {
   EXPECT_EQ(mask.threshold_at({5.0, 40.0}), 0.0);
 }
 
-TEST(SemanticMask, OffMasksNothing) {
+TEST(SemanticMask, IsEmptyIfOff) {
   DynamicConfig config = tight();
   config.mask = DynamicMask::kOff;
   EXPECT_EQ(mask_of({kPersonBox}, person_before_wall(), config).threshold_at({45.0, 40.0}), 0.0);
 }
 
-TEST(SemanticMask, WithoutADepthPictureTheWholeBoxIsMasked) {
+TEST(SemanticMask, MasksTheWholeBoxWithoutADepthImage) {
   EXPECT_TRUE(std::isinf(mask_of({kPersonBox}, cv::Mat(), tight()).threshold_at({45.0, 40.0})));
 }
 
-TEST(SemanticMask, BoxesEndAtThePicture) {
+TEST(SemanticMask, ClipsBoxesToTheImage) {
   const Box beyond{.x_min = -500, .y_min = 10, .x_max = 60, .y_max = 9000};
   const SemanticMask mask = mask_of({beyond}, person_before_wall(), tight());
   ASSERT_EQ(mask.boxes().size(), 1U);
   EXPECT_EQ(mask.boxes()[0].box.x_min, 0.0);
   EXPECT_EQ(mask.boxes()[0].box.y_max, 79.0);
-  // Centre (30, 44.5) is the object, the corners are wall, wall, wall and wall (row 79): (4 + 2) / 2.
+  // Center (30, 44.5) on the object, all corners on the wall: (4 + 2) / 2.
   EXPECT_DOUBLE_EQ(mask.boxes()[0].threshold_m, 3.0);
 }
 
-TEST(SemanticMask, LeavesOutBoxesThatCannotBe) {
+TEST(SemanticMask, IgnoresInvalidBoxes) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Box> broken = {{.x_min = 60, .y_min = 10, .x_max = 20, .y_max = 40},
                                    {.x_min = 200, .y_min = 10, .x_max = 300, .y_max = 40},

@@ -5,7 +5,7 @@
 
 #include <initializer_list>
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 Trajectory at_milliseconds(std::initializer_list<int> stamps) {
@@ -14,20 +14,20 @@ Trajectory at_milliseconds(std::initializer_list<int> stamps) {
   return trajectory;
 }
 
-TEST(AssociateTum, TakesTheClosestPairFirstAndEachPoseOnce) {
-  // 10 and 14 both want 12's neighbourhood: |14-13| = 1 < |10-13| = 3, so 10 is left with nothing within 20
-  // ms but 40, which is 30 away.
+TEST(AssociateTum, MatchesTheClosestPairFirstAndEachPoseOnce) {
+  // |14 - 13| = 1 ms < |10 - 13| = 3 ms, so 14 is matched with 13. The only estimate left for 10 is 40, which
+  // is 30 ms away.
   const auto pairs = associate_tum(at_milliseconds({10, 14}), at_milliseconds({13, 40}));
   EXPECT_EQ(pairs, (std::vector<IndexPair>{{1, 0}}));
 }
 
-TEST(AssociateTum, TakesAPairThatBecomesNeighboursWhenTheInnerOneIsGone) {
-  // Inner pair (ground truth 14, estimate 13) goes first; then ground truth 10 and estimate 16, 6 ms apart.
+TEST(AssociateTum, MatchesPosesThatBecomeNeighborsWhenTheInnerPairIsRemoved) {
+  // The inner pair (ground truth 14, estimate 13) is matched first, then ground truth 10 and estimate 16.
   const auto pairs = associate_tum(at_milliseconds({10, 14}), at_milliseconds({13, 16}));
   EXPECT_EQ(pairs, (std::vector<IndexPair>{{1, 0}, {0, 1}}));
 }
 
-TEST(AssociateTum, LeavesOutADifferenceEqualToTheLimit) {
+TEST(AssociateTum, ExcludesADifferenceEqualToTheLimit) {
   EXPECT_TRUE(associate_tum(at_milliseconds({0}), at_milliseconds({20})).empty());
   EXPECT_EQ(associate_tum(at_milliseconds({1}), at_milliseconds({20})).size(), 1u);
 }
@@ -37,22 +37,22 @@ TEST(AssociateTum, AddsTheOffsetToTheEstimate) {
   EXPECT_EQ(pairs.size(), 1u);
 }
 
-TEST(AssociateTum, GivesNothingForEmptyInput) {
+TEST(AssociateTum, ReturnsNoPairsForEmptyInput) {
   EXPECT_TRUE(associate_tum({}, {}).empty());
   EXPECT_TRUE(associate_tum({}, at_milliseconds({1})).empty());
 }
 
-TEST(AssociateInterpolated, TakesTheShareOfTheIntervalAndLeavesGapsOut) {
-  // Ground truth at 0, 100, 1100 ms. 25 is a quarter of the first interval; 600 is 0.5 s from both
-  // neighbours, not below; 1100 is the last pose itself; 1101 is outside.
+TEST(AssociateInterpolated, ReturnsTheFractionOfTheIntervalAndSkipsGaps) {
+  // Ground truth at 0, 100, 1100 ms. 25 is a quarter of the first interval; 600 is 0.5 s from both neighbors,
+  // which is not below the limit; 1100 is the last pose itself; 1101 is outside.
   const auto pairs =
       associate_interpolated(at_milliseconds({0, 100, 1100}), at_milliseconds({25, 600, 1100, 1101}), 0.5);
   ASSERT_EQ(pairs.size(), 2u);
   EXPECT_EQ(pairs[0].est, 0u);
-  EXPECT_DOUBLE_EQ(pairs[0].share, 0.25);
+  EXPECT_DOUBLE_EQ(pairs[0].fraction, 0.25);
   EXPECT_EQ(pairs[1].gt, 2u);
   EXPECT_EQ(pairs[1].est, 2u);
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -6,13 +6,13 @@
 #include "eval/trajectory/frames.h"
 #include "tests/support/smooth_path.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-std::vector<Convention> mistakes(const Trajectory& gt, const Trajectory& est) {
+std::vector<Convention> violations(const Trajectory& gt, const Trajectory& est) {
   std::vector<Convention> found;
-  for (const ConventionFinding& finding : find_convention_mistakes(gt, est)) {
-    EXPECT_FALSE(finding.sentence.empty());
+  for (const ConventionFinding& finding : find_convention_violations(gt, est)) {
+    EXPECT_FALSE(finding.message.empty());
     found.push_back(finding.convention);
   }
   return found;
@@ -21,63 +21,63 @@ std::vector<Convention> mistakes(const Trajectory& gt, const Trajectory& est) {
 const Trajectory kGt = test::smooth_path(2000, 0.01);
 const Trajectory kEst = test::smooth_path(580, 1.0 / 30.0, 0.2);
 
-TEST(Conventions, FindNothingInASoundEstimate) { EXPECT_TRUE(mistakes(kGt, kEst).empty()); }
+TEST(Conventions, AcceptACorrectEstimate) { EXPECT_TRUE(violations(kGt, kEst).empty()); }
 
-TEST(Conventions, FindNothingInAnEstimateOfAnotherWorld) {
+TEST(Conventions, AcceptAnEstimateInAnotherWorldFrame) {
   Trajectory est = kEst;
   const Pose T_v_w{exp_so3({0.5, -1.0, 2.0}), {10, 20, 30}};
   for (StampedPose& pose : est.poses) pose.T_w_f = T_v_w * pose.T_w_f;
-  EXPECT_TRUE(mistakes(kGt, est).empty());
+  EXPECT_TRUE(violations(kGt, est).empty());
 }
 
-TEST(Conventions, NameASwappedQuaternionOrder) {
+TEST(Conventions, DetectASwappedQuaternionOrder) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) {
-    const Eigen::Quaterniond q = pose.T_w_f.q;  // the file says w x y z, the reader takes x y z w
+    const Eigen::Quaterniond q = pose.T_w_f.q;  // written as w x y z, read as x y z w
     pose.T_w_f.q = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y());
   }
-  EXPECT_EQ(mistakes(kGt, est), std::vector{Convention::kQuaternionOrder});
+  EXPECT_EQ(violations(kGt, est), std::vector{Convention::kQuaternionOrder});
 }
 
-TEST(Conventions, NameInvertedPoses) {
+TEST(Conventions, DetectInvertedPoses) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) pose.T_w_f = pose.T_w_f.inverse();
-  EXPECT_EQ(mistakes(kGt, est), std::vector{Convention::kInvertedPoses});
+  EXPECT_EQ(violations(kGt, est), std::vector{Convention::kInvertedPoses});
 }
 
-TEST(Conventions, NameAnotherBodyFrame) {
+TEST(Conventions, DetectAnotherBodyFrame) {
   const Pose T_b_c{exp_so3({0.0, 1.57, 0.0}), {0.02, 0.01, 0.0}};
-  EXPECT_EQ(mistakes(kGt, move_to_frame(kEst, T_b_c, "camera")), std::vector{Convention::kBodyFrame});
+  EXPECT_EQ(violations(kGt, move_to_frame(kEst, T_b_c, "camera")), std::vector{Convention::kBodyFrame});
 }
 
-TEST(Conventions, NameAConstantTimeOffset) {
+TEST(Conventions, DetectAConstantTimeOffset) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) pose.t = after(pose.t, 0.08);
-  EXPECT_EQ(mistakes(kGt, est), std::vector{Convention::kTimeOffset});
+  EXPECT_EQ(violations(kGt, est), std::vector{Convention::kTimeOffset});
 }
 
-TEST(Conventions, NameStampsInAnotherUnit) {
+TEST(Conventions, DetectStampsInAnotherUnit) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) pose.t.ns *= 1'000'000;  // microseconds read as seconds
-  const std::vector<ConventionFinding> found = find_convention_mistakes(kGt, est);
+  const std::vector<ConventionFinding> found = find_convention_violations(kGt, est);
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found[0].convention, Convention::kStampUnit);
-  EXPECT_NE(found[0].sentence.find("microseconds"), std::string::npos);
+  EXPECT_NE(found[0].message.find("microseconds"), std::string::npos);
 }
 
-TEST(Conventions, NameAnotherEpoch) {
+TEST(Conventions, DetectAnotherEpoch) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) pose.t = after(pose.t, 1.5e9);
-  EXPECT_EQ(mistakes(kGt, est), std::vector{Convention::kStampUnit});
+  EXPECT_EQ(violations(kGt, est), std::vector{Convention::kStampUnit});
 }
 
-TEST(Conventions, NameSwappedArguments) {
-  Trajectory est = kEst;  // begins at its own first pose, as an odometry does
+TEST(Conventions, DetectSwappedArguments) {
+  Trajectory est = kEst;  // starts at the identity, like the output of an odometry
   const Pose T_v_w = kEst.poses.front().T_w_f.inverse();
   for (StampedPose& pose : est.poses) pose.T_w_f = T_v_w * pose.T_w_f;
-  EXPECT_EQ(mistakes(est, kGt), std::vector{Convention::kSwappedArguments});
-  EXPECT_TRUE(mistakes(kGt, est).empty());
+  EXPECT_EQ(violations(est, kGt), std::vector{Convention::kSwappedArguments});
+  EXPECT_TRUE(violations(kGt, est).empty());
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

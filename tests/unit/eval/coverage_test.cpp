@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-/// A robot on a bent path, one pose every `step` s from `begin` to `end` (included).
-Trajectory bent_path(double begin, double end, double step) {
+/// A curved path with one pose every `step` seconds from `begin` to `end` (inclusive).
+Trajectory curved_path(double begin, double end, double step) {
   Trajectory path;
   for (double t = begin; t <= end + 1e-9; t += step) {
     path.poses.push_back({from_seconds(t), Pose{.p = {t, 0.1 * t * t, 0.0}}});
@@ -15,30 +15,30 @@ Trajectory bent_path(double begin, double end, double step) {
   return path;
 }
 
-TEST(Coverage, IsTheShareOfExpectedFramesThatHaveAPose) {
-  const Trajectory est = bent_path(1.0, 2.0, 0.5);  // 1.0, 1.5, 2.0
+TEST(Coverage, IsTheFractionOfExpectedFramesWithAPose) {
+  const Trajectory est = curved_path(1.0, 2.0, 0.5);  // 1.0, 1.5, 2.0
   std::vector<Timestamp> frames;
   for (const double t : {0.0, 0.5, 1.0, 1.5}) frames.push_back(from_seconds(t));
   EXPECT_DOUBLE_EQ(*coverage(est, frames), 0.5);  // 1.0 and 1.5 of four
 }
 
 TEST(Coverage, CountsAPoseForOneFrameOnly) {
-  const Trajectory est = bent_path(1.0, 1.0, 1.0);
+  const Trajectory est = curved_path(1.0, 1.0, 1.0);
   const std::vector<Timestamp> frames{from_seconds(0.9995), from_seconds(1.0005)};
   EXPECT_DOUBLE_EQ(*coverage(est, frames), 0.5);
 }
 
-TEST(Coverage, IsNotAvailableWithoutExpectedFrames) { EXPECT_FALSE(coverage(bent_path(0, 1, 1), {})); }
+TEST(Coverage, IsNotAvailableWithoutExpectedFrames) { EXPECT_FALSE(coverage(curved_path(0, 1, 1), {})); }
 
-TEST(CorrectRate, HoldsAPoseForOneSecondAtMost) {
-  // Poses at 0, 0.5, ..., 2 and then none until 10: 0..2 is tracked, the last pose stands 1 s: 3 s of 10.
-  EXPECT_NEAR(*correct_rate(bent_path(0, 10, 0.1), bent_path(0, 2, 0.5)), 0.3, 1e-9);
+TEST(CorrectRate, CountsAPoseAsValidForOneSecondAtMost) {
+  // Poses at 0, 0.5, ..., 2 s and none until 10 s; the last pose is valid for 1 s: 3 s of 10 s.
+  EXPECT_NEAR(*correct_rate(curved_path(0, 10, 0.1), curved_path(0, 2, 0.5)), 0.3, 1e-9);
 }
 
-TEST(CorrectRate, IsZeroForARunWithoutPoses) { EXPECT_EQ(correct_rate(bent_path(0, 10, 0.1), {}), 0.0); }
+TEST(CorrectRate, IsZeroForARunWithoutPoses) { EXPECT_EQ(correct_rate(curved_path(0, 10, 0.1), {}), 0.0); }
 
-TEST(CorrectRate, LeavesOutPosesBeyondTheThreshold) {
-  const Trajectory gt = bent_path(0, 10, 0.1);
+TEST(CorrectRate, ExcludesPosesBeyondTheThreshold) {
+  const Trajectory gt = curved_path(0, 10, 0.1);
   Trajectory est = gt;
   for (StampedPose& pose : est.poses) pose.T_w_f.q = Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(correct_rate(gt, est, {.max_rotation_deg = 30.0}), 0.0);  // 1 rad = 57 deg everywhere
@@ -46,4 +46,4 @@ TEST(CorrectRate, LeavesOutPosesBeyondTheThreshold) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

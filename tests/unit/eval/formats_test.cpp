@@ -10,21 +10,21 @@
 #include "tests/support/smooth_path.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 void expect_same(const Trajectory& a, const Trajectory& b) {
   ASSERT_EQ(a.poses.size(), b.poses.size());
   for (std::size_t i = 0; i < a.poses.size(); ++i) {
     EXPECT_EQ(a.poses[i].t, b.poses[i].t);
-    EXPECT_LT((a.poses[i].T_w_f.p - b.poses[i].T_w_f.p).norm(), 2e-9);  // 9 decimals a coordinate
+    EXPECT_LT((a.poses[i].T_w_f.p - b.poses[i].T_w_f.p).norm(), 2e-9);  // 9 decimals per coordinate
     EXPECT_LT(a.poses[i].T_w_f.q.angularDistance(b.poses[i].T_w_f.q), 1e-7);
   }
 }
 
 const Trajectory kPath = test::smooth_path(20, 0.1, 1403636579.763555584);
 
-TEST(Formats, ReadBackWhatTheyWrite) {
+TEST(Formats, AreReadBackAsWritten) {
   expect_same(parse_tum(format_tum(kPath), "a").trajectory, kPath);
   expect_same(parse_euroc(format_euroc(kPath), "a").trajectory, kPath);
   const KittiTexts kitti = format_kitti(kPath);
@@ -33,8 +33,8 @@ TEST(Formats, ReadBackWhatTheyWrite) {
   expect_same(parse_openloris(format_openloris(file), "a").sequences.at(3), kPath);
 }
 
-TEST(Formats, ReadBackASevenScenesFolder) {
-  Trajectory path;  // stamps of a 30 Hz clock, as the format has no other
+TEST(Formats, SevenScenesFolderIsReadBackAsWritten) {
+  Trajectory path;  // stamps at 30 Hz, which the format implies
   for (int i = 0; i < 5; ++i) {
     path.poses.push_back({Timestamp{(i * 1'000'000'000LL + 15) / 30}, test::smooth_pose(i)});
   }
@@ -43,23 +43,22 @@ TEST(Formats, ReadBackASevenScenesFolder) {
   expect_same(read_trajectory({.path = folder.path(), .format = "", .times = ""}).trajectory, path);
 }
 
-TEST(Formats, AreRecognisedByContent) {
-  EXPECT_EQ(recognise_format(format_tum(kPath)), "tum");
-  EXPECT_EQ(recognise_format(format_euroc(kPath)), "euroc");
-  EXPECT_EQ(recognise_format(format_kitti(kPath).poses), "kitti");
-  EXPECT_EQ(recognise_format("scene: home\nseq: 1\n"), "openloris");
+TEST(Formats, AreDetectedFromTheContent) {
+  EXPECT_EQ(detect_format(format_tum(kPath)), "tum");
+  EXPECT_EQ(detect_format(format_euroc(kPath)), "euroc");
+  EXPECT_EQ(detect_format(format_kitti(kPath).poses), "kitti");
+  EXPECT_EQ(detect_format("scene: home\nseq: 1\n"), "openloris");
 }
 
-TEST(Openloris, DropsRepeatedPosesAndKeepsThemWhenTold) {
+TEST(Openloris, DropsRepeatedPosesUnlessTheyAreRequested) {
   const std::string text =
       "scene:Home\nframe: d400_imu\nseq: 1\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 nan 0 0 0 0 0 1\n"
       "4 9.5 1 0 0 0 0 0 1\nseq: 2\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n";
   const OpenlorisFile dropped = parse_openloris(text, "a");
   EXPECT_EQ(dropped.scene, "home");
   EXPECT_EQ(dropped.frame, "d400_imu");
-  // Of sequence 1 the row at 2 s repeats the pose, the one at 3 s is NaN, the one at 4 s has a ninth column
-  // and its pose in the last seven. The first of sequence 2 equals that last one, which is not forgotten
-  // between.
+  // Sequence 1: the row at 2 s repeats the pose, the one at 3 s has NaN, the one at 4 s has nine columns, the
+  // last seven of which are its pose. The first pose of sequence 2 equals that pose and is dropped, too.
   EXPECT_EQ(dropped.sequences.at(1).poses.size(), 2u);
   EXPECT_EQ(dropped.sequences.at(2).poses.size(), 1u);
   EXPECT_EQ(dropped.repeated_poses, 2u);
@@ -67,20 +66,21 @@ TEST(Openloris, DropsRepeatedPosesAndKeepsThemWhenTold) {
   EXPECT_EQ(parse_openloris(text, "a", RepeatedPoses::kKeep).sequences.at(2).poses.size(), 2u);
 }
 
-TEST(Formats, NameTheLineOfABadRow) {
+TEST(Formats, ReportTheLineOfAMalformedRow) {
   expect_input_error([] { static_cast<void>(parse_euroc("1.5,0,0,0,1,0,0,0\n", "a.csv")); },
                      {"a.csv:1", "nanoseconds"});
   expect_input_error([] { static_cast<void>(parse_kitti("1 0 0 0 0 1 0 0 0 0 2 0\n", "p", "0\n", "t")); },
-                     {"p:1", "no rotation"});
+                     {"p:1", "not a rotation"});
   expect_input_error([] { static_cast<void>(parse_kitti("1 0 0 0 0 1 0 0 0 0 1 0\n", "p", "0\n1\n", "t")); },
                      {"t", "more times"});
   expect_input_error([] { static_cast<void>(parse_openloris("1 0 0 0 0 0 0 1\n", "o")); }, {"o:1", "seq"});
-  expect_input_error([] { static_cast<void>(parse_openloris("seq: 1\nseq: 1\n", "o")); }, {"o:2", "twice"});
+  expect_input_error([] { static_cast<void>(parse_openloris("seq: 1\nseq: 1\n", "o")); },
+                     {"o:2", "duplicate"});
   expect_input_error([] { static_cast<void>(read_trajectory({.path = "/none", .format = "", .times = ""})); },
                      {"/none", "opened"});
 }
 
-TEST(Nees, IsTheSquaredErrorInUnitsOfTheCovariance) {
+TEST(Nees, IsTheSquaredErrorNormalizedByTheCovariance) {
   // 0.2 rad about x with a standard deviation of 0.1 rad: 4. 3 m along y with 1.5 m: 4.
   const Pose est{exp_so3({0.2, 0.0, 0.0}), {0.0, 3.0, 0.0}};
   const Nees result =
@@ -92,4 +92,4 @@ TEST(Nees, IsTheSquaredErrorInUnitsOfTheCovariance) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -10,11 +10,11 @@
 #include "eval/metrics/rpe.h"
 #include "eval/trajectory/frames.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
-/// 10 s of a bent and turning path at 10 Hz.
-Trajectory turning_path() {
+/// 10 s of a curved path with rotation, at 10 Hz.
+Trajectory curved_path() {
   Trajectory path;
   for (int i = 0; i <= 100; ++i) {
     const double t = 0.1 * i;
@@ -24,8 +24,8 @@ Trajectory turning_path() {
   return path;
 }
 
-TEST(AlignSe3, FindsAKnownRigidMotion) {
-  const Trajectory gt = turning_path();
+TEST(AlignSe3, RecoversAKnownRigidTransform) {
+  const Trajectory gt = curved_path();
   const Pose T_v_w{Eigen::Quaterniond(Eigen::AngleAxisd(2.0, Eigen::Vector3d(3, -1, 2).normalized())),
                    {5, -6, 7}};
   Trajectory est = gt;
@@ -38,7 +38,7 @@ TEST(AlignSe3, FindsAKnownRigidMotion) {
   EXPECT_TRUE(result->alignment.determined);
 }
 
-TEST(AlignSe3, SaysThatALineLeavesTheRotationOpen) {
+TEST(AlignSe3, IsNotDeterminedByALine) {
   Trajectory line;
   for (int i = 0; i < 10; ++i)
     line.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{.p = {1.0 * i, 0, 0}}});
@@ -48,9 +48,9 @@ TEST(AlignSe3, SaysThatALineLeavesTheRotationOpen) {
   EXPECT_FALSE(result->alignment.determined);
 }
 
-TEST(AteStatistics, AreThoseOfAHandWorkedCase) {
-  // Ground truth on the corners of a square around 0, the estimate the same square grown by half: aligned by
-  // the identity, every corner is 0.5 * sqrt(2) m off.
+TEST(AteStatistics, MatchAHandComputedCase) {
+  // Ground truth at the corners of a square around 0, estimate at those of the square scaled by 1.5: the
+  // alignment is the identity and the error of every corner is 0.5 * sqrt(2) m.
   Trajectory gt;
   Trajectory est;
   const double corners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
@@ -65,9 +65,9 @@ TEST(AteStatistics, AreThoseOfAHandWorkedCase) {
   EXPECT_NEAR(result->translation_m.std, 0.0, 1e-12);
 }
 
-TEST(Rpe, MeasuresAConstantSlipPerSecond) {
-  // The estimate slips 0.02 m and turns 0.01 rad too much per second, both along and about x, on a straight
-  // path without turn: every 1 s span is off by exactly that.
+TEST(Rpe, MeasuresAConstantDriftPerSecond) {
+  // On a straight path the estimate has an error of 0.02 m/s along x and 0.01 rad/s about x, so these are the
+  // errors of every pair 1 s apart.
   Trajectory gt;
   Trajectory est;
   for (int i = 0; i <= 100; ++i) {
@@ -78,14 +78,14 @@ TEST(Rpe, MeasuresAConstantSlipPerSecond) {
   }
   const std::optional<RpeResult> result = rpe(gt, est);
   ASSERT_TRUE(result);
-  EXPECT_EQ(result->translation_m.count,
-            90u);  // starts 0 .. 8.9 s; the partner of 9.0 s is the last pose, which drops it
+  // Starts at 0 .. 8.9 s; the pair that starts at 9.0 s ends at the last pose and is dropped.
+  EXPECT_EQ(result->translation_m.count, 90u);
   EXPECT_NEAR(result->translation_m.rmse, 0.02, 1e-9);
   EXPECT_NEAR(result->rotation_deg.rmse, 0.01 * 180.0 / std::numbers::pi, 1e-9);
 }
 
-TEST(Score, IsNotAvailableWithoutPosesButTheCorrectRateIsZero) {
-  const Score lost = score(turning_path(), {}, {.expected_times = {Timestamp{0}, Timestamp{1}}});
+TEST(Score, IsNotAvailableWithoutPosesExceptForAZeroCorrectRate) {
+  const Score lost = score(curved_path(), {}, {.expected_times = {Timestamp{0}, Timestamp{1}}});
   EXPECT_FALSE(lost.ate_rmse_m);
   EXPECT_FALSE(lost.rpe_trans_rmse_m_per_s);
   EXPECT_FALSE(lost.first_pose_s);
@@ -93,31 +93,31 @@ TEST(Score, IsNotAvailableWithoutPosesButTheCorrectRateIsZero) {
   EXPECT_EQ(lost.coverage, 0.0);
 }
 
-TEST(Score, IsNotAvailableWithoutGroundTruthButCoverageIs) {
-  const Score blind = score({}, turning_path(), {.expected_times = {Timestamp{0}}});
-  EXPECT_FALSE(blind.ate_rmse_m);
-  EXPECT_FALSE(blind.correct_rate);
-  EXPECT_EQ(blind.coverage, 1.0);
-  EXPECT_EQ(blind.first_pose_s, 0.0);
+TEST(Score, HasOnlyCoverageWithoutGroundTruth) {
+  const Score without_gt = score({}, curved_path(), {.expected_times = {Timestamp{0}}});
+  EXPECT_FALSE(without_gt.ate_rmse_m);
+  EXPECT_FALSE(without_gt.correct_rate);
+  EXPECT_EQ(without_gt.coverage, 1.0);
+  EXPECT_EQ(without_gt.first_pose_s, 0.0);
 }
 
-TEST(Score, IsPerfectForTheTruthItself) {
-  const Score perfect = score(turning_path(), turning_path());
+TEST(Score, IsPerfectForTheGroundTruthItself) {
+  const Score perfect = score(curved_path(), curved_path());
   EXPECT_NEAR(*perfect.ate_rmse_m, 0.0, 1e-12);
   EXPECT_NEAR(*perfect.rpe_trans_rmse_m_per_s, 0.0, 1e-12);
   EXPECT_NEAR(*perfect.correct_rate, 1.0, 1e-12);
   EXPECT_FALSE(perfect.coverage);
 }
 
-TEST(MoveToFrame, AppliesTheExtrinsicOnTheRight) {
+TEST(MoveToFrame, MultipliesByTheExtrinsicsFromTheRight) {
   const Pose T_f_g{Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ())),
                    {1, 0, 0}};
   Trajectory body{.frame = "imu", .poses = {{Timestamp{0}, Pose{T_f_g.q, {0, 0, 0}}}}};
   const Trajectory camera = move_to_frame(body, T_f_g, "camera");
-  // The body is turned by 90 degrees about z, so 1 m along its x is 1 m along y of the world.
+  // The body is rotated by 90 degrees about z, so 1 m along its x axis is 1 m along y in the world.
   EXPECT_TRUE(camera.poses[0].T_w_f.p.isApprox(Eigen::Vector3d(0, 1, 0)));
   EXPECT_EQ(camera.frame, "camera");
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

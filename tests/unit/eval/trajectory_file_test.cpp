@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 
-namespace stillpoint {
+namespace stillpoint::eval {
 namespace {
 
 std::string message_of(std::string_view text) {
@@ -35,7 +35,7 @@ TEST(ParseStamp, RoundsBeyondNineDecimals) {
   EXPECT_EQ(parse_stamp("4e-10")->ns, 0);
 }
 
-TEST(ParseStamp, RefusesWhatIsNoStamp) {
+TEST(ParseStamp, RejectsMalformedStamps) {
   for (const char* text :
        {"", "-", ".", "nan", "inf", "1.2.3", "1e", "1e999", "12a", "1305031098665900000"}) {
     EXPECT_FALSE(parse_stamp(text)) << text;
@@ -55,30 +55,31 @@ TEST(ParseTum, ReadsRowsAndSkipsComments) {
   EXPECT_EQ(loaded.trajectory.frame, "camera");
   EXPECT_EQ(pose.t.ns, 1500000000);
   EXPECT_EQ(pose.T_w_f.p, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(pose.T_w_f.q.w(), 1.0);  // brought from 1.05 to unit length
+  EXPECT_EQ(pose.T_w_f.q.w(), 1.0);  // normalized from 1.05
 }
 
-TEST(ParseTum, CountsRowsThatAreNoPose) {
+TEST(ParseTum, CountsRowsWithoutAPose) {
   const auto loaded = parse_tum("1 0 0 0 0 0 0 0\n2 nan 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n", "a.txt");
   EXPECT_EQ(loaded.skipped_rows, 2u);
   EXPECT_EQ(loaded.trajectory.poses.size(), 1u);
 }
 
-TEST(ParseTum, NamesTheLineOfABadRow) {
+TEST(ParseTum, ReportsTheLineOfAMalformedRow) {
   const std::string good = "1 0 0 0 0 0 0 1\n";
   EXPECT_EQ(message_of(good + "2 0 0 0 0 0 1\n"),
             "a.txt:2: a pose needs 8 numbers, found 7; expected \"t tx ty tz qx qy qz qw\"");
   EXPECT_EQ(message_of(good + "2 0 x 0 0 0 0 1\n"), "a.txt:2: \"x\" is not a number");
   EXPECT_EQ(
       message_of(good + "1 0 0 0 0 0 0 1\n"),
-      "a.txt:2: stamp 1.000000000 s does not rise after 1.000000000 s; sort the file and remove repeated "
-      "stamps");
-  EXPECT_EQ(message_of("1403636579763555584 0 0 0 0 0 0 1\n"),
-            "a.txt:1: stamp \"1403636579763555584\" is beyond 292 years; nanoseconds instead of seconds?");
-  EXPECT_EQ(message_of("# nothing\n"), "a.txt: holds no pose; expected rows \"t tx ty tz qx qy qz qw\"");
+      "a.txt:2: stamp 1.000000000 s does not increase; the previous one is 1.000000000 s; sort the file and "
+      "remove duplicate stamps");
+  EXPECT_EQ(
+      message_of("1403636579763555584 0 0 0 0 0 0 1\n"),
+      "a.txt:1: stamp \"1403636579763555584\" exceeds 292 years; is it in nanoseconds instead of seconds?");
+  EXPECT_EQ(message_of("# nothing\n"), "a.txt: no poses found; expected rows \"t tx ty tz qx qy qz qw\"");
 }
 
-TEST(WriteTum, WritesNineDecimalsThatReadBackTheSame) {
+TEST(WriteTum, WritesNineDecimalsThatAreReadBackUnchanged) {
   const std::string text =
       "# timestamp tx ty tz qx qy qz qw\n"
       "1305031098.665900000 1.250000000 -2.500000000 0.000000000 0.000000000 0.000000000 0.600000000 "
@@ -90,9 +91,9 @@ TEST(WriteTum, WritesNineDecimalsThatReadBackTheSame) {
   std::filesystem::remove(file);
 }
 
-TEST(WriteTum, SaysWhichFileItCannotWrite) {
+TEST(WriteTum, ThrowsIfTheFileCannotBeWritten) {
   EXPECT_THROW(write_tum({}, "/no/such/folder/a.txt"), InputError);
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::eval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/fast_corners.h"
+#include "core/frontend/detect/fast_corners.h"
 
 #include <gtest/gtest.h>
 
@@ -7,17 +7,17 @@
 #include <opencv2/features2d.hpp>
 #include <tuple>
 
-#include "tests/unit/frontend/textured_picture.h"
+#include "tests/unit/frontend/textured_image.h"
 
 namespace stillpoint {
 namespace {
 
-using Found = std::vector<std::tuple<float, float, float>>;  // y, x, score
+using CornerList = std::vector<std::tuple<float, float, float>>;  // y, x, score
 
-Found by_opencv(const cv::Mat& gray, int threshold) {
+CornerList opencv_corners(const cv::Mat& gray, int threshold) {
   std::vector<cv::KeyPoint> keypoints;
   cv::FAST(gray, keypoints, threshold, true);
-  Found found;
+  CornerList found;
   for (const cv::KeyPoint& keypoint : keypoints) {
     found.emplace_back(keypoint.pt.y, keypoint.pt.x, keypoint.response);
   }
@@ -25,8 +25,8 @@ Found by_opencv(const cv::Mat& gray, int threshold) {
   return found;
 }
 
-Found by_us(FastCorners& fast, const cv::Mat& gray, int threshold) {
-  Found found;
+CornerList our_corners(FastCorners& fast, const cv::Mat& gray, int threshold) {
+  CornerList found;
   for (const Corner& corner : fast.find(gray, threshold)) {
     found.emplace_back(corner.pixel.y, corner.pixel.x, corner.score);
   }
@@ -40,22 +40,22 @@ cv::Mat noise(const cv::Size& size) {
   return gray;
 }
 
-TEST(FastCorners, AreThoseOfOpenCvWithTheSameScores) {
+TEST(FastCorners, MatchOpenCvInPositionsAndScores) {
   FastCorners fast;
   for (const cv::Mat& gray : {random_texture(cv::Size(211, 97), 1), noise(cv::Size(64, 48))}) {
     for (const int threshold : {1, 10, 60}) {
-      const Found found = by_us(fast, gray, threshold);
+      const CornerList found = our_corners(fast, gray, threshold);
       EXPECT_GT(found.size(), 3u);
-      EXPECT_EQ(found, by_opencv(gray, threshold));
+      EXPECT_EQ(found, opencv_corners(gray, threshold));
     }
   }
 }
 
-TEST(FastCorners, NarrowPicturesAreSearchedPixelByPixel) {
+TEST(FastCorners, MatchOpenCvOnImagesNarrowerThanARegister) {
   FastCorners fast;
   const cv::Mat whole = noise(cv::Size(64, 48));
   const cv::Mat gray = whole(cv::Rect(5, 4, 20, 30));
-  EXPECT_EQ(by_us(fast, gray, 10), by_opencv(gray, 10));
+  EXPECT_EQ(our_corners(fast, gray, 10), opencv_corners(gray, 10));
   EXPECT_TRUE(fast.find(whole(cv::Rect(0, 0, 6, 40)), 10).empty());
   EXPECT_TRUE(fast.find(whole(cv::Rect(0, 0, 40, 6)), 10).empty());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/feature_mask.h"
+#include "core/frontend/detect/feature_mask.h"
 
 #include <gtest/gtest.h>
 
@@ -14,17 +14,17 @@ FeatureMask empty_mask() {
   return mask;
 }
 
-TEST(FeatureMask, IsFreeInsideThePictureOnly) {
+TEST(FeatureMask, IsFreeOnlyInsideTheImage) {
   const FeatureMask mask = empty_mask();
   EXPECT_TRUE(mask.is_free({0.0F, 0.0F}));
   EXPECT_TRUE(mask.is_free({99.4F, 79.4F}));   // rounds to the last pixel
-  EXPECT_FALSE(mask.is_free({99.6F, 79.0F}));  // rounds to beyond it
+  EXPECT_FALSE(mask.is_free({99.6F, 79.0F}));  // rounds to outside the image
   EXPECT_FALSE(mask.is_free({-0.6F, 10.0F}));
 }
 
-TEST(FeatureMask, CircleTakesItsDisc) {
+TEST(FeatureMask, CircleOccupiesItsDisc) {
   FeatureMask mask = empty_mask();
-  mask.take_circle({50.2F, 40.0F}, 10);
+  mask.occupy_circle({50.2F, 40.0F}, 10);
   EXPECT_FALSE(mask.is_free({50.0F, 40.0F}));
   EXPECT_FALSE(mask.is_free({60.0F, 40.0F}));
   EXPECT_TRUE(mask.is_free({61.0F, 40.0F}));
@@ -32,23 +32,23 @@ TEST(FeatureMask, CircleTakesItsDisc) {
   EXPECT_TRUE(mask.is_free({58.0F, 48.0F}));   // 11.3 px away
 }
 
-TEST(FeatureMask, FirstClaimWins) {
+TEST(FeatureMask, FirstOccupantWins) {
   FeatureMask mask = empty_mask();
-  EXPECT_TRUE(mask.claim({50.0F, 40.0F}, 10));
-  EXPECT_FALSE(mask.claim({55.0F, 40.0F}, 10));
-  EXPECT_TRUE(mask.is_free({63.0F, 40.0F})) << "a refused claim must not take its circle";
-  EXPECT_TRUE(mask.claim({61.0F, 40.0F}, 10));
+  EXPECT_TRUE(mask.try_occupy({50.0F, 40.0F}, 10));
+  EXPECT_FALSE(mask.try_occupy({55.0F, 40.0F}, 10));
+  EXPECT_TRUE(mask.is_free({63.0F, 40.0F})) << "a rejected try_occupy must not occupy its circle";
+  EXPECT_TRUE(mask.try_occupy({61.0F, 40.0F}, 10));
 }
 
-TEST(FeatureMask, RadiusZeroTakesNothing) {
+TEST(FeatureMask, RadiusZeroOccupiesNothing) {
   FeatureMask mask = empty_mask();
-  mask.take_circle({50.0F, 40.0F}, 0);
+  mask.occupy_circle({50.0F, 40.0F}, 0);
   EXPECT_TRUE(mask.is_free({50.0F, 40.0F}));
 }
 
-TEST(FeatureMask, ClearFreesEverything) {
+TEST(FeatureMask, ClearFreesAllPixels) {
   FeatureMask mask = empty_mask();
-  mask.take_circle({50.0F, 40.0F}, 10);
+  mask.occupy_circle({50.0F, 40.0F}, 10);
   mask.clear(cv::Size(100, 80));
   EXPECT_TRUE(mask.is_free({50.0F, 40.0F}));
 }

@@ -40,7 +40,7 @@ Eigen::Vector2d predict_one(const Track& track, TrackerPrediction kind) {
   return {pixel.x, pixel.y};
 }
 
-TEST(FeaturePrediction, FullFollowsAPointOfKnownDepth) {
+TEST(FeaturePrediction, FullPredictsAPointOfKnownDepth) {
   const Camera camera = distorted_camera();
   const Eigen::Vector3d point_prev(0.4, -0.3, 1.7);
   const Track track = track_at(camera, camera.project(point_prev), point_prev.z());
@@ -48,7 +48,7 @@ TEST(FeaturePrediction, FullFollowsAPointOfKnownDepth) {
   EXPECT_LT((predict_one(track, TrackerPrediction::kFull) - expected).norm(), 1e-4);  // float pixels
 }
 
-TEST(FeaturePrediction, RotationMovesAllPointsAsIfFarAway) {
+TEST(FeaturePrediction, RotationPredictsPointsAsIfAtInfinity) {
   const Camera camera = distorted_camera();
   const Eigen::Vector3d far_prev(400.0, -300.0, 1700.0);
   const Eigen::Vector2d expected = camera.project(moving_prior().T_ccur_cprev.q * far_prev);
@@ -58,12 +58,12 @@ TEST(FeaturePrediction, RotationMovesAllPointsAsIfFarAway) {
   EXPECT_LT((predict_one(unmeasured, TrackerPrediction::kFull) - expected).norm(), 1e-4);
 }
 
-TEST(FeaturePrediction, NoneLeavesPointsWhereTheyAre) {
+TEST(FeaturePrediction, NoneKeepsTheCurrentPixels) {
   const Track track = track_at(distorted_camera(), {100.5, 50.25}, 1.0);
   EXPECT_EQ(predict_one(track, TrackerPrediction::kNone), Eigen::Vector2d(100.5, 50.25));
 }
 
-TEST(FeaturePrediction, APointThatWouldBeBehindTheCameraStays) {
+TEST(FeaturePrediction, APointPredictedBehindTheCameraKeepsItsPixel) {
   const Track track = track_at(distorted_camera(), {100.5, 50.25}, 1.0);
   MotionPrior turned = moving_prior();
   turned.T_ccur_cprev.q = exp_so3({0.0, 3.0, 0.0});
@@ -72,7 +72,7 @@ TEST(FeaturePrediction, APointThatWouldBeBehindTheCameraStays) {
   EXPECT_EQ(pixel, cv::Point2f(100.5F, 50.25F));
 }
 
-TEST(FeaturePrediction, UsesOnlyWhatThePriorHas) {
+TEST(FeaturePrediction, FallsBackToTheValidPartsOfThePrior) {
   MotionPrior prior = moving_prior();
   EXPECT_EQ(usable_prediction(TrackerPrediction::kFull, prior), TrackerPrediction::kFull);
   EXPECT_EQ(usable_prediction(TrackerPrediction::kRotation, prior), TrackerPrediction::kRotation);

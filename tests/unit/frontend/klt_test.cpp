@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/klt.h"
+#include "core/frontend/klt/klt.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/frontend/textured_picture.h"
+#include "tests/unit/frontend/textured_image.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kWindowPx = 21;
-const cv::Size kPictureSize(320, 240);
+const cv::Size kImageSize(320, 240);
 
-/// Two views of one texture: the second sees everything `shift_px` further left.
+/// Two views of one texture, shifted by `shift_px` to the left.
 struct Views {
   ImagePyramid from;
   ImagePyramid to;
@@ -20,8 +20,8 @@ struct Views {
 Views shifted_views(int shift_px, int levels) {
   const cv::Mat texture = random_texture(cv::Size(512, 256), 3);
   Views views;
-  views.from.rebuild(texture(cv::Rect({50, 8}, kPictureSize)), kWindowPx, levels);
-  views.to.rebuild(texture(cv::Rect({50 + shift_px, 8}, kPictureSize)), kWindowPx, levels);
+  views.from.rebuild(texture(cv::Rect({50, 8}, kImageSize)), kWindowPx, levels);
+  views.to.rebuild(texture(cv::Rect({50 + shift_px, 8}, kImageSize)), kWindowPx, levels);
   return views;
 }
 
@@ -29,32 +29,32 @@ const std::vector<cv::Point2f> kPoints = {{100.0F, 60.0F}, {160.0F, 120.0F}, {22
 
 TEST(Klt, FindsWholePixelShiftsExactly) {
   const Views views = shifted_views(3, 2);
-  const KltResult result = follow_points(views.from, views.to, kPoints, kPoints, {});
+  const KltResult result = track_points_klt(views.from, views.to, kPoints, kPoints, {});
   for (std::size_t i = 0; i < kPoints.size(); ++i) {
     EXPECT_TRUE(result.found[i]);
     EXPECT_LT(cv::norm(result.pixels[i] - (kPoints[i] - cv::Point2f(3.0F, 0.0F))), 0.05);
   }
 }
 
-TEST(Klt, BackwardCheckKeepsTrueMatchesOnly) {
+TEST(Klt, ForwardBackwardCheckKeepsOnlyConsistentMatches) {
   const Views views = shifted_views(3, 2);
-  KltResult forward = follow_points(views.from, views.to, kPoints, kPoints, {});
-  forward.pixels[1] += cv::Point2f(40.0F, 0.0F);  // a match with something else
-  const KltResult back = follow_points(views.to, views.from, forward.pixels, kPoints, {.levels = 1});
-  const KltResult checked = keep_returning(kPoints, forward, back, 0.5);
+  KltResult forward = track_points_klt(views.from, views.to, kPoints, kPoints, {});
+  forward.pixels[1] += cv::Point2f(40.0F, 0.0F);  // a wrong match
+  const KltResult backward = track_points_klt(views.to, views.from, forward.pixels, kPoints, {.levels = 1});
+  const KltResult checked = forward_backward_check(kPoints, forward, backward, 0.5);
   EXPECT_EQ(checked.found, (std::vector<std::uint8_t>{1, 0, 1}));
 }
 
-TEST(Klt, AcceptsNoPoints) {
+TEST(Klt, AcceptsAnEmptyPointList) {
   const Views views = shifted_views(0, 2);
-  EXPECT_TRUE(follow_points(views.from, views.to, {}, {}, {}).pixels.empty());
+  EXPECT_TRUE(track_points_klt(views.from, views.to, {}, {}, {}).pixels.empty());
 }
 
-TEST(Klt, RebuildingKeepsThePixelsInPlace) {
+TEST(Klt, RebuildingReusesTheAllocation) {
   ImagePyramid pyramid;
-  pyramid.rebuild(random_texture(kPictureSize, 1), kWindowPx, 3);
+  pyramid.rebuild(random_texture(kImageSize, 1), kWindowPx, 3);
   const unsigned char* const before = pyramid.images().front().data;
-  pyramid.rebuild(random_texture(kPictureSize, 2), kWindowPx, 3);
+  pyramid.rebuild(random_texture(kImageSize, 2), kWindowPx, 3);
   EXPECT_EQ(pyramid.images().front().data, before);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/outlier_rejection.h"
+#include "core/frontend/outliers/outlier_rejection.h"
 
 #include <gtest/gtest.h>
 
@@ -15,21 +15,21 @@ namespace {
 constexpr double kFocalPx = 500.0;
 constexpr double kNoisePx = 0.2;
 
-const Pose kForwardAndTurning{exp_so3({0.01, 0.02, -0.01}), {0.03, 0.01, 0.05}};
+const Pose kForwardAndRotation{exp_so3({0.01, 0.02, -0.01}), {0.03, 0.01, 0.05}};
 const Pose kPureRotation{exp_so3({0.02, 0.05, -0.03}), Eigen::Vector3d::Zero()};
 
 enum class Scene { kRoom, kPlane };
 
 std::vector<Match> static_matches(Scene scene, const Pose& T_to_from, int count) {
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> across(-0.6, 0.6);
-  std::uniform_real_distribution<double> along(1.0, 6.0);
+  std::uniform_real_distribution<double> lateral(-0.6, 0.6);
+  std::uniform_real_distribution<double> depth_distribution(1.0, 6.0);
   std::normal_distribution<double> noise(0.0, kNoisePx / kFocalPx);
   std::vector<Match> matches;
   for (int i = 0; i < count; ++i) {
     Match match;
-    match.from = {across(random), across(random)};
-    match.depth = scene == Scene::kRoom ? along(random) : 2.0 + match.from.x();
+    match.from = {lateral(random), lateral(random)};
+    match.depth = scene == Scene::kRoom ? depth_distribution(random) : 2.0 + match.from.x();
     const Eigen::Vector3d point_from = match.depth * match.from.homogeneous();
     match.to = (T_to_from * point_from).hnormalized() + Eigen::Vector2d(noise(random), noise(random));
     matches.push_back(match);
@@ -39,7 +39,7 @@ std::vector<Match> static_matches(Scene scene, const Pose& T_to_from, int count)
 
 OutlierRejectionSettings settings_for(OutlierModel model) { return {.model = model, .focal_px = kFocalPx}; }
 
-long count_fitting(const Inliers& inliers) {
+long count_inliers(const InlierMask& inliers) {
   return std::count(inliers.begin(), inliers.end(), std::uint8_t{1});
 }
 
@@ -52,73 +52,73 @@ class OutlierRejection : public testing::TestWithParam<OutlierModel> {};
 INSTANTIATE_TEST_SUITE_P(Models, OutlierRejection,
                          testing::Values(OutlierModel::kEpipolar, OutlierModel::kRigid));
 
-// Noise of 0.2 px per axis is 5 sigma below the threshold of 1 px. The epipolar model comes from a noisy
-// minimal sample, so some good matches may go: 90 % must stay.
-TEST_P(OutlierRejection, KeepsStaticPointsUnderAnyMotionAndScene) {
+// Noise of 0.2 px per axis is 5 sigma below the threshold of 1 px. The epipolar model is estimated from a
+// noisy minimal sample, so some static matches may be rejected: 90 % must remain.
+TEST_P(OutlierRejection, KeepsStaticPointsForAllMotionsAndScenes) {
   for (const Scene scene : {Scene::kRoom, Scene::kPlane}) {
-    for (const Pose& motion : {kForwardAndTurning, kPureRotation, Pose{}}) {
+    for (const Pose& motion : {kForwardAndRotation, kPureRotation, Pose{}}) {
       const std::vector<Match> matches = static_matches(scene, motion, 100);
-      EXPECT_GE(count_fitting(find_inliers(matches, settings_for(GetParam()))), 90);
+      EXPECT_GE(count_inliers(find_inliers(matches, settings_for(GetParam()))), 90);
     }
   }
 }
 
-TEST_P(OutlierRejection, ThrowsOutMatchesThatLeaveTheirLine) {
-  std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndTurning, 100);
-  // The translation lies mostly along z: lines run through the middle of the picture. Move across them.
+TEST_P(OutlierRejection, RejectsMatchesOffTheirEpipolarLine) {
+  std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndRotation, 100);
+  // The translation is mostly along z: epipolar lines pass near the image center. Move perpendicular to them.
   for (std::size_t i = 0; i < 20; ++i) {
     const Eigen::Vector2d& to = matches[i].to;
     matches[i].to += 10.0 / kFocalPx * Eigen::Vector2d(-to.y(), to.x()).normalized();
   }
-  const Inliers inliers = find_inliers(matches, settings_for(GetParam()));
+  const InlierMask inliers = find_inliers(matches, settings_for(GetParam()));
   EXPECT_LE(std::count(inliers.begin(), inliers.begin() + 20, std::uint8_t{1}), 2);
   EXPECT_GE(std::count(inliers.begin() + 20, inliers.end(), std::uint8_t{1}), 72);  // 90 % of 80
 }
 
-TEST_P(OutlierRejection, JudgesNothingByFewMatches) {
-  std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndTurning, 7);
+TEST_P(OutlierRejection, KeepsAllOfFewerThanEightMatches) {
+  std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndRotation, 7);
   matches[0].to.y() += 0.2;
-  EXPECT_EQ(count_fitting(find_inliers(matches, settings_for(GetParam()))), 7);
+  EXPECT_EQ(count_inliers(find_inliers(matches, settings_for(GetParam()))), 7);
   EXPECT_TRUE(find_inliers({}, settings_for(GetParam())).empty());
 }
 
-TEST_P(OutlierRejection, NeverWipesOutWhatHasNoCommonMotion) {
-  std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndTurning, 60);
+TEST_P(OutlierRejection, KeepsAllMatchesWithoutACommonMotion) {
+  std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndRotation, 60);
   std::mt19937 random(9);
   std::uniform_real_distribution<double> anywhere(-0.6, 0.6);
   for (Match& match : matches) match.to = {anywhere(random), anywhere(random)};
-  EXPECT_EQ(count_fitting(find_inliers(matches, settings_for(GetParam()))), 60);
+  EXPECT_EQ(count_inliers(find_inliers(matches, settings_for(GetParam()))), 60);
 }
 
-TEST_P(OutlierRejection, GivesTheSameAnswerTwice) {
-  const std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndTurning, 100);
+TEST_P(OutlierRejection, IsDeterministic) {
+  const std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndRotation, 100);
   EXPECT_EQ(find_inliers(matches, settings_for(GetParam())), find_inliers(matches, settings_for(GetParam())));
 }
 
-TEST(RigidOutlierRejection, SeesMoversAlongTheEpipolarLine) {
+TEST(RigidOutlierRejection, RejectsMotionAlongTheEpipolarLine) {
   const Pose sideways{Eigen::Quaterniond::Identity(), {0.05, 0.0, 0.0}};
   std::vector<Match> matches = static_matches(Scene::kRoom, sideways, 100);
   for (std::size_t i = 0; i < 30; ++i) matches[i].to.x() += 5.0 / kFocalPx;  // lines are horizontal
-  const Inliers inliers = find_inliers(matches, settings_for(OutlierModel::kRigid));
+  const InlierMask inliers = find_inliers(matches, settings_for(OutlierModel::kRigid));
   EXPECT_EQ(std::count(inliers.begin(), inliers.begin() + 30, std::uint8_t{1}), 0);
   EXPECT_GE(std::count(inliers.begin() + 30, inliers.end(), std::uint8_t{1}),
-            69);  // 5 sigma: all but one in 70
-  const Inliers epipolar = find_inliers(matches, settings_for(OutlierModel::kEpipolar));
+            69);  // 5 sigma: at most one of 70 is lost
+  const InlierMask epipolar = find_inliers(matches, settings_for(OutlierModel::kEpipolar));
   EXPECT_GT(std::count(epipolar.begin(), epipolar.begin() + 30, std::uint8_t{1}), 25);
 }
 
-TEST(RigidOutlierRejection, HoldsPointsWithoutDepthAgainstTheirLines) {
-  std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndTurning, 100);
+TEST(RigidOutlierRejection, ChecksPointsWithoutDepthByTheirEpipolarLines) {
+  std::vector<Match> matches = static_matches(Scene::kRoom, kForwardAndRotation, 100);
   matches[3].depth = 0.0;
   matches[4].depth = 0.0;
   matches[4].to += 10.0 / kFocalPx * Eigen::Vector2d(-matches[4].to.y(), matches[4].to.x()).normalized();
-  const Inliers inliers = find_inliers(matches, settings_for(OutlierModel::kRigid));
+  const InlierMask inliers = find_inliers(matches, settings_for(OutlierModel::kRigid));
   EXPECT_EQ(inliers[3], 1);
   EXPECT_EQ(inliers[4], 0);
 }
 
-TEST(RigidOutlierRejection, IsEpipolarWithoutDepth) {
-  const std::vector<Match> matches = without_depth(static_matches(Scene::kRoom, kForwardAndTurning, 100));
+TEST(RigidOutlierRejection, FallsBackToEpipolarWithoutDepth) {
+  const std::vector<Match> matches = without_depth(static_matches(Scene::kRoom, kForwardAndRotation, 100));
   EXPECT_EQ(find_inliers(matches, settings_for(OutlierModel::kRigid)),
             find_inliers(matches, settings_for(OutlierModel::kEpipolar)));
 }

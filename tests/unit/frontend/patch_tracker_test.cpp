@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/patch_tracker.h"
+#include "core/frontend/patch/patch_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -7,85 +7,84 @@
 #include <cmath>
 #include <limits>
 
-#include "core/frontend/feature_detector.h"
+#include "core/frontend/detect/feature_detector.h"
 #include "core/geometry/so3.h"
-#include "tests/unit/frontend/textured_picture.h"
+#include "tests/unit/frontend/textured_image.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kLevels = 2;
 constexpr int kWindowPx = 21;
-const cv::Size kPictureSize(320, 240);
+const cv::Size kImageSize(320, 240);
 const std::vector<cv::Point2f> kPoints = {{100.0F, 60.0F}, {160.0F, 120.0F}, {220.0F, 180.0F}};
 
 ImagePyramid pyramid_of(const cv::Mat& gray) {
   ImagePyramid pyramid;
-  pyramid.rebuild(gray, kPatchReach, kLevels, PyramidKind::kPictures);
+  pyramid.rebuild(gray, kPatchReach, kLevels, PyramidKind::kImages);
   return pyramid;
 }
 
-KltResult follow(const cv::Mat& from, const cv::Mat& to, const std::vector<cv::Point2f>& points,
-                 const std::vector<cv::Point2f>& starts) {
-  return follow_patches(pyramid_of(from), pyramid_of(to), points, starts, kLevels, {});
+KltResult track(const cv::Mat& from, const cv::Mat& to, const std::vector<cv::Point2f>& points,
+                const std::vector<cv::Point2f>& initial_guesses) {
+  return track_points_patch(pyramid_of(from), pyramid_of(to), points, initial_guesses, kLevels, {});
 }
 
-/// Views of one texture: everything moves left by `shift_px`.
+/// View of a texture, shifted by `shift_px` to the left.
 cv::Mat view(int shift_px) {
   static const cv::Mat texture = random_texture(cv::Size(512, 256), 3);
-  return texture(cv::Rect({50 + shift_px, 8}, kPictureSize)).clone();
+  return texture(cv::Rect({50 + shift_px, 8}, kImageSize)).clone();
 }
 
 TEST(PatchTracker, FindsWholePixelShiftsExactly) {
-  const KltResult result = follow(view(0), view(3), kPoints, kPoints);
+  const KltResult result = track(view(0), view(3), kPoints, kPoints);
   for (std::size_t i = 0; i < kPoints.size(); ++i) {
     EXPECT_TRUE(result.found[i]);
     EXPECT_LT(cv::norm(result.pixels[i] - (kPoints[i] - cv::Point2f(3.0F, 0.0F))), 0.02);
   }
 }
 
-TEST(PatchTracker, BrightnessMayChange) {
-  const cv::Mat brighter = view(2) + 15.0;
-  const KltResult result = follow(view(0), brighter, kPoints, kPoints);
+TEST(PatchTracker, IsInvariantToBcorrectness) {
+  const cv::Mat bcorrecter = view(2) + 15.0;
+  const KltResult result = track(view(0), bcorrecter, kPoints, kPoints);
   for (std::size_t i = 0; i < kPoints.size(); ++i) {
     EXPECT_TRUE(result.found[i]);
     EXPECT_LT(cv::norm(result.pixels[i] - (kPoints[i] - cv::Point2f(2.0F, 0.0F))), 0.02);
   }
 }
 
-TEST(PatchTracker, GivesUpWhereThereIsNoTexture) {
-  const cv::Mat flat(kPictureSize, CV_8UC1, cv::Scalar(100));
-  const KltResult result = follow(flat, flat, kPoints, kPoints);
+TEST(PatchTracker, FindsNothingWithoutTexture) {
+  const cv::Mat flat(kImageSize, CV_8UC1, cv::Scalar(100));
+  const KltResult result = track(flat, flat, kPoints, kPoints);
   EXPECT_EQ(result.found, (std::vector<std::uint8_t>{0, 0, 0}));
 }
 
-TEST(PatchTracker, RefusesWhatDoesNotLookTheSame) {
-  // independent textures correlate by chance only: an 8x8 patch of them by more than 0.8 hardly ever
-  const KltResult result = follow(view(0), random_texture(kPictureSize, 9), kPoints, kPoints);
+TEST(PatchTracker, RejectsMatchesOfLowCorrelation) {
+  // 8x8 patches of independent textures practically never correlate by more than 0.8
+  const KltResult result = track(view(0), random_texture(kImageSize, 9), kPoints, kPoints);
   EXPECT_EQ(result.found, (std::vector<std::uint8_t>{0, 0, 0}));
 }
 
-TEST(PatchTracker, StartsOutsideThePictureAndNoNumbersAreNotFound) {
+TEST(PatchTracker, FindsNothingFromGuessesOutsideTheImageOrNan) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<cv::Point2f> starts = {{-5.0F, 60.0F}, {nan, 120.0F}, {220.0F, 1e9F}};
-  const KltResult result = follow(view(0), view(0), kPoints, starts);
+  const std::vector<cv::Point2f> initial_guesses = {{-5.0F, 60.0F}, {nan, 120.0F}, {220.0F, 1e9F}};
+  const KltResult result = track(view(0), view(0), kPoints, initial_guesses);
   EXPECT_EQ(result.found, (std::vector<std::uint8_t>{0, 0, 0}));
 }
 
-TEST(PatchTracker, ReadsPatchesAtThePicturesCorners) {
+TEST(PatchTracker, TracksPatchesInTheImageCorners) {
   const std::vector<cv::Point2f> corners = {{0.0F, 0.0F}, {319.0F, 239.0F}, {319.0F, 0.0F}, {0.0F, 239.0F}};
-  const KltResult result = follow(view(0), view(0), corners, corners);
+  const KltResult result = track(view(0), view(0), corners, corners);
   for (std::size_t i = 0; i < corners.size(); ++i) EXPECT_LT(cv::norm(result.pixels[i] - corners[i]), 1e-3);
 }
 
-/// Two noisy pictures of a plane from places that differ by a turn, a step and a tilt; the motion of each
-/// pixel is known.
+/// Two noisy images of a plane from poses that differ in rotation and translation; the optical flow is known.
 struct KnownFlow {
   cv::Mat from;
   cv::Mat to;
   std::vector<cv::Point2f> points;
   std::vector<cv::Point2f> truth;
-  std::vector<cv::Point2f> starts;  // 1.5 px off, in all directions
+  std::vector<cv::Point2f> initial_guesses;  // error of 1.5 px in varying directions
 };
 
 KnownFlow known_flow() {
@@ -94,10 +93,10 @@ KnownFlow known_flow() {
   const Pose T_to_from{exp_so3({0.004, -0.006, 0.02}), {0.01, -0.008, -0.02}};
   KnownFlow flow{.from = plane.gray_at(Pose{}), .to = plane.gray_at(T_to_from)};
   cv::RNG random(4);
-  for (cv::Mat* const picture : {&flow.from, &flow.to}) {
-    cv::Mat noise(picture->size(), CV_8SC1);
+  for (cv::Mat* const image : {&flow.from, &flow.to}) {
+    cv::Mat noise(image->size(), CV_8SC1);
     random.fill(noise, cv::RNG::NORMAL, 0.0, 2.0);
-    cv::add(*picture, noise, *picture, cv::noArray(), CV_8UC1);
+    cv::add(*image, noise, *image, cv::noArray(), CV_8UC1);
   }
   FrontendConfig config;
   config.max_features = 150;
@@ -109,17 +108,17 @@ KnownFlow known_flow() {
     const Eigen::Vector2d pixel(static_cast<double>(flow.points[i].x), static_cast<double>(flow.points[i].y));
     const Eigen::Vector2d moved = plane.pixel_in(T_to_from, pixel);
     const double angle = 2.4 * static_cast<double>(i);  // [rad]
-    const Eigen::Vector2d off(1.5 * std::cos(angle), 1.5 * std::sin(angle));
+    const Eigen::Vector2d error(1.5 * std::cos(angle), 1.5 * std::sin(angle));
     flow.truth.emplace_back(static_cast<float>(moved.x()), static_cast<float>(moved.y()));
-    flow.starts.push_back(flow.truth.back() +
-                          cv::Point2f(static_cast<float>(off.x()), static_cast<float>(off.y())));
+    flow.initial_guesses.push_back(flow.truth.back() +
+                                   cv::Point2f(static_cast<float>(error.x()), static_cast<float>(error.y())));
   }
   return flow;
 }
 
 struct Quality {
   double median_px = 0.0;
-  std::size_t right = 0;  // of those that the second picture sees: found within 1 px
+  std::size_t correct = 0;  // of those visible in the second image: found within 1 px
 };
 
 Quality quality(const KltResult& result, const KnownFlow& flow) {
@@ -133,27 +132,28 @@ Quality quality(const KltResult& result, const KnownFlow& flow) {
   return {errors.at(errors.size() / 2), errors.size()};
 }
 
-TEST(PatchTracker, IsNoLessExactThanOpenCvOnAKnownFlow) {
+TEST(PatchTracker, IsAtLeastAsAccurateAsOpenCvOnAKnownFlow) {
   const KnownFlow flow = known_flow();
   ImagePyramid from;
   ImagePyramid to;
   from.rebuild(flow.from, kWindowPx, kLevels);
   to.rebuild(flow.to, kWindowPx, kLevels);
-  const Quality opencv = quality(follow_points(from, to, flow.points, flow.starts, {}), flow);
-  const Quality patch = quality(follow_patches(from, to, flow.points, flow.starts, kLevels, {}), flow);
+  const Quality opencv = quality(track_points_klt(from, to, flow.points, flow.initial_guesses, {}), flow);
+  const Quality patch =
+      quality(track_points_patch(from, to, flow.points, flow.initial_guesses, kLevels, {}), flow);
   RecordProperty("opencv_median_px", std::to_string(opencv.median_px));
   RecordProperty("patch_median_px", std::to_string(patch.median_px));
   EXPECT_LE(patch.median_px, opencv.median_px);
-  EXPECT_GE(patch.right, opencv.right);
+  EXPECT_GE(patch.correct, opencv.correct);
 }
 
-TEST(PatchTracker, EveryInstructionSetGivesTheSameBits) {
+TEST(PatchTracker, AllInstructionSetsGiveIdenticalResults) {
   const KnownFlow flow = known_flow();
   const ImagePyramid from = pyramid_of(flow.from);
   const ImagePyramid to = pyramid_of(flow.to);
-  const KltResult best = follow_patches(from, to, flow.points, flow.starts, kLevels, {});
+  const KltResult best = track_points_patch(from, to, flow.points, flow.initial_guesses, kLevels, {});
   const KltResult portable =
-      follow_patches(from, to, flow.points, flow.starts, kLevels, {}, PatchTarget::kPortable);
+      track_points_patch(from, to, flow.points, flow.initial_guesses, kLevels, {}, PatchTarget::kPortable);
   EXPECT_EQ(best.pixels, portable.pixels);
   EXPECT_EQ(best.found, portable.found);
 }

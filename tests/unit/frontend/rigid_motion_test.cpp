@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/rigid_motion.h"
+#include "core/frontend/outliers/rigid_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -11,31 +11,31 @@
 namespace stillpoint {
 namespace {
 
-std::vector<PointObservation> observe(const Pose& T_to_from, int count) {
+std::vector<PointCorrespondence> observe(const Pose& T_to_from, int count) {
   std::mt19937 random(2);
-  std::uniform_real_distribution<double> across(-0.6, 0.6);
-  std::uniform_real_distribution<double> along(1.0, 5.0);
-  std::vector<PointObservation> observations;
+  std::uniform_real_distribution<double> lateral(-0.6, 0.6);
+  std::uniform_real_distribution<double> depth_distribution(1.0, 5.0);
+  std::vector<PointCorrespondence> correspondences;
   for (int i = 0; i < count; ++i) {
-    const double depth = along(random);
-    const Eigen::Vector3d point(depth * across(random), depth * across(random), depth);
-    observations.push_back({point, (T_to_from * point).hnormalized()});
+    const double depth = depth_distribution(random);
+    const Eigen::Vector3d point(depth * lateral(random), depth * lateral(random), depth);
+    correspondences.push_back({point, (T_to_from * point).hnormalized()});
   }
-  return observations;
+  return correspondences;
 }
 
-TEST(RigidMotion, FindsTheMotionBehindAThirdOfOutliers) {
+TEST(RigidMotion, EstimatesTheMotionWithAThirdOfOutliers) {
   const Pose truth{exp_so3({0.02, -0.03, 0.05}), {0.05, -0.02, 0.08}};
-  std::vector<PointObservation> observations = observe(truth, 90);
-  for (std::size_t i = 0; i < 30; ++i) observations[3 * i].bearing.x() += 0.05;
-  const std::optional<Pose> found = estimate_rigid_motion(observations, {});
+  std::vector<PointCorrespondence> correspondences = observe(truth, 90);
+  for (std::size_t i = 0; i < 30; ++i) correspondences[3 * i].bearing.x() += 0.05;
+  const std::optional<Pose> found = estimate_rigid_motion(correspondences, {});
   ASSERT_TRUE(found.has_value());
-  // The 60 exact observations hold it against 30 pulls of Cauchy weight (0.001 / 0.05)^2 * 0.05 = 2e-5.
+  // 60 exact correspondences against 30 outliers, each of influence (0.001 / 0.05)^2 * 0.05 = 2e-5 (Cauchy).
   EXPECT_LT(log_so3(truth.q.conjugate() * found->q).norm(), 1e-4);
   EXPECT_LT((truth.p - found->p).norm(), 3e-4);
 }
 
-TEST(RigidMotion, NeedsFourPoints) {
+TEST(RigidMotion, NeedsFourCorrespondences) {
   EXPECT_FALSE(estimate_rigid_motion(observe(Pose{}, 3), {}).has_value());
   EXPECT_TRUE(estimate_rigid_motion(observe(Pose{}, 4), {}).has_value());
 }

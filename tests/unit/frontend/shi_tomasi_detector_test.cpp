@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/shi_tomasi_detector.h"
+#include "core/frontend/detect/shi_tomasi_detector.h"
 
 #include <gtest/gtest.h>
 
-#include "core/frontend/grid_detector.h"
-#include "tests/unit/frontend/textured_picture.h"
+#include "core/frontend/detect/grid_detector.h"
+#include "tests/unit/frontend/textured_image.h"
 
 namespace stillpoint {
 namespace {
 
-TEST(ShiTomasiDetector, FindsAsManyAsWantedOnFreePixelsAndApart) {
+TEST(ShiTomasiDetector, DetectsTheWantedNumberOnFreePixelsAtMinimumDistance) {
   const cv::Mat gray = random_texture(cv::Size(320, 240), 1);
   FeatureMask mask;
   mask.clear(gray.size());
-  mask.take_circle({160.0F, 120.0F}, 60);
+  mask.occupy_circle({160.0F, 120.0F}, 60);
   ShiTomasiDetector detector(0.01);
   const std::vector<cv::Point2f> corners =
       detector.detect({.gray = gray, .mask = mask, .tracked = {}, .wanted = 20, .min_distance_px = 15});
@@ -24,7 +24,7 @@ TEST(ShiTomasiDetector, FindsAsManyAsWantedOnFreePixelsAndApart) {
   }
 }
 
-TEST(ShiTomasiDetector, FindsNothingWhenNothingIsWantedOrThere) {
+TEST(ShiTomasiDetector, DetectsNothingWithoutTextureOrRequest) {
   const cv::Mat blank(240, 320, CV_8UC1, cv::Scalar(100));
   FeatureMask mask;
   mask.clear(blank.size());
@@ -34,7 +34,7 @@ TEST(ShiTomasiDetector, FindsNothingWhenNothingIsWantedOrThere) {
   EXPECT_TRUE(detector.detect({.gray = gray, .mask = mask, .tracked = {}, .wanted = 0}).empty());
 }
 
-TEST(FeatureDetector, IsTheOneThatTheConfigNames) {
+TEST(FeatureDetector, IsSelectedByTheConfig) {
   FrontendConfig config;
   EXPECT_NE(dynamic_cast<GridDetector*>(make_feature_detector(config).get()), nullptr);
   config.detector = FeatureDetectorKind::kShiTomasi;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/thread_pool.h"
+#include "core/frontend/detect/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -22,10 +22,10 @@ TEST(ThreadPool, CallsEveryIndexOnceJobAfterJob) {
 
 TEST(ThreadPool, AcceptsAnEmptyJob) {
   ThreadPool pool(2);
-  pool.for_each_index(0, [](std::size_t) { FAIL() << "called for nothing"; });
+  pool.for_each_index(0, [](std::size_t) { FAIL() << "called for an empty job"; });
 }
 
-TEST(ThreadPool, HandsOnAnExceptionAndGoesOnWorking) {
+TEST(ThreadPool, RethrowsAnExceptionAndRemainsUsable) {
   ThreadPool pool(2);
   const auto fail_at_three = [](std::size_t i) {
     if (i == 3) throw std::runtime_error("three");

@@ -3,15 +3,15 @@
 
 #include <utility>
 
-#include "bench/profile/allocation_counter.h"
+#include "bench/profile/meters/allocation_counter.h"
 #include "core/frontend/feature_tracker.h"
-#include "tests/unit/frontend/textured_picture.h"
+#include "tests/unit/frontend/textured_image.h"
 
 namespace stillpoint {
 namespace {
 
-/// Pictures on the way to and fro along a textured plane; features leave and are found anew.
-std::vector<Frame> frames_to_and_fro() {
+/// Frames of a back-and-forth motion along a textured plane; features leave the image and are redetected.
+std::vector<Frame> ping_pong_frames() {
   const TexturedPlane plane(test_camera(), 2.0, 1);
   std::vector<Frame> frames;
   for (const int step : {0, 1, 2, 3, 4, 3, 2, 1}) {
@@ -30,26 +30,26 @@ FrontendConfig fast_config() {
   return config;
 }
 
-TEST(FeatureTracker, AllocatesNothingOnceItHasSeenAsMuch) {
-  const std::vector<Frame> frames = frames_to_and_fro();
+TEST(FeatureTracker, SteadyStateIsAllocationFree) {
+  const std::vector<Frame> frames = ping_pong_frames();
   FeatureTracker tracker(fast_config(), test_camera());
   TrackedFrame tracked;
-  std::int64_t picture = 0;
+  std::int64_t frame_id = 0;
   const auto round = [&] {
     int detected = 0;
     for (Frame frame : frames) {
-      frame.id = picture++;
+      frame.id = frame_id++;
       frame.t = Timestamp{33'000'000 * frame.id};
       tracked = tracker.track(frame, {}, true, {}, std::move(tracked));
       detected += tracked.detected;
     }
     return detected;
   };
-  const std::size_t before = allocation_count();
+  const std::size_t before = bench::allocation_count();
   for (int i = 0; i < 4; ++i) static_cast<void>(round());
-  const std::size_t between = allocation_count();
-  EXPECT_GT(round(), 0);  // there was work to do
-  EXPECT_EQ(allocation_count(), between);
+  const std::size_t between = bench::allocation_count();
+  EXPECT_GT(round(), 0);  // features were detected
+  EXPECT_EQ(bench::allocation_count(), between);
   EXPECT_GT(between, before);  // the counter counts
   EXPECT_GT(tracked.features.size(), 50u);
 }

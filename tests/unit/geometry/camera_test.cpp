@@ -27,16 +27,16 @@ void expect_round_trip(const Camera& camera) {
   }
 }
 
-TEST(Camera, UnprojectUndoesProjectWithRadialTangentialDistortion) { expect_round_trip(euroc_camera()); }
+TEST(Camera, UnprojectInvertsProjectWithRadialTangentialDistortion) { expect_round_trip(euroc_camera()); }
 
-TEST(Camera, UnprojectUndoesProjectWithKannalaBrandtDistortion) {
+TEST(Camera, UnprojectInvertsProjectWithKannalaBrandtDistortion) {
   Camera camera = euroc_camera();
   camera.model = CameraModel::kKannalaBrandt;
   camera.distortion = {-0.01, 0.004, -0.002, 0.0005, 0.0};
   expect_round_trip(camera);
 }
 
-TEST(Camera, ProjectsByHandWithoutDistortion) {
+TEST(Camera, WithoutDistortionProjectsByThePinholeModel) {
   Camera camera = euroc_camera();
   camera.distortion = {};
   EXPECT_DOUBLE_EQ(camera.project({1.0, 0.0, 2.0}).x(), 0.5 * 458.654 + 367.215);

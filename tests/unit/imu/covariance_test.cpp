@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The preintegrated covariance against the spread of many noisy repetitions.
+// Compares the preintegrated covariance with the sample covariance of many noisy runs.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
 constexpr double kRateHz = 200.0;
-// Large walks, so that they show in p, theta and v within the half second.
+// Large random walks, so that they affect p, theta and v within half a second.
 const ImuNoise kNoise{.gyro_noise = 2e-3, .accel_noise = 2e-2, .gyro_walk = 5e-3, .accel_walk = 5e-2};
 
 class NoiseSource {
@@ -28,8 +28,8 @@ class NoiseSource {
   std::normal_distribution<double> normal_;
 };
 
-/// One noisy measurement of `clean`, and the biases it ends with. White noise of density s has the standard
-/// deviation s / sqrt(dt) in a sample; the walk adds s * sqrt(dt) from each sample to the next.
+/// `clean` with added noise, and the final biases. White noise of density s has the standard deviation
+/// s / sqrt(dt) per sample; the random walk adds s * sqrt(dt) from each sample to the next.
 struct NoisyRun {
   std::vector<ImuSample> samples;
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
@@ -49,7 +49,7 @@ NoisyRun noisy_run(const std::vector<ImuSample>& clean, NoiseSource& noise) {
   return run;
 }
 
-/// True minus measured, in the order of the error state: the covariance's own sign convention.
+/// True minus measured, in the order and sign convention of the error state.
 Vector15 error_of(const NoisyRun& run, const Preintegration& truth) {
   Preintegration measured(kNoise, kZero, kZero);
   measured.integrate(run.samples);
@@ -62,9 +62,9 @@ Vector15 error_of(const NoisyRun& run, const Preintegration& truth) {
   return error;
 }
 
-TEST(PreintegrationCovariance, MatchesTheSpreadOfNoisyRuns) {
+TEST(PreintegrationCovariance, MatchesTheSampleCovarianceOfNoisyRuns) {
   constexpr int kRuns = 1500;
-  const std::vector<ImuSample> clean = lively_samples(0.5, kRateHz);
+  const std::vector<ImuSample> clean = rich_motion_samples(0.5, kRateHz);
   Preintegration truth(kNoise, kZero, kZero);
   truth.integrate(clean);
 
@@ -74,9 +74,10 @@ TEST(PreintegrationCovariance, MatchesTheSpreadOfNoisyRuns) {
     const Vector15 error = error_of(noisy_run(clean, noise), truth);
     spread += error * error.transpose() / kRuns;
   }
-  // Whitened by the predicted covariance the spread must be the identity. An entry of the mean of 1500
-  // squares of unit normals scatters by sqrt(2 / 1500) = 0.037 on the diagonal, 0.026 off it; 225
-  // entries: 4.5 sigma. The model itself is off by half a sample in 100 (ends weigh half): 0.005.
+  // Whitened by the predicted covariance, the sample covariance must be the identity. With 1500 runs its
+  // entries have a standard deviation of sqrt(2 / 1500) = 0.037 on the diagonal and 0.026 elsewhere; 225
+  // entries: 4.5 sigma. The noise model is off by half a sample in 100 (the end samples have half weight):
+  // 0.005.
   const Matrix15 L = truth.covariance().llt().matrixL();
   const Matrix15 left = L.triangularView<Eigen::Lower>().solve(spread);
   const Matrix15 whitened = L.triangularView<Eigen::Lower>().solve(left.transpose());
@@ -98,11 +99,11 @@ TEST(PreintegrationCovariance, AccumulatesDensitySquaredTimesTime) {
   EXPECT_NEAR(imu.covariance()(12, 12), 1e-6 * 0.5, 1e-18);
 }
 
-TEST(PreintegrationCovariance, HardlyDependsOnTheSampleRate) {
+TEST(PreintegrationCovariance, IsNearlyIndependentOfTheSampleRate) {
   Preintegration slow(kNoise, kZero, kZero);
   Preintegration fast(kNoise, kZero, kZero);
-  slow.integrate(lively_samples(0.5, 100.0));
-  fast.integrate(lively_samples(0.5, 400.0));
+  slow.integrate(rich_motion_samples(0.5, 100.0));
+  fast.integrate(rich_motion_samples(0.5, 400.0));
   const Eigen::Array<double, 15, 1> ratio =
       slow.covariance().diagonal().array() / fast.covariance().diagonal().array();
   EXPECT_LT((ratio - 1.0).abs().maxCoeff(), 0.03);  // per-sample sigmas would give a factor of 4
@@ -110,7 +111,7 @@ TEST(PreintegrationCovariance, HardlyDependsOnTheSampleRate) {
 
 TEST(PreintegrationCovariance, StaysSymmetricAndPositive) {
   Preintegration imu(kNoise, kZero, kZero);
-  imu.integrate(lively_samples(5.0));
+  imu.integrate(rich_motion_samples(5.0));
   EXPECT_LT((imu.covariance() - imu.covariance().transpose()).norm(), 1e-12 * imu.covariance().norm());
   EXPECT_EQ(imu.covariance().llt().info(), Eigen::Success);
 }

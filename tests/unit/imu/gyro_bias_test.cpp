@@ -10,9 +10,9 @@ namespace {
 
 const Eigen::Vector3d kZero = Eigen::Vector3d::Zero();
 
-TEST(GyroBias, ComesBackInTwoRounds) {
+TEST(GyroBias, IsRecoveredInTwoIterations) {
   const Eigen::Vector3d bias(0.05, -0.08, 0.03);
-  std::vector<ImuSample> samples = lively_samples(0.5);
+  std::vector<ImuSample> samples = rich_motion_samples(0.5);
   Preintegration clean(ImuNoise{}, kZero, kZero);
   clean.integrate(samples);
   for (ImuSample& sample : samples) sample.gyro_b += bias;

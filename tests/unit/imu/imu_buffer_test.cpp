@@ -31,23 +31,23 @@ std::vector<double> milliseconds(const std::vector<ImuSample>& samples) {
 }
 using Stamps = std::vector<double>;
 
-TEST(ImuBuffer, InterpolatesBothEndsOfACut) {
+TEST(ImuBuffer, InterpolatesBothEndsOfAnInterval) {
   ImuBuffer buffer = filled({0, 10, 20, 30, 40});
   EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(5), at_ms(32))), (Stamps{5, 10, 20, 30, 32}));
 }
 
-TEST(ImuBuffer, TakesSamplesThatLieOnTheEnds) {
+TEST(ImuBuffer, IncludesSamplesAtTheEnds) {
   ImuBuffer buffer = filled({0, 10, 20, 30, 40});
   EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(10), at_ms(30))), (Stamps{10, 20, 30}));
   EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(0), at_ms(40))), (Stamps{0, 10, 20, 30, 40}));
 }
 
-TEST(ImuBuffer, CutsInsideOneInterval) {
+TEST(ImuBuffer, InterpolatesBetweenTwoSamples) {
   ImuBuffer buffer = filled({0, 10});
   EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(2), at_ms(7))), (Stamps{2, 7}));
 }
 
-TEST(ImuBuffer, GivesNothingWhenItDoesNotReachOverBothEnds) {
+TEST(ImuBuffer, ReturnsNothingIfTheIntervalIsNotCovered) {
   ImuBuffer buffer = filled({10, 20, 30});
   EXPECT_TRUE(buffer.samples_between(at_ms(5), at_ms(20)).empty());
   EXPECT_TRUE(buffer.samples_between(at_ms(15), at_ms(31)).empty());
@@ -67,8 +67,8 @@ TEST(ImuBuffer, DropsAndCountsBadSamples) {
   EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(0), at_ms(20))), (Stamps{0, 10, 20}));
 }
 
-TEST(ImuBuffer, CountsAGapOnceHoweverOftenItIsCut) {
-  ImuBuffer buffer = filled({0, 10, 110, 120, 190});  // holes of 100 and 70 ms, allowed 50
+TEST(ImuBuffer, CountsAGapOnlyOnce) {
+  ImuBuffer buffer = filled({0, 10, 110, 120, 190});  // gaps of 100 and 70 ms, limit 50
   EXPECT_EQ(buffer.samples_between(at_ms(0), at_ms(50)).size(), 3u);
   EXPECT_EQ(buffer.samples_between(at_ms(50), at_ms(115)).size(), 3u);
   EXPECT_EQ(buffer.health().gaps, 1);
@@ -76,16 +76,16 @@ TEST(ImuBuffer, CountsAGapOnceHoweverOftenItIsCut) {
   EXPECT_EQ(buffer.health().gaps, 2);
 }
 
-TEST(ImuBuffer, HoldsTheNewestSampleUpToTheEnd) {
+TEST(ImuBuffer, ExtrapolatesTheNewestSampleToTheEnd) {
   ImuBuffer buffer = filled({0, 10, 20});
   const std::vector<ImuSample> cut = buffer.samples_up_to(at_ms(5), at_ms(60));
-  ASSERT_EQ(cut.size(), 4u);  // 5, 10, 20, and 20 held to 60
+  ASSERT_EQ(cut.size(), 4u);  // 5, 10, 20, and the sample at 20 repeated at 60
   EXPECT_EQ(cut.back().t, at_ms(60));
   EXPECT_EQ(cut.back().gyro_b.x(), 20.0);
   EXPECT_EQ(cut.front().gyro_b.x(), 5.0);
 }
 
-TEST(ImuBuffer, HoldsTheNewestSampleForACutThatBeginsBehindIt) {
+TEST(ImuBuffer, ExtrapolatesAnIntervalAfterTheNewestSample) {
   ImuBuffer buffer = filled({0, 10, 20});
   const std::vector<ImuSample> cut = buffer.samples_up_to(at_ms(25), at_ms(30));
   ASSERT_EQ(cut.size(), 2u);
@@ -93,21 +93,21 @@ TEST(ImuBuffer, HoldsTheNewestSampleForACutThatBeginsBehindIt) {
   EXPECT_EQ(cut.front().gyro_b.x(), 20.0);
 }
 
-TEST(ImuBuffer, HoldsNoLongerThanTheAllowedGap) {
+TEST(ImuBuffer, DoesNotExtrapolateBeyondTheMaximumGap) {
   ImuBuffer buffer = filled({0, 10, 20});
-  EXPECT_TRUE(buffer.samples_up_to(at_ms(5), at_ms(71)).empty());  // 51 ms behind the newest, allowed 50
+  EXPECT_TRUE(buffer.samples_up_to(at_ms(5), at_ms(71)).empty());  // 51 ms after the newest, limit 50
 }
 
-TEST(ImuBuffer, UpToEqualsBetweenWhereSamplesReach) {
+TEST(ImuBuffer, SamplesUpToEqualsSamplesBetweenInsideTheBuffer) {
   ImuBuffer buffer = filled({0, 10, 20});
   EXPECT_EQ(milliseconds(buffer.samples_up_to(at_ms(5), at_ms(20))), (Stamps{5, 10, 20}));
 }
 
-TEST(ImuBuffer, ForgetsOnlyWhatNoLaterCutNeeds) {
+TEST(ImuBuffer, DropsOnlySamplesThatAreNoLongerNeeded) {
   ImuBuffer buffer = filled({0, 10, 20, 30});
-  buffer.forget_before(at_ms(15));
+  buffer.drop_before(at_ms(15));
   EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(15), at_ms(30))), (Stamps{15, 20, 30}));
-  EXPECT_TRUE(buffer.samples_between(at_ms(5), at_ms(30)).empty());  // 0 ms is gone
+  EXPECT_TRUE(buffer.samples_between(at_ms(5), at_ms(30)).empty());  // the sample at 0 ms was dropped
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Motions known in closed form, and the samples that an ideal IMU makes of them.
+/// Closed-form motions and their ideal IMU samples.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace stillpoint {
 
 inline const Eigen::Vector3d kGravity(0.0, 0.0, -9.81);
 
-/// Samples of `imu_at(seconds)` from 0 to duration_s inclusive, `rate_hz` a second.
+/// Samples of `imu_at(seconds)` from 0 to duration_s inclusive at `rate_hz`.
 inline std::vector<ImuSample> sample_motion(double duration_s, double rate_hz,
                                             const std::function<ImuSample(double)>& imu_at) {
   std::vector<ImuSample> samples;
@@ -26,7 +26,7 @@ inline std::vector<ImuSample> sample_motion(double duration_s, double rate_hz,
   return samples;
 }
 
-/// A body on a circle in the x-y plane, x axis outward, turning with it.
+/// A body on a circle in the x-y plane, its x axis pointing outward.
 struct Circle {
   double radius = 2.0;  ///< [m]
   double rate = 1.5;    ///< [rad/s]
@@ -46,8 +46,8 @@ struct Circle {
   }
 };
 
-/// Turning about all axes under changing acceleration: nothing cancels. At 200 Hz unless told otherwise.
-inline std::vector<ImuSample> lively_samples(double duration_s, double rate_hz = 200.0) {
+/// Rotation about all axes with varying acceleration, so that no error terms cancel.
+inline std::vector<ImuSample> rich_motion_samples(double duration_s, double rate_hz = 200.0) {
   return sample_motion(duration_s, rate_hz, [](double t) {
     return ImuSample{.t = {},
                      .gyro_b = {0.8 * std::sin(2.0 * t), -0.6 * std::cos(3.0 * t), 0.9 + 0.2 * std::sin(t)},

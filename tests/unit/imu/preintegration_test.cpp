@@ -38,7 +38,7 @@ void expect_same(const Preintegration& a, const Preintegration& b, double tolera
   EXPECT_NEAR(a.duration_s(), b.duration_s(), tolerance);
 }
 
-TEST(Preintegration, ConstantRateTurnsByRateTimesTime) {
+TEST(Preintegration, ConstantRateGivesAConstantRotation) {
   const Eigen::Vector3d rate(0.4, -0.3, 0.5);
   const Preintegration imu =
       integrated(sample_motion(2.0, 100.0, [&](double) { return ImuSample{.t = {}, .gyro_b = rate}; }));
@@ -46,7 +46,7 @@ TEST(Preintegration, ConstantRateTurnsByRateTimesTime) {
   EXPECT_NEAR(imu.duration_s(), 2.0, 1e-12);
 }
 
-TEST(Preintegration, ConstantForceFallsLikeAStone) {
+TEST(Preintegration, ConstantForceGivesParabolicMotion) {
   const Eigen::Vector3d force(1.0, -2.0, 9.0);
   const Preintegration imu =
       integrated(sample_motion(2.0, 100.0, [&](double) { return ImuSample{.t = {}, .accel_b = force}; }));
@@ -54,31 +54,31 @@ TEST(Preintegration, ConstantForceFallsLikeAStone) {
   EXPECT_LT((imu.delta_p(kZero, kZero) - 2.0 * force).norm(), 1e-11);  // a t^2 / 2, t = 2
 }
 
-TEST(Preintegration, PredictsTheWayRoundACircle) {
+TEST(Preintegration, PredictsCircularMotion) {
   const Circle circle;
   const Preintegration imu = integrated(sample_motion(3.0, 200.0, [&](double) { return circle.imu(); }));
   const NavState end = imu.predict(circle.state(0.0), kGravity);
   const NavState truth = circle.state(3.0);
-  // Midpoint: the mean of the forces at both ends of a step is off by a (w dt)^2 / 12 (trapezoidal rule), so
-  // velocity by up to 3 s * 4.5 m/s^2 * (1.5 / 200)^2 / 12 = 6.4e-5 m/s; the position by the integral of
-  // that, 9.5e-5 m, and a' dt^3 / 12 a step, 3 s * 6.75 m/s^3 * (1 / 200)^2 / 12 = 4.2e-5 m.
+  // Trapezoidal rule: the mean force of a step has an error of a (w dt)^2 / 12, so the velocity of up to
+  // 3 s * 4.5 m/s^2 * (1.5 / 200)^2 / 12 = 6.4e-5 m/s; the position of its integral, 9.5e-5 m, plus
+  // a' dt^3 / 12 per step, 3 s * 6.75 m/s^3 * (1 / 200)^2 / 12 = 4.2e-5 m.
   EXPECT_LT((end.v_w - truth.v_w).norm(), 6.4e-5);
   EXPECT_LT((end.T_w_b.p - truth.T_w_b.p).norm(), 1.4e-4);
   EXPECT_LT(end.T_w_b.q.angularDistance(truth.T_w_b.q), 1e-12);
   EXPECT_EQ(end.t, truth.t);
 }
 
-TEST(Preintegration, TakesTheBiasesOff) {
-  std::vector<ImuSample> biased = lively_samples(1.0);
+TEST(Preintegration, SubtractsTheBiases) {
+  std::vector<ImuSample> biased = rich_motion_samples(1.0);
   for (ImuSample& sample : biased) {
     sample.gyro_b += kGyroBias;
     sample.accel_b += kAccelBias;
   }
-  expect_same(integrated(lively_samples(1.0)), integrated(biased, kGyroBias, kAccelBias), 1e-12);
+  expect_same(integrated(rich_motion_samples(1.0)), integrated(biased, kGyroBias, kAccelBias), 1e-12);
 }
 
 TEST(Preintegration, BiasJacobianMatchesCentralDifferences) {
-  const std::vector<ImuSample> samples = lively_samples(0.5);
+  const std::vector<ImuSample> samples = rich_motion_samples(0.5);
   const Preintegration imu = integrated(samples, kGyroBias, kAccelBias);
   const Eigen::Quaterniond q = imu.delta_q(kGyroBias);
   constexpr double kStep = 1e-5;  // second-order error ~ step^2, rounding ~ 1e-16 / step
@@ -94,27 +94,27 @@ TEST(Preintegration, BiasJacobianMatchesCentralDifferences) {
   }
 }
 
-TEST(Preintegration, StateJacobianTurnsAndCarriesTheDeltas) {
-  const std::vector<ImuSample> samples = lively_samples(0.5);
+TEST(Preintegration, StateJacobianTransformsTheDeltas) {
+  const std::vector<ImuSample> samples = rich_motion_samples(0.5);
   const Preintegration imu = integrated(samples);
-  // An attitude error theta at i makes the deltas Exp(theta) * delta; to first order the change of p is theta
-  // x p and the right perturbation of q is R^T theta. A velocity error v adds v T to p.
-  // Second order: |theta|^2 / 2 * 5 m/s = 2e-13.
+  // An attitude error theta at i changes the deltas to Exp(theta) * delta; to first order p changes by theta
+  // x p, and the right perturbation of q is R^T theta. A velocity error v adds v T to p. Second order:
+  // |theta|^2 / 2 * 5 m/s = 2e-13.
   const Eigen::Vector3d theta(1e-7, -2e-7, 1.5e-7);
-  const Eigen::Quaterniond turn = exp_so3(theta);
+  const Eigen::Quaterniond rotation = exp_so3(theta);
   const Eigen::Matrix<double, 9, 3> J = imu.jacobian().block<9, 3>(0, Index::kRotation);
   const Eigen::Vector3d p = imu.delta_p(kZero, kZero);
   const Eigen::Vector3d v = imu.delta_v(kZero, kZero);
   const Eigen::Quaterniond q = imu.delta_q(kZero);
-  EXPECT_LT((J.topRows<3>() * theta - (turn * p - p)).norm(), 1e-12);
-  EXPECT_LT((J.middleRows<3>(3) * theta - log_so3(q.conjugate() * turn * q)).norm(), 1e-12);
-  EXPECT_LT((J.bottomRows<3>() * theta - (turn * v - v)).norm(), 1e-12);
+  EXPECT_LT((J.topRows<3>() * theta - (rotation * p - p)).norm(), 1e-12);
+  EXPECT_LT((J.middleRows<3>(3) * theta - log_so3(q.conjugate() * rotation * q)).norm(), 1e-12);
+  EXPECT_LT((J.bottomRows<3>() * theta - (rotation * v - v)).norm(), 1e-12);
   const Eigen::Matrix3d p_by_v = imu.jacobian().block<3, 3>(Index::kPosition, Index::kVelocity);
   EXPECT_LT((p_by_v - 0.5 * Eigen::Matrix3d::Identity()).norm(), 1e-12);
 }
 
-TEST(Preintegration, FirstOrderCorrectionFollowsASmallChangeOfBias) {
-  const std::vector<ImuSample> samples = lively_samples(0.5);
+TEST(Preintegration, FirstOrderCorrectionMatchesASmallBiasChange) {
+  const std::vector<ImuSample> samples = rich_motion_samples(0.5);
   const Preintegration imu = integrated(samples);
   const Preintegration truth = integrated(samples, kGyroBias, kAccelBias);
   // Second order: (|bias| T)^2 = (0.037 * 0.5)^2 = 3.4e-4, times |delta_p| ~ 1.2 m, |delta_v| ~ 4.7 m/s.
@@ -123,15 +123,15 @@ TEST(Preintegration, FirstOrderCorrectionFollowsASmallChangeOfBias) {
   EXPECT_LT((imu.delta_v(kGyroBias, kAccelBias) - truth.delta_v(kGyroBias, kAccelBias)).norm(), 1.6e-3);
 }
 
-TEST(Preintegration, RepropagationEqualsAFreshStart) {
-  const std::vector<ImuSample> samples = lively_samples(0.5);
+TEST(Preintegration, RepropagationEqualsIntegrationWithTheNewBiases) {
+  const std::vector<ImuSample> samples = rich_motion_samples(0.5);
   Preintegration imu = integrated(samples);
   imu.repropagate(kGyroBias, kAccelBias);
   expect_same(integrated(samples, kGyroBias, kAccelBias), imu, 1e-15);
 }
 
-TEST(Preintegration, ContinuationEqualsOneGo) {
-  const std::vector<ImuSample> samples = lively_samples(1.0);
+TEST(Preintegration, ExtendingAnIntervalEqualsASingleIntegration) {
+  const std::vector<ImuSample> samples = rich_motion_samples(1.0);
   const std::vector<ImuSample> first(samples.begin(), samples.begin() + 81);
   const std::vector<ImuSample> second(samples.begin() + 80, samples.end());
   Preintegration imu = integrated(first);
@@ -140,7 +140,7 @@ TEST(Preintegration, ContinuationEqualsOneGo) {
   EXPECT_EQ(imu.samples().size(), samples.size());
 }
 
-TEST(Preintegration, OneSampleAloneIsNoMotion) {
+TEST(Preintegration, ASingleSampleGivesNoMotion) {
   const Preintegration imu = integrated({ImuSample{.t = {}, .gyro_b = {1.0, 1.0, 1.0}}});
   EXPECT_EQ(imu.duration_s(), 0.0);
   EXPECT_EQ(imu.covariance(), Matrix15::Zero());

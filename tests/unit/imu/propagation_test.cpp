@@ -16,12 +16,12 @@ Pose forward_camera() {
   return {Eigen::Quaterniond(R_b_c), {0.1, 0.0, 0.05}};
 }
 
-TEST(Propagate, FollowsTheCircleAtEverySample) {
+TEST(Propagate, FollowsACircularMotion) {
   const Circle circle;
   const std::vector<ImuSample> samples = sample_motion(1.0, 200.0, [&](double) { return circle.imu(); });
   ASSERT_EQ(samples.size(), 201u);
-  // Midpoint, a = 4.5 m/s^2 turning at w = 1.5 rad/s: the velocity lags by a (w dt)^2 / 12 t, the position by
-  // its integral and by a w dt^3 / 12 a step: 1.1e-5 + 1.4e-5 m after one second.
+  // Midpoint rule with a = 4.5 m/s^2, w = 1.5 rad/s: the velocity error is a (w dt)^2 / 12 t, the position
+  // error its integral plus a w dt^3 / 12 per step: 1.1e-5 + 1.4e-5 m after one second.
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const NavState state = propagate(circle.state(0.0), std::span(samples).first(i + 1), kGravity);
     const NavState truth = circle.state(to_seconds(samples[i].t));
@@ -31,8 +31,8 @@ TEST(Propagate, FollowsTheCircleAtEverySample) {
   }
 }
 
-TEST(Propagate, EndsWherePreintegrationPredicts) {
-  const std::vector<ImuSample> samples = lively_samples(0.5);
+TEST(Propagate, MatchesThePreintegration) {
+  const std::vector<ImuSample> samples = rich_motion_samples(0.5);
   NavState start = Circle{}.state(0.0);
   start.gyro_bias = {0.01, 0.02, -0.03};
   start.accel_bias = {0.1, -0.1, 0.2};
@@ -45,14 +45,14 @@ TEST(Propagate, EndsWherePreintegrationPredicts) {
   EXPECT_LT(log_so3(end.T_w_b.q.conjugate() * expected.T_w_b.q).norm(), 1e-12);
 }
 
-TEST(Propagate, StaysAtTheStartWithoutAnInterval) {
+TEST(Propagate, ReturnsTheStartStateForASingleSample) {
   const NavState start = Circle{}.state(0.0);
   EXPECT_EQ(propagate(start, std::vector<ImuSample>(1), kGravity).T_w_b.p, start.T_w_b.p);
 }
 
-TEST(RotationPrior, TurnsTheCameraAgainstTheBody) {
-  // The body yaws left by 0.2 rad: points seen by a forward camera move right, a turn by -0.2 about the
-  // camera's vertical, which is -y of the camera: +0.2 about y.
+TEST(RotationPrior, RotatesPointsAgainstTheBodyRotation) {
+  // The body yaws left by 0.2 rad: points in a forward camera move right, a rotation by +0.2 about the y axis
+  // of the camera (which points down).
   const Eigen::Vector3d bias(0.01, 0.02, 0.03);
   const std::vector<ImuSample> samples = sample_motion(
       0.1, 200.0, [&](double) { return ImuSample{.t = {}, .gyro_b = Eigen::Vector3d(0, 0, 2.0) + bias}; });
@@ -67,7 +67,7 @@ TEST(RotationPrior, IsInvalidWithFewerThanTwoSamples) {
   EXPECT_FALSE(rotation_prior(std::vector<ImuSample>(1), Eigen::Vector3d::Zero(), Pose{}).has_rotation);
 }
 
-TEST(FullPrior, AgreesWithRotationPriorAndMovesPoints) {
+TEST(FullPrior, AgreesWithTheRotationPriorAndTransformsPoints) {
   const Circle circle;
   const NavState before = circle.state(0.0);
   const NavState now = circle.state(0.1);
@@ -77,7 +77,7 @@ TEST(FullPrior, AgreesWithRotationPriorAndMovesPoints) {
   const MotionPrior rotation = rotation_prior(samples, Eigen::Vector3d::Zero(), T_b_c);
   EXPECT_TRUE(full.has_translation);
   EXPECT_LT(log_so3(full.T_ccur_cprev.q.conjugate() * rotation.T_ccur_cprev.q).norm(), 1e-12);
-  // A point that stands still in the world has the coordinates the chain gives.
+  // A static world point must be transformed from the previous to the current camera.
   const Eigen::Vector3d p_w(5.0, 1.0, 0.5);
   const Eigen::Vector3d p_cprev = (before.T_w_b * T_b_c).inverse() * p_w;
   const Eigen::Vector3d p_ccur = (now.T_w_b * T_b_c).inverse() * p_w;

@@ -12,26 +12,26 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kHalfFit = 0.05;                        // [s]
-constexpr double kLargestHole = 0.02;                    // [s]
-constexpr double kLargestResidual = 0.2 * M_PI / 180.0;  // [rad] RMS
+constexpr double kHalfFit = 0.05;                    // [s]
+constexpr double kMaxGap = 0.02;                     // [s]
+constexpr double kMaxResidual = 0.2 * M_PI / 180.0;  // [rad] RMS
 
-/// "12.000000034" without the rounding of a double.
+/// Parses e.g. "12.000000034" without rounding to double.
 Timestamp parse_seconds(const std::string& text) {
   const std::size_t point = text.find('.');
   const std::int64_t whole = std::stoll(text.substr(0, point));
   return {whole * 1'000'000'000 + std::llround(std::stod(text.substr(point)) * 1e9)};
 }
 
-bool has_hole(std::span<const StampedPose> poses) {
+bool has_gap(std::span<const StampedPose> poses) {
   const auto far_apart = [](const StampedPose& a, const StampedPose& b) {
-    return seconds_between(a.t, b.t) > kLargestHole;
+    return seconds_between(a.t, b.t) > kMaxGap;
   };
   return std::adjacent_find(poses.begin(), poses.end(), far_apart) != poses.end();
 }
 
-/// Parabola of rotation vectors about `q_w_reference`; rows of `coefficients`: 1, x, x^2 with x = (t - t0) /
-/// half.
+/// Parabola of rotation vectors relative to `q_w_reference`; rows of `coefficients`: 1, x, x^2 with
+/// x = (t - t0) / kHalfFit.
 struct AttitudeFit {
   Eigen::Matrix3d coefficients;
   double residual_rms;
@@ -92,17 +92,17 @@ std::vector<StampedPose> read_tum_poses(const std::filesystem::path& path) {
   return poses;
 }
 
-std::optional<Eigen::Quaterniond> trusted_attitude(const std::vector<StampedPose>& truth, Timestamp t) {
+std::optional<Eigen::Quaterniond> reliable_attitude(const std::vector<StampedPose>& truth, Timestamp t) {
   const auto earlier = [](const StampedPose& pose, Timestamp stamp) { return pose.t < stamp; };
   const auto first = std::lower_bound(truth.begin(), truth.end(), after(t, -kHalfFit), earlier);
   const auto last = std::lower_bound(first, truth.end(), after(t, kHalfFit), earlier);
   if (first == truth.begin() || last == truth.end()) return std::nullopt;
-  const std::span<const StampedPose> surroundings(first - 1, last + 1);  // reaches beyond both sides
-  if (has_hole(surroundings)) return std::nullopt;
+  const std::span<const StampedPose> surroundings(first - 1, last + 1);  // includes one pose beyond each end
+  if (has_gap(surroundings)) return std::nullopt;
 
   const Eigen::Quaterniond q_w_reference = surroundings[surroundings.size() / 2].T_w_f.q;
   const AttitudeFit fit = fit_parabola(surroundings, q_w_reference, t);
-  if (fit.residual_rms > kLargestResidual) return std::nullopt;
+  if (fit.residual_rms > kMaxResidual) return std::nullopt;
   return q_w_reference * exp_so3(fit.coefficients.row(0).transpose());
 }
 
@@ -111,8 +111,8 @@ std::vector<RotationWindow> rotation_windows(ImuBuffer& imu, const std::vector<S
   std::vector<RotationWindow> windows;
   for (Timestamp begin = truth.front().t; begin < truth.back().t; begin = after(begin, length_s)) {
     const Timestamp end = after(begin, length_s);
-    const std::optional<Eigen::Quaterniond> q_w_bi = trusted_attitude(truth, begin);
-    const std::optional<Eigen::Quaterniond> q_w_bj = trusted_attitude(truth, end);
+    const std::optional<Eigen::Quaterniond> q_w_bi = reliable_attitude(truth, begin);
+    const std::optional<Eigen::Quaterniond> q_w_bj = reliable_attitude(truth, end);
     std::vector<ImuSample> samples = imu.samples_between(begin, end);
     if (!q_w_bi || !q_w_bj || samples.empty()) continue;
     windows.push_back({begin, std::move(samples), q_w_bi->conjugate() * *q_w_bj});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Real inertial samples and the attitude a motion capture system saw, cut into windows.
+/// Recorded inertial samples and motion capture attitudes, split into windows.
 #pragma once
 
 #include <filesystem>
@@ -11,26 +11,26 @@
 
 namespace stillpoint {
 
-/// Lines `ns,wx,wy,wz,ax,ay,az`; `#` begins a comment.
+/// Lines `ns,wx,wy,wz,ax,ay,az`; `#` starts a comment.
 [[nodiscard]] ImuBuffer read_imu_csv(const std::filesystem::path& path);
 
-/// Lines `s tx ty tz qx qy qz qw`; `#` begins a comment.
+/// Lines `s tx ty tz qx qy qz qw`; `#` starts a comment.
 [[nodiscard]] std::vector<StampedPose> read_tum_poses(const std::filesystem::path& path);
 
-/// Attitude at `t` by a parabola through the ground truth 50 ms to either side, or nothing where it is not to
-/// be trusted: a hole of more than 20 ms in it, or more than 0.2 degrees RMS off that parabola (motion
-/// capture that takes one marker for another jumps by degrees for a few samples). The IMU has no say in this.
-[[nodiscard]] std::optional<Eigen::Quaterniond> trusted_attitude(const std::vector<StampedPose>& truth,
-                                                                 Timestamp t);
+/// Attitude at `t` by a parabola fitted to the ground truth within +-50 ms, or nothing if it is unreliable: a
+/// gap of more than 20 ms, or an RMS residual above 0.2 degrees (motion capture that confuses markers jumps
+/// by degrees for a few samples). Independent of the IMU.
+[[nodiscard]] std::optional<Eigen::Quaterniond> reliable_attitude(const std::vector<StampedPose>& truth,
+                                                                  Timestamp t);
 
-/// A window of samples, and the rotation of the body over it.
+/// A window of samples and the rotation of the body over it.
 struct RotationWindow {
   Timestamp begin;
   std::vector<ImuSample> samples;
   Eigen::Quaterniond q_bi_bj;
 };
 
-/// All windows of `length_s`, end to end from the first pose on, whose two attitudes can be trusted.
+/// All consecutive windows of `length_s` from the first pose on with reliable attitudes at both ends.
 [[nodiscard]] std::vector<RotationWindow> rotation_windows(ImuBuffer& imu,
                                                            const std::vector<StampedPose>& truth,
                                                            double length_s);

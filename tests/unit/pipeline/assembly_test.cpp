@@ -15,14 +15,14 @@ OdometryConfig visual() {
   return config;
 }
 
-TEST(Assembly, NobodyLooksForObjectsThatNobodyMasks) {
+TEST(Assembly, DisablesTheDetectorIfTheMaskIsOff) {
   const SlidingPlane plane(1);
   OdometryConfig config = visual();
   config.dynamic.mask = DynamicMask::kOff;
   EXPECT_EQ(assemble(plane.input(), config).detector->description(), "none");
 }
 
-TEST(Assembly, ASimulatedDetectorNeedsTrueBoxes) {
+TEST(Assembly, ASimulatedDetectorRequiresTrueBoxes) {
   const SlidingPlane plane(1);
   OdometryConfig config = visual();
   config.detector.kind = DetectorKind::kSimulated;
@@ -30,17 +30,17 @@ TEST(Assembly, ASimulatedDetectorNeedsTrueBoxes) {
                      {"detector.kind", "true boxes"});
 }
 
-TEST(Assembly, InertialOdometryNeedsAnImu) {
+TEST(Assembly, InertialOdometryRequiresAnImu) {
   const SlidingPlane plane(1);
   expect_input_error([&] { static_cast<void>(assemble(plane.input(), OdometryConfig{})); },
                      {"imu.enabled", "--variant vo"});
 }
 
-TEST(WindowRate, AdmitsAThirdOfPicturesAt10Of30Hz) {
+TEST(WindowRate, AdmitsEveryThirdFrameAt10Of30Hz) {
   WindowRate rate(10.0);
   int admitted = 0;
   for (int i = 0; i < 300; ++i) admitted += rate.admits(Timestamp{i * 33'333'333LL});
-  EXPECT_EQ(admitted, 100);  // every third: three intervals are 1 ns short of 0.1 s, which the slack forgives
+  EXPECT_EQ(admitted, 100);  // three intervals are 1 ns less than 0.1 s, within the tolerance
 }
 
 }  // namespace

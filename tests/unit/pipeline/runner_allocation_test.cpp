@@ -1,60 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracking, optimisation and the ways between them ask for no memory once they have held as much as they
-// need.
+// Tracking, optimization and the channels between them are allocation-free in the steady state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "bench/config/config_file.h"
-#include "bench/profile/allocation_counter.h"
-#include "core/pipeline/runner.h"
+#include "bench/profile/meters/allocation_counter.h"
+#include "core/pipeline/runners/runner.h"
 #include "tests/support/sliding_plane.h"
 
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kOneWay = 15;
-constexpr std::size_t kRound = 2 * kOneWay;
-constexpr std::size_t kPictures = 8 * kRound;
+constexpr std::size_t kHalfRound = 15;
+constexpr std::size_t kRound = 2 * kHalfRound;
+constexpr std::size_t kFrames = 8 * kRound;
 
-class RunnerThatIs : public testing::TestWithParam<decltype(&run_sequential)> {};
+class RunnerIn : public testing::TestWithParam<decltype(&run_sequential)> {};
 
-/// The camera slides to and fro before the wall; nobody looks for objects, pictures are there before.
-TEST_P(RunnerThatIs, AllocatesNothingOnceItHasHeldAsMuch) {
-  const SlidingPlane plane(kPictures);
-  std::vector<Frame> pictures;
-  for (std::size_t i = 0; i <= kOneWay; ++i) pictures.push_back(plane.picture(i));
+/// The camera moves back and forth parallel to the plane; without detector, and with preloaded images.
+TEST_P(RunnerIn, IsAllocationFreeInTheSteadyState) {
+  const SlidingPlane plane(kFrames);
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i <= kHalfRound; ++i) frames.push_back(plane.frame(i));
   SensorInput input = plane.input();
   input.load_frame = [&](std::size_t index) {
     const std::size_t step = index % kRound;
-    Frame frame = pictures[std::min(step, kRound - step)];
+    Frame frame = frames[std::min(step, kRound - step)];
     frame.id = static_cast<std::int64_t>(index);
     frame.t = input.frame_times[index];
     return frame;
   };
-  const OdometryConfig config = load_config(
+  const OdometryConfig config = bench::load_config(
       {.base = "stillpoint",
        .variant = "vo",
        .settings = {"detector.kind=none", "pipeline.feedback_lag=1", "frontend.min_distance_px=10"}});
   std::vector<std::size_t> counts;
-  counts.reserve(kPictures);
+  counts.reserve(kFrames);
   int lost = 0;
   const RunControl control{.on_update =
                                [&](const OdometryUpdate& update) {
-                                 counts.push_back(allocation_count());
+                                 counts.push_back(bench::allocation_count());
                                  lost += update.status != OdometryStatus::kTracking;
                                },
-                           .on_picture = {},
+                           .on_frame = {},
                            .stop_requested = {}};
   static_cast<void>(GetParam()(input, config, control));
-  ASSERT_EQ(counts.size(), kPictures);
+  ASSERT_EQ(counts.size(), kFrames);
   EXPECT_EQ(lost, 0);
-  // The last two rounds, but for the end of the run, when threads close.
-  EXPECT_EQ(counts[kPictures - 8] - counts[kPictures - 2 * kRound], 0u);
-  EXPECT_GT(counts[kRound] - counts[0], 100u);  // the counter counts
+  // The last two rounds, without the end of the run, where threads finish.
+  EXPECT_EQ(counts[kFrames - 8] - counts[kFrames - 2 * kRound], 0u);
+  EXPECT_GT(counts[kRound] - counts[0], 100u);  // the counter works
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, RunnerThatIs, testing::Values(&run_sequential, &run_pipelined),
+INSTANTIATE_TEST_SUITE_P(Modes, RunnerIn, testing::Values(&run_sequential, &run_pipelined),
                          [](const auto& mode) { return mode.index == 0 ? "Sequential" : "Pipelined"; });
 
 }  // namespace

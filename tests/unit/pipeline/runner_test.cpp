@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pipeline/runner.h"
+#include "core/pipeline/runners/runner.h"
 
 #include <gtest/gtest.h>
 
@@ -11,96 +11,97 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kPictures = 40;
+constexpr int kFrames = 40;
 
-/// Everything that a run says of positions.
-struct Path {
+/// Records the estimated positions of a run.
+struct PositionRecorder {
   std::vector<Eigen::Vector3d> positions;
   RunControl control() {
     return {.on_update = [this](const OdometryUpdate& update) { positions.push_back(update.T_w_c.p); },
-            .on_picture = {},
+            .on_frame = {},
             .stop_requested = {}};
   }
 };
 
-TEST(Runner, SequentialFollowsTheSlide) {
-  const SlidingPlane plane(kPictures);
-  Path path;
-  const RunSummary summary = run_sequential(plane.input(), visual_config(), path.control());
-  EXPECT_EQ(summary.frames, kPictures);
-  ASSERT_EQ(path.positions.size(), kPictures);
-  EXPECT_NEAR(path.positions.back().x(), SlidingPlane::moved_m(kPictures - 1), 0.01);
-  EXPECT_NEAR(path.positions.back().z(), 0.0, 0.01);
+TEST(Runner, SequentialEstimatesTheMotion) {
+  const SlidingPlane plane(kFrames);
+  PositionRecorder recorder;
+  const RunSummary summary = run_sequential(plane.input(), visual_config(), recorder.control());
+  EXPECT_EQ(summary.frames, kFrames);
+  ASSERT_EQ(recorder.positions.size(), kFrames);
+  EXPECT_NEAR(recorder.positions.back().x(), SlidingPlane::camera_x_m(kFrames - 1), 0.01);
+  EXPECT_NEAR(recorder.positions.back().z(), 0.0, 0.01);
 }
 
-TEST(Runner, PipelinedEqualsSequentialToTheBitAtEachLag) {
-  const SlidingPlane plane(kPictures);
+TEST(Runner, PipelinedIsBitEqualToSequentialForEachLag) {
+  const SlidingPlane plane(kFrames);
   for (const int lag : {0, 1, 3}) {
-    Path one_thread, three_threads;
+    PositionRecorder one_thread, three_threads;
     static_cast<void>(run_sequential(plane.input(), visual_config(lag), one_thread.control()));
     static_cast<void>(run_pipelined(plane.input(), visual_config(lag), three_threads.control()));
     EXPECT_EQ(one_thread.positions, three_threads.positions) << "lag " << lag;
   }
 }
 
-TEST(Runner, RealtimeAnswersEveryPictureThatItDidNotDrop) {
-  const SlidingPlane plane(kPictures);
-  Path path;
-  const RunSummary summary = run_realtime(plane.input(), visual_config(), path.control(), 20.0);
+TEST(Runner, RealtimeReportsAPoseForEachFrameThatWasNotDropped) {
+  const SlidingPlane plane(kFrames);
+  PositionRecorder recorder;
+  const RunSummary summary = run_realtime(plane.input(), visual_config(), recorder.control(), 20.0);
   ASSERT_TRUE(summary.realtime.has_value());
-  EXPECT_EQ(path.positions.size() + static_cast<std::size_t>(summary.realtime->dropped), kPictures);
-  EXPECT_EQ(summary.realtime->latencies_ms.size(), path.positions.size());
+  EXPECT_EQ(recorder.positions.size() + static_cast<std::size_t>(summary.realtime->dropped), kFrames);
+  EXPECT_EQ(summary.realtime->latencies_ms.size(), recorder.positions.size());
   EXPECT_NEAR(summary.realtime->deadline_ms, 33.333 / 20.0, 0.001);
 }
 
-TEST(Runner, EveryRunnerSkipsAndNamesAPictureThatCannotBeRead) {
-  const SlidingPlane plane(kPictures);
+TEST(Runner, SkipsAndReportsFramesThatCannotBeRead) {
+  const SlidingPlane plane(kFrames);
   SensorInput input = plane.input();
   input.load_frame = [&plane](std::size_t index) {
     if (index == 7) throw InputError("seventh.png", "is truncated");
-    return plane.picture(index);
+    return plane.frame(index);
   };
   for (const auto& run : {run_sequential, run_pipelined}) {
-    Path path;
-    const RunSummary summary = run(input, visual_config(), path.control());
+    PositionRecorder recorder;
+    const RunSummary summary = run(input, visual_config(), recorder.control());
     ASSERT_EQ(summary.skipped.size(), 1u);
     EXPECT_EQ(summary.skipped[0].index, 7u);
-    EXPECT_EQ(path.positions.size(), kPictures - 1u);
+    EXPECT_EQ(recorder.positions.size(), kFrames - 1u);
   }
 }
 
-TEST(Runner, StopsCleanlyWhenAsked) {
-  const SlidingPlane plane(kPictures);
+TEST(Runner, StopsOnRequest) {
+  const SlidingPlane plane(kFrames);
   for (const auto& run : {run_sequential, run_pipelined}) {
-    Path path;
-    RunControl control = path.control();
-    control.stop_requested = [asked = 0]() mutable { return ++asked > 10; };
+    PositionRecorder recorder;
+    RunControl control = recorder.control();
+    control.stop_requested = [polls = 0]() mutable { return ++polls > 10; };
     const RunSummary summary = run(plane.input(), visual_config(), control);
     EXPECT_TRUE(summary.interrupted);
-    EXPECT_EQ(path.positions.size(), 10u);
+    EXPECT_EQ(recorder.positions.size(), 10u);
   }
 }
 
-TEST(Runner, AFaultOnAnyThreadReachesTheCaller) {
-  const SlidingPlane plane(kPictures);
+TEST(Runner, PropagatesExceptionsFromAnyThread) {
+  const SlidingPlane plane(kFrames);
   SensorInput input = plane.input();
   input.load_frame = [&plane](std::size_t index) -> Frame {
-    if (index == 5) throw std::runtime_error("camera on fire");
-    return plane.picture(index);
+    if (index == 5) throw std::runtime_error("camera error");
+    return plane.frame(index);
   };
-  Path path;
-  EXPECT_THROW(static_cast<void>(run_pipelined(input, visual_config(), path.control())), std::runtime_error);
-  EXPECT_THROW(static_cast<void>(run_realtime(input, visual_config(), path.control(), 20.0)),
+  PositionRecorder recorder;
+  EXPECT_THROW(static_cast<void>(run_pipelined(input, visual_config(), recorder.control())),
+               std::runtime_error);
+  EXPECT_THROW(static_cast<void>(run_realtime(input, visual_config(), recorder.control(), 20.0)),
                std::runtime_error);
   const RunControl failing_sink{
-      .on_update = [](const OdometryUpdate&) { throw std::runtime_error("disk on fire"); },
-      .on_picture = {},
+      .on_update = [](const OdometryUpdate&) { throw std::runtime_error("disk error"); },
+      .on_frame = {},
       .stop_requested = {}};
   EXPECT_THROW(static_cast<void>(run_pipelined(plane.input(), visual_config(), failing_sink)),
                std::runtime_error);
 }
 
-TEST(Runner, RefusesAClockThatStands) {
+TEST(Runner, RejectsASpeedOfZero) {
   const SlidingPlane plane(1);
   expect_input_error([&] { static_cast<void>(run_realtime(plane.input(), visual_config(), {}, 0.0)); },
                      {"--speed", "larger than 0"});

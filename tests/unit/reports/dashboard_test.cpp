@@ -6,14 +6,14 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/store/journal.h"
+#include "bench/store/store_writer.h"
 #include "reports/dashboard/commit_page.h"
 #include "reports/dashboard/history_text.h"
 #include "reports/dashboard/regression_list.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 using Json = nlohmann::json;
@@ -21,27 +21,27 @@ using Json = nlohmann::json;
 const std::string kHostile =
     "\"><img src=x onerror=alert(1)>'</script>|\\$&%_#{}~^\n\xff\xE2\x80\xAE" + std::string(3000, 'n');
 
-/// Two commits of one thing, the second of which fails once.
+/// Two commits of one benchmark case; the run of the second one crashed.
 std::filesystem::path failing_store(const TemporaryFolder& folder, const std::string& name) {
   std::filesystem::path file = folder.path() / "s.sqlite";
-  Journal journal(file);
+  bench::StoreWriter writer(file);
   for (const bool is_second : {false, true}) {
-    const RunIdentity identity{.variant = name, .sequence = name, .build = is_second ? name : "first"};
-    static_cast<void>(journal.claim(identity));
-    RunOutcome outcome{.outcome = is_second ? Outcome::kCrashed : Outcome::kOk,
-                       .metrics = {{name, name, name, 0.5}},
-                       .costs = {{"window_solve", "call", 3, 1.5, 1.0, 2.0, 3.0}}};
+    const bench::RunIdentity identity{.variant = name, .sequence = name, .build = is_second ? name : "first"};
+    static_cast<void>(writer.acquire(identity));
+    bench::RunOutcome outcome{.outcome = is_second ? bench::Outcome::kCrashed : bench::Outcome::kOk,
+                              .metrics = {{name, name, name, 0.5}},
+                              .costs = {{"window_solve", "call", 3, 1.5, 1.0, 2.0, 3.0}}};
     if (!is_second)
       outcome.manifest =
           Json{{"host", {{"cpu", kHostile}}}}.dump(-1, ' ', false, Json::error_handler_t::replace);
-    journal.finish(identity, outcome);
+    writer.finish(identity, outcome);
   }
-  journal.record_plan({.name = name, .title = name, .text = name, .run_keys = {}});
+  writer.record_plan({.name = name, .title = name, .text = name, .run_keys = {}});
   return file;
 }
 
-const std::string& text_of(const std::vector<OutputFile>& files, const std::string& name) {
-  for (const OutputFile& file : files) {
+const std::string& text_of(const std::vector<bench::OutputFile>& files, const std::string& name) {
+  for (const bench::OutputFile& file : files) {
     if (file.name == name) return file.text;
   }
   throw std::out_of_range(name);
@@ -53,42 +53,43 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-TEST(Dashboard, IsTheIndexTheRegressionsAndAPageForEachCommit) {
+TEST(Dashboard, ConsistsOfIndexRegressionsAndAPageForEachCommit) {
   const TemporaryFolder folder;
-  const std::vector<OutputFile> files = dashboard_files(Store(failing_store(folder, "b")));
+  const std::vector<bench::OutputFile> files = dashboard_files(bench::Store(failing_store(folder, "b")));
   ASSERT_EQ(files.size(), 5u);
   const Json regressions = Json::parse(text_of(files, "regressions.json"));
   ASSERT_EQ(regressions["open"].size(), 1u);
-  EXPECT_EQ(regressions["open"][0]["metric"], kFailedRuns);
-  EXPECT_EQ(regressions["open"][0]["after_commit"], "first");
-  EXPECT_EQ(regressions["open"][0]["up_to_commit"], "b");
+  EXPECT_EQ(regressions["open"][0]["metric"], bench::kFailedRuns);
+  EXPECT_EQ(regressions["open"][0]["last_commit_before"], "first");
+  EXPECT_EQ(regressions["open"][0]["first_commit_after"], "b");
   EXPECT_NE(text_of(files, "regressions.md").find("| failed\\_runs | first..b | 1 |"), std::string::npos);
 }
 
-TEST(Dashboard, OfOneStoreHasEqualBytesWhereverItLies) {
+TEST(Dashboard, DoesNotDependOnTheLocationOfTheStore) {
   const TemporaryFolder folder;
   const std::filesystem::path file = failing_store(folder, "b");
   const std::filesystem::path copy = folder.path() / "another name";
   std::filesystem::copy_file(file, copy);
-  const std::vector<OutputFile> first = dashboard_files(Store(file));
-  const std::vector<OutputFile> second = dashboard_files(Store(copy));
+  const std::vector<bench::OutputFile> first = dashboard_files(bench::Store(file));
+  const std::vector<bench::OutputFile> second = dashboard_files(bench::Store(copy));
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].text, second[i].text) << first[i].name;
 }
 
-TEST(Dashboard, AskNothingOfTheNetwork) {
+TEST(Dashboard, LoadsNothingFromTheNetwork) {
   const TemporaryFolder folder;
-  for (const OutputFile& file : dashboard_files(Store(failing_store(folder, "b")))) {
+  for (const bench::OutputFile& file : dashboard_files(bench::Store(failing_store(folder, "b")))) {
     EXPECT_EQ(file.text.find("http://"), std::string::npos) << file.name;
     EXPECT_EQ(file.text.find(" src=\""), std::string::npos) << file.name;
   }
 }
 
-TEST(Dashboard, KeepsHostileNamesText) {
+TEST(Dashboard, EscapesHostileNames) {
   const TemporaryFolder folder;
   const TemporaryFolder harmless_folder;
-  const std::vector<OutputFile> files = dashboard_files(Store(failing_store(folder, kHostile)));
-  const std::vector<OutputFile> harmless = dashboard_files(Store(failing_store(harmless_folder, "b")));
+  const std::vector<bench::OutputFile> files = dashboard_files(bench::Store(failing_store(folder, kHostile)));
+  const std::vector<bench::OutputFile> harmless =
+      dashboard_files(bench::Store(failing_store(harmless_folder, "b")));
   ASSERT_EQ(files.size(), harmless.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (const char letter : files[i].name)
@@ -105,31 +106,31 @@ TEST(Dashboard, KeepsHostileNamesText) {
   const std::size_t begin = index.find(open) + open.size();
   EXPECT_FALSE(Json::parse(index.substr(begin, index.find("</script>", begin) - begin)).empty());
   EXPECT_EQ(Json::parse(text_of(files, "regressions.json"))["open"].size(), 1u);
-  // A head, a rule and one row of eight bars and a ninth at its end; those within names are escaped.
+  // Header, delimiter row and one row; the bars within names are escaped.
   const std::string& markdown = text_of(files, "regressions.md");
   EXPECT_EQ(count_of(markdown, "\n"), 3u);
   EXPECT_EQ(count_of(markdown.substr(markdown.rfind("| failed")), " |"), 7u);
 }
 
-TEST(Dashboard, OfAStoreWithoutRunsSaysHowToMakeSome) {
+TEST(Dashboard, ErrorForAnEmptyStoreExplainsHowToCreateRuns) {
   const TemporaryFolder folder;
-  { const Journal journal(folder.path() / "s"); }
-  expect_input_error([&] { static_cast<void>(dashboard_files(Store(folder.path() / "s"))); },
-                     {"no ended run", "stillpoint bench"});
+  { const bench::StoreWriter writer(folder.path() / "s"); }
+  expect_input_error([&] { static_cast<void>(dashboard_files(bench::Store(folder.path() / "s"))); },
+                     {"no finished runs", "stillpoint bench"});
 }
 
 /// One series of "ms" over three commits, 1 then 2.
-CommitHistory stepping_history() {
-  CommitHistory history;
+bench::CommitHistory stepping_history() {
+  bench::CommitHistory history;
   history.commits = {{"aa", "t0"}, {"bb", "t1"}, {"cc", "t2"}};
-  HistorySeries series{.subject = {},
-                       .plans = {},
-                       .metric = "window_solve",
-                       .unit = "ms",
-                       .rule = metric_rule("ms"),
-                       .commits = {0, 2},
-                       .values = {1.0, 2.0},
-                       .runs = {1, 1}};
+  bench::HistorySeries series{.subject = {},
+                              .plans = {},
+                              .metric = "window_solve",
+                              .unit = "ms",
+                              .rule = bench::metric_rule("ms"),
+                              .commits = {0, 2},
+                              .values = {1.0, 2.0},
+                              .runs = {1, 1}};
   series.subject.variant = "vo";
   series.subject.sequence = "office";
   series.subject.mode = "sequential";
@@ -138,47 +139,48 @@ CommitHistory stepping_history() {
   return history;
 }
 
-LevelShift shift_of(double change, std::size_t after) {
+bench::LevelShift shift_of(double change, std::size_t after) {
   return {.series = 0,
           .before = 0,
           .after = after,
           .level_before = 1.0,
           .level_after = 1.0 + change,
-          .change = RelativeChange{3, change, {change - 0.1, change + 0.1}},
+          .change = eval::RelativeChange{3, change, {change - 0.1, change + 0.1}},
           .p_value = 0.001,
-          .state = ChangeState::kOpen,
+          .state = bench::ChangeState::kOpen,
           .reason = ""};
 }
 
-TEST(CommitPage, SetsANumberBesideTheOneMeasuredBefore) {
-  const std::string page = commit_html(stepping_history(), {.shifts = {shift_of(1.0, 2)}, .creeps = {}}, 2);
+TEST(CommitPage, ComparesAMetricWithItsPreviousMeasurement) {
+  const std::string page = commit_html(stepping_history(), {.shifts = {shift_of(1.0, 2)}, .drifts = {}}, 2);
   EXPECT_NE(page.find("<td>1 ms</td><td>2 ms</td><td>+100.0 %</td></tr>"), std::string::npos);  // 2 / 1 - 1
   EXPECT_NE(page.find("<td>+90.0 to +110.0 %</td>"), std::string::npos);
-  EXPECT_NE(page.find("before: bb"), std::string::npos);
+  EXPECT_NE(page.find("previous: bb"), std::string::npos);
 }
 
-TEST(CommitPage, OfACommitThatNothingWasMeasuredBeforeSaysSo) {
+TEST(CommitPage, StatesWhenThereIsNoEarlierMeasurement) {
   const std::string page = commit_html(stepping_history(), {}, 0);
-  EXPECT_NE(page.find("No number of this commit was measured before it"), std::string::npos);
-  EXPECT_NE(page.find("No level changed here"), std::string::npos);
+  EXPECT_NE(page.find("No metric of this commit has an earlier measurement"), std::string::npos);
+  EXPECT_NE(page.find("No change points at this commit"), std::string::npos);
 }
 
-TEST(GroupedShifts, TellTheNewestAndLargestFirst) {
-  const HistoryChanges changes{.shifts = {shift_of(0.1, 1), shift_of(0.3, 2), shift_of(-0.4, 1)},
-                               .creeps = {}};
-  const std::vector<ShiftGroup> groups = grouped_shifts(stepping_history(), changes, ChangeState::kOpen);
+TEST(GroupedShifts, AreSortedByCommitThenByMagnitude) {
+  const bench::HistoryChanges changes{.shifts = {shift_of(0.1, 1), shift_of(0.3, 2), shift_of(-0.4, 1)},
+                                      .drifts = {}};
+  const std::vector<ShiftGroup> groups =
+      grouped_shifts(stepping_history(), changes, bench::ChangeState::kOpen);
   ASSERT_EQ(groups.size(), 2u);
   EXPECT_EQ(groups[0].after, 2u);
   ASSERT_EQ(groups[1].shifts.size(), 2u);
   EXPECT_EQ(groups[1].shifts.front()->change->median, -0.4);
-  EXPECT_TRUE(grouped_shifts(stepping_history(), changes, ChangeState::kEnded).empty());
+  EXPECT_TRUE(grouped_shifts(stepping_history(), changes, bench::ChangeState::kResolved).empty());
 }
 
-TEST(HistoryText, ShortensCommitsAndTellsSubjectsApart) {
+TEST(HistoryText, ShortensCommitsAndDistinguishesSubjects) {
   EXPECT_EQ(commit_label("0123456789012345678901234567890123456789+abcdef"), "0123456789+abcdef");
   EXPECT_EQ(commit_label("base-1"), "base-1");
   EXPECT_EQ(commit_label("\xC3\xA4" + std::string(40, 'x')), "\xC3\xA4" + std::string(23, 'x'));
-  HistorySubject subject = stepping_history().series.front().subject;
+  bench::HistorySubject subject = stepping_history().series.front().subject;
   EXPECT_EQ(subject_label(subject), "vo on office");
   subject.seed = 2;
   subject.axis = "rate";
@@ -188,4 +190,4 @@ TEST(HistoryText, ShortensCommitsAndTellsSubjectsApart) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::report

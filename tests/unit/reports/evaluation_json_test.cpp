@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/evaluation_json.h"
+#include "reports/text/evaluation_json.h"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,14 @@
 
 #include "tests/support/smooth_path.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-TEST(EvaluationJson, CarriesTheRecipeWithItsTextAndTheKeysOfResultFiles) {
+TEST(EvaluationJson, HasProtocolTextAndTheKeysOfResultFiles) {
   const Trajectory path = test::smooth_path(100, 0.1);
-  const nlohmann::ordered_json json = evaluation_json(evaluate("strict:se3", {path, path, RecipeOptions{}}));
-  EXPECT_EQ(json.at("recipe"), "strict:se3");
+  const nlohmann::ordered_json json =
+      evaluation_json(eval::evaluate("strict:se3", {path, path, eval::ProtocolOptions{}}));
+  EXPECT_EQ(json.at("protocol"), "strict:se3");
   EXPECT_FALSE(json.at("text").get<std::string>().empty());
   EXPECT_EQ(json.at("pairs"), 100);
   EXPECT_NEAR(json.at("ate_rmse_m").get<double>(), 0.0, 1e-12);
@@ -21,21 +22,22 @@ TEST(EvaluationJson, CarriesTheRecipeWithItsTextAndTheKeysOfResultFiles) {
   EXPECT_NEAR(json.at("rpe_rot_rmse_deg_per_s").get<double>(), 0.0, 1e-6);
 }
 
-TEST(EvaluationJson, IsNullWithoutData) {
+TEST(EvaluationJson, MetricsAreNullWithoutData) {
   const Trajectory path = test::smooth_path(100, 0.1);
-  const nlohmann::ordered_json json = evaluation_json(evaluate("compat:tum", {path, {}, RecipeOptions{}}));
+  const nlohmann::ordered_json json =
+      evaluation_json(eval::evaluate("compat:tum", {path, {}, eval::ProtocolOptions{}}));
   EXPECT_TRUE(json.at("ate_rmse_m").is_null());
   EXPECT_TRUE(json.at("rpe_trans_rmse_m_per_s").is_null());
 }
 
-TEST(EvaluationTable, SaysNotAvailableWithoutData) {
+TEST(EvaluationTable, ShowsNotAvailableWithoutData) {
   const Trajectory path = test::smooth_path(100, 0.1);
   EvaluatedRun run;
   run.name = "lost";
-  run.evaluations.push_back(evaluate("compat:tum", {path, {}, RecipeOptions{}}));
+  run.evaluations.push_back(eval::evaluate("compat:tum", {path, {}, eval::ProtocolOptions{}}));
   const std::string csv = evaluation_table({run}, TableStyle::kCsv);
   EXPECT_NE(csv.find("lost,compat:tum,0,n/a,n/a,n/a,n/a,n/a,n/a,1 s,n/a\n"), std::string::npos) << csv;
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::report

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/openloris_figure.h"
+#include "reports/drawing/openloris_figure.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "reports/openloris_table.h"
+#include "reports/text/openloris_table.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-/// Two sequences of 10 s; the only system tracks 4 s of the second, from 2 s on.
-OpenlorisBenchmark small_benchmark() {
-  OpenlorisBenchmark benchmark;
+/// Two sequences of 10 s; the only system has correct poses in the second one, from 2 s to 6 s.
+eval::OpenlorisBenchmark small_benchmark() {
+  eval::OpenlorisBenchmark benchmark;
   benchmark.gt_durations_s["cafe"] = {{1, 10.0}, {2, 10.0}};
-  OpenlorisScene& scene = benchmark.systems["dso"]["cafe"];
-  OpenlorisSequenceScore& run = scene.runs[2].score;
+  eval::OpenlorisScene& scene = benchmark.systems["dso"]["cafe"];
+  eval::OpenlorisSequenceScore& run = scene.runs[2].score;
   run.correct = 1;
   run.correct_time_s = 4.0;
   run.tracked_time_s = 8.0;
@@ -24,7 +24,7 @@ OpenlorisBenchmark small_benchmark() {
   run.relocalization_time_s = 2.0;
   run.relocalization_score = 0.9;
   run.tracked_spans = {{2.0, 6.0}};
-  scene.score = score_openloris_scene(scene.runs, benchmark.gt_durations_s["cafe"]);
+  scene.score = eval::score_openloris_scene(scene.runs, benchmark.gt_durations_s["cafe"]);
   return benchmark;
 }
 
@@ -35,10 +35,10 @@ bool has_label(const Drawing& drawing, const std::string& text) {
   });
 }
 
-TEST(OpenlorisFigure, ShowsTheRatesAndWhatIsMissing) {
+TEST(OpenlorisFigure, ShowsRatesAndMissingData) {
   const Drawing figure = openloris_figure(small_benchmark());
   EXPECT_TRUE(has_label(figure, "cafe (20 s)"));
-  EXPECT_TRUE(has_label(figure, "20.0%"));  // 4 s of 20 s, the sequence without a result counted
+  EXPECT_TRUE(has_label(figure, "20.0%"));  // 4 s of 20 s, including the sequence without a result
   EXPECT_TRUE(has_label(figure, "0.250"));
   EXPECT_TRUE(has_label(figure, "-  -"));  // no RPE: never 0
   EXPECT_TRUE(has_label(figure, "DSO"));
@@ -57,16 +57,16 @@ TEST(OpenlorisFigure, DrawsATrackedSpanAtItsTime) {
     }
   }
   ASSERT_EQ(bars.size(), 1u);
-  ASSERT_EQ(starts.size(), 2u);  // the black dots: sequences begin at 0 and 10 s, so 10 s are their distance
-  const double second_s = (starts[1].center.x - starts[0].center.x) / 10.0;
-  EXPECT_NEAR(bars[0].points[0].x, starts[1].center.x + 2.0 * second_s, 1e-9);
-  EXPECT_NEAR(bars[0].points[1].x, starts[1].center.x + 6.0 * second_s, 1e-9);
+  ASSERT_EQ(starts.size(), 2u);  // the black dots: sequence starts at 0 s and 10 s
+  const double units_per_s = (starts[1].center.x - starts[0].center.x) / 10.0;
+  EXPECT_NEAR(bars[0].points[0].x, starts[1].center.x + 2.0 * units_per_s, 1e-9);
+  EXPECT_NEAR(bars[0].points[1].x, starts[1].center.x + 6.0 * units_per_s, 1e-9);
 }
 
-TEST(OpenlorisTable, NamesEachRateAndError) {
+TEST(OpenlorisTable, HasAColumnForEachRateAndError) {
   const std::string csv = openloris_table(small_benchmark(), TableStyle::kCsv);
   EXPECT_NE(csv.find("dso,cafe,1/2,20.0,50.0,0.2500,0.2500,n/a,n/a,0,0\n"), std::string::npos) << csv;
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::report

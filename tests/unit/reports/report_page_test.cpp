@@ -7,43 +7,43 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/store/journal.h"
-#include "reports/page/run_series.h"
+#include "bench/store/store_writer.h"
+#include "reports/page/charts/run_series.h"
 #include "reports/page/series_text.h"
 #include "reports/page/summary.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 std::string base64_of(const std::string& text) {
   return base64({reinterpret_cast<const unsigned char*>(text.data()), text.size()});
 }
 
-TEST(Base64, IsThatOfRfc4648) {
+TEST(Base64, ConformsToRfc4648) {
   EXPECT_EQ(base64_of(""), "");
   EXPECT_EQ(base64_of("f"), "Zg==");
   EXPECT_EQ(base64_of("fo"), "Zm8=");
   EXPECT_EQ(base64_of("foobar"), "Zm9vYmFy");
 }
 
-TEST(PackedSeries, KeepsEndsAndMarksWhatIsMissing) {
+TEST(PackedSeries, KeepsTheRangeAndMarksMissingValues) {
   const std::vector<double> values = {-1.0, std::numeric_limits<double>::quiet_NaN(), 65533.0};
   const nlohmann::ordered_json packed = packed_series(values);
   EXPECT_EQ(packed["low"], -1.0);
   EXPECT_EQ(packed["step"], 1.0);  // (65533 + 1) / 65534
-  // 0, none and 65534 as little-endian pairs of bytes: 00 00 ff ff fe ff.
+  // 0, missing and 65534 as little-endian 16-bit numbers: 00 00 ff ff fe ff.
   EXPECT_EQ(packed["data"], "AAD///7/");
 }
 
-/// A store with one run of three frames that went 1 m along x; the second has no pose.
-void fill_store(const std::filesystem::path& file, const RunIdentity& identity,
+/// A store with one run of three frames over 1 m along x; the second frame has no pose.
+void fill_store(const std::filesystem::path& file, const bench::RunIdentity& identity,
                 const std::string& detail = "") {
-  Journal journal(file);
-  static_cast<void>(journal.claim(identity));
-  RunOutcome outcome;
-  outcome.outcome = detail.empty() ? Outcome::kOk : Outcome::kCrashed;
+  bench::StoreWriter writer(file);
+  static_cast<void>(writer.acquire(identity));
+  bench::RunOutcome outcome;
+  outcome.outcome = detail.empty() ? bench::Outcome::kOk : bench::Outcome::kCrashed;
   outcome.detail = detail;
   outcome.metrics = {{"ate_rmse_m", "compat:tum", "m", 0.25}};
   outcome.attachments["trajectory"] = "1.0 0 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n";
@@ -56,9 +56,11 @@ void fill_store(const std::filesystem::path& file, const RunIdentity& identity,
   outcome.attachments["timings"] =
       "frame,module,ns,calls\n0,feature_tracking,2000000,1\n2,feature_tracking,3000000,1\n";
   outcome.manifest = "{\"host\": {\"cpu\": \"</script><b>\"}}";
-  journal.finish(identity, outcome);
-  journal.record_plan(
-      {.name = "p", .title = "Plan <p>", .text = "title = \"<&>\"\n", .run_keys = {run_key(identity)}});
+  writer.finish(identity, outcome);
+  writer.record_plan({.name = "p",
+                      .title = "Plan <p>",
+                      .text = "title = \"<&>\"\n",
+                      .run_keys = {bench::run_key(identity)}});
 }
 
 const std::vector<double>& column(const RunSeries& series, const std::string& name) {
@@ -71,12 +73,12 @@ const std::vector<double>& column(const RunSeries& series, const std::string& na
 TEST(RunSeries, LinksPosesErrorsCountersAndTimesByFrame) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
-  const Store store(folder.path() / "s");
+  const bench::Store store(folder.path() / "s");
   const RunSeries series = run_series(store, store.runs().front());
   ASSERT_EQ(series.t_s.size(), 3u);
   EXPECT_NEAR(series.t_s[2], 0.2, 1e-12);
   EXPECT_TRUE(std::isnan(column(series, "x")[1]));
-  EXPECT_NEAR(column(series, "error_m")[2], 0.0, 1e-6);  // the path lies on the true one
+  EXPECT_NEAR(column(series, "error_m")[2], 0.0, 1e-6);  // estimate equals ground truth
   EXPECT_EQ(column(series, "dynamic")[0], 0.25);         // 25 of 100 features
   EXPECT_TRUE(std::isnan(column(series, "dynamic")[1]));
   EXPECT_EQ(column(series, "ms:feature_tracking")[2], 3.0);
@@ -85,40 +87,40 @@ TEST(RunSeries, LinksPosesErrorsCountersAndTimesByFrame) {
 TEST(ReportPage, IsAPureFunctionOfTheStore) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
-  const Store store(folder.path() / "s");
-  const Store again(folder.path() / "s");
+  const bench::Store store(folder.path() / "s");
+  const bench::Store again(folder.path() / "s");
   EXPECT_EQ(report_html(store, report_subject(store, "p")), report_html(again, report_subject(again, "")));
 }
 
-TEST(ReportPage, HostileNamesStayText) {
+TEST(ReportPage, EscapesHostileNames) {
   const TemporaryFolder folder;
   const std::string hostile = "</script><img src=x onerror=alert(1)>\"'\xFF<!--data-->\\";
   fill_store(folder.path() / "s", {.variant = hostile, .sequence = hostile, .build = hostile}, hostile);
-  const Store store(folder.path() / "s");
+  const bench::Store store(folder.path() / "s");
   const std::string page = report_html(store, report_subject(store, ""));
   EXPECT_EQ(page.find("<img src"), std::string::npos);
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
   EXPECT_EQ(page.find("<!--"), std::string::npos);
 }
 
-TEST(ReportPage, ShowsRunsWithNoPoseAndWithOne) {
+TEST(ReportPage, HandlesTrajectoriesWithoutPosesAndWithASingleOne) {
   const TemporaryFolder folder;
-  Journal journal(folder.path() / "s");
+  bench::StoreWriter writer(folder.path() / "s");
   for (const char* trajectory : {"# timestamp tx ty tz qx qy qz qw\n", "1.0 0 0 0 0 0 0 1\n"}) {
-    const RunIdentity identity{.variant = trajectory, .sequence = "market"};
-    static_cast<void>(journal.claim(identity));
-    RunOutcome outcome{.outcome = Outcome::kLost, .detail = "no frame has a pose"};
+    const bench::RunIdentity identity{.variant = trajectory, .sequence = "market"};
+    static_cast<void>(writer.acquire(identity));
+    bench::RunOutcome outcome{.outcome = bench::Outcome::kLost, .detail = "no frame has a pose"};
     outcome.attachments = {{"trajectory", trajectory}, {"truth", "1.0 0 0 0 0 0 0 1\n2.0 1 0 0 0 0 0 1\n"}};
-    journal.finish(identity, outcome);
+    writer.finish(identity, outcome);
   }
-  const Store store(folder.path() / "s");
+  const bench::Store store(folder.path() / "s");
   EXPECT_NE(report_html(store, report_subject(store, "")).find(">failed<"), std::string::npos);
 }
 
-TEST(ReportPage, RefersToNothingOutside) {
+TEST(ReportPage, HasNoExternalReferences) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
-  const Store store(folder.path() / "s");
+  const bench::Store store(folder.path() / "s");
   const std::string page = report_html(store, report_subject(store, ""));
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
   for (const char* reference : {"src=\"http", "href=\"http", "url(http", "@import"}) {
@@ -126,63 +128,63 @@ TEST(ReportPage, RefersToNothingOutside) {
   }
 }
 
-TEST(ReportPage, WeighsLessThanTheBudgetWithoutData) {
+TEST(ReportPage, SizeWithoutDataIsBelowTheBudget) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
-  const Store store(folder.path() / "s");
+  const bench::Store store(folder.path() / "s");
   EXPECT_LT(report_html(store, report_subject(store, "")).size(), 400'000u);
 }
 
-TEST(ReportSubject, NeverPutsTwoBuildsTogether) {
+TEST(ReportSubject, DoesNotMixBuilds) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "s";
-  // As a gate runs them: base, head, head, base. The head was begun last.
-  const std::vector<RunIdentity> pairs = {
+  // The order of the regression gate: base, head, head, base. The first run of head is the later one.
+  const std::vector<bench::RunIdentity> pairs = {
       {.variant = "vo", .sequence = "a", .build = "base", .repetition = 1},
       {.variant = "vo", .sequence = "a", .build = "head", .repetition = 1},
       {.variant = "vo", .sequence = "a", .build = "head", .repetition = 2},
       {.variant = "vo", .sequence = "a", .build = "base", .repetition = 2}};
-  Journal journal(file);
+  bench::StoreWriter writer(file);
   std::vector<std::string> keys;
-  for (const RunIdentity& identity : pairs) {
-    static_cast<void>(journal.claim(identity));
-    journal.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", identity.build == "head" ? 2.0 : 1.0}}});
-    keys.push_back(run_key(identity));
+  for (const bench::RunIdentity& identity : pairs) {
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", identity.build == "head" ? 2.0 : 1.0}}});
+    keys.push_back(bench::run_key(identity));
   }
-  journal.record_plan({.name = "p", .title = "", .text = "", .run_keys = keys});
-  const Store store(file);
+  writer.record_plan({.name = "p", .title = "", .text = "", .run_keys = keys});
+  const bench::Store store(file);
   const ReportSubject subject = report_subject(store, "p");
   ASSERT_EQ(subject.runs.size(), 2u);
   EXPECT_EQ(subject.other_runs.size(), 2u);
   EXPECT_EQ(report_tables(subject).front().rows[0].cells[0].number, 2.0);
-  EXPECT_NE(report_html(store, subject).find("Against build base: worse"), std::string::npos);
+  EXPECT_NE(report_html(store, subject).find("Compared with build base: worse"), std::string::npos);
 }
 
-TEST(ReportSubject, NamesThePlansThatThereAre) {
+TEST(ReportSubject, ErrorListsTheKnownPlans) {
   const TemporaryFolder folder;
   fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
-  const Store store(folder.path() / "s");
+  const bench::Store store(folder.path() / "s");
   expect_input_error([&] { static_cast<void>(report_subject(store, "q")); }, {"\"q\"", "p"});
 }
 
-TEST(Summary, SaysWhatFailedAndWhatIsBest) {
-  StoredRun good;
+TEST(Summary, NamesFailedRunsAndTheBestVariant) {
+  bench::StoredRun good;
   good.identity = {.variant = "a", .sequence = "s"};
   good.metrics = {{"ate_rmse_m", "", "m", 1.0}};
-  StoredRun better = good;
+  bench::StoredRun better = good;
   better.identity.variant = "b";
   better.metrics.front().value = 0.5;
-  StoredRun lost = good;
+  bench::StoredRun lost = good;
   lost.identity.variant = "c";
-  lost.outcome = Outcome::kLost;
+  lost.outcome = bench::Outcome::kLost;
   lost.detail = "no frame has a pose";
-  const std::vector<StoredRun> runs = {good, better, lost};
+  const std::vector<bench::StoredRun> runs = {good, better, lost};
   const std::vector<std::string> sentences = outcome_sentences(runs);
   ASSERT_EQ(sentences.size(), 2u);
-  EXPECT_EQ(sentences[0], "3 runs of 3 variants on 1 sequence: 1 run did not end well.");
+  EXPECT_EQ(sentences[0], "3 runs of 3 variants on 1 sequence: 1 run failed.");
   EXPECT_EQ(sentences[1], "c on s: lost, no frame has a pose.");
-  EXPECT_EQ(best_sentence(runs), "b has the smallest trajectory error on 1 of 1 sequences.");
+  EXPECT_EQ(best_sentence(runs), "b has the smallest ATE on 1 of 1 sequences.");
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::report

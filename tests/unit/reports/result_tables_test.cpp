@@ -5,11 +5,11 @@
 
 #include "reports/tables/paper_tables.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-StoredRun run_of(const std::string& variant, const std::string& sequence, double ate) {
-  StoredRun run;
+bench::StoredRun run_of(const std::string& variant, const std::string& sequence, double ate) {
+  bench::StoredRun run;
   run.key = variant + sequence;
   run.identity = {.variant = variant, .sequence = sequence};
   run.metrics = {{"ate_rmse_m", "compat:tum", "m", ate}};
@@ -17,16 +17,17 @@ StoredRun run_of(const std::string& variant, const std::string& sequence, double
   return run;
 }
 
-StoredRun crashed_run(const std::string& variant, const std::string& sequence) {
-  StoredRun run;
+bench::StoredRun crashed_run(const std::string& variant, const std::string& sequence) {
+  bench::StoredRun run;
   run.identity = {.variant = variant, .sequence = sequence, .repetition = 2};
-  run.outcome = Outcome::kCrashed;
+  run.outcome = bench::Outcome::kCrashed;
   run.detail = "ended by signal 11";
   return run;
 }
 
-TEST(MetricTables, AreMediansWithTheBestOfEachColumnInBold) {
-  const std::vector<StoredRun> runs = {run_of("a", "s", 1.0), run_of("a", "s", 3.0), run_of("b", "s", 1.5)};
+TEST(MetricTables, ShowMediansAndMarkTheBestOfEachColumn) {
+  const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), run_of("a", "s", 3.0),
+                                              run_of("b", "s", 1.5)};
   const std::vector<ReportTable> tables = metric_tables(runs);
   ASSERT_EQ(tables.size(), 1u);
   const ReportTable& table = tables.front();
@@ -36,51 +37,52 @@ TEST(MetricTables, AreMediansWithTheBestOfEachColumnInBold) {
   EXPECT_FALSE(table.rows[0].cells[0].is_best);
   EXPECT_TRUE(table.rows[1].cells[0].is_best);
   EXPECT_EQ(table.rows[1].cells[0].run_keys, std::vector<std::string>{"bs"});
-  EXPECT_EQ(table.rows[1].cells[0].recipe, "compat:tum");
+  EXPECT_EQ(table.rows[1].cells[0].protocol, "compat:tum");
 }
 
 TEST(MetricTables, MarkFailedAndPartialCells) {
-  const std::vector<StoredRun> runs = {run_of("a", "s", 1.0), crashed_run("a", "s"), crashed_run("b", "s")};
+  const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), crashed_run("a", "s"),
+                                              crashed_run("b", "s")};
   const ReportTable table = metric_tables(runs).front();
   EXPECT_EQ(table.rows[0].cells[0].state, CellState::kPartial);
-  EXPECT_EQ(table.rows[0].cells[0].note, "1 of 2 runs did not end well: crashed (ended by signal 11)");
+  EXPECT_EQ(table.rows[0].cells[0].note, "1 of 2 runs failed: crashed (ended by signal 11)");
   EXPECT_EQ(table.rows[1].cells[0].state, CellState::kFailed);
   EXPECT_EQ(number_text(table.columns[0], table.rows[1].cells[0]), "failed");
 }
 
-TEST(MetricTables, AreThereWhenEveryRunFailed) {
-  const std::vector<StoredRun> runs = {crashed_run("a", "s")};
+TEST(MetricTables, ExistIfEveryRunFailed) {
+  const std::vector<bench::StoredRun> runs = {crashed_run("a", "s")};
   ASSERT_EQ(metric_tables(runs).size(), 1u);
 }
 
-TEST(CostTable, TellsTheTimesOfTimedRunsWhereThereAreAny) {
-  StoredRun timed = run_of("a", "s", 1.0);
+TEST(CostTable, PrefersTimingRuns) {
+  bench::StoredRun timed = run_of("a", "s", 1.0);
   timed.identity.kind = "timing";
   timed.costs.front().mean_ms = 1.0;
-  const std::vector<StoredRun> runs = {run_of("a", "s", 1.0), timed, run_of("b", "s", 1.0)};
+  const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), timed, run_of("b", "s", 1.0)};
   const ReportTable table = cost_table(runs);
   EXPECT_EQ(table.rows[0].cells[0].number, 1.0);  // not the median of 1 and 2 ms
-  EXPECT_EQ(table.rows[1].cells[0].number, 2.0);  // b was never timed
+  EXPECT_EQ(table.rows[1].cells[0].number, 2.0);  // b has no timing runs
 }
 
-TEST(PaperTables, AreKnownByTheirPlans) {
+TEST(PaperTables, AreSelectedByPlanName) {
   EXPECT_EQ(paper_table_of("table2_ablation"), PaperTable::kTable2);
   EXPECT_FALSE(paper_table_of("quick"));
 }
 
-TEST(MetricTables, LeaveSweepsOut) {
-  StoredRun swept = run_of("a", "s", 9.0);
+TEST(MetricTables, ExcludeSweeps) {
+  bench::StoredRun swept = run_of("a", "s", 9.0);
   swept.identity.axis = "synth.walkers";
-  const std::vector<StoredRun> runs = {run_of("a", "s", 1.0), swept};
+  const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), swept};
   EXPECT_EQ(metric_tables(runs).front().rows[0].cells[0].number, 1.0);
 }
 
-const TableCell& cell_of(const ReportTable& table, const std::string& label, const std::string& from,
+const TableCell& cell_of(const ReportTable& table, const std::string& label, const std::string& source,
                          std::size_t column) {
   for (const TableRow& row : table.rows) {
-    if (row.label == label && row.from == from) return row.cells.at(column);
+    if (row.label == label && row.source == source) return row.cells.at(column);
   }
-  throw std::out_of_range(label + " " + from);
+  throw std::out_of_range(label + " " + source);
 }
 
 TEST(PaperTables, TableIHasThePapersNumbersAndLayout) {
@@ -96,8 +98,8 @@ TEST(PaperTables, TableIHasThePapersNumbersAndLayout) {
   EXPECT_EQ(cell_of(table, "walking_xyz", "ours", 9).state, CellState::kEmpty);
 }
 
-TEST(PaperTables, DifferenceIsOursLessPublished) {
-  const std::vector<StoredRun> runs = {run_of("dynamic_vins_vo", "walking_static", 0.0100)};
+TEST(PaperTables, DifferenceIsOursMinusPublished) {
+  const std::vector<bench::StoredRun> runs = {run_of("dynamic_vins_vo", "walking_static", 0.0100)};
   const ReportTable table = paper_table(PaperTable::kTable1, runs);
   EXPECT_EQ(cell_of(table, "walking_static", "ours", 9).number, 0.0100);
   EXPECT_NEAR(*cell_of(table, "walking_static", "difference", 9).number, 0.0100 - 0.0077, 1e-12);
@@ -116,8 +118,8 @@ TEST(PaperTables, TableIIFlagsTheIdenticalRowsAndNoOthers) {
   EXPECT_FALSE(cell_of(table, "walking_static", "published", 0).note.empty());
 }
 
-TEST(PaperTables, TableIIIHoldsOurTimesBelowThePublishedOnes) {
-  const std::vector<StoredRun> runs = {run_of("dynamic_vins", "market", 1.0)};
+TEST(PaperTables, TableIIIListsOurTimesBelowThePublishedOnes) {
+  const std::vector<bench::StoredRun> runs = {run_of("dynamic_vins", "market", 1.0)};
   const ReportTable table = paper_table(PaperTable::kTable3, runs);
   EXPECT_EQ(cell_of(table, "Dynamic-VINS on Atlas200 DK", "published", 0).number, 15.535);
   EXPECT_EQ(cell_of(table, "VINS-Mono on Atlas200 DK", "published", 3).state, CellState::kEmpty);
@@ -125,4 +127,4 @@ TEST(PaperTables, TableIIIHoldsOurTimesBelowThePublishedOnes) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::report

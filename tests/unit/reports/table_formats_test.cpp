@@ -12,10 +12,10 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
-/// Names that have broken pages and tables before.
+/// Names that break unescaped pages and tables.
 const std::vector<std::string> kHostile = {"<script>alert('x')</script>",
                                            "\"quoted\" & 'more'",
                                            "\\input{/etc/passwd} $x_1^2$ 50% #1 ~",
@@ -32,10 +32,10 @@ ReportTable hostile_table() {
   for (const std::string& name : kHostile)
     table.columns.push_back({.group = name, .name = name, .unit = name, .decimals = 3});
   for (const std::string& name : kHostile) {
-    TableRow row{.label = name, .from = name, .cells = {}};
+    TableRow row{.label = name, .source = name, .cells = {}};
     for (const std::string& note : kHostile) {
       row.cells.push_back(
-          {.number = 1.0, .state = CellState::kOk, .note = note, .run_keys = {"0a"}, .recipe = name});
+          {.number = 1.0, .state = CellState::kOk, .note = note, .run_keys = {"0a"}, .protocol = name});
     }
     table.rows.push_back(std::move(row));
   }
@@ -55,21 +55,21 @@ ReportTable small_table() {
                       .is_best = true,
                       .note = "1 of 3 runs failed",
                       .count = 2,
-                      .interval = Interval{0.04, 0.05}},
+                      .interval = eval::Interval{0.04, 0.05}},
                      {.state = CellState::kFailed}}}},
           .notes = {"A note."}};
 }
 
-TEST(TableFormats, MarkdownMarksBestAndFootnotes) {
+TEST(TableFormats, MarkdownMarksBestValuesAndFootnotes) {
   EXPECT_EQ(table_markdown(small_table()),
             "## Small\n\n"
-            "| sequence | from | A: ATE \\[m\\]   | B: ATE \\[m\\] |\n"
-            "|----------|------|----------------|--------------|\n"
-            "| xyz      | ours | **0.0486** (a) | failed |\n\n"
+            "| sequence | source | A: ATE \\[m\\]   | B: ATE \\[m\\] |\n"
+            "|----------|--------|----------------|--------------|\n"
+            "| xyz      | ours   | **0.0486** (a) | failed |\n\n"
             "- (a) 1 of 3 runs failed\n- A note.\n");
 }
 
-TEST(TableFormats, SpreadIsShownOnDemand) {
+TEST(TableFormats, SpreadIsShownOnRequest) {
   EXPECT_NE(table_markdown(small_table(), TableDetail::kSpread).find("0.0486 (n 2, 0.0400 to 0.0500)"),
             std::string::npos);
   EXPECT_EQ(table_markdown(small_table()).find("(n 2"), std::string::npos);
@@ -84,14 +84,14 @@ TEST(TableFormats, LatexHasBooktabsAndGroups) {
   }
 }
 
-TEST(TableFormats, CsvHasALineForEachCell) {
+TEST(TableFormats, CsvHasOneLinePerCell) {
   EXPECT_EQ(table_csv(small_table()),
-            "row,from,group,column,unit,value,n,low,high,state,note\n"
+            "row,source,group,column,unit,value,n,low,high,state,note\n"
             "xyz,ours,A,ATE,m,0.0486,2,0.0400,0.0500,partial,1 of 3 runs failed\n"
             "xyz,ours,B,ATE,m,,0,,,failed,\n");
 }
 
-/// Numbers of a Markdown table, row by row, without marks.
+/// Numbers of a Markdown table, row by row, without markup.
 std::vector<std::string> markdown_numbers(const std::string& text) {
   std::vector<std::string> numbers;
   std::string word;
@@ -106,13 +106,13 @@ std::vector<std::string> markdown_numbers(const std::string& text) {
   return numbers;
 }
 
-TEST(TableFormats, AllCarryEqualNumbers) {
+TEST(TableFormats, NumbersAreEqualInAllFormats) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> exponent(-4.0, 5.0);
   for (int trial = 0; trial < 50; ++trial) {
     ReportTable table{.name = "t", .title = "t", .row_heading = "r"};
     for (int decimals = 1; decimals <= 5; ++decimals) table.columns.push_back({"", "c", "", decimals});
-    TableRow row{.label = "r", .from = "", .cells = {}};
+    TableRow row{.label = "r", .source = "", .cells = {}};
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       const double sign = trial % 2 == 0 ? 1.0 : -1.0;
       row.cells.push_back({.number = sign * std::pow(10.0, exponent(random)), .state = CellState::kOk});
@@ -132,17 +132,17 @@ TEST(TableFormats, AllCarryEqualNumbers) {
   }
 }
 
-TEST(TableFormats, HostileNamesStayTextInHtml) {
+TEST(TableFormats, HostileNamesAreEscapedInHtml) {
   const std::string text = table_html(hostile_table());
   EXPECT_EQ(text.find("<script"), std::string::npos);
   EXPECT_EQ(text.find("<!--"), std::string::npos);
   EXPECT_EQ(text.find("'x'"), std::string::npos);
 }
 
-TEST(TableFormats, HostileNamesKeepRowsAndColumns) {
+TEST(TableFormats, HostileNamesDoNotBreakRowsOrColumns) {
   const ReportTable table = hostile_table();
   const std::string markdown = table_markdown(table);
-  // Title, blank, head, rule and one line for each row begin what is there; none was broken in two.
+  // Only the header and the table rows start with "| "; no row is split.
   std::istringstream lines(markdown);
   std::string line;
   std::size_t rows = 0;
@@ -154,7 +154,7 @@ TEST(TableFormats, HostileNamesKeepRowsAndColumns) {
   EXPECT_NO_THROW(static_cast<void>(table_json(table).dump()));
 }
 
-/// Depth of braces never falls below 0 and ends at 0; escaped ones do not count.
+/// Whether unescaped braces are balanced.
 bool has_balanced_braces(const std::string& text) {
   int depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -183,4 +183,4 @@ TEST(TableFormats, LatexCompiles) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::report

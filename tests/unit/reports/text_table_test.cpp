@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/text_table.h"
+#include "reports/tables/text_table.h"
 
 #include <gtest/gtest.h>
 
-namespace stillpoint {
+namespace stillpoint::report {
 namespace {
 
 const TableRows kRows{{"name", "ATE"}, {"a, \"b\"", "0.5"}};
@@ -24,4 +24,4 @@ TEST(FormatTable, QuotesTheCellsOfCsvThatNeedIt) {
 TEST(FormatTable, IsEmptyWithoutRows) { EXPECT_EQ(format_table({}, TableStyle::kText), ""); }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::report

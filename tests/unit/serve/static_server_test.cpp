@@ -13,10 +13,10 @@
 
 #include "tests/support/expect_input_error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-/// A connection to a server on this machine; closed at its end.
+/// A TCP connection to a local server; closed by the destructor.
 class Client {
  public:
   explicit Client(std::uint16_t port, const char* address = "127.0.0.1")
@@ -25,7 +25,7 @@ class Client {
     server.sin_family = AF_INET;
     server.sin_port = htons(port);
     inet_pton(AF_INET, address, &server.sin_addr);
-    wait_at_most({5, 0});
+    set_receive_timeout({5, 0});
     connected_ = connect(socket_, reinterpret_cast<const sockaddr*>(&server), sizeof server) == 0;
   }
   ~Client() { close(socket_); }
@@ -34,27 +34,27 @@ class Client {
 
   [[nodiscard]] bool connected() const { return connected_; }
 
-  /// How long `received` waits for more.
-  void wait_at_most(timeval patience) const {
-    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  /// Timeout of `received`.
+  void set_receive_timeout(timeval timeout) const {
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof timeout);
   }
 
-  /// Sends as much as the server takes.
+  /// Sends until the server stops accepting data.
   void send_text(const std::string& text) const {
     std::size_t sent = 0;
     while (sent < text.size()) {
-      const ssize_t got = send(socket_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
-      if (got <= 0) return;
-      sent += static_cast<std::size_t>(got);
+      const ssize_t count = send(socket_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+      if (count <= 0) return;
+      sent += static_cast<std::size_t>(count);
     }
   }
 
-  /// All that comes until the server closes the connection; nothing if it has been reset.
+  /// Receives until the server closes the connection; empty if the connection was reset.
   [[nodiscard]] std::string received() const {
     std::string text;
     std::array<char, 4096> block{};
-    for (ssize_t got = 0; (got = recv(socket_, block.data(), block.size(), 0)) > 0;)
-      text.append(block.data(), static_cast<std::size_t>(got));
+    for (ssize_t count = 0; (count = recv(socket_, block.data(), block.size(), 0)) > 0;)
+      text.append(block.data(), static_cast<std::size_t>(count));
     return text;
   }
 
@@ -66,7 +66,7 @@ class Client {
 const std::vector<OutputFile> kFiles = {
     {"index.html", "<p>index</p>"}, {"commits/a.html", "<p>a</p>"}, {"r.json", "{}"}};
 
-StaticServer served() { return StaticServer(kFiles, {.port = 0}); }
+StaticServer make_server() { return StaticServer(kFiles, {.port = 0}); }
 
 std::string reply_of(const StaticServer& server, const std::string& request) {
   const Client client(server.port());
@@ -79,11 +79,13 @@ std::string request_of(const std::string& method, const std::string& path,
   return method + " " + path + " HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n";
 }
 
-/// "200" of "HTTP/1.1 200 OK..."; nothing of no answer.
-std::string status_of(const std::string& answer) { return answer.size() < 12 ? "" : answer.substr(9, 3); }
+/// "200" of "HTTP/1.1 200 OK..."; empty for an empty response.
+std::string status_of(const std::string& response) {
+  return response.size() < 12 ? "" : response.substr(9, 3);
+}
 
-TEST(StaticServer, GivesItsFiles) {
-  const StaticServer server = served();
+TEST(StaticServer, ServesItsFiles) {
+  const StaticServer server = make_server();
   const std::string index = reply_of(server, request_of("GET", "/"));
   EXPECT_EQ(status_of(index), "200");
   EXPECT_TRUE(index.ends_with("\r\n\r\n<p>index</p>"));
@@ -92,22 +94,22 @@ TEST(StaticServer, GivesItsFiles) {
   EXPECT_NE(reply_of(server, request_of("GET", "/r.json")).find("application/json"), std::string::npos);
 }
 
-TEST(StaticServer, AnswersHeadWithoutContent) {
-  const std::string answer = reply_of(served(), request_of("HEAD", "/index.html"));
-  EXPECT_EQ(status_of(answer), "200");
-  EXPECT_NE(answer.find("Content-Length: 12"), std::string::npos);
-  EXPECT_TRUE(answer.ends_with("\r\n\r\n"));
+TEST(StaticServer, AnswersHeadWithoutBody) {
+  const std::string response = reply_of(make_server(), request_of("HEAD", "/index.html"));
+  EXPECT_EQ(status_of(response), "200");
+  EXPECT_NE(response.find("Content-Length: 12"), std::string::npos);
+  EXPECT_TRUE(response.ends_with("\r\n\r\n"));
 }
 
-TEST(StaticServer, RefusesOtherMethods) {
-  const StaticServer server = served();
+TEST(StaticServer, RejectsOtherMethods) {
+  const StaticServer server = make_server();
   for (const char* method : {"POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE", "get"})
     EXPECT_EQ(status_of(reply_of(server, request_of(method, "/"))), "405") << method;
   EXPECT_NE(reply_of(server, request_of("POST", "/")).find("Allow: GET, HEAD"), std::string::npos);
 }
 
-TEST(StaticServer, HasNoWayToTheDisk) {
-  const StaticServer server = served();
+TEST(StaticServer, DoesNotAccessTheFileSystem) {
+  const StaticServer server = make_server();
   for (const char* path : {"/../etc/passwd", "/commits/../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd",
                            "/..%2f..%2fetc%2fpasswd", "/%252e%252e/etc/passwd", "/%c0%ae%c0%ae/etc/passwd",
                            "//etc/passwd", "/commits/", "/commits", "\\..\\etc"}) {
@@ -116,59 +118,59 @@ TEST(StaticServer, HasNoWayToTheDisk) {
   }
 }
 
-TEST(StaticServer, RefusesLongRequests) {
-  const StaticServer server = served();
+TEST(StaticServer, RejectsLongRequests) {
+  const StaticServer server = make_server();
   const std::string long_path = reply_of(server, request_of("GET", "/" + std::string(100'000, 'a')));
   EXPECT_EQ(status_of(long_path), "414");
   std::string many_headers = "GET / HTTP/1.1\r\nHost: localhost\r\n";
-  for (int i = 0; i < 5000; ++i) many_headers += "X-Header-" + std::to_string(i) + ": some text in it\r\n";
-  const std::string refused = status_of(reply_of(server, many_headers + "\r\n"));
-  EXPECT_TRUE(refused == "431" || refused.empty()) << refused;  // empty: it was reset while it was still sent
+  for (int i = 0; i < 5000; ++i) many_headers += "X-Header-" + std::to_string(i) + ": some text\r\n";
+  const std::string status = status_of(reply_of(server, many_headers + "\r\n"));
+  EXPECT_TRUE(status == "431" || status.empty()) << status;  // empty: connection reset during sending
   EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/"))), "200");
 }
 
 TEST(StaticServer, DoesNotReadBodies) {
-  const StaticServer server = served();
+  const StaticServer server = make_server();
   const Client client(server.port());
   client.send_text("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000000000\r\n\r\n");
-  EXPECT_EQ(status_of(client.received()), "405");  // though none of the body has come
+  EXPECT_EQ(status_of(client.received()), "405");  // before any of the body was received
 }
 
-TEST(StaticServer, IsReachedByItsAddressAlone) {
-  const StaticServer server = served();
+TEST(StaticServer, ListensOnItsAddressOnly) {
+  const StaticServer server = make_server();
   EXPECT_TRUE(Client(server.port()).connected());
-  EXPECT_FALSE(Client(server.port(), "127.0.0.2").connected());  // would be, if it listened on every address
+  EXPECT_FALSE(Client(server.port(), "127.0.0.2").connected());  // succeeds on a wildcard address
 }
 
-TEST(StaticServer, AnswersOnlyRequestsThatNameThisMachine) {
-  const StaticServer server = served();
+TEST(StaticServer, RejectsRequestsWithAForeignHostHeader) {
+  const StaticServer server = make_server();
   EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/", "127.0.0.1:8035"))), "200");
   for (const char* host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example:80"})
     EXPECT_EQ(status_of(reply_of(server, request_of("GET", "/", host))), "403") << host;
 }
 
-TEST(StaticServer, HoldsABoundedNumberOfConnections) {
+TEST(StaticServer, LimitsTheNumberOfConnections) {
   constexpr int kConnections = 32;
-  const StaticServer server = served();
-  std::vector<std::unique_ptr<Client>> silent;
-  for (int i = 0; i < kConnections; ++i) silent.push_back(std::make_unique<Client>(server.port()));
+  const StaticServer server = make_server();
+  std::vector<std::unique_ptr<Client>> idle;
+  for (int i = 0; i < kConnections; ++i) idle.push_back(std::make_unique<Client>(server.port()));
   const Client late(server.port());
   late.send_text(request_of("GET", "/"));
-  late.wait_at_most({0, 30'000});
-  EXPECT_EQ(late.received(), "");  // it waits until another goes
-  silent.pop_back();
-  late.wait_at_most({5, 0});
+  late.set_receive_timeout({0, 30'000});
+  EXPECT_EQ(late.received(), "");  // queued until another connection is closed
+  idle.pop_back();
+  late.set_receive_timeout({5, 0});
   EXPECT_EQ(status_of(late.received()), "200");
 }
 
-TEST(StaticServer, SaysWhatItCannotListenOn) {
+TEST(StaticServer, RejectsInvalidAddressesAndPortsInUse) {
   expect_input_error([] { const StaticServer server(kFiles, {.address = "here", .port = 0}); },
                      {"--address", "here"});
   expect_input_error([] { const StaticServer server(kFiles, {.port = 70000}); }, {"--port"});
-  const StaticServer first = served();
+  const StaticServer first = make_server();
   expect_input_error([&] { const StaticServer second(kFiles, {.port = first.port()}); },
                      {"--port", "in use"});
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

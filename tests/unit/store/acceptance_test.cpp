@@ -3,13 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/store/journal.h"
 #include "bench/store/maintenance.h"
-#include "bench/store/schema.h"
+#include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,14 +23,14 @@ const Acceptance kFaster{.commit = "abc",
 /// A store with one run.
 fs::path small_store(const TemporaryFolder& folder, const std::string& name) {
   fs::path file = folder.path() / name;
-  Journal journal(file);
+  StoreWriter writer(file);
   const RunIdentity identity{.variant = "vo", .sequence = "office"};
-  static_cast<void>(journal.claim(identity));
-  journal.finish(identity, {.metrics = {{"ate_rmse_m", "r", "m", 0.5}}});
+  static_cast<void>(writer.acquire(identity));
+  writer.finish(identity, {.metrics = {{"ate_rmse_m", "r", "m", 0.5}}});
   return file;
 }
 
-TEST(Acceptances, AreKeptAndReplacedByTheirSubject) {
+TEST(Acceptances, AreStoredAndReplacedBySubject) {
   const TemporaryFolder folder;
   const fs::path file = small_store(folder, "s");
   write_acceptances(file, {kFaster});
@@ -40,13 +39,13 @@ TEST(Acceptances, AreKeptAndReplacedByTheirSubject) {
   Acceptance other = kFaster;
   other.variant = "";
   write_acceptances(file, {again, other});
-  const std::vector<Acceptance> kept = Store(file).acceptances();
-  ASSERT_EQ(kept.size(), 2u);
-  EXPECT_EQ(kept[0].variant, "");
-  EXPECT_EQ(kept[1].reason, "another");
+  const std::vector<Acceptance> stored = Store(file).acceptances();
+  ASSERT_EQ(stored.size(), 2u);
+  EXPECT_EQ(stored[0].variant, "");
+  EXPECT_EQ(stored[1].reason, "another");
 }
 
-TEST(Acceptances, CanBeTakenBack) {
+TEST(Acceptances, CanBeWithdrawn) {
   const TemporaryFolder folder;
   const fs::path file = small_store(folder, "s");
   write_acceptances(file, {kFaster});
@@ -55,27 +54,27 @@ TEST(Acceptances, CanBeTakenBack) {
   EXPECT_TRUE(Store(file).acceptances().empty());
 }
 
-TEST(Acceptances, DoNotMakeAStore) {
+TEST(Acceptances, DoNotCreateAStore) {
   const TemporaryFolder folder;
   expect_input_error([&] { write_acceptances(folder.path() / "none", {kFaster}); }, {"no such store"});
   EXPECT_FALSE(fs::exists(folder.path() / "none"));
 }
 
-TEST(Acceptances, GoWithTheRunsIntoOtherStores) {
+TEST(Acceptances, AreMergedAndImportedWithTheRuns) {
   const TemporaryFolder folder;
   const fs::path file = small_store(folder, "s");
   write_acceptances(file, {kFaster});
   static_cast<void>(merge_stores(file, folder.path() / "merged"));
   static_cast<void>(import_store(export_store(file), "text", folder.path() / "imported"));
   for (const char* name : {"merged", "imported"}) {
-    const std::vector<Acceptance> kept = Store(folder.path() / name).acceptances();
-    ASSERT_EQ(kept.size(), 1u) << name;
-    EXPECT_EQ(kept.front().reason, kFaster.reason);
-    EXPECT_EQ(kept.front().accepted, kFaster.accepted);
+    const std::vector<Acceptance> stored = Store(folder.path() / name).acceptances();
+    ASSERT_EQ(stored.size(), 1u) << name;
+    EXPECT_EQ(stored.front().reason, kFaster.reason);
+    EXPECT_EQ(stored.front().accepted, kFaster.accepted);
   }
 }
 
-TEST(Acceptances, ComeFromAFileOfThemAlone) {
+TEST(Acceptances, AreImportedFromAFileWithoutRuns) {
   const TemporaryFolder folder;
   const fs::path file = small_store(folder, "s");
   constexpr const char* kText =
@@ -86,32 +85,5 @@ TEST(Acceptances, ComeFromAFileOfThemAlone) {
   EXPECT_EQ(Store(file).acceptances().front().reason, "why");
 }
 
-/// A store as the first schema had it.
-fs::path first_schema_store(const TemporaryFolder& folder) {
-  fs::path file = small_store(folder, "old");
-  Database(file, DatabaseAccess::kWrite).execute("DROP TABLE acceptance; PRAGMA user_version = 1");
-  return file;
-}
-
-TEST(Acceptances, AStoreOfTheFirstSchemaIsReadAsItIs) {
-  const TemporaryFolder folder;
-  const fs::path file = first_schema_store(folder);
-  const Store store(file);
-  EXPECT_EQ(store.runs().size(), 1u);
-  EXPECT_TRUE(store.acceptances().empty());
-  EXPECT_EQ(Database(file, DatabaseAccess::kRead).integer("PRAGMA user_version"), 1);
-}
-
-TEST(Acceptances, TheFirstOneBringsAnOlderStoreUpToDateAndKeepsItsRuns) {
-  const TemporaryFolder folder;
-  const fs::path file = first_schema_store(folder);
-  write_acceptances(file, {kFaster});
-  EXPECT_EQ(Database(file, DatabaseAccess::kRead).integer("PRAGMA user_version"), schema_version());
-  const Store store(file);
-  ASSERT_EQ(store.runs().size(), 1u);
-  EXPECT_EQ(metric_value(store.runs().front(), "ate_rmse_m"), 0.5);
-  EXPECT_EQ(store.acceptances().size(), 1u);
-}
-
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -8,10 +8,10 @@
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-TEST(BlobFiles, GiveBackWhatWasPut) {
+TEST(BlobFiles, ReturnTheStoredContent) {
   const TemporaryFolder folder;
   const BlobFiles blobs(folder.path() / "blobs");
   const std::string text(100'000, 'x');
@@ -21,7 +21,7 @@ TEST(BlobFiles, GiveBackWhatWasPut) {
   EXPECT_LT(std::filesystem::file_size(blobs.file(name)), 1000u);  // it is compressed
 }
 
-TEST(BlobFiles, KeepEqualContentsOnce) {
+TEST(BlobFiles, StoreEqualContentsOnce) {
   const TemporaryFolder folder;
   const BlobFiles blobs(folder.path());
   EXPECT_EQ(blobs.put("same"), blobs.put("same"));
@@ -29,26 +29,25 @@ TEST(BlobFiles, KeepEqualContentsOnce) {
   EXPECT_EQ(blobs.names().size(), 2u);
 }
 
-TEST(BlobFiles, KeepTheEmptyContent) {
+TEST(BlobFiles, StoreAnEmptyContent) {
   const TemporaryFolder folder;
   const BlobFiles blobs(folder.path());
   EXPECT_EQ(blobs.get(blobs.put("")), "");
 }
 
-TEST(BlobFiles, SayWhichFileIsDamaged) {
+TEST(BlobFiles, NameTheDamagedFile) {
   const TemporaryFolder folder;
   const BlobFiles blobs(folder.path());
   const std::string first = blobs.put("first");
   const std::string second = blobs.put("second");
   std::filesystem::copy_file(blobs.file(first), blobs.file(second),
                              std::filesystem::copy_options::overwrite_existing);
-  expect_input_error([&] { static_cast<void>(blobs.get(second)); },
-                     {second, "does not hold what its name says"});
-  std::ofstream(blobs.file(first), std::ios::trunc) << "no zstd";
-  expect_input_error([&] { static_cast<void>(blobs.get(first)); }, {first, "is no zstd file"});
+  expect_input_error([&] { static_cast<void>(blobs.get(second)); }, {second, "does not match its hash"});
+  std::ofstream(blobs.file(first), std::ios::trunc) << "not zstd";
+  expect_input_error([&] { static_cast<void>(blobs.get(first)); }, {first, "is not a zstd file"});
   std::filesystem::remove(blobs.file(first));
   expect_input_error([&] { static_cast<void>(blobs.get(first)); }, {first, "is missing"});
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

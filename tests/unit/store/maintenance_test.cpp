@@ -5,11 +5,11 @@
 
 #include <fstream>
 
-#include "bench/store/journal.h"
+#include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,24 +20,24 @@ RunIdentity identity_of(const std::string& variant) { return {.variant = variant
 fs::path store_of(const TemporaryFolder& folder, const std::string& name,
                   const std::vector<std::string>& variants) {
   fs::path file = folder.path() / name;
-  Journal journal(file);
+  StoreWriter writer(file);
   for (const std::string& variant : variants) {
-    static_cast<void>(journal.claim(identity_of(variant)));
-    journal.finish(identity_of(variant), {.outcome = Outcome::kOk,
-                                          .metrics = {{"ate_rmse_m", "r", "m", 0.5}},
-                                          .costs = {{"window_solve", "call", 3, 1.0, 1.0, 2.0, 3.0}},
-                                          .attachments = {{"log", "log of " + variant}},
-                                          .manifest = "{}"});
+    static_cast<void>(writer.acquire(identity_of(variant)));
+    writer.finish(identity_of(variant), {.outcome = Outcome::kOk,
+                                         .metrics = {{"ate_rmse_m", "r", "m", 0.5}},
+                                         .costs = {{"window_solve", "call", 3, 1.0, 1.0, 2.0, 3.0}},
+                                         .attachments = {{"log", "log of " + variant}},
+                                         .manifest = "{}"});
   }
   return file;
 }
 
-TEST(StoreMaintenance, AWholeStoreHasNoFaults) {
+TEST(StoreMaintenance, AnIntactStoreHasNoFaults) {
   const TemporaryFolder folder;
   EXPECT_TRUE(verify_store(store_of(folder, "s.sqlite", {"a", "b"})).empty());
 }
 
-TEST(StoreMaintenance, NamesEveryFileThatIsDamagedOrMissing) {
+TEST(StoreMaintenance, VerifyListsDamagedAndMissingFiles) {
   const TemporaryFolder folder;
   const fs::path file = store_of(folder, "s.sqlite", {"a", "b", "c"});
   const BlobFiles blobs(files_folder(file) / "blobs");
@@ -46,10 +46,10 @@ TEST(StoreMaintenance, NamesEveryFileThatIsDamagedOrMissing) {
   EXPECT_EQ(verify_store(file).size(), 2u);
 }
 
-TEST(StoreMaintenance, CollectsOnlyWhatNoRunNames) {
+TEST(StoreMaintenance, GarbageCollectionRemovesOnlyUnreferencedFiles) {
   const TemporaryFolder folder;
   const fs::path file = store_of(folder, "s.sqlite", {"a", "b"});
-  Journal(file).forget({run_key(identity_of("a"))}, {Outcome::kOk});
+  StoreWriter(file).remove_runs({run_key(identity_of("a"))}, {Outcome::kOk});
   const GarbageReport report = collect_garbage(file);
   EXPECT_EQ(report.files, 1u);
   EXPECT_GT(report.bytes, 0);
@@ -58,7 +58,7 @@ TEST(StoreMaintenance, CollectsOnlyWhatNoRunNames) {
   EXPECT_EQ(collect_garbage(file).files, 0u);
 }
 
-TEST(StoreMaintenance, MergesWhatIsNotThereYet) {
+TEST(StoreMaintenance, MergeAddsMissingRuns) {
   const TemporaryFolder folder;
   const fs::path from = store_of(folder, "from.sqlite", {"a", "b"});
   const fs::path into = store_of(folder, "into.sqlite", {"b", "c"});
@@ -71,10 +71,10 @@ TEST(StoreMaintenance, MergesWhatIsNotThereYet) {
   expect_input_error([&] { merge_stores(into, into); }, {"is the same store"});
 }
 
-TEST(StoreMaintenance, ExportsAndImportsEverything) {
+TEST(StoreMaintenance, ExportAndImportPreserveEverything) {
   const TemporaryFolder folder;
   const fs::path from = store_of(folder, "from.sqlite", {"a", "b"});
-  Journal(from).record_plan(
+  StoreWriter(from).record_plan(
       {.name = "p", .title = "P", .text = "t", .run_keys = {run_key(identity_of("b"))}});
   const fs::path into = folder.path() / "into.sqlite";
   EXPECT_EQ(import_store(export_store(from), "runs.json", into).added, 2u);
@@ -87,7 +87,7 @@ TEST(StoreMaintenance, ExportsAndImportsEverything) {
   EXPECT_EQ(imported.manifest(run), "{}");
 }
 
-TEST(StoreMaintenance, ExportsNumbersAlone) {
+TEST(StoreMaintenance, ExportsNumbersWithoutFiles) {
   const TemporaryFolder folder;
   const fs::path from = store_of(folder, "from.sqlite", {"a", "b"});
   const std::string text = export_store(from, ExportExtent::kNumbers);
@@ -96,16 +96,16 @@ TEST(StoreMaintenance, ExportsNumbersAlone) {
   ASSERT_EQ(runs.size(), 2u);
   EXPECT_EQ(runs[1].identity.variant, "b");
   EXPECT_EQ(metric_value(runs[1], "ate_rmse_m"), 0.5);
-  expect_input_error([] { static_cast<void>(exported_runs("[]", "runs.json")); }, {"no exported store"});
+  expect_input_error([] { static_cast<void>(exported_runs("[]", "runs.json")); }, {"not an exported store"});
 }
 
-TEST(StoreMaintenance, RefusesATextThatIsNoExport) {
+TEST(StoreMaintenance, RejectsATextThatIsNotAnExport) {
   const TemporaryFolder folder;
   const fs::path into = folder.path() / "into.sqlite";
-  expect_input_error([&] { import_store("{", "runs.json", into); }, {"runs.json", "no exported store"});
-  expect_input_error([&] { import_store("{\"stillpoint_store\": 2}", "runs.json", into); },
+  expect_input_error([&] { import_store("{", "runs.json", into); }, {"runs.json", "not an exported store"});
+  expect_input_error([&] { import_store("{\"stillpoint_store\": 3}", "runs.json", into); },
                      {"newer version"});
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stores that cannot be used say so, and lose nothing.
+// Unusable stores are reported, and no stored run is lost.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -9,12 +9,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "bench/store/journal.h"
 #include "bench/store/schema.h"
+#include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,41 +26,41 @@ RunIdentity identity_of(std::int64_t repetition) {
 /// A store with one run in it.
 fs::path small_store(const TemporaryFolder& folder) {
   fs::path file = folder.path() / "store.sqlite";
-  Journal journal(file);
-  static_cast<void>(journal.claim(identity_of(1)));
-  journal.finish(identity_of(1), {.outcome = Outcome::kOk, .attachments = {{"log", "text"}}});
+  StoreWriter writer(file);
+  static_cast<void>(writer.acquire(identity_of(1)));
+  writer.finish(identity_of(1), {.outcome = Outcome::kOk, .attachments = {{"log", "text"}}});
   return file;
 }
 
-TEST(StoreFaults, AMissingStoreIsNotMadeByReading) {
+TEST(StoreFaults, ReadingAMissingStoreDoesNotCreateIt) {
   expect_input_error([] { const Store store("no/such/store.sqlite"); }, {"there is no such store"});
 }
 
-TEST(StoreFaults, AFileOfAnotherKindIsRefused) {
+TEST(StoreFaults, AFileOfAnotherKindIsRejected) {
   const TemporaryFolder folder;
   const fs::path file = folder.write("notes.txt", std::string(5000, 'n'));
-  expect_input_error([&] { const Journal journal(file); }, {"notes.txt", "not a database"});
+  expect_input_error([&] { const StoreWriter writer(file); }, {"notes.txt", "not a database"});
   EXPECT_EQ(fs::file_size(file), 5000u);
 }
 
-TEST(StoreFaults, AnotherProgramsDatabaseIsRefused) {
+TEST(StoreFaults, TheDatabaseOfAnotherProgramIsRejected) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "other.sqlite";
   Database(file, DatabaseAccess::kWrite).execute("CREATE TABLE holiday (day TEXT)");
-  expect_input_error([&] { const Journal journal(file); }, {"another program's database"});
+  expect_input_error([&] { const StoreWriter writer(file); }, {"another program's database"});
 }
 
-TEST(StoreFaults, ANewerSchemaIsRefusedForReadingAndWriting) {
+TEST(StoreFaults, ANewerSchemaIsRejectedForReadingAndWriting) {
   const TemporaryFolder folder;
   const fs::path file = small_store(folder);
   const std::string newer = std::to_string(schema_version() + 1);
   Database(file, DatabaseAccess::kWrite).execute("PRAGMA user_version = " + newer);
   const std::vector<std::string> parts = {"newer version", "schema " + newer};
   expect_input_error([&] { const Store store(file); }, parts);
-  expect_input_error([&] { const Journal journal(file); }, parts);
+  expect_input_error([&] { const StoreWriter writer(file); }, parts);
 }
 
-TEST(StoreFaults, ADamagedStoreIsRefusedBeforeAnythingIsAdded) {
+TEST(StoreFaults, ADamagedStoreIsRejectedBeforeAnythingIsAdded) {
   const TemporaryFolder folder;
   const fs::path file = small_store(folder);
   {
@@ -68,10 +68,10 @@ TEST(StoreFaults, ADamagedStoreIsRefusedBeforeAnythingIsAdded) {
     stream.seekp(4096);  // the second page, a table's
     stream << std::string(4096, '\xff');
   }
-  expect_input_error([&] { const Journal journal(file); }, {"store.sqlite", "damaged"});
+  expect_input_error([&] { const StoreWriter writer(file); }, {"store.sqlite", "damaged"});
 }
 
-/// Runs a check as someone who may only read, in a process of its own; true if it holds.
+/// Runs a check in a child process without write permission; returns its result.
 template <class Check>
 bool holds_for_a_reader(const TemporaryFolder& folder, const fs::path& file, const Check& check) {
   constexpr uid_t kNobody = 65534;
@@ -91,20 +91,20 @@ TEST(StoreFaults, AStoreWithoutWritePermissionCanBeRead) {
   EXPECT_TRUE(holds_for_a_reader(folder, file, [&] { return Store(file).runs().size() == 1; }));
 }
 
-TEST(StoreFaults, AStoreWithoutWritePermissionIsNotFilled) {
+TEST(StoreFaults, AStoreWithoutWritePermissionCannotBeWritten) {
   const TemporaryFolder folder;
   const fs::path file = small_store(folder);
   EXPECT_TRUE(holds_for_a_reader(folder, file, [&] {
     try {
-      const Journal journal(file);
+      const StoreWriter writer(file);
       return false;
     } catch (const InputError& error) {
-      return std::string(error.what()).find("may only be read") != std::string::npos;
+      return std::string(error.what()).find("is read-only") != std::string::npos;
     }
   }));
 }
 
-/// Adds runs in a process whose files may not grow any more, as on a full disk; true if it ended with an
+/// Adds runs in a child process with a file size limit, which simulates a full disk; true if it reported an
 /// error.
 bool fills_the_disk(const fs::path& file) {
   const pid_t child = fork();
@@ -113,10 +113,10 @@ bool fills_the_disk(const fs::path& file) {
     const rlimit limit{200'000, 200'000};
     setrlimit(RLIMIT_FSIZE, &limit);
     try {
-      Journal journal(file);
+      StoreWriter writer(file);
       for (std::int64_t i = 2; i < 5000; ++i) {
-        static_cast<void>(journal.claim(identity_of(i)));
-        journal.finish(identity_of(i), {.detail = std::string(2000, 'x')});
+        static_cast<void>(writer.acquire(identity_of(i)));
+        writer.finish(identity_of(i), {.detail = std::string(2000, 'x')});
       }
     } catch (const InputError& error) {
       _exit(std::string(error.what()).find("free space") != std::string::npos ? 2 : 1);
@@ -132,12 +132,12 @@ TEST(StoreFaults, AFullDiskLosesNoStoredRun) {
   const TemporaryFolder folder;
   const fs::path file = small_store(folder);
   EXPECT_TRUE(fills_the_disk(file));
-  const std::vector<StoredRun> kept = Store(file).runs();
-  EXPECT_GT(kept.size(), 1u);
-  EXPECT_EQ(Store(file).attachment(kept.front(), "log"), "text");
-  Journal journal(file);  // space again: the next run is taken up where it broke off
-  EXPECT_EQ(journal.claim(identity_of(static_cast<std::int64_t>(kept.size()) + 1)), Claim::kGranted);
+  const std::vector<StoredRun> stored = Store(file).runs();
+  EXPECT_GT(stored.size(), 1u);
+  EXPECT_EQ(Store(file).attachment(stored.front(), "log"), "text");
+  StoreWriter writer(file);  // without the limit: continues with the next run
+  EXPECT_EQ(writer.acquire(identity_of(static_cast<std::int64_t>(stored.size()) + 1)), RunLease::kGranted);
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

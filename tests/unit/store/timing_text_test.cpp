@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/timing_text.h"
+#include "bench/model/timing_text.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_input_error.h"
 
-namespace stillpoint {
+namespace stillpoint::bench {
 namespace {
 
-TEST(TimingText, IsReadAsItWasWritten) {
+TEST(TimingText, RoundTripPreservesTheSamples) {
   const std::vector<TimingSample> samples = {{0, "feature_tracking", 3'360'000, 1}, {7, "own module", 5, 2}};
   const std::string text = timing_text(samples);
   EXPECT_EQ(text, "frame,module,ns,calls\n0,feature_tracking,3360000,1\n7,own module,5,2\n");
@@ -20,13 +20,13 @@ TEST(TimingText, IsReadAsItWasWritten) {
   EXPECT_EQ(read[1].calls, 2);
 }
 
-TEST(TimingText, NamesTheLineOfAFault) {
+TEST(TimingText, ErrorsNameTheLine) {
   expect_input_error(
       [] { static_cast<void>(parse_timings("frame,module,ns,calls\n0,a,1,1\n1,a,x,1\n", "f.csv")); },
-      {"f.csv:3: ", "\"x\" is no whole number"});
+      {"f.csv:3: ", "\"x\" is not an integer"});
   expect_input_error([] { static_cast<void>(parse_timings("0,a,1,1\n", "f.csv")); },
                      {"f.csv:1: ", "does not begin"});
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::bench

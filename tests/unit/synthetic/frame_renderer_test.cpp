@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/frame_renderer.h"
+#include "datasets/synthetic/render/frame_renderer.h"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
 
-#include "datasets/synthetic/actor.h"
-#include "datasets/synthetic/hand_motion.h"
-#include "datasets/synthetic/lightmap.h"
-#include "datasets/synthetic/mover_tiles.h"
+#include "datasets/synthetic/actors/actor.h"
+#include "datasets/synthetic/motion/hand_motion.h"
+#include "datasets/synthetic/render/lightmap.h"
+#include "datasets/synthetic/render/mover_tiles.h"
 
-namespace stillpoint {
+namespace stillpoint::synth {
 namespace {
 
 using Eigen::Vector3d;
@@ -19,33 +19,33 @@ Camera small_camera() {
   return {.width = 160, .height = 120, .fx = 140.0, .fy = 140.0, .cx = 79.5, .cy = 59.5};
 }
 
-/// A wall at x = 3 that faces the origin, 8 m wide, black but for one white texel.
+/// A dark wall at x = 3 that faces the origin, 8 m wide, with one white square of 4 x 4 texels.
 struct DotWorld {
   World world;
   Vector3d dot;
 
   DotWorld() {
-    cv::Mat picture(256, 256, CV_8UC3, cv::Scalar(40, 40, 40));
-    picture(cv::Rect(140, 100, 4, 4)).setTo(cv::Scalar(255, 255, 255));
+    cv::Mat texture_image(256, 256, CV_8UC3, cv::Scalar(40, 40, 40));
+    texture_image(cv::Rect(140, 100, 4, 4)).setTo(cv::Scalar(255, 255, 255));
     Builder builder(world);
-    const int texture = builder.add_texture(picture);
-    builder.add_picture({3.0, 4.0, 4.0}, {0.0, -8.0, 0.0}, {0.0, 0.0, -8.0}, texture);
-    // The middle of the white square is at (142, 102) of 256 texels, from the upper left corner.
+    const int texture = builder.add_texture(texture_image);
+    builder.add_textured_quad({3.0, 4.0, 4.0}, {0.0, -8.0, 0.0}, {0.0, 0.0, -8.0}, texture);
+    // The center of the white square is at (142, 102) of 256 texels, from the upper left corner.
     dot = {3.0, 4.0 - 8.0 * 142.0 / 256.0, 4.0 - 8.0 * 102.0 / 256.0};
     world.ambient = 1.0F;
     bake_light(world, RayTracer(world), 1);
   }
 };
 
-Shot still_shot(const Pose& T_w_c) {
-  Shot shot;
-  shot.poses.emplace_back();
-  shot.poses.front().fill(T_w_c);
-  shot.mid_times = {0.5F};
-  return shot;
+Exposure static_exposure(const Pose& T_w_c) {
+  Exposure exposure;
+  exposure.poses.emplace_back();
+  exposure.poses.front().fill(T_w_c);
+  exposure.mid_times = {0.5F};
+  return exposure;
 }
 
-/// Centre of gravity of what is brighter than the wall.
+/// Intensity centroid of the pixels brighter than the wall.
 Eigen::Vector2d dot_in(const RenderedFrame& frame) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double weight = 0.0;
@@ -66,7 +66,7 @@ TEST(FrameRenderer, DepthOfASlantedPlaneIsExact) {
   const RayTracer tracer(scene.world);
   const Pose T_w_c{camera_attitude(0.3, 0.1, 0.2), {0.5, 0.2, -0.1}};
   const RenderedFrame frame =
-      FrameRenderer(scene.world, tracer, small_camera()).render(still_shot(T_w_c), nullptr);
+      FrameRenderer(scene.world, tracer, small_camera()).render(static_exposure(T_w_c), nullptr);
   for (const auto& [row, column] : {std::pair{0, 0}, {60, 80}, {119, 159}, {17, 131}}) {
     const Eigen::Vector2d m =
         small_camera().unproject({static_cast<double>(column), static_cast<double>(row)});
@@ -76,28 +76,28 @@ TEST(FrameRenderer, DepthOfASlantedPlaneIsExact) {
   }
 }
 
-TEST(FrameRenderer, AMarkIsSeenWhereTheGroundTruthProjectsIt) {
+TEST(FrameRenderer, WhiteSquareAppearsAtItsProjection) {
   const DotWorld scene;
   const RayTracer tracer(scene.world);
   const FrameRenderer renderer(scene.world, tracer, small_camera());
   for (const Pose& T_w_c : {Pose{camera_attitude(0.0, 0.0, 0.0), Vector3d::Zero()},
                             Pose{camera_attitude(-0.3, -0.1, 0.2), {0.3, 0.4, -0.2}},
                             Pose{camera_attitude(0.2, -0.3, -0.4), {-1.0, -0.3, 0.5}}}) {
-    const RenderedFrame frame = renderer.render(still_shot(T_w_c), nullptr);
+    const RenderedFrame frame = renderer.render(static_exposure(T_w_c), nullptr);
     const Eigen::Vector2d expected = small_camera().project(T_w_c.inverse() * scene.dot);
     EXPECT_LT((dot_in(frame) - expected).norm(), 0.2);
   }
 }
 
-TEST(FrameRenderer, BlurOfAMovingCameraIsCentredOnMidExposure) {
+TEST(FrameRenderer, MotionBlurIsCenteredOnMidExposure) {
   const DotWorld scene;
   const RayTracer tracer(scene.world);
-  Shot shot = still_shot({});
+  Exposure exposure = static_exposure({});
   for (int i = 0; i < kLightSamples; ++i) {  // 0.1 rad over the exposure: 14 px
-    shot.poses.front()[static_cast<std::size_t>(i)] =
-        Pose{camera_attitude(0.1 * exposure_share(i), 0.0, 0.0), Vector3d::Zero()};
+    exposure.poses.front()[static_cast<std::size_t>(i)] =
+        Pose{camera_attitude(0.1 * sample_time_offset(i), 0.0, 0.0), Vector3d::Zero()};
   }
-  const RenderedFrame frame = FrameRenderer(scene.world, tracer, small_camera()).render(shot, nullptr);
+  const RenderedFrame frame = FrameRenderer(scene.world, tracer, small_camera()).render(exposure, nullptr);
   const Pose middle{camera_attitude(0.0, 0.0, 0.0), Vector3d::Zero()};
   EXPECT_LT((dot_in(frame) - small_camera().project(middle.inverse() * scene.dot)).norm(), 0.2);
 }
@@ -114,32 +114,32 @@ MoverFrame moving_ball(double y) {
   return assemble_movers(std::span(&actor, 1), -0.05, 0.05);
 }
 
-TEST(FrameRenderer, MoversHideTheWorldAndAreLabelled) {
+TEST(FrameRenderer, MovingObjectsOccludeTheWorldAndAreLabeled) {
   const DotWorld scene;
   const RayTracer tracer(scene.world);
   const FrameRenderer renderer(scene.world, tracer, small_camera());
   const MoverFrame ball = moving_ball(0.5);
   const Pose T_w_c{camera_attitude(0.0, 0.0, 0.0), Vector3d::Zero()};
-  const RenderedFrame frame = renderer.render(still_shot(T_w_c), &ball);
+  const RenderedFrame frame = renderer.render(static_exposure(T_w_c), &ball);
   const Eigen::Vector2d center = small_camera().project(T_w_c.inverse() * Vector3d(2.0, 0.5, 0.0));
   const auto pixel = static_cast<std::size_t>(std::lround(center.y()) * 160 + std::lround(center.x()));
   EXPECT_EQ(frame.object[pixel], 7);
-  EXPECT_NEAR(frame.depth_m[pixel], 1.8, 0.02);  // its near side
-  // Its true half-width is 0.2 / 2 m * 140 px = 14 px: nothing is labelled 20 px away.
+  EXPECT_NEAR(frame.depth_m[pixel], 1.8, 0.02);  // front of the ball
+  // Its true half-width is 0.2 / 2 m * 140 px = 14 px: nothing is labeled 20 px away.
   EXPECT_EQ(frame.object[pixel + 20], 0);
   EXPECT_NEAR(frame.depth_m[pixel + 20], 3.0, 1e-4);
 }
 
-TEST(MoverTiles, MarksWhereAMoverMayBeSeenAndNotFarFromIt) {
+TEST(MoverTiles, MarksOnlyTilesNearTheMovingObject) {
   const Pose T_w_c{camera_attitude(0.0, 0.0, 0.0), Vector3d::Zero()};
   const MoverFrame ball = moving_ball(0.5);
   const MoverTiles tiles(ball.mesh, small_camera(), std::span(&T_w_c, 1));
-  EXPECT_TRUE(tiles.touches(59, 44));  // 79.5 - 0.5 / 2 * 140 = 44.5
-  EXPECT_FALSE(tiles.touches(59, 140));
+  EXPECT_TRUE(tiles.is_marked(59, 44));  // 79.5 - 0.5 / 2 * 140 = 44.5
+  EXPECT_FALSE(tiles.is_marked(59, 140));
   const MoverFrame behind = moving_ball(0.0);
   const Pose turned{camera_attitude(3.14159, 0.0, 0.0), Vector3d::Zero()};
-  EXPECT_FALSE(MoverTiles(behind.mesh, small_camera(), std::span(&turned, 1)).touches(59, 80));
+  EXPECT_FALSE(MoverTiles(behind.mesh, small_camera(), std::span(&turned, 1)).is_marked(59, 80));
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::synth

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/inertial_smoother.h"
+#include "datasets/synthetic/motion/inertial_smoother.h"
 
 #include <gtest/gtest.h>
 
 #include "core/geometry/so3.h"
-#include "datasets/synthetic/banded_least_squares.h"
 #include "datasets/synthetic/counter_random.h"
-#include "datasets/synthetic/flight.h"
-#include "datasets/synthetic/hand_motion.h"
-#include "datasets/synthetic/imu_model.h"
+#include "datasets/synthetic/motion/banded_least_squares.h"
+#include "datasets/synthetic/motion/hand_motion.h"
+#include "datasets/synthetic/motion/imu_model.h"
+#include "datasets/synthetic/sequence/recorded_motion.h"
 #include "tests/support/test_data.h"
 
-namespace stillpoint {
+namespace stillpoint::synth {
 namespace {
 
 constexpr double kDegree = 0.017453292519943295;
@@ -32,8 +32,8 @@ struct Recording {
   std::vector<ImuSample> imu;
 };
 
-/// A hand-held path seen by motion capture with 1 mm and 4 mrad of jitter and a gap of 0.3 s, and by an IMU
-/// with biases.
+/// A hand-held path measured by motion capture with 1 mm and 4 mrad of noise and a gap of 0.3 s, and by an
+/// IMU with biases.
 Recording jittery_recording(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {
   Recording recording{
       hand_path(HandMotion::kRpy, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, Pose{}, 5, 0.0, 6.0), {}, {}};
@@ -57,41 +57,41 @@ Recording jittery_recording(const Eigen::Vector3d& gyro_bias, const Eigen::Vecto
   return recording;
 }
 
-TEST(InertialSmoother, FindsPathAndBiasesBelowTheJitter) {
+TEST(InertialSmoother, EstimatesPathAndBiasesMoreAccuratelyThanTheInputNoise) {
   const Eigen::Vector3d gyro_bias(0.02, -0.05, 0.08), accel_bias(0.1, -0.05, 0.08);
   const Recording recording = jittery_recording(gyro_bias, accel_bias);
-  const SmoothedFlight flight = smooth_flight(recording.poses, recording.imu, Timestamp{0}, 0.0, 6.0);
-  EXPECT_LT((flight.gyro_bias - gyro_bias).norm(), 0.002);
-  EXPECT_LT((flight.accel_bias - accel_bias).norm(), 0.05);
-  for (double t_s = 0.5; t_s < 5.5; t_s += 0.1) {  // in the gap too
-    const Pose smooth = flight.path.pose_at(t_s), truth = recording.truth.pose_at(t_s);
+  const SmoothedMotion motion = smooth_motion(recording.poses, recording.imu, Timestamp{0}, 0.0, 6.0);
+  EXPECT_LT((motion.gyro_bias - gyro_bias).norm(), 0.002);
+  EXPECT_LT((motion.accel_bias - accel_bias).norm(), 0.05);
+  for (double t_s = 0.5; t_s < 5.5; t_s += 0.1) {  // includes the gap
+    const Pose smooth = motion.path.pose_at(t_s), truth = recording.truth.pose_at(t_s);
     EXPECT_LT((smooth.p - truth.p).norm(), 0.001) << t_s;
     EXPECT_LT(log_so3(smooth.q.conjugate() * truth.q).norm(), 0.003) << t_s;
   }
 }
 
-/// Root mean square over windows of 0.5 s of the angle between the integrated gyroscope and the path [rad].
-double rotation_disagreement(const Flight& flight) {
-  const std::vector<VectorSample>& gyro = flight.readings.gyro;
+/// RMS angle over windows of 0.5 s between the integrated gyroscope and the path [rad].
+double rotation_disagreement(const RecordedMotion& motion) {
+  const std::vector<datasets::VectorSample>& gyro = motion.readings.gyro;
   constexpr std::size_t kWindow = 100;  // samples at 200 Hz
   double squares = 0.0;
   int windows = 0;
   for (std::size_t i = 0; i + kWindow < gyro.size(); i += kWindow / 2, ++windows) {
     Eigen::Quaterniond integrated = Eigen::Quaterniond::Identity();
     for (std::size_t k = i; k < i + kWindow; ++k) {
-      const Eigen::Vector3d rate = 0.5 * (gyro[k].value + gyro[k + 1].value) - flight.smoothed.gyro_bias;
+      const Eigen::Vector3d rate = 0.5 * (gyro[k].value + gyro[k + 1].value) - motion.smoothed.gyro_bias;
       integrated = integrated * exp_so3(seconds_between(gyro[k].t, gyro[k + 1].t) * rate);
     }
-    const Pose from = flight.smoothed.path.pose_at(seconds_between(flight.epoch, gyro[i].t));
-    const Pose to = flight.smoothed.path.pose_at(seconds_between(flight.epoch, gyro[i + kWindow].t));
+    const Pose from = motion.smoothed.path.pose_at(seconds_between(motion.epoch, gyro[i].t));
+    const Pose to = motion.smoothed.path.pose_at(seconds_between(motion.epoch, gyro[i + kWindow].t));
     squares += log_so3(integrated.conjugate() * from.q.conjugate() * to.q).squaredNorm();
   }
   return std::sqrt(squares / windows);
 }
 
-class RealFlight : public testing::TestWithParam<const char*> {};
+class RecordedMotionTest : public testing::TestWithParam<const char*> {};
 
-TEST_P(RealFlight, SmoothedPathAgreesWithItsImuAndWithMotionCapture) {
+TEST_P(RecordedMotionTest, SmoothedPathAgreesWithItsImuAndWithMotionCapture) {
   const std::string name = std::string("imu/") + GetParam();
   const auto path = find_test_data(name + "_groundtruth.txt"), imu = find_test_data(name + "_imu.csv");
   if (!path || !imu) GTEST_SKIP() << missing_test_data(name);
@@ -99,19 +99,19 @@ TEST_P(RealFlight, SmoothedPathAgreesWithItsImuAndWithMotionCapture) {
   request.trajectory_file = *path;
   request.imu_file = *imu;
   request.seconds = 20.0;
-  const Flight flight = load_flight(request);
-  EXPECT_LT(rotation_disagreement(flight), 0.1 * kDegree);
-  EXPECT_LT(flight.smoothed.position_residual_m, 0.002);  // the jitter of motion capture, not a drift
-  EXPECT_LT(flight.smoothed.rotation_residual, 0.01);
-  for (double t_s = 1.0; t_s < 20.0;
-       t_s += 1.0) {  // the camera looks about level, never at floor or ceiling only
+  const RecordedMotion motion = load_recorded_motion(request);
+  EXPECT_LT(rotation_disagreement(motion), 0.1 * kDegree);
+  EXPECT_LT(motion.smoothed.position_residual_m, 0.002);  // noise of motion capture, no drift
+  EXPECT_LT(motion.smoothed.rotation_residual, 0.01);
+  for (double t_s = 1.0; t_s < 20.0; t_s += 1.0) {  // the camera looks roughly horizontally
     const Eigen::Vector3d forward_w =
-        (flight.smoothed.path.pose_at(t_s) * flight.T_b_c).q * Eigen::Vector3d::UnitZ();
+        (motion.smoothed.path.pose_at(t_s) * motion.T_b_c).q * Eigen::Vector3d::UnitZ();
     EXPECT_LT(std::abs(forward_w.z()), 0.85) << t_s;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Flights, RealFlight, testing::Values("euroc/V103", "tum_vi/room1", "tum_vi/room3"));
+INSTANTIATE_TEST_SUITE_P(Recordings, RecordedMotionTest,
+                         testing::Values("euroc/V103", "tum_vi/room1", "tum_vi/room3"));
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::synth

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/path_spline.h"
+#include "datasets/synthetic/motion/path_spline.h"
 
 #include <gtest/gtest.h>
 
 #include "core/geometry/so3.h"
-#include "datasets/synthetic/hand_motion.h"
+#include "datasets/synthetic/motion/hand_motion.h"
 
-namespace stillpoint {
+namespace stillpoint::synth {
 namespace {
 
 constexpr double kStep_s = 1e-4;
@@ -15,8 +15,8 @@ PathSpline rolling_path() {
   return hand_path(HandMotion::kRpy, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, Pose{}, 7, 0.0, 5.0);
 }
 
-TEST(PathSpline, WeightsOfEveryOrderSumToTheirPolynomial) {
-  // Splines reproduce constants: the weights sum to 1, those of derivatives to 0.
+TEST(PathSpline, WeightsReproduceConstants) {
+  // The weights sum to 1, those of derivatives to 0.
   for (const double u : {0.0, 0.3, 0.99}) {
     for (int order = 0; order <= 2; ++order) {
       double sum = 0.0;
@@ -38,7 +38,7 @@ TEST(PathSpline, VelocityAndAccelerationAreDerivativesOfPosition) {
   }
 }
 
-TEST(PathSpline, AngularRateTurnsTheBody) {
+TEST(PathSpline, AngularRateIsTheDerivativeOfAttitude) {
   const PathSpline path = rolling_path();
   for (const double t : {0.5, 1.234, 4.9}) {
     const Eigen::Quaterniond change = path.pose_at(t - kStep_s).q.conjugate() * path.pose_at(t + kStep_s).q;
@@ -46,7 +46,7 @@ TEST(PathSpline, AngularRateTurnsTheBody) {
   }
 }
 
-TEST(PathSpline, StandsStillBeyondItsEnds) {
+TEST(PathSpline, IsConstantBeyondItsEnds) {
   const PathSpline path = rolling_path();
   EXPECT_LT((path.pose_at(path.last_s()).p - path.pose_at(path.last_s() + 1.0).p).norm(), 1e-9);
 }
@@ -57,4 +57,4 @@ TEST(SpecificForce, IsPlusOneGravityUpwardsAtRest) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::synth

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/render_sequence.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "datasets/image_io.h"
+#include "datasets/io/image_io.h"
 #include "datasets/sensor_stream.h"
 
-namespace stillpoint {
+namespace stillpoint::synth {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,14 +45,14 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
   return files;
 }
 
-TEST(RenderSequence, SameSeedGivesTheSameBitsOnOneAndTwoThreads) {
+TEST(RenderSequence, OutputIsIdenticalOnOneAndTwoThreads) {
   const fs::path one = fresh_folder("one_thread"), two = fresh_folder("two_threads");
   ASSERT_TRUE(render_sequence(small_request("walking_rpy"), one, {.threads = 1}));
   ASSERT_TRUE(render_sequence(small_request("walking_rpy"), two, {.threads = 2}));
   EXPECT_EQ(contents(one), contents(two));
 }
 
-TEST(RenderSequence, OtherSeedsGiveOtherPictures) {
+TEST(RenderSequence, DifferentSeedsGiveDifferentImages) {
   const fs::path one = fresh_folder("seed_one"), two = fresh_folder("seed_two");
   SynthRequest request = small_request("walking_xyz");
   ASSERT_TRUE(render_sequence(request, one));
@@ -62,12 +62,12 @@ TEST(RenderSequence, OtherSeedsGiveOtherPictures) {
   EXPECT_NE(contents(one).at(first), contents(two).at(first));
 }
 
-TEST(RenderSequence, TheReaderFindsWhatWasRendered) {
+TEST(RenderSequence, OpenLorisFoldersCanBeOpened) {
   const fs::path folder = fresh_folder("openloris");
   const SynthRequest request = small_request("walking_xyz_empty");
   ASSERT_TRUE(render_sequence(request, folder));
-  const std::unique_ptr<SensorStream> stream = open_sequence(folder);
-  const SequenceInfo& info = stream->info();
+  const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(folder);
+  const datasets::SequenceInfo& info = stream->info();
   EXPECT_EQ(info.format, "openloris");
   ASSERT_EQ(info.frame_times.size(), 6U);
   EXPECT_EQ(info.frame_times[1].ns - info.frame_times[0].ns, 33333000);  // whole microseconds
@@ -75,27 +75,26 @@ TEST(RenderSequence, TheReaderFindsWhatWasRendered) {
   EXPECT_TRUE(info.rig.has_imu);
   EXPECT_LT((info.rig.T_b_c.matrix() - realsense_T_b_c().matrix()).norm(), 1e-6);
   EXPECT_NEAR(info.rig.imu_noise.gyro_noise, 1.8e-4, 1e-9);
-  EXPECT_GT(info.imu.size(), 90U);  // 0.3 s at 400 Hz, less what the accelerometer does not cover
+  EXPECT_GT(info.imu.size(), 90U);  // 0.3 s at 400 Hz, minus samples outside the accelerometer's interval
   EXPECT_GE(info.ground_truth.trajectory.poses.size(), 60U);
   const Frame frame = stream->load_frame(3);
   EXPECT_EQ(frame.color.size(), cv::Size(160, 120));
   EXPECT_GT(cv::countNonZero(frame.depth), 160 * 120 * 3 / 4);
 }
 
-TEST(RenderSequence, TumFoldersAreReadToo) {
+TEST(RenderSequence, TumFoldersCanBeOpened) {
   const fs::path folder = fresh_folder("tum");
   SynthRequest request = small_request("walking_static_empty");
   request.layout = SequenceLayout::kTum;
   ASSERT_TRUE(render_sequence(request, folder));
-  const std::unique_ptr<SensorStream> stream = open_sequence(folder);
+  const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(folder);
   EXPECT_EQ(stream->info().format, "tum");
   EXPECT_EQ(stream->info().frame_times.size(), 6U);
   EXPECT_DOUBLE_EQ(stream->info().rig.camera.fy, 134.0);
   EXPECT_EQ(stream->load_frame(0).depth_units_per_m, 1000.0);
 }
 
-/// Label pictures hold every pixel inside the true box of its object, and some at each of the box's four
-/// edges.
+/// Every edge of a true box touches labeled pixels.
 TEST(RenderSequence, TrueBoxesEncloseTheLabels) {
   const fs::path folder = fresh_folder("labels");
   SynthRequest request = small_request("walking_xyz");
@@ -108,11 +107,13 @@ TEST(RenderSequence, TrueBoxesEncloseTheLabels) {
     std::istringstream fields(line);
     std::string stamp, name;
     double score = 0.0, x_min = 0.0, y_min = 0.0, x_max = 0.0, y_max = 0.0;
-    if (!(fields >> stamp >> name >> score >> x_min >> y_min >> x_max >> y_max)) continue;  // nothing seen
-    const std::string picture = stamp.substr(0, stamp.size() - 3) + ".png";  // named in microseconds
-    const cv::Mat labels = read_picture(folder / "labels" / picture);
-    const cv::Mat motion = read_picture(folder / "motion" / picture);
-    EXPECT_EQ(cv::countNonZero(motion & (labels == 0)), 0) << line;  // the standing world stands
+    if (!(fields >> stamp >> name >> score >> x_min >> y_min >> x_max >> y_max))
+      continue;  // no visible object
+    const std::string image_name =
+        stamp.substr(0, stamp.size() - 3) + ".png";  // file names are in microseconds
+    const cv::Mat labels = datasets::read_image(folder / "labels" / image_name);
+    const cv::Mat motion = datasets::read_image(folder / "motion" / image_name);
+    EXPECT_EQ(cv::countNonZero(motion & (labels == 0)), 0) << line;  // static pixels have zero speed
     const cv::Rect box(cv::Point(cvRound(x_min + 0.5), cvRound(y_min + 0.5)),
                        cv::Point(cvRound(x_max + 0.5), cvRound(y_max + 0.5)));
     const cv::Mat inside = labels(box);
@@ -130,23 +131,23 @@ TEST(RenderSequence, DroppedFramesAreMissingFromListsAndFolders) {
   const fs::path folder = fresh_folder("dropped");
   SynthRequest request = small_request("walking_static_empty");
   request.seconds = 2.0;
-  request.dropped_share = 0.3;
+  request.dropped_fraction = 0.3;
   ASSERT_TRUE(render_sequence(request, folder));
-  const std::size_t frames = open_sequence(folder)->info().frame_times.size();
+  const std::size_t frames = datasets::open_sequence(folder)->info().frame_times.size();
   EXPECT_LT(frames, 56U);
   EXPECT_GT(frames, 25U);
 }
 
-TEST(RenderSequence, RollingShutterSkewsWhatTheCameraTurnsPast) {
+TEST(RenderSequence, RollingShutterSkewsImagesOfARotatingCamera) {
   SynthRequest request = small_request("walking_rpy_empty");
   const fs::path global = fresh_folder("global"), rolling = fresh_folder("rolling");
   ASSERT_TRUE(render_sequence(request, global));
   request.rolling_shutter_s = 0.03;
   ASSERT_TRUE(render_sequence(request, rolling));
-  const cv::Mat a = open_sequence(global)->load_frame(5).gray, b = open_sequence(rolling)->load_frame(5).gray;
+  const cv::Mat a = datasets::open_sequence(global)->load_frame(5).gray,
+                b = datasets::open_sequence(rolling)->load_frame(5).gray;
   const auto difference = [&](int row) { return cv::norm(a.row(row), b.row(row), cv::NORM_L1) / a.cols; };
-  // The stamp is of the middle row: there both cameras see the same, but for noise of the sensor (none
-  // differs).
+  // The timestamp refers to the middle row, where both images agree (the sensor noise is identical).
   EXPECT_LT(difference(60), 1.0);
   EXPECT_GT(difference(2), 2.0 * difference(60));
 }
@@ -155,11 +156,11 @@ TEST(RenderSequence, MarketAndCorridorCanBeRendered) {
   for (const std::string preset : {"market", "corridor"}) {
     const fs::path folder = fresh_folder(preset);
     ASSERT_TRUE(render_sequence(small_request(preset), folder));
-    EXPECT_EQ(open_sequence(folder)->info().frame_times.size(), 6U);
+    EXPECT_EQ(datasets::open_sequence(folder)->info().frame_times.size(), 6U);
   }
 }
 
-TEST(RenderSequence, LeavesNothingBehindWhenStopped) {
+TEST(RenderSequence, LeavesNoFilesWhenStopped) {
   const fs::path folder = fresh_folder("stopped");
   int frames = 0;
   RenderControl control{.progress = [&](int done, int) { frames = done; },
@@ -172,19 +173,19 @@ TEST(RenderSequence, LeavesNothingBehindWhenStopped) {
   }
 }
 
-TEST(RenderSequence, NeverOverwritesAFolder) {
+TEST(RenderSequence, NeverOverwritesAnExistingFolder) {
   const fs::path folder = fresh_folder("taken");
   fs::create_directories(folder);
   EXPECT_THROW(render_sequence(small_request("walking_xyz_empty"), folder), InputError);
 }
 
-TEST(RenderSequence, RefusesRequestsOutOfRange) {
+TEST(RenderSequence, RejectsInvalidRequests) {
   SynthRequest request = small_request("walking_xyz_empty");
   request.color.exposure_s = 0.05;  // longer than a frame at 30 Hz
-  EXPECT_THROW(render_sequence(request, fresh_folder("refused")), InputError);
+  EXPECT_THROW(render_sequence(request, fresh_folder("rejected")), InputError);
   EXPECT_THROW(preset_request("walking"), InputError);
-  EXPECT_THROW(render_sequence(small_request("flight"), fresh_folder("refused")), InputError);
+  EXPECT_THROW(render_sequence(small_request("flight"), fresh_folder("rejected")), InputError);
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::synth

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/sequence_cache.h"
+#include "datasets/synthetic/sequence/sequence_cache.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
-#include "datasets/synthetic/request_text.h"
+#include "datasets/synthetic/sequence/request_text.h"
 #include "tests/support/temporary_folder.h"
 
-namespace stillpoint {
+namespace stillpoint::synth {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,7 +29,7 @@ class SequenceCache : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(SequenceCache, RendersOnceAndThenRemembers) {
+TEST_F(SequenceCache, RendersEachRequestOnce) {
   int rendered = 0;
   const RenderControl control{.progress = [&](int, int) { ++rendered; }};
   const fs::path first = cached_sequence(small_request(), control);
@@ -39,12 +39,12 @@ TEST_F(SequenceCache, RendersOnceAndThenRemembers) {
   EXPECT_EQ(first.filename(), "walking_xyz_empty_1");
 }
 
-TEST_F(SequenceCache, InterruptedRenderingIsNotRemembered) {
+TEST_F(SequenceCache, InterruptedRenderingIsNotCached) {
   EXPECT_TRUE(cached_sequence(small_request(), {.stop_requested = [] { return true; }}).empty());
   EXPECT_TRUE(fs::is_directory(cached_sequence(small_request())));
 }
 
-TEST(RequestKey, ChangesWithEveryFieldButNotWithThePlaceOfFiles) {
+TEST(RequestKey, DependsOnFieldsAndFileContentsButNotOnFilePaths) {
   const TemporaryFolder folder;
   SynthRequest request = preset_request("flight");
   request.trajectory_file = folder.write("a/path.txt", "1 2 3");
@@ -59,4 +59,4 @@ TEST(RequestKey, ChangesWithEveryFieldButNotWithThePlaceOfFiles) {
 }
 
 }  // namespace
-}  // namespace stillpoint
+}  // namespace stillpoint::synth

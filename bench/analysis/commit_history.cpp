@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/analysis/commit_history.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "eval/metrics/statistics.h"
+
+namespace stillpoint::bench {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kOwnSystem = "stillpoint";
+constexpr const char* kUnknownHost = "unknown machine";
+
+/// Commit, time and machine of a run, from its manifest.
+struct Origin {
+  std::string commit;
+  std::string time;  ///< empty if not in the manifest
+  std::string host;
+};
+
+std::string text_at(const Json& json, const char* part, const char* name) {
+  const auto found = json.find(part);
+  if (found == json.end() || !found->is_object()) return "";
+  const auto value = found->find(name);
+  return value != found->end() && value->is_string() ? value->get<std::string>() : "";
+}
+
+std::string host_class(const Json& manifest) {
+  const std::string cpu = text_at(manifest, "host", "cpu");
+  if (cpu.empty()) return kUnknownHost;
+  const auto count = manifest.at("host").find("logical_cpus");
+  if (count == manifest.at("host").end() || !count->is_number_unsigned()) return cpu;
+  return fmt::format("{}, {} processors", cpu, count->get<unsigned>());
+}
+
+/// @param previous origin of the previous run, used for a run that was interrupted before it wrote a manifest
+Origin origin_of(const Store& store, const StoredRun& run, const Origin& previous) {
+  const std::string& build = run.identity.build;
+  const Json manifest = Json::parse(store.manifest(run), nullptr, false);
+  if (!manifest.is_object()) return {build, "", previous.host.empty() ? kUnknownHost : previous.host};
+  const std::string git_commit = text_at(manifest, "build", "git_commit");
+  const std::string changes = text_at(manifest, "build", "git_changes");
+  const bool is_known = !git_commit.empty() && git_commit != "unknown";
+  // Programs run by the gate are identified by content hash; the history uses their commit.
+  const std::string commit = is_known ? git_commit + (changes.empty() ? "" : "+" + changes) : build;
+  return {commit, text_at(manifest, "build", "git_time"), host_class(manifest)};
+}
+
+/// Key that is equal for runs of the same plan entry at different commits: excludes the build, and the config
+/// hash, since defaults may change with the build.
+std::string planned_key(RunIdentity identity) {
+  identity.build.clear();
+  identity.config_hash.clear();
+  return run_key(identity);
+}
+
+std::map<std::string, std::set<std::string>> plans_by_run(const Store& store,
+                                                          const std::vector<StoredRun>& runs) {
+  std::map<std::string, std::string> planned;
+  for (const StoredRun& run : runs) planned[run.key] = planned_key(run.identity);
+  std::map<std::string, std::set<std::string>> plans;
+  for (const StoredPlan& plan : store.plans()) {
+    for (const std::string& key : plan.run_keys) {
+      if (const auto found = planned.find(key); found != planned.end())
+        plans[found->second].insert(plan.name);
+    }
+  }
+  return plans;
+}
+
+/// Values of one series, by commit name.
+struct SeriesValues {
+  std::string unit;
+  std::optional<MetricRule> rule;
+  std::set<std::string> plans;
+  std::map<std::string, std::vector<double>> values;
+};
+
+struct CommitTime {
+  std::string committed;
+  std::string first_run;
+  std::int64_t first_id = 0;
+};
+
+/// Rule of a metric; a metric of a protocol ("strict:se3/ate_rmse_m") has the rule of the metric.
+std::optional<MetricRule> rule_of(const std::string& metric) {
+  return metric_rule(metric.substr(metric.rfind('/') + 1));
+}
+
+/// Builds the history incrementally from runs.
+class HistoryBuilder {
+ public:
+  explicit HistoryBuilder(std::map<std::string, std::set<std::string>> plans) : plans_(std::move(plans)) {}
+
+  void add(const StoredRun& run, const Origin& origin) {
+    note_time(run, origin);
+    const RunIdentity& identity = run.identity;
+    const HistorySubject subject{identity.sequence,    identity.variant, identity.axis,  identity.axis_value,
+                                 identity.mode,        identity.kind,    identity.cores, identity.seed,
+                                 identity.sequence_id, origin.host};
+    const auto value = [&](const std::string& metric, const std::string& unit,
+                           const std::optional<MetricRule>& rule, double number) {
+      if (!std::isfinite(number)) return;
+      SeriesValues& collected = series_[{subject, metric}];
+      collected.unit = unit;
+      collected.rule = rule;
+      collected.values[origin.commit].push_back(number);
+      if (const auto found = plans_.find(planned_key(identity)); found != plans_.end())
+        collected.plans.insert(found->second.begin(), found->second.end());
+    };
+    const bool is_ok = run.outcome == Outcome::kOk;
+    value(kFailedRuns, "", MetricRule{.name = kFailedRuns}, is_ok ? 0.0 : 1.0);
+    if (!is_ok) return;
+    for (const Metric& metric : run.metrics)
+      value(metric.name, metric.unit, rule_of(metric.name), metric.value);
+    for (const ModuleCost& cost : run.costs) value(cost.module, "ms", metric_rule("ms"), cost.mean_ms);
+  }
+
+  [[nodiscard]] CommitHistory build() const {
+    CommitHistory history{.commits = ordered_commits(), .series = {}};
+    std::map<std::string, std::size_t> index;
+    for (std::size_t i = 0; i < history.commits.size(); ++i) index[history.commits[i].name] = i;
+    for (const auto& [key, collected] : series_) history.series.push_back(series_of(key, collected, index));
+    return history;
+  }
+
+ private:
+  using Key = std::pair<HistorySubject, std::string>;
+
+  void note_time(const StoredRun& run, const Origin& origin) {
+    const auto [entry, is_new] = times_.insert({origin.commit, {origin.time, run.started, run.id}});
+    CommitTime& time = entry->second;
+    if (time.committed.empty()) time.committed = origin.time;
+    if (is_new || run.started >= time.first_run) return;
+    time.first_run = run.started;
+    time.first_id = run.id;
+  }
+
+  [[nodiscard]] std::vector<Commit> ordered_commits() const {
+    std::vector<std::tuple<std::string, std::string, std::int64_t, std::string>> order;
+    for (const auto& [name, time] : times_) {
+      order.emplace_back(time.committed.empty() ? time.first_run : time.committed, time.first_run,
+                         time.first_id, name);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<Commit> commits;
+    for (const auto& [when, first_run, first_id, name] : order) commits.push_back({name, when});
+    return commits;
+  }
+
+  static HistorySeries series_of(const Key& key, const SeriesValues& collected,
+                                 const std::map<std::string, std::size_t>& index) {
+    HistorySeries series{.subject = key.first,
+                         .plans = {collected.plans.begin(), collected.plans.end()},
+                         .metric = key.second,
+                         .unit = collected.unit,
+                         .rule = collected.rule};
+    std::vector<std::pair<std::size_t, const std::vector<double>*>> ordered;
+    for (const auto& [commit, values] : collected.values) ordered.emplace_back(index.at(commit), &values);
+    std::sort(ordered.begin(), ordered.end());
+    for (const auto& [commit, values] : ordered) {
+      series.commits.push_back(commit);
+      const auto mean = [](const std::vector<double>& v) { return eval::statistics(v)->mean; };
+      series.values.push_back(series.metric == kFailedRuns ? mean(*values) : *eval::percentile(*values, 0.5));
+      series.runs.push_back(values->size());
+    }
+    return series;
+  }
+
+  std::map<std::string, std::set<std::string>> plans_;
+  std::map<Key, SeriesValues> series_;
+  std::map<std::string, CommitTime> times_;
+};
+
+}  // namespace
+
+CommitHistory commit_history(const Store& store) {
+  const std::vector<StoredRun> runs = store.runs({.system = kOwnSystem});
+  HistoryBuilder builder(plans_by_run(store, runs));
+  Origin origin;
+  for (const StoredRun& run : runs) {
+    origin = origin_of(store, run, origin);
+    builder.add(run, origin);
+  }
+  return builder.build();
+}
+
+std::size_t find_commit(const CommitHistory& history, const std::string& name) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < history.commits.size(); ++i) {
+    if (history.commits[i].name == name) return i;
+    if (!name.empty() && history.commits[i].name.starts_with(name)) found.push_back(i);
+  }
+  if (found.size() == 1) return found.front();
+  const std::string newest = history.commits.empty() ? "none" : history.commits.back().name;
+  throw InputError("commit \"" + name + "\"",
+                   found.empty() ? "has no run in the store; the newest commit with a run is " + newest
+                                 : "is ambiguous: several commits have this prefix; use a longer one");
+}
+
+}  // namespace stillpoint::bench

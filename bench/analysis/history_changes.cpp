@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/analysis/history_changes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/metrics/statistics.h"
+#include "eval/statistics/level.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr double kTrendSignificance = 0.005;
+
+/// The analyzed part of a series, and its change points.
+struct AnalyzedSeries {
+  const HistorySeries& series;
+  std::size_t offset = 0;  ///< index of the first analyzed value
+  std::span<const double> values;
+  std::vector<std::size_t> changes;  ///< indices into `values`
+
+  [[nodiscard]] std::size_t commit(std::size_t i) const { return series.commits[offset + i]; }
+  /// Segment `i` between consecutive change points; segment 0 lies before the first.
+  [[nodiscard]] std::span<const double> segment(std::size_t i) const {
+    const std::size_t begin = i == 0 ? 0 : changes[i - 1];
+    const std::size_t end = i == changes.size() ? values.size() : changes[i];
+    return values.subspan(begin, end - begin);
+  }
+};
+
+double median_of(std::span<const double> values) { return *eval::percentile(values, 0.5); }
+
+/// 1 if larger is worse, -1 if larger is better.
+double bad_direction(const MetricRule& rule) { return rule.larger_is_better ? -1.0 : 1.0; }
+
+/// Whether two levels differ by at least the margin and the floor, in any direction.
+bool is_relevant(double before, double after, const std::optional<MetricRule>& rule) {
+  if (!rule) return before != after;
+  const double difference = std::abs(after - before);
+  return difference >= rule->floor && difference >= rule->margin * std::abs(before);
+}
+
+/// Whether the shift is relevant and its confidence interval excludes 0.
+bool is_significant(const LevelShift& shift, const std::optional<MetricRule>& rule) {
+  if (!is_relevant(shift.level_before, shift.level_after, rule)) return false;
+  return !shift.change || shift.change->interval.low > 0.0 || shift.change->interval.high < 0.0;
+}
+
+bool is_worse(double before, double after, const MetricRule& rule) {
+  return bad_direction(rule) * (after - before) > 0.0 && is_relevant(before, after, rule);
+}
+
+/// @param newest newest level of the series
+ChangeState state_of(const LevelShift& shift, const std::optional<MetricRule>& rule, double newest) {
+  if (!rule) return ChangeState::kNeutral;
+  if (!is_worse(shift.level_before, shift.level_after, *rule)) return ChangeState::kImproved;
+  return is_worse(shift.level_before, newest, *rule) ? ChangeState::kOpen : ChangeState::kResolved;
+}
+
+std::vector<LevelShift> shifts_of(const AnalyzedSeries& analyzed, std::size_t index,
+                                  const std::vector<eval::ChangePoint>& points) {
+  std::vector<LevelShift> shifts;
+  const double newest = median_of(analyzed.segment(analyzed.changes.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::span<const double> before = analyzed.segment(i);
+    const std::span<const double> after = analyzed.segment(i + 1);
+    LevelShift shift{.series = index,
+                     .before = analyzed.commit(points[i].index - 1),
+                     .after = analyzed.commit(points[i].index),
+                     .level_before = median_of(before),
+                     .level_after = median_of(after),
+                     .change = eval::level_change(before, after),
+                     .p_value = points[i].p_value,
+                     .state = ChangeState::kNeutral,
+                     .reason = ""};
+    if (!is_significant(shift, analyzed.series.rule)) continue;
+    shift.state = state_of(shift, analyzed.series.rule, newest);
+    shifts.push_back(shift);
+  }
+  return shifts;
+}
+
+std::optional<MetricDrift> drift_of(const AnalyzedSeries& analyzed, std::size_t index) {
+  if (!analyzed.series.rule) return std::nullopt;
+  const std::optional<eval::Trend> trend = eval::trend_of(analyzed.values);
+  if (!trend || trend->p_value > kTrendSignificance) return std::nullopt;
+  const double end = trend->intercept + trend->slope * static_cast<double>(analyzed.values.size() - 1);
+  if (trend->intercept == 0.0 || !is_relevant(trend->intercept, end, analyzed.series.rule))
+    return std::nullopt;
+  if (!eval::linear_trend_fits_better(analyzed.values, *trend, analyzed.changes)) return std::nullopt;
+  return MetricDrift{.series = index,
+                     .first = analyzed.commit(0),
+                     .last = analyzed.commit(analyzed.values.size() - 1),
+                     .start = trend->intercept,
+                     .end = end,
+                     .change = (end - trend->intercept) / std::abs(trend->intercept),
+                     .p_value = trend->p_value,
+                     .worse = bad_direction(*analyzed.series.rule) * trend->slope > 0.0};
+}
+
+/// Shift from the most recent commit with a smaller failure rate than the newest commit.
+std::optional<LevelShift> new_failures(const HistorySeries& series, std::size_t index) {
+  const double newest = series.values.back();
+  for (std::size_t i = series.values.size() - 1; i-- > 0;) {
+    if (series.values[i] >= newest) continue;
+    return LevelShift{.series = index,
+                      .before = series.commits[i],
+                      .after = series.commits[i + 1],
+                      .level_before = series.values[i],
+                      .level_after = newest,
+                      .change = std::nullopt,
+                      .p_value = 0.0,
+                      .state = ChangeState::kOpen,
+                      .reason = ""};
+  }
+  return std::nullopt;
+}
+
+/// Number of measured commits of a series before a commit.
+std::ptrdiff_t position_in(const HistorySeries& series, std::size_t commit) {
+  return std::lower_bound(series.commits.begin(), series.commits.end(), commit) - series.commits.begin();
+}
+
+/// Whether an acceptance applies to a shift. The detected position of a shift may vary by less than a minimum
+/// segment as commits are added.
+bool covers(const Acceptance& acceptance, const CommitHistory& history, const LevelShift& shift,
+            std::size_t min_segment) {
+  const HistorySeries& series = history.series[shift.series];
+  if (acceptance.metric != series.metric) return false;
+  if (!acceptance.variant.empty() && acceptance.variant != series.subject.variant) return false;
+  if (!acceptance.sequence.empty() && acceptance.sequence != series.subject.sequence) return false;
+  const auto found = std::find_if(history.commits.begin(), history.commits.end(),
+                                  [&](const Commit& commit) { return commit.name == acceptance.commit; });
+  if (found == history.commits.end()) return false;
+  const auto commit = static_cast<std::size_t>(found - history.commits.begin());
+  const std::ptrdiff_t distance = position_in(series, commit) - position_in(series, shift.after);
+  return std::abs(distance) < static_cast<std::ptrdiff_t>(min_segment);
+}
+
+void accept(std::vector<LevelShift>& shifts, const CommitHistory& history,
+            std::span<const Acceptance> acceptances, std::size_t min_segment) {
+  for (LevelShift& shift : shifts) {
+    if (shift.state != ChangeState::kOpen) continue;
+    const auto found = std::find_if(
+        acceptances.begin(), acceptances.end(),
+        [&](const Acceptance& acceptance) { return covers(acceptance, history, shift, min_segment); });
+    if (found == acceptances.end()) continue;
+    shift.state = ChangeState::kAccepted;
+    shift.reason = found->reason;
+  }
+}
+
+/// Quick rejection: a series whose range is below the margin has no relevant change.
+bool may_have_changed(std::span<const double> values, const std::optional<MetricRule>& rule) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return low != high && (is_relevant(*low, *high, rule) || is_relevant(*high, *low, rule));
+}
+
+}  // namespace
+
+std::string state_name(ChangeState state) {
+  switch (state) {
+    case ChangeState::kOpen:
+      return "open";
+    case ChangeState::kAccepted:
+      return "accepted";
+    case ChangeState::kResolved:
+      return "resolved";
+    case ChangeState::kImproved:
+      return "improved";
+    case ChangeState::kNeutral:
+      return "neutral";
+  }
+  return "";
+}
+
+HistoryChanges history_changes(const CommitHistory& history, std::span<const Acceptance> acceptances,
+                               const eval::ChangePointOptions& options) {
+  HistoryChanges changes;
+  for (std::size_t i = 0; i < history.series.size(); ++i) {
+    const HistorySeries& series = history.series[i];
+    if (series.metric == kFailedRuns) {
+      if (const std::optional<LevelShift> failures = new_failures(series, i))
+        changes.shifts.push_back(*failures);
+      continue;
+    }
+    const std::size_t offset = series.values.size() - std::min(series.values.size(), kMaxAnalyzedCommits);
+    AnalyzedSeries analyzed{
+        .series = series, .offset = offset, .values = std::span(series.values).subspan(offset)};
+    if (!may_have_changed(analyzed.values, series.rule)) continue;
+    const std::vector<eval::ChangePoint> points = eval::change_points(analyzed.values, options);
+    for (const eval::ChangePoint& point : points) analyzed.changes.push_back(point.index);
+    for (LevelShift& shift : shifts_of(analyzed, i, points)) changes.shifts.push_back(std::move(shift));
+    if (const std::optional<MetricDrift> drift = drift_of(analyzed, i)) changes.drifts.push_back(*drift);
+  }
+  accept(changes.shifts, history, acceptances, options.min_segment);
+  return changes;
+}
+
+}  // namespace stillpoint::bench

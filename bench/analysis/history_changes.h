@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Change detection in the metric history: level shifts and drifts, and which of them are open regressions.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/analysis/commit_history.h"
+#include "bench/store/acceptance.h"
+#include "eval/statistics/change_points.h"
+#include "eval/statistics/paired.h"
+
+namespace stillpoint::bench {
+
+enum class ChangeState {
+  kOpen,      ///< regression: worse by more than the margin of the metric, up to the newest commit
+  kAccepted,  ///< regression that was accepted, with a reason
+  kResolved,  ///< regression in the past; the newest level is as good as the level before it
+  kImproved,
+  kNeutral,  ///< a metric without a good direction
+};
+
+/// "open", "accepted", "resolved", "improved" or "neutral".
+[[nodiscard]] std::string state_name(ChangeState state);
+
+/// Abrupt change of a metric between two consecutive measured commits.
+struct LevelShift {
+  std::size_t series = 0;     ///< index
+  std::size_t before = 0;     ///< index of the last commit of the old level
+  std::size_t after = 0;      ///< index of the first commit of the new level
+  double level_before = 0.0;  ///< median of the segment before; `level_after`: of the segment after
+  double level_after = 0.0;
+  std::optional<eval::RelativeChange> change;  ///< nullopt for failed runs, and if the old level is 0
+  double p_value = 0.0;
+  ChangeState state = ChangeState::kNeutral;
+  std::string reason;  ///< of the acceptance
+};
+
+/// Gradual change of a metric: small at each commit, significant over many. Detected by a linear trend.
+struct MetricDrift {
+  std::size_t series = 0;
+  std::size_t first = 0;  ///< index of the first commit of the trend
+  std::size_t last = 0;   ///< index of the last commit
+  double start = 0.0;     ///< value of the fitted line at `first`
+  double end = 0.0;       ///< value of the fitted line at `last`
+  double change = 0.0;    ///< (end - start) / |start|
+  double p_value = 1.0;
+  bool worse = false;
+};
+
+struct HistoryChanges {
+  std::vector<LevelShift> shifts;
+  std::vector<MetricDrift> drifts;
+};
+
+/// Number of newest commits that are tested for changes; the run time is quadratic in it. Older values are
+/// displayed only.
+inline constexpr std::size_t kMaxAnalyzedCommits = 300;
+
+/// Detects changes in all series, in their order.
+///
+/// Level shifts are change points of E-divisive (eval/statistics/change_points.h). A change point counts if
+/// the levels differ by at least the margin and the floor of the metric (`metric_rule`), and the 95 %
+/// confidence interval of the change excludes 0. A drift is a linear trend with p <= 0.005 that exceeds the
+/// same limits and fits better than the change points. The fraction of failed runs needs no test: it is a
+/// regression if it is larger at the newest commit than at an earlier one.
+[[nodiscard]] HistoryChanges history_changes(const CommitHistory& history,
+                                             std::span<const Acceptance> acceptances,
+                                             const eval::ChangePointOptions& options = {});
+
+}  // namespace stillpoint::bench

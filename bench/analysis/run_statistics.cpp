@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/analysis/run_statistics.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "eval/metrics/statistics.h"
+
+namespace stillpoint::bench {
+namespace {
+
+using Point =
+    std::tuple<std::string, std::string, std::string, double>;  // sequence, variant, axis, its value
+
+Point point_of(const RunIdentity& identity) {
+  return {identity.sequence, identity.variant, identity.axis, identity.axis_value};
+}
+
+/// Unit of pairing between variants.
+using Subject =
+    std::tuple<std::string, std::int64_t, std::string, double>;  // sequence, seed, axis, its value
+
+/// Results of one variant on one subject.
+struct SubjectRuns {
+  std::size_t failed = 0;
+  std::vector<double> values;
+};
+using SubjectTable = std::map<Subject, SubjectRuns>;
+
+SubjectTable subjects_of(std::span<const StoredRun> runs, const std::string& variant,
+                         const std::string& metric) {
+  SubjectTable table;
+  for (const StoredRun& run : runs) {
+    const RunIdentity& identity = run.identity;
+    if (identity.variant != variant) continue;
+    SubjectRuns& subject = table[{identity.sequence, identity.seed, identity.axis, identity.axis_value}];
+    const std::optional<double> value = metric_value(run, metric);
+    if (run.outcome == Outcome::kOk && value) {
+      subject.values.push_back(*value);
+    } else {
+      ++subject.failed;
+    }
+  }
+  return table;
+}
+
+AblationRow row_of(const std::string& variant, const std::string& sequence, const SubjectTable& base,
+                   const SubjectTable& changed) {
+  AblationRow row{.variant = variant, .sequence = sequence};
+  std::vector<eval::Pair> pairs;
+  for (const auto& [subject, runs] : base) {
+    const auto found = changed.find(subject);
+    if (found == changed.end() || (!sequence.empty() && std::get<0>(subject) != sequence)) continue;
+    const std::optional<double> before = eval::percentile(runs.values, 0.5);
+    const std::optional<double> after = eval::percentile(found->second.values, 0.5);
+    if (before && after) pairs.push_back({*before, *after});
+    row.newly_failed += before && !after ? 1 : 0;
+  }
+  row.difference = eval::paired_difference(pairs);
+  row.change = eval::relative_change(pairs);
+  return row;
+}
+
+std::vector<std::string> names_in_order(std::span<const StoredRun> runs, std::string RunIdentity::*name) {
+  std::vector<std::string> names;
+  for (const StoredRun& run : runs) {
+    const std::string& value = run.identity.*name;
+    if (std::find(names.begin(), names.end(), value) == names.end()) names.push_back(value);
+  }
+  return names;
+}
+
+std::vector<std::string> split_cells(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+}  // namespace
+
+std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::string& metric) {
+  std::vector<RunSpread> rows;
+  std::vector<std::vector<double>> values;
+  std::map<Point, std::size_t> index;
+  for (const StoredRun& run : runs) {
+    const RunIdentity& identity = run.identity;
+    const auto [entry, is_new] = index.insert({point_of(identity), rows.size()});
+    if (is_new) {
+      rows.push_back({.sequence = identity.sequence,
+                      .variant = identity.variant,
+                      .axis = identity.axis,
+                      .axis_value = identity.axis_value});
+      values.emplace_back();
+    }
+    RunSpread& row = rows[entry->second];
+    ++row.runs;
+    row.failed += run.outcome == Outcome::kOk ? 0 : 1;
+    const std::optional<double> value = metric_value(run, metric);
+    if (run.outcome == Outcome::kOk && value) values[entry->second].push_back(*value);
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].spread = eval::spread(values[i]);
+  return rows;
+}
+
+std::vector<AblationRow> ablation(std::span<const StoredRun> runs, const std::string& base,
+                                  const std::string& metric) {
+  const std::vector<std::string> variants = names_in_order(runs, &RunIdentity::variant);
+  if (std::find(variants.begin(), variants.end(), base) == variants.end()) {
+    throw InputError("--base", "there is no run of variant \"" + base +
+                                   "\"; existing variants: " + fmt::format("{}", fmt::join(variants, ", ")));
+  }
+  const SubjectTable base_table = subjects_of(runs, base, metric);
+  std::vector<AblationRow> rows;
+  for (const std::string& variant : variants) {
+    if (variant == base) continue;
+    const SubjectTable table = subjects_of(runs, variant, metric);
+    rows.push_back(row_of(variant, "", base_table, table));
+    for (const std::string& sequence : names_in_order(runs, &RunIdentity::sequence)) {
+      rows.push_back(row_of(variant, sequence, base_table, table));
+    }
+  }
+  return rows;
+}
+
+std::string first_difference(const std::string& frames, const std::string& others) {
+  std::istringstream first(frames);
+  std::istringstream second(others);
+  std::string line;
+  std::string other;
+  std::getline(first, line);
+  std::getline(second, other);
+  const std::vector<std::string> modules = split_cells(line);
+  while (true) {
+    const bool more = static_cast<bool>(std::getline(first, line));
+    if (more != static_cast<bool>(std::getline(second, other))) return "the number of frames";
+    if (!more) return "";
+    if (line == other) continue;
+    const std::vector<std::string> cells = split_cells(line);
+    const std::vector<std::string> other_cells = split_cells(other);
+    for (std::size_t i = 1; i < std::min({cells.size(), other_cells.size(), modules.size()}); ++i) {
+      if (cells[i] != other_cells[i]) return "frame " + cells.front() + ", " + modules[i];
+    }
+  }
+}
+
+std::vector<RepetitionRow> repetition_report(const Store& store, std::span<const StoredRun> runs) {
+  std::map<std::string, std::vector<const StoredRun*>> groups;
+  for (const StoredRun& run : runs) {
+    RunIdentity any = run.identity;
+    any.repetition = 0;
+    if (run.outcome == Outcome::kOk) groups[run_key(any)].push_back(&run);
+  }
+  std::vector<RepetitionRow> rows;
+  for (const auto& [key, repeated] : groups) {
+    if (repeated.size() < 2) continue;
+    const RunIdentity& identity = repeated.front()->identity;
+    RepetitionRow row{
+        .label = fmt::format("{} {} seed {}", identity.sequence, identity.variant, identity.seed),
+        .repetitions = repeated.size()};
+    std::set<std::string> trajectories;
+    for (const StoredRun* run : repeated) {
+      if (const auto blob = run->blobs.find("trajectory"); blob != run->blobs.end())
+        trajectories.insert(blob->second);
+      if (run == repeated.front() || !row.first_difference.empty()) continue;
+      row.first_difference =
+          first_difference(store.attachment(*repeated.front(), "frames"), store.attachment(*run, "frames"));
+    }
+    row.distinct_trajectories = trajectories.size();
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace stillpoint::bench

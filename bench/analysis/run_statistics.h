@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Statistics over runs: spread over repetitions, ablation effects, sweep curves, and repeatability.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/store/store.h"
+#include "eval/statistics/paired.h"
+
+namespace stillpoint::bench {
+
+/// The runs of one variant on one sequence, at one point of a sweep.
+struct RunSpread {
+  std::string sequence;
+  std::string variant;
+  std::string axis;
+  double axis_value = 0.0;
+  std::size_t runs = 0;
+  std::size_t failed = 0;              ///< runs that did not succeed
+  std::optional<eval::Spread> spread;  ///< over successful runs
+};
+
+/// @param metric metric name, e.g. "ate_rmse_m"
+/// @return in the order of first appearance
+[[nodiscard]] std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::string& metric);
+
+/// Difference between a variant and a base variant, paired by sequence, seed and point of a sweep.
+/// Repetitions are reduced to their median.
+struct AblationRow {
+  std::string variant;
+  std::string sequence;          ///< empty = all sequences
+  std::size_t newly_failed = 0;  ///< pairs in which only the variant did not succeed
+  std::optional<eval::PairedDifference> difference;
+  std::optional<eval::RelativeChange> change;
+};
+
+/// @param base name of the reference variant
+/// @return for each other variant one row over all sequences, followed by one row per sequence
+/// @throws InputError if there is no run of `base`; the message lists the existing variants
+[[nodiscard]] std::vector<AblationRow> ablation(std::span<const StoredRun> runs, const std::string& base,
+                                                const std::string& metric);
+
+/// Repeatability of one run.
+struct RepetitionRow {
+  std::string label;  ///< sequence, variant, seed
+  std::size_t repetitions = 0;
+  std::size_t distinct_trajectories = 0;
+  std::string first_difference;  ///< "frame 17, optimization"; empty if none, or if not recorded
+};
+
+/// One row for each run with at least two repetitions.
+[[nodiscard]] std::vector<RepetitionRow> repetition_report(const Store& store,
+                                                           std::span<const StoredRun> runs);
+
+/// First difference between the texts of two frames.csv: "frame 17, optimization"; empty if they are equal.
+[[nodiscard]] std::string first_difference(const std::string& frames, const std::string& others);
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/record/score_text.h"
+#include "core/base/error.h"
+#include "eval/compare/conventions.h"
+#include "eval/compare/time_offset.h"
+#include "eval/io/any_trajectory.h"
+#include "eval/io/text_reader.h"
+#include "reports/drawing/raster_drawing.h"
+#include "reports/drawing/svg_drawing.h"
+#include "reports/drawing/trajectory_plot.h"
+#include "reports/text/evaluation_json.h"
+#include "reports/text/evaluation_table.h"
+
+namespace stillpoint::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct EvalArguments {
+  std::string ground_truth;
+  std::vector<std::string> estimates;
+  std::vector<std::string> protocols;
+  std::string alignment;
+  int align_first = 0;
+  double rpe_delta = 1.0;
+  std::string rpe_unit = "s";
+  double offset_s = 0.0;
+  double max_difference_s = 0.0;
+  std::string format;
+  std::string times;
+  int sequence = 0;
+  bool find_offset = false;
+  bool explain = false;
+  bool json = false;
+  bool csv = false;
+  bool markdown = false;
+  std::string plot;
+  std::string per_pose;
+};
+
+template <class Enum>
+Enum enum_of(const std::string& option, const std::string& value) {
+  std::string known;
+  for (const auto& [candidate, name] : enum_names(Enum{})) {
+    if (name == value) return candidate;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  throw InputError(option, "unknown value \"" + value + "\"; expected one of: " + known);
+}
+
+eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
+  if (!(arguments.rpe_delta > 0.0)) throw InputError("--rpe-delta", "must be above 0");
+  eval::ProtocolOptions options;
+  if (!arguments.alignment.empty())
+    options.alignment = enum_of<eval::Alignment>("--align", arguments.alignment);
+  options.align_first_n = static_cast<std::size_t>(std::max(arguments.align_first, 0));
+  if (arguments.max_difference_s > 0.0) options.max_difference_s = arguments.max_difference_s;
+  options.rpe_delta = arguments.rpe_delta;
+  options.rpe_unit = enum_of<eval::RpeUnit>("--rpe-unit", arguments.rpe_unit);
+  options.offset_s = arguments.offset_s;
+  return options;
+}
+
+Trajectory load(const EvalArguments& arguments, const std::string& path) {
+  eval::LoadedTrajectory loaded = eval::read_trajectory(
+      {.path = path, .format = arguments.format, .times = arguments.times, .sequence = arguments.sequence});
+  if (loaded.skipped_rows > 0)
+    spdlog::warn("{}: skipped {} rows that are not a pose", path, loaded.skipped_rows);
+  return std::move(loaded.trajectory);
+}
+
+/// The file name, or the complete path if several files have the same name.
+std::string display_name(const std::string& path, const std::vector<std::string>& all) {
+  const auto name_of = [](const std::string& file) { return std::filesystem::path(file).filename(); };
+  const auto same = std::count_if(all.begin(), all.end(),
+                                  [&](const std::string& other) { return name_of(other) == name_of(path); });
+  return same > 1 || name_of(path).empty() ? path : name_of(path).string();
+}
+
+/// Evaluates with compat:tum and strict:se3. The strict protocol rejects degenerate trajectories (a straight
+/// line, a static camera); it is then omitted, as it was not requested explicitly.
+std::vector<eval::Evaluation> evaluate_by_default(const eval::EvaluationInput& input,
+                                                  const std::string& name) {
+  std::vector<eval::Evaluation> evaluations{eval::evaluate("compat:tum", input)};
+  try {
+    evaluations.push_back(eval::evaluate("strict:se3", input));
+  } catch (const InputError& error) {
+    spdlog::warn("{}: omitted: {}", name, error.what());
+  }
+  return evaluations;
+}
+
+std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, const Trajectory& gt) {
+  const eval::ProtocolOptions options = protocol_options(arguments);
+  std::vector<report::EvaluatedRun> runs;
+  for (const std::string& path : arguments.estimates) {
+    report::EvaluatedRun run{
+        .name = display_name(path, arguments.estimates), .est = load(arguments, path), .evaluations = {}};
+    const eval::EvaluationInput input{gt, run.est, options};
+    for (const std::string& protocol : arguments.protocols)
+      run.evaluations.push_back(eval::evaluate(protocol, input));
+    if (arguments.protocols.empty()) run.evaluations = evaluate_by_default(input, run.name);
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+std::vector<std::string> warnings_about(const Trajectory& gt, const report::EvaluatedRun& run) {
+  std::vector<std::string> warnings;
+  for (const eval::ConventionFinding& finding : eval::find_convention_violations(gt, run.est))
+    warnings.push_back(finding.message);
+  return warnings;
+}
+
+eval::Comparison compare(const Trajectory& gt, const std::vector<report::EvaluatedRun>& runs) {
+  std::vector<eval::NamedRun> named;
+  for (const report::EvaluatedRun& run : runs) named.push_back({run.name, run.est});
+  return eval::compare_runs(gt, named);
+}
+
+/// The document of a single estimate has the keys of a result.json at its top level.
+Json document(const EvalArguments& arguments, const Trajectory& gt,
+              const std::vector<report::EvaluatedRun>& runs) {
+  Json list = Json::array();
+  for (const report::EvaluatedRun& run : runs) {
+    const eval::ScoreOptions options{.offset_s = arguments.offset_s, .expected_times = {}};
+    Json json = score_members(eval::score(gt, run.est, options));
+    json["estimate"] = run.name;
+    json["warnings"] = warnings_about(gt, run);
+    for (const eval::Evaluation& evaluation : run.evaluations)
+      json["evaluations"].push_back(report::evaluation_json(evaluation));
+    list.push_back(std::move(json));
+  }
+  if (list.size() == 1) return list.front();
+  return {{"runs", list}, {"comparison", report::comparison_json(compare(gt, runs))}};
+}
+
+void print_tables(const EvalArguments& arguments, const Trajectory& gt,
+                  const std::vector<report::EvaluatedRun>& runs) {
+  const report::TableStyle style = arguments.csv        ? report::TableStyle::kCsv
+                                   : arguments.markdown ? report::TableStyle::kMarkdown
+                                                        : report::TableStyle::kText;
+  std::cout << report::evaluation_table(runs, style);
+  if (runs.size() > 1 && style != report::TableStyle::kCsv) {
+    const eval::Comparison comparison = compare(gt, runs);
+    std::cout << fmt::format("\nComparison over {:.2f} s for which all successful runs have poses:\n",
+                             comparison.common_s)
+              << report::comparison_table(comparison, style);
+  }
+  if (arguments.explain) std::cout << '\n' << report::explanation_text(runs);
+  for (const report::EvaluatedRun& run : runs) {
+    for (const eval::Evaluation& evaluation : run.evaluations) {
+      for (const std::string& note : evaluation.notes) {
+        spdlog::info("{}, {}: {}", run.name, evaluation.protocol, note);
+      }
+    }
+    for (const std::string& warning : warnings_about(gt, run)) spdlog::warn("{}: {}", run.name, warning);
+  }
+}
+
+void write_plot(const std::filesystem::path& file, const Trajectory& gt,
+                const std::vector<report::EvaluatedRun>& runs) {
+  std::vector<report::PlottedRun> plotted;
+  for (const report::EvaluatedRun& run : runs)
+    plotted.push_back({run.name, &run.est, &run.evaluations.front()});
+  const report::Drawing drawing = report::trajectory_plot(gt, plotted);
+  if (file.extension() == ".png") {
+    report::write_drawing_png(file, drawing, 1.5);
+  } else {
+    eval::write_text_file(file, report::svg_text(drawing));
+  }
+}
+
+void print_offsets(const Trajectory& gt, const std::vector<report::EvaluatedRun>& runs) {
+  for (const report::EvaluatedRun& run : runs) {
+    const std::optional<eval::TimeOffset> found = eval::find_time_offset(gt, run.est);
+    if (!found) throw InputError(run.name, "too few matching poses to estimate a time offset");
+    std::cout << fmt::format("{}: offset {:+.5f} s (ATE {:.6f} m; {:.6f} m without offset)\n", run.name,
+                             found->offset_s, found->ate_rmse_m, found->ate_rmse_at_zero_m);
+  }
+}
+
+int evaluate_files(const EvalArguments& arguments) {
+  if (arguments.ground_truth.empty() || arguments.estimates.empty()) {
+    throw InputError("command line", "eval requires a ground truth and an estimate; try --help");
+  }
+  const Trajectory gt = load(arguments, arguments.ground_truth);
+  const std::vector<report::EvaluatedRun> runs = evaluate_all(arguments, gt);
+  if (arguments.json) {
+    std::cout << document(arguments, gt, runs).dump(2) << '\n';
+  } else {
+    print_tables(arguments, gt, runs);
+  }
+  if (arguments.find_offset) print_offsets(gt, runs);
+  if (!arguments.plot.empty()) write_plot(arguments.plot, gt, runs);
+  if (!arguments.per_pose.empty()) eval::write_text_file(arguments.per_pose, report::per_pose_csv(runs));
+  return kExitOk;
+}
+
+std::vector<Option> options_of(EvalArguments& a) {
+  return {
+      {"GT", "Ground-truth trajectory", &a.ground_truth},
+      {"EST", "Estimated trajectories of the same body frame", &a.estimates},
+      {"--protocol",
+       "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
+       "repeated",
+       &a.protocols, "--recipe"},
+      {"--align", "Override the alignment of the protocol: none, first_pose, yaw, se3 or sim3", &a.alignment},
+      {"--align-first", "Align with the first N matches only", &a.align_first},
+      {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta},
+      {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
+      {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s},
+      {"--find-offset", "Estimate the time offset and print it, without applying it", &a.find_offset},
+      {"--max-difference", "Override the maximum time difference of matched poses of the protocol [s]",
+       &a.max_difference_s},
+      {"--format", "Trajectory format: tum, euroc, kitti, openloris or 7scenes [detected]", &a.format},
+      {"--times", "File of time stamps of a KITTI trajectory", &a.times},
+      {"--seq", "Sequence number in an OpenLORIS file", &a.sequence},
+      {"--explain", "Print a description of each protocol", &a.explain},
+      {"--json", "Print JSON with full precision", &a.json},
+      {"--csv", "Print CSV", &a.csv},
+      {"--markdown", "Print Markdown", &a.markdown},
+      {"--plot", "Write a plot of trajectories and errors (.svg or .png)", &a.plot},
+      {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose}};
+}
+
+}  // namespace
+
+Command eval_command() {
+  const auto arguments = std::make_shared<EvalArguments>();
+  return {
+      .name = "eval",
+      .summary = "Evaluate trajectories against ground truth with named protocols",
+      .example = "eval groundtruth.txt trajectory.tum --protocol compat:tum --protocol strict:se3 --explain",
+      .options = options_of(*arguments),
+      .action = [arguments] { return evaluate_files(*arguments); },
+      .subcommands = {eval_openloris_command()}};
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "bench/cli/commands.h"
+#include "bench/cli/progress.h"
+#include "datasets/sequence_validator.h"
+
+namespace stillpoint::bench {
+namespace {
+
+struct CheckArguments {
+  std::string folder;
+  std::string format;
+  std::string rig_file;
+};
+
+int check(const CheckArguments& arguments) {
+  std::optional<ProgressLine> line;
+  const datasets::CheckOptions options{.open = {.format = arguments.format, .rig_file = arguments.rig_file},
+                                       .progress = [&line](std::size_t done, std::size_t total) {
+                                         if (!line) line.emplace("decoding", total, "frames");
+                                         line->update(done);
+                                       }};
+  const datasets::CheckReport report = datasets::check_sequence(arguments.folder, options);
+  line.reset();
+  std::cout << datasets::report_text(report);
+  return report.exit_code();
+}
+
+}  // namespace
+
+Command check_command() {
+  const auto arguments = std::make_shared<CheckArguments>();
+  return {
+      .name = "check",
+      .summary =
+          "Validate a sequence folder: contents and defects; exit code 0 = no defects, 1 = defects, 2 = "
+          "unreadable",
+      .example = "data check my_sequence",
+      .options = {{"DIR", "Sequence folder", &arguments->folder},
+                  {"--format", "tum, openloris, euroc, 7scenes or folder [detected]", &arguments->format},
+                  {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig_file}},
+      .action = [arguments] { return check(*arguments); },
+      .subcommands = {}};
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress.h"
+#include "bench/config/config_file.h"
+#include "bench/record/output_folder.h"
+#include "bench/run/sequence_source.h"
+#include "core/base/error.h"
+#include "core/detector/object_detector.h"
+#include "datasets/io/detections_file.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Command line arguments of `detect`.
+struct DetectArguments {
+  std::string sequence;
+  std::string out;
+  std::string weights, cfg, names;
+  std::string base = "stillpoint";
+  std::vector<std::string> settings;
+  std::string format;
+  int max_frames = 0;
+};
+
+/// The config with the detection network of the options.
+OdometryConfig config_of(const DetectArguments& arguments) {
+  OdometryConfig config = load_config({arguments.base, "", arguments.settings});
+  const auto override_with = [](std::string& value, const std::string& given) {
+    if (!given.empty()) value = given;
+  };
+  override_with(config.detector.weights, arguments.weights);
+  override_with(config.detector.cfg, arguments.cfg);
+  override_with(config.detector.names, arguments.names);
+  config.detector.kind = DetectorKind::kNetwork;
+  return config;
+}
+
+/// Detections of a frame; state `kNone` if its image cannot be read.
+DetectionSet detect_frame(const datasets::SensorStream& stream, std::size_t index, ObjectDetector& detector) {
+  Frame frame;
+  try {
+    frame = stream.load_frame(index);
+  } catch (const InputError& error) {
+    std::cerr << "stillpoint: warning: frame " << index << " skipped: " << error.what() << "\n";
+    return {.t = stream.info().frame_times[index], .state = DetectionState::kNone, .detections = {}};
+  }
+  return detector.detect(frame);
+}
+
+void print_summary(const ObjectDetector& detector, const fs::path& file) {
+  const DetectorCounters& counters = detector.counters();
+  std::cout << fmt::format("{} boxes in {} frames, {} clipped to the image, {} rejected ({})\n  {}\n",
+                           counters.boxes, counters.processed, counters.clipped, counters.rejected,
+                           detector.description(), file.string());
+}
+
+int detect(const DetectArguments& arguments) {
+  if (arguments.out.empty()) throw InputError("--out", "is required: the output file of the boxes");
+  if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
+  const fs::path file = fs::absolute(arguments.out);
+  const OdometryConfig config = config_of(arguments);
+  install_interrupt_handlers();
+  const std::unique_ptr<ObjectDetector> detector =
+      make_object_detector(config.detector, {.dynamic_classes = config.dynamic.classes});
+  const std::unique_ptr<datasets::SensorStream> stream = find_sequence(
+      arguments.sequence, {.format = arguments.format}, {.stop_requested = interrupt_requested});
+  if (!stream) return kExitInterrupted;
+  require_writable(file.parent_path());
+
+  const std::size_t available = stream->info().frame_times.size();
+  const auto max_frames = static_cast<std::size_t>(arguments.max_frames);
+  const std::size_t frames = max_frames == 0 ? available : std::min(available, max_frames);
+  std::vector<DetectionSet> sets;
+  {
+    ProgressLine progress("detecting in " + stream->info().name, frames, "frames");
+    for (std::size_t i = 0; i < frames; ++i) {
+      if (interrupt_requested()) return kExitInterrupted;
+      sets.push_back(detect_frame(*stream, i, *detector));
+      progress.update(i + 1);
+    }
+  }
+  write_files(file.parent_path(), {{file.filename().string(), datasets::detections_text(sets)}});
+  print_summary(*detector, file);
+  return kExitOk;
+}
+
+}  // namespace
+
+Command detect_command() {
+  const auto arguments = std::make_shared<DetectArguments>();
+  return {.name = "detect",
+          .summary = "Run a detection network on a sequence and record its boxes",
+          .example =
+              "detect my_sequence --weights yolo.weights --cfg yolo.cfg --names coco.names --out "
+              "my_sequence/detections.txt",
+          .options = {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
+                      {"--out", "Output file; `run` reads detections.txt of the sequence folder",
+                       &arguments->out},
+                      {"--weights", "Network file: Darknet .weights or .onnx [detector.weights]",
+                       &arguments->weights},
+                      {"--cfg", "Darknet network description [detector.cfg]", &arguments->cfg},
+                      {"--names", "Class names, one per line [detector.names]", &arguments->names},
+                      {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+                      {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+                      {"--format", "Sequence format [detected]", &arguments->format},
+                      {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames}},
+          .action = [arguments] { return detect(*arguments); },
+          .subcommands = {}};
+}
+
+}  // namespace stillpoint::bench

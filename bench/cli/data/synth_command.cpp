@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress.h"
+#include "core/base/error.h"
+#include "datasets/synthetic/sequence/sequence_cache.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr double kPresetValue = -1.0;  // option not given: use the value of the preset
+
+/// Command line arguments of `data synth`.
+struct SynthArguments {
+  std::string preset;
+  std::string out;
+  std::string layout = "openloris";
+  std::string trajectory, imu;
+  bool labels = false;
+  int seed = 1;
+  int threads = 0;
+  int people = -1, seated = -1, unknown = -1;
+  int width = -1, height = -1;
+  double seconds = kPresetValue, rate = kPresetValue, focal = kPresetValue;
+  double exposure_ms = kPresetValue, exposure_swing = kPresetValue, rolling_ms = kPresetValue;
+  double start = kPresetValue;
+  double depth_noise = kPresetValue, time_offset_ms = 0.0, dropped = kPresetValue;
+};
+
+template <class Value, class Given>
+void override_with(Value& value, Given given, double factor = 1.0) {
+  if (given >= 0) value = static_cast<Value>(given * factor);
+}
+
+synth::SynthRequest request_of(const SynthArguments& arguments) {
+  synth::SynthRequest request = synth::preset_request(arguments.preset);
+  if (arguments.layout != "openloris" && arguments.layout != "tum") {
+    throw InputError("--layout",
+                     "unknown layout \"" + arguments.layout + "\"; expected one of: openloris, tum");
+  }
+  request.layout =
+      arguments.layout == "tum" ? synth::SequenceLayout::kTum : synth::SequenceLayout::kOpenLoris;
+  request.labels = arguments.labels;
+  request.trajectory_file = arguments.trajectory;
+  request.imu_file = arguments.imu;
+  request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
+  override_with(request.seed, arguments.seed);
+  override_with(request.seconds, arguments.seconds);
+  override_with(request.start_s, arguments.start);
+  override_with(request.frames_per_s, arguments.rate);
+  override_with(request.walkers, arguments.people);
+  override_with(request.seated, arguments.seated);
+  override_with(request.unknown_movers, arguments.unknown);
+  // The field of view remains constant.
+  override_with(request.focal_px, arguments.width, request.focal_px / request.width);
+  override_with(request.width, arguments.width);
+  override_with(request.height, arguments.height);
+  override_with(request.focal_px, arguments.focal);
+  override_with(request.color.exposure_s, arguments.exposure_ms, 1e-3);
+  override_with(request.color.exposure_swing, arguments.exposure_swing);
+  override_with(request.rolling_shutter_s, arguments.rolling_ms, 1e-3);
+  override_with(request.depth.noise_per_m, arguments.depth_noise);
+  override_with(request.dropped_fraction, arguments.dropped);
+  return request;
+}
+
+int render(const SynthArguments& arguments) {
+  const synth::SynthRequest request = request_of(arguments);
+  install_interrupt_handlers();
+  const auto frames = static_cast<std::size_t>(request.seconds * request.frames_per_s);
+  ProgressLine line("rendering " + request.preset, frames, "frames");
+  const synth::RenderControl control{
+      .progress = [&](int done, int) { line.update(static_cast<std::size_t>(done)); },
+      .stop_requested = interrupt_requested,
+      .threads = arguments.threads};
+  std::filesystem::path folder = arguments.out;
+  if (arguments.out.empty()) {
+    folder = synth::cached_sequence(request, control);
+  } else if (!synth::render_sequence(request, folder, control)) {
+    folder.clear();
+  }
+  if (folder.empty())
+    throw InputError(request.preset, "rendering was interrupted; partial output was removed");
+  std::cout << folder.string() << '\n';
+  return kExitOk;
+}
+
+std::vector<Option> options_of(SynthArguments& arguments) {
+  return {
+      {"PRESET", "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; flight",
+       &arguments.preset},
+      {"--out", "Output folder [a folder in the cache]", &arguments.out},
+      {"--seed", "Random seed; the output is a function of seed and options", &arguments.seed},
+      {"--seconds", "Duration [s]", &arguments.seconds},
+      {"--people", "Number of walking people", &arguments.people},
+      {"--seated", "Number of seated people", &arguments.seated},
+      {"--unknown", "Number of moving carts and chairs without detections", &arguments.unknown},
+      {"--layout", "Output layout: openloris or tum", &arguments.layout},
+      {"--labels", "Also write instance masks", &arguments.labels},
+      {"--trajectory", "Preset flight: IMU poses (TUM text)", &arguments.trajectory},
+      {"--imu", "Preset flight: IMU samples (EuRoC CSV)", &arguments.imu},
+      {"--start", "Preset flight: offset of the first frame [s]", &arguments.start},
+      {"--width", "Image width [px]", &arguments.width},
+      {"--height", "Image height [px]", &arguments.height},
+      {"--focal", "Focal length [px]", &arguments.focal},
+      {"--rate", "Frame rate [Hz]", &arguments.rate},
+      {"--exposure-ms", "Exposure time [ms]", &arguments.exposure_ms},
+      {"--exposure-swing", "Amplitude of the slow exposure variation [stops]", &arguments.exposure_swing},
+      {"--rolling-shutter-ms", "Read-out time from the first to the last row [ms]", &arguments.rolling_ms},
+      {"--depth-noise", "Standard deviation of depth noise per squared depth [1/m]", &arguments.depth_noise},
+      {"--time-offset-ms", "Delay of the IMU time stamps [ms]", &arguments.time_offset_ms},
+      {"--dropped", "Fraction of dropped frames", &arguments.dropped},
+      {"--threads", "Number of threads, 0 = all cores; does not affect the output", &arguments.threads}};
+}
+
+}  // namespace
+
+Command synth_command() {
+  const auto arguments = std::make_shared<SynthArguments>();
+  return {.name = "synth",
+          .summary = "Render a sequence with exact ground truth",
+          .example = "data synth walking_xyz --out build/walking_xyz --seed 1 --seconds 10 --people 2",
+          .options = options_of(*arguments),
+          .action = [arguments] { return render(*arguments); },
+          .subcommands = {}};
+}
+
+}  // namespace stillpoint::bench

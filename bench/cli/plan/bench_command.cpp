@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/plan/plan_progress.h"
+#include "bench/plan/bench_table.h"
+#include "bench/plan/plan_runner.h"
+#include "bench/record/output_folder.h"
+#include "bench/systems/own_odometry.h"
+#include "bench/systems/published_table.h"
+#include "core/base/error.h"
+#include "reports/text/published_comparison.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BenchArguments {
+  std::string plan;
+  std::string store = "build/bench/store.sqlite";
+  std::string out;
+  int jobs = 1;
+  std::vector<std::string> filters;
+  bool dry_run = false;
+  bool retry = false;
+};
+
+int exit_code(const std::vector<BenchRow>& rows) {
+  if (interrupt_requested()) return kExitInterrupted;
+  const bool all_ok = std::all_of(rows.begin(), rows.end(), [](const BenchRow& row) {
+    return row.status == "ok" || row.status == "skipped";
+  });
+  return all_ok ? kExitOk : kExitFindings;
+}
+
+/// Prints the state of each run of the plan. Executes nothing and does not create the store.
+int dry_run(const PlanMatrix& matrix, const fs::path& store) {
+  std::vector<std::string> stored_keys;
+  if (fs::exists(store)) {
+    for (const StoredRun& run : Store(store).runs()) stored_keys.push_back(run.key);
+  }
+  std::size_t missing = 0;
+  for (const PlannedRun& run : matrix.runs) {
+    const bool cached = std::ranges::find(stored_keys, run_key(run.identity)) != stored_keys.end();
+    const bool available = matrix.sequences[run.sequence].unavailable_reason.empty();
+    missing += cached ? 0 : 1;
+    std::cout << fmt::format("{}  {}\n",
+                             cached      ? "cached "
+                             : available ? "pending"
+                                         : "skipped",
+                             run_label(matrix.plan, run.identity));
+  }
+  std::cout << fmt::format("{} of {} runs cached\n", matrix.runs.size() - missing, matrix.runs.size());
+  return kExitOk;
+}
+
+/// Tables that compare the runs with the published results named by the plan.
+std::string published_tables(const PlanMatrix& matrix, const Store& store) {
+  std::string text;
+  const std::vector<StoredRun> runs = store.plan_runs(matrix.plan.name);
+  for (const std::string& name : matrix.plan.table.published) {
+    const std::string table = report::published_comparison(runs, load_published(name));
+    if (!table.empty()) text += "\n" + table;
+  }
+  return text;
+}
+
+void print_rows(const PlanMatrix& matrix, const std::vector<BenchRow>& rows, const std::string& published,
+                const fs::path& out) {
+  const std::string title =
+      matrix.plan.title + (interrupt_requested() ? " (interrupted: not all runs were executed)" : "");
+  const std::string table = markdown_table(rows) + published;
+  write_files(out, {{"table.md", "# " + title + "\n\n" + table}, {"table.json", json_table(title, rows)}});
+  std::cout << title << "\n\n"
+            << table << "\nwritten to " << (out / "table.md").string() << " and table.json\n";
+}
+
+int run_bench(const BenchArguments& arguments) {
+  if (arguments.jobs < 1) throw InputError("--jobs", "must be at least 1");
+  install_interrupt_handlers();
+  const PlanMatrix matrix = expand_plan(load_plan(arguments.plan), build_name(), arguments.filters);
+  if (matrix.runs.empty())
+    throw InputError("--filter", "matches no run of the plan; see `stillpoint plan show`");
+  if (arguments.dry_run) return dry_run(matrix, arguments.store);
+  const fs::path out =
+      arguments.out.empty() ? fs::path("build/bench") / matrix.plan.name : fs::path(arguments.out);
+  require_writable(out);
+  PlanReport report;
+  {
+    StoreWriter writer(arguments.store);
+    report = run_plan(matrix, writer, {.jobs = arguments.jobs, .retry = arguments.retry}, plan_progress());
+  }
+  const Store store(arguments.store);
+  const std::vector<BenchRow> rows = plan_rows(matrix, store);
+  print_rows(matrix, rows, published_tables(matrix, store), out);
+  std::cout << fmt::format("{} of {} runs executed, {} cached; store {}\n", report.executed,
+                           matrix.runs.size(), report.cached, arguments.store);
+  return exit_code(rows);
+}
+
+}  // namespace
+
+Command bench_command() {
+  const auto arguments = std::make_shared<BenchArguments>();
+  return {
+      .name = "bench",
+      .summary = "Execute the runs of a plan that are not in the store; print a table of scores and times",
+      .example = "bench quick --store /tmp/store.sqlite --jobs 2",
+      .options = {{"PLAN", "Plan: an embedded name (quick) or a TOML file", &arguments->plan},
+                  {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
+                  {"--out", "Output folder of the table [build/bench/PLAN]", &arguments->out},
+                  {"--jobs", "Number of concurrent accuracy runs", &arguments->jobs},
+                  {"--filter",
+                   "Execute only runs whose sequence, variant or system matches this glob; may be repeated",
+                   &arguments->filters},
+                  {"--dry-run", "List the runs and their state; execute none", &arguments->dry_run},
+                  {"--retry", "Execute failed runs again", &arguments->retry}},
+      .action = [arguments] { return run_bench(*arguments); },
+      .subcommands = {}};
+}
+
+}  // namespace stillpoint::bench

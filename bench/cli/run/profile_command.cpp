@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress.h"
+#include "bench/cli/run/profile_device.h"
+#include "bench/cli/run/profile_instructions.h"
+#include "bench/cli/run/profile_report.h"
+#include "bench/config/config_file.h"
+#include "bench/plan/bench_plan.h"
+#include "bench/profile/meters/process_usage.h"
+#include "bench/profile/profile_table.h"
+#include "bench/profile/timeline.h"
+#include "bench/record/output_folder.h"
+#include "bench/run/sequence_source.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Command line arguments of `profile`.
+struct ProfileArguments {
+  std::string sequence;
+  std::string base = "stillpoint";
+  std::string variant;
+  std::vector<std::string> settings;
+  std::string mode = "sequential";
+  std::string out;
+  std::string format;
+  std::string rig;
+  std::string cores;
+  double budget_ms = 33.0;
+  int max_frames = 0;
+  bool instructions = false;
+  std::string device;
+  double speed = 1.0;
+  std::string tegrastats;
+};
+
+/// Samples the CPU times of all threads, during the run as its threads end with it.
+class ThreadUsageSampler {
+ public:
+  void sample() {
+    for (auto& [id, usage] : thread_usages()) threads_[id] = usage;
+  }
+  /// Usage since construction.
+  [[nodiscard]] std::map<int, ThreadUsage> usages() const {
+    std::map<int, ThreadUsage> since_start = threads_;
+    for (const auto& [id, usage] : at_start_) {
+      since_start[id].user_s -= usage.user_s;
+      since_start[id].system_s -= usage.system_s;
+    }
+    return since_start;
+  }
+
+ private:
+  std::map<int, ThreadUsage> at_start_ = thread_usages();
+  std::map<int, ThreadUsage> threads_ = at_start_;
+};
+
+/// Sampling thread times and energy disturbs the run. The times of threads that end with the run lack its
+/// last frames, at most this many.
+constexpr std::int64_t kFramesBetweenSamples = 10;
+
+RunSpec spec_of(const ProfileArguments& arguments) {
+  return {.config = load_config({arguments.base, arguments.variant, arguments.settings}),
+          .mode = arguments.mode,
+          .speed = arguments.speed,
+          .max_frames = static_cast<std::size_t>(arguments.max_frames),
+          .keep_spans = true};
+}
+
+Profile measure(const datasets::SensorStream& stream, const ProfileArguments& arguments) {
+  ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
+  AllocationWatch allocations;
+  ThreadUsageSampler thread_usage;
+  EnergyMeter energy("/", arguments.tegrastats, std::chrono::steady_clock::now());
+  const HardwareCounters counters;
+  const ProcessUsage before = process_usage();
+  const auto on_update = [&](const OdometryUpdate& update) {
+    allocations.end_frame();
+    progress.update(static_cast<std::size_t>(update.frame_id) + 1);
+    if (update.frame_id % kFramesBetweenSamples == 0) {
+      thread_usage.sample();
+      energy.sample(std::chrono::steady_clock::now());
+    }
+    allocations.begin_frame();
+  };
+  Profile profile{
+      .run = run_odometry(stream, spec_of(arguments),
+                          {.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested})};
+  profile.usage = usage_between(before, process_usage());
+  profile.counters = counters.counts();
+  profile.counters_missing = counters.reason();
+  profile.energy = energy.use(std::chrono::steady_clock::now());
+  thread_usage.sample();
+  profile.threads = thread_usage.usages();
+  profile.rows = profile_rows(profile.run.timings, arguments.budget_ms);
+  profile.misses = deadline_misses(profile.run.frame_timings, arguments.budget_ms);
+  profile.allocations = allocations.counts();
+  profile.recorder = recorder_cost(profile.run);
+  return profile;
+}
+
+/// Default number of frames with --instructions: about one minute.
+constexpr int kFramesUnderCallgrind = 30;
+
+InstructionRequest instruction_request(const datasets::SequenceInfo& info, const ProfileArguments& arguments,
+                                       const fs::path& folder) {
+  if (arguments.mode != "sequential") {
+    throw InputError("--instructions",
+                     "requires the sequential mode, whose counts are reproducible; remove --mode");
+  }
+  const int max_frames = arguments.max_frames > 0 ? arguments.max_frames : kFramesUnderCallgrind;
+  return {.sequence = info.folder,
+          .name = info.name,
+          .config = {arguments.base, arguments.variant, arguments.settings},
+          .frames = std::min(max_frames, static_cast<int>(info.frame_times.size())),
+          .folder = folder};
+}
+
+DeviceRequest device_request(const ProfileArguments& arguments, const fs::path& folder) {
+  if (arguments.mode != "sequential" || arguments.instructions) {
+    throw InputError("--device", "uses a virtual clock; remove --mode and --instructions");
+  }
+  return {.device = arguments.device,
+          .spec = spec_of(arguments),
+          .budget_ms = arguments.budget_ms,
+          .folder = folder};
+}
+
+int run_profile(const ProfileArguments& arguments) {
+  if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
+  if (!(arguments.budget_ms > 0.0)) throw InputError("--frame-budget-ms", "must be above 0, e.g. 33");
+  if (!arguments.tegrastats.empty() && !fs::exists(arguments.tegrastats)) {
+    throw InputError(arguments.tegrastats,
+                     "does not exist; first start `tegrastats --logfile` with this file");
+  }
+  if (!arguments.cores.empty()) pin_to(parse_cpu_list(arguments.cores));
+  install_interrupt_handlers();
+  const auto stream =
+      find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
+                    {.progress = {}, .stop_requested = interrupt_requested});
+  if (!stream) return kExitInterrupted;
+  const std::string& name = stream->info().name;
+  const fs::path folder = arguments.out.empty() ? fs::path("build/profile") / name : fs::path(arguments.out);
+  require_writable(folder);
+  if (!arguments.device.empty()) {
+    return profile_on_device(*stream, device_request(arguments, folder));
+  }
+  if (arguments.instructions) {
+    return profile_instructions(instruction_request(stream->info(), arguments, folder));
+  }
+  const Profile profile = measure(*stream, arguments);
+  if (interrupt_requested()) return kExitInterrupted;
+  const ProfileTitle title{.sequence = name,
+                           .base = arguments.base,
+                           .variant = arguments.variant,
+                           .mode = arguments.mode,
+                           .cores = arguments.cores};
+  write_files(folder, {{"profile.json", profile_text(profile, title) + "\n"},
+                       {"trace.json", chrome_trace(profile.run.spans, "stillpoint " + name)},
+                       {"stacks.folded", folded_stacks(profile.run.spans)}});
+  print_profile(profile);
+  std::cout << fmt::format("{} (open trace.json in ui.perfetto.dev)\n", folder.string());
+  return kExitOk;
+}
+
+}  // namespace
+
+Command profile_command() {
+  const auto arguments = std::make_shared<ProfileArguments>();
+  return {
+      .name = "profile",
+      .summary = "Profile one run: table of stage times, timeline, folded stacks",
+      .example = "profile market --frame-budget-ms 33 --out /tmp/profile",
+      .options = {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
+                  {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+                  {"--variant", "Overlays joined by +", &arguments->variant},
+                  {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+                  {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
+                  {"--frame-budget-ms", "Frames that take longer are counted as deadline misses [ms]",
+                   &arguments->budget_ms},
+                  {"--cores", "CPU affinity, e.g. 0,1 [all]", &arguments->cores},
+                  {"--out", "Output folder of profile.json, trace.json and stacks.folded [build/profile/SEQ]",
+                   &arguments->out},
+                  {"--format", "Sequence format [detected]", &arguments->format},
+                  {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
+                  {"--max-frames", "Maximum number of frames; 0 = all, or 30 with --instructions",
+                   &arguments->max_frames},
+                  {"--device",
+                   "Simulate this target device on a virtual clock: dropped frames, latency, accuracy (name "
+                   "or file)",
+                   &arguments->device},
+                  {"--speed", "Playback speed in realtime mode and with --device; 1 = as recorded",
+                   &arguments->speed},
+                  {"--tegrastats", "Log file of a running tegrastats, for the energy of Jetson devices",
+                   &arguments->tegrastats},
+                  {"--instructions", "Count instructions with callgrind instead of measuring times",
+                   &arguments->instructions}},
+      .action = [arguments] { return run_profile(*arguments); },
+      .subcommands = {}};
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/run/profile_report.h"
+
+#include <iostream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "reports/tables/text_table.h"
+
+namespace stillpoint::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json waits_json(const std::vector<ChannelWaits>& waits) {
+  Json list = Json::array();
+  for (const ChannelWaits& wait : waits) {
+    list.push_back({{"channel", wait.channel},
+                    {"for_items", {{"waits", wait.for_items.waits}, {"ns", wait.for_items.ns}}},
+                    {"for_room", {{"waits", wait.for_room.waits}, {"ns", wait.for_room.ns}}}});
+  }
+  return list;
+}
+
+Json recorder_json(const RecorderCost& cost) {
+  return {{"timer_ns", cost.timer_ns},
+          {"timers_per_frame", cost.timers_per_frame},
+          {"recording_us_per_frame", cost.recording_us_per_frame},
+          {"fraction", cost.fraction}};
+}
+
+Json counters_json(const std::vector<HardwareCount>& counters) {
+  if (counters.empty()) return nullptr;
+  Json json;
+  for (const HardwareCount& counter : counters) json[counter.name] = counter.count;
+  return json;
+}
+
+std::string ms(double value) { return fmt::format("{:.3f}", value); }
+
+void print_times(const std::vector<ProfileRow>& rows, const DeadlineMisses& misses) {
+  report::TableRows table = {
+      {"ms", "per", "mean", "median", "p95", "p99", "max", "calls", "frames over budget"}};
+  const auto add = [&](std::string_view name, const char* per, const TimingStatistics& time,
+                       std::int64_t over_budget) {
+    table.push_back({std::string(name), per, ms(time.mean), ms(time.median), ms(time.p95), ms(time.p99),
+                     ms(time.max), fmt::format("{}", time.calls), fmt::format("{}", over_budget)});
+  };
+  for (const ProfileRow& row : rows) {
+    const std::string_view name = module_name(row.module);
+    if (!is_thread(row.module)) add(name, "call", row.per_call, row.frames_over);
+    add(name, "frame", row.per_frame, row.frames_over);
+  }
+  if (misses.whole_frame) add("all_stages", "frame", *misses.whole_frame, misses.one_thread);
+  std::cout << report::format_table(table, report::TableStyle::kText);
+}
+
+void print_waits(const std::vector<ChannelWaits>& waits) {
+  for (const ChannelWaits& wait : waits) {
+    std::cout << fmt::format("queue \"{}\": {} waits for items, {:.1f} ms; {} waits for space, {:.1f} ms\n",
+                             wait.channel, wait.for_items.waits,
+                             1e-6 * static_cast<double>(wait.for_items.ns), wait.for_room.waits,
+                             1e-6 * static_cast<double>(wait.for_room.ns));
+  }
+}
+
+void print_process(const ProcessUsage& usage, const std::map<int, ThreadUsage>& threads) {
+  std::cout << fmt::format(
+      "CPU time {:.2f} s user + {:.2f} s system, {} voluntary and {} involuntary context switches, "
+      "{} minor and {} major page faults, peak memory {:.0f} MB\n",
+      usage.user_s, usage.system_s, usage.voluntary_switches, usage.involuntary_switches, usage.minor_faults,
+      usage.major_faults, 1e-6 * static_cast<double>(usage.peak_memory_bytes));
+  for (const auto& [id, thread] : threads) {
+    std::cout << fmt::format("  thread {} {}: {:.2f} s user + {:.2f} s system\n", id, thread.name,
+                             thread.user_s, thread.system_s);
+  }
+}
+
+std::string counters_text(const Profile& profile) {
+  if (profile.counters.empty()) return "n/a: " + profile.counters_missing;
+  std::string text;
+  for (const HardwareCount& counter : profile.counters) {
+    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", counter.name,
+                        static_cast<double>(counter.count));
+  }
+  return text;
+}
+
+void print_machine(const Profile& profile) {
+  std::cout << "hardware counters: " << counters_text(profile) << '\n';
+  std::cout << "energy: "
+            << (profile.energy
+                    ? fmt::format("{:.2f} J, whole machine ({})", profile.energy->joules,
+                                  profile.energy->source)
+                    : "n/a: neither RAPL nor INA3221 is readable (on Jetson devices: --tegrastats LOG)")
+            << '\n';
+  std::cout << "allocations: "
+            << (profile.allocations
+                    ? fmt::format("{} per frame (median), {} at most; all threads, including the recorder",
+                                  profile.allocations->median, profile.allocations->largest)
+                    : "n/a: not counted by this program; use stillpoint_counting")
+            << '\n';
+  const RecorderCost& recorder = profile.recorder;
+  std::cout << fmt::format(
+      "recorder: {:.1f} timers per frame ({:.0f} ns each); recording took {:.1f} us per frame; {:.2f} % of "
+      "the "
+      "stage times\n",
+      recorder.timers_per_frame, recorder.timer_ns, recorder.recording_us_per_frame,
+      100.0 * recorder.fraction);
+}
+
+}  // namespace
+
+std::string profile_text(const Profile& profile, const ProfileTitle& title) {
+  Json json = {{"sequence", title.sequence}, {"base", title.base},   {"variant", title.variant},
+               {"mode", title.mode},         {"cores", title.cores}, {"wall_s", profile.run.wall_s}};
+  json.update(profile_json(profile.rows, profile.misses));
+  json["waits"] = waits_json(profile.run.summary.waits);
+  json["process"] = usage_json(profile.usage, profile.threads);
+  json["counters"] = counters_json(profile.counters);
+  json["energy_j"] = profile.energy ? Json(profile.energy->joules) : Json(nullptr);
+  json["allocations_per_frame"] = profile.allocations ? Json{{"median", profile.allocations->median},
+                                                             {"largest", profile.allocations->largest}}
+                                                      : Json(nullptr);
+  json["recorder"] = recorder_json(profile.recorder);
+  return json.dump(2);
+}
+
+void print_profile(const Profile& profile) {
+  print_times(profile.rows, profile.misses);
+  std::cout << fmt::format(
+      "{} frames in {:.2f} s; over {:g} ms: {} on one thread, {} with one thread per stage\n",
+      profile.misses.frames, profile.run.wall_s, profile.misses.budget_ms, profile.misses.one_thread,
+      profile.misses.thread_per_stage);
+  if (const auto& report = profile.run.summary.realtime) {
+    std::cout << fmt::format(
+        "real time: {} frames dropped, {} with late detections, {} poses later than {:.1f} ms\n",
+        report->dropped, report->late_detections, report->deadline_misses(), report->deadline_ms);
+  }
+  print_waits(profile.run.summary.waits);
+  print_process(profile.usage, profile.threads);
+  print_machine(profile);
+}
+
+}  // namespace stillpoint::bench

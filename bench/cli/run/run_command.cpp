@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress.h"
+#include "bench/config/config_file.h"
+#include "bench/model/utc_time.h"
+#include "bench/record/label_dump.h"
+#include "bench/record/output_folder.h"
+#include "bench/record/run_files.h"
+#include "bench/record/sequence_checksum.h"
+#include "bench/run/heartbeat.h"
+#include "bench/run/sequence_source.h"
+#include "core/base/error.h"
+#include "datasets/ping_pong_playback.h"
+#include "reports/drawing/cost_trend.h"
+#include "reports/drawing/svg_drawing.h"
+#include "reports/frames/run_video.h"
+#include "reports/frames/worst_frames.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Command line arguments of `run`.
+struct RunArguments {
+  std::string sequence;
+  std::string base = "stillpoint";
+  std::vector<std::string> variants;
+  std::vector<std::string> settings;
+  std::string mode = "sequential";
+  std::string out;
+  std::string format;
+  std::string rig;
+  std::string heartbeat;
+  std::string sequence_id;
+  int max_frames = 0;
+  bool deterministic_counts = false;
+  double speed = 1.0;
+  std::vector<std::string> dumps;
+  int passes = 1;
+  std::string video;
+  int images = 0;
+};
+
+/// A run to execute; one for each --variant.
+struct PlannedRun {
+  std::string variant;
+  RunSpec spec;
+  fs::path folder;
+  fs::path video;  ///< folder of annotated frames; empty = none
+};
+
+/// Loads all configs before the first run starts, so that errors are reported early.
+std::vector<PlannedRun> plan_runs(const RunArguments& arguments) {
+  std::vector<std::string> variants = arguments.variants;
+  if (variants.empty()) variants.emplace_back();
+  std::vector<PlannedRun> runs;
+  for (const std::string& variant : variants) {
+    runs.push_back({.variant = variant.empty() ? arguments.base : variant,
+                    .spec = {.config = load_config({arguments.base, variant, arguments.settings}),
+                             .mode = arguments.mode,
+                             .speed = arguments.speed,
+                             .max_frames = static_cast<std::size_t>(arguments.max_frames),
+                             .keep_spans = true,
+                             .deterministic_counts = arguments.deterministic_counts},
+                    .folder = {},
+                    .video = arguments.video});
+  }
+  return runs;
+}
+
+/// Sets the output folder of each run: --out for a single run, else a subfolder. Checks that it is writable.
+std::vector<PlannedRun> with_folders(std::vector<PlannedRun> runs, const std::string& out,
+                                     const std::string& sequence) {
+  const fs::path root = out.empty() ? fs::path("build/runs") / sequence : fs::path(out);
+  const bool shared_root = out.empty() || runs.size() > 1;
+  for (PlannedRun& run : runs) {
+    if (!run.video.empty() && runs.size() > 1) run.video /= folder_name(run.variant);
+    run.folder = shared_root ? root / folder_name(run.variant) : root;
+    require_writable(run.folder);
+  }
+  return runs;
+}
+
+void log_update(const OdometryUpdate& update) {
+  spdlog::debug("frame {}: {} features, {} landmarks, {} iterations{}", update.frame_id,
+                update.counters.tracked_features, update.counters.window_landmarks,
+                update.counters.solver_iterations, update.counters.keyframe ? ", keyframe" : "");
+  if (update.counters.reset) spdlog::warn("frame {}: tracking failed, estimator reset", update.frame_id);
+}
+
+/// The video requested by --video.
+std::optional<report::RunVideo> start_video(const datasets::SequenceInfo& info, const PlannedRun& planned) {
+  if (planned.video.empty()) return std::nullopt;
+  return std::optional<report::RunVideo>(std::in_place, planned.video,
+                                         report::annotation_style(planned.spec.config.frontend),
+                                         report::mean_rate_hz(info.frame_times));
+}
+
+/// The annotated frames requested by --images.
+std::optional<report::WorstFrames> start_worst_frames(const datasets::SequenceInfo& info,
+                                                      const RunArguments& arguments,
+                                                      const PlannedRun& planned) {
+  if (arguments.images == 0) return std::nullopt;
+  return std::optional<report::WorstFrames>(std::in_place, planned.folder / "images",
+                                            static_cast<std::size_t>(arguments.images),
+                                            report::annotation_style(planned.spec.config.frontend), info);
+}
+
+bool is_requested(const RunArguments& arguments, const std::string& dump) {
+  return std::ranges::find(arguments.dumps, dump) != arguments.dumps.end();
+}
+
+/// Result and additional output files of a run.
+struct Executed {
+  RunResult result;
+  std::vector<OutputFile> dumps;
+};
+
+Executed execute(const datasets::SensorStream& stream, const RunArguments& arguments,
+                 const PlannedRun& planned) {
+  const std::size_t total = stream.info().frame_times.size();
+  const std::optional<Heartbeat> heartbeat =
+      arguments.heartbeat.empty() ? std::nullopt : std::make_optional<Heartbeat>(arguments.heartbeat);
+  ProgressLine progress(stream.info().name + " " + planned.variant, total, "frames");
+  const auto on_update = [&](const OdometryUpdate& update) {
+    log_update(update);
+    if (heartbeat) heartbeat->beat(update.frame_id);
+    progress.update(static_cast<std::size_t>(update.frame_id) + 1);
+  };
+  LabelDump labels;
+  RunControl control{.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested};
+  const bool dump_labels = is_requested(arguments, "labels");
+  std::optional<report::RunVideo> video = start_video(stream.info(), planned);
+  std::optional<report::WorstFrames> worst_frames = start_worst_frames(stream.info(), arguments, planned);
+  if (dump_labels || video || worst_frames) {
+    control.on_frame = [&](const FrameReport& report) {
+      if (dump_labels) labels.add(report);
+      if (video) video->add(report);
+      if (worst_frames) worst_frames->add(report);
+    };
+  }
+  Executed run{.result = score_run(stream.info(), run_odometry(stream, planned.spec, control)), .dumps = {}};
+  run.result.variant = planned.variant;
+  run.result.mode = planned.spec.mode;
+  if (video) video->finish();
+  if (dump_labels) run.dumps.push_back({"labels.csv", labels.text()});
+  if (is_requested(arguments, "cost") && !interrupt_requested()) {
+    const report::CostTrend trend = report::cost_trend(report::frame_costs(run.result.run));
+    run.dumps.push_back({"cost.svg", report::svg_text(report::cost_plot(trend))});
+  }
+  return run;
+}
+
+/// --sequence-id, or the checksum of the sequence.
+std::string id_of(const datasets::SequenceInfo& info, const RunArguments& arguments) {
+  if (interrupt_requested()) return "";
+  return arguments.sequence_id.empty() ? sequence_checksum(info.folder) : arguments.sequence_id;
+}
+
+RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& arguments,
+                        const PlannedRun& planned) {
+  return {.sequence = info.name,
+          .sequence_format = info.format,
+          .sequence_checksum = id_of(info, arguments),
+          .base = arguments.base,
+          .variant = planned.variant,
+          .config = planned.spec.config,
+          .mode = planned.spec.mode,
+          .build = build_info(),
+          .host = host_info(),
+          .started = utc_now()};
+}
+
+std::string text_or_na(const std::optional<double>& value, const char* unit) {
+  return value ? fmt::format("{:.4f}{}", *value, unit) : "n/a";
+}
+
+void print_result(const RunResult& result, const fs::path& folder) {
+  const eval::Score& score = result.score;
+  for (const SkippedFrame& frame : result.run.summary.skipped) {
+    spdlog::warn("frame {} skipped: {}", frame.index, frame.reason);
+  }
+  if (!result.failure.empty()) spdlog::warn("{}", result.failure);
+  std::cout << fmt::format(
+      "{} {}: {}, {} of {} frames, ATE {}, T.RPE {}, R.RPE {}, correct {}, coverage {}, first pose {}\n  "
+      "{}\n",
+      result.sequence, result.variant, status_name(result.status), result.run.summary.frames,
+      result.run.frames_planned, text_or_na(score.ate_rmse_m, " m"),
+      text_or_na(score.rpe_trans_rmse_m_per_s, " m/s"), text_or_na(score.rpe_rot_rmse_deg_per_s, " deg/s"),
+      text_or_na(score.correct_rate, ""), text_or_na(score.coverage, ""),
+      text_or_na(score.first_pose_s, " s"), (folder / "result.json").string());
+}
+
+int exit_code(RunStatus status) {
+  if (status == RunStatus::kInterrupted) return kExitInterrupted;
+  return status == RunStatus::kFailed ? kExitFindings : kExitOk;
+}
+
+/// Opens the sequence; renders it first if necessary. @return null if interrupted
+std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments) {
+  std::unique_ptr<ProgressLine> progress;
+  const auto on_rendered = [&](int done, int total) {
+    if (!progress) {
+      progress = std::make_unique<ProgressLine>("rendering " + arguments.sequence,
+                                                static_cast<std::size_t>(total), "frames");
+    }
+    progress->update(static_cast<std::size_t>(done));
+  };
+  auto stream = find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
+                              {.progress = on_rendered, .stop_requested = interrupt_requested});
+  const bool single_pass = !stream || arguments.passes == 1;
+  return single_pass ? std::move(stream) : datasets::ping_pong_playback(std::move(stream), arguments.passes);
+}
+
+int run(const RunArguments& arguments) {
+  if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
+  if (arguments.images < 0) throw InputError("--images", "must not be negative; 0 means none");
+  for (const std::string& dump : arguments.dumps) {
+    if (dump == "labels" || dump == "cost") continue;
+    throw InputError("--dump", "unknown value \"" + dump + "\"; expected one of: labels, cost");
+  }
+  install_interrupt_handlers();
+  const std::vector<PlannedRun> runs = plan_runs(arguments);
+  const std::unique_ptr<datasets::SensorStream> stream = open(arguments);
+  if (!stream) return kExitInterrupted;
+  for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
+  int code = kExitOk;
+  for (const PlannedRun& planned : with_folders(runs, arguments.out, stream->info().name)) {
+    if (interrupt_requested()) return kExitInterrupted;
+    Executed run = execute(*stream, arguments, planned);
+    write_run(planned.folder, run.result, manifest_of(stream->info(), arguments, planned),
+              std::move(run.dumps));
+    print_result(run.result, planned.folder);
+    code = std::max(code, exit_code(run.result.status));
+  }
+  return code;
+}
+
+}  // namespace
+
+Command run_command() {
+  const auto arguments = std::make_shared<RunArguments>();
+  return {
+      .name = "run",
+      .summary = "Run the odometry on one sequence; write trajectory, scores and manifest",
+      .example = "run walking_xyz --variant wo_circular_mask --out /tmp/run",
+      .options =
+          {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
+           {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+           {"--variant", "Overlays joined by +; may be repeated, each --variant is a separate run",
+            &arguments->variants},
+           {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+           {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
+           {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed},
+           {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
+           {"--format", "Sequence format: tum, openloris, euroc, 7scenes or folder [detected]",
+            &arguments->format},
+           {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
+           {"--dump",
+            "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
+            "processing time of each frame); may be repeated",
+            &arguments->dumps},
+           {"--passes", "Number of passes, alternately forward and backward, without IMU data [1]",
+            &arguments->passes},
+           {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
+           {"--images", "Number of frames with the largest error growth to write as annotated images [0]",
+            &arguments->images},
+           {"--sequence-id",
+            "Identifier for the manifest, instead of a checksum over all files of the sequence",
+            &arguments->sequence_id},
+           {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
+           {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames},
+           {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
+            &arguments->deterministic_counts}},
+      .action = [arguments] { return run(*arguments); },
+      .subcommands = {}};
+}
+
+}  // namespace stillpoint::bench

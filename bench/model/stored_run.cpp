@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/model/stored_run.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/model/content_hash.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr std::array<std::pair<Outcome, std::string_view>, 6> kNames = {
+    {{Outcome::kOk, "ok"},
+     {Outcome::kLost, "lost"},
+     {Outcome::kCrashed, "crashed"},
+     {Outcome::kTimedOut, "timed_out"},
+     {Outcome::kOutOfMemory, "out_of_memory"},
+     {Outcome::kBadData, "bad_data"}}};
+
+}  // namespace
+
+std::string run_key(const RunIdentity& identity) {
+  // Unit separators distinguish ("ab", "c") from ("a", "bc").
+  return hash_text(content_hash(
+      fmt::format("{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}",
+                  identity.system, identity.variant, identity.sequence, identity.sequence_id,
+                  identity.config_hash, identity.build, identity.mode, identity.kind, identity.cores,
+                  identity.seed, identity.repetition, identity.axis, identity.axis_value)));
+}
+
+std::string outcome_name(Outcome outcome) {
+  const auto found =
+      std::find_if(kNames.begin(), kNames.end(), [&](const auto& name) { return name.first == outcome; });
+  STILLPOINT_CHECK(found != kNames.end());
+  return std::string(found->second);
+}
+
+Outcome outcome_of(std::string_view name) {
+  const auto found =
+      std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.second == name; });
+  if (found != kNames.end()) return found->first;
+  throw InputError("outcome \"" + std::string(name) + "\"",
+                   "is unknown; use ok, lost, crashed, timed_out, out_of_memory or bad_data");
+}
+
+std::optional<double> metric_value(const StoredRun& run, std::string_view name) {
+  for (const Metric& metric : run.metrics) {
+    if (metric.name == name) return metric.value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace stillpoint::bench

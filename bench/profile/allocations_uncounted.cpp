@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-#include "bench/profile/allocation_watch.h"
-
-namespace stillpoint {
-
-std::optional<std::size_t> allocations_so_far() { return std::nullopt; }
-
-}  // namespace stillpoint

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Counts heap allocations, in programs linked with allocation_counter.cpp and its --wrap options.
+#pragma once
+
+#include <cstddef>
+
+namespace stillpoint::bench {
+
+/// Calls of malloc, calloc, realloc, aligned_alloc and operator new by all threads since program start;
+/// those inside shared libraries are not counted.
+[[nodiscard]] std::size_t allocation_count();
+
+}  // namespace stillpoint::bench

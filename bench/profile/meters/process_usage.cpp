@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/profile/meters/process_usage.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+}  // namespace
+
+ProcessUsage process_usage() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {.user_s = seconds(usage.ru_utime),
+          .system_s = seconds(usage.ru_stime),
+          .voluntary_switches = usage.ru_nvcsw,
+          .involuntary_switches = usage.ru_nivcsw,
+          .minor_faults = usage.ru_minflt,
+          .major_faults = usage.ru_majflt,
+          .peak_memory_bytes = usage.ru_maxrss * 1024};
+}
+
+ProcessUsage usage_between(const ProcessUsage& before, const ProcessUsage& after) {
+  return {.user_s = after.user_s - before.user_s,
+          .system_s = after.system_s - before.system_s,
+          .voluntary_switches = after.voluntary_switches - before.voluntary_switches,
+          .involuntary_switches = after.involuntary_switches - before.involuntary_switches,
+          .minor_faults = after.minor_faults - before.minor_faults,
+          .major_faults = after.major_faults - before.major_faults,
+          .peak_memory_bytes = after.peak_memory_bytes};
+}
+
+std::map<int, ThreadUsage> thread_usages() {
+  std::map<int, ThreadUsage> threads;
+  const auto ticks_per_s = static_cast<double>(sysconf(_SC_CLK_TCK));
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream file(entry.path() / "stat");
+    const std::string stat{std::istreambuf_iterator<char>(file), {}};
+    if (stat.empty()) continue;  // the thread has exited meanwhile
+    threads[std::stoi(entry.path().filename())] = parse_thread_stat(stat, ticks_per_s);
+  }
+  return threads;
+}
+
+ThreadUsage parse_thread_stat(const std::string& stat, double ticks_per_s) {
+  // The name is in parentheses and may itself contain spaces and parentheses.
+  const std::size_t open = stat.find('(');
+  const std::size_t close = stat.rfind(')');
+  if (open == std::string::npos || close == std::string::npos || close < open) {
+    throw InputError("/proc/self/task", "has no thread name; see proc(5) for the format");
+  }
+  std::istringstream fields(stat.substr(close + 1));
+  std::string skipped;
+  constexpr int kFieldsBetween = 11;  // from state (3) to cmajflt (13)
+  for (int i = 0; i < kFieldsBetween; ++i) fields >> skipped;
+  double user = 0.0;
+  double system = 0.0;
+  if (!(fields >> user >> system)) {
+    throw InputError("/proc/self/task", "has no thread times; see proc(5) for the format");
+  }
+  return {.name = stat.substr(open + 1, close - open - 1),
+          .user_s = user / ticks_per_s,
+          .system_s = system / ticks_per_s};
+}
+
+void pin_to(const std::vector<int>& processors) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int processor : processors) CPU_SET(static_cast<std::size_t>(processor), &set);
+  if (sched_setaffinity(0, sizeof set, &set) != 0) {
+    throw InputError("--cores", "none of these processors is available to this process; see `nproc`");
+  }
+}
+
+nlohmann::ordered_json usage_json(const ProcessUsage& usage, const std::map<int, ThreadUsage>& threads) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [id, thread] : threads) {
+    list.push_back(
+        {{"id", id}, {"name", thread.name}, {"user_s", thread.user_s}, {"system_s", thread.system_s}});
+  }
+  return {{"user_s", usage.user_s},
+          {"system_s", usage.system_s},
+          {"voluntary_switches", usage.voluntary_switches},
+          {"involuntary_switches", usage.involuntary_switches},
+          {"minor_faults", usage.minor_faults},
+          {"major_faults", usage.major_faults},
+          {"peak_memory_bytes", usage.peak_memory_bytes},
+          {"threads", list}};
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Resource usage of this process and its threads, and their CPU affinity.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace stillpoint::bench {
+
+/// Processor time of one thread, in steps of the kernel's clock (often 10 ms).
+struct ThreadUsage {
+  std::string name;
+  double user_s = 0.0;
+  double system_s = 0.0;
+};
+
+/// Counts since process start, or between two readings.
+struct ProcessUsage {
+  double user_s = 0.0;
+  double system_s = 0.0;
+  std::int64_t voluntary_switches = 0;    ///< context switches of waiting threads
+  std::int64_t involuntary_switches = 0;  ///< context switches by preemption
+  std::int64_t minor_faults = 0;
+  std::int64_t major_faults = 0;  ///< page faults that required I/O
+  std::int64_t peak_memory_bytes = 0;
+};
+
+/// Source: getrusage(2).
+[[nodiscard]] ProcessUsage process_usage();
+
+/// `after` - `before`; the peak memory is that of the whole process.
+[[nodiscard]] ProcessUsage usage_between(const ProcessUsage& before, const ProcessUsage& after);
+
+/// By thread id; without threads that have exited.
+[[nodiscard]] std::map<int, ThreadUsage> thread_usages();
+
+/// @param stat text of /proc/PID/task/TID/stat, see proc(5)
+/// @param ticks_per_s clock ticks per second, the unit of its times
+/// @throws InputError if the text has another format
+[[nodiscard]] ThreadUsage parse_thread_stat(const std::string& stat, double ticks_per_s);
+
+/// Sets the CPU affinity of this thread and of threads that it starts later.
+/// @throws InputError if the system refuses
+void pin_to(const std::vector<int>& processors);
+
+[[nodiscard]] nlohmann::ordered_json usage_json(const ProcessUsage& usage,
+                                                const std::map<int, ThreadUsage>& threads);
+
+}  // namespace stillpoint::bench

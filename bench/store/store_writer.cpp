@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/store_writer.h"
+
+#include <algorithm>
+
+#include "bench/model/utc_time.h"
+#include "bench/store/schema.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kInsertRun =
+    "INSERT INTO run (key, system, variant, sequence, sequence_id, config_hash, build, mode, kind, cores, "
+    "seed, "
+    "repetition, axis, axis_value, state, worker, started) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'running', ?, ?)";
+
+Database open_for_writing(const fs::path& file) {
+  std::error_code ignored;  // opening the database reports the error
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), ignored);
+  Database database(file, DatabaseAccess::kWrite);
+  migrate(database);
+  Statement check = database.prepare("PRAGMA quick_check(1)");
+  if (!check.step() || check.text(0) != "ok") {
+    std::string fault = check.text(0);
+    std::ranges::replace(fault, '\n', ' ');
+    throw InputError(file.string(), "is damaged (" + fault +
+                                        "); save what is readable with `stillpoint store export`, and "
+                                        "continue with a new store");
+  }
+  return database;
+}
+
+}  // namespace
+
+StoreWriter::StoreWriter(const fs::path& file)
+    : database_(open_for_writing(file)),
+      blobs_(files_folder(file) / "blobs"),
+      worker_(files_folder(file) / "workers") {
+  worker_.remove_stale();
+}
+
+void StoreWriter::record_plan(const StoredPlan& plan) {
+  Transaction transaction(database_);
+  database_.prepare("DELETE FROM plan WHERE name = ?").bind(plan.name).step();
+  database_.prepare("INSERT INTO plan (name, title, text) VALUES (?, ?, ?)")
+      .bind(plan.name)
+      .bind(plan.title)
+      .bind(plan.text)
+      .step();
+  for (std::size_t i = 0; i < plan.run_keys.size(); ++i) {
+    database_.prepare("INSERT INTO plan_entry (plan, position, run_key) VALUES (?, ?, ?)")
+        .bind(plan.name)
+        .bind(static_cast<std::int64_t>(i))
+        .bind(plan.run_keys[i])
+        .step();
+  }
+  transaction.commit();
+}
+
+RunLease StoreWriter::acquire(const RunIdentity& identity) {
+  const std::string key = run_key(identity);
+  Transaction transaction(database_);
+  Statement existing = database_.prepare("SELECT state, worker FROM run WHERE key = ?");
+  existing.bind(key);
+  if (existing.step()) {
+    if (existing.text(0) == "ended") return RunLease::kDone;
+    if (worker_.is_alive(existing.text(1))) return RunLease::kLeasedByOther;
+    database_.prepare("DELETE FROM run WHERE key = ?").bind(key).step();
+  }
+  database_.prepare(kInsertRun)
+      .bind(key)
+      .bind(identity.system)
+      .bind(identity.variant)
+      .bind(identity.sequence)
+      .bind(identity.sequence_id)
+      .bind(identity.config_hash)
+      .bind(identity.build)
+      .bind(identity.mode)
+      .bind(identity.kind)
+      .bind(identity.cores)
+      .bind(identity.seed)
+      .bind(identity.repetition)
+      .bind(identity.axis)
+      .bind(identity.axis_value)
+      .bind(worker_.name())
+      .bind(utc_now())
+      .step();
+  transaction.commit();
+  return RunLease::kGranted;
+}
+
+void StoreWriter::finish(const RunIdentity& identity, const RunOutcome& outcome) {
+  const std::string key = run_key(identity);
+  Transaction transaction(database_);  // also blocks collect_garbage() until the row references the files
+  Statement row = database_.prepare("SELECT id FROM run WHERE key = ? AND state = 'running' AND worker = ?");
+  row.bind(key).bind(worker_.name());
+  STILLPOINT_CHECK(row.step());
+  const std::int64_t id = row.integer(0);
+  write_details(id, outcome);
+  database_.prepare("UPDATE run SET state = 'ended', ended = ?, outcome = ?, detail = ? WHERE id = ?")
+      .bind(utc_now())
+      .bind(outcome_name(outcome.outcome))
+      .bind(outcome.detail)
+      .bind(id)
+      .step();
+  transaction.commit();
+}
+
+void StoreWriter::write_details(std::int64_t run, const RunOutcome& outcome) {
+  for (const Metric& metric : outcome.metrics) {
+    database_.prepare("INSERT INTO metric (run, name, protocol, unit, value) VALUES (?, ?, ?, ?, ?)")
+        .bind(run)
+        .bind(metric.name)
+        .bind(metric.protocol)
+        .bind(metric.unit)
+        .bind(metric.value)
+        .step();
+  }
+  for (const ModuleCost& cost : outcome.costs) {
+    database_
+        .prepare(
+            "INSERT INTO timing (run, module, per, calls, mean_ms, median_ms, p95_ms, max_ms) "
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(run)
+        .bind(cost.module)
+        .bind(cost.per)
+        .bind(cost.calls)
+        .bind(cost.mean_ms)
+        .bind(cost.median_ms)
+        .bind(cost.p95_ms)
+        .bind(cost.max_ms)
+        .step();
+  }
+  for (const auto& [kind, content] : outcome.attachments) {
+    database_.prepare("INSERT INTO attachment (run, kind, blob) VALUES (?, ?, ?)")
+        .bind(run)
+        .bind(kind)
+        .bind(blobs_.put(content))
+        .step();
+  }
+  if (outcome.manifest.empty()) return;
+  const std::string hash = blob_name(outcome.manifest);
+  database_.prepare("INSERT OR IGNORE INTO manifest (hash, json) VALUES (?, ?)")
+      .bind(hash)
+      .bind(outcome.manifest)
+      .step();
+  database_.prepare("UPDATE run SET manifest = ? WHERE id = ?").bind(hash).bind(run).step();
+}
+
+void StoreWriter::release(const RunIdentity& identity) {
+  database_.prepare("DELETE FROM run WHERE key = ? AND state = 'running' AND worker = ?")
+      .bind(run_key(identity))
+      .bind(worker_.name())
+      .step();
+}
+
+void StoreWriter::remove_runs(const std::vector<std::string>& keys, const std::vector<Outcome>& outcomes) {
+  Transaction transaction(database_);
+  for (const std::string& key : keys) {
+    for (const Outcome outcome : outcomes) {
+      database_.prepare("DELETE FROM run WHERE key = ? AND outcome = ?")
+          .bind(key)
+          .bind(outcome_name(outcome))
+          .step();
+    }
+  }
+  transaction.commit();
+}
+
+bool StoreWriter::is_done(const std::string& key) const {
+  Statement row = database_.prepare("SELECT 1 FROM run WHERE key = ? AND state = 'ended'");
+  return row.bind(key).step();
+}
+
+fs::path StoreWriter::work_folder(const RunIdentity& identity) const {
+  fs::path folder = worker_.folder() / run_key(identity);
+  fs::create_directories(folder);
+  return folder;
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Crash-safe writer of a store: a process that is killed at any time loses at most the runs that it was
+/// executing.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/model/stored_run.h"
+#include "bench/store/blob_files.h"
+#include "bench/store/database.h"
+#include "bench/store/store.h"
+#include "bench/store/worker_lock.h"
+
+namespace stillpoint::bench {
+
+enum class RunLease {
+  kGranted,        ///< to this worker
+  kDone,           ///< the run is completed
+  kLeasedByOther,  ///< another live worker executes the run
+};
+
+/// A worker's connection to a store. Several workers may share a store; no run is executed twice.
+class StoreWriter {
+ public:
+  /// Opens a store, creates or migrates it if necessary, and removes the files of dead workers.
+  /// @throws InputError if it cannot be written, is damaged, or was written by a newer version
+  explicit StoreWriter(const std::filesystem::path& file);
+
+  /// Stores a plan and the keys of its runs; replaces an earlier plan of that name.
+  void record_plan(const StoredPlan& plan);
+
+  /// Leases a run to this worker and marks it as running, unless it is completed or leased by a live worker.
+  /// The lease of a dead worker is revoked.
+  [[nodiscard]] RunLease acquire(const RunIdentity& identity);
+
+  /// Completes a leased run. Its files are synced to disk before its row is committed.
+  void finish(const RunIdentity& identity, const RunOutcome& outcome);
+
+  /// Returns the lease of a run that was not executed.
+  void release(const RunIdentity& identity);
+
+  /// Removes completed runs among `keys` with one of `outcomes`, so that they are executed again.
+  void remove_runs(const std::vector<std::string>& keys, const std::vector<Outcome>& outcomes);
+
+  /// Whether a run is completed, with any outcome.
+  [[nodiscard]] bool is_done(const std::string& key) const;
+
+  /// A folder for temporary files of a run; removed with this worker.
+  [[nodiscard]] std::filesystem::path work_folder(const RunIdentity& identity) const;
+
+  [[nodiscard]] const std::filesystem::path& file() const { return database_.file(); }
+
+ private:
+  void write_details(std::int64_t run, const RunOutcome& outcome);
+
+  Database database_;
+  BlobFiles blobs_;
+  WorkerLock worker_;
+};
+
+}  // namespace stillpoint::bench

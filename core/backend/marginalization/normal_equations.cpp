@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/marginalization/normal_equations.h"
+
+#include "core/base/error.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+namespace stillpoint {
+namespace {
+
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Eigenvalues below this ratio of the largest are treated as zero.
+constexpr double kRankTolerance = 1e-12;
+
+/// A residual with its Jacobians at the current states, weighted by its robust loss.
+struct Linearized {
+  Eigen::VectorXd residual;
+  std::vector<RowMajorMatrix> jacobians;  ///< in block order, tangent columns only
+};
+
+Linearized linearize(const Residual& source, ParameterBlocks& blocks) {
+  const std::vector<double*> addresses = parameter_addresses(source, blocks);
+  const std::vector<int>& sizes = source.cost->parameter_block_sizes();
+  Linearized out{Eigen::VectorXd(source.cost->num_residuals()), {}};
+  std::vector<double*> pointers;
+  for (const int size : sizes) out.jacobians.emplace_back(source.cost->num_residuals(), size);
+  for (RowMajorMatrix& jacobian : out.jacobians) pointers.push_back(jacobian.data());
+  STILLPOINT_CHECK(source.cost->Evaluate(addresses.data(), out.residual.data(), pointers.data()));
+
+  double weight = 1.0;
+  if (source.loss != nullptr) {
+    double rho[3];
+    source.loss->Evaluate(out.residual.squaredNorm(), rho);
+    weight = std::sqrt(rho[1]);
+  }
+  out.residual *= weight;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const int tangent = sizes[i] == 7 ? 6 : sizes[i];
+    out.jacobians[i] = RowMajorMatrix(weight * out.jacobians[i].leftCols(tangent));
+  }
+  return out;
+}
+
+Eigen::MatrixXd select(const Eigen::MatrixXd& matrix, const std::vector<int>& rows,
+                       const std::vector<int>& columns) {
+  return matrix(rows, columns);
+}
+
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
+  const double floor = kRankTolerance * solver.eigenvalues().cwiseAbs().maxCoeff();
+  const Eigen::VectorXd inverse =
+      (solver.eigenvalues().array() > floor).select(solver.eigenvalues().array().inverse(), 0.0);
+  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+NormalEquations::NormalEquations(int frames)
+    : layout(frames),
+      H(Eigen::MatrixXd::Zero(layout.size(), layout.size())),
+      b(Eigen::VectorXd::Zero(layout.size())) {}
+
+void NormalEquations::add(const std::vector<Residual>& group, ParameterBlocks& blocks, bool fixed) {
+  Eigen::VectorXd landmark_column = Eigen::VectorXd::Zero(layout.size());
+  double landmark_information = 0.0;
+  double landmark_gradient = 0.0;
+  for (const Residual& source : group) {
+    const Linearized linear = linearize(source, blocks);
+    const bool has_landmark = source.landmark >= 0;
+    const RowMajorMatrix* J_landmark = has_landmark ? &linear.jacobians.back() : nullptr;
+    for (std::size_t i = 0; i < source.states.size(); ++i) {
+      const RowMajorMatrix& J_i = linear.jacobians[i];
+      const int column_i = layout.column(source.states[i]);
+      b.segment(column_i, J_i.cols()) += J_i.transpose() * linear.residual;
+      if (has_landmark) landmark_column.segment(column_i, J_i.cols()) += J_i.transpose() * J_landmark->col(0);
+      for (std::size_t j = 0; j < source.states.size(); ++j) {
+        const RowMajorMatrix& J_j = linear.jacobians[j];
+        H.block(column_i, layout.column(source.states[j]), J_i.cols(), J_j.cols()) += J_i.transpose() * J_j;
+      }
+    }
+    if (has_landmark) {
+      landmark_information += J_landmark->squaredNorm();
+      landmark_gradient += J_landmark->col(0).dot(linear.residual);
+    }
+  }
+  if (fixed || landmark_information <= 0.0) return;
+  H.noalias() -= landmark_column * landmark_column.transpose() / landmark_information;
+  b.noalias() -= landmark_column * (landmark_gradient / landmark_information);
+}
+
+SquareRoot eliminate(const Eigen::MatrixXd& H, const Eigen::VectorXd& b, const std::vector<int>& marginalized,
+                     const std::vector<int>& remaining) {
+  const Eigen::MatrixXd H_rm = select(H, remaining, marginalized);
+  const Eigen::MatrixXd gain = H_rm * pseudo_inverse(select(H, marginalized, marginalized));
+  const Eigen::MatrixXd H_schur = select(H, remaining, remaining) - gain * H_rm.transpose();
+  const Eigen::VectorXd b_schur = b(remaining) - gain * b(marginalized);
+
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(H_schur);
+  const double floor = kRankTolerance * solver.eigenvalues().cwiseAbs().maxCoeff();
+  const Eigen::VectorXd root =
+      (solver.eigenvalues().array() > floor).select(solver.eigenvalues().array().sqrt(), 0.0);
+  const Eigen::VectorXd inverse_root = (root.array() > 0.0).select(root.array().inverse(), 0.0);
+  return {root.asDiagonal() * solver.eigenvectors().transpose(),
+          inverse_root.asDiagonal() * (solver.eigenvectors().transpose() * b_schur)};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Dense normal equations over the window's states; marginalization by Schur complement and square root.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/backend/solvers/window_problem.h"
+
+namespace stillpoint {
+
+/// Column order of all states of a window: poses, then velocities and biases, then calibration.
+class StateLayout {
+ public:
+  explicit StateLayout(int frames) : frames_(frames) {}
+  [[nodiscard]] int size() const { return 15 * frames_ + 7; }
+  [[nodiscard]] int column(BlockRef block) const {
+    switch (block.kind) {
+      case BlockKind::kPose:
+        return 6 * block.frame;
+      case BlockKind::kSpeedBias:
+        return 6 * frames_ + 9 * block.frame;
+      case BlockKind::kExtrinsics:
+        return 15 * frames_;
+      case BlockKind::kTimeOffset:
+        break;
+    }
+    return 15 * frames_ + 6;
+  }
+
+ private:
+  int frames_;
+};
+
+/// H dx = -b with H = sum J^T J, b = sum J^T r over linearized residuals. Unconstrained blocks have zero
+/// rows.
+struct NormalEquations {
+  explicit NormalEquations(int frames);
+
+  /// Adds the residuals of one landmark (or of none), linearized at `blocks`. Unless it is `fixed`, the
+  /// inverse depth l of the landmark is eliminated: H -= H_xl H_xl^T / H_ll, b -= H_xl b_l / H_ll.
+  void add(const std::vector<Residual>& group, ParameterBlocks& blocks, bool fixed);
+
+  StateLayout layout;
+  Eigen::MatrixXd H;
+  Eigen::VectorXd b;
+};
+
+/// (J, r) with J^T J = H_rr - H_rm H_mm^-1 H_mr and J^T r = b_r - H_rm H_mm^-1 b_m, where m are the columns
+/// `marginalized` and r the columns `remaining`. See marginalize_oldest.
+struct SquareRoot {
+  Eigen::MatrixXd jacobian;
+  Eigen::VectorXd residual;
+};
+[[nodiscard]] SquareRoot eliminate(const Eigen::MatrixXd& H, const Eigen::VectorXd& b,
+                                   const std::vector<int>& marginalized, const std::vector<int>& remaining);
+
+}  // namespace stillpoint

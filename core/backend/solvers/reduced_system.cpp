@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/solvers/reduced_system.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/backend/factors/imu_factor.h"
+
+namespace stillpoint {
+namespace {
+
+std::array<BlockRef, 4> imu_blocks(int frame) {
+  return {{{BlockKind::kPose, frame - 1},
+           {BlockKind::kSpeedBias, frame - 1},
+           {BlockKind::kPose, frame},
+           {BlockKind::kSpeedBias, frame}}};
+}
+
+std::array<double*, 4> addresses(const std::array<BlockRef, 4>& refs, ParameterBlocks& blocks) {
+  return {block_address(blocks, refs[0]), block_address(blocks, refs[1]), block_address(blocks, refs[2]),
+          block_address(blocks, refs[3])};
+}
+
+const Preintegration& imu_of(const Window& window, int frame) {
+  return *window.frames[static_cast<std::size_t>(frame)].from_previous;
+}
+
+/// The residual and its Jacobians as written by the factor; `jacobian` stacks their tangent columns.
+struct ImuLinearization {
+  Vector15 residual;
+  Eigen::Matrix<double, 15, 7, Eigen::RowMajor> J_pose_i, J_pose_j;
+  Eigen::Matrix<double, 15, 9, Eigen::RowMajor> J_speed_bias_i, J_speed_bias_j;
+
+  [[nodiscard]] Eigen::Matrix<double, 15, 30> jacobian() const {
+    Eigen::Matrix<double, 15, 30> J;
+    J << J_pose_i.leftCols<6>(), J_speed_bias_i, J_pose_j.leftCols<6>(), J_speed_bias_j;
+    return J;
+  }
+};
+
+ImuLinearization linearize_imu(const Window& window, int frame, ParameterBlocks& blocks) {
+  ImuLinearization out;
+  const std::array<double*, 4> states = addresses(imu_blocks(frame), blocks);
+  std::array<double*, 4> jacobians = {out.J_pose_i.data(), out.J_speed_bias_i.data(), out.J_pose_j.data(),
+                                      out.J_speed_bias_j.data()};
+  evaluate_imu_residual(imu_of(window, frame), window.gravity_w, states.data(), out.residual.data(),
+                        jacobians.data());
+  return out;
+}
+
+}  // namespace
+
+int ReducedLayout::column(BlockRef block) const {
+  switch (block.kind) {
+    case BlockKind::kPose:
+      return first_pose() + 6 * block.frame;
+    case BlockKind::kSpeedBias:
+      return inertial_ ? 9 * (frames_ - 1 - block.frame) : -1;
+    case BlockKind::kExtrinsics:
+      return variable_.extrinsics ? first_pose() + 6 * frames_ : -1;
+    case BlockKind::kTimeOffset:
+      break;
+  }
+  return variable_.time_offset ? first_pose() + 6 * frames_ + (variable_.extrinsics ? 6 : 0) : -1;
+}
+
+void ReducedSystem::reset(const ReducedLayout& new_layout) {
+  layout = new_layout;
+  const int size = layout.size();
+  H.resize(size, size);
+  H.setZero();
+  g.resize(size);
+  g.setZero();
+  first.resize(static_cast<std::size_t>(size / kTile));
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const int row = kTile * static_cast<int>(i);
+    first[i] = std::min(row, row < layout.first_pose() ? row / 9 * 9 : layout.first_pose());
+  }
+}
+
+void ReducedSystem::widen_profile(std::span<const BlockRef> blocks) {
+  int begin = layout.size();
+  for (const BlockRef block : blocks) {
+    const int column = layout.column(block);
+    if (column >= 0) begin = std::min(begin, column);
+  }
+  for (const BlockRef block : blocks) {
+    const int column = layout.column(block);
+    for (int row = column; column >= 0 && row < column + local_size(block.kind); row += kTile) {
+      int& start = first[static_cast<std::size_t>(row / kTile)];
+      start = std::min(start, begin);
+    }
+  }
+}
+
+bool has_imu_term(const Window& window, int frame) {
+  return window.inertial && window.frames[static_cast<std::size_t>(frame)].from_previous.has_value();
+}
+
+double imu_cost(const Window& window, int frame, ParameterBlocks& blocks) {
+  Vector15 residual;
+  const std::array<double*, 4> states = addresses(imu_blocks(frame), blocks);
+  evaluate_imu_residual(imu_of(window, frame), window.gravity_w, states.data(), residual.data(), nullptr);
+  return 0.5 * residual.squaredNorm();
+}
+
+double add_imu_term(const Window& window, int frame, ParameterBlocks& blocks, ReducedSystem& system) {
+  system.widen_profile(imu_blocks(frame));
+  const ImuLinearization linear = linearize_imu(window, frame, blocks);
+  const Eigen::Matrix<double, 15, 30> J = linear.jacobian();
+  const Eigen::Matrix<double, 30, 30> H = J.transpose() * J;
+  const Eigen::Matrix<double, 30, 1> g = J.transpose() * linear.residual;
+  const std::array<BlockRef, 4> refs = imu_blocks(frame);
+  int row = 0;
+  for (const BlockRef a : refs) {
+    const int size_a = local_size(a.kind);
+    const int column_a = system.layout.column(a);
+    system.g.segment(column_a, size_a) += g.segment(row, size_a);
+    int column = 0;
+    for (const BlockRef b : refs) {
+      system.add(column_a, system.layout.column(b), H.block(row, column, size_a, local_size(b.kind)));
+      column += local_size(b.kind);
+    }
+    row += size_a;
+  }
+  return 0.5 * linear.residual.squaredNorm();
+}
+
+void PriorTerm::read(const LinearPrior& prior) {
+  prior_ = &prior;
+  blocks_.clear();
+  for (const PriorBlock& block : prior.blocks) blocks_.push_back({block.kind, block.frame});
+  const Eigen::Index size = prior.jacobian.cols();
+  information_.resize(size, size);
+  information_.setZero();
+  information_.selfadjointView<Eigen::Lower>().rankUpdate(prior.jacobian.transpose());
+  difference_.resize(size);
+  gradient_.resize(size);
+}
+
+double PriorTerm::cost(ParameterBlocks& blocks) {
+  int column = 0;
+  for (const PriorBlock& block : prior_->blocks) {
+    const int size = local_size(block.kind);
+    difference_.segment(column, size) =
+        block_difference(block.kind, block_address(blocks, {block.kind, block.frame}), block.linearization);
+    column += size;
+  }
+  error_ = prior_->residual;
+  error_.noalias() += prior_->jacobian * difference_;
+  return 0.5 * error_.squaredNorm();
+}
+
+double PriorTerm::add_to(ReducedSystem& system, ParameterBlocks& blocks) {
+  const double cost_now = cost(blocks);
+  gradient_.noalias() = prior_->jacobian.transpose() * error_;
+  int row = 0;
+  for (std::size_t a = 0; a < blocks_.size(); ++a) {
+    const int size_a = local_size(blocks_[a].kind);
+    const int to_row = system.layout.column(blocks_[a]);
+    if (to_row >= 0) system.g.segment(to_row, size_a) += gradient_.segment(row, size_a);
+    int column = 0;
+    for (std::size_t b = 0; b <= a; ++b) {
+      const int size_b = local_size(blocks_[b].kind);
+      const int to_column = system.layout.column(blocks_[b]);
+      const auto block = information_.block(row, column, size_a, size_b);
+      system.add(to_row, to_column, block);
+      if (a != b) system.add(to_column, to_row, block.transpose());
+      column += size_b;
+    }
+    row += size_a;
+  }
+  return cost_now;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Normal equations over the states of a window (landmarks eliminated), and the terms of IMU and priors.
+#pragma once
+
+#include <initializer_list>
+#include <vector>
+
+#include "core/backend/factors/reusable_matrix.h"
+#include "core/backend/solvers/skyline_cholesky.h"
+#include "core/backend/solvers/window_problem.h"
+
+namespace stillpoint {
+
+/// Column order of the variable states: velocities and biases, newest first (IMU factors couple only
+/// neighbors, so these cause little fill-in); then poses, oldest first; then variable calibration.
+class ReducedLayout {
+ public:
+  ReducedLayout() = default;
+  ReducedLayout(int frames, bool inertial, VariableCalibration variable)
+      : frames_(frames), inertial_(inertial), variable_(variable) {}
+
+  /// -1 for a constant block.
+  [[nodiscard]] int column(BlockRef block) const;
+  [[nodiscard]] int first_pose() const { return inertial_ ? 9 * frames_ : 0; }
+  /// Padded to a multiple of kTile.
+  [[nodiscard]] int size() const {
+    return first_pose() + 6 * frames_ + (variable_.extrinsics ? 6 : 0) + (variable_.time_offset ? kTile : 0);
+  }
+  [[nodiscard]] int frames() const { return frames_; }
+  [[nodiscard]] VariableCalibration variable_calibration() const { return variable_; }
+
+ private:
+  int frames_ = 0;
+  bool inertial_ = false;
+  VariableCalibration variable_;
+};
+
+/// H dx = -g with H = J^T J, g = J^T r; only the lower triangle of H is stored. Unconstrained columns are
+/// zero.
+class ReducedSystem {
+ public:
+  /// Sets the system to zero; allocates only if it is larger than all systems before.
+  void reset(const ReducedLayout& layout);
+
+  /// Extends the skyline profile for a residual that involves these blocks.
+  void widen_profile(std::span<const BlockRef> blocks);
+
+  /// Adds to the block at (row, column) of H; ignores constant blocks (-1) and blocks above the diagonal.
+  template <class Block>
+  void add(int row, int column, const Block& block) {
+    if (row < 0 || column < 0 || row < column) return;
+    H.block(row, column, block.rows(), block.cols()) += block;
+  }
+
+  ReducedLayout layout;
+  ReusableMatrix<RowMajorMatrix> H;
+  ReusableVector g;
+  std::vector<int> first;  ///< profile of H, for `skyline_factorize`
+};
+
+/// Whether there is an IMU factor between frame - 1 and frame.
+[[nodiscard]] bool has_imu_term(const Window& window, int frame);
+/// Cost of the IMU factor between frame - 1 and frame; requires `has_imu_term`.
+[[nodiscard]] double imu_cost(const Window& window, int frame, ParameterBlocks& blocks);
+/// Adds J^T J and J^T r of that factor. @return the cost
+double add_imu_term(const Window& window, int frame, ParameterBlocks& blocks, ReducedSystem& system);
+
+/// A LinearPrior (of marginalization or calibration) as a term of the system; its Jacobian is constant.
+class PriorTerm {
+ public:
+  /// @param prior outlives the term
+  void read(const LinearPrior& prior);
+  [[nodiscard]] std::span<const BlockRef> blocks() const { return blocks_; }
+  [[nodiscard]] double cost(ParameterBlocks& blocks);
+  /// @return the cost
+  double add_to(ReducedSystem& system, ParameterBlocks& blocks);
+
+ private:
+  const LinearPrior* prior_ = nullptr;
+  std::vector<BlockRef> blocks_;
+  ReusableMatrix<Eigen::MatrixXd> information_;  // J^T J, lower triangle
+  ReusableVector difference_;
+  ReusableVector error_;
+  ReusableVector gradient_;
+};
+
+}  // namespace stillpoint

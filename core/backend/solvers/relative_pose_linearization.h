@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Relative pose of a landmark's host camera and another camera, with its derivatives by the states.
+#pragma once
+
+#include "core/geometry/pose.h"
+
+namespace stillpoint {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// T_cj_ci = T_c_b T_bj_w T_w_bi T_b_c. All observations of the same two frames share it, so their residuals
+/// are linearized with respect to its left perturbation (nu, omega), dp = nu + omega x p for a point p in
+/// camera j, and only their sum is mapped to the states.
+struct RelativePoseLinearization {
+  Eigen::Matrix3d R_cj_ci;
+  Eigen::Vector3d p_cj_ci;
+  Matrix6 J_pose_i;  ///< d(nu, omega) / d(p, theta) of T_w_bi, theta on the right
+  Matrix6 J_pose_j;
+  Matrix6 J_extrinsics;
+};
+
+[[nodiscard]] RelativePoseLinearization linearize_relative_pose(const Pose& T_w_bi, const Pose& T_w_bj,
+                                                                const Pose& T_b_c);
+
+}  // namespace stillpoint

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// State optimization specialized for the window's sparsity: Schur complement over the landmarks and Powell's
+/// dogleg. Paper Sec. II (state optimization).
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "core/backend/solvers/visual_terms.h"
+#include "core/backend/solvers/window_solver.h"
+
+namespace stillpoint {
+
+/// Minimizes the same cost as the Ceres backend (tests compare the normal equations of both).
+///
+/// The variables are the states p (velocities and biases, poses, calibration) and the inverse depths l. With
+/// the Jacobian J of the residuals r, weighted by the robust loss, the Gauss-Newton equations H dx = -g with
+/// H = J^T J, g = J^T r are
+///
+///   [ H_pp  H_pl ] [dp]     [ g_p ]
+///   [ H_lp  H_ll ] [dl] = - [ g_l ].
+///
+/// No residual involves two landmarks, so H_ll is diagonal. Eliminating dl gives the reduced system
+///
+///   S dp = -g_p + H_pl H_ll^-1 g_l,    S = H_pp - H_pl H_ll^-1 H_lp    (Schur complement)
+///
+/// which is solved by skyline Cholesky; the landmarks follow by back-substitution:
+///
+///   dl = -H_ll^-1 (g_l + H_lp dp).
+///
+/// H_pp and H_ll are regularized by mu D with D = diag(H), bounded from below; mu starts at 1e-8 and is
+/// increased tenfold while S is not positive definite.
+///
+/// The step is Powell's dogleg in the norm |dx|_D = sqrt(dx^T D dx): the Gauss-Newton step if it lies within
+/// the trust region, otherwise the point where the path 0 -> Cauchy point -> Gauss-Newton step leaves it. The
+/// Cauchy point is -a D^-1 g with a = g^T D^-1 g / (d^T H d), d = D^-1 g. The trust region is updated by the
+/// ratio of the actual decrease of the cost to the predicted one, -g^T dx - 1/2 dx^T H dx.
+///
+/// The object is reused for its buffers only: results depend on nothing but the arguments.
+class SchurSolver {
+ public:
+  /// Updates the window's states; see `solve_window`, but without the reset of lost depths.
+  [[nodiscard]] SolveReport solve(Window& window, const BackendConfig& config, double focal_px);
+
+  /// See `marginalize_oldest`, kSchur.
+  [[nodiscard]] LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config,
+                                               double focal_px);
+  /// Passes on a discarded prior whose buffers the next `marginalize_oldest` reuses.
+  void recycle(LinearPrior discarded) { recycled_prior_ = std::move(discarded); }
+
+ private:
+  /// A vector (p, l) in the space of all states and variable landmarks.
+  struct Direction {
+    ReusableVector states;
+    ReusableVector landmarks;
+  };
+
+  void read(const Window& window, const BackendConfig& config, double focal_px);
+  [[nodiscard]] double linearize(const Window& window);
+  [[nodiscard]] double cost_at(const Window& window, ParameterBlocks& blocks);
+  [[nodiscard]] bool compute_newton_step();
+  void compute_dogleg_step(double radius);
+  [[nodiscard]] double scaled_norm(const Direction& direction) const;
+  [[nodiscard]] double curvature(const Direction& direction);
+  [[nodiscard]] double predicted_decrease(const Direction& direction);
+  void apply_step();
+  [[nodiscard]] SolveReport iterate(const Window& window, const BackendConfig& config);
+  void append_columns(BlockRef block);
+  [[nodiscard]] bool factorize_columns();
+  void write_square_root(Eigen::Index marginalized, LinearPrior& prior);
+
+  ReducedLayout layout_;
+  ReducedSystem system_;
+  VisualTerms visual_;
+  PriorTerm prior_;
+  PriorTerm calibration_;
+  ParameterBlocks blocks_;
+  ParameterBlocks candidate_;
+  ReusableMatrix<RowMajorMatrix> S_;
+  Direction scale_squared_;  // D
+  Direction newton_;
+  Direction cauchy_;
+  Direction step_;
+  ReusableVector coupling_product_;  // H_lp times a vector of states
+  ReusableVector product_;           // H_pp times a vector of states
+  std::vector<int> columns_;         // marginalization: marginalized columns, then remaining ones
+  std::vector<int> dense_;           // skyline profile of a dense matrix
+  std::vector<BlockRef> prior_blocks_;
+  ReusableVector diagonal_;
+  LinearPrior recycled_prior_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/solvers/visual_terms.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillpoint {
+namespace {
+
+/// Landmarks eliminated by one rank update.
+constexpr int kLandmarkBatch = 32;
+
+Pose pose_at(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Vector3d(x)}; }
+
+Eigen::Vector2d at_state(const TimedBearing& timed, double time_offset_s) {
+  return timed.bearing - (time_offset_s + timed.exposure_s) * timed.velocity;
+}
+
+}  // namespace
+
+void VisualTerms::read(const Window& window, const BackendConfig& config, double focal_px,
+                       LandmarkSelection selection) {
+  frames_ = static_cast<int>(window.frames.size());
+  noise_ = reprojection_noise(config, focal_px);
+  cauchy_squared_ = config.cauchy_scale * config.cauchy_scale;
+  observation_model_.read(window);
+  const auto pairs = static_cast<std::size_t>(frames_ * frames_);
+  pair_used_.assign(pairs, 0);
+  relative_poses_.resize(pairs);
+  sums_.resize(pairs);
+  landmarks_.clear();
+  timed_observations_.clear();
+  host_frames_.clear();
+  variable_count_ = 0;
+  measured_ = 0;
+  for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
+    const Landmark& landmark = window.landmarks[i];
+    const bool wanted = selection == LandmarkSelection::kAll || landmark.host == 0;
+    if (wanted && is_usable(landmark)) add_landmark(landmark, i, config);
+  }
+  information_.resize(variable_count_);
+  gradient_.resize(variable_count_);
+}
+
+void VisualTerms::add_landmark(const Landmark& landmark, std::size_t index, const BackendConfig& config) {
+  const Eigen::Vector3d position_w = observation_model_.position(landmark);
+  const Observation& host = landmark.observations.front();
+  const bool host_depth = uses_depth(host, config);
+  landmarks_.push_back({.index = index,
+                        .host = landmark.host,
+                        .last = landmark.last(),
+                        .first_observation = timed_observations_.size(),
+                        .in_host = observation_model_.at(landmark, landmark.host, position_w),
+                        .measured = host_depth ? 1.0 / host.depth : 0.0,
+                        .has_depth = host_depth,
+                        .column = has_constant_depth(landmark, config) ? -1 : variable_count_});
+  for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
+    const Observation& observation = landmark.observation_in(frame);
+    const bool depth = uses_depth(observation, config);
+    timed_observations_.push_back({.bearing = observation_model_.at(landmark, frame, position_w),
+                                   .inverse_depth = depth ? 1.0 / observation.depth : 0.0,
+                                   .has_depth = depth});
+    pair_used_[pair(landmark.host, frame)] = 1;
+  }
+  measured_ += landmark.source == DepthSource::kMeasured;
+  if (landmarks_.back().column < 0) return;
+  host_frames_.push_back(landmark.host);
+  ++variable_count_;
+}
+
+/// Linearizes the relative poses of all frame pairs that share landmarks at the current states.
+void VisualTerms::update_relative_poses(ParameterBlocks& blocks) {
+  time_offset_ = *blocks.time_offset();
+  const Pose T_b_c = pose_at(blocks.extrinsics());
+  for (int host = 0; host < frames_; ++host) {
+    for (int frame = host + 1; frame < frames_; ++frame) {
+      if (pair_used_[pair(host, frame)] == 0) continue;
+      relative_poses_[pair(host, frame)] =
+          linearize_relative_pose(pose_at(blocks.pose(static_cast<std::size_t>(host))),
+                                  pose_at(blocks.pose(static_cast<std::size_t>(frame))), T_b_c);
+    }
+  }
+}
+
+VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
+                                                 ParameterBlocks& blocks) const {
+  return {*blocks.inverse_depth(landmark.index), at_state(landmark.in_host, time_offset_).homogeneous(),
+          landmark.in_host.velocity};
+}
+
+MeasuredPoint VisualTerms::measured_point_at(const TimedObservation& observation) const {
+  return {.bearing = at_state(observation.bearing, time_offset_),
+          .inverse_depth = observation.inverse_depth,
+          .has_depth = observation.has_depth};
+}
+
+/// Host depth residual and its derivative; zero without a depth in the host.
+BoundedError VisualTerms::host_depth(const VisualLandmark& landmark, double lambda) const {
+  if (!landmark.has_depth) return {0.0, 0.0};
+  const BoundedError depth =
+      bounded_error((lambda - landmark.measured) / noise_.inverse_depth, noise_.depth_outlier);
+  return {depth.value, depth.slope / noise_.inverse_depth};
+}
+
+double VisualTerms::cost(ParameterBlocks& blocks) {
+  update_relative_poses(blocks);
+  double total = 0.0;
+  for (const VisualLandmark& landmark : landmarks_) {
+    const LandmarkState state = state_of(landmark, blocks);
+    const double depth = host_depth(landmark, state.lambda).value;
+    total += depth * depth;
+    for (int frame = landmark.host + 1; frame <= landmark.last; ++frame) {
+      const RelativePoseLinearization& to = relative_poses_[pair(landmark.host, frame)];
+      const Eigen::Vector3d p_cj = to.R_cj_ci * state.ray + state.lambda * to.p_cj_ci;
+      const ReprojectionRows rows =
+          reprojection_rows(p_cj, state.lambda, measured_point_at(observation_of(landmark, frame)), noise_);
+      total += cauchy_squared_ * std::log(1.0 + rows.residual.squaredNorm() / cauchy_squared_);
+    }
+  }
+  return 0.5 * total;
+}
+
+double VisualTerms::add_to(ReducedSystem& system, ParameterBlocks& blocks) {
+  update_relative_poses(blocks);
+  for (PairSum& sum : sums_) sum.setZero();
+  information_.setZero();
+  gradient_.setZero();
+  coupling_.resize(system.layout.size() - system.layout.first_pose(), variable_count_);
+  coupling_.setZero();
+  double total = 0.0;
+  for (const VisualLandmark& landmark : landmarks_) total += linearize(landmark, blocks, system.layout);
+  for (int host = 0; host < frames_; ++host) {
+    for (int frame = host + 1; frame < frames_; ++frame) {
+      if (pair_used_[pair(host, frame)] != 0) add_pair(host, frame, system);
+    }
+  }
+  return 0.5 * total;
+}
+
+VisualTerms::ObservationTerm VisualTerms::linearize(const TimedObservation& timed,
+                                                    const RelativePoseLinearization& to,
+                                                    const LandmarkState& host) const {
+  const Eigen::Vector3d p_cj = to.R_cj_ci * host.ray + host.lambda * to.p_cj_ci;
+  const ReprojectionRows at = reprojection_rows(p_cj, host.lambda, measured_point_at(timed), noise_);
+  const Eigen::Vector3d J_time = -(to.R_cj_ci.leftCols<2>() * host.velocity);
+  ObservationTerm term;
+  for (int row = 0; row < 3; ++row) {
+    const Eigen::Vector3d J_point = at.J_point.row(row).transpose();
+    term.rows.col(row).head<3>() = host.lambda * J_point;
+    term.rows.col(row).segment<3>(3) = p_cj.cross(J_point);
+    term.rows(6, row) = J_point.dot(J_time);
+    term.rows(7, row) = at.residual[row];
+  }
+  term.rows.row(6).head<2>() += timed.bearing.velocity.transpose() / noise_.bearing;
+  term.J_lambda = at.J_point * to.p_cj_ci;
+  term.J_lambda[2] += at.J_depth_lambda;
+  return term;
+}
+
+/// @return twice the cost
+double VisualTerms::linearize(const VisualLandmark& landmark, ParameterBlocks& blocks,
+                              const ReducedLayout& layout) {
+  const LandmarkState state = state_of(landmark, blocks);
+  const BoundedError depth = host_depth(landmark, state.lambda);
+  double total = depth.value * depth.value;
+  double information = depth.slope * depth.slope;
+  double gradient = depth.slope * depth.value;
+  for (int frame = landmark.host + 1; frame <= landmark.last; ++frame) {
+    const std::size_t shared = pair(landmark.host, frame);
+    const ObservationTerm term = linearize(observation_of(landmark, frame), relative_poses_[shared], state);
+    const double inverse_weight = 1.0 + term.rows.row(7).squaredNorm() / cauchy_squared_;
+    total += cauchy_squared_ * std::log(inverse_weight);
+    const Eigen::Matrix<double, 8, 3> weighted = term.rows / inverse_weight;
+    sums_[shared].noalias() += weighted * term.rows.transpose();
+    if (landmark.column < 0) continue;
+    const Column8 column = weighted * term.J_lambda;
+    information += term.J_lambda.squaredNorm() / inverse_weight;
+    gradient += column[7];
+    add_coupling(landmark, frame, column, layout);
+  }
+  if (landmark.column < 0) return total;
+  information_[landmark.column] = information;
+  gradient_[landmark.column] = gradient;
+  return total;
+}
+
+/// H_pl += M_ij^T w J_y^T J_l of one observation. @param column w [J_y r]^T J_l
+void VisualTerms::add_coupling(const VisualLandmark& landmark, int frame, const Column8& column,
+                               const ReducedLayout& layout) {
+  const RelativePoseLinearization& to = relative_poses_[pair(landmark.host, frame)];
+  const Eigen::Matrix<double, 6, 1> relative = column.head<6>();
+  const Eigen::Index to_column = landmark.column;
+  coupling_.block<6, 1>(6 * frame, to_column).noalias() = to.J_pose_j.transpose() * relative;
+  coupling_.block<6, 1>(6 * landmark.host, to_column).noalias() += to.J_pose_i.transpose() * relative;
+  if (layout.variable_calibration().extrinsics) {
+    const int extrinsics = layout.column({BlockKind::kExtrinsics}) - layout.first_pose();
+    coupling_.block<6, 1>(extrinsics, to_column).noalias() += to.J_extrinsics.transpose() * relative;
+  }
+  if (layout.variable_calibration().time_offset) {
+    coupling_(layout.column({BlockKind::kTimeOffset}) - layout.first_pose(), to_column) += column[6];
+  }
+}
+
+void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
+  struct PoseBlock {
+    int column;
+    const Matrix6& map;
+  };
+  const RelativePoseLinearization& to = relative_poses_[pair(host, frame)];
+  const PairSum& sum = sums_[pair(host, frame)];
+  const PoseBlock pose_blocks[] = {{system.layout.column({BlockKind::kPose, host}), to.J_pose_i},
+                                   {system.layout.column({BlockKind::kPose, frame}), to.J_pose_j},
+                                   {system.layout.column({BlockKind::kExtrinsics}), to.J_extrinsics}};
+  const int time = system.layout.column({BlockKind::kTimeOffset});
+  for (const PoseBlock& a : pose_blocks) {
+    if (a.column < 0) continue;
+    const Matrix6 left = a.map.transpose() * sum.topLeftCorner<6, 6>();
+    for (const PoseBlock& b : pose_blocks) {
+      if (b.column < 0 || a.column < b.column) continue;
+      system.H.block<6, 6>(a.column, b.column).noalias() += left * b.map;
+    }
+    system.g.segment<6>(a.column).noalias() += a.map.transpose() * sum.block<6, 1>(0, 7);
+    if (time >= 0) system.H.block<1, 6>(time, a.column).noalias() += sum.block<1, 6>(6, 0) * a.map;
+  }
+  if (time < 0) return;
+  system.H(time, time) += sum(6, 6);
+  system.g[time] += sum(6, 7);
+}
+
+void VisualTerms::eliminate(double damping, Eigen::Ref<RowMajorMatrix> S, Eigen::Ref<Eigen::VectorXd> rhs) {
+  const Eigen::Index states = coupling_.rows();
+  scaled_.resize(states, kLandmarkBatch);
+  for (int begin = 0; begin < variable_count_; begin += kLandmarkBatch) {
+    const int count = std::min(kLandmarkBatch, variable_count_ - begin);
+    int first_frame = frames_;
+    for (int i = 0; i < count; ++i) {
+      const int landmark = begin + i;
+      first_frame = std::min(first_frame, host_frames_[static_cast<std::size_t>(landmark)]);
+      const double damped = information_[landmark] * (1.0 + damping);
+      const double inverse_root = damped > 0.0 ? 1.0 / std::sqrt(damped) : 0.0;
+      scaled_.col(i) = inverse_root * coupling_.col(landmark);
+      rhs.tail(states) += (gradient_[landmark] * inverse_root) * scaled_.col(i);
+    }
+    // A landmark involves only the poses from its host on.
+    const Eigen::Index involved = states - 6 * first_frame;
+    S.bottomRightCorner(involved, involved)
+        .selfadjointView<Eigen::Lower>()
+        .rankUpdate(scaled_.bottomRows(involved).leftCols(count), -1.0);
+  }
+}
+
+void VisualTerms::apply_step(const ReusableVector& step, ParameterBlocks& blocks) const {
+  for (const VisualLandmark& landmark : landmarks_) {
+    if (landmark.column >= 0) *blocks.inverse_depth(landmark.index) += step[landmark.column];
+  }
+}
+
+}  // namespace stillpoint

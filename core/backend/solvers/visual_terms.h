@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Visual residuals of a window and the elimination of its landmarks from the normal equations.
+#pragma once
+
+#include "core/backend/solvers/reduced_system.h"
+#include "core/backend/solvers/relative_pose_linearization.h"
+#include "core/backend/window/observation_model.h"
+
+namespace stillpoint {
+
+/// Which landmarks are used.
+enum class LandmarkSelection { kAll, kHostedByOldest };
+
+/// Reprojection residuals (see ReprojectionFactor), their normal equations and the Schur complement.
+///
+/// An observation depends on the states only through the relative pose of its two cameras and the time
+/// offset. Its rows r are therefore linearized with respect to y = (nu, omega, td), where (nu, omega) is the
+/// tangent of RelativePoseLinearization, and lambda. Per pair of frames (i, j) the sum
+///
+///   A_ij = sum w [J_y r]^T [J_y r],    w = 1 / (1 + |r|^2 / c^2)    (8x8; w: weight of the Cauchy loss)
+///
+/// is mapped to the states x once, with M_ij = dy/dx: H_pp += M_ij^T A_yy M_ij, g_p += M_ij^T A_yr.
+///
+/// A landmark is one scalar lambda. Over its observations
+///
+///   H_ll = sum w |J_l|^2,    g_l = sum w J_l^T r,    H_pl = sum M_ij^T w J_y^T J_l    (a column)
+///
+/// plus the host depth residual in H_ll and g_l, so its elimination is a rank-one update,
+/// S -= H_pl H_ll^-1 H_pl^T.
+class VisualTerms {
+ public:
+  /// Reads the observations of a window; allocates only if it is larger than all windows before.
+  void read(const Window& window, const BackendConfig& config, double focal_px, LandmarkSelection selection);
+
+  [[nodiscard]] double cost(ParameterBlocks& blocks);
+  /// Adds H_pp and g_p to the system and stores H_ll, g_l and H_pl. @return the cost
+  double add_to(ReducedSystem& system, ParameterBlocks& blocks);
+
+  /// Schur complement with damped landmarks, H_ll' = (1 + damping) H_ll:
+  /// S -= H_pl H_ll'^-1 H_lp (lower triangle), rhs += H_pl H_ll'^-1 g_l.
+  void eliminate(double damping, Eigen::Ref<RowMajorMatrix> S, Eigen::Ref<Eigen::VectorXd> rhs);
+
+  /// H_ll, g_l and H_pl of the variable landmarks. H_pl has one column per landmark; its rows are those of
+  /// the layout from the first pose on.
+  [[nodiscard]] const ReusableVector& information() const { return information_; }
+  [[nodiscard]] const ReusableVector& gradient() const { return gradient_; }
+  [[nodiscard]] const ReusableMatrix<Eigen::MatrixXd>& coupling() const { return coupling_; }
+  /// Adds the step to the inverse depths of the variable landmarks.
+  void apply_step(const ReusableVector& step, ParameterBlocks& blocks) const;
+
+  [[nodiscard]] int landmarks() const { return static_cast<int>(landmarks_.size()); }
+  [[nodiscard]] int measured_landmarks() const { return measured_; }
+
+ private:
+  struct VisualLandmark {
+    std::size_t index = 0;  // in the window
+    int host = 0;
+    int last = 0;
+    std::size_t first_observation = 0;
+    TimedBearing in_host;
+    double measured = 0.0;  // inverse depth in the host
+    bool has_depth = false;
+    int column = -1;  // among the variable landmarks; -1 = constant
+  };
+  struct TimedObservation {
+    TimedBearing bearing;
+    double inverse_depth = 0.0;
+    bool has_depth = false;
+  };
+  /// A_ij: rows and columns (nu, omega, td, r).
+  using PairSum = Eigen::Matrix<double, 8, 8>;
+  using Column8 = Eigen::Matrix<double, 8, 1>;
+  struct LandmarkState {
+    double lambda;
+    Eigen::Vector3d ray;       // bearing at the time of the host's state, z = 1
+    Eigen::Vector2d velocity;  // of the bearing [1/s]
+  };
+  /// Three whitened rows, not yet weighted by the loss.
+  struct ObservationTerm {
+    Eigen::Matrix<double, 8, 3> rows;  // [J_y r]^T
+    Eigen::Vector3d J_lambda;
+  };
+
+  void add_landmark(const Landmark& landmark, std::size_t index, const BackendConfig& config);
+  void update_relative_poses(ParameterBlocks& blocks);
+  [[nodiscard]] LandmarkState state_of(const VisualLandmark& landmark, ParameterBlocks& blocks) const;
+  [[nodiscard]] MeasuredPoint measured_point_at(const TimedObservation& observation) const;
+  [[nodiscard]] const TimedObservation& observation_of(const VisualLandmark& landmark, int frame) const {
+    return timed_observations_[landmark.first_observation +
+                               static_cast<std::size_t>(frame - landmark.host - 1)];
+  }
+  [[nodiscard]] BoundedError host_depth(const VisualLandmark& landmark, double lambda) const;
+  [[nodiscard]] ObservationTerm linearize(const TimedObservation& timed, const RelativePoseLinearization& to,
+                                          const LandmarkState& host) const;
+  [[nodiscard]] double linearize(const VisualLandmark& landmark, ParameterBlocks& blocks,
+                                 const ReducedLayout& layout);
+  void add_coupling(const VisualLandmark& landmark, int frame, const Column8& column,
+                    const ReducedLayout& layout);
+  void add_pair(int host, int frame, ReducedSystem& system) const;
+  [[nodiscard]] std::size_t pair(int host, int frame) const {
+    return static_cast<std::size_t>(host * frames_ + frame);
+  }
+
+  int frames_ = 0;
+  int measured_ = 0;
+  double cauchy_squared_ = 1.0;
+  double time_offset_ = 0.0;
+  ReprojectionNoise noise_;
+  ObservationModel observation_model_;
+  std::vector<VisualLandmark> landmarks_;
+  std::vector<TimedObservation> timed_observations_;
+  std::vector<std::uint8_t> pair_used_;
+  std::vector<RelativePoseLinearization> relative_poses_;
+  std::vector<PairSum> sums_;
+  int variable_count_ = 0;
+  std::vector<int> host_frames_;  // host of each variable landmark
+  ReusableVector information_;
+  ReusableVector gradient_;
+  ReusableMatrix<Eigen::MatrixXd> coupling_;
+  ReusableMatrix<Eigen::MatrixXd> scaled_;  // H_pl H_ll'^-1/2 of one batch
+};
+
+}  // namespace stillpoint

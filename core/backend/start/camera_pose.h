@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Camera pose from 3D-2D correspondences (PnP): RANSAC over small samples, then robust refinement.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/geometry/pose.h"
+
+namespace stillpoint {
+
+/// A point in the world and its observed bearing.
+struct PointObservation {
+  Eigen::Vector3d p_w;      ///< [m]
+  Eigen::Vector2d bearing;  ///< normalized image plane
+};
+
+struct CameraPoseOptions {
+  double inlier_threshold = 0.01;  ///< bearing error [normalized image plane]
+  int iterations = 60;             ///< RANSAC hypotheses
+  int min_inliers = 8;
+  std::uint32_t seed = 1;
+};
+
+struct CameraPose {
+  Pose T_w_c;
+  int inliers = 0;
+};
+
+/// @param prediction predicted T_w_c, the initial guess of every hypothesis: should be accurate to about 20
+/// degrees
+/// @return nothing if no pose has `min_inliers` inliers
+[[nodiscard]] std::optional<CameraPose> estimate_camera_pose(
+    const std::vector<PointObservation>& observations, const Pose& prediction,
+    const CameraPoseOptions& options);
+
+}  // namespace stillpoint

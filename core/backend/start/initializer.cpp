@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/start/initializer.h"
+
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include "core/backend/solvers/window_problem.h"
+#include "core/imu/gyro_bias.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kGravitySteps = 4;
+constexpr double kGaugeSigma_m = 1e-3;
+constexpr double kGaugeSigma_rad = 1e-3;
+
+/// Gyro bias that aligns the preintegrated rotations with the visual ones.
+Eigen::Vector3d solve_gyro_bias(const Window& window) {
+  std::vector<RotationPair> pairs;
+  for (std::size_t i = 1; i < window.frames.size(); ++i) {
+    const Eigen::Quaterniond& q_w_bi = window.frames[i - 1].state.T_w_b.q;
+    pairs.push_back({.preintegration = &*window.frames[i].from_previous,
+                     .q_bi_bj = q_w_bi.conjugate() * window.frames[i].state.T_w_b.q});
+  }
+  return estimate_gyro_bias(pairs);
+}
+
+/// Linear system A [v_0, g, s - 1] = y of align_with_imu, three rows per frame k >= 1; without the last
+/// column s = 1.
+struct AlignmentSystem {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd y;
+};
+
+AlignmentSystem alignment_system(const Window& window, const Eigen::Vector3d& gyro_bias, bool metric) {
+  const int frames = static_cast<int>(window.frames.size());
+  AlignmentSystem system{Eigen::MatrixXd::Zero(3 * (frames - 1), metric ? 6 : 7),
+                         Eigen::VectorXd::Zero(3 * (frames - 1))};
+  const Eigen::Vector3d p_0 = window.frames[0].state.T_w_b.p;
+  Eigen::Vector3d alpha = Eigen::Vector3d::Zero();  // displacement due to specific force
+  Eigen::Vector3d beta = Eigen::Vector3d::Zero();   // velocity due to specific force
+  double time = 0.0;
+  for (int k = 1; k < frames; ++k) {
+    Preintegration imu = *window.frames[static_cast<std::size_t>(k)].from_previous;
+    imu.repropagate(gyro_bias, imu.accel_bias());
+    const Eigen::Quaterniond& q_w_b = window.frames[static_cast<std::size_t>(k - 1)].state.T_w_b.q;
+    alpha += beta * imu.duration_s() + q_w_b * imu.delta_p(gyro_bias, imu.accel_bias());
+    beta += q_w_b * imu.delta_v(gyro_bias, imu.accel_bias());
+    time += imu.duration_s();
+    system.A.block<3, 3>(3 * (k - 1), 0) = Eigen::Matrix3d::Identity() * time;
+    system.A.block<3, 3>(3 * (k - 1), 3) = Eigen::Matrix3d::Identity() * (0.5 * time * time);
+    if (!metric) system.A.block<3, 1>(3 * (k - 1), 6) = window.T_w_c(0).p - window.T_w_c(k).p;
+    system.y.segment<3>(3 * (k - 1)) = window.frames[static_cast<std::size_t>(k)].state.T_w_b.p - p_0 - alpha;
+  }
+  return system;
+}
+
+/// Two orthonormal vectors orthogonal to `direction`.
+Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d first = direction.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> basis;
+  basis << first, direction.normalized().cross(first);
+  return basis;
+}
+
+/// Solution of the alignment system with the norm of gravity constrained.
+struct RefinedGravity {
+  Eigen::Vector3d gravity_w;
+  Eigen::VectorXd solution;  ///< v_0, last increment w, and s - 1 if estimated
+  bool scale_is_certain = true;
+};
+
+/// Gravity refinement on the tangent plane (see align_with_imu).
+/// @param gravity_w initial guess, of the configured norm
+RefinedGravity refine_gravity(const AlignmentSystem& system, const Eigen::Vector3d& gravity_w,
+                              double max_scale_sigma) {
+  const Eigen::MatrixXd A_gravity = system.A.middleCols<3>(3);
+  const Eigen::Index scale_columns = system.A.cols() - 6;
+  RefinedGravity refined{.gravity_w = gravity_w};
+  Eigen::MatrixXd A(system.A.rows(), 5 + scale_columns);
+  Eigen::VectorXd residual;
+  for (int i = 0; i < kGravitySteps; ++i) {
+    const Eigen::Matrix<double, 3, 2> basis = tangent_basis(refined.gravity_w);
+    A << system.A.leftCols<3>(), A_gravity * basis, system.A.rightCols(scale_columns);
+    const Eigen::VectorXd y = system.y - A_gravity * refined.gravity_w;
+    refined.solution = A.colPivHouseholderQr().solve(y);
+    residual = y - A * refined.solution;
+    refined.gravity_w =
+        gravity_w.norm() * (refined.gravity_w + basis * refined.solution.segment<2>(3)).normalized();
+  }
+  if (scale_columns == 0) return refined;
+  const double variance = residual.squaredNorm() / static_cast<double>(A.rows() - A.cols());
+  const Eigen::MatrixXd covariance = variance * (A.transpose() * A).inverse();
+  const double scale = 1.0 + refined.solution[5];
+  refined.scale_is_certain = std::sqrt(covariance(5, 5)) <= max_scale_sigma * scale;
+  return refined;
+}
+
+/// Scales camera positions (about camera 0) and landmark depths by `scale`.
+void rescale(double scale, Window& window) {
+  const Eigen::Vector3d p_0 = window.T_w_c(0).p;
+  for (int i = 0; i <= window.newest(); ++i) {
+    window.frames[static_cast<std::size_t>(i)].state.T_w_b.p += (scale - 1.0) * (window.T_w_c(i).p - p_0);
+  }
+  for (Landmark& landmark : window.landmarks) landmark.inverse_depth /= scale;
+}
+
+PriorBlock prior_block(const Window& window, BlockKind kind, int frame) {
+  ParameterBlocks blocks(window);
+  const double* values = block_address(blocks, {kind, frame});
+  return {kind, frame, Eigen::Map<const Eigen::VectorXd>(values, global_size(kind))};
+}
+
+Eigen::Matrix<double, 6, 6> pose_root_information(double sigma_m, double sigma_rad) {
+  Eigen::Matrix<double, 6, 1> diagonal;
+  diagonal << Eigen::Vector3d::Constant(1.0 / sigma_m), Eigen::Vector3d::Constant(1.0 / sigma_rad);
+  return diagonal.asDiagonal();
+}
+
+}  // namespace
+
+std::optional<InertialAlignment> align_with_imu(const Window& window, double gravity,
+                                                const InitializerConfig& config) {
+  for (std::size_t i = 1; i < window.frames.size(); ++i) {
+    if (!window.frames[i].from_previous) return std::nullopt;
+  }
+  InertialAlignment alignment;
+  alignment.gyro_bias = solve_gyro_bias(window);
+  const bool metric = config.kind != InitializerKind::kMonocular;
+  const AlignmentSystem system = alignment_system(window, alignment.gyro_bias, metric);
+  const Eigen::VectorXd unconstrained = system.A.colPivHouseholderQr().solve(system.y);
+  alignment.unconstrained_gravity = unconstrained.segment<3>(3).norm();
+  if (!(std::abs(alignment.unconstrained_gravity - gravity) <= config.gravity_tolerance)) return std::nullopt;
+
+  const RefinedGravity refined =
+      refine_gravity(system, gravity * unconstrained.segment<3>(3).normalized(), config.max_scale_sigma);
+  if (!refined.scale_is_certain) return std::nullopt;
+  alignment.gravity_w = refined.gravity_w;
+  alignment.first_velocity_w = refined.solution.head<3>();
+  if (!metric) alignment.scale = 1.0 + refined.solution[5];
+  return alignment;
+}
+
+void apply_alignment(const InertialAlignment& alignment, const Pose& anchor, Window& window) {
+  rescale(alignment.scale, window);
+  const Eigen::Quaterniond q_level =
+      Eigen::Quaterniond::FromTwoVectors(alignment.gravity_w, -Eigen::Vector3d::UnitZ());
+  const Eigen::Matrix3d R_0 = (q_level * window.frames[0].state.T_w_b.q).toRotationMatrix();
+  const Eigen::Matrix3d R_anchor = anchor.R();
+  // Heading difference: the rotation about z closest to R_turn.
+  const Eigen::Matrix3d R_turn = R_anchor * R_0.transpose();
+  const double yaw = std::atan2(R_turn(1, 0) - R_turn(0, 1), R_turn(0, 0) + R_turn(1, 1));
+  const Eigen::Quaterniond q_new_old = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * q_level;
+  const Pose T_new_old{q_new_old, anchor.p - q_new_old * window.frames[0].state.T_w_b.p};
+
+  window.gravity_w = Eigen::Vector3d(0.0, 0.0, -alignment.gravity_w.norm());
+  window.inertial = true;
+  Eigen::Vector3d velocity = q_new_old * alignment.first_velocity_w;
+  for (std::size_t i = 0; i < window.frames.size(); ++i) {
+    NavState& state = window.frames[i].state;
+    state.T_w_b = T_new_old * state.T_w_b;
+    state.gyro_bias = alignment.gyro_bias;
+    if (i > 0) {
+      Preintegration& imu = *window.frames[i].from_previous;
+      imu.repropagate(alignment.gyro_bias, state.accel_bias);
+      velocity += window.gravity_w * imu.duration_s() +
+                  window.frames[i - 1].state.T_w_b.q * imu.delta_v(alignment.gyro_bias, state.accel_bias);
+    }
+    state.v_w = velocity;
+  }
+}
+
+LinearPrior initial_prior(const Window& window, const InitializerConfig& config) {
+  LinearPrior prior;
+  prior.blocks.push_back(prior_block(window, BlockKind::kPose, 0));
+  if (!window.inertial) {
+    prior.residual = Eigen::VectorXd::Zero(6);
+    prior.jacobian = pose_root_information(kGaugeSigma_m, kGaugeSigma_rad);
+    return prior;
+  }
+  prior.blocks.push_back(prior_block(window, BlockKind::kSpeedBias, 0));
+  // Rows: position, heading, gyro bias, accel bias. d heading / d theta = e_z^T R.
+  prior.residual = Eigen::VectorXd::Zero(10);
+  prior.jacobian = Eigen::MatrixXd::Zero(10, 15);
+  prior.jacobian.block<3, 3>(0, 0).diagonal().setConstant(1.0 / kGaugeSigma_m);
+  prior.jacobian.block<1, 3>(3, 3) = window.frames.front().state.T_w_b.R().row(2) / kGaugeSigma_rad;
+  prior.jacobian.block<3, 3>(4, 9).diagonal().setConstant(1.0 / config.gyro_bias_sigma);
+  prior.jacobian.block<3, 3>(7, 12).diagonal().setConstant(1.0 / config.accel_bias_sigma);
+  return prior;
+}
+
+LinearPrior calibration_prior(const Window& window, const BackendConfig& config) {
+  LinearPrior prior;
+  prior.blocks.push_back(prior_block(window, BlockKind::kExtrinsics, -1));
+  prior.blocks.push_back(prior_block(window, BlockKind::kTimeOffset, -1));
+  prior.residual = Eigen::VectorXd::Zero(7);
+  prior.jacobian = Eigen::MatrixXd::Zero(7, 7);
+  prior.jacobian.topLeftCorner<6, 6>() =
+      pose_root_information(config.extrinsics_sigma_m, config.extrinsics_sigma_rad);
+  prior.jacobian(6, 6) = 1.0 / config.time_offset_sigma_s;
+  return prior;
+}
+
+}  // namespace stillpoint

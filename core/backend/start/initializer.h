@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Visual-inertial alignment: gyro bias, gravity, velocities, and the scale if depth is off. Qin et al. 2018
+/// (VINS-Mono), Sec. V-B.
+#pragma once
+
+#include <optional>
+
+#include "core/backend/window/window.h"
+#include "core/config/backend_config.h"
+
+namespace stillpoint {
+
+/// Result of the visual-inertial alignment of a window.
+struct InertialAlignment {
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();  ///< in the visual world, of configured norm [m/s^2]
+  Eigen::Vector3d first_velocity_w = Eigen::Vector3d::Zero();  ///< of frame 0 [m/s]
+  double scale = 1.0;                                          ///< meters per unit of the visual world
+  double unconstrained_gravity = 0.0;  ///< norm of gravity without the norm constraint [m/s^2]
+};
+
+/// Aligns the visual poses of a window with its preintegrated IMU data. The poses are metric except with the
+/// monocular initializer, which estimates the scale as well. No static start is required.
+///
+/// 1. Gyro bias: least squares on the rotation differences of successive frames (see gyro_bias.h).
+/// 2. Linear alignment. Integrating from frame 0 with the visual attitudes R_k gives velocity and position
+///    due to specific force alone,
+///
+///      beta_k  = beta_(k-1) + R_(k-1) delta_v_k,
+///      alpha_k = alpha_(k-1) + beta_(k-1) dt_k + R_(k-1) delta_p_k,
+///
+///    and with the body positions p_k, camera positions c_k, T_k = t_k - t_0 and scale s, each frame k gives
+///
+///      p_k - p_0 - alpha_k = v_0 T_k + 1/2 g T_k^2 + (s - 1) (c_0 - c_k),
+///
+///    linear in v_0, g and s - 1 (s = 1 and no last column if the poses are metric). The scale applies to
+///    the camera positions only, not to the camera-IMU lever arm.
+/// 3. Gravity refinement: g = |g| normalized(g' + B w), with B a basis of the tangent plane at the current
+///    g', reduces g to two unknowns w of configured norm; solved four times.
+///
+/// @param window visual; every frame but the first with inertial samples
+/// @param gravity configured norm [m/s^2]
+/// @return nothing if samples are missing, the norm of g after step 2 deviates by more than
+/// `gravity_tolerance`, or the relative standard deviation of s exceeds `max_scale_sigma`
+[[nodiscard]] std::optional<InertialAlignment> align_with_imu(const Window& window, double gravity,
+                                                              const InitializerConfig& config);
+
+/// Applies an alignment: scales the window to meters, transforms its world such that gravity points along -z
+/// and frame 0 has the position and heading of `anchor`, sets velocities and biases, and repropagates the
+/// samples.
+void apply_alignment(const InertialAlignment& alignment, const Pose& anchor, Window& window);
+
+/// Initial prior of a window: fixes the gauge at frame 0 (position and heading, or the whole pose without
+/// IMU) and constrains its biases by their configured uncertainty.
+[[nodiscard]] LinearPrior initial_prior(const Window& window, const InitializerConfig& config);
+
+/// Prior on extrinsics and time offset at their current values, with the configured uncertainty.
+[[nodiscard]] LinearPrior calibration_prior(const Window& window, const BackendConfig& config);
+
+}  // namespace stillpoint

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The state that the estimator refines: frames of the sliding window, landmarks, calibration and the prior.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/backend/factors/linear_prior.h"
+#include "core/base/vector_pool.h"
+#include "core/imu/preintegration.h"
+#include "core/types/nav_state.h"
+#include "core/types/rig.h"
+
+namespace stillpoint {
+
+/// Observation of one landmark in one frame of the window.
+struct Observation {
+  Eigen::Vector2d bearing = Eigen::Vector2d::Zero();   ///< normalized image plane
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of the bearing [1/s]
+  double depth = 0.0;                                  ///< measured [m]; 0 = not measured or out of range
+  double readout_offset_s = 0.0;  ///< readout time of its row minus that of the middle row
+};
+
+/// Origin of the initial depth of a landmark.
+enum class DepthSource { kNone, kMeasured, kTriangulated };
+
+/// A 3D point, parameterized by its inverse depth along the bearing in its first observing frame (host).
+struct Landmark {
+  std::int64_t id = 0;
+  int host = 0;                           ///< index of the first observing frame
+  std::vector<Observation> observations;  ///< one for each frame from the host on, without gaps
+  double inverse_depth = 0.0;             ///< [1/m], in the host; 0 = unknown
+  DepthSource source = DepthSource::kNone;
+  bool dynamic = false;  ///< tracked, but excluded from the estimate
+
+  [[nodiscard]] int last() const { return host + static_cast<int>(observations.size()) - 1; }
+  [[nodiscard]] bool observed_in(int frame) const { return frame >= host && frame <= last(); }
+  [[nodiscard]] const Observation& observation_in(int frame) const {
+    return observations[static_cast<std::size_t>(frame - host)];
+  }
+};
+
+/// One frame of the window. The state is defined at IMU time `state.t + time_offset_s`.
+struct WindowFrame {
+  std::int64_t id = 0;
+  NavState state;
+  double time_offset_s = 0.0;                        ///< estimated offset when the frame was added
+  Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();  ///< angular rate at the exposure, bias included [rad/s]
+  std::optional<Preintegration> from_previous;       ///< absent in the first frame and without an IMU
+};
+
+struct Window {
+  std::vector<WindowFrame> frames;  ///< oldest first
+  std::vector<Landmark> landmarks;  ///< sorted by id
+  Pose T_b_c;
+  double time_offset_s = 0.0;
+  Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();
+  bool inertial = false;    ///< IMU initialized: the world is aligned with gravity, velocities are valid
+  LinearPrior prior;        ///< marginalization prior on the states
+  LinearPrior calibration;  ///< prior on extrinsics and time offset
+  VectorPool<Observation> observation_pool;  ///< of removed landmarks
+  VectorPool<ImuSample> sample_pool;         ///< of removed preintegrations
+
+  [[nodiscard]] int newest() const { return static_cast<int>(frames.size()) - 1; }
+  [[nodiscard]] Pose T_w_c(int frame) const {
+    return frames[static_cast<std::size_t>(frame)].state.T_w_b * T_b_c;
+  }
+
+  /// Position in the world; the landmark's inverse depth must be known.
+  [[nodiscard]] Eigen::Vector3d position(const Landmark& landmark) const {
+    return position(landmark, landmark.inverse_depth);
+  }
+  /// Same at another inverse depth, > 0.
+  [[nodiscard]] Eigen::Vector3d position(const Landmark& landmark, double inverse_depth) const {
+    return T_w_c(landmark.host) *
+           Eigen::Vector3d(landmark.observations.front().bearing.homogeneous() / inverse_depth);
+  }
+};
+
+/// Whether a landmark is used in solve and marginalization.
+[[nodiscard]] inline bool is_usable(const Landmark& landmark) {
+  return !landmark.dynamic && landmark.inverse_depth > 0.0 && landmark.observations.size() >= 2;
+}
+
+}  // namespace stillpoint

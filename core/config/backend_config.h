@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Configuration of the estimator: window, solver, depth, initialization. Defaults are those of Dynamic-VINS.
+#pragma once
+
+#include <type_traits>
+
+#include "core/base/fields.h"
+
+namespace stillpoint {
+
+/// `kFixed`: a measured depth is a constant of the solve; `kWeighted`: it is a residual; `kOff`: unused.
+enum class DepthUsage { kOff, kFixed, kWeighted };
+constexpr auto enum_names(DepthUsage) {
+  return EnumNames<DepthUsage, 3>{
+      {{DepthUsage::kOff, "off"}, {DepthUsage::kFixed, "fixed"}, {DepthUsage::kWeighted, "weighted"}}};
+}
+
+/// `kWindow`: visual-inertial alignment once the window is full; `kInstant`: as soon as it covers
+/// `min_span_s`; `kMonocular`: structure from motion without depth, then alignment including the scale.
+enum class InitializerKind { kWindow, kInstant, kMonocular };
+constexpr auto enum_names(InitializerKind) {
+  return EnumNames<InitializerKind, 3>{{{InitializerKind::kWindow, "window"},
+                                        {InitializerKind::kInstant, "instant"},
+                                        {InitializerKind::kMonocular, "monocular"}}};
+}
+
+enum class WindowSolverKind { kCeres, kSchur };
+constexpr auto enum_names(WindowSolverKind) {
+  return EnumNames<WindowSolverKind, 2>{
+      {{WindowSolverKind::kCeres, "ceres"}, {WindowSolverKind::kSchur, "schur"}}};
+}
+
+/// How measured depth enters the estimate.
+struct DepthConfig {
+  DepthUsage usage = DepthUsage::kFixed;
+  double min_m = 0.3;                   ///< smaller measured depths are ignored
+  double max_m = 8.0;                   ///< larger measured depths are not used to initialize a landmark
+  double inverse_sigma = 0.003;         ///< standard deviation of 1/depth [1/m]: sigma_Z = this * Z^2
+  double outlier_sigmas = 2.0;          ///< kWeighted: bound of the depth residual, in standard deviations
+  double agreement_px = 10.0;           ///< largest reprojection error of a depth accepted from one view
+  double max_landmark_depth_m = 100.0;  ///< landmarks triangulated or estimated farther away are discarded
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, DepthConfig>
+void visit_fields(Visitor&& field, Config& config) {
+  field("usage", config.usage);
+  field("min_m", config.min_m, 0.01, 10.0);
+  field("max_m", config.max_m, 0.1, 100.0);
+  field("inverse_sigma", config.inverse_sigma, 1e-5, 1.0);
+  field("outlier_sigmas", config.outlier_sigmas, 0.1, 1000.0);
+  field("agreement_px", config.agreement_px, 0.1, 100.0);
+  field("max_landmark_depth_m", config.max_landmark_depth_m, 10.0, 10000.0);
+}
+
+/// Initialization, and the uncertainty of the initial state. Position and heading of frame 0 fix the gauge.
+struct InitializerConfig {
+  InitializerKind kind = InitializerKind::kWindow;
+  double min_span_s = 0.3;         ///< instant: shortest time span from which gravity is estimated
+  double gyro_bias_sigma = 0.02;   ///< prior standard deviation [rad/s]
+  double accel_bias_sigma = 0.1;   ///< prior standard deviation [m/s^2]
+  double gravity_tolerance = 1.0;  ///< largest accepted error of the unconstrained gravity norm [m/s^2]
+  int min_common_features = 30;    ///< monocular: in the initial frame pair. Qin et al. 2018, Sec. V-A
+  double min_parallax_px = 20.0;   ///< monocular: their mean rotation-compensated parallax; same source
+  double max_scale_sigma = 0.1;    ///< monocular: of the scale, relative; a less certain one is rejected
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, InitializerConfig>
+void visit_fields(Visitor&& field, Config& config) {
+  field("kind", config.kind);
+  field("min_span_s", config.min_span_s, 0.1, 10.0);
+  field("gyro_bias_sigma", config.gyro_bias_sigma, 1e-5, 10.0);
+  field("accel_bias_sigma", config.accel_bias_sigma, 1e-5, 10.0);
+  field("gravity_tolerance", config.gravity_tolerance, 0.01, 9.0);
+  field("min_common_features", config.min_common_features, 10, 1000);
+  field("min_parallax_px", config.min_parallax_px, 1.0, 200.0);
+  field("max_scale_sigma", config.max_scale_sigma, 1e-3, 10.0);
+}
+
+/// Upper limit of `window_size`.
+inline constexpr int kMaxWindowSize = 40;
+
+struct BackendConfig {
+  double rate_hz = 10.0;               ///< rate of the frames that enter the window [Hz]; 0 = every frame
+  int window_size = 10;                ///< number of states before the newest one
+  double keyframe_parallax_px = 10.0;  ///< mean feature displacement that triggers a keyframe
+  int keyframe_min_tracked = 20;       ///< fewer static features shared with the last keyframe trigger one
+  double keyframe_min_shared_ratio = 0.5;  ///< same, relative to all static features; 0 = off, as in the
+                                           ///< published code (there dynamic features add parallax)
+  double pixel_sigma_px = 1.5;             ///< standard deviation of a feature position
+  double reprojection_error_px = 0.0;      ///< nominal median; a larger one inflates pixel_sigma_px; 0 = off
+  double cauchy_scale = 1.0;               ///< scale of the Cauchy loss, in standard deviations
+  WindowSolverKind solver = WindowSolverKind::kCeres;  ///< both minimize the same residuals
+  int max_iterations = 8;
+  double function_tolerance = 1e-6;      ///< relative change of the cost at which the solve stops
+  double keyframe_max_interval_s = 5.0;  ///< limits the length of a preintegration
+  bool estimate_time_offset = true;
+  double time_offset_sigma_s = 0.01;  ///< prior standard deviation around the calibrated value
+  bool estimate_extrinsics = false;
+  double extrinsics_sigma_m = 0.02;    ///< prior standard deviation around the calibrated value
+  double extrinsics_sigma_rad = 0.02;  ///< same for the rotation
+  DepthConfig depth;
+  InitializerConfig initializer;
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, BackendConfig>
+void visit_fields(Visitor&& field, Config& config) {
+  field("rate_hz", config.rate_hz, 0.0, 1000.0);
+  field("window_size", config.window_size, 4, kMaxWindowSize);
+  field("keyframe_parallax_px", config.keyframe_parallax_px, 0.1, 200.0);
+  field("keyframe_min_tracked", config.keyframe_min_tracked, 0, 1000);
+  field("keyframe_min_shared_ratio", config.keyframe_min_shared_ratio, 0.0, 1.0);
+  field("pixel_sigma_px", config.pixel_sigma_px, 0.05, 20.0);
+  field("reprojection_error_px", config.reprojection_error_px, 0.0, 20.0);
+  field("cauchy_scale", config.cauchy_scale, 0.01, 100.0);
+  field("solver", config.solver);
+  field("max_iterations", config.max_iterations, 1, 100);
+  field("function_tolerance", config.function_tolerance, 1e-12, 0.1);
+  field("keyframe_max_interval_s", config.keyframe_max_interval_s, 0.05, 10.0);
+  field("estimate_time_offset", config.estimate_time_offset);
+  field("time_offset_sigma_s", config.time_offset_sigma_s, 1e-6, 1.0);
+  field("estimate_extrinsics", config.estimate_extrinsics);
+  field("extrinsics_sigma_m", config.extrinsics_sigma_m, 1e-6, 1.0);
+  field("extrinsics_sigma_rad", config.extrinsics_sigma_rad, 1e-6, 1.0);
+  field("depth", config.depth);
+  field("initializer", config.initializer);
+}
+
+}  // namespace stillpoint

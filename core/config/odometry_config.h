@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// All settings of the odometry. The defaults are those of Dynamic-VINS; configuration files override them.
+#pragma once
+
+#include <type_traits>
+
+#include "core/config/backend_config.h"
+#include "core/config/detector_config.h"
+#include "core/config/dynamic_config.h"
+#include "core/config/frontend_config.h"
+#include "core/config/imu_config.h"
+#include "core/config/pipeline_config.h"
+
+namespace stillpoint {
+
+struct OdometryConfig {
+  int seed = 1;  ///< of all random number generators in a run
+  ImuConfig imu;
+  FrontendConfig frontend;
+  DetectorConfig detector;
+  DynamicConfig dynamic;
+  BackendConfig backend;
+  PipelineConfig pipeline;
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, OdometryConfig>
+void visit_fields(Visitor&& field, Config& config) {
+  field("seed", config.seed, 0, 1000000000);
+  field("imu", config.imu);
+  field("frontend", config.frontend);
+  field("detector", config.detector);
+  field("dynamic", config.dynamic);
+  field("backend", config.backend);
+  field("pipeline", config.pipeline);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Settings of the data exchange between the stages. Paper Sec. II.
+#pragma once
+
+#include <type_traits>
+
+#include "core/base/fields.h"
+
+namespace stillpoint {
+
+struct PipelineConfig {
+  /// Lag of the feedback to the tracker [frames]. 0: tracking of frame k waits for the optimized state of
+  /// frame k-1; 1: it uses that of frame k-2 and runs in parallel with the optimization of frame k-1.
+  int feedback_lag = 0;
+  double detection_max_age_s = 0.1;  ///< mode `realtime`: older boxes are discarded as late
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, PipelineConfig>
+void visit_fields(Visitor&& field, Config& config) {
+  field("feedback_lag", config.feedback_lag, 0, 10);
+  field("detection_max_age_s", config.detection_max_age_s, 0.0, 10.0);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frontend/klt/klt.h"
+
+#include <algorithm>
+#include <opencv2/video/tracking.hpp>
+
+#include "core/base/error.h"
+#include "core/frontend/klt/pyramid_downsampling.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kConvergedPx = 0.01;  // step that ends the iteration, as in the published trackers
+
+/// An image inside a larger allocation, with a border of `border_px` around it.
+cv::Mat bordered_image(const cv::Size& size, int border_px) {
+  const cv::Mat whole(size + cv::Size(2 * border_px, 2 * border_px), CV_8UC1);
+  return whole(cv::Rect({border_px, border_px}, size));
+}
+
+}  // namespace
+
+void ImagePyramid::rebuild(const cv::Mat& gray, int window_px, int levels, PyramidKind kind) {
+  if (kind == PyramidKind::kImages) {
+    rebuild_images(gray, window_px, levels);
+    return;
+  }
+  images_per_level_ = 2;
+  constexpr bool kDerivatives = true;
+  constexpr bool kReuseInput = false;  // otherwise pixels around a submatrix would be used as border
+  cv::buildOpticalFlowPyramid(gray, images_, cv::Size(window_px, window_px), levels - 1, kDerivatives,
+                              cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, kReuseInput);
+}
+
+void ImagePyramid::rebuild_images(const cv::Mat& gray, int border_px, int levels) {
+  const bool reusable = images_per_level_ == 1 && border_px_ == border_px && !images_.empty() &&
+                        images_[0].size() == gray.size();
+  if (!reusable) images_.clear();
+  images_per_level_ = 1;
+  border_px_ = border_px;
+  cv::Size size = gray.size();
+  std::size_t level = 0;
+  for (; level < static_cast<std::size_t>(levels); ++level) {
+    if (level > 0 && std::min(size.width, size.height) <= border_px) break;
+    if (level == images_.size()) images_.push_back(bordered_image(size, border_px));
+    if (level == 0) {
+      gray.copyTo(images_[0]);
+    } else {
+      pyr_down(images_[level - 1], images_[level], column_sums_);
+    }
+    reflect_border(images_[level], border_px);
+    size = cv::Size((size.width + 1) / 2, (size.height + 1) / 2);
+  }
+  images_.resize(level);
+}
+
+KltResult track_points_klt(const ImagePyramid& from, const ImagePyramid& to,
+                           const std::vector<cv::Point2f>& points,
+                           const std::vector<cv::Point2f>& initial_guesses, const KltSettings& settings) {
+  STILLPOINT_CHECK(points.size() == initial_guesses.size());
+  KltResult result{.pixels = initial_guesses, .found = {}};
+  if (points.empty()) return result;
+  const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, settings.max_iterations,
+                              kConvergedPx);
+  cv::calcOpticalFlowPyrLK(from.images(), to.images(), points, result.pixels, result.found, cv::noArray(),
+                           cv::Size(settings.window_px, settings.window_px), settings.levels - 1, stop,
+                           cv::OPTFLOW_USE_INITIAL_FLOW);
+  return result;
+}
+
+KltResult forward_backward_check(const std::vector<cv::Point2f>& points, KltResult forward,
+                                 const KltResult& backward, double tolerance_px) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool consistent =
+        backward.found[i] != 0 && cv::norm(backward.pixels[i] - points[i]) <= tolerance_px;
+    if (!consistent) forward.found[i] = 0;
+  }
+  return forward;
+}
+
+}  // namespace stillpoint

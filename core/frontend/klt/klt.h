@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Sparse optical flow between two images by pyramidal Lucas-Kanade (Bouguet 2001). Paper Sec. III-A.
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+namespace stillpoint {
+
+/// Content of a pyramid: `track_points_klt` needs derivatives, `track_points_patch` does not.
+enum class PyramidKind { kImages, kImagesAndDerivatives };
+
+/// Image pyramid. Rebuilding it with the same size and kind does not allocate.
+class ImagePyramid {
+ public:
+  /// @param gray      CV_8UC1; copied
+  /// @param window_px width of the border added around each level
+  /// @param levels    including the full resolution; fewer are built if the smallest would be below the
+  /// window
+  void rebuild(const cv::Mat& gray, int window_px, int levels,
+               PyramidKind kind = PyramidKind::kImagesAndDerivatives);
+
+  /// Images, alternating with derivatives if there are any, in the layout of cv::calcOpticalFlowPyrLK.
+  [[nodiscard]] const std::vector<cv::Mat>& images() const { return images_; }
+
+  [[nodiscard]] std::size_t levels() const { return images_.size() / images_per_level_; }
+  [[nodiscard]] const cv::Mat& level(std::size_t index) const { return images_[images_per_level_ * index]; }
+
+ private:
+  void rebuild_images(const cv::Mat& gray, int border_px, int levels);
+
+  std::vector<cv::Mat> images_;
+  std::vector<std::uint16_t> column_sums_;  ///< scratch buffer of the filter
+  std::size_t images_per_level_ = 1;        ///< entries of images_ per level
+  int border_px_ = 0;                       ///< of pyramids without derivatives
+};
+
+struct KltSettings {
+  int window_px = 21;
+  int levels = 2;  ///< pyramid levels to use, at most those built
+  int max_iterations = 30;
+};
+
+/// Tracking result; the arrays are parallel to the input points.
+struct KltResult {
+  std::vector<cv::Point2f> pixels;
+  std::vector<std::uint8_t> found;  ///< 0: no match, the pixel is undefined
+};
+
+/// Finds `points` of image `from` in image `to`.
+/// @param initial_guesses start of the search in `to`, one per point; the points themselves if unknown
+[[nodiscard]] KltResult track_points_klt(const ImagePyramid& from, const ImagePyramid& to,
+                                         const std::vector<cv::Point2f>& points,
+                                         const std::vector<cv::Point2f>& initial_guesses,
+                                         const KltSettings& settings);
+
+/// Forward-backward check: clears `found` of the points that tracking back from the second image to the first
+/// loses or finds more than `tolerance_px` from the original point.
+/// @param forward  tracks of `points` from the first image to the second
+/// @param backward tracks of `forward.pixels` from the second image to the first, started at `points`
+[[nodiscard]] KltResult forward_backward_check(const std::vector<cv::Point2f>& points, KltResult forward,
+                                               const KltResult& back, double tolerance_px);
+
+}  // namespace stillpoint

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Rejects feature matches that are inconsistent with the camera motion between two frames.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/config/frontend_config.h"
+#include "core/frontend/outliers/rigid_motion.h"
+
+namespace stillpoint {
+
+/// One feature observed in two frames.
+struct Match {
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< undistorted normalized coordinates, earlier frame
+  double depth = 0.0;                              ///< in the earlier frame [m]; 0 = not measured
+  Eigen::Vector2d to = Eigen::Vector2d::Zero();    ///< undistorted normalized coordinates, later frame
+};
+
+/// 1 = inlier, 0 = outlier, for each match.
+using InlierMask = std::vector<std::uint8_t>;
+
+struct OutlierRejectionSettings {
+  OutlierModel model = OutlierModel::kEpipolar;
+  double threshold_px = 1.0;      ///< largest residual of an inlier, px at the camera's focal length
+  double confidence = 0.99;       ///< probability that at least one sample is free of outliers
+  double min_inlier_ratio = 0.5;  ///< models with fewer inliers are discarded
+  double focal_px = 0.0;          ///< > 0
+};
+
+/// `find_inliers` with buffers that are reused between calls; otherwise stateless.
+class OutlierRejector {
+ public:
+  /// As `find_inliers`. @return valid until the next call
+  [[nodiscard]] const InlierMask& find(std::span<const Match> matches,
+                                       const OutlierRejectionSettings& settings);
+
+ private:
+  [[nodiscard]] bool fit_epipolar(std::span<const Match> matches, const OutlierRejectionSettings& settings);
+  [[nodiscard]] bool fit_rigid(std::span<const Match> matches, const OutlierRejectionSettings& settings);
+  [[nodiscard]] bool has_enough_inliers(const OutlierRejectionSettings& settings) const;
+
+  std::vector<PointCorrespondence> correspondences_;
+  InlierMask inliers_;
+};
+
+/// Inliers of the dominant motion, by RANSAC (Fischler and Bolles 1981). Deterministic.
+///
+/// kEpipolar: fundamental matrix F; residual = distance of `to` to the epipolar line l = F (from, 1)
+/// (Hartley and Zisserman 2004, Sec. 11.6). For pure rotation or a planar scene F is not unique, but every
+/// solution fits the static matches, so none of them is rejected. Motion along the line is not detected.
+///
+/// kRigid: camera pose T_to_from estimated from the depths of the earlier frame (`estimate_rigid_motion`);
+/// residual = |pi(T_to_from (depth (from, 1))) - to|, pi(p) = (p.x, p.y) / p.z, which covers both directions
+/// and has no degenerate motion. Matches without depth use the epipolar line of the pose,
+/// l = t x (R (from, 1)), residual = |l . (to, 1)| / |(l.x, l.y)|. The motion between two frames is small
+/// compared to the depth, so depth errors have little effect. Falls back to kEpipolar if fewer than 20
+/// matches have depth or the pose has too few inliers.
+///
+/// Not specified by the paper; the published code uses kEpipolar.
+/// @return all ones if there are fewer than 8 matches or no model has enough inliers
+[[nodiscard]] InlierMask find_inliers(std::span<const Match> matches,
+                                      const OutlierRejectionSettings& settings);
+
+}  // namespace stillpoint

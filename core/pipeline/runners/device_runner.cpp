@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Device runner: single-threaded discrete-event simulation of `run_realtime` on a target device.
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "core/base/error.h"
+#include "core/pipeline/runners/device_cores.h"
+#include "core/pipeline/runners/runner_parts.h"
+
+namespace stillpoint {
+namespace {
+
+using Time = DeviceCores::Time;
+
+/// Detections of a frame, and the time at which they are available.
+struct DeviceDetection {
+  DetectionJob job;
+  Time available_at{};
+};
+
+/// Feedback of the optimization, and the time at which it is available.
+struct DeviceFeedback {
+  Feedback feedback;
+  Time available_at{};
+};
+
+Time cost_of(const StageCost& cost, const ModuleTime& measured) {
+  if (cost.fixed_ms) return Time(std::llround(1e6 * *cost.fixed_ms));
+  return Time(std::llround(cost.factor * static_cast<double>(measured.ns)));
+}
+
+class DeviceRun {
+ public:
+  DeviceRun(const SensorInput& input, const OdometryConfig& config, const RunControl& control,
+            const DeviceClock& clock)
+      : input_(input),
+        config_(config),
+        control_(control),
+        clock_(clock),
+        stages_(assemble(input, config)),
+        cores_(clock.device.cores),
+        imu_of_tracker_(input.imu),
+        imu_of_estimator_(input.imu) {
+    report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / clock.speed;
+    feedback_.push_back({stages_.optimization.feedback(), Time{}});
+  }
+
+  RunSummary run() {
+    while (const std::optional<std::size_t> index = next_frame()) {
+      if (control_.stop_requested && control_.stop_requested()) {
+        summary_.interrupted = true;
+        break;
+      }
+      std::optional<FrameJob> job = load_frame_job(input_, *index, summary_.skipped);
+      if (job) process(*job, exposure(*index));
+    }
+    summary_.realtime = std::move(report_);
+    complete_summary(stages_, summary_);
+    return std::move(summary_);
+  }
+
+ private:
+  [[nodiscard]] Time exposure(std::size_t index) const {
+    const double seconds = seconds_between(input_.frame_times.front(), input_.frame_times[index]);
+    return Time(std::llround(1e9 * seconds / clock_.speed));
+  }
+
+  /// Index of the next frame that the tracker accepts; advances `now_` to that time.
+  std::optional<std::size_t> next_frame() {
+    const std::size_t count = input_.frame_times.size();
+    if (next_ >= count) return std::nullopt;
+    now_ = std::max(now_, exposure(next_));
+    std::size_t exposed = next_;
+    while (exposed < count && exposure(exposed) <= now_) ++exposed;
+    const std::size_t queued = std::min(exposed - next_, kMaxQueuedFrames);
+    report_.dropped += static_cast<int>(exposed - next_ - queued);
+    next_ = exposed - queued;
+    summary_.frames = std::max(summary_.frames, exposed);
+    return next_++;
+  }
+
+  /// Newest feedback that is available at `now_`.
+  [[nodiscard]] const Feedback& available_feedback() {
+    while (feedback_.size() > 1 && feedback_[1].available_at <= now_) feedback_.pop_front();
+    return feedback_.front().feedback;
+  }
+
+  void process(FrameJob& job, Time exposed) {
+    const Timestamp imu_end = after(job.frame.t, input_.rig.time_offset_s + kImuLookahead_s);
+    imu_of_tracker_.feed_until(imu_end, stages_.tracking);
+    imu_of_estimator_.feed_until(imu_end, stages_.optimization);
+    job.enters_window = stages_.rate.admits(job.frame.t);
+    job.tracked = stages_.tracking.process(job.frame, job.enters_window, available_feedback());
+    const Time tracked_at =
+        cores_.occupy(now_, cost_of(clock_.device.tracking, job.tracked.timings[Module::kTrackingThread]));
+    if (job.enters_window) detect(job.frame);
+    // Queue of one tracked frame: the tracker continues when the previous one has been dequeued.
+    now_ = std::max(tracked_at, optimization_start_);
+    optimize(job, tracked_at, exposed);
+  }
+
+  /// A busy detector skips the frame.
+  void detect(const Frame& frame) {
+    if (detector_free_ > now_) return;
+    DeviceDetection detection{.job = detect_objects(*stages_.detector, frame), .available_at = {}};
+    const bool is_disabled = config_.detector.kind == DetectorKind::kNone;
+    const Time cost = is_disabled ? Time{}
+                                  : cost_of(clock_.device.detection,
+                                            {.ns = detection.job.timing->elapsed.count(), .calls = 1});
+    detection.available_at =
+        clock_.device.detector_has_own_processor ? now_ + cost : cores_.occupy(now_, cost);
+    detector_free_ = detection.available_at;
+    detections_.push_back(std::move(detection));
+  }
+
+  void optimize(const FrameJob& job, Time ready, Time exposed) {
+    Time start = std::max(ready, optimizer_free_);
+    std::optional<DetectionJob> found;
+    if (job.enters_window) found = take_detection(job.frame.t, start);
+    ModuleTime measured;
+    RunControl control = control_;
+    control.on_update = [&](const OdometryUpdate& update) {
+      measured = update.timings[Module::kOptimizationThread];
+      if (control_.on_update) control_.on_update(update);
+    };
+    finish_frame(job, found, stages_.optimization, control, summary_);
+    const bool free = !job.enters_window && clock_.device.optimization.fixed_ms;
+    const Time cost = free ? Time{} : cost_of(clock_.device.optimization, measured);
+    optimization_start_ = start;
+    optimizer_free_ = cores_.occupy(start, cost);
+    report_.latencies_ms.push_back(1e-6 * static_cast<double>((optimizer_free_ - exposed).count()));
+    feedback_.push_back({stages_.optimization.feedback(), optimizer_free_});
+  }
+
+  /// Detections for a frame, by the rules of `NewestDetections::take`; advances `start` to the time at which
+  /// they are available or the wait times out.
+  DetectionJob take_detection(Timestamp t, Time& start) {
+    const Time limit = start + Time(std::llround(1e6 * kDetectionWaitFraction * report_.deadline_ms));
+    const bool own = !detections_.empty() && detections_.back().job.set.t == t;
+    start = own && detections_.back().available_at <= limit ? std::max(start, detections_.back().available_at)
+                                                            : limit;
+    std::optional<DetectionJob> newest;
+    while (!detections_.empty() && detections_.front().available_at <= start) {
+      newest = std::move(detections_.front().job);
+      detections_.pop_front();
+    }
+    const bool usable = newest && seconds_between(newest->set.t, t) <= config_.pipeline.detection_max_age_s;
+    if (!usable) newest = {.set = {.t = t, .state = DetectionState::kLate, .detections = {}}, .timing = {}};
+    report_.late_detections += newest->set.state == DetectionState::kLate;
+    return std::move(*newest);
+  }
+
+  const SensorInput& input_;
+  const OdometryConfig& config_;
+  const RunControl& control_;
+  const DeviceClock& clock_;
+  Stages stages_;
+  RunSummary summary_;
+  RealtimeReport report_;
+  DeviceCores cores_;
+  ImuFeed imu_of_tracker_;
+  ImuFeed imu_of_estimator_;
+  std::size_t next_ = 0;  ///< frame index
+  Time now_{};            ///< of the tracker
+  Time detector_free_{};
+  Time optimizer_free_{};
+  Time optimization_start_{};               ///< of the previous frame
+  std::deque<DeviceDetection> detections_;  ///< not used yet
+  std::deque<DeviceFeedback> feedback_;     ///< the first is available, the others in the future
+};
+
+}  // namespace
+
+RunSummary run_on_device(const SensorInput& input, const OdometryConfig& config, const RunControl& control,
+                         const DeviceClock& clock) {
+  if (!(clock.speed > 0.0)) throw InputError("--speed", "must be larger than 0; 1 is as recorded");
+  if (input.frame_times.empty()) return {};
+  return DeviceRun(input, config, control, clock).run();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Runs the stages over a sequence, in four modes. Paper Sec. II.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/channel_waits.h"
+#include "core/pipeline/assembly.h"
+#include "core/pipeline/runners/device.h"
+#include "core/types/odometry_update.h"
+
+namespace stillpoint {
+
+/// Inputs and results of one frame, for dumps and videos; valid during the call.
+struct FrameReport {
+  const Frame& frame;
+  const TrackedFrame& tracked;
+  const DynamicReport& dynamic;  ///< empty for a frame that does not enter the window
+  const OdometryUpdate& update;
+};
+
+/// Both `on_` callbacks are invoked on the thread that called the runner, in order of the frames. Any
+/// callback may be empty.
+struct RunControl {
+  std::function<void(const OdometryUpdate&)> on_update;
+  std::function<void(const FrameReport&)> on_frame;
+  std::function<bool()> stop_requested;  ///< polled before each frame, from any thread
+};
+
+/// A frame that could not be read, and the error.
+struct SkippedFrame {
+  std::size_t index = 0;
+  std::string reason;
+};
+
+/// Real-time performance of a run.
+struct RealtimeReport {
+  double deadline_ms = 0.0;          ///< frame interval
+  int dropped = 0;                   ///< frames dropped from a full queue
+  int late_detections = 0;           ///< frames that entered the window without timely detections
+  std::vector<double> latencies_ms;  ///< from exposure to pose, for each frame with a pose
+  [[nodiscard]] int deadline_misses() const;
+};
+
+struct RunSummary {
+  std::size_t frames = 0;             ///< number of processed frames, including skipped and dropped ones
+  std::vector<SkippedFrame> skipped;  ///< frames that could not be read
+  int resets = 0;                     ///< resets after tracking failures
+  ImuHealth imu_health;
+  bool interrupted = false;  ///< stopped by `stop_requested`
+  std::string detector;      ///< description of the detector
+  DetectorCounters detector_counters;
+  std::vector<ChannelWaits> waits;         ///< blocking times of the channels; empty if single-threaded
+  std::optional<RealtimeReport> realtime;  ///< only `run_realtime` and `run_on_device`
+};
+
+/// Single-threaded, frame by frame. Deterministic: the same input and config give bit-identical results.
+/// @throws InputError if the input lacks data that the config requires (e.g. an IMU), or no frame is readable
+[[nodiscard]] RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config,
+                                        const RunControl& control);
+
+/// One thread each for tracking, detection and optimization. The feedback to the tracker has the lag of the
+/// config, so that the result is bit-identical to that of `run_sequential`.
+/// @throws InputError as `run_sequential`
+[[nodiscard]] RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config,
+                                       const RunControl& control);
+
+/// Same threads, with frames delivered at their timestamps. Frames that the tracker cannot accept are
+/// dropped, detections that are not ready are late; both are counted.
+/// @param speed playback speed, > 0; 1 = as recorded
+/// @throws InputError as `run_sequential`
+[[nodiscard]] RunSummary run_realtime(const SensorInput& input, const OdometryConfig& config,
+                                      const RunControl& control, double speed);
+
+/// Settings of a simulated run on a target device.
+struct DeviceClock {
+  DeviceModel device;
+  double speed = 1.0;  ///< playback speed, > 0
+};
+
+/// Discrete-event simulation of `run_realtime` on a target device: frames are delivered at their timestamps
+/// on a virtual clock, stages take the time given by the device model, and frames or detections that are not
+/// ready in time are dropped or late. One run yields both accuracy and latency on the device. With fixed
+/// costs the results are deterministic; with zero costs they equal those of `run_sequential` with feedback
+/// lag 0. Two simplifications: a busy detector skips a frame instead of queueing it, and IMU samples arrive
+/// without delay.
+/// @throws InputError as `run_sequential`
+[[nodiscard]] RunSummary run_on_device(const SensorInput& input, const OdometryConfig& config,
+                                       const RunControl& control, const DeviceClock& clock);
+
+}  // namespace stillpoint

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/io/detections_file.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "datasets/io/text_table.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr std::size_t kNumbers = 5;  ///< score and four edges, after timestamp and class
+
+Detection parse_detection(const TextTable& table, const TextRow& row) {
+  const std::size_t count = row.fields.size();
+  if (count < kNumbers + 2) {
+    table.fail(row, "expected `timestamp class score x_min y_min x_max y_max`, or only a timestamp");
+  }
+  const std::size_t score = count - kNumbers;
+  Detection detection;
+  for (std::size_t i = 1; i < score; ++i) detection.class_name += (i > 1 ? " " : "") + row.fields[i];
+  detection.score = table.number(row, score);
+  detection.box = Box{.x_min = table.number(row, score + 1),
+                      .y_min = table.number(row, score + 2),
+                      .x_max = table.number(row, score + 3),
+                      .y_max = table.number(row, score + 4)};
+  if (detection.score < 0.0 || detection.score > 1.0) table.fail(row, "the score is outside [0, 1]");
+  if (detection.box.x_max <= detection.box.x_min || detection.box.y_max <= detection.box.y_min) {
+    table.fail(row, "the box is empty or inverted; the order is x_min y_min x_max y_max");
+  }
+  return detection;
+}
+
+}  // namespace
+
+std::vector<DetectionSet> read_detections(const std::filesystem::path& file, FaultLog& faults) {
+  const TextTable table(file);
+  std::vector<DetectionSet> sets;
+  table.for_each(faults, [&](const TextRow& row) {
+    const Timestamp t = table.seconds(row, 0);
+    const bool new_stamp = sets.empty() || t != sets.back().t;
+    if (!sets.empty() && new_stamp) table.require_increasing(row, sets.back().t, t);
+    DetectionSet set{.t = t, .state = DetectionState::kPresent, .detections = {}};
+    if (row.fields.size() > 1) set.detections.push_back(parse_detection(table, row));
+    if (new_stamp) {
+      sets.push_back(std::move(set));
+    } else {
+      sets.back().detections.insert(sets.back().detections.end(), set.detections.begin(),
+                                    set.detections.end());
+    }
+  });
+  return sets;
+}
+
+std::string detections_text(std::span<const DetectionSet> sets) {
+  std::string text = "# timestamp class score x_min y_min x_max y_max; only a timestamp: no detections\n";
+  for (const DetectionSet& set : sets) {
+    if (set.state != DetectionState::kPresent) continue;
+    const std::string stamp = fmt::format("{}.{:09}", set.t.ns / 1'000'000'000, set.t.ns % 1'000'000'000);
+    if (set.detections.empty()) text += stamp + "\n";
+    for (const Detection& found : set.detections) {
+      text += fmt::format("{} {} {:.4f} {:.2f} {:.2f} {:.2f} {:.2f}\n", stamp, found.class_name, found.score,
+                          found.box.x_min, found.box.y_min, found.box.x_max, found.box.y_max);
+    }
+  }
+  return text;
+}
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Reads and writes image files as cv::Mat. The only component that depends on OpenImageIO.
+///
+/// All functions are thread-safe. Error messages name the file.
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+
+namespace stillpoint::datasets {
+
+/// Decodes a gray or color image (PNG, JPEG or any other format of OpenImageIO) of 8 bits per channel.
+/// @return CV_8UC1, or CV_8UC3 in the order R, G, B; an alpha channel is dropped
+/// @throws InputError if the file is missing, truncated, undecodable, or has another bit depth
+[[nodiscard]] cv::Mat read_image(const std::filesystem::path& file);
+
+/// Decodes a depth image: one channel of 16 bits.
+/// @return CV_16UC1, the raw values
+/// @throws InputError as above
+[[nodiscard]] cv::Mat read_depth(const std::filesystem::path& file);
+
+/// Luma of an RGB image (ITU-R BT.601 weights, rounded); a gray image is returned unchanged.
+/// @param image CV_8UC3 (R, G, B) or CV_8UC1
+[[nodiscard]] cv::Mat to_gray(const cv::Mat& image);
+
+/// Writes a PNG, compressed for speed rather than size.
+/// @param image CV_8UC1, CV_8UC3 (R, G, B) or CV_16UC1, not empty
+/// @throws InputError if the file cannot be written completely; no partial file remains
+void write_png(const std::filesystem::path& file, const cv::Mat& image);
+
+/// Writes a JPEG (lossy).
+/// @param image CV_8UC1 or CV_8UC3 (R, G, B), not empty
+/// @param quality 1 to 100
+/// @throws InputError as `write_png`
+void write_jpeg(const std::filesystem::path& file, const cv::Mat& image, int quality = 90);
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/io/rig_file.h"
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.h"
+#include "datasets/io/trajectory_file.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+/// One table of the file; every access checks type and range.
+class Section {
+ public:
+  Section(std::string file, const toml::table* table) : file_(std::move(file)), table_(table) {}
+
+  void allow_only(std::initializer_list<std::string_view> keys) const {
+    if (table_ == nullptr) return;
+    for (const auto& [key, node] : *table_) {
+      if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+      std::string expected;
+      for (const std::string_view name : keys) expected += (expected.empty() ? "" : ", ") + std::string(name);
+      throw InputError(file_, key.source().begin.line,
+                       "unknown key \"" + std::string(key.str()) + "\"; expected one of: " + expected);
+    }
+  }
+
+  [[nodiscard]] const toml::node* find(std::string_view key) const {
+    return table_ == nullptr ? nullptr : table_->get(key);
+  }
+
+  [[nodiscard]] double number(std::string_view key, double fallback) const {
+    const toml::node* const node = find(key);
+    return node == nullptr ? fallback : number_of(*node, key);
+  }
+
+  [[nodiscard]] double positive(std::string_view key, double fallback) const {
+    const toml::node* const node = find(key);
+    if (node == nullptr) return fallback;
+    const double value = number_of(*node, key);
+    if (!(value > 0.0)) fail(*node, key, "must be greater than 0");
+    return value;
+  }
+
+  [[nodiscard]] int image_size(std::string_view key, int fallback) const {
+    const toml::node* const node = find(key);
+    if (node == nullptr) return fallback;
+    const std::optional<std::int64_t> value = node->value_exact<std::int64_t>();
+    if (!value || *value < 1 || *value > 65535) fail(*node, key, "must be an integer from 1 to 65535");
+    return static_cast<int>(*value);
+  }
+
+  [[nodiscard]] std::vector<double> numbers(const toml::node& node, std::string_view key) const {
+    const toml::array* const array = node.as_array();
+    if (array == nullptr) fail(node, key, "must be a list of numbers");
+    std::vector<double> values;
+    for (const toml::node& entry : *array) values.push_back(number_of(entry, key));
+    return values;
+  }
+
+  [[noreturn]] void fail(const toml::node& node, std::string_view key, const std::string& problem) const {
+    throw InputError(file_, node.source().begin.line, "\"" + std::string(key) + "\" " + problem);
+  }
+
+ private:
+  [[nodiscard]] double number_of(const toml::node& node, std::string_view key) const {
+    const std::optional<double> value = node.value<double>();
+    if (!node.is_number() || !value || !std::isfinite(*value)) fail(node, key, "must be a finite number");
+    return *value;
+  }
+
+  std::string file_;
+  const toml::table* table_;
+};
+
+toml::table parse(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    throw InputError(file.string(), "no such rig file");
+  }
+  try {
+    return toml::parse_file(file.string());
+  } catch (const toml::parse_error& error) {
+    throw InputError(file.string(), error.source().begin.line, std::string(error.description()));
+  }
+}
+
+Section section(const std::string& file, const toml::table& root, std::string_view name) {
+  const toml::node* const node = root.get(name);
+  if (node != nullptr && !node->is_table()) {
+    throw InputError(file, node->source().begin.line, "\"" + std::string(name) + "\" must be a table");
+  }
+  return Section(file, node == nullptr ? nullptr : node->as_table());
+}
+
+CameraModel model_of(const Section& camera, CameraModel fallback) {
+  const toml::node* const node = camera.find("model");
+  if (node == nullptr) return fallback;
+  const std::optional<std::string> name = node->value_exact<std::string>();
+  for (const auto& [model, spelling] : enum_names(CameraModel{})) {
+    if (name == spelling) return model;
+  }
+  camera.fail(*node, "model", "must be \"radial-tangential\" or \"kannala-brandt\"");
+}
+
+Camera override_camera(const Section& section, Camera camera) {
+  section.allow_only({"width", "height", "fx", "fy", "cx", "cy", "model", "distortion", "rolling_shutter_s"});
+  camera.width = section.image_size("width", camera.width);
+  camera.height = section.image_size("height", camera.height);
+  camera.fx = section.positive("fx", camera.fx);
+  camera.fy = section.positive("fy", camera.fy);
+  camera.cx = section.number("cx", camera.cx);
+  camera.cy = section.number("cy", camera.cy);
+  camera.model = model_of(section, camera.model);
+  const toml::node* const distortion = section.find("distortion");
+  if (distortion == nullptr) return camera;
+  const std::vector<double> values = section.numbers(*distortion, "distortion");
+  if (values.size() > camera.distortion.size())
+    section.fail(*distortion, "distortion", "has more than 5 numbers");
+  camera.distortion.fill(0.0);
+  std::copy(values.begin(), values.end(), camera.distortion.begin());
+  return camera;
+}
+
+Pose extrinsic_of(const Section& imu, const toml::node& node) {
+  const std::vector<double> values = imu.numbers(node, "T_b_c");
+  if (values.size() != 16) imu.fail(node, "T_b_c", "must have 16 numbers (4x4, row-major)");
+  const std::optional<Pose> pose = rigid_pose(std::span<const double, 16>(values));
+  if (!pose) imu.fail(node, "T_b_c", "is not a rigid transform; the last row must be 0 0 0 1");
+  return *pose;
+}
+
+}  // namespace
+
+OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) {
+  const toml::table root = parse(file);
+  Section(file.string(), &root).allow_only({"camera", "depth", "imu"});
+  const Section camera = section(file.string(), root, "camera");
+  const Section depth = section(file.string(), root, "depth");
+  const Section imu = section(file.string(), root, "imu");
+  depth.allow_only({"scale"});
+  imu.allow_only({"T_b_c", "gyro_noise", "accel_noise", "gyro_walk", "accel_walk", "time_offset_s"});
+
+  OverriddenRig result{.rig = rig, .has_extrinsic = imu.find("T_b_c") != nullptr};
+  result.rig.camera = override_camera(camera, rig.camera);
+  const toml::node* const shutter = camera.find("rolling_shutter_s");
+  result.rig.rolling_shutter_s = camera.number("rolling_shutter_s", rig.rolling_shutter_s);
+  if (result.rig.rolling_shutter_s < 0.0 && shutter != nullptr) {
+    camera.fail(*shutter, "rolling_shutter_s", "must not be negative");
+  }
+  result.rig.depth_units_per_m = depth.positive("scale", rig.depth_units_per_m);
+  if (result.has_extrinsic) result.rig.T_b_c = extrinsic_of(imu, *imu.find("T_b_c"));
+  result.rig.imu_noise = ImuNoise{.gyro_noise = imu.positive("gyro_noise", rig.imu_noise.gyro_noise),
+                                  .accel_noise = imu.positive("accel_noise", rig.imu_noise.accel_noise),
+                                  .gyro_walk = imu.positive("gyro_walk", rig.imu_noise.gyro_walk),
+                                  .accel_walk = imu.positive("accel_walk", rig.imu_noise.accel_walk)};
+  result.rig.time_offset_s = imu.number("time_offset_s", rig.time_offset_s);
+  return result;
+}
+
+}  // namespace stillpoint::datasets

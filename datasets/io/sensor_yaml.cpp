@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/io/sensor_yaml.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "datasets/io/trajectory_file.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+/// The text of the file; the first line that OpenCV writes (`%YAML:1.0`) is blanked: it is not valid YAML.
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::error_code ignored;
+  if (!in || std::filesystem::is_directory(file, ignored)) {
+    throw InputError(file.string(), "cannot be opened; the calibration of the sequence is missing");
+  }
+  std::ostringstream content;
+  content << in.rdbuf();
+  std::string text = content.str();
+  if (text.starts_with("%YAML:")) text.erase(0, std::min(text.find('\n'), text.size()));
+  return text;
+}
+
+}  // namespace
+
+SensorYaml::SensorYaml(const std::filesystem::path& file) : file_(file.string()) {
+  const std::string text = read_text(file);
+  try {
+    node_ = YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw InputError(file_, error.mark.line + 1, "is not valid YAML (" + error.msg + ")");
+  }
+  if (!node_.IsMap()) throw InputError(file_, "contains no calibration values; copy the file again");
+}
+
+bool SensorYaml::has(const std::string& key) const { return static_cast<bool>(node_[key]); }
+
+YAML::Node SensorYaml::require(const std::string& key) const {
+  YAML::Node value = std::as_const(node_)[key];
+  if (!value || value.IsNull()) fail(key, "is missing");
+  return value;
+}
+
+SensorYaml SensorYaml::child(const std::string& key) const {
+  YAML::Node value = require(key);
+  if (!value.IsMap()) fail(key, "must be a map");
+  return SensorYaml(file_, prefix_ + key + ".", value);
+}
+
+std::vector<SensorYaml> SensorYaml::list(const std::string& key) const {
+  const YAML::Node value = require(key);
+  if (!value.IsSequence()) fail(key, "must be a list");
+  std::vector<SensorYaml> entries;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!value[i].IsMap()) fail(key, "must be a list of maps");
+    entries.push_back(SensorYaml(file_, prefix_ + key + "[" + std::to_string(i) + "].", value[i]));
+  }
+  return entries;
+}
+
+std::string SensorYaml::text(const std::string& key) const {
+  const YAML::Node value = require(key);
+  if (!value.IsScalar()) fail(key, "must be a single value");
+  return value.Scalar();
+}
+
+double SensorYaml::number(const std::string& key) const {
+  double value = 0.0;
+  if (!YAML::convert<double>::decode(require(key), value) || !std::isfinite(value)) {
+    fail(key, "must be a finite number");
+  }
+  return value;
+}
+
+int SensorYaml::positive_int(const std::string& key) const {
+  const double value = number(key);
+  if (value < 1.0 || value > 65535.0 || value != std::floor(value)) {
+    fail(key, "must be an integer from 1 to 65535");
+  }
+  return static_cast<int>(value);
+}
+
+std::vector<double> SensorYaml::numbers(const std::string& key) const {
+  YAML::Node value = require(key);
+  if (value.IsMap()) value.reset(YAML::Node(value["data"]));
+  if (!value.IsSequence()) fail(key, "must be a list of numbers");
+  std::vector<double> result;
+  for (const YAML::Node& entry : value) {
+    double number = 0.0;
+    if (!YAML::convert<double>::decode(entry, number) || !std::isfinite(number)) {
+      fail(key, "must contain finite numbers only");
+    }
+    result.push_back(number);
+  }
+  return result;
+}
+
+Pose SensorYaml::pose(const std::string& key) const {
+  const std::vector<double> values = numbers(key);
+  if (values.size() != 16) fail(key, "must have 16 numbers, not " + std::to_string(values.size()));
+  const std::optional<Pose> result = rigid_pose(std::span<const double, 16>(values));
+  if (!result) fail(key, "is not a rigid transform");
+  return *result;
+}
+
+Camera SensorYaml::with_distortion(Camera camera) const {
+  const std::string model = text("distortion_model");
+  const bool radial = model == "radial-tangential" || model == "radtan" || model == "plumb_bob";
+  const bool fisheye = model == "Kannala-Brandt" || model == "kannala-brandt" || model == "equidistant";
+  if (!radial && !fisheye) {
+    fail("distortion_model", "is unknown: \"" + model + "\"; expected radial-tangential or kannala-brandt");
+  }
+  camera.model = radial ? CameraModel::kRadialTangential : CameraModel::kKannalaBrandt;
+  const std::vector<double> values = numbers("distortion_coefficients");
+  if (values.size() > camera.distortion.size()) fail("distortion_coefficients", "has more than 5 numbers");
+  std::copy(values.begin(), values.end(), camera.distortion.begin());
+  return camera;
+}
+
+void SensorYaml::fail(const std::string& key, const std::string& problem) const {
+  throw InputError(file_, "\"" + prefix_ + key + "\" " + problem);
+}
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Calibration files in the YAML dialect of OpenCV and EuRoC.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/pose.h"
+
+namespace stillpoint::datasets {
+
+/// A map node of a calibration file; every access checks that the value exists and is valid.
+class SensorYaml {
+ public:
+  /// Accepts a first line `%YAML:1.0` and `!!opencv-matrix` tags.
+  /// @throws InputError if the file is missing or is not a YAML map
+  explicit SensorYaml(const std::filesystem::path& file);
+
+  /// Each of the following throws an InputError that names file and key if the value is missing or invalid.
+  [[nodiscard]] SensorYaml child(const std::string& key) const;
+  [[nodiscard]] std::vector<SensorYaml> list(const std::string& key) const;
+  [[nodiscard]] std::string text(const std::string& key) const;
+  [[nodiscard]] double number(const std::string& key) const;  ///< finite
+  [[nodiscard]] int positive_int(const std::string& key) const;
+  /// A list of finite numbers: the value of `key` itself, or of its entry `data`.
+  [[nodiscard]] std::vector<double> numbers(const std::string& key) const;
+  /// A 4x4 matrix of 16 numbers in row-major order.
+  [[nodiscard]] Pose pose(const std::string& key) const;
+  /// `camera` with model and coefficients from `distortion_model` and `distortion_coefficients`.
+  [[nodiscard]] Camera with_distortion(Camera camera) const;
+
+  [[nodiscard]] bool has(const std::string& key) const;
+  [[noreturn]] void fail(const std::string& key, const std::string& problem) const;
+
+ private:
+  SensorYaml(std::string file, std::string prefix, YAML::Node node)
+      : file_(std::move(file)), prefix_(std::move(prefix)), node_(std::move(node)) {}
+  [[nodiscard]] YAML::Node require(const std::string& key) const;
+
+  std::string file_;
+  std::string prefix_;  ///< dotted path of the parent keys, for messages
+  YAML::Node node_;
+};
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/sequence_validator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/error.h"
+#include "datasets/sequence_content.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr double kGapIntervals = 2.5;       ///< an interval longer than this many median intervals is a gap
+constexpr double kMaxDepthOffset_s = 0.01;  ///< of the median; beyond, color and depth disagree during motion
+constexpr double kMinTruthCoverage = 0.95;  ///< fraction of the images that ground truth should cover
+constexpr double kMaxTruthDistance_s = 0.1;  ///< an image further in time from any true pose is not covered
+constexpr double kMinMeanAccel = 7.0;        ///< [m/s^2] range of the mean |a| of a hand-held or wheeled IMU;
+constexpr double kMaxMeanAccel = 13.0;       ///< a mean near 1 indicates the unit g, near 1000 the unit mg
+constexpr std::size_t kMaxFindingsShown = 5;  ///< per file
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Splits the message of an InputError at its first ": " into location and text.
+Finding parse_finding(const std::string& message) {
+  const std::size_t colon = message.find(": ");
+  if (colon == std::string::npos)
+    return Finding{.severity = Severity::kError, .location = {}, .text = message};
+  return Finding{
+      .severity = Severity::kError, .location = message.substr(0, colon), .text = message.substr(colon + 2)};
+}
+
+void warn(CheckReport& report, const std::string& location, const std::string& text) {
+  report.findings.push_back(Finding{.severity = Severity::kWarning, .location = location, .text = text});
+}
+
+/// Adds the summary of one stream, and a finding if it has gaps.
+void summarize(const std::string& name, const std::vector<Timestamp>& times, Timestamp origin,
+               CheckReport& report) {
+  if (times.empty()) return;
+  StreamSummary summary{.name = name,
+                        .count = times.size(),
+                        .first_s = seconds_between(origin, times.front()),
+                        .last_s = seconds_between(origin, times.back())};
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(seconds_between(times[i - 1], times[i]));
+  if (!intervals.empty()) {
+    const double typical = median(intervals);
+    const auto longest = std::max_element(intervals.begin(), intervals.end());
+    const auto gaps = std::count_if(intervals.begin(), intervals.end(), [typical](double interval) {
+      return interval > kGapIntervals * typical;
+    });
+    summary.rate_hz = 1.0 / typical;
+    summary.longest_gap_s = *longest;
+    if (gaps > 0) {
+      const std::size_t index = static_cast<std::size_t>(longest - intervals.begin());
+      warn(report, name,
+           fmt::format(
+               "{} gap(s) longer than {} median intervals; the longest ({:.3f} s) starts {:.3f} s after "
+               "the first image",
+               gaps, kGapIntervals, *longest, seconds_between(origin, times[index])));
+    }
+  }
+  report.streams.push_back(summary);
+}
+
+template <class Sample>
+std::vector<Timestamp> stamps(const std::vector<Sample>& samples) {
+  std::vector<Timestamp> times;
+  times.reserve(samples.size());
+  for (const Sample& sample : samples) times.push_back(sample.t);
+  return times;
+}
+
+void check_imu(const SequenceInfo& info, CheckReport& report) {
+  if (info.imu.empty()) return;
+  const auto outside = std::count_if(info.frame_times.begin(), info.frame_times.end(), [&](Timestamp t) {
+    return t < info.imu.front().t || t > info.imu.back().t;
+  });
+  if (outside > 0) {
+    warn(report, "imu", fmt::format("does not cover {} of {} images", outside, info.frame_times.size()));
+  }
+  double sum = 0.0;
+  for (const ImuSample& sample : info.imu) sum += sample.accel_b.norm();
+  const double mean = sum / static_cast<double>(info.imu.size());
+  if (mean < kMinMeanAccel || mean > kMaxMeanAccel) {
+    warn(report, "imu",
+         fmt::format("the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2?", mean));
+  }
+}
+
+/// Whether a ground-truth pose lies within `kMaxTruthDistance_s` of time `t`.
+bool is_covered(const std::vector<StampedPose>& poses, Timestamp t) {
+  const auto next = std::lower_bound(poses.begin(), poses.end(), t,
+                                     [](const StampedPose& pose, Timestamp time) { return pose.t < time; });
+  const bool by_next = next != poses.end() && seconds_between(t, next->t) <= kMaxTruthDistance_s;
+  return by_next || (next != poses.begin() && seconds_between(std::prev(next)->t, t) <= kMaxTruthDistance_s);
+}
+
+void check_ground_truth(const SequenceInfo& info, CheckReport& report) {
+  const std::vector<StampedPose>& poses = info.ground_truth.trajectory.poses;
+  if (poses.empty()) {
+    report.notes.push_back("no ground truth");
+    return;
+  }
+  const auto covered = std::count_if(info.frame_times.begin(), info.frame_times.end(),
+                                     [&](Timestamp t) { return is_covered(poses, t); });
+  const double coverage = static_cast<double>(covered) / static_cast<double>(info.frame_times.size());
+  report.notes.push_back(fmt::format("ground truth of \"{}\" covers {:.1f} % of the images",
+                                     info.ground_truth.trajectory.frame, 100.0 * coverage));
+  if (coverage < kMinTruthCoverage) {
+    warn(report, "ground truth", fmt::format("covers {} of {} images", covered, info.frame_times.size()));
+  }
+}
+
+void check_depth_offset(const SequenceContent& content, CheckReport& report) {
+  std::vector<double> offsets;
+  for (const FrameFiles& files : content.frame_files) {
+    if (!files.depth.empty()) offsets.push_back(files.depth_offset_s);
+  }
+  if (offsets.empty()) {
+    report.notes.push_back("no depth");
+    return;
+  }
+  report.depth_offset_s = median(offsets);
+  if (std::abs(report.depth_offset_s) > kMaxDepthOffset_s) {
+    warn(report, "depth",
+         fmt::format("lags its color image by {:.1f} ms (median)", 1e3 * report.depth_offset_s));
+  }
+}
+
+/// Decodes every image.
+void check_images(const SequenceContent& content, const CheckOptions& options, CheckReport& report) {
+  const std::size_t total = content.frame_files.size();
+  for (std::size_t i = 0; i < total; ++i) {
+    try {
+      const Frame frame = decode_frame(content, i);
+      const auto measured = [](std::uint16_t raw) { return raw != 0; };
+      if (!frame.depth.empty() &&
+          std::none_of(frame.depth.begin<std::uint16_t>(), frame.depth.end<std::uint16_t>(), measured)) {
+        warn(report, content.frame_files[i].depth.string(), "has no measured depth");
+      }
+    } catch (const InputError& error) {
+      report.findings.push_back(parse_finding(error.what()));
+    }
+    if (options.progress) options.progress(i + 1, total);
+  }
+}
+
+/// The file of a location, without its line.
+std::string file_of(const std::string& location) { return location.substr(0, location.find_last_of(':')); }
+
+}  // namespace
+
+CheckReport check_sequence(const std::filesystem::path& folder, const CheckOptions& options) {
+  FaultLog faults(FaultLog::Mode::kCollect);
+  const SequenceContent content = read_sequence(folder, options.open, faults);
+  const SequenceInfo& info = content.info;
+  CheckReport report;
+  report.name = info.name;
+  report.format = info.format;
+  report.notes = info.notes;
+  for (const std::string& message : faults.messages()) report.findings.push_back(parse_finding(message));
+
+  const Timestamp origin = info.frame_times.front();
+  summarize("images", info.frame_times, origin, report);
+  summarize("imu", stamps(info.imu), origin, report);
+  summarize("ground truth", stamps(info.ground_truth.trajectory.poses), origin, report);
+  if (!info.detections.empty()) {
+    report.notes.push_back(fmt::format("recorded detections for {} timestamps", info.detections.size()));
+  }
+  check_depth_offset(content, report);
+  check_imu(info, report);
+  check_ground_truth(info, report);
+  check_images(content, options, report);
+  return report;
+}
+
+std::string report_text(const CheckReport& report) {
+  std::string text = fmt::format("{} ({})\n", report.name, report.format);
+  for (const StreamSummary& stream : report.streams) {
+    text += fmt::format("  {:<13}{:>7} at {:>6.1f} Hz, {:>8.3f} to {:>8.3f} s, longest gap {:.3f} s\n",
+                        stream.name, stream.count, stream.rate_hz, stream.first_s, stream.last_s,
+                        stream.longest_gap_s);
+  }
+  if (report.depth_offset_s != 0.0) {
+    text += fmt::format("  depth lags color by {:.1f} ms (median)\n", 1e3 * report.depth_offset_s);
+  }
+  for (const std::string& note : report.notes) text += "  note: " + note + "\n";
+  std::map<std::string, std::size_t> shown;
+  for (const Finding& finding : report.findings) {
+    if (++shown[file_of(finding.location)] > kMaxFindingsShown) continue;
+    text += fmt::format("  {}: {}: {}\n", finding.severity == Severity::kError ? "error" : "warning",
+                        finding.location, finding.text);
+  }
+  for (const auto& [file, count] : shown) {
+    if (count > kMaxFindingsShown)
+      text += fmt::format("  ... {} more in {}\n", count - kMaxFindingsShown, file);
+  }
+  return text +
+         (report.findings.empty() ? "no findings\n" : fmt::format("{} finding(s)\n", report.findings.size()));
+}
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Motion along a closed route with random stops and camera avoidance.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "datasets/synthetic/motion/closed_route.h"
+
+namespace stillpoint::synth {
+
+struct WalkStyle {
+  double speed = 1.0;             ///< [m/s]
+  double stops_per_minute = 4.0;  ///< on average
+  double stop_s = 2.0;            ///< mean length of a stop
+  double start_m = 0.0;           ///< initial position along the route
+  double camera_clearance_m =
+      1.0;  ///< stops if the route ahead comes closer to the camera than this, retreats if closer still
+};
+
+/// Simulated once on construction, so that `at` is a pure function of time.
+class Walk {
+ public:
+  /// @param camera_at camera position on the floor at a time
+  Walk(const ClosedRoute& route, const WalkStyle& style,
+       const std::function<Eigen::Vector2d(double t_s)>& camera_at, std::uint64_t random_key, double from_s,
+       double to_s);
+
+  struct State {
+    Eigen::Vector2d position;
+    double heading;     ///< [rad]
+    double distance_m;  ///< distance walked; drives the gait phase
+    double pace;        ///< current speed / nominal speed, in [0, 1]; scales the step length
+  };
+  [[nodiscard]] State at(double t_s) const;
+
+ private:
+  struct Step {
+    double distance_m, speed;
+  };
+  ClosedRoute route_;
+  double nominal_speed_;
+  double from_s_;
+  std::vector<Step> steps_;
+};
+
+}  // namespace stillpoint::synth

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/synthetic/materials/surfaces.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+namespace stillpoint::synth {
+namespace {
+
+constexpr int kTiledSide = 1024;  // sides of tileable textures [px]
+constexpr int kObjectSide = 512;  // sides of most oriented textures [px]
+
+Color darker(const Color& color, double factor) {
+  return {color[0] * factor, color[1] * factor, color[2] * factor};
+}
+
+/// Random specks (knots, stains, fibers) that add corners to surfaces with little texture.
+void add_specks(cv::Mat& canvas, int count, int largest_px, double contrast, RandomSequence& random) {
+  for (int i = 0; i < count; ++i) {
+    const cv::Point at(random.index(canvas.cols), random.index(canvas.rows));
+    const double change = random.uniform(-contrast, contrast);
+    const cv::Vec3b under = canvas.at<cv::Vec3b>(at);
+    const Color color(under[0] + change, under[1] + change, under[2] + change);
+    const cv::Size axes(1 + random.index(largest_px), 1 + random.index(std::max(1, largest_px / 2)));
+    cv::ellipse(canvas, at, axes, random.uniform(0.0, 180.0), 0.0, 360.0, color, cv::FILLED, cv::LINE_AA);
+  }
+}
+
+void draw_sheet(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
+  fill_rect(canvas, area, random.chance(0.7) ? Color(235, 235, 228) : random_color(random, 235.0, 0.35));
+  const int margin = std::max(3, area.width / 12);
+  const cv::Rect inner(area.x + margin, area.y + margin, area.width - 2 * margin, area.height - 2 * margin);
+  const int title_px = std::max(10, inner.height / 9);
+  const Color ink = random.chance(0.6) ? Color(30, 30, 35) : random_color(random, 130.0, 0.8);
+  draw_words(canvas, {inner.x, inner.y, inner.width, title_px}, ink, random);
+  const int illustration_px = random.chance(0.5) ? inner.height / 3 : 0;
+  if (illustration_px > 0)
+    draw_illustration(canvas, {inner.x, inner.y + title_px + 4, inner.width, illustration_px - 4}, random);
+  const int top = inner.y + title_px + illustration_px + 4;
+  draw_print(canvas, {inner.x, top, inner.width, inner.y + inner.height - top}, 9, Color(50, 50, 55), random);
+}
+
+void draw_spine(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
+  const Color cover = random_color(random, random.uniform(60.0, 220.0), random.uniform(0.1, 0.8));
+  fill_rect(canvas, area, cover);
+  const bool dark = cover[0] + cover[1] + cover[2] < 330.0;
+  const Color ink = dark ? Color(235, 230, 215) : Color(25, 25, 30);
+  cv::Mat lying = blank_canvas(area.height, area.width, cover);  // drawn horizontally, then rotated
+  draw_words(lying, {area.height / 8, area.width / 5, area.height * 5 / 8, area.width * 3 / 5}, ink, random);
+  cv::Mat upright;
+  cv::rotate(lying, upright, cv::ROTATE_90_CLOCKWISE);
+  upright.copyTo(canvas(area));
+  for (int band = 0; band < 2; ++band) {
+    const int y = area.y + static_cast<int>(random.uniform(0.02, 0.98) * (area.height - 14));
+    fill_rect(canvas, {area.x, y, area.width, 4 + random.index(10)}, random_color(random, 210.0, 0.6));
+  }
+  cv::line(canvas, area.tl(), {area.x, area.y + area.height}, darker(cover, 0.4), 2);
+}
+
+void draw_package(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
+  fill_rect(canvas, area, random_color(random, random.uniform(120.0, 235.0), random.uniform(0.3, 0.9)));
+  const int pad = area.width / 10;
+  fill_rect(canvas, {area.x, area.y + pad, area.width, area.height / 4}, random_color(random, 230.0, 0.5));
+  draw_words(canvas, {area.x + pad, area.y + pad + 2, area.width - pad, area.height / 4 - 4},
+             random_color(random, 90.0, 0.9), random);
+  draw_illustration(canvas,
+                    {area.x + pad, area.y + area.height * 4 / 10, area.width - 2 * pad, area.height * 3 / 10},
+                    random);
+  draw_print(canvas, {area.x + pad, area.y + area.height * 3 / 4, area.width / 2, area.height / 5}, 8,
+             Color(25, 25, 25), random);
+  draw_barcode(canvas,
+               {area.x + area.width * 2 / 3, area.y + area.height * 3 / 4, area.width / 4, area.height / 6},
+               random);
+  cv::rectangle(canvas, area, Color(30, 30, 30), 1);
+}
+
+void draw_window_frame(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
+  const bool dark = random.chance(0.4);
+  fill_rect(canvas, area, dark ? Color(30, 32, 40) : Color(225, 225, 225));
+  fill_rect(canvas, {area.x, area.y, area.width, 14}, random_color(random, 150.0, 0.6));
+  const Color ink = dark ? Color(190, 210, 190) : Color(40, 40, 50);
+  const cv::Rect text(area.x + 6, area.y + 20, area.width - 12, area.height - 26);
+  if (random.chance(0.3)) {
+    draw_illustration(canvas, text, random);
+  } else {
+    draw_print(canvas, text, 10, ink, random);
+  }
+}
+
+}  // namespace
+
+cv::Mat paint_plain(const Color& base, double roughness, RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(256, 256, base);
+  add_rough_noise(canvas, roughness, 64, random);
+  add_grain(canvas, 0.5 * roughness, random);
+  return canvas;
+}
+
+cv::Mat paint_carpet(const Color& base, RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kTiledSide, kTiledSide, base);
+  add_rough_noise(canvas, 22.0, 128, random);
+  add_grain(canvas, 12.0, random);
+  add_specks(canvas, 2500, 5, 45.0, random);
+  for (int line = 0; line < kTiledSide; line += kTiledSide / 4) {  // seams of the carpet tiles
+    fill_rect(canvas, {line, 0, 3, kTiledSide}, darker(base, 0.75));
+    fill_rect(canvas, {0, line, kTiledSide, 3}, darker(base, 0.75));
+  }
+  return canvas;
+}
+
+cv::Mat paint_wood(const Color& base, RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kTiledSide, kTiledSide, base);
+  add_noise(canvas, 14.0, 256, 64, random);
+  add_noise(canvas, 18.0, 256, 16, random);
+  add_noise(canvas, 16.0, 128, 4, random);
+  add_noise(canvas, 10.0, 64, 2, random);
+  add_specks(canvas, 120, 9, 50.0, random);
+  return canvas;
+}
+
+cv::Mat paint_fabric(const Color& base, RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, base);
+  add_rough_noise(canvas, 14.0, 64, random);
+  add_noise(canvas, 12.0, 4, 16, random);
+  add_noise(canvas, 12.0, 16, 4, random);
+  return canvas;
+}
+
+cv::Mat paint_plaster(const Color& base, RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kTiledSide, kTiledSide, base);
+  add_rough_noise(canvas, 7.0, 256, random);
+  add_noise(canvas, 5.0, 8, 8, random);
+  add_grain(canvas, 2.5, random);
+  add_specks(canvas, 420, 8, 38.0, random);
+  return canvas;
+}
+
+cv::Mat paint_tiles(const Color& base, int count, RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kTiledSide, kTiledSide, base);
+  const int side = kTiledSide / count;
+  for (int row = 0; row < count; ++row) {
+    for (int column = 0; column < count; ++column) {
+      const Color tile = darker(base, random.uniform(0.86, 1.08));
+      fill_rect(canvas, {column * side + 3, row * side + 3, side - 6, side - 6}, tile);
+    }
+  }
+  add_rough_noise(canvas, 10.0, 64, random);
+  add_grain(canvas, 5.0, random);
+  add_specks(canvas, 1600, 5, 40.0, random);
+  return canvas;
+}
+
+cv::Mat paint_ceiling(RandomSequence& random) {
+  const Color base(205, 205, 200);
+  cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, base);
+  add_rough_noise(canvas, 6.0, 128, random);
+  add_specks(canvas, 900, 3, 60.0, random);
+  fill_rect(canvas, {0, 0, 8, kObjectSide}, Color(165, 165, 165));
+  fill_rect(canvas, {0, 0, kObjectSide, 8}, Color(165, 165, 165));
+  return canvas;
+}
+
+cv::Mat paint_poster(RandomSequence& random) {
+  cv::Mat canvas =
+      blank_canvas(kObjectSide, kObjectSide, random_color(random, random.uniform(90.0, 240.0), 0.5));
+  const Color ink = random.chance(0.5) ? Color(245, 245, 240) : Color(20, 20, 30);
+  draw_words(canvas, {24, 18, 464, 64}, ink, random);
+  draw_words(canvas, {24, 84, 300, 26}, ink, random);
+  draw_illustration(canvas, {24, 124, 288, 210}, random);
+  fill_rect(canvas, {326, 124, 162, 210}, Color(235, 235, 230));
+  draw_print(canvas, {332, 130, 150, 200}, 12, Color(30, 30, 40), random);
+  fill_rect(canvas, {24, 346, 464, 148}, Color(238, 238, 232));
+  draw_print(canvas, {32, 352, 210, 138}, 11, Color(30, 30, 40), random);
+  draw_illustration(canvas, {262, 356, 216, 128}, random);
+  return canvas;
+}
+
+cv::Mat paint_noticeboard(RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kTiledSide, kObjectSide, Color(150, 110, 72));
+  add_grain(canvas, 14.0, random);
+  for (int i = 0; i < 14; ++i) {
+    const int width = 110 + random.index(60), height = 140 + random.index(60);
+    const cv::Point at(20 + random.index(kTiledSide - width - 40),
+                       20 + random.index(kObjectSide - height - 40));
+    draw_sheet(canvas, {at.x, at.y, width, height}, random);
+    cv::circle(canvas, {at.x + width / 2, at.y + 6}, 6, random_color(random, 220.0, 0.9), cv::FILLED,
+               cv::LINE_AA);
+  }
+  return canvas;
+}
+
+cv::Mat paint_paper(RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(256, 256, Color(235, 235, 228));
+  draw_sheet(canvas, {0, 0, 256, 256}, random);
+  return canvas;
+}
+
+cv::Mat paint_screen(RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, random_color(random, 110.0, 0.6));
+  add_noise(canvas, 20.0, 128, 128, random);
+  for (int i = 0; i < 3; ++i) {
+    const int width = 200 + random.index(160), height = 180 + random.index(180);
+    draw_window_frame(canvas,
+                      {10 + random.index(kObjectSide - width - 20),
+                       10 + random.index(kObjectSide - height - 40), width, height},
+                      random);
+  }
+  fill_rect(canvas, {0, kObjectSide - 24, kObjectSide, 24}, Color(45, 50, 60));
+  for (int x = 8; x < 220; x += 30)
+    fill_rect(canvas, {x, kObjectSide - 20, 16, 16}, random_color(random, 230.0, 0.7));
+  return canvas;
+}
+
+cv::Mat paint_keyboard(RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kObjectSide, 256, Color(52, 52, 56));
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 18; ++column) {
+      const cv::Rect key(12 + column * 27, 12 + row * 39, 23, 34);
+      fill_rect(canvas, key, Color(32, 32, 34));
+      cv::circle(canvas, key.tl() + cv::Point(8 + random.index(4), 11), 3, Color(200, 200, 200), 1,
+                 cv::LINE_AA);
+    }
+  }
+  return canvas;
+}
+
+cv::Mat paint_door(const Color& base, RandomSequence& random) {
+  cv::Mat canvas = paint_wood(base, random);
+  const int side = canvas.cols;
+  cv::rectangle(canvas, {0, 0, side, side}, darker(base, 0.5), 40);
+  fill_rect(canvas, {side * 5 / 8, side / 6, side / 5, side / 3}, Color(95, 110, 120));
+  fill_rect(canvas, {side / 8, side / 2, side / 8, side / 40}, Color(185, 185, 190));
+  fill_rect(canvas, {side / 8, side / 4, side / 4, side / 16}, Color(230, 230, 225));
+  draw_words(canvas, {side / 8 + 8, side / 4 + 8, side / 4 - 16, side / 16 - 16}, Color(30, 30, 30), random);
+  return canvas;
+}
+
+cv::Mat paint_window(RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, Color(215, 225, 240));
+  draw_illustration(canvas, {0, kObjectSide / 3, kObjectSide, kObjectSide * 2 / 3}, random);
+  add_noise(canvas, 18.0, 32, 32, random);
+  for (int line = 0; line <= kObjectSide; line += kObjectSide / 2) {
+    fill_rect(canvas, {std::min(line, kObjectSide - 16) - (line > 0 ? 8 : 0), 0, 16, kObjectSide},
+              Color(240, 240, 240));
+  }
+  fill_rect(canvas, {0, 0, kObjectSide, 16}, Color(240, 240, 240));
+  fill_rect(canvas, {0, kObjectSide - 16, kObjectSide, 16}, Color(240, 240, 240));
+  return canvas;
+}
+
+cv::Mat paint_carton(RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, Color(168, 128, 86));
+  add_rough_noise(canvas, 10.0, 64, random);
+  fill_rect(canvas, {kObjectSide / 2 - 24, 0, 48, kObjectSide}, Color(190, 160, 115));
+  fill_rect(canvas, {40, 60, 170, 120}, Color(238, 238, 232));
+  draw_print(canvas, {48, 66, 150, 70}, 14, Color(30, 30, 30), random);
+  draw_barcode(canvas, {60, 140, 120, 34}, random);
+  draw_words(canvas, {300, 330, 200, 60}, Color(70, 45, 30), random);
+  return canvas;
+}
+
+cv::Mat paint_book_spines(RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kTiledSide, kObjectSide, Color(0, 0, 0));
+  constexpr int kWidth = kTiledSide / kSpinesPerTexture;
+  for (int i = 0; i < kSpinesPerTexture; ++i)
+    draw_spine(canvas, {i * kWidth, 0, kWidth, kObjectSide}, random);
+  return canvas;
+}
+
+cv::Mat paint_packages(RandomSequence& random) {
+  cv::Mat canvas = blank_canvas(kTiledSide, kTiledSide, Color(0, 0, 0));
+  constexpr int kSide = kTiledSide / kPackagesPerSide;
+  for (int i = 0; i < kPackagesPerSide * kPackagesPerSide; ++i) {
+    draw_package(canvas, {i % kPackagesPerSide * kSide, i / kPackagesPerSide * kSide, kSide, kSide}, random);
+  }
+  return canvas;
+}
+
+}  // namespace stillpoint::synth

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Ideal image of a pinhole camera: radiance, depth and labels per pixel, before the sensor models.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/pose.h"
+#include "datasets/synthetic/render/ray_tracer.h"
+#include "datasets/synthetic/render/world.h"
+
+namespace stillpoint::synth {
+
+/// Light samples per pixel, spread over exposure time and pixel area. The first lies in the pixel center at
+/// mid-exposure and also yields depth and label. Four samples render motion blur without visible steps up to
+/// about 8 px.
+inline constexpr int kLightSamples = 4;
+
+/// Time of light sample `index` relative to mid-exposure, in units of the exposure time: -0.5 .. 0.5.
+[[nodiscard]] double sample_time_offset(int index);
+
+/// Label and material of one triangle of the moving mesh.
+struct MoverTriangle {
+  int object = 1;                     ///< instance number, from 1
+  int texture = 0;                    ///< in the world's textures
+  std::array<Eigen::Vector2f, 3> uv;  ///< texture coordinates of the corners
+  float texels_per_m = 500.0F;
+};
+
+/// All moving geometry of one frame.
+struct MoverFrame {
+  MovingMesh mesh;
+  std::vector<Eigen::Vector3f> normals;   ///< per vertex
+  std::vector<MoverTriangle> appearance;  ///< per triangle
+};
+
+/// Camera poses T_w_c during one frame. One entry: global shutter; otherwise one entry per image row.
+struct Exposure {
+  std::vector<std::array<Pose, kLightSamples>> poses;  ///< per row and light sample
+  std::vector<float> mid_times;            ///< per row: mid-exposure as a fraction of the motion interval
+  float exposure_fraction_of_span = 0.0F;  ///< exposure time / span_s
+  float span_s = 1.0F;                     ///< length of the motion interval
+};
+
+/// Output of an ideal camera, in row-major order.
+struct RenderedFrame {
+  int width = 0;
+  int height = 0;
+  std::vector<Float4> radiance;       ///< linear; 1 = white paper in good light
+  std::vector<float> depth_m;         ///< z depth at the pixel center; 0 = no surface
+  std::vector<std::uint16_t> object;  ///< instance number; 0 = static world
+  std::vector<float> speed_m_per_s;   ///< world-frame speed of the visible surface; 0 = static
+};
+
+/// Renders a world through one camera. `render` is thread-safe.
+class FrameRenderer {
+ public:
+  /// Stores references to `world` and `tracer`.
+  FrameRenderer(const World& world, const RayTracer& tracer, const Camera& camera);
+
+  /// @param movers may be null
+  [[nodiscard]] RenderedFrame render(const Exposure& exposure, const MoverFrame* movers) const;
+
+ private:
+  struct Block;
+  struct Job;
+  void record_geometry(const Job& job, const Block& block, const RayPacket& packet,
+                       RenderedFrame& frame) const;
+  void render_block(const Job& job, int block_row, int block_column, RenderedFrame& frame) const;
+  [[nodiscard]] RayPacket aim(const Job& job, const Block& block, int sample) const;
+  [[nodiscard]] Float4 shade(const Job& job, const RayPacket& packet, int lane, int sample) const;
+
+  const World& world_;
+  const RayTracer& tracer_;
+  Camera camera_;
+  /// Normalized image coordinates (x, y) of every pixel, one table per light sample.
+  std::array<std::vector<Eigen::Vector2f>, kLightSamples> directions_;
+};
+
+}  // namespace stillpoint::synth

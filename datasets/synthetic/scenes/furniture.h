@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Rooms and furniture of the synthetic scenes.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "datasets/synthetic/counter_random.h"
+#include "datasets/synthetic/render/world.h"
+
+namespace stillpoint::synth {
+
+/// Texture numbers shared by all scenes.
+struct Palette {
+  int carpet = 0, tiles = 0, plaster = 0, ceiling = 0, lamp = 0;
+  int oak = 0, walnut = 0, metal = 0, dark_plastic = 0, light_plastic = 0, paint = 0, carton = 0, door = 0,
+      window = 0;
+  std::vector<int> fabrics, posters, noticeboards, papers, screens, keyboards, spines, packages, plain_colors;
+};
+
+[[nodiscard]] Palette make_palette(Builder& builder, std::uint64_t seed);
+
+/// One of `textures`, at random.
+[[nodiscard]] int pick_random(const std::vector<int>& textures, RandomSequence& random);
+
+/// A wall seen from inside the room.
+struct Wall {
+  Eigen::Vector3d lower_left;  ///< corner as seen from inside the room
+  Eigen::Vector3d right;       ///< unit vector towards the right end
+  double length = 0.0;         ///< [m]
+};
+
+/// A rectangular room.
+struct Room {
+  Eigen::Vector2d low, high;  ///< [m]
+  double height = 3.0;        ///< [m]
+
+  /// In the order +y, +x, -y, -x.
+  [[nodiscard]] std::array<Wall, 4> walls() const;
+};
+
+/// Floor, walls, ceiling and a grid of lamps.
+struct RoomStyle {
+  int floor, wall, ceiling;
+  double floor_repeat_m = 2.0;  ///< size of one repeat of the floor texture
+  double lamp_spacing = 2.6;    ///< distance between lamps [m]
+  double lamp_power = 1.9;
+};
+void add_room(Builder& builder, const Room& room, const RoomStyle& style, const Palette& palette);
+/// Parts of a room, for non-rectangular floor plans.
+void add_floor_and_ceiling(Builder& builder, const Room& room, const RoomStyle& style,
+                           const Palette& palette);
+void add_wall(Builder& builder, const Wall& wall, double height, const RoomStyle& style,
+              const Palette& palette);
+
+/// Hangs a textured rectangle on a wall. @param at lower left corner: (distance along the wall, height) [m]
+void hang(Builder& builder, const Wall& wall, const Eigen::Vector2d& at, const Eigen::Vector2d& size,
+          int texture);
+
+/// Wall decoration: gaps are proportional to 1 / density; the row is `lift` [m] above eye level.
+struct Decoration {
+  double density = 1.0;  ///< > 0
+  double lift = 0.0;
+};
+
+/// Hangs a row of posters, noticeboards and sheets of paper.
+void decorate(Builder& builder, const Wall& wall, const Decoration& decoration, const Palette& palette,
+              RandomSequence& random);
+
+/// Pose of a piece of furniture on the floor; the front points to -y before the rotation by `yaw` [rad].
+struct Placement {
+  Eigen::Vector3d position;
+  double yaw = 0.0;
+};
+void add_desk(Builder& builder, const Placement& placement, const Palette& palette, RandomSequence& random);
+void add_chair(Builder& builder, const Placement& placement, const Palette& palette, RandomSequence& random);
+void add_bookshelf(Builder& builder, const Placement& placement, double width, const Palette& palette,
+                   RandomSequence& random);
+/// A shelf with packages on both sides. @param length along x [m]
+void add_market_shelf(Builder& builder, const Placement& placement, double length, const Palette& palette,
+                      RandomSequence& random);
+void add_carton_pile(Builder& builder, const Placement& placement, const Palette& palette,
+                     RandomSequence& random);
+void add_bin(Builder& builder, const Placement& placement, const Palette& palette);
+
+}  // namespace stillpoint::synth

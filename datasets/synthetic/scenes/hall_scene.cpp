@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "datasets/synthetic/render/lightmap.h"
+#include "datasets/synthetic/scenes/scenes.h"
+
+namespace stillpoint::synth {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+constexpr double kPi = std::numbers::pi;
+constexpr double kWallDistance_m = 2.0;
+constexpr double kFloorDistance_m = 0.9;
+constexpr double kCeilingDistance_m = 1.3;
+constexpr double kFurnitureHeight_m = 1.25;  // a desk with a monitor
+constexpr double kClearance_m = 0.5;
+
+Room room_around(std::span<const Vector3d> path) {
+  Vector3d low = path.front(), high = path.front();
+  for (const Vector3d& point : path) low = low.cwiseMin(point), high = high.cwiseMax(point);
+  const Vector2d margin(kWallDistance_m, kWallDistance_m);
+  return {low.head<2>() - margin, high.head<2>() + margin, high.z() + kCeilingDistance_m};
+}
+
+/// Whether an object of the given radius and height on the floor is at least kClearance_m from the path.
+bool is_free(std::span<const Vector3d> path, const Vector2d& position, double radius, double height) {
+  return std::all_of(path.begin(), path.end(), [&](const Vector3d& point) {
+    return (point.head<2>() - position).norm() > radius + kClearance_m || point.z() > height + kClearance_m;
+  });
+}
+
+void furnish_walls(Builder& builder, const Room& room, const Palette& palette, RandomSequence& random) {
+  for (const Wall& wall : room.walls()) {
+    for (double lift = -0.9; lift + 2.2 < room.height; lift += 1.05)
+      decorate(builder, wall, {1.0, lift}, palette, random);
+    const Vector3d inward = wall.right.cross(Vector3d::UnitZ());
+    const double yaw = std::atan2(wall.right.y(), wall.right.x());
+    for (double along = 0.5; along + 1.6 < wall.length; along += random.uniform(2.2, 3.2)) {
+      const Vector3d foot = wall.lower_left + along * wall.right + 0.33 * inward;
+      if (random.chance(0.6)) {
+        add_bookshelf(builder, {foot, yaw}, 1.3, palette, random);
+      } else {
+        add_carton_pile(builder, {foot + 0.2 * inward, yaw}, palette, random);
+      }
+    }
+  }
+}
+
+void furnish_floor(Builder& builder, const Room& room, std::span<const Vector3d> path, const Palette& palette,
+                   RandomSequence& random) {
+  constexpr double kSpacing_m = 2.1;
+  for (double x = room.low.x() + 1.6; x < room.high.x() - 1.4; x += kSpacing_m) {
+    for (double y = room.low.y() + 1.6; y < room.high.y() - 1.4; y += kSpacing_m) {
+      const double yaw = 0.5 * kPi * random.index(4);
+      const Vector3d position(x, y, 0.0);
+      const Vector3d center = position + Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Vector3d(0.0, -0.4, 0.0);
+      if (random.chance(0.7) && is_free(path, center.head<2>(), 0.9, kFurnitureHeight_m)) {
+        add_desk(builder, {position, yaw}, palette, random);
+      } else if (is_free(path, position.head<2>(), 0.4, 1.0)) {
+        add_chair(builder, {position, random.uniform(0.0, 2.0 * kPi)}, palette, random);
+      }
+    }
+  }
+}
+
+/// Ducts below the ceiling, which provide corners when the camera looks up.
+void add_ducts(Builder& builder, const Room& room, const Palette& palette) {
+  builder.set_frame(Vector3d::Zero(), 0.0);
+  for (double y = room.low.y() + 0.7; y < room.high.y() - 0.5; y += 1.9) {
+    builder.add_box({room.low.x() + 0.02, y, room.height - 0.25},
+                    {room.high.x() - 0.02, y + 0.22, room.height - 0.05}, palette.paint, 1.0);
+    for (double x = room.low.x() + 0.6; x < room.high.x() - 0.6; x += 1.3) {
+      builder.add_textured_quad({x, y - 0.004, room.height - 0.08}, {0.2, 0.0, 0.0}, {0.0, 0.0, -0.14},
+                                palette.papers[static_cast<std::size_t>(x + 100.0) % palette.papers.size()]);
+    }
+  }
+}
+
+}  // namespace
+
+Vector3d hall_shift(std::span<const Vector3d> path) {
+  const auto lowest = std::min_element(path.begin(), path.end(),
+                                       [](const Vector3d& a, const Vector3d& b) { return a.z() < b.z(); });
+  return {0.0, 0.0, kFloorDistance_m - lowest->z()};
+}
+
+Scene build_hall(std::uint64_t seed, std::span<const Vector3d> path) {
+  Scene scene;
+  scene.room = room_around(path);
+  scene.gain = 1.5;
+  Builder builder(scene.world);
+  const Palette& palette = scene.palette = make_palette(builder, seed);
+  RandomSequence random(random_key(seed, RandomStream::kScene));
+  add_room(builder, scene.room, {palette.carpet, palette.plaster, palette.ceiling}, palette);
+  furnish_walls(builder, scene.room, palette, random);
+  furnish_floor(builder, scene.room, path, palette, random);
+  add_ducts(builder, scene.room, palette);
+  bake_light(scene.world, RayTracer(scene.world), seed);
+  return scene;
+}
+
+}  // namespace stillpoint::synth

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <numbers>
+
+#include "datasets/synthetic/render/lightmap.h"
+#include "datasets/synthetic/scenes/scenes.h"
+
+namespace stillpoint::synth {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kPi = std::numbers::pi;
+constexpr double kShelfLength_m = 9.0;
+constexpr double kAisle_m = 3.2;  // distance between shelf centers
+
+void add_shelves(Builder& builder, const Palette& palette, RandomSequence& random) {
+  for (int row = -2; row <= 2; ++row) {
+    for (const double x : {-7.0, 7.0}) {
+      add_market_shelf(builder, {{x, row * kAisle_m, 0.0}, 0.0}, kShelfLength_m, palette, random);
+    }
+  }
+}
+
+/// Signs above the aisles, and stacks of cartons.
+void add_signs_and_stacks(Builder& builder, const Palette& palette, RandomSequence& random) {
+  for (int row = -2; row <= 1; ++row) {
+    for (const double x : {-10.5, -3.5, 3.5, 10.5}) {
+      builder.set_frame({x, (row + 0.5) * kAisle_m, 2.6}, 0.5 * kPi);
+      const int sign = pick_random(palette.posters, random);
+      builder.add_textured_quad({-0.5, -0.01, 0.5}, {1.0, 0.0, 0.0}, {0.0, 0.0, -0.5}, sign);
+      builder.add_textured_quad({0.5, 0.01, 0.5}, {-1.0, 0.0, 0.0}, {0.0, 0.0, -0.5}, sign);
+    }
+  }
+  for (const double x : {-13.6, 13.6}) {
+    for (double y = -8.5; y < 9.0; y += 2.4) {
+      add_carton_pile(builder, {{x + random.uniform(-0.2, 0.2), y, 0.0}, random.uniform(-0.4, 0.4)}, palette,
+                      random);
+    }
+  }
+  for (const double y : {-4.0, 0.8, 4.3}) {
+    add_carton_pile(builder, {{random.uniform(-0.4, 0.4), y, 0.0}, random.uniform(-0.4, 0.4)}, palette,
+                    random);
+  }
+}
+
+/// Closed routes around each shelf, some of them shared with the robot.
+/// @param shift lateral offset from the center of the aisle [m]
+std::vector<std::vector<Eigen::Vector2d>> market_routes(double lane, double shift) {
+  std::vector<std::vector<Eigen::Vector2d>> routes;
+  for (const double row : {0.0, 2.0, -2.0, 4.0}) {
+    const double low = (row - 1.0) * lane + shift, high = (row + 1.0) * lane - shift;
+    routes.push_back({{-12.4, low}, {-1.6, low}, {-1.6, high}, {-12.4, high}});
+    routes.push_back({{12.4, high}, {1.6, high}, {1.6, low}, {12.4, low}});
+  }
+  routes.push_back({{-0.9, -8.0}, {0.9, -8.0}, {0.9, 8.0}, {-0.9, 8.0}});
+  return routes;
+}
+
+}  // namespace
+
+Scene build_market(std::uint64_t seed) {
+  Scene scene;
+  scene.room = Room{{-15.0, -10.0}, {15.0, 10.0}, 4.2};
+  scene.gain = 0.9;
+  const double lane = 0.5 * kAisle_m;
+  scene.route = RobotRoute{{{-12.3, -lane},
+                            {1.9, -lane},
+                            {1.9, lane},
+                            {12.3, lane},
+                            {12.3, 3.0 * lane},
+                            {-1.9, 3.0 * lane},
+                            {-1.9, lane},
+                            {-12.3, lane}},
+                           1.2,
+                           0.75,
+                           0.6,
+                           1.1};
+  scene.walking_routes = market_routes(lane, 0.6);
+  scene.cart_routes = market_routes(lane, -0.25);
+  Builder builder(scene.world);
+  const Palette& palette = scene.palette = make_palette(builder, seed);
+  RandomSequence random(random_key(seed, RandomStream::kScene));
+  RoomStyle style{palette.tiles, palette.paint, palette.ceiling, 1.6, 3.2, 6.0};
+  add_room(builder, scene.room, style, palette);
+  for (const Wall& wall : scene.room.walls()) {
+    decorate(builder, wall, {0.7, 0.2}, palette, random);
+    decorate(builder, wall, {0.7, 1.4}, palette, random);
+  }
+  add_shelves(builder, palette, random);
+  add_signs_and_stacks(builder, palette, random);
+  bake_light(scene.world, RayTracer(scene.world), seed);
+  return scene;
+}
+
+}  // namespace stillpoint::synth

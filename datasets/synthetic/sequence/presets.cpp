@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/synthetic/sequence/presets.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+
+namespace stillpoint::synth {
+namespace {
+
+const std::vector<std::string> kBasePresets{"walking_xyz",        "walking_static", "walking_rpy",
+                                            "walking_halfsphere", "market",         "corridor"};
+const std::string kEmptySuffix = "_empty";
+
+void require(bool condition, const std::string& field, const std::string& range) {
+  if (!condition) throw InputError("synth: " + field, "is out of range; use " + range);
+}
+
+void use_robot_camera(SynthRequest& request) {  // D435i as in the OpenLORIS packages
+  request.width = 848;
+  request.height = 480;
+  request.focal_px = 611.0;
+  request.seconds = 30.0;
+}
+
+}  // namespace
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names = kBasePresets;
+  for (const std::string& preset : kBasePresets) names.push_back(preset + kEmptySuffix);
+  names.push_back("flight");
+  return names;
+}
+
+SynthRequest preset_request(const std::string& name) {
+  const std::vector<std::string> names = preset_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    std::string list;
+    for (const std::string& valid : names) list += (list.empty() ? "" : ", ") + valid;
+    throw InputError("preset \"" + name + "\"", "is unknown; expected one of: " + list);
+  }
+  SynthRequest request;
+  request.preset = name;
+  if (name.starts_with("market") || name.starts_with("corridor")) use_robot_camera(request);
+  if (name == "flight") request.seconds = 25.0;
+  if (name == "flight" || name.ends_with(kEmptySuffix)) return request;
+  const bool market = name == "market";
+  request.walkers = market ? 9 : 2;
+  request.seated = name.starts_with("walking") ? 1 : 0;
+  request.unknown_movers = market ? 2 : 1;
+  return request;
+}
+
+void check_request(const SynthRequest& request) {
+  require(request.seconds > 0.0 && request.seconds <= 3600.0, "seconds", "0 to 3600");
+  require(request.frames_per_s >= 1.0 && request.frames_per_s <= 200.0, "frames_per_s", "1 to 200");
+  require(request.width >= 16 && request.width <= 4096, "width", "16 to 4096");
+  require(request.height >= 16 && request.height <= 4096, "height", "16 to 4096");
+  require(request.focal_px > 0.1 * request.width, "focal_px", "more than a tenth of the width");
+  require(request.walkers >= 0 && request.walkers <= 40, "walkers", "0 to 40");
+  require(request.seated >= 0 && request.seated <= 8, "seated", "0 to 8");
+  require(request.unknown_movers >= 0 && request.unknown_movers <= 20, "unknown_movers", "0 to 20");
+  require(request.dropped_fraction >= 0.0 && request.dropped_fraction <= 0.5, "dropped_share", "0 to 0.5");
+  require(request.color.exposure_s >= 0.0 && request.color.exposure_s * request.frames_per_s <= 1.0,
+          "color.exposure_s", "0 to the time between two frames");
+  require(request.rolling_shutter_s >= 0.0 && request.rolling_shutter_s * request.frames_per_s <= 1.0,
+          "rolling_shutter_s", "0 to the time between two frames");
+  require(request.depth.noise_per_m >= 0.0 && request.depth.min_m < request.depth.max_m, "depth",
+          "noise_per_m >= 0 and min_m < max_m");
+  require(request.depth.correlation_px >= 1, "depth.correlation_px", "1 or more");
+  require(request.detector.miss_rate >= 0.0 && request.detector.miss_rate <= 0.9, "detector.miss_share",
+          "0 to 0.9");
+  require(request.detector.burst_frames >= 1.0, "detector.burst_frames", "1 or more");
+  require(request.imu.gyro_rate_hz >= 10.0 && request.imu.accel_rate_hz >= 10.0, "imu rates",
+          "10 Hz or more");
+  require(request.start_s >= 0.0, "start_s", "0 or more");
+  const bool files = !request.trajectory_file.empty() && !request.imu_file.empty();
+  if (request.preset == "flight" && !files) {
+    throw InputError("preset \"flight\"",
+                     "needs a trajectory and its IMU samples; pass --trajectory FILE --imu FILE");
+  }
+}
+
+Camera camera_of(const SynthRequest& request) {
+  return Camera{.width = request.width,
+                .height = request.height,
+                .fx = request.focal_px,
+                .fy = request.focal_px,
+                .cx = 0.5 * (request.width - 1),
+                .cy = 0.5 * (request.height - 1)};
+}
+
+Pose realsense_T_b_c() {
+  // Pose of the accelerometer in the color camera, from the calibration of an OpenLORIS package.
+  Eigen::Matrix4d T_c_b;
+  T_c_b << 0.999976, -0.00378981, -0.00580659, -0.0203839, 0.00381011, 0.999987, 0.00348894, 0.00506166,
+      0.00579329, -0.00351098, 0.999977, 0.0110642, 0.0, 0.0, 0.0, 1.0;
+  return Pose::from_matrix(T_c_b).inverse();
+}
+
+}  // namespace stillpoint::synth

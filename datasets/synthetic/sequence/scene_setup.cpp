@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/synthetic/sequence/scene_setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/synthetic/counter_random.h"
+#include "datasets/synthetic/sequence/populate_scene.h"
+#include "datasets/synthetic/sequence/recorded_motion.h"
+
+namespace stillpoint::synth {
+namespace {
+
+constexpr std::int64_t kEpoch_ns = 1700000000LL * 1000000000LL;
+constexpr double kFirstFrame_s = 0.05;      // IMU samples start this long before the first frame
+constexpr double kTail_s = 0.05;            // and end this long after the last frame
+constexpr double kTruthInterval_s = 0.005;  // 200 Hz
+constexpr int kMaxDropRun = 4;              // longest run of consecutive dropped frames
+
+HandMotion hand_motion_of(const std::string& preset) {
+  if (preset.starts_with("walking_static")) return HandMotion::kStatic;
+  if (preset.starts_with("walking_rpy")) return HandMotion::kRpy;
+  if (preset.starts_with("walking_halfsphere")) return HandMotion::kHalfsphere;
+  return HandMotion::kXyz;
+}
+
+Rig rig_of(const SynthRequest& request) {
+  Rig rig;
+  rig.camera = camera_of(request);
+  rig.depth_units_per_m = request.depth.units_per_m;
+  rig.has_imu = request.layout == SequenceLayout::kOpenLoris;
+  rig.T_b_c = realsense_T_b_c();
+  rig.imu_noise = request.imu.noise;
+  return rig;
+}
+
+double last_path_time(const SynthRequest& request) { return kFirstFrame_s + request.seconds + kTail_s; }
+
+Scene scene_of(const SynthRequest& request) {
+  if (request.preset.starts_with("market")) return build_market(request.seed);
+  if (request.preset.starts_with("corridor")) return build_corridor(request.seed);
+  return build_office(request.seed);
+}
+
+SceneSetup simulated_setup(const SynthRequest& request) {
+  const Rig rig = rig_of(request);
+  Scene scene = scene_of(request);
+  const double last_s = last_path_time(request);
+  const bool by_hand = request.preset.starts_with("walking");
+  PathSpline path = by_hand ? hand_path(hand_motion_of(request.preset), scene.viewpoint, rig.T_b_c,
+                                        request.seed, 0.0, last_s)
+                            : robot_path(scene.route, rig.T_b_c, request.seed, 0.0, last_s);
+  const Timestamp epoch{kEpoch_ns};
+  ImuRecord imu = simulate_imu(path, request.imu, epoch, 0.0, last_path_time(request), request.seed);
+  const auto camera_at = [&](double t_s) {
+    return Eigen::Vector2d((path.pose_at(t_s) * rig.T_b_c).p.head<2>());
+  };
+  std::vector<Actor> actors = populate_scene(request, scene, camera_at, 0.0, last_s);
+  return {std::move(scene), std::move(path), rig, epoch, kFirstFrame_s, std::move(imu), std::move(actors)};
+}
+
+std::vector<Eigen::Vector3d> camera_positions(const PathSpline& path, const Pose& T_b_c) {
+  constexpr double kInterval_s = 0.05;
+  std::vector<Eigen::Vector3d> positions;
+  for (double t_s = path.first_s(); t_s < path.last_s(); t_s += kInterval_s) {
+    positions.push_back((path.pose_at(t_s) * T_b_c).p);
+  }
+  return positions;
+}
+
+SceneSetup recorded_setup(const SynthRequest& request) {
+  RecordedMotion motion = load_recorded_motion(request);
+  Rig rig = rig_of(request);
+  rig.T_b_c = motion.T_b_c;
+  rig.imu_noise = ImuNoise{};  // real sensor on a vibrating body: the conservative defaults of core/types
+  const Eigen::Vector3d shift = hall_shift(camera_positions(motion.smoothed.path, rig.T_b_c));
+  PathSpline path = motion.smoothed.path.shifted(shift);
+  Scene scene = build_hall(request.seed, camera_positions(path, rig.T_b_c));
+  return {std::move(scene), std::move(path), rig, motion.epoch, 0.0, std::move(motion.readings), {}};
+}
+
+}  // namespace
+
+SceneSetup make_scene_setup(const SynthRequest& request) {
+  return request.preset == "flight" ? recorded_setup(request) : simulated_setup(request);
+}
+
+std::vector<Timestamp> frame_times(const SynthRequest& request, const SceneSetup& setup) {
+  RandomSequence random(random_key(request.seed, RandomStream::kDroppedFrames));
+  // A run has (1 + kMaxDropRun) / 2 frames on average.
+  const double start_chance =
+      request.dropped_fraction / (0.5 * (1 + kMaxDropRun)) / (1.0 - request.dropped_fraction);
+  const int count = static_cast<int>(std::floor(request.seconds * request.frames_per_s));
+  std::vector<Timestamp> times;
+  int to_drop = 0;
+  for (int i = 0; i < count; ++i) {
+    if (to_drop == 0 && i > 0 && random.chance(start_chance)) to_drop = 1 + random.index(kMaxDropRun);
+    if (to_drop > 0) {
+      --to_drop;
+      continue;
+    }
+    const double since_epoch_s = setup.first_frame_s + i / request.frames_per_s;
+    times.push_back({setup.epoch.ns / 1000 * 1000 + std::llround(since_epoch_s * 1e6) * 1000});
+  }
+  return times;
+}
+
+Exposure exposure_at(const SynthRequest& request, const SceneSetup& setup, Timestamp t, double span_s) {
+  const double middle_s = seconds_between(setup.epoch, t);
+  const int rows = request.rolling_shutter_s > 0.0 ? request.height : 1;
+  Exposure exposure;
+  exposure.span_s = static_cast<float>(span_s);
+  exposure.exposure_fraction_of_span = static_cast<float>(request.color.exposure_s / span_s);
+  for (int row = 0; row < rows; ++row) {
+    const double delay_s = rows > 1 ? request.rolling_shutter_s * (row / (rows - 1.0) - 0.5) : 0.0;
+    std::array<Pose, kLightSamples> poses;
+    for (int sample = 0; sample < kLightSamples; ++sample) {
+      const double t_s = middle_s + delay_s + sample_time_offset(sample) * request.color.exposure_s;
+      poses[static_cast<std::size_t>(sample)] = setup.body_path.pose_at(t_s) * setup.rig.T_b_c;
+    }
+    exposure.poses.push_back(poses);
+    exposure.mid_times.push_back(static_cast<float>(0.5 + delay_s / span_s));
+  }
+  return exposure;
+}
+
+Trajectory camera_ground_truth(const SynthRequest& request, const SceneSetup& setup) {
+  Trajectory truth{"camera", {}};
+  const double last_s = setup.first_frame_s + request.seconds + kTail_s;
+  for (int i = 0;; ++i) {
+    const double t_s = setup.first_frame_s - kFirstFrame_s + i * kTruthInterval_s;
+    if (t_s > last_s) return truth;
+    truth.poses.push_back({after(setup.epoch, t_s), setup.body_path.pose_at(t_s) * setup.rig.T_b_c});
+  }
+}
+
+}  // namespace stillpoint::synth

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Scene, trajectory, IMU samples and actors of a sequence, computed before the first frame is rendered.
+#pragma once
+
+#include <vector>
+
+#include "core/types/rig.h"
+#include "core/types/trajectory.h"
+#include "datasets/synthetic/actors/actor.h"
+#include "datasets/synthetic/motion/imu_model.h"
+#include "datasets/synthetic/motion/path_spline.h"
+#include "datasets/synthetic/render/frame_renderer.h"
+#include "datasets/synthetic/scenes/scenes.h"
+#include "datasets/synthetic/sequence/presets.h"
+
+namespace stillpoint::synth {
+
+struct SceneSetup {
+  Scene scene;
+  PathSpline body_path;      ///< as a function of path time [s]
+  Rig rig;                   ///< calibration written to the sequence
+  Timestamp epoch;           ///< timestamp of path time 0
+  double first_frame_s = 0;  ///< path time of the first frame
+  ImuRecord imu;
+  std::vector<Actor> actors;
+};
+
+[[nodiscard]] SceneSetup make_scene_setup(const SynthRequest& request);
+
+/// Timestamps of all frames that are not dropped, in whole microseconds.
+[[nodiscard]] std::vector<Timestamp> frame_times(const SynthRequest& request, const SceneSetup& setup);
+
+/// Camera poses of the frame with timestamp `t`, the middle of the middle row's exposure.
+/// @param span_s length of the time interval, centered on `t`, over which actor motion is interpolated
+[[nodiscard]] Exposure exposure_at(const SynthRequest& request, const SceneSetup& setup, Timestamp t,
+                                   double span_s);
+
+/// Camera poses T_w_c at 200 Hz, from just before the first frame to just after the last.
+[[nodiscard]] Trajectory camera_ground_truth(const SynthRequest& request, const SceneSetup& setup);
+
+}  // namespace stillpoint::synth

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/drawing/cost_trend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+
+namespace stillpoint::report {
+namespace {
+
+constexpr double kNormal95 = 1.96;
+constexpr double kSecondsPerMinute = 60.0;
+constexpr double kWidth = 800.0;
+constexpr double kHeight = 320.0;
+constexpr double kMargin = 60.0;
+constexpr Color kBlack{20, 20, 20};
+constexpr Color kGray{200, 200, 200};
+constexpr Color kBlue{30, 90, 200};
+constexpr Color kRed{190, 30, 40};
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<FrameCost> window_medians(std::span<const FrameCost> costs, double window_s) {
+  std::vector<FrameCost> medians;
+  for (std::size_t i = 0; i < costs.size();) {
+    const double number = std::floor(costs[i].t_s / window_s);
+    std::vector<double> values;
+    for (; i < costs.size() && std::floor(costs[i].t_s / window_s) == number; ++i) {
+      values.push_back(costs[i].ms);
+    }
+    medians.push_back({(number + 0.5) * window_s, median_of(std::move(values))});
+  }
+  return medians;
+}
+
+Label label(double x, double y, const std::string& text, Anchor anchor) {
+  return {{x, y}, text, 16.0, anchor, kBlack};
+}
+
+}  // namespace
+
+std::vector<FrameCost> frame_costs(const bench::OdometryRun& run) {
+  std::vector<FrameCost> costs;
+  for (std::size_t i = 0; i < run.frame_timings.size(); ++i) {
+    const ModuleTimings& timings = run.frame_timings[i];
+    const std::int64_t ns = timings[Module::kTrackingThread].ns + timings[Module::kOptimizationThread].ns;
+    const Timestamp first{run.frame_counters.front().t_ns};
+    costs.push_back({seconds_between(first, {run.frame_counters[i].t_ns}), 1e-6 * static_cast<double>(ns)});
+  }
+  return costs;
+}
+
+CostTrend cost_trend(std::span<const FrameCost> costs, double window_s) {
+  CostTrend trend{.medians = window_medians(costs, window_s)};
+  const auto count = static_cast<double>(trend.medians.size());
+  if (count < 3.0) {
+    throw InputError("--dump cost",
+                     fmt::format("needs a run of {:g} s or more; add --passes", 3.0 * window_s));
+  }
+  FrameCost mean;
+  for (const FrameCost& one : trend.medians) mean = {mean.t_s + one.t_s / count, mean.ms + one.ms / count};
+  double s_tt = 0.0;
+  double s_ty = 0.0;
+  for (const FrameCost& one : trend.medians) {
+    s_tt += (one.t_s - mean.t_s) * (one.t_s - mean.t_s);
+    s_ty += (one.t_s - mean.t_s) * (one.ms - mean.ms);
+  }
+  const double slope = s_ty / s_tt;
+  trend.start_ms = mean.ms - slope * mean.t_s;
+  double squared_residuals = 0.0;
+  for (const FrameCost& one : trend.medians) {
+    squared_residuals += std::pow(one.ms - trend.start_ms - slope * one.t_s, 2);
+  }
+  const double half_width = kNormal95 * std::sqrt(squared_residuals / (count - 2.0) / s_tt);
+  trend.slope_ms_per_min = kSecondsPerMinute * slope;
+  trend.slope_interval = {kSecondsPerMinute * (slope - half_width), kSecondsPerMinute * (slope + half_width)};
+  return trend;
+}
+
+Drawing cost_plot(const CostTrend& trend) {
+  Drawing drawing{kWidth, kHeight, {}};
+  const double bottom = kHeight - kMargin;
+  const double end_s = trend.medians.back().t_s;
+  double highest_ms = 0.0;
+  for (const FrameCost& one : trend.medians) highest_ms = std::max(highest_ms, one.ms);
+  const auto place = [&](double t_s, double ms) {
+    return Point2{kMargin + (kWidth - 2.0 * kMargin) * t_s / end_s,
+                  bottom - (bottom - kMargin) * ms / std::max(highest_ms, 1e-6)};
+  };
+  drawing.marks.push_back(Polyline{{place(0.0, 0.0), place(end_s, 0.0)}, kGray, 1.5});
+  for (const FrameCost& one : trend.medians) {
+    drawing.marks.push_back(Disc{place(one.t_s, one.ms), 3.0, kBlue});
+  }
+  const double end_ms = trend.start_ms + trend.slope_ms_per_min * end_s / kSecondsPerMinute;
+  drawing.marks.push_back(Polyline{{place(0.0, trend.start_ms), place(end_s, end_ms)}, kRed, 2.0});
+  drawing.marks.push_back(label(
+      kMargin, bottom + 24.0,
+      fmt::format("tracking and optimization time per frame over {:.0f} s, medians of 10 s, 0 to {:.2f} ms",
+                  end_s, highest_ms),
+      Anchor::kLeft));
+  drawing.marks.push_back(
+      label(kMargin, 30.0,
+            fmt::format("slope {:+.4f} ms per minute, 95 %: {:+.4f} to {:+.4f}", trend.slope_ms_per_min,
+                        trend.slope_interval.low, trend.slope_interval.high),
+            Anchor::kLeft));
+  return drawing;
+}
+
+}  // namespace stillpoint::report

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Trend of the processing time per frame over a long run.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bench/run/odometry_run.h"
+#include "eval/statistics/bootstrap.h"
+#include "reports/drawing/drawing.h"
+
+namespace stillpoint::report {
+
+/// Processing time of one frame.
+struct FrameCost {
+  double t_s = 0.0;  ///< since the first frame
+  double ms = 0.0;
+};
+
+/// Sum of tracking and optimization time of each frame.
+[[nodiscard]] std::vector<FrameCost> frame_costs(const bench::OdometryRun& run);
+
+/// Least-squares line y = a + b t through the medians (t_i, y_i) of n time windows of equal length:
+///   b = S_ty / S_tt,  a = mean(y) - b mean(t),
+///   S_tt = sum (t_i - mean(t))^2,  S_ty = sum (t_i - mean(t)) (y_i - mean(y)).
+/// The 95 % interval of b is b +- 1.96 sqrt(sum (y_i - a - b t_i)^2 / (n - 2) / S_tt).
+struct CostTrend {
+  std::vector<FrameCost> medians;  ///< at the center of each window
+  double start_ms = 0.0;           ///< a
+  double slope_ms_per_min = 0.0;   ///< 60 b
+  eval::Interval slope_interval;   ///< 95 % [ms/min]
+};
+
+/// @param costs    by rising time
+/// @param window_s length of a window; its median suppresses frames delayed by other processes
+/// @throws InputError with fewer than three windows
+[[nodiscard]] CostTrend cost_trend(std::span<const FrameCost> costs, double window_s = 10.0);
+
+/// The medians and the fitted line.
+[[nodiscard]] Drawing cost_plot(const CostTrend& trend);
+
+}  // namespace stillpoint::report

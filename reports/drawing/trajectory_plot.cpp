@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/drawing/trajectory_plot.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace stillpoint::report {
+namespace {
+
+constexpr double kWidth = 800.0;
+constexpr double kPathHeight = 560.0;
+constexpr double kErrorHeight = 240.0;
+constexpr double kMargin = 60.0;
+constexpr std::size_t kMaxPoints = 2000;  // per line; more than a plot can resolve
+constexpr Color kBlack{20, 20, 20};
+constexpr Color kGray{200, 200, 200};
+constexpr std::array<Color, 6> kColors{
+    {{30, 90, 200}, {220, 110, 20}, {40, 150, 60}, {170, 50, 160}, {190, 30, 40}, {100, 100, 100}}};
+
+/// Linear map from data to drawing coordinates.
+struct Axis {
+  double low = 0.0;
+  double scale = 1.0;
+  double origin = 0.0;
+
+  [[nodiscard]] double operator()(double value) const { return origin + scale * (value - low); }
+};
+
+std::vector<Eigen::Vector3d> thinned_positions(const Trajectory& path, const eval::Similarity& S_w_v) {
+  const std::size_t step = path.poses.size() / kMaxPoints + 1;
+  std::vector<Eigen::Vector3d> positions;
+  for (std::size_t i = 0; i < path.poses.size(); i += step)
+    positions.push_back(S_w_v * path.poses[i].T_w_f.p);
+  return positions;
+}
+
+void draw_paths(Drawing& drawing, const Trajectory& gt, const std::vector<PlottedRun>& runs) {
+  Eigen::Vector3d low = gt.poses.front().T_w_f.p;
+  Eigen::Vector3d high = low;
+  for (const StampedPose& pose : gt.poses) {
+    low = low.cwiseMin(pose.T_w_f.p);
+    high = high.cwiseMax(pose.T_w_f.p);
+  }
+  const Eigen::Vector3d extent = high - low;
+  std::array<int, 3> order{0, 1, 2};
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return extent(a) > extent(b); });
+  const double scale = std::min((kWidth - 2.0 * kMargin) / std::max(extent(order[0]), 1e-3),
+                                (kPathHeight - 2.0 * kMargin) / std::max(extent(order[1]), 1e-3));
+  const Axis across{low(order[0]), scale, kMargin};
+  const Axis up{low(order[1]), -scale, kPathHeight - kMargin};
+  const auto draw = [&](const std::vector<Eigen::Vector3d>& positions, Color color) {
+    Polyline line{{}, color, 2.0};
+    for (const Eigen::Vector3d& p : positions) line.points.push_back({across(p(order[0])), up(p(order[1]))});
+    drawing.marks.push_back(line);
+  };
+  draw(thinned_positions(gt, {}), kBlack);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    draw(thinned_positions(*runs[i].est, runs[i].evaluation->alignment.S_w_v), kColors[i % kColors.size()]);
+  }
+  constexpr std::array<char, 3> kNames{'x', 'y', 'z'};
+  drawing.marks.push_back(
+      Label{{kMargin, kPathHeight - 20.0},
+            fmt::format("{} to the right, {} up; the ground truth spans {:.2f} x {:.2f} m",
+                        kNames[static_cast<std::size_t>(order[0])],
+                        kNames[static_cast<std::size_t>(order[1])], extent(order[0]), extent(order[1])),
+            16.0,
+            Anchor::kLeft,
+            kBlack});
+}
+
+void draw_errors(Drawing& drawing, const Trajectory& gt, const std::vector<PlottedRun>& runs) {
+  const Timestamp start = gt.poses.front().t;
+  const double duration_s = std::max(seconds_between(start, gt.poses.back().t), 1e-3);
+  double highest = 1e-6;
+  for (const PlottedRun& run : runs) {
+    for (const eval::PoseError& error : run.evaluation->per_pose)
+      highest = std::max(highest, error.translation_m);
+  }
+  const double bottom = kPathHeight + kErrorHeight - 40.0;
+  const Axis time{0.0, (kWidth - 2.0 * kMargin) / duration_s, kMargin};
+  const Axis up{0.0, -(kErrorHeight - 70.0) / highest, bottom};
+  drawing.marks.push_back(Polyline{{{kMargin, bottom}, {kWidth - kMargin, bottom}}, kGray, 1.5});
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::vector<eval::PoseError>& errors = runs[i].evaluation->per_pose;
+    Polyline line{{}, kColors[i % kColors.size()], 1.5};
+    for (std::size_t k = 0; k < errors.size(); k += errors.size() / kMaxPoints + 1) {
+      line.points.push_back({time(seconds_between(start, errors[k].t)), up(errors[k].translation_m)});
+    }
+    if (!line.points.empty()) drawing.marks.push_back(line);
+  }
+  drawing.marks.push_back(
+      Label{{kMargin, bottom + 24.0},
+            fmt::format("position error over {:.1f} s, at most {:.3f} m", duration_s, highest),
+            16.0,
+            Anchor::kLeft,
+            kBlack});
+}
+
+}  // namespace
+
+Drawing trajectory_plot(const Trajectory& gt, const std::vector<PlottedRun>& runs) {
+  Drawing drawing{kWidth, kPathHeight + kErrorHeight, {}};
+  if (gt.poses.empty()) return drawing;
+  draw_paths(drawing, gt, runs);
+  draw_errors(drawing, gt, runs);
+  double y = 24.0;
+  drawing.marks.push_back(Label{{kMargin, y}, "ground truth", 16.0, Anchor::kLeft, kBlack});
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    drawing.marks.push_back(
+        Label{{kWidth - kMargin, y}, runs[i].name, 16.0, Anchor::kRight, kColors[i % kColors.size()]});
+    y += 20.0;
+  }
+  return drawing;
+}
+
+}  // namespace stillpoint::report

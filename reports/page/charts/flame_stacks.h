@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Sums folded stacks over runs, for a flame chart.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace stillpoint::report {
+
+/// Stack "outer;inner" -> self time of the innermost entry [ns].
+using StackTimes = std::map<std::string, double>;
+
+/// Adds the lines "outer;inner ns" of a file.
+/// @param source name of the text in error messages
+/// @throws InputError with the number of the first invalid line
+void add_stacks(StackTimes& times, std::string_view folded, const std::string& source);
+
+}  // namespace stillpoint::report

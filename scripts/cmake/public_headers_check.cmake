@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Checks what public headers include: other public headers, the standard library, Eigen, and of OpenCV only
+# opencv2/core/mat.hpp. Fails with the list of all other includes.
+# Run by: cmake -DROOT=... -P public_headers_check.cmake
+cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
+stillpoint_public_headers(${ROOT} headers)
+set(faults "")
+foreach(header IN LISTS headers)
+  if(NOT EXISTS ${ROOT}/${header})
+    string(APPEND faults "${header} is listed as public but does not exist\n")
+    continue()
+  endif()
+  file(STRINGS ${ROOT}/${header} lines REGEX "^ *# *include")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^ *# *include *" "" target "${line}")
+    string(REGEX REPLACE "^\"([^\"]*)\".*" "\\1" path "${target}")
+    if(NOT target MATCHES "^<(opencv2/core/mat\\.hpp|Eigen/[A-Za-z]+|[a-z_]+)>" AND NOT path IN_LIST headers)
+      string(APPEND faults "${header} includes ${target}, which is not public\n")
+    endif()
+  endforeach()
+endforeach()
+if(faults)
+  message(FATAL_ERROR "${faults}")
+endif()
+list(LENGTH headers count)
+message(STATUS "${count} public headers include only what they may")

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the build folder BUILD to PREFIX and runs the installed program.
+#   install.sh CMAKE BUILD PREFIX
+set -euo pipefail
+cmake="$1" build="$2" prefix="$3"
+
+rm -rf "$prefix"
+"$cmake" --install "$build" --prefix "$prefix" >"$build/install.log" || { cat "$build/install.log"; exit 1; }
+"$prefix/bin/stillpoint" --help >/dev/null
+
+# An include that was not rewritten would be found in the sources of this machine, but not on another.
+if grep -rnE '#include "(core|eval|datasets|bench)/' "$prefix/include" "$prefix/share"; then
+  echo "the installed files above include paths of the source tree"
+  exit 1
+fi
+if grep -rnF -e '-march' -e '-Werror' -e "$PWD" "$prefix/lib/cmake"; then
+  echo "the package config exports compiler flags or paths of the build"
+  exit 1
+fi

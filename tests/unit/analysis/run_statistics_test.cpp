@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/analysis/run_statistics.h"
+
+#include <gtest/gtest.h>
+
+#include "bench/store/store_writer.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint::bench {
+namespace {
+
+StoredRun run_of(const std::string& variant, const std::string& sequence, std::int64_t seed, double ate) {
+  StoredRun run;
+  run.identity = {.variant = variant, .sequence = sequence, .seed = seed};
+  run.metrics = {{"ate_rmse_m", "", "m", ate}};
+  return run;
+}
+
+StoredRun lost_run(const std::string& variant, const std::string& sequence, std::int64_t seed) {
+  StoredRun run = run_of(variant, sequence, seed, 0.0);
+  run.metrics.clear();
+  run.outcome = Outcome::kLost;
+  return run;
+}
+
+TEST(RunSpreads, CountFailuresAndUseTheMedianOfSuccessfulRuns) {
+  const std::vector<StoredRun> runs = {run_of("vo", "a", 1, 1.0), run_of("vo", "a", 2, 3.0),
+                                       lost_run("vo", "a", 3), run_of("vo", "b", 1, 9.0)};
+  const std::vector<RunSpread> rows = run_spreads(runs, "ate_rmse_m");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].runs, 3u);
+  EXPECT_EQ(rows[0].failed, 1u);
+  EXPECT_EQ(rows[0].spread->median, 2.0);
+  EXPECT_EQ(rows[1].spread->median, 9.0);
+}
+
+TEST(Ablation, PairsBySequenceAndSeed) {
+  // Differences of "wo" to "full": a1 +1, a2 +2, b1 +9; over all the median is 2, on a it is 1.5.
+  const std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("full", "a", 2, 2.0),
+                                       run_of("full", "b", 1, 1.0), run_of("wo", "b", 1, 10.0),
+                                       run_of("wo", "a", 2, 4.0),   run_of("wo", "a", 1, 2.0)};
+  const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].sequence, "");
+  EXPECT_EQ(rows[0].difference->median, 2.0);
+  EXPECT_EQ(rows[0].difference->effect, 1.0);
+  EXPECT_EQ(rows[1].sequence, "a");
+  EXPECT_EQ(rows[1].difference->median, 1.5);
+}
+
+TEST(Ablation, CountsPairsInWhichOnlyTheVariantFailed) {
+  const std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), lost_run("wo", "a", 1)};
+  const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+  EXPECT_EQ(rows[0].newly_failed, 1u);
+  EXPECT_FALSE(rows[0].difference.has_value());
+}
+
+TEST(Ablation, ListsTheExistingVariantsInTheError) {
+  const std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0)};
+  expect_input_error([&] { static_cast<void>(ablation(runs, "ful", "ate_rmse_m")); }, {"\"ful\"", "full"});
+}
+
+TEST(FirstDifference, IsTheFirstModuleOfTheFirstDifferingFrame) {
+  const std::string head = "frame,tracking,dynamic,optimization\n";
+  const std::string one = head + "0,a,b,c\n1,d,e,f\n";
+  EXPECT_EQ(first_difference(one, one), "");
+  EXPECT_EQ(first_difference(one, head + "0,a,b,c\n1,d,x,y\n"), "frame 1, dynamic");
+  EXPECT_EQ(first_difference(one, head + "0,a,b,c\n"), "the number of frames");
+}
+
+TEST(RepetitionReport, ReportsTheFirstDifferenceBetweenRepetitions) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "store.sqlite";
+  StoreWriter writer(file);
+  for (const std::int64_t repetition : {1, 2, 3}) {
+    const RunIdentity identity{.variant = "vo", .sequence = "a", .repetition = repetition};
+    static_cast<void>(writer.acquire(identity));
+    const std::string last = repetition == 3 ? "other" : "same";
+    writer.finish(identity,
+                  {.attachments = {{"trajectory", last}, {"frames", "frame,tracking\n0," + last + "\n"}}});
+  }
+  const Store store(file);
+  const std::vector<RepetitionRow> rows = repetition_report(store, store.runs());
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].repetitions, 3u);
+  EXPECT_EQ(rows[0].distinct_trajectories, 2u);
+  EXPECT_EQ(rows[0].first_difference, "frame 0, tracking");
+}
+
+}  // namespace
+}  // namespace stillpoint::bench

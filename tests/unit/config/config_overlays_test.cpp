@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The exact keys in which each shipped config differs from its parent.
+#include <gtest/gtest.h>
+
+#include "bench/config/config_file.h"
+#include "bench/config/config_text.h"
+#include "bench/config/toml_source.h"
+
+namespace stillpoint::bench {
+namespace {
+
+using Entries = std::vector<ConfigEntry>;
+
+OdometryConfig base(const std::string& name) {
+  return load_config({.base = name, .variant = "", .settings = {}});
+}
+
+/// The keys that an overlay changes on top of a base.
+Entries changes(const std::string& base_name, const std::string& overlay) {
+  return config_difference(base(base_name),
+                           load_config({.base = base_name, .variant = overlay, .settings = {}}));
+}
+
+TEST(ConfigOverlays, WithoutCircularMaskDisablesBothCircles) {
+  EXPECT_EQ(changes("stillpoint", "wo_circular_mask"), (Entries{{"frontend.circular_mask", "false"}}));
+}
+
+TEST(ConfigOverlays, WithoutImuPredictionDisablesPrediction) {
+  EXPECT_EQ(changes("stillpoint", "wo_imu_prediction"), (Entries{{"frontend.prediction", "\"none\""}}));
+  EXPECT_EQ(changes("dynamic_vins", "wo_imu_prediction"), (Entries{{"frontend.prediction", "\"none\""}}));
+}
+
+TEST(ConfigOverlays, WithoutGridDetectionUsesShiTomasi) {
+  EXPECT_EQ(changes("stillpoint", "wo_grid_detection"), (Entries{{"frontend.detector", "\"shi_tomasi\""}}));
+}
+
+TEST(ConfigOverlays, WithoutDepthWeightFixesMeasuredDepthAsDynamicVinsDoes) {
+  EXPECT_EQ(changes("stillpoint", "wo_depth_weight"), (Entries{{"backend.depth.usage", "\"fixed\""}}));
+  EXPECT_EQ(changes("dynamic_vins", "wo_depth_weight"), Entries{});
+}
+
+/// Expects that an overlay changes the same single key of both systems.
+void expect_one_change(const std::string& overlay, const ConfigEntry& change) {
+  EXPECT_EQ(changes("stillpoint", overlay), Entries{change});
+  EXPECT_EQ(changes("dynamic_vins", overlay), Entries{change});
+}
+
+TEST(ConfigOverlays, AblationsOfDynamicFeatureRecognitionChangeOneKeyEach) {
+  expect_one_change("wo_object_detection", {"detector.kind", "\"none\""});
+  expect_one_change("wo_seg_like_mask", {"dynamic.mask", "\"whole_box\""});
+  expect_one_change("wo_mcc", {"dynamic.moving_consistency", "false"});
+  expect_one_change("wo_missed_detection", {"dynamic.missed_detection", "false"});
+}
+
+TEST(ConfigOverlays, DepthBandSetsTheMaskOfStillpoint) {
+  EXPECT_EQ(changes("dynamic_vins", "depth_band"),
+            (Entries{{"dynamic.mask", "\"depth_band\""}, {"dynamic.epsilon_m", "0.4"}}));
+  EXPECT_EQ(changes("stillpoint", "depth_band"), Entries{});
+}
+
+TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
+  EXPECT_EQ(changes("stillpoint", "vo"),
+            (Entries{{"imu.enabled", "false"}, {"backend.keyframe_min_shared_ratio", "0.7"}}));
+}
+
+TEST(ConfigOverlays, DynamicVinsVoHasThePublishedTumSettings) {
+  EXPECT_EQ(config_difference(base("dynamic_vins"), base("dynamic_vins_vo")),
+            (Entries{{"imu.enabled", "false"},
+                     {"frontend.max_features", "250"},
+                     {"frontend.min_distance_px", "10"},
+                     {"frontend.unstable_radius_px", "10"},
+                     {"backend.rate_hz", "0.0"},
+                     {"backend.keyframe_min_shared_ratio", "0.7"},
+                     {"backend.depth.min_m", "0.4"},
+                     {"backend.depth.max_m", "10.0"}}));
+}
+
+TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {
+  EXPECT_EQ(config_difference(base("dynamic_vins"), base("stillpoint")),
+            (Entries{{"imu.noise_scale", "2.0"},
+                     {"frontend.min_distance_px", "20"},
+                     {"frontend.unstable_radius_px", "20"},
+                     {"frontend.prediction", "\"full\""},
+                     {"frontend.tracker", "\"patch\""},
+                     {"frontend.window_px", "15"},
+                     {"frontend.min_correlation", "0.6"},
+                     {"frontend.outlier_model", "\"rigid\""},
+                     {"frontend.ransac_threshold_px", "2.0"},
+                     {"frontend.reject_static_only", "true"},
+                     {"frontend.grid.stop_early", "true"},
+                     {"dynamic.mask", "\"depth_band\""},
+                     {"dynamic.epsilon_m", "0.4"},
+                     {"dynamic.depth_window_px", "5"},
+                     {"dynamic.box_margin_px", "2.0"},
+                     {"dynamic.unmeasured_is_dynamic", "false"},
+                     {"dynamic.growth_px_per_miss", "3.0"},
+                     {"dynamic.mcc_threshold_px", "5.0"},
+                     {"dynamic.mcc_min_observations", "3"},
+                     {"dynamic.recycle_min_frames", "3"},
+                     {"dynamic.min_static_frames", "3"},
+                     {"dynamic.gate_before_solve", "true"},
+                     {"dynamic.min_stable_features", "20"},
+                     {"backend.rate_hz", "0.0"},
+                     {"backend.reprojection_error_px", "0.5"},
+                     {"backend.solver", "\"schur\""},
+                     {"backend.max_iterations", "4"},
+                     {"backend.keyframe_max_interval_s", "0.5"},
+                     {"backend.depth.usage", "\"weighted\""},
+                     {"backend.depth.outlier_sigmas", "5.0"},
+                     {"backend.initializer.kind", "\"instant\""}}));
+}
+
+TEST(ConfigOverlays, LibrariesSelectsOpenCvTrackerAndCeresSolver) {
+  EXPECT_EQ(changes("stillpoint", "libraries"),
+            (Entries{{"frontend.tracker", "\"opencv\""}, {"backend.solver", "\"ceres\""}}));
+  EXPECT_EQ(changes("dynamic_vins", "libraries"), Entries{});
+}
+
+TEST(ConfigOverlays, VinsRgbdIsDynamicVinsWithoutItsContributions) {
+  EXPECT_EQ(config_difference(base("dynamic_vins"), base("baselines/vins_rgbd")),
+            (Entries{{"frontend.unstable_radius_px", "0"},
+                     {"frontend.detector", "\"shi_tomasi\""},
+                     {"frontend.prediction", "\"none\""},
+                     {"detector.kind", "\"none\""},
+                     {"dynamic.mask", "\"off\""},
+                     {"dynamic.missed_detection", "false"},
+                     {"dynamic.moving_consistency", "false"},
+                     {"backend.depth.min_m", "0.1"},
+                     {"backend.depth.max_m", "3.0"}}));
+}
+
+TEST(ConfigOverlays, VinsMonoIsVinsRgbdWithoutDepth) {
+  EXPECT_EQ(config_difference(base("baselines/vins_rgbd"), base("baselines/vins_mono")),
+            (Entries{{"backend.depth.usage", "\"off\""},
+                     {"backend.initializer.kind", "\"monocular\""},
+                     {"backend.initializer.min_parallax_px", "10.0"}}));
+}
+
+TEST(ConfigOverlays, DynamicVinsEqualsTheDefaultsOfTheCode) {
+  EXPECT_EQ(config_difference(OdometryConfig{}, base("dynamic_vins")), Entries{});
+}
+
+TEST(ConfigOverlays, EveryEmbeddedConfigLoads) {
+  const std::vector<std::string> names = embedded_names(TomlKind::kConfig);
+  EXPECT_GE(names.size(), 7u);
+  for (const std::string& name : names)
+    EXPECT_NO_THROW(static_cast<void>(changes("stillpoint", name))) << name;
+}
+
+}  // namespace
+}  // namespace stillpoint::bench

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/sequence_validator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "datasets/io/image_io.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/sequence_folders.h"
+#include "tests/support/test_data.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+std::size_t count(const CheckReport& report, const std::string& location, const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
+        return finding.location.find(location) != std::string::npos &&
+               finding.text.find(text) != std::string::npos;
+      }));
+}
+
+/// Rows of a stationary sensor at 400 Hz from 99.9 s over 0.3 s.
+std::string stationary_rows(const char* value) {
+  std::string text;
+  for (int i = 0; i <= 120; ++i) text += std::to_string(99.9 + i / 400.0) + " 0 " + value + " 0\n";
+  return text;
+}
+
+void write_valid_sequence(const TemporaryFolder& folder) {
+  write_openloris_folder(folder);
+  folder.write("d400_accelerometer.txt", stationary_rows("-9.8"));
+}
+
+TEST(SequenceValidator, AValidSequenceHasNoFindings) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  const CheckReport report = check_sequence(folder.path());
+  EXPECT_EQ(report.exit_code(), 0) << report_text(report);
+  ASSERT_EQ(report.streams.size(), 3U);
+  EXPECT_EQ(report.streams[0].count, 3U);
+  EXPECT_NEAR(report.streams[0].rate_hz, 25.0, 1e-6);  // every 40 ms
+  EXPECT_NEAR(report.streams[1].rate_hz, 400.0, 1e-2);
+  EXPECT_NEAR(report.streams[1].first_s, -0.1, 1e-9);
+  EXPECT_NEAR(report.streams[2].rate_hz, 100.0, 1e-6);
+  EXPECT_NE(report_text(report).find("no findings"), std::string::npos);
+}
+
+TEST(SequenceValidator, ReportsMissingTruncatedAndWrongSizeImagesTogether) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  std::filesystem::remove(folder.path() / "color/100.000000.png");
+  std::filesystem::resize_file(folder.path() / "color/100.040000.png", 40);
+  write_png(folder.path() / "aligned_depth/100.080000.png", cv::Mat(5, 8, CV_16UC1, cv::Scalar(1)));
+  const CheckReport report = check_sequence(folder.path());
+  EXPECT_EQ(report.exit_code(), 1);
+  EXPECT_EQ(report.findings.size(), 3U) << report_text(report);
+  EXPECT_EQ(count(report, "100.000000.png", "no such image"), 1U);
+  EXPECT_EQ(count(report, "100.040000.png", "copy the file again"), 1U);
+  EXPECT_EQ(count(report, "100.080000.png", "is 8x5"), 1U);
+}
+
+TEST(SequenceValidator, ReportsEveryFaultyRowWithItsLine) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  folder.write(
+      "d400_gyroscope.txt",
+      "99.9 0 0 0\n99.95 0 0 0\n99.95 0 0 0\n99.92 0 0 0\n100.0 nan 0 0\n100.05 0 0 0\n100.1 0 0 0\n");
+  const CheckReport report = check_sequence(folder.path());
+  EXPECT_EQ(count(report, "d400_gyroscope.txt:3", "repeats"), 1U);
+  EXPECT_EQ(count(report, "d400_gyroscope.txt:4", "earlier than the previous row"), 1U);
+  EXPECT_EQ(count(report, "d400_gyroscope.txt:5", "not finite"), 1U);
+  EXPECT_EQ(report.findings.size(), 3U) << report_text(report);
+}
+
+TEST(SequenceValidator, ReportsGaps) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  std::string truth;
+  for (int i = 0; i <= 30; ++i) {
+    if (i < 12 || i > 15) truth += std::to_string(99.9 + 0.01 * i) + " 0 0 0 0 0 0 1\n";
+  }
+  folder.write("groundtruth.txt", truth);
+  const CheckReport report = check_sequence(folder.path());
+  ASSERT_EQ(report.findings.size(), 1U) << report_text(report);
+  // The last pose before the gap is at 99.9 + 0.11 s, the first after it 50 ms later.
+  EXPECT_EQ(count(report, "ground truth",
+                  "1 gap(s) longer than 2.5 median intervals; the longest (0.050 s) starts 0.010 s"),
+            1U);
+}
+
+TEST(SequenceValidator, ReportsStreamsThatDoNotCoverAllImages) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  folder.write("groundtruth.txt",
+               "99.80 0 0 0 0 0 0 1\n99.85 0 0 0 0 0 0 1\n99.90 0 0 0 0 0 0 1\n99.95 0 0 0 0 0 0 1\n"
+               "100.00 0 0 0 0 0 0 1\n");
+  folder.write("d400_gyroscope.txt", "100.02 0 0 0\n100.05 0 0 0\n100.1 0 0 0\n");
+  const CheckReport report = check_sequence(folder.path());
+  EXPECT_EQ(count(report, "imu", "does not cover 1 of 3 images"), 1U) << report_text(report);
+  EXPECT_EQ(count(report, "ground truth", "covers"), 0U);  // 100.08 is 80 ms from a pose: covered
+}
+
+TEST(SequenceValidator, ReportsMissingOverlapAsAFinding) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  folder.write("groundtruth.txt", "500.0 0 0 0 0 0 0 1\n");
+  const CheckReport report = check_sequence(folder.path());
+  EXPECT_EQ(count(report, "", "no overlap in time"), 1U);
+  EXPECT_EQ(count(report, "ground truth", "covers 0 of 3 images"), 1U);
+}
+
+TEST(SequenceValidator, WarnsAboutTheUnitOfAccelerations) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  folder.write("d400_accelerometer.txt", stationary_rows("1"));  // in g
+  EXPECT_EQ(count(check_sequence(folder.path()), "imu", "m/s^2"), 1U);
+}
+
+TEST(SequenceValidator, ReportsALargeTimeOffsetOfDepth) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  EXPECT_EQ(check_sequence(folder.path()).findings.size(), 0U);
+  EXPECT_NEAR(check_sequence(folder.path()).depth_offset_s, 0.005, 1e-9);
+  folder.write("depth.txt", "1.015 depth/1.005000.png\n1.055 depth/1.045000.png\n1.095 depth/1.085000.png\n");
+  EXPECT_EQ(count(check_sequence(folder.path()), "depth", "by 15.0 ms"), 1U);
+}
+
+TEST(SequenceValidator, ReportsDepthImagesWithoutValidPixels) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  write_png(folder.path() / "depth/1.045000.png", cv::Mat::zeros(6, 8, CV_16UC1));
+  EXPECT_EQ(count(check_sequence(folder.path()), "1.045000.png", "no measured depth"), 1U);
+}
+
+TEST(SequenceValidator, RejectsAFolderThatIsNotASequence) {
+  const TemporaryFolder folder;
+  expect_input_error([&] { static_cast<void>(check_sequence(folder.path())); },
+                     {"not a sequence of a supported format"});
+}
+
+TEST(SequenceValidator, TruncatesLongListsOfFindings) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  std::string rows = "99.9 0 0 0\n";
+  for (int i = 0; i < 20; ++i) rows += "99.9 0 0 0\n";
+  folder.write("d400_gyroscope.txt", rows + "100.1 0 0 0\n");
+  const std::string text = report_text(check_sequence(folder.path()));
+  EXPECT_NE(text.find("... 15 more in "), std::string::npos) << text;
+}
+
+TEST(SequenceValidator, RealTwoPeopleSequenceHasNoFindings) {
+  const auto folder = find_test_data("two_people_d435");
+  if (!folder) GTEST_SKIP() << missing_test_data("two_people_d435");
+  const CheckReport report = check_sequence(*folder);
+  EXPECT_EQ(report.exit_code(), 0) << report_text(report);
+  EXPECT_EQ(report.streams[0].count, 40U);
+}
+
+}  // namespace
+}  // namespace stillpoint::datasets

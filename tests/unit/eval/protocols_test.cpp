@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Cases in which public tools report small errors for bad runs, and the results of the strict protocols.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "eval/protocols/protocol.h"
+
+namespace stillpoint::eval {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Pose on_circle(double t) {
+  // 0.5 m/s on a circle with a radius of 2 m, facing forward.
+  const double angle = 0.25 * t;
+  const Eigen::Quaterniond q(Eigen::AngleAxisd(angle + kPi / 2, Eigen::Vector3d::UnitZ()));
+  return Pose{q, {2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.1 * std::sin(t)}};
+}
+
+Trajectory circle(double begin, double end, double step) {
+  Trajectory path;
+  const auto count = static_cast<long>(std::llround((end - begin) / step));
+  for (long i = 0; i <= count; ++i) {
+    const double t = begin + step * static_cast<double>(i);
+    path.poses.push_back({from_seconds(t), on_circle(t)});
+  }
+  return path;
+}
+
+/// Adds a drift of 0.1 m/s along x from `begin` on.
+void add_drift(Trajectory& path, double begin) {
+  for (StampedPose& pose : path.poses) {
+    pose.T_w_f.p.x() += 0.1 * std::max(0.0, to_seconds(pose.t) - begin);
+  }
+}
+
+Evaluation evaluate_with(std::string_view protocol, const Trajectory& gt, const Trajectory& est) {
+  return evaluate(protocol, {gt, est, ProtocolOptions{}});
+}
+
+TEST(ZeroRpe, OnePosePer2500MsHasNoStrictRpeOverOneSecond) {
+  const Trajectory gt = circle(0, 50, 0.01);
+  Trajectory est = circle(0, 50, 2.5);
+  add_drift(est, 0);
+  // The pose closest to t + 1 s is the one at t: every pair consists of one pose.
+  const Evaluation tum = evaluate_with("compat:tum", gt, est);
+  ASSERT_TRUE(tum.rpe_m);
+  EXPECT_NEAR(tum.rpe_m->rmse, 0.0, 1e-12);
+  ASSERT_EQ(tum.notes.size(), 1u);
+  EXPECT_NE(tum.notes[0].find("consist of one pose"), std::string::npos);
+  const Evaluation strict = evaluate_with("strict:se3", gt, est);
+  EXPECT_FALSE(strict.rpe_m);
+  EXPECT_EQ(strict.notes.back(), "21 of 21 RPE starts dropped: no pose at delta within the tolerance");
+  EXPECT_NEAR(*strict.coverage, 0.4, 1e-9);  // 20 poses, valid for 1 s each, in 50 s
+}
+
+TEST(RpeAcrossAGap, IsNotPartOfTheStrictRpe) {
+  // Exact, except for a jump of 1 m during a gap from 20 to 25 s.
+  const Trajectory gt = circle(0, 50, 0.01);
+  Trajectory est = circle(0, 20, 0.1);
+  Trajectory after_gap = circle(25, 50, 0.1);
+  for (StampedPose& pose : after_gap.poses) pose.T_w_f.p.x() += 1.0;
+  est.poses.insert(est.poses.end(), after_gap.poses.begin(), after_gap.poses.end());
+  // Starts at 19.1 .. 19.9 s are paired with 20.0 s, less than 1 s later; 20.0 s is paired with itself. No
+  // pair crosses the gap, but these shorter pairs lower the mean.
+  const Evaluation tum = evaluate_with("compat:tum", gt, est);
+  EXPECT_NEAR(tum.rpe_m->rmse, 0.0, 1e-9);
+  const Evaluation strict = evaluate_with("strict:se3", gt, est);
+  EXPECT_NEAR(strict.rpe_m->rmse, 0.0, 1e-9);
+  EXPECT_EQ(tum.rpe_m->count - strict.rpe_m->count, 9u);  // 10 around the gap; TUM drops one at the end
+  EXPECT_NEAR(*strict.coverage, 1.0 - 4.0 / 50.0, 1e-9);  // no valid pose from 21 to 25 s
+  EXPECT_GT(strict.ate_m->rmse, 0.1);                     // the jump affects the ATE
+  ASSERT_EQ(strict.lost.size(), 1u);
+  EXPECT_NEAR(to_seconds(strict.lost[0].begin), 21.0, 1e-9);
+}
+
+TEST(LostTracking, ARunThatEndsEarlyHasASmallErrorAndASmallCoverage) {
+  const Trajectory gt = circle(0, 50, 0.01);
+  Trajectory whole = circle(0, 50, 0.1);
+  add_drift(whole, 5.0);
+  Trajectory lost = circle(0, 5, 0.1);
+  // By its ATE alone the lost run would be the better one.
+  EXPECT_LT(evaluate_with("compat:tum", gt, lost).ate_m->rmse,
+            0.01 * evaluate_with("compat:tum", gt, whole).ate_m->rmse);
+  EXPECT_NEAR(*evaluate_with("strict:se3", gt, lost).coverage, 6.0 / 50.0,
+              1e-9);  // 5 s, and 1 s validity of the last pose
+  EXPECT_NEAR(*evaluate_with("strict:se3", gt, whole).coverage, 1.0, 1e-9);
+}
+
+TEST(StrictProtocol, RejectsAnUndeterminedAlignment) {
+  Trajectory line;
+  for (int i = 0; i < 20; ++i)
+    line.poses.push_back({Timestamp{i * 100'000'000LL}, Pose{.p = {0.1 * i, 0, 0}}});
+  EXPECT_THROW(static_cast<void>(evaluate_with("strict:se3", line, line)), std::runtime_error);
+  EXPECT_NO_THROW(static_cast<void>(evaluate_with("strict:first_pose", line, line)));
+  EXPECT_NO_THROW(static_cast<void>(evaluate_with("compat:tum", line, line)));
+}
+
+TEST(Protocols, HaveADescriptionAndAVersion) {
+  for (const Protocol& protocol : protocols()) {
+    EXPECT_GT(protocol.text.size(), 100u) << protocol.name;
+    EXPECT_GE(protocol.version, 1) << protocol.name;
+  }
+  EXPECT_THROW(static_cast<void>(evaluate_with("compat:none", {}, {})), std::runtime_error);
+}
+
+TEST(Protocols, HaveNoErrorsForEmptyInput) {
+  for (const Protocol& protocol : protocols()) {
+    const Evaluation empty = evaluate_with(protocol.name, circle(0, 1, 0.1), {});
+    EXPECT_FALSE(empty.ate_m) << protocol.name;
+    EXPECT_FALSE(empty.rpe_m) << protocol.name;
+    const Evaluation without_gt = evaluate_with(protocol.name, {}, circle(0, 1, 0.1));
+    EXPECT_FALSE(without_gt.ate_m) << protocol.name;
+    EXPECT_FALSE(without_gt.coverage) << protocol.name;
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint::eval

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/process/child_process.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "bench/process/machine_load.h"
+#include "bench/process/process_pool.h"
+
+namespace stillpoint::bench {
+namespace {
+
+ProcessSpec shell(const std::string& script) { return {.program = "sh", .arguments = {"-c", script}}; }
+
+TEST(ChildProcess, ReportsExitCodeAndMessages) {
+  const ProcessResult end = run_process(shell("echo first >&2; echo last words >&2; exit 5"));
+  EXPECT_EQ(end.exit_code, 5);
+  EXPECT_EQ(end.signal, 0);
+  EXPECT_EQ(last_line(end.messages), "last words");
+}
+
+TEST(ChildProcess, ReportsTheTerminatingSignal) {
+  EXPECT_EQ(run_process(shell("kill -ABRT $$")).signal, SIGABRT);
+}
+
+TEST(ChildProcess, ReportsAProgramThatCannotBeStarted) {
+  const ProcessResult end = run_process({.program = "no_such_program"});
+  EXPECT_EQ(end.exit_code, 127);
+  EXPECT_EQ(last_line(end.messages), "cannot be started");
+}
+
+TEST(ChildProcess, PassesOnlyTheGivenEnvironment) {
+  ProcessSpec spec = shell("echo \"$COLOUR$HOME\" >&2");
+  spec.environment = {"COLOUR=red", "PATH=/usr/bin:/bin"};
+  EXPECT_EQ(last_line(run_process(spec).messages), "red");
+}
+
+TEST(ChildProcess, StartsInTheGivenFolder) {
+  ProcessSpec spec = shell("pwd >&2");
+  spec.folder = "/usr";
+  EXPECT_EQ(last_line(run_process(spec).messages), "/usr");
+  spec.folder = "/no/such/folder";
+  EXPECT_EQ(run_process(spec).exit_code, 127);
+}
+
+TEST(ChildProcess, FixedAddressesMakeTheMemoryLayoutReproducible) {
+  ProcessSpec spec = shell("read -r map </proc/self/maps; echo \"$map\" >&2");
+  spec.fixed_addresses = true;
+  EXPECT_EQ(run_process(spec).messages, run_process(spec).messages);
+}
+
+TEST(ChildProcess, KillsAProcessAtItsTimeLimit) {
+  ProcessSpec spec = shell("exec tail -f /dev/null");
+  spec.time_limit_s = 0.05;
+  const ProcessResult end = run_process(spec);
+  EXPECT_TRUE(end.timed_out);
+  EXPECT_EQ(end.signal, SIGKILL);
+  EXPECT_GE(end.wall_s, 0.05);
+}
+
+TEST(ChildProcess, MeasuresProcessorTimeAndMemory) {
+  const ProcessResult end = run_process(shell("i=0; while [ $i -lt 20000 ]; do i=$((i+1)); done"));
+  EXPECT_GT(end.user_s + end.system_s, 0.0);
+  EXPECT_GT(end.peak_memory_bytes, 100'000);
+}
+
+TEST(ProcessPool, ReturnsEveryResultWithItsTag) {
+  ProcessPool pool({});
+  for (std::size_t tag = 0; tag < 3; ++tag) pool.start(tag, shell("exit " + std::to_string(tag)));
+  for (int i = 0; i < 3; ++i) {
+    const auto ended = pool.wait_next();
+    ASSERT_TRUE(ended);
+    EXPECT_EQ(static_cast<std::size_t>(ended->second.exit_code), ended->first);
+  }
+  EXPECT_FALSE(pool.wait_next());
+}
+
+TEST(ProcessPool, TerminatesItsChildrenOnRequest) {
+  ProcessPool pool([] { return true; });
+  pool.start(0, shell("exec tail -f /dev/null"));
+  EXPECT_EQ(pool.wait_next()->second.signal, SIGTERM);
+}
+
+TEST(MachineLoad, CountsAllColumnsButIdleAndIowaitAsBusy) {
+  // user 10, nice 1, system 5, idle 100, iowait 20, irq 2, softirq 3, steal 4; guest time is within user.
+  const MachineLoad load = parse_machine_load("cpu  10 1 5 100 20 2 3 4 7 0\ncpu0 ...");
+  EXPECT_EQ(load.busy, 25);
+  EXPECT_EQ(load.total, 145);
+}
+
+TEST(MachineLoad, DetectsLoadFromOtherProcesses) {
+  std::vector<Metric> metrics;
+  append_load(metrics, {.busy = 0, .total = 0}, {.busy = 60, .total = 200},
+              0.1);  // 10 ticks of the process itself
+  ASSERT_EQ(metrics.size(), 2u);
+  EXPECT_NEAR(metrics[0].value, 0.25, 1e-12);
+  EXPECT_EQ(metrics[1].value, 0.0);
+}
+
+}  // namespace
+}  // namespace stillpoint::bench

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/systems/published_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint::bench {
+namespace {
+
+double value_of(const std::string& table, const std::string& system, const std::string& source,
+                const std::string& column) {
+  for (const PublishedRow& row : load_published(table).rows) {
+    if (row.system == system && row.source == source) return row.values.at(column);
+  }
+  return -1.0;
+}
+
+TEST(PublishedTable, EveryEmbeddedTableHasComparabilityNotes) {
+  EXPECT_GE(published_names().size(), 14u);
+  for (const std::string& name : published_names()) {
+    const PublishedTable table = load_published(name);
+    EXPECT_EQ(table.name, name);
+    EXPECT_FALSE(table.comparability.empty()) << name;
+    EXPECT_FALSE(table.alignment.empty()) << name;
+    EXPECT_FALSE(table.rows.empty()) << name;
+  }
+}
+
+// From the paper's Tables I, II and III.
+TEST(PublishedTable, ContainsTheNumbersOfThePaper) {
+  EXPECT_EQ(value_of("tum_fr3_ate", "Dynamic-VINS (VO)", "paper", "walking_xyz"), 0.0486);
+  EXPECT_EQ(value_of("tum_fr3_rpe_rot", "Dynamic-VINS (VO)", "paper", "walking_halfsphere"), 5.2116);
+  EXPECT_EQ(value_of("tum_fr3_ablation_ate", "Dynamic-VINS wo_mcc", "paper", "walking_rpy"), 0.1236);
+  EXPECT_EQ(value_of("runtime_market", "Dynamic-VINS on Jetson AGX Xavier", "paper", "tracking_thread"),
+            5.5416);
+}
+
+TEST(PublishedTable, SeparatesSim3AlignedFromRigidlyAlignedNumbers) {
+  const PublishedTable table = load_published("tum_fr3_ate_sim3");
+  EXPECT_NE(table.alignment.find("scale"), std::string::npos);
+  const PublishedTable rigid = load_published("tum_fr3_ate");
+  EXPECT_TRUE(std::none_of(rigid.rows.begin(), rigid.rows.end(),
+                           [](const PublishedRow& row) { return row.system == "WildGS-SLAM"; }));
+}
+
+TEST(PublishedTable, RejectsANumberWithoutItsSource) {
+  const TemporaryFolder folder;
+  const std::string head = "title = \"t\"\nmetric = \"m\"\nunit = \"\"\nalignment = \"rigid\"\n";
+  const auto file =
+      folder.write("p.toml", head + "[[row]]\nsystem = \"s\"\nsource = \"A\"\nvalues = {a = 1}\n");
+  expect_input_error([&] { static_cast<void>(load_published(file.string())); }, {"p.toml:5: source \"A\""});
+  const auto text =
+      folder.write("q.toml", head + "[[row]]\nsystem = \"s\"\nsource = \"A\"\nvalues = {a = \"1\"}\n");
+  expect_input_error([&] { static_cast<void>(load_published(text.string())); },
+                     {"q.toml:8: \"a\" must be a number"});
+}
+
+}  // namespace
+}  // namespace stillpoint::bench

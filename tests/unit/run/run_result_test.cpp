@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run/run_result.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/record/result_values.h"
+#include "bench/record/run_files.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr int kFrames = 60;
+constexpr double kFrameInterval_s = 0.1;
+
+Pose at_x(double x) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0)}; }
+
+/// Frames every 0.1 s; ground truth at 1 m/s along x, of a frame 2 m beside the camera.
+datasets::SequenceInfo straight_sequence() {
+  datasets::SequenceInfo info;
+  info.name = "straight";
+  info.ground_truth.T_c_f = {Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 2.0, 0.0)};
+  for (int i = 0; i < kFrames; ++i) {
+    const Timestamp t = from_seconds(i * kFrameInterval_s);
+    info.frame_times.push_back(t);
+    info.ground_truth.trajectory.poses.push_back({t, at_x(i * kFrameInterval_s)});
+  }
+  return info;
+}
+
+/// The exact camera trajectory over the first `frames` frames.
+OdometryRun perfect_run(const datasets::SequenceInfo& info, int frames) {
+  OdometryRun run;
+  run.trajectory.frame = "camera";
+  run.frames_planned = kFrames;
+  run.summary.frames = static_cast<std::size_t>(frames);
+  const Pose T_f_c = info.ground_truth.T_c_f.inverse();
+  for (int i = 0; i < frames; ++i) {
+    const StampedPose& truth = info.ground_truth.trajectory.poses[static_cast<std::size_t>(i)];
+    run.trajectory.poses.push_back({truth.t, truth.T_w_f * T_f_c});
+  }
+  return run;
+}
+
+TEST(RunResult, IsScoredAgainstTheGroundTruthOfTheCamera) {
+  const datasets::SequenceInfo info = straight_sequence();
+  const RunResult result = score_run(info, perfect_run(info, kFrames));
+  EXPECT_EQ(result.status, RunStatus::kOk);
+  EXPECT_NEAR(result.score.ate_rmse_m.value(), 0.0, 1e-9);
+  EXPECT_NEAR(result.score.rpe_trans_rmse_m_per_s.value(), 0.0, 1e-9);
+  EXPECT_DOUBLE_EQ(result.score.coverage.value(), 1.0);
+  EXPECT_NEAR(result.score.correct_rate.value(), 1.0, 1e-9);
+}
+
+TEST(RunResult, OfAnInterruptedRunIsMarkedAndScoredOnProcessedFrames) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, 30);
+  run.summary.interrupted = true;
+  const RunResult result = score_run(info, std::move(run));
+  EXPECT_EQ(result.status, RunStatus::kInterrupted);
+  EXPECT_EQ(result.failure, "interrupted after 30 of 60 frames");
+  EXPECT_DOUBLE_EQ(result.score.coverage.value(), 1.0);
+  EXPECT_NEAR(result.score.correct_rate.value(), 1.0, 1e-9);
+  EXPECT_TRUE(trajectory_text(result).starts_with("# partial: interrupted after 30 of 60 frames\n"));
+}
+
+TEST(RunResult, OfARunWithoutPosesIsFailedWithAReason) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run;
+  run.frames_planned = kFrames;
+  run.summary.frames = kFrames;
+  const RunResult result = score_run(info, std::move(run));
+  EXPECT_EQ(result.status, RunStatus::kFailed);
+  EXPECT_FALSE(result.failure.empty());
+  EXPECT_FALSE(result.score.ate_rmse_m.has_value());
+}
+
+TEST(RunResult, IsConvertedFromJsonToMetricsAndCosts) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  run.trajectory.poses.erase(run.trajectory.poses.begin(), run.trajectory.poses.begin() + 15);
+  run.timings.add(Module::kWindowSolve, {.ns = 2'500'000, .calls = 1});
+  run.timings.add(Module::kTrackingThread, {.ns = 1'500'000, .calls = 1});
+  const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, std::move(run))));
+  const StoredRun read{.metrics = score_metrics(json), .costs = module_costs(json["timings"])};
+  EXPECT_DOUBLE_EQ(metric_value(read, "coverage").value(), 0.75);      // 45 of 60
+  EXPECT_NEAR(metric_value(read, "first_pose_s").value(), 1.5, 1e-9);  // 15 frames of 0.1 s
+  EXPECT_FALSE(metric_value(read, "no_such_number").has_value());
+  ASSERT_EQ(read.costs.size(), 2u);
+  EXPECT_EQ(read.costs[0].module, "window_solve");
+  EXPECT_EQ(read.costs[0].per, "call");
+  EXPECT_DOUBLE_EQ(read.costs[0].mean_ms, 2.5);
+  EXPECT_EQ(read.costs[1].module, "tracking_thread");
+  EXPECT_EQ(read.costs[1].per, "frame");
+}
+
+}  // namespace
+}  // namespace stillpoint::bench
