@@ -40,12 +40,14 @@ void replay(const std::vector<Item>& items, const Pass& pass, TimeOf time_of, Ap
   }
 }
 
-void replay_boxes(const std::vector<DetectionSet>& boxes, const Pass& pass, std::vector<DetectionSet>& out) {
+std::vector<DetectionSet> replayed_boxes(const std::vector<DetectionSet>& boxes, const Pass& pass) {
+  std::vector<DetectionSet> out;
   const auto time_of = [](const DetectionSet& set) { return set.t; };
   replay(boxes, pass, time_of, [&](DetectionSet set, Timestamp t) {
     set.t = t;
     out.push_back(std::move(set));
   });
+  return out;
 }
 
 class PingPongStream final : public SensorStream {
@@ -96,8 +98,10 @@ class PingPongStream final : public SensorStream {
            [&](const StampedPose& pose, Timestamp t) {
              info_.ground_truth.trajectory.poses.push_back({t, pose.T_w_f});
            });
-    replay_boxes(source.detections, pass, info_.detections);
-    replay_boxes(source.true_boxes, pass, info_.true_boxes);
+    for (DetectionSet& set : replayed_boxes(source.detections, pass))
+      info_.detections.push_back(std::move(set));
+    for (DetectionSet& set : replayed_boxes(source.true_boxes, pass))
+      info_.true_boxes.push_back(std::move(set));
   }
 
   std::unique_ptr<SensorStream> stream_;

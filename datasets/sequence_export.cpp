@@ -3,29 +3,18 @@
 
 #include <unistd.h>
 
-#include <fstream>
 #include <functional>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
 #include "datasets/io/image_io.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::datasets {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string seconds_text(Timestamp t) {
-  return fmt::format("{}.{:09}", t.ns / 1'000'000'000, t.ns % 1'000'000'000);
-}
-
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw InputError(file.string(), "cannot be written; free disk space or choose another folder");
-}
 
 /// Calls `fill` on a temporary folder, then renames it to `folder`.
 void write_atomically(const fs::path& folder, const std::function<void(const fs::path&)>& fill) {
@@ -89,30 +78,30 @@ void write_tum_images(const SensorStream& stream, const fs::path& folder) {
   std::string depths;
   for (std::size_t i = 0; i < stream.info().frame_times.size(); ++i) {
     const Frame frame = stream.load_frame(i);
-    const std::string stamp = seconds_text(frame.t);
+    const std::string stamp = eval::format_stamp(frame.t);
     write_png(folder / "rgb" / (stamp + ".png"), frame.color.empty() ? frame.gray : frame.color);
     colors += fmt::format("{0} rgb/{0}.png\n", stamp);
     if (frame.depth.empty()) continue;
     write_png(folder / "depth" / (stamp + ".png"), frame.depth);
     depths += fmt::format("{0} depth/{0}.png\n", stamp);
   }
-  write_text(folder / "rgb.txt", colors);
-  write_text(folder / "depth.txt", depths);
+  eval::write_text_file(folder / "rgb.txt", colors);
+  eval::write_text_file(folder / "depth.txt", depths);
 }
 
 void write_tum_texts(const SequenceInfo& info, const fs::path& folder) {
-  write_text(folder / "rig.toml", rig_text(info.rig));
+  eval::write_text_file(folder / "rig.toml", rig_text(info.rig));
   std::string poses = "# timestamp tx ty tz qx qy qz qw (camera in world)\n";
   const Pose T_f_c = info.ground_truth.T_c_f.inverse();
   for (const StampedPose& pose : info.ground_truth.trajectory.poses) {
-    poses += seconds_text(pose.t) + " " + pose_text(pose.T_w_f * T_f_c) + "\n";
+    poses += eval::format_stamp(pose.t) + " " + pose_text(pose.T_w_f * T_f_c) + "\n";
   }
-  if (!info.ground_truth.trajectory.poses.empty()) write_text(folder / "groundtruth.txt", poses);
+  if (!info.ground_truth.trajectory.poses.empty()) eval::write_text_file(folder / "groundtruth.txt", poses);
   if (info.imu.empty()) return;
   std::string samples = "# timestamp wx wy wz ax ay az\n";
   for (const ImuSample& sample : info.imu)
-    samples += seconds_text(sample.t) + " " + imu_row(sample, ' ') + "\n";
-  write_text(folder / "imu.txt", samples);
+    samples += eval::format_stamp(sample.t) + " " + imu_row(sample, ' ') + "\n";
+  eval::write_text_file(folder / "imu.txt", samples);
 }
 
 void write_euroc_images(const SensorStream& stream, const fs::path& folder) {
@@ -123,19 +112,20 @@ void write_euroc_images(const SensorStream& stream, const fs::path& folder) {
     write_png(folder / "data" / fmt::format("{}.png", frame.t.ns), frame.gray);
     list += fmt::format("{0},{0}.png\n", frame.t.ns);
   }
-  write_text(folder / "data.csv", list);
+  eval::write_text_file(folder / "data.csv", list);
 }
 
 void write_euroc_sensors(const Rig& rig, const fs::path& mav) {
   const Camera& camera = rig.camera;
-  write_text(mav / "cam0" / "sensor.yaml",
-             fmt::format(
-                 "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: {}\nresolution: [{}, {}]\n"
-                 "camera_model: pinhole\nintrinsics: {}\ndistortion_model: {}\n"
-                 "distortion_coefficients: [{:.17g}]\n",
-                 matrix_text(rig.T_b_c), camera.width, camera.height, camera_list(camera), model_text(camera),
-                 fmt::join(camera.distortion.begin(), camera.distortion.begin() + 4, ", ")));
-  write_text(
+  eval::write_text_file(
+      mav / "cam0" / "sensor.yaml",
+      fmt::format("sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: {}\nresolution: [{}, {}]\n"
+                  "camera_model: pinhole\nintrinsics: {}\ndistortion_model: {}\n"
+                  "distortion_coefficients: [{:.17g}]\n",
+                  matrix_text(rig.T_b_c), camera.width, camera.height, camera_list(camera),
+                  model_text(camera),
+                  fmt::join(camera.distortion.begin(), camera.distortion.begin() + 4, ", ")));
+  eval::write_text_file(
       mav / "imu0" / "sensor.yaml",
       fmt::format(
           "sensor_type: imu\nT_BS:\n  cols: 4\n  rows: 4\n  data: {}\ngyroscope_noise_density: {:.17g}\n"
@@ -151,7 +141,7 @@ void write_euroc_texts(const SequenceInfo& info, const fs::path& mav) {
   std::string samples = "#timestamp [ns],w_x,w_y,w_z [rad s^-1],a_x,a_y,a_z [m s^-2]\n";
   for (const ImuSample& sample : info.imu)
     samples += fmt::format("{},{}\n", sample.t.ns, imu_row(sample, ','));
-  write_text(mav / "imu0" / "data.csv", samples);
+  eval::write_text_file(mav / "imu0" / "data.csv", samples);
   if (info.ground_truth.trajectory.poses.empty()) return;
   const fs::path truth = mav / "state_groundtruth_estimate0";
   fs::create_directories(truth);
@@ -163,8 +153,9 @@ void write_euroc_texts(const SequenceInfo& info, const fs::path& mav) {
                          T_w_b.p.x(), T_w_b.p.y(), T_w_b.p.z(), T_w_b.q.w(), T_w_b.q.x(), T_w_b.q.y(),
                          T_w_b.q.z());
   }
-  write_text(truth / "data.csv", poses);
-  write_text(truth / "sensor.yaml", "T_BS:\n  cols: 4\n  rows: 4\n  data: " + matrix_text(Pose{}) + "\n");
+  eval::write_text_file(truth / "data.csv", poses);
+  eval::write_text_file(truth / "sensor.yaml",
+                        "T_BS:\n  cols: 4\n  rows: 4\n  data: " + matrix_text(Pose{}) + "\n");
 }
 
 }  // namespace

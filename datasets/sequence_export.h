@@ -10,6 +10,7 @@ namespace stillpoint::datasets {
 
 /// TUM RGB-D: rgb/ and depth/ with their lists, groundtruth.txt (camera in world), imu.txt (`t wx wy wz ax ay
 /// az`) if there is an IMU, rig.toml with the calibration. Frames without color are written as gray images.
+/// @param stream every frame is decoded
 /// @param folder created atomically: it exists only once it is complete
 /// @throws InputError if it cannot be written, or an image cannot be read
 void export_tum(const SensorStream& stream, const std::filesystem::path& folder);

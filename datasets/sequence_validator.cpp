@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "core/base/error.h"
-#include "datasets/sequence_content.h"
+#include "datasets/read_sequence.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -36,14 +37,28 @@ Finding parse_finding(const std::string& message) {
       .severity = Severity::kError, .location = message.substr(0, colon), .text = message.substr(colon + 2)};
 }
 
-void warn(CheckReport& report, const std::string& location, const std::string& text) {
-  report.findings.push_back(Finding{.severity = Severity::kWarning, .location = location, .text = text});
+Finding warning(const std::string& location, const std::string& text) {
+  return {.severity = Severity::kWarning, .location = location, .text = text};
 }
 
-/// Adds the summary of one stream, and a finding if it has gaps.
-void summarize(const std::string& name, const std::vector<Timestamp>& times, Timestamp origin,
-               CheckReport& report) {
-  if (times.empty()) return;
+template <class Item>
+void append(std::vector<Item>& all, const std::vector<Item>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// `report` with the results of one check, which are in `part`.
+CheckReport joined(CheckReport report, const CheckReport& part) {
+  append(report.streams, part.streams);
+  append(report.notes, part.notes);
+  append(report.findings, part.findings);
+  if (part.depth_offset_s != 0.0) report.depth_offset_s = part.depth_offset_s;
+  return report;
+}
+
+/// The summary of one stream, and a finding if it has gaps.
+CheckReport summarize(const std::string& name, const std::vector<Timestamp>& times, Timestamp origin) {
+  CheckReport report;
+  if (times.empty()) return report;
   StreamSummary summary{.name = name,
                         .count = times.size(),
                         .first_s = seconds_between(origin, times.front()),
@@ -60,14 +75,15 @@ void summarize(const std::string& name, const std::vector<Timestamp>& times, Tim
     summary.longest_gap_s = *longest;
     if (gaps > 0) {
       const std::size_t index = static_cast<std::size_t>(longest - intervals.begin());
-      warn(report, name,
-           fmt::format(
-               "{} gap(s) longer than {} median intervals; the longest ({:.3f} s) starts {:.3f} s after "
-               "the first image",
-               gaps, kGapIntervals, *longest, seconds_between(origin, times[index])));
+      report.findings.push_back(warning(
+          name, fmt::format(
+                    "{} gap(s) longer than {} median intervals; the longest ({:.3f} s) starts {:.3f} s after "
+                    "the first image",
+                    gaps, kGapIntervals, *longest, seconds_between(origin, times[index]))));
     }
   }
   report.streams.push_back(summary);
+  return report;
 }
 
 template <class Sample>
@@ -78,21 +94,25 @@ std::vector<Timestamp> stamps(const std::vector<Sample>& samples) {
   return times;
 }
 
-void check_imu(const SequenceInfo& info, CheckReport& report) {
-  if (info.imu.empty()) return;
+CheckReport check_imu(const SequenceInfo& info) {
+  CheckReport report;
+  if (info.imu.empty()) return report;
   const auto outside = std::count_if(info.frame_times.begin(), info.frame_times.end(), [&](Timestamp t) {
     return t < info.imu.front().t || t > info.imu.back().t;
   });
   if (outside > 0) {
-    warn(report, "imu", fmt::format("does not cover {} of {} images", outside, info.frame_times.size()));
+    report.findings.push_back(
+        warning("imu", fmt::format("does not cover {} of {} images", outside, info.frame_times.size())));
   }
   double sum = 0.0;
   for (const ImuSample& sample : info.imu) sum += sample.accel_b.norm();
   const double mean = sum / static_cast<double>(info.imu.size());
   if (mean < kMinMeanAccel || mean > kMaxMeanAccel) {
-    warn(report, "imu",
-         fmt::format("the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2?", mean));
+    report.findings.push_back(warning(
+        "imu",
+        fmt::format("the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2?", mean)));
   }
+  return report;
 }
 
 /// Whether a ground-truth pose lies within `kMaxTruthDistance_s` of time `t`.
@@ -103,11 +123,12 @@ bool is_covered(const std::vector<StampedPose>& poses, Timestamp t) {
   return by_next || (next != poses.begin() && seconds_between(std::prev(next)->t, t) <= kMaxTruthDistance_s);
 }
 
-void check_ground_truth(const SequenceInfo& info, CheckReport& report) {
+CheckReport check_ground_truth(const SequenceInfo& info) {
+  CheckReport report;
   const std::vector<StampedPose>& poses = info.ground_truth.trajectory.poses;
   if (poses.empty()) {
-    report.notes.push_back("no ground truth");
-    return;
+    report.notes.emplace_back("no ground truth");
+    return report;
   }
   const auto covered = std::count_if(info.frame_times.begin(), info.frame_times.end(),
                                      [&](Timestamp t) { return is_covered(poses, t); });
@@ -115,28 +136,33 @@ void check_ground_truth(const SequenceInfo& info, CheckReport& report) {
   report.notes.push_back(fmt::format("ground truth of \"{}\" covers {:.1f} % of the images",
                                      info.ground_truth.trajectory.frame, 100.0 * coverage));
   if (coverage < kMinTruthCoverage) {
-    warn(report, "ground truth", fmt::format("covers {} of {} images", covered, info.frame_times.size()));
+    report.findings.push_back(
+        warning("ground truth", fmt::format("covers {} of {} images", covered, info.frame_times.size())));
   }
+  return report;
 }
 
-void check_depth_offset(const SequenceContent& content, CheckReport& report) {
+CheckReport check_depth_offset(const SequenceContent& content) {
+  CheckReport report;
   std::vector<double> offsets;
   for (const FrameFiles& files : content.frame_files) {
     if (!files.depth.empty()) offsets.push_back(files.depth_offset_s);
   }
   if (offsets.empty()) {
-    report.notes.push_back("no depth");
-    return;
+    report.notes.emplace_back("no depth");
+    return report;
   }
   report.depth_offset_s = median(offsets);
   if (std::abs(report.depth_offset_s) > kMaxDepthOffset_s) {
-    warn(report, "depth",
-         fmt::format("lags its color image by {:.1f} ms (median)", 1e3 * report.depth_offset_s));
+    report.findings.push_back(warning(
+        "depth", fmt::format("lags its color image by {:.1f} ms (median)", 1e3 * report.depth_offset_s)));
   }
+  return report;
 }
 
 /// Decodes every image.
-void check_images(const SequenceContent& content, const CheckOptions& options, CheckReport& report) {
+CheckReport check_images(const SequenceContent& content, const CheckOptions& options) {
+  CheckReport report;
   const std::size_t total = content.frame_files.size();
   for (std::size_t i = 0; i < total; ++i) {
     try {
@@ -144,13 +170,14 @@ void check_images(const SequenceContent& content, const CheckOptions& options, C
       const auto measured = [](std::uint16_t raw) { return raw != 0; };
       if (!frame.depth.empty() &&
           std::none_of(frame.depth.begin<std::uint16_t>(), frame.depth.end<std::uint16_t>(), measured)) {
-        warn(report, content.frame_files[i].depth.string(), "has no measured depth");
+        report.findings.push_back(warning(content.frame_files[i].depth.string(), "has no measured depth"));
       }
     } catch (const InputError& error) {
       report.findings.push_back(parse_finding(error.what()));
     }
     if (options.progress) options.progress(i + 1, total);
   }
+  return report;
 }
 
 /// The file of a location, without its line.
@@ -169,16 +196,16 @@ CheckReport check_sequence(const std::filesystem::path& folder, const CheckOptio
   for (const std::string& message : faults.messages()) report.findings.push_back(parse_finding(message));
 
   const Timestamp origin = info.frame_times.front();
-  summarize("images", info.frame_times, origin, report);
-  summarize("imu", stamps(info.imu), origin, report);
-  summarize("ground truth", stamps(info.ground_truth.trajectory.poses), origin, report);
+  std::vector<CheckReport> parts{
+      summarize("images", info.frame_times, origin), summarize("imu", stamps(info.imu), origin),
+      summarize("ground truth", stamps(info.ground_truth.trajectory.poses), origin)};
   if (!info.detections.empty()) {
-    report.notes.push_back(fmt::format("recorded detections for {} timestamps", info.detections.size()));
+    parts.emplace_back().notes.push_back(
+        fmt::format("recorded detections for {} timestamps", info.detections.size()));
   }
-  check_depth_offset(content, report);
-  check_imu(info, report);
-  check_ground_truth(info, report);
-  check_images(content, options, report);
+  append(parts, {check_depth_offset(content), check_imu(info), check_ground_truth(info),
+                 check_images(content, options)});
+  for (const CheckReport& part : parts) report = joined(std::move(report), part);
   return report;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/sensor_stream.h"
+#include "datasets/open_sequence.h"
 
 namespace stillpoint::datasets {
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The summary metrics of a run: ATE, RPE, correct rate, coverage. They are what the result file contains.
+/// Scores a run with the default protocols: ATE, RPE, correct rate, coverage. The metrics of a result file
+/// are computed from it, see bench/model/metrics.h.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <vector>
 
+#include "eval/metrics/ate.h"
 #include "eval/metrics/coverage.h"
+#include "eval/metrics/rpe.h"
 
 namespace stillpoint::eval {
 
@@ -25,19 +28,18 @@ struct ScoreOptions {
 
 /// nullopt means "n/a": there is no data for the metric. A run without poses has the correct rate 0.
 struct Score {
-  std::optional<double> ate_rmse_m;              ///< TUM: 20 ms, one-to-one, SE(3) alignment
-  std::optional<double> rpe_trans_rmse_m_per_s;  ///< TUM: fixed delta of 1 s
-  std::optional<double> rpe_rot_rmse_deg_per_s;
+  std::optional<AteResult> ate;  ///< TUM: 20 ms, one-to-one, SE(3) alignment
+  std::optional<RpeResult> rpe;  ///< TUM: errors over `rpe_delta_s`, fixed delta
+  double rpe_delta_s = 1.0;
   std::optional<double> correct_rate;
   std::optional<double> coverage;      ///< fraction of the expected frames with a pose
   std::optional<double> first_pose_s;  ///< time from the first frame to the first pose
-  std::size_t ate_pairs = 0;
-  std::size_t rpe_pairs = 0;
-  std::size_t poses = 0;  ///< of the estimate
+  std::size_t poses = 0;               ///< of the estimate
 };
 
 /// @param gt, est poses of the same body frame (see `move_to_frame`) with strictly increasing stamps; either
 /// may be empty
+/// @param options the defaults give the metrics of the result file
 [[nodiscard]] Score score(const Trajectory& gt, const Trajectory& est, const ScoreOptions& options = {});
 
 }  // namespace stillpoint::eval

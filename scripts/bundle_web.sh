@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Makes reports/web/vendor/d3-flamegraph.iife.min.js and its licences anew from npm. Only for who changes a version
-# in reports/web/vendor/package.json: the bundle is checked in, and nobody else needs npm.
+# in reports/web/vendor/package.json: the bundle is checked in, and npm is needed only to rebuild it.
 #   scripts/bundle_web.sh
 set -euo pipefail
 vendor="$(cd "$(dirname "${BASH_SOURCE[0]}")/../reports/web/vendor" && pwd)"

@@ -1,55 +1,159 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Checks every #include against the layers of ARCHITECTURE.md: who may include whom, and where each library from
-# outside may be seen. Prints each violation as file:line; exit 1 if there is one.
+# Checks every #include against the layers of ARCHITECTURE.md: which folder may include which, and which files may
+# include each external library. Prints each violation as file:line; exit 1 if there is one.
 #   scripts/layers.sh [ROOT]
 set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 
-# module -> the modules it may include, besides itself. "*" stands for the rest of a path.
-below_types="core/base core/geometry core/types"
-declare -A may_include=(
-  [core/base]=""
-  [core/geometry]="core/base"
-  [core/types]="core/base core/geometry"
-  [core/imu]="$below_types"
-  [core/frontend]="$below_types"
-  [core/dynamic]="$below_types"
-  [core/detector]="$below_types"
-  [core/backend]="$below_types core/imu"
-  [core/loop]="$below_types core/backend/factors"
-  [core/pipeline]="core/*"
-  [datasets]="$below_types"
-  [eval]="$below_types"
-  [bench]="core/* datasets eval"
-  [bench/micro]="core/* datasets eval tests/support"
-  [reports]="core/* datasets eval bench"
-  [bench/cli]="core/* datasets eval bench reports"
-)
+# row FOLDER FOLDERS...: the folders that FOLDER may include, besides itself. A folder stands for its own files only, not
+# for its subfolders. A folder without a row must not contain sources.
+declare -A may_include
+row() {
+  local folder="$1"
+  shift
+  may_include[$folder]=" $* "
+}
 
-# header prefix (extended regex) -> the files that may include it (extended regex)
+# --- core ---
+messages="core/base core/geometry core/types"
+common="$messages core/config"
+row core/base
+row core/geometry core/base
+row core/types core/base core/geometry
+row core/config core/base
+row core/imu $common
+row core/frontend/klt $common
+row core/frontend/detect $common
+row core/frontend/outliers $common
+row core/frontend/patch $common core/frontend/klt
+frontend="core/frontend/klt core/frontend/detect core/frontend/outliers core/frontend/patch"
+row core/frontend $common $frontend
+row core/dynamic $common
+row core/detector $common
+row core/backend/factors $common core/imu
+row core/backend/window $common core/imu core/backend/factors
+window="core/imu core/backend/factors core/backend/window"
+row core/backend/solvers $common $window
+row core/backend/start $common $window core/backend/solvers
+row core/backend/marginalization $common $window core/backend/solvers
+backend="$window core/backend/solvers core/backend/start core/backend/marginalization"
+row core/backend $common $backend
+row core/loop $common core/backend/factors
+row core/pipeline $common core/imu core/frontend core/dynamic core/detector core/loop core/backend core/backend/start \
+  core/backend/window
+row core/pipeline/runners $common core/detector core/pipeline
+core="$common core/imu core/frontend $frontend core/dynamic core/detector core/backend $backend core/loop core/pipeline
+  core/pipeline/runners"
+
+# --- eval: no odometry, no datasets ---
+row eval/io $messages
+row eval/trajectory $messages eval/io
+row eval/metrics $messages eval/trajectory
+row eval/statistics $messages eval/metrics
+row eval/compare $messages eval/trajectory eval/metrics
+row eval/openloris $messages eval/io eval/trajectory eval/metrics
+row eval/protocols $messages eval/trajectory eval/metrics eval/openloris
+row eval $messages eval/trajectory eval/metrics
+eval="eval eval/io eval/trajectory eval/metrics eval/statistics eval/compare eval/openloris eval/protocols"
+
+# --- datasets: no odometry ---
+trajectories="eval/io eval/trajectory"
+row datasets/io $messages $trajectories
+row datasets/calibration $messages datasets/io
+row datasets/formats $messages $trajectories datasets/io datasets/calibration
+row datasets $messages $trajectories datasets/io datasets/calibration datasets/formats
+row datasets/synthetic core/base core/geometry
+row datasets/synthetic/materials core/base datasets/synthetic
+row datasets/synthetic/motion $messages $trajectories datasets/io datasets/synthetic
+row datasets/synthetic/render core/base core/geometry datasets/synthetic datasets/synthetic/materials
+scene="core/base core/geometry datasets/synthetic datasets/synthetic/materials datasets/synthetic/motion
+  datasets/synthetic/render"
+row datasets/synthetic/scenes $scene
+row datasets/synthetic/actors $scene datasets/io datasets/synthetic/scenes
+row datasets/synthetic/sensors $scene core/types datasets/synthetic/actors
+row datasets/synthetic/sequence $scene core/types $trajectories datasets/io datasets/synthetic/scenes datasets/synthetic/actors \
+  datasets/synthetic/sensors
+datasets="datasets datasets/io datasets/calibration datasets/formats datasets/synthetic/sequence"
+
+row core/examples $core $eval $datasets
+
+# --- bench: each folder includes those above it ---
+row bench/model $messages eval eval/metrics eval/trajectory
+row bench/config core/base core/config bench/model
+row bench/store core/base core/types eval/io bench/model
+row bench/process core/base bench/model
+row bench/run $common core/pipeline/runners datasets datasets/synthetic/sequence eval eval/metrics eval/trajectory \
+  bench/model bench/config
+row bench/profile/meters core/base bench/model
+row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
+  bench/profile/meters
+row bench/record $common core/pipeline/runners eval eval/io eval/metrics bench/model bench/config bench/run \
+  bench/profile
+row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
+  bench/run bench/profile bench/record
+row bench/plan core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
+  bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
+row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
+row bench/serve core/base bench/record
+row bench/micro $core tests/support
+
+# --- reports ---
+stored="core/base bench/model bench/store bench/analysis"
+row reports/tables $stored eval/statistics bench/systems
+row reports/drawing core/base core/types datasets/io eval/openloris eval/protocols eval/statistics bench/run reports/tables
+row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
+row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
+row reports/page/charts $stored eval/io eval/metrics eval/openloris eval/protocols reports/tables
+row reports/page $stored bench/config bench/profile bench/record bench/systems reports/tables reports/drawing \
+  reports/page/charts
+row reports/dashboard $stored bench/record reports/tables reports/page
+
+# --- the program ---
+row bench/cli core/base bench/record
+execution="core/base bench/cli bench/model bench/config bench/record"
+row bench/cli/run $execution datasets eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
+  bench/plan reports/tables reports/drawing reports/frames
+row bench/cli/data $execution core/detector datasets datasets/io datasets/synthetic/sequence bench/run bench/plan
+row bench/cli/plan $execution bench/store bench/systems bench/plan reports/tables reports/text reports/page
+row bench/cli/analysis $execution eval/io eval/compare eval/openloris bench/store bench/plan bench/analysis \
+  bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
+
+# header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_io\.cpp$'
-  '<embree3/          ^datasets/synthetic/'
-  '<hwy/              ^core/frontend/(fast|patch)_kernel.cpp'
-  '<ceres/            ^core/(backend|loop)/'
-  '<(cholmod|suitesparse/|SuiteSparse)  ^core/(backend|loop)/'
-  '<opencv2/(core|imgproc)[./]  ^core/(types|frontend|dynamic|detector|loop)/|^datasets/|^bench/micro/|^reports/(picture_annotator\.|(raster_drawing|worst_pictures)\.cpp$|video_file\.)'
-  '<opencv2/calib3d[./]  ^core/(frontend|dynamic|detector|loop)/|^core/backend/start/relative_pose\.cpp$'
+  '<embree3/          ^datasets/synthetic/render/'
+  '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
+  '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'
+  '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
+  '<opencv2/core[./]  ^core/(types|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
+  '<opencv2/imgproc[./]  ^core/(frontend|dynamic|detector|loop)/|^datasets/synthetic/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
+  '<opencv2/calib3d[./]  ^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/relative_pose\.cpp$'
+  '<opencv2/dnn[./]   ^core/detector/'
   '<opencv2/videoio[./]  ^reports/frames/video_file\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
   '<(sqlite3|zstd)    ^bench/store/'
-  '<microhttpd       ^bench/serve/'
+  '<microhttpd        ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
-  '<spdlog/           ^bench/'
-  '<toml\+\+/         ^(bench|datasets)/'
-  '<yaml-cpp/         ^datasets/'
-  '<nlohmann/         ^(bench|reports|datasets)/'
+  '<spdlog/           ^bench/cli/'
+  '<toml\+\+/         ^bench/(config|systems)/|^datasets/io/'
+  '<yaml-cpp/         ^datasets/io/'
+  '<nlohmann/         ^(bench|reports)/|^datasets/formats/'
   '<benchmark/        ^bench/micro/'
   '<gtest/            ^$'
-  '<(iostream|print)> ^(bench|reports)/'
-  '<(thread|future|execution)>  ^core/(pipeline|frontend)/|^(datasets|bench|reports)/'
+  '<(iostream|print)> ^bench/cli/|^core/examples/'
 )
+# The files that start threads, or ask for the number of processors.
+threads=(
+  'core/frontend/detect/thread_pool\.(h|cpp)'
+  'core/pipeline/threaded_odometry\.(h|cpp)'
+  'core/pipeline/runners/(pipelined_runner|realtime_runner|pacing_clock)\.(h|cpp)'
+  'datasets/synthetic/sequence/render_sequence\.cpp'
+  'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'
+  'bench/record/host_info\.cpp'
+  'bench/cli/plan/reproduce_command\.cpp'
+)
+libraries+=("<(thread|future|execution)> ^($(IFS='|' && echo "${threads[*]}"))\$")
 
 violations=0
 violation() { # FILE:LINE TEXT
@@ -57,35 +161,13 @@ violation() { # FILE:LINE TEXT
   violations=$((violations + 1))
 }
 
-# module_of PATH -> REPLY; empty for what is in no module
-module_of() {
-  case "$1" in
-    core/*/*) REPLY="${1#core/}" REPLY="core/${REPLY%%/*}" ;;
-    bench/cli/*) REPLY=bench/cli ;;
-    bench/micro/*) REPLY=bench/micro ;;
-    tests/support/*) REPLY=tests/support ;;
-    datasets/* | eval/* | bench/* | reports/*) REPLY="${1%%/*}" ;;
-    *) REPLY="" ;;
-  esac
-}
-
-check_project_include() { # WHERE MODULE TARGET
-  local where="$1" module="$2" target="$3" allowed
-  module_of "$target"
-  local target_module="$REPLY"
-  if [[ -z "$target_module" || ! -e "$target" ]]; then
-    violation "$where" "\"$target\" is no header of the house; write includes from the root of the sources"
-    return
+check_project_include() { # WHERE FOLDER TARGET
+  local target_folder="${3%/*}"
+  if [[ "$3" != */* || ! -e "$3" ]]; then
+    violation "$1" "\"$3\" is no header of the project; write includes from the root of the sources"
+  elif [[ "$target_folder" != "$2" && "${may_include[$2]}" != *" $target_folder "* ]]; then
+    violation "$1" "$2 must not include $target_folder (\"$3\")"
   fi
-  [[ "$target_module" == "$module" ]] && return
-  for allowed in ${may_include[$module]}; do
-    case "$allowed" in
-      *'*') [[ "$target" == "${allowed%\*}"* ]] && return ;;
-      core/*/*) [[ "$target" == "$allowed"/* ]] && return ;;
-      *) [[ "$target_module" == "$allowed" ]] && return ;;
-    esac
-  done
-  violation "$where" "$module must not include $target_module (\"$target\")"
 }
 
 check_library_include() { # WHERE FILE HEADER
@@ -93,23 +175,21 @@ check_library_include() { # WHERE FILE HEADER
   for rule in "${libraries[@]}"; do
     read -r pattern place <<<"$rule"
     [[ "$3" =~ ^$pattern ]] || continue
-    [[ "$2" =~ $place ]] || violation "$1" "$3 is not to be seen here, only in files that match $place"
+    [[ "$2" =~ $place ]] || violation "$1" "$3 must only be included by files that match $place"
     return 0 # the first rule that matches decides
   done
 }
 
-set -f # the tables hold "*"
 while IFS=: read -r file line text; do
-  module_of "$file"
-  module="$REPLY"
-  if [[ -z "${may_include[$module]+known}" ]]; then
-    violation "$file:$line" "module \"$module\" has no row in scripts/layers.sh"
+  folder="${file%/*}"
+  if [[ -z "${may_include[$folder]+known}" ]]; then
+    violation "$file:$line" "folder \"$folder\" has no row in scripts/layers.sh"
     continue
   fi
   header="${text#*include}"
   header="${header#"${header%%[\"<]*}"}" # from the opening mark on
   case "$header" in
-    \"*) header="${header#\"}" && check_project_include "$file:$line" "$module" "${header%%\"*}" ;;
+    \"*) header="${header#\"}" && check_project_include "$file:$line" "$folder" "${header%%\"*}" ;;
     *) check_library_include "$file:$line" "$file" "${header%%>*}>" ;;
   esac
 done < <(grep -rHnE --include='*.h' --include='*.cpp' '^ *# *include' core datasets eval bench reports || true)

@@ -4,6 +4,8 @@
 #   scripts/setup.sh         what building, testing and running need
 #   scripts/setup.sh --dev   also clang-format and clang-tidy, for scripts/check.sh, and valgrind, to count instructions
 #   scripts/setup.sh --pages also a browser and LaTeX, for the tests of pages and tables that are skipped without
+#   scripts/setup.sh --docs  also Doxygen, for scripts/docs.sh
+#   scripts/setup.sh --all   all of these, as CI does: no test is skipped for want of a package
 set -euo pipefail
 
 packages=(
@@ -16,12 +18,19 @@ packages=(
   libfmt-dev libspdlog-dev libcli11-dev
   nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev libmicrohttpd-dev
   libgtest-dev libbenchmark-dev
+  universal-ctags
 )
+dev=(clang-format clang-tidy valgrind)
+pages=(chromium texlive-latex-recommended)
+{ command -v node && command -v npm; } >/dev/null || pages+=(nodejs npm)
+docs=(doxygen)
 case "${1:-}" in
   "") ;;
-  --dev) packages+=(clang-format clang-tidy valgrind) ;;
-  --pages) packages+=(chromium nodejs npm texlive-latex-recommended) ;;
-  *) echo "setup: error: unknown option \"$1\"; the options are --dev and --pages" >&2; exit 2 ;;
+  --dev) packages+=("${dev[@]}") ;;
+  --pages) packages+=("${pages[@]}") ;;
+  --docs) packages+=("${docs[@]}") ;;
+  --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}") ;;
+  *) echo "setup: error: unknown option \"$1\"; the options are --dev, --pages, --docs and --all" >&2; exit 2 ;;
 esac
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }

@@ -81,7 +81,7 @@ std::map<std::string, std::set<std::string>> plans_by_run(const Store& store,
 /// Values of one series, by commit name.
 struct SeriesValues {
   std::string unit;
-  std::optional<MetricRule> rule;
+  const MetricDescriptor* gated = nullptr;
   std::set<std::string> plans;
   std::map<std::string, std::vector<double>> values;
 };
@@ -91,11 +91,6 @@ struct CommitTime {
   std::string first_run;
   std::int64_t first_id = 0;
 };
-
-/// Rule of a metric; a metric of a protocol ("strict:se3/ate_rmse_m") has the rule of the metric.
-std::optional<MetricRule> rule_of(const std::string& metric) {
-  return metric_rule(metric.substr(metric.rfind('/') + 1));
-}
 
 /// Builds the history incrementally from runs.
 class HistoryBuilder {
@@ -108,22 +103,23 @@ class HistoryBuilder {
     const HistorySubject subject{identity.sequence,    identity.variant, identity.axis,  identity.axis_value,
                                  identity.mode,        identity.kind,    identity.cores, identity.seed,
                                  identity.sequence_id, origin.host};
-    const auto value = [&](const std::string& metric, const std::string& unit,
-                           const std::optional<MetricRule>& rule, double number) {
+    const auto value = [&](const std::string& metric, const std::string& unit, const MetricDescriptor* gated,
+                           double number) {
       if (!std::isfinite(number)) return;
       SeriesValues& collected = series_[{subject, metric}];
       collected.unit = unit;
-      collected.rule = rule;
+      collected.gated = gated;
       collected.values[origin.commit].push_back(number);
       if (const auto found = plans_.find(planned_key(identity)); found != plans_.end())
         collected.plans.insert(found->second.begin(), found->second.end());
     };
     const bool is_ok = run.outcome == Outcome::kOk;
-    value(kFailedRuns, "", MetricRule{.name = kFailedRuns}, is_ok ? 0.0 : 1.0);
+    value(std::string(metric_id::kFailedRuns), "", gated_metric(metric_id::kFailedRuns), is_ok ? 0.0 : 1.0);
     if (!is_ok) return;
     for (const Metric& metric : run.metrics)
-      value(metric.name, metric.unit, rule_of(metric.name), metric.value);
-    for (const ModuleCost& cost : run.costs) value(cost.module, "ms", metric_rule("ms"), cost.mean_ms);
+      value(metric.name, metric.unit, gated_metric(without_protocol(metric.name)), metric.value);
+    for (const ModuleCost& cost : run.costs)
+      value(cost.module, "ms", gated_metric(metric_id::kModuleTime), cost.mean_ms);
   }
 
   [[nodiscard]] CommitHistory build() const {
@@ -164,14 +160,15 @@ class HistoryBuilder {
                          .plans = {collected.plans.begin(), collected.plans.end()},
                          .metric = key.second,
                          .unit = collected.unit,
-                         .rule = collected.rule};
+                         .gated = collected.gated};
     std::vector<std::pair<std::size_t, const std::vector<double>*>> ordered;
     for (const auto& [commit, values] : collected.values) ordered.emplace_back(index.at(commit), &values);
     std::sort(ordered.begin(), ordered.end());
     for (const auto& [commit, values] : ordered) {
       series.commits.push_back(commit);
       const auto mean = [](const std::vector<double>& v) { return eval::statistics(v)->mean; };
-      series.values.push_back(series.metric == kFailedRuns ? mean(*values) : *eval::percentile(*values, 0.5));
+      series.values.push_back(series.metric == metric_id::kFailedRuns ? mean(*values)
+                                                                      : *eval::percentile(*values, 0.5));
       series.runs.push_back(values->size());
     }
     return series;

@@ -8,13 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "bench/analysis/metric_rules.h"
+#include "bench/model/metrics.h"
 #include "bench/store/store.h"
 
 namespace stillpoint::bench {
-
-/// Name of the series with the fraction of runs that did not succeed.
-inline constexpr const char* kFailedRuns = "failed_runs";
 
 struct Commit {
   std::string name;  ///< git commit, with "+" and a hash of uncommitted changes if any; else the build name
@@ -42,12 +39,12 @@ struct HistorySubject {
 struct HistorySeries {
   HistorySubject subject;
   std::vector<std::string> plans;  ///< current plans that contain it, for runs of any commit
-  std::string metric;              ///< metric name, module name, or `kFailedRuns`
+  std::string metric;              ///< metric name, module name, or `metric_id::kFailedRuns`
   std::string unit;
-  std::optional<MetricRule> rule;    ///< nullopt: displayed, but not tested
-  std::vector<std::size_t> commits;  ///< indices, ascending; commits without a value are omitted
-  std::vector<double> values;        ///< at `commits`
-  std::vector<std::size_t> runs;     ///< number of runs behind each value
+  const MetricDescriptor* gated = nullptr;  ///< null: displayed, but not tested
+  std::vector<std::size_t> commits;         ///< indices, ascending; commits without a value are omitted
+  std::vector<double> values;               ///< at `commits`
+  std::vector<std::size_t> runs;            ///< number of runs behind each value
 };
 
 struct CommitHistory {

@@ -52,7 +52,7 @@ bool is_bit_equal(const RunPair& pair) {
 
 /// Paired values of one metric on one subject.
 struct Series {
-  MetricRule rule;
+  const MetricDescriptor* metric = nullptr;  ///< with a gate
   std::string unit;
   bool repeatable = true;
   std::vector<eval::Pair> pairs;
@@ -62,38 +62,46 @@ struct Series {
 using SeriesTable = std::map<std::pair<std::string, std::string>, Series>;
 
 /// Repeatable metrics are tested per sequence; the others need all runs of a variant.
-std::string subject_of(const RunIdentity& identity, const MetricRule& rule) {
+std::string subject_of(const RunIdentity& identity, const MetricGate& gate) {
   std::string subject = identity.variant;
   if (!identity.axis.empty()) subject += fmt::format(" {} = {}", identity.axis, identity.axis_value);
-  return rule.repeatable ? subject + " on " + identity.sequence : subject;
+  return gate.repeatable ? subject + " on " + identity.sequence : subject;
 }
 
-void add_metrics(SeriesTable& table, const RunPair& pair, MetricFamily family) {
-  const RunIdentity& identity = pair.base->identity;
-  for (const Metric& metric : pair.base->metrics) {
-    const std::optional<MetricRule> rule = metric_rule(metric.name);
-    const std::optional<double> head = metric_value(*pair.head, metric.name);
-    if (!rule || rule->family != family || !head) continue;
-    Series& series = table[{metric.name, subject_of(identity, *rule)}];
-    series.rule = *rule;
-    series.unit = metric.unit;
-    series.repeatable = rule->repeatable && identity.mode != "realtime";
-    series.pairs.push_back({metric.value, *head});
-  }
-}
-
-void add_costs(SeriesTable& table, const RunPair& pair) {
-  for (const ModuleCost& cost : pair.base->costs) {
-    for (const ModuleCost& other : pair.head->costs) {
-      if (cost.module != other.module) continue;
-      const MetricRule rule = *metric_rule("ms");
-      Series& series = table[{cost.module, subject_of(pair.base->identity, rule)}];
-      series.rule = rule;
-      series.unit = "ms";
-      series.repeatable = false;
-      series.pairs.push_back({cost.mean_ms, other.mean_ms});
+SeriesTable metric_series(const std::vector<RunPair>& pairs, MetricFamily family) {
+  SeriesTable table;
+  for (const RunPair& pair : pairs) {
+    const RunIdentity& identity = pair.base->identity;
+    for (const Metric& stored : pair.base->metrics) {
+      const MetricDescriptor* metric = gated_metric(stored.name);
+      const std::optional<double> head = metric_value(*pair.head, stored.name);
+      if (metric == nullptr || metric->gate->family != family || !head) continue;
+      Series& series = table[{stored.name, subject_of(identity, *metric->gate)}];
+      series.metric = metric;
+      series.unit = stored.unit;
+      series.repeatable = metric->gate->repeatable && identity.mode != "realtime";
+      series.pairs.push_back({stored.value, *head});
     }
   }
+  return table;
+}
+
+SeriesTable module_series(const std::vector<RunPair>& pairs) {
+  const MetricDescriptor* metric = gated_metric(metric_id::kModuleTime);
+  SeriesTable table;
+  for (const RunPair& pair : pairs) {
+    for (const ModuleCost& cost : pair.base->costs) {
+      for (const ModuleCost& other : pair.head->costs) {
+        if (cost.module != other.module) continue;
+        Series& series = table[{cost.module, subject_of(pair.base->identity, *metric->gate)}];
+        series.metric = metric;
+        series.unit = std::string(metric->unit);
+        series.repeatable = metric->gate->repeatable;
+        series.pairs.push_back({cost.mean_ms, other.mean_ms});
+      }
+    }
+  }
+  return table;
 }
 
 std::optional<MetricChange> change_of(const std::pair<std::string, std::string>& name, const Series& series,
@@ -116,7 +124,7 @@ std::optional<MetricChange> change_of(const std::pair<std::string, std::string>&
       .head_median = *eval::percentile(head, 0.5),
       .change = *change,
       .adjusted_interval = eval::relative_change(series.pairs, {.confidence = confidence})->interval};
-  metric_change.result = classify(metric_change, series.rule, series.repeatable);
+  metric_change.result = classify(metric_change, *series.metric, series.repeatable);
   return metric_change;
 }
 
@@ -134,7 +142,11 @@ std::vector<MetricChange> changes_of(const SeriesTable& table) {
   return changes;
 }
 
-void count_outcomes(Comparison& comparison, const std::vector<RunPair>& pairs) {
+bool is_busy(const StoredRun& run) { return metric_value(run, metric_id::kQuiet) == 0.0; }
+
+/// A comparison with the counts of outcomes, without changes.
+Comparison counted_outcomes(const std::vector<RunPair>& pairs) {
+  Comparison comparison{.pairs = pairs.size()};
   std::size_t busy = 0;
   for (const RunPair& pair : pairs) {
     const bool base_ok = pair.base->outcome == Outcome::kOk;
@@ -142,11 +154,12 @@ void count_outcomes(Comparison& comparison, const std::vector<RunPair>& pairs) {
     comparison.newly_failed += base_ok && !head_ok ? 1 : 0;
     comparison.newly_succeeded += !base_ok && head_ok ? 1 : 0;
     comparison.bit_equal += both_ok(pair) && is_bit_equal(pair) ? 1 : 0;
-    busy += metric_value(*pair.head, "quiet") == 0.0 || metric_value(*pair.base, "quiet") == 0.0 ? 1 : 0;
+    busy += is_busy(*pair.base) || is_busy(*pair.head) ? 1 : 0;
   }
   if (busy > 0) {
     comparison.notes.push_back(fmt::format("the machine was busy during {} of {} pairs", busy, pairs.size()));
   }
+  return comparison;
 }
 
 }  // namespace
@@ -165,17 +178,19 @@ std::string change_class_name(ChangeClass change_class) {
   return "";
 }
 
-ChangeClass classify(const MetricChange& change, const MetricRule& rule, bool repeatable) {
-  if (std::abs(change.head_median - change.base_median) < rule.floor) return ChangeClass::kSame;
-  const double sign = rule.larger_is_better ? -1.0 : 1.0;  // so that positive is worse
+ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric, bool repeatable) {
+  const MetricGate& gate = *metric.gate;
+  if (std::abs(change.head_median - change.base_median) < gate.floor) return ChangeClass::kSame;
+  const double sign =
+      metric.direction == MetricDirection::kLargerIsBetter ? -1.0 : 1.0;  // so that positive is worse
   const double median = sign * change.change.median;
   const eval::Interval interval = oriented(change.change.interval, sign);
   const eval::Interval adjusted_interval = oriented(change.adjusted_interval, sign);
   const bool is_equal = interval.low == 0.0 && interval.high == 0.0;
   if (!repeatable && change.change.count < kMinPairs && !is_equal) return ChangeClass::kInconclusive;
-  if (adjusted_interval.low > 0.0 && median >= rule.margin) return ChangeClass::kWorse;
-  if (adjusted_interval.high < 0.0 && median <= -rule.margin) return ChangeClass::kBetter;
-  const bool is_same = interval.low >= -rule.margin && interval.high <= rule.margin;
+  if (adjusted_interval.low > 0.0 && median >= gate.margin) return ChangeClass::kWorse;
+  if (adjusted_interval.high < 0.0 && median <= -gate.margin) return ChangeClass::kBetter;
+  const bool is_same = interval.low >= -gate.margin && interval.high <= gate.margin;
   return is_same ? ChangeClass::kSame : ChangeClass::kInconclusive;
 }
 
@@ -188,21 +203,13 @@ ChangeClass Comparison::result() const {
 }
 
 Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head) {
-  const std::vector<RunPair> pairs = pairs_of(base, head);
-  Comparison comparison;
-  comparison.pairs = pairs.size();
-  count_outcomes(comparison, pairs);
-  const auto succeeded = static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), both_ok));
-  const bool accuracy_is_equal = succeeded > 0 && comparison.bit_equal == succeeded;
-  SeriesTable accuracy;
-  SeriesTable costs;
-  for (const RunPair& pair : pairs) {
-    if (!both_ok(pair)) continue;
-    if (!accuracy_is_equal) add_metrics(accuracy, pair, MetricFamily::kAccuracy);
-    add_metrics(costs, pair, MetricFamily::kCost);
-    add_costs(costs, pair);
-  }
-  comparison.changes = changes_of(accuracy);
+  std::vector<RunPair> pairs = pairs_of(base, head);
+  Comparison comparison = counted_outcomes(pairs);
+  std::erase_if(pairs, [](const RunPair& pair) { return !both_ok(pair); });
+  const bool accuracy_is_equal = !pairs.empty() && comparison.bit_equal == pairs.size();
+  if (!accuracy_is_equal) comparison.changes = changes_of(metric_series(pairs, MetricFamily::kAccuracy));
+  SeriesTable costs = metric_series(pairs, MetricFamily::kCost);
+  costs.merge(module_series(pairs));
   const std::vector<MetricChange> cost_changes = changes_of(costs);
   comparison.changes.insert(comparison.changes.end(), cost_changes.begin(), cost_changes.end());
   if (accuracy_is_equal)

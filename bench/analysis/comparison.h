@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/analysis/metric_rules.h"
-#include "bench/model/stored_run.h"
+#include "bench/model/metrics.h"
 #include "eval/statistics/paired.h"
 
 namespace stillpoint::bench {
@@ -51,8 +50,10 @@ struct Comparison {
 ///   kBetter        U < 0 and m <= -margin
 ///   kInconclusive  otherwise, or fewer than 5 pairs of a metric that is not repeatable
 ///
+/// @param metric with a gate
 /// @param repeatable whether the same program gives the same value in each run
-[[nodiscard]] ChangeClass classify(const MetricChange& change, const MetricRule& rule, bool repeatable);
+[[nodiscard]] ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric,
+                                   bool repeatable);
 
 /// Compares runs that differ only in their build. Accuracy and instruction counts are tested per sequence, so
 /// that a regression on one sequence is not masked by others; times and memory are tested per variant over

@@ -31,30 +31,32 @@ struct AnalyzedSeries {
 double median_of(std::span<const double> values) { return *eval::percentile(values, 0.5); }
 
 /// 1 if larger is worse, -1 if larger is better.
-double bad_direction(const MetricRule& rule) { return rule.larger_is_better ? -1.0 : 1.0; }
+double bad_direction(const MetricDescriptor& metric) {
+  return metric.direction == MetricDirection::kLargerIsBetter ? -1.0 : 1.0;
+}
 
 /// Whether two levels differ by at least the margin and the floor, in any direction.
-bool is_relevant(double before, double after, const std::optional<MetricRule>& rule) {
-  if (!rule) return before != after;
+bool is_relevant(double before, double after, const MetricDescriptor* gated) {
+  if (gated == nullptr) return before != after;
   const double difference = std::abs(after - before);
-  return difference >= rule->floor && difference >= rule->margin * std::abs(before);
+  return difference >= gated->gate->floor && difference >= gated->gate->margin * std::abs(before);
 }
 
 /// Whether the shift is relevant and its confidence interval excludes 0.
-bool is_significant(const LevelShift& shift, const std::optional<MetricRule>& rule) {
-  if (!is_relevant(shift.level_before, shift.level_after, rule)) return false;
+bool is_significant(const LevelShift& shift, const MetricDescriptor* gated) {
+  if (!is_relevant(shift.level_before, shift.level_after, gated)) return false;
   return !shift.change || shift.change->interval.low > 0.0 || shift.change->interval.high < 0.0;
 }
 
-bool is_worse(double before, double after, const MetricRule& rule) {
-  return bad_direction(rule) * (after - before) > 0.0 && is_relevant(before, after, rule);
+bool is_worse(double before, double after, const MetricDescriptor& gated) {
+  return bad_direction(gated) * (after - before) > 0.0 && is_relevant(before, after, &gated);
 }
 
 /// @param newest newest level of the series
-ChangeState state_of(const LevelShift& shift, const std::optional<MetricRule>& rule, double newest) {
-  if (!rule) return ChangeState::kNeutral;
-  if (!is_worse(shift.level_before, shift.level_after, *rule)) return ChangeState::kImproved;
-  return is_worse(shift.level_before, newest, *rule) ? ChangeState::kOpen : ChangeState::kResolved;
+ChangeState state_of(const LevelShift& shift, const MetricDescriptor* gated, double newest) {
+  if (gated == nullptr) return ChangeState::kNeutral;
+  if (!is_worse(shift.level_before, shift.level_after, *gated)) return ChangeState::kImproved;
+  return is_worse(shift.level_before, newest, *gated) ? ChangeState::kOpen : ChangeState::kResolved;
 }
 
 std::vector<LevelShift> shifts_of(const AnalyzedSeries& analyzed, std::size_t index,
@@ -73,19 +75,19 @@ std::vector<LevelShift> shifts_of(const AnalyzedSeries& analyzed, std::size_t in
                      .p_value = points[i].p_value,
                      .state = ChangeState::kNeutral,
                      .reason = ""};
-    if (!is_significant(shift, analyzed.series.rule)) continue;
-    shift.state = state_of(shift, analyzed.series.rule, newest);
+    if (!is_significant(shift, analyzed.series.gated)) continue;
+    shift.state = state_of(shift, analyzed.series.gated, newest);
     shifts.push_back(shift);
   }
   return shifts;
 }
 
 std::optional<MetricDrift> drift_of(const AnalyzedSeries& analyzed, std::size_t index) {
-  if (!analyzed.series.rule) return std::nullopt;
+  if (analyzed.series.gated == nullptr) return std::nullopt;
   const std::optional<eval::Trend> trend = eval::trend_of(analyzed.values);
   if (!trend || trend->p_value > kTrendSignificance) return std::nullopt;
   const double end = trend->intercept + trend->slope * static_cast<double>(analyzed.values.size() - 1);
-  if (trend->intercept == 0.0 || !is_relevant(trend->intercept, end, analyzed.series.rule))
+  if (trend->intercept == 0.0 || !is_relevant(trend->intercept, end, analyzed.series.gated))
     return std::nullopt;
   if (!eval::linear_trend_fits_better(analyzed.values, *trend, analyzed.changes)) return std::nullopt;
   return MetricDrift{.series = index,
@@ -95,7 +97,7 @@ std::optional<MetricDrift> drift_of(const AnalyzedSeries& analyzed, std::size_t 
                      .end = end,
                      .change = (end - trend->intercept) / std::abs(trend->intercept),
                      .p_value = trend->p_value,
-                     .worse = bad_direction(*analyzed.series.rule) * trend->slope > 0.0};
+                     .worse = bad_direction(*analyzed.series.gated) * trend->slope > 0.0};
 }
 
 /// Shift from the most recent commit with a smaller failure rate than the newest commit.
@@ -137,8 +139,9 @@ bool covers(const Acceptance& acceptance, const CommitHistory& history, const Le
   return std::abs(distance) < static_cast<std::ptrdiff_t>(min_segment);
 }
 
-void accept(std::vector<LevelShift>& shifts, const CommitHistory& history,
-            std::span<const Acceptance> acceptances, std::size_t min_segment) {
+/// Marks the open shifts that an acceptance covers.
+std::vector<LevelShift> with_acceptances(std::vector<LevelShift> shifts, const CommitHistory& history,
+                                         std::span<const Acceptance> acceptances, std::size_t min_segment) {
   for (LevelShift& shift : shifts) {
     if (shift.state != ChangeState::kOpen) continue;
     const auto found = std::find_if(
@@ -148,12 +151,13 @@ void accept(std::vector<LevelShift>& shifts, const CommitHistory& history,
     shift.state = ChangeState::kAccepted;
     shift.reason = found->reason;
   }
+  return shifts;
 }
 
 /// Quick rejection: a series whose range is below the margin has no relevant change.
-bool may_have_changed(std::span<const double> values, const std::optional<MetricRule>& rule) {
+bool may_have_changed(std::span<const double> values, const MetricDescriptor* gated) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return low != high && (is_relevant(*low, *high, rule) || is_relevant(*high, *low, rule));
+  return low != high && (is_relevant(*low, *high, gated) || is_relevant(*high, *low, gated));
 }
 
 }  // namespace
@@ -179,7 +183,7 @@ HistoryChanges history_changes(const CommitHistory& history, std::span<const Acc
   HistoryChanges changes;
   for (std::size_t i = 0; i < history.series.size(); ++i) {
     const HistorySeries& series = history.series[i];
-    if (series.metric == kFailedRuns) {
+    if (series.metric == metric_id::kFailedRuns) {
       if (const std::optional<LevelShift> failures = new_failures(series, i))
         changes.shifts.push_back(*failures);
       continue;
@@ -187,13 +191,13 @@ HistoryChanges history_changes(const CommitHistory& history, std::span<const Acc
     const std::size_t offset = series.values.size() - std::min(series.values.size(), kMaxAnalyzedCommits);
     AnalyzedSeries analyzed{
         .series = series, .offset = offset, .values = std::span(series.values).subspan(offset)};
-    if (!may_have_changed(analyzed.values, series.rule)) continue;
+    if (!may_have_changed(analyzed.values, series.gated)) continue;
     const std::vector<eval::ChangePoint> points = eval::change_points(analyzed.values, options);
     for (const eval::ChangePoint& point : points) analyzed.changes.push_back(point.index);
     for (LevelShift& shift : shifts_of(analyzed, i, points)) changes.shifts.push_back(std::move(shift));
     if (const std::optional<MetricDrift> drift = drift_of(analyzed, i)) changes.drifts.push_back(*drift);
   }
-  accept(changes.shifts, history, acceptances, options.min_segment);
+  changes.shifts = with_acceptances(std::move(changes.shifts), history, acceptances, options.min_segment);
   return changes;
 }
 

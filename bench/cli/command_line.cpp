@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/cli/command_line.h"
 
+#include <algorithm>
 #include <exception>
 #include <iostream>
 
@@ -42,16 +43,21 @@ void add_option(CLI::App& app, const Option& option, bool optional) {
   std::visit(add, option.target);
 }
 
-void add_command(CLI::App& parent, const Command& command, int& exit_code) {
+void add_command(CLI::App& parent, const Command& command) {
   CLI::App* app = parent.add_subcommand(command.name, command.summary);
   app->footer("Example:\n  stillpoint " + command.example);
   for (const Option& option : command.options) add_option(*app, option, !command.subcommands.empty());
-  for (const Command& subcommand : command.subcommands) add_command(*app, subcommand, exit_code);
+  for (const Command& subcommand : command.subcommands) add_command(*app, subcommand);
   if (!command.subcommands.empty() && !command.action) app->require_subcommand(1);
-  if (!command.action) return;
-  app->callback([app, &command, &exit_code] {
-    if (app->get_subcommands().empty()) exit_code = command.action();
+}
+
+/// The innermost command of a parsed command line.
+const Command& selected_command(const CLI::App& app, const std::vector<Command>& commands) {
+  const CLI::App* selected = app.get_subcommands().front();
+  const auto command = std::find_if(commands.begin(), commands.end(), [&](const Command& candidate) {
+    return candidate.name == selected->get_name();
   });
+  return selected->get_subcommands().empty() ? *command : selected_command(*selected, command->subcommands);
 }
 
 void log_to_stderr(bool verbose) {
@@ -79,10 +85,10 @@ int run_command_line(int argc, char** argv, const std::vector<Command>& commands
   bool verbose = false;
   app.add_flag("-v,--verbose", verbose, "Log each frame");
   app.parse_complete_callback([&verbose] { log_to_stderr(verbose); });
-  int exit_code = kExitOk;
-  for (const Command& command : commands) add_command(app, command, exit_code);
+  for (const Command& command : commands) add_command(app, command);
   try {
     app.parse(argc, argv);
+    return selected_command(app, commands).action();
   } catch (const CLI::ParseError& error) {
     return finish_parsing(app, error);
   } catch (const InputError& error) {
@@ -92,7 +98,6 @@ int run_command_line(int argc, char** argv, const std::vector<Command>& commands
     std::cerr << "stillpoint: error: " << error.what() << '\n';
     return kExitInternal;
   }
-  return exit_code;
 }
 
 }  // namespace stillpoint::bench

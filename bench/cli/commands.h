@@ -2,7 +2,7 @@
 /// The subcommands of the program, one source file each (`run` in run_command.cpp etc.).
 #pragma once
 
-#include "bench/cli/command.h"
+#include "bench/cli/command_line.h"
 
 namespace stillpoint::bench {
 
@@ -25,8 +25,6 @@ namespace stillpoint::bench {
 [[nodiscard]] Command config_command();       ///< `stillpoint config`: resolved configs and the key reference
 [[nodiscard]] Command data_command();         ///< `stillpoint data`: create and inspect sequences
 [[nodiscard]] Command check_command();        ///< `stillpoint data check`: validate a sequence
-[[nodiscard]] Command data_add_command();     ///< `stillpoint data add`: register a recorded sequence
-[[nodiscard]] Command data_list_command();    ///< `stillpoint data list`: list registered sequences
 [[nodiscard]] Command detect_command();       ///< `stillpoint detect`: record boxes of a detection network
 [[nodiscard]] Command synth_command();        ///< `stillpoint data synth`: render a sequence
 

@@ -5,14 +5,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "bench/config/field_walk.h"
 #include "bench/config/spelling.h"
-#include "bench/plan/bench_plan.h"
-#include "bench/profile/device_file.h"
-#include "bench/systems/external_system.h"
 #include "core/base/error.h"
-#include "core/config/odometry_config.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -38,64 +34,53 @@ double number_within(double value, const Setting& setting, const Bounds& bounds)
                                        bounds.max));
 }
 
-/// Assigns the value of a setting to a member of any supported type.
+/// Assigns the value of a setting to the member of a field.
 struct Assign {
   const Setting& setting;
   const Bounds& bounds;
 
-  void operator()(bool& member) const { member = value_as<bool>(setting, "true or false"); }
+  void operator()(bool* member) const { *member = value_as<bool>(setting, "true or false"); }
 
-  void operator()(int& member) const {
+  void operator()(int* member) const {
     const std::int64_t value = value_as<std::int64_t>(setting, "an integer");
     const Bounds representable{std::max(bounds.min, -2147483648.0), std::min(bounds.max, 2147483647.0)};
-    member = static_cast<int>(number_within(static_cast<double>(value), setting, representable));
+    *member = static_cast<int>(number_within(static_cast<double>(value), setting, representable));
   }
 
-  void operator()(double& member) const {
+  void operator()(double* member) const {
     const auto* whole = std::get_if<std::int64_t>(&setting.value);
     const double value = whole ? static_cast<double>(*whole) : value_as<double>(setting, "a number");
-    member = number_within(value, setting, bounds);
+    *member = number_within(value, setting, bounds);
   }
 
-  void operator()(std::string& member) const { member = value_as<std::string>(setting, "a string"); }
+  void operator()(std::string* member) const { *member = value_as<std::string>(setting, "a string"); }
 
-  void operator()(std::vector<std::string>& member) const {
-    member = value_as<std::vector<std::string>>(setting, "a list of strings");
+  void operator()(std::vector<std::string>* member) const {
+    *member = value_as<std::vector<std::string>>(setting, "a list of strings");
   }
 
-  void operator()(std::vector<int>& member) const {
-    member.clear();
+  void operator()(std::vector<int>* member) const {
+    member->clear();
     for (const double number : value_as<std::vector<double>>(setting, "a list of integers")) {
       if (number != std::floor(number)) throw bad_value(setting, "must be a list of integers");
-      member.push_back(static_cast<int>(number_within(number, setting, bounds)));
+      member->push_back(static_cast<int>(number_within(number, setting, bounds)));
     }
   }
 
-  template <ConfigEnum Enum>
-  void operator()(Enum& member) const {
-    std::string choices;
-    for (const auto& [value, name] : enum_names(Enum{})) {
-      choices += fmt::format("{}\"{}\"", choices.empty() ? "" : ", ", name);
-    }
+  void operator()(const EnumField& field) const {
+    const std::string choices = fmt::format("\"{}\"", fmt::join(field.names, "\", \""));
     const std::string text = value_as<std::string>(setting, "one of " + choices);
-    for (const auto& [value, name] : enum_names(Enum{})) {
-      if (name == text) {
-        member = value;
-        return;
-      }
+    const auto found = std::find(field.names.begin(), field.names.end(), text);
+    if (found == field.names.end()) {
+      throw bad_value(setting, fmt::format("is \"{}\"; expected one of: {}", text, choices));
     }
-    throw bad_value(setting, fmt::format("is \"{}\"; expected one of: {}", text, choices));
+    field.set(field.member, static_cast<std::size_t>(found - field.names.begin()));
   }
 };
 
-template <class Config>
-std::vector<std::string> all_keys(const Config& config) {
+InputError unknown_key(const Setting& setting, std::span<const ConfigField> fields) {
   std::vector<std::string> keys;
-  walk_fields(config, [&](const std::string& key, const auto&, const Bounds&) { keys.push_back(key); });
-  return keys;
-}
-
-InputError unknown_key(const Setting& setting, const std::vector<std::string>& keys) {
+  for (const ConfigField& field : fields) keys.push_back(field.key);
   const bool is_section = std::any_of(
       keys.begin(), keys.end(), [&](const std::string& key) { return key.starts_with(setting.key + "."); });
   if (is_section)
@@ -105,23 +90,14 @@ InputError unknown_key(const Setting& setting, const std::vector<std::string>& k
 
 }  // namespace
 
-template <class Config>
-Config with_settings(Config config, std::span<const Setting> settings) {
+void assign_settings(std::span<const ConfigField> fields, std::span<const Setting> settings) {
   for (const Setting& setting : settings) {
-    bool found = false;
-    walk_fields(config, [&](const std::string& key, auto& member, const Bounds& bounds) {
-      if (key != setting.key) return;
-      Assign{setting, bounds}(member);
-      found = true;
+    const auto field = std::find_if(fields.begin(), fields.end(), [&](const ConfigField& candidate) {
+      return candidate.key == setting.key;
     });
-    if (!found) throw unknown_key(setting, all_keys(config));
+    if (field == fields.end()) throw unknown_key(setting, fields);
+    std::visit(Assign{setting, field->bounds}, field->member);
   }
-  return config;
 }
-
-template OdometryConfig with_settings(OdometryConfig config, std::span<const Setting> settings);
-template BenchPlan with_settings(BenchPlan config, std::span<const Setting> settings);
-template ExternalSystem with_settings(ExternalSystem config, std::span<const Setting> settings);
-template DeviceFile with_settings(DeviceFile config, std::span<const Setting> settings);
 
 }  // namespace stillpoint::bench

@@ -4,15 +4,22 @@
 
 #include <span>
 
+#include "bench/config/config_fields.h"
 #include "bench/config/setting.h"
 
 namespace stillpoint::bench {
 
-/// Returns the struct with the settings applied in order; later ones override earlier ones.
+/// Assigns the settings to the members with their keys, in order; later ones override earlier ones.
 /// @throws InputError with file and line for an unknown key (with the nearest key), a wrong type, or a value
 /// out of range
-/// @tparam Config OdometryConfig, BenchPlan, ExternalSystem or DeviceFile
+void assign_settings(std::span<const ConfigField> fields, std::span<const Setting> settings);
+
+/// Returns the struct with the settings applied, see `assign_settings`.
+/// @tparam Config a struct with `visit_fields`, see core/base/fields.h
 template <class Config>
-[[nodiscard]] Config with_settings(Config config, std::span<const Setting> settings);
+[[nodiscard]] Config with_settings(Config config, std::span<const Setting> settings) {
+  assign_settings(fields_of(config), settings);
+  return config;
+}
 
 }  // namespace stillpoint::bench

@@ -2,6 +2,7 @@
 #include "bench/config/config_file.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <sstream>
 
@@ -21,23 +22,21 @@ struct ConfigChain {
   [[nodiscard]] bool is_base() const { return paths.front() == kRootConfig; }
 };
 
-/// Removes the key `inherits` from the settings and returns it.
-std::optional<Setting> extract_inherits(std::vector<Setting>& settings) {
+/// The key `inherits` of a file, if any.
+std::optional<Setting> find_inherits(const std::vector<Setting>& settings) {
   const auto found = std::find_if(settings.begin(), settings.end(),
                                   [](const Setting& setting) { return setting.key == "inherits"; });
   if (found == settings.end()) return std::nullopt;
-  const Setting inherits = *found;
-  settings.erase(found);
-  if (!std::holds_alternative<std::string>(inherits.value)) {
-    throw InputError(inherits.file, inherits.line, "\"inherits\" must be a string, the name of one config");
+  if (!std::holds_alternative<std::string>(found->value)) {
+    throw InputError(found->file, found->line, "\"inherits\" must be a string, the name of one config");
   }
-  return inherits;
+  return *found;
 }
 
 /// @param visited paths of the files that inherit this one, directly or indirectly
 ConfigChain load_chain(const TomlSource& source, std::vector<std::string> visited) {
-  std::vector<Setting> settings = parse_settings(source.text, source.path);
-  const std::optional<Setting> inherits = extract_inherits(settings);
+  const std::vector<Setting> settings = parse_settings(source.text, source.path);
+  const std::optional<Setting> inherits = find_inherits(settings);
   visited.push_back(source.path);
   ConfigChain chain;
   if (inherits) {
@@ -49,7 +48,8 @@ ConfigChain load_chain(const TomlSource& source, std::vector<std::string> visite
     chain = load_chain(parent, visited);
   }
   chain.paths.push_back(source.path);
-  chain.settings.insert(chain.settings.end(), settings.begin(), settings.end());
+  std::copy_if(settings.begin(), settings.end(), std::back_inserter(chain.settings),
+               [](const Setting& setting) { return setting.key != "inherits"; });
   return chain;
 }
 

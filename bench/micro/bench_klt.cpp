@@ -34,17 +34,18 @@ std::vector<cv::Point2f> grid_points() {
 /// @param state ranges: pyramid levels, error of the prediction [px], window [px]
 void track_130_points(benchmark::State& state) {
   const int window_px = static_cast<int>(state.range(2));
-  const KltSettings settings{.window_px = window_px, .levels = static_cast<int>(state.range(0))};
+  const int levels = static_cast<int>(state.range(0));
   ImagePyramid from;
   ImagePyramid to;
-  from.rebuild(dead_leaves_image(0), window_px, settings.levels);
-  to.rebuild(dead_leaves_image(kShiftPx), window_px, settings.levels);
+  from.rebuild(dead_leaves_image(0), window_px, levels);
+  to.rebuild(dead_leaves_image(kShiftPx), window_px, levels);
   const std::vector<cv::Point2f> points = grid_points();
   std::vector<cv::Point2f> initial_guesses = points;
   for (cv::Point2f& initial_guess : initial_guesses)
     initial_guess.x += static_cast<float>(state.range(1)) - kShiftPx;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(track_points_klt(from, to, points, initial_guesses, settings));
+  const TrackingRequest request{
+      .from = from, .to = to, .points = points, .initial_guesses = initial_guesses, .levels = levels};
+  for (auto _ : state) benchmark::DoNotOptimize(track_points_klt(request, {.window_px = window_px}));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
 }
 BENCHMARK(track_130_points)
@@ -74,7 +75,7 @@ void track_frame(benchmark::State& state) {
   for (auto _ : state) {
     frame.gray = images[static_cast<std::size_t>(frame.id) % images.size()];
     frame.t = Timestamp{frame.id * 33'333'333};
-    benchmark::DoNotOptimize(tracker.track(frame, no_motion, true));
+    benchmark::DoNotOptimize(tracker.track(frame, no_motion, {}));
     ++frame.id;
   }
   state.SetItemsProcessed(state.iterations());

@@ -2,8 +2,8 @@
 /// Benchmarks of the marginalization of one frame of a full inertial window.
 #include <benchmark/benchmark.h>
 
-#include "core/backend/marginalization/marginalization.h"
-#include "core/backend/solvers/schur_solver.h"
+#include "core/backend/marginalization/frame_marginalizer.h"
+#include "core/backend/solvers/window_solver.h"
 #include "tests/support/simulated_window.h"
 
 namespace stillpoint {
@@ -14,9 +14,12 @@ void marginalize_oldest_frame(benchmark::State& state) {
   const Window window = simulated_window();
   BackendConfig config = simulated_window_config();
   config.solver = static_cast<WindowSolverKind>(state.range(0));
-  SchurSolver solver;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(marginalize_oldest(window, config, kSimulatedFocal_px, solver));
+  const std::unique_ptr<WindowSolver> solver = make_window_solver(config.solver);
+  LinearPrior prior;
+  for (auto _ : state) {
+    prior = solver->marginalize_oldest(window, config, kSimulatedFocal_px, std::move(prior));
+    benchmark::DoNotOptimize(prior);
+  }
 }
 BENCHMARK(marginalize_oldest_frame)
     ->ArgName("schur")
@@ -26,13 +29,15 @@ BENCHMARK(marginalize_oldest_frame)
 
 void marginalize_second_newest_frame(benchmark::State& state) {
   const Window window = simulated_window();
-  const LinearPrior prior = marginalize_oldest(window, simulated_window_config(), kSimulatedFocal_px);
+  const BackendConfig config = simulated_window_config();
+  const LinearPrior prior =
+      make_window_solver(config.solver)->marginalize_oldest(window, config, kSimulatedFocal_px, {});
   const int newest = prior.blocks.back().frame;
   FrameMarginalizer marginalizer;
   LinearPrior remaining;
   for (auto _ : state) {
     remaining = prior;
-    marginalizer.remove(newest, remaining);
+    remaining = marginalizer.remove(newest, std::move(remaining));
     benchmark::DoNotOptimize(remaining);
   }
 }

@@ -102,7 +102,8 @@ void run_tracker(benchmark::State& state, Tracker track) {
       predictions(pair, points, static_cast<double>(state.range(1)));
   KltResult result;
   for (auto _ : state) {
-    result = track(from, to, points, initial_guesses, levels);
+    result = track(
+        {.from = from, .to = to, .points = points, .initial_guesses = initial_guesses, .levels = levels});
     benchmark::DoNotOptimize(result);
   }
   report_accuracy(state, pair, points, result);
@@ -110,16 +111,14 @@ void run_tracker(benchmark::State& state, Tracker track) {
 
 void opencv(benchmark::State& state) {
   cv::setNumThreads(1);  // single-threaded, for comparison with the patch tracker
-  run_tracker(state, [](const auto& from, const auto& to, const auto& points, const auto& initial_guesses,
-                        int levels) {
-    return track_points_klt(from, to, points, initial_guesses, {.window_px = kWindowPx, .levels = levels});
+  run_tracker(state, [](const TrackingRequest& request) {
+    return track_points_klt(request, {.window_px = kWindowPx});
   });
 }
 
 void run_patch_tracker(benchmark::State& state, PatchTarget target) {
-  run_tracker(state, [target](const auto& from, const auto& to, const auto& points,
-                              const auto& initial_guesses, int levels) {
-    return track_points_patch(from, to, points, initial_guesses, levels, PatchSettings{}, target);
+  run_tracker(state, [target](const TrackingRequest& request) {
+    return track_points_patch(request, PatchSettings{}, target);
   });
 }
 

@@ -3,7 +3,7 @@
 /// Ceres and by the Schur solver.
 #include <benchmark/benchmark.h>
 
-#include "core/backend/solvers/schur_solver.h"
+#include "core/backend/solvers/window_solver.h"
 #include "tests/support/simulated_window.h"
 
 namespace stillpoint {
@@ -11,11 +11,11 @@ namespace {
 
 void solve(benchmark::State& state, const BackendConfig& config) {
   const Window initial_window = simulated_window();
-  SchurSolver solver;
+  const std::unique_ptr<WindowSolver> solver = make_window_solver(config.solver);
   SolveReport report;
   for (auto _ : state) {
     Window window = initial_window;
-    report = solve_window(window, config, kSimulatedFocal_px, solver);
+    report = solver->solve(window, config, kSimulatedFocal_px);
     benchmark::DoNotOptimize(window);
   }
   state.counters["landmarks"] = report.landmarks;

@@ -13,13 +13,16 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::array<std::pair<Outcome, std::string_view>, 6> kNames = {
+constexpr std::array<std::pair<Outcome, std::string_view>, 7> kNames = {
     {{Outcome::kOk, "ok"},
      {Outcome::kLost, "lost"},
+     {Outcome::kInterrupted, "interrupted"},
      {Outcome::kCrashed, "crashed"},
      {Outcome::kTimedOut, "timed_out"},
      {Outcome::kOutOfMemory, "out_of_memory"},
      {Outcome::kBadData, "bad_data"}}};
+
+constexpr std::string_view kLostStatus = "failed";
 
 }  // namespace
 
@@ -39,12 +42,17 @@ std::string outcome_name(Outcome outcome) {
   return std::string(found->second);
 }
 
+std::string status_name(Outcome outcome) {
+  return outcome == Outcome::kLost ? std::string(kLostStatus) : outcome_name(outcome);
+}
+
 Outcome outcome_of(std::string_view name) {
+  if (name == kLostStatus) return Outcome::kLost;
   const auto found =
       std::find_if(kNames.begin(), kNames.end(), [&](const auto& entry) { return entry.second == name; });
   if (found != kNames.end()) return found->first;
   throw InputError("outcome \"" + std::string(name) + "\"",
-                   "is unknown; use ok, lost, crashed, timed_out, out_of_memory or bad_data");
+                   "is unknown; use ok, lost, interrupted, crashed, timed_out, out_of_memory or bad_data");
 }
 
 std::optional<double> metric_value(const StoredRun& run, std::string_view name) {

@@ -36,14 +36,20 @@ struct RunIdentity {
 enum class Outcome {
   kOk,
   kLost,         ///< processed all frames without any pose
+  kInterrupted,  ///< stopped on request; the results cover the processed frames
   kCrashed,      ///< terminated by a signal, or exited with an error
   kTimedOut,     ///< killed at its time limit
   kOutOfMemory,  ///< exceeded its memory limit
   kBadData,      ///< invalid sequence or config
 };
 
-/// "ok", "lost", "crashed", "timed_out", "out_of_memory" or "bad_data".
+/// "ok", "lost", "interrupted", "crashed", "timed_out", "out_of_memory" or "bad_data".
 [[nodiscard]] std::string outcome_name(Outcome outcome);
+
+/// The member "status" of result.json: as `outcome_name`, but "failed" for `kLost`.
+[[nodiscard]] std::string status_name(Outcome outcome);
+
+/// @param name an outcome or a status
 /// @throws InputError for any other name
 [[nodiscard]] Outcome outcome_of(std::string_view name);
 

@@ -51,9 +51,10 @@ SweepAxis axis_of(const Setting& setting) {
   return {.key = setting.key.substr(kSweepPrefix.size()), .values = *values};
 }
 
-/// Moves the settings of the tables [config], [synth] and [sweep] into the plan; returns the other settings.
-std::vector<Setting> extract_tables(BenchPlan& plan, const std::vector<Setting>& settings) {
-  std::vector<Setting> remaining;
+/// Parses a plan; the settings of the tables [config], [synth] and [sweep] are not those of the plan itself.
+BenchPlan parse_plan(const std::vector<Setting>& settings) {
+  BenchPlan plan;
+  std::vector<Setting> own_settings;
   for (const Setting& setting : settings) {
     const std::string& key = setting.key;
     if (key.starts_with(kConfigPrefix)) {
@@ -63,10 +64,10 @@ std::vector<Setting> extract_tables(BenchPlan& plan, const std::vector<Setting>&
     } else if (key.starts_with(kSweepPrefix)) {
       plan.sweep.push_back(axis_of(setting));
     } else {
-      remaining.push_back(setting);
+      own_settings.push_back(setting);
     }
   }
-  return remaining;
+  return with_settings(std::move(plan), own_settings);
 }
 
 /// Loads every config once, so that errors are reported before the first run.
@@ -142,9 +143,7 @@ std::vector<int> parse_cpu_list(const std::string& cores) {
 
 BenchPlan load_plan(const std::string& name) {
   const TomlSource source = find_toml(name, TomlKind::kPlan);
-  BenchPlan plan;
-  const std::vector<Setting> settings = extract_tables(plan, parse_settings(source.text, source.path));
-  plan = with_settings(plan, settings);
+  BenchPlan plan = parse_plan(parse_settings(source.text, source.path));
   plan.name = std::filesystem::path(source.path).stem().string();
   plan.text = source.text;
   if (plan.title.empty()) plan.title = plan.name;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/model/metrics.h"
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
@@ -55,42 +56,39 @@ std::optional<double> median_cost(const std::vector<const StoredRun*>& runs, std
   return eval::percentile(values, 0.5);
 }
 
-/// Sets status and reason of a row.
-void set_status(BenchRow& row, const std::vector<const StoredRun*>& runs,
-                const std::string& unavailable_reason) {
-  row.status = !unavailable_reason.empty() ? "skipped" : runs.empty() ? "not run" : "ok";
-  row.reason = unavailable_reason;
+/// A row with availability, outcome and reason.
+BenchRow row_with_outcome(const std::vector<const StoredRun*>& runs, const std::string& unavailable_reason) {
+  BenchRow row{.is_available = unavailable_reason.empty(), .reason = unavailable_reason};
+  if (!runs.empty()) row.outcome = Outcome::kOk;
   for (const StoredRun* run : runs) {
     if (run->outcome != Outcome::kOk && row.reason.empty()) {
-      row.status = outcome_name(run->outcome);
+      row.outcome = run->outcome;
       row.reason = run->detail;
     }
   }
-  const std::optional<double> load = median_of(runs, "other_load");
-  if (row.reason.empty() && median_of(runs, "quiet") == 0.0 && load) {
+  const std::optional<double> load = median_of(runs, metric_id::kOtherLoad);
+  if (row.reason.empty() && median_of(runs, metric_id::kQuiet) == 0.0 && load) {
     row.reason =
         fmt::format("the machine was not idle: other processes used {:.0f} % of the CPU", 100.0 * *load);
   }
+  return row;
 }
 
 BenchRow row_of(const Group& group, const std::string& unavailable_reason) {
   const RunIdentity& identity = group.first->identity;
-  BenchRow row;
+  BenchRow row = row_with_outcome(group.runs, unavailable_reason);
   row.sequence = identity.sequence;
   row.variant = identity.variant;
   if (!identity.axis.empty()) row.sweep = fmt::format("{} = {}", identity.axis, identity.axis_value);
-  set_status(row, group.runs, unavailable_reason);
   std::vector<const StoredRun*> succeeded;
   std::copy_if(group.runs.begin(), group.runs.end(), std::back_inserter(succeeded),
                [](const StoredRun* run) { return run->outcome == Outcome::kOk; });
   row.runs = group.runs.size();
   row.succeeded_runs = succeeded.size();
-  row.ate_rmse_m = median_of(succeeded, "ate_rmse_m");
-  row.rpe_trans_rmse_m_per_s = median_of(succeeded, "rpe_trans_rmse_m_per_s");
-  row.rpe_rot_rmse_deg_per_s = median_of(succeeded, "rpe_rot_rmse_deg_per_s");
-  row.correct_rate = median_of(succeeded, "correct_rate");
-  row.coverage = median_of(succeeded, "coverage");
-  row.first_pose_s = median_of(succeeded, "first_pose_s");
+  for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
+    if (const std::optional<double> median = median_of(succeeded, metric->id))
+      row.metrics[std::string(metric->id)] = *median;
+  }
   for (std::size_t i = 0; i < kModuleCount; ++i) {
     row.mean_ms[i] = median_cost(succeeded, module_name(static_cast<Module>(i)));
   }
@@ -98,6 +96,11 @@ BenchRow row_of(const Group& group, const std::string& unavailable_reason) {
 }
 
 }  // namespace
+
+std::string row_status(const BenchRow& row) {
+  if (!row.is_available) return "skipped";
+  return row.outcome ? outcome_name(*row.outcome) : "not run";
+}
 
 std::vector<BenchRow> plan_rows(const PlanMatrix& matrix, const Store& store) {
   std::unordered_map<std::string, StoredRun> stored;

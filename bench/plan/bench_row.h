@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,23 +15,22 @@
 
 namespace stillpoint::bench {
 
-/// Metrics are medians over the succeeded runs; missing ones are shown as "n/a".
+/// Metrics are medians over the succeeded runs; absent ones are shown as "n/a".
 struct BenchRow {
   std::string sequence;
   std::string variant;
-  std::string sweep;     ///< "key = value"; empty outside a sweep
-  std::string status;    ///< "ok", the outcome of a run that did not succeed, "not run" or "skipped"
-  std::string reason;    ///< reason of a status other than "ok", or a warning
-  std::size_t runs = 0;  ///< executed
+  std::string sweep;               ///< "key = value"; empty outside a sweep
+  bool is_available = true;        ///< the sequence exists
+  std::optional<Outcome> outcome;  ///< of the first run that did not succeed, else kOk; nullopt: no run
+  std::string reason;              ///< reason of a status other than "ok", or a warning
+  std::size_t runs = 0;            ///< executed
   std::size_t succeeded_runs = 0;  ///< executed with outcome "ok"
-  std::optional<double> ate_rmse_m;
-  std::optional<double> rpe_trans_rmse_m_per_s;
-  std::optional<double> rpe_rot_rmse_deg_per_s;
-  std::optional<double> correct_rate;
-  std::optional<double> coverage;
-  std::optional<double> first_pose_s;
+  std::map<std::string, double, std::less<>> metrics;  ///< by id, of `MetricSource::kTrajectory`
   std::array<std::optional<double>, kModuleCount> mean_ms;
 };
+
+/// "ok", the name of another outcome, "not run" or "skipped".
+[[nodiscard]] std::string row_status(const BenchRow& row);
 
 /// All rows of a plan in its order, including those without executed runs.
 [[nodiscard]] std::vector<BenchRow> plan_rows(const PlanMatrix& matrix, const Store& store);

@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/model/metrics.h"
+
 namespace stillpoint::bench {
 namespace {
 
@@ -39,6 +41,11 @@ std::vector<TimedColumn> present_columns(std::span<const BenchRow> rows) {
   return present;
 }
 
+std::optional<double> metric_of(const BenchRow& row, const MetricDescriptor& metric) {
+  const auto found = row.metrics.find(metric.id);
+  return found == row.metrics.end() ? std::nullopt : std::optional(found->second);
+}
+
 /// The optional columns of a table.
 struct Columns {
   bool sweep = false;  ///< key and value of a sweep point
@@ -63,8 +70,8 @@ Cells header(const Columns& columns) {
   if (columns.sweep) cells.emplace_back("sweep");
   cells.emplace_back("status");
   if (columns.runs) cells.emplace_back("succeeded");
-  for (const char* title : {"ATE m", "T.RPE m/s", "R.RPE deg/s", "CR", "coverage", "first pose s"}) {
-    cells.emplace_back(title);
+  for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
+    cells.push_back(fmt::format("{}{}{}", metric->label, metric->unit.empty() ? "" : " ", metric->unit));
   }
   for (const TimedColumn& column : columns.timed) cells.push_back(std::string(column.title) + " ms");
   return cells;
@@ -73,15 +80,10 @@ Cells header(const Columns& columns) {
 Cells cells_of(const BenchRow& row, const Columns& columns) {
   Cells cells = {row.sequence, row.variant};
   if (columns.sweep) cells.push_back(row.sweep);
-  cells.push_back(row.status);
+  cells.push_back(row_status(row));
   if (columns.runs) cells.push_back(fmt::format("{} of {}", row.succeeded_runs, row.runs));
-  const Cells numbers = {cell(row.ate_rmse_m, 4),
-                         cell(row.rpe_trans_rmse_m_per_s, 4),
-                         cell(row.rpe_rot_rmse_deg_per_s, 3),
-                         cell(row.correct_rate, 3),
-                         cell(row.coverage, 3),
-                         cell(row.first_pose_s, 2)};
-  cells.insert(cells.end(), numbers.begin(), numbers.end());
+  for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory))
+    cells.push_back(cell(metric_of(row, *metric), metric->decimals));
   for (const TimedColumn& column : columns.timed) {
     cells.push_back(cell(row.mean_ms[static_cast<std::size_t>(column.module)], 2));
   }
@@ -115,20 +117,17 @@ nlohmann::ordered_json row_json(const BenchRow& row) {
   for (std::size_t i = 0; i < kModuleCount; ++i) {
     if (row.mean_ms[i]) timings[std::string(module_name(static_cast<Module>(i)))] = *row.mean_ms[i];
   }
-  return {{"sequence", row.sequence},
-          {"variant", row.variant},
-          {"sweep", row.sweep},
-          {"status", row.status},
-          {"reason", row.reason},
-          {"runs", row.runs},
-          {"succeeded_runs", row.succeeded_runs},
-          {"ate_rmse_m", number_or_null(row.ate_rmse_m)},
-          {"rpe_trans_rmse_m_per_s", number_or_null(row.rpe_trans_rmse_m_per_s)},
-          {"rpe_rot_rmse_deg_per_s", number_or_null(row.rpe_rot_rmse_deg_per_s)},
-          {"correct_rate", number_or_null(row.correct_rate)},
-          {"coverage", number_or_null(row.coverage)},
-          {"first_pose_s", number_or_null(row.first_pose_s)},
-          {"mean_ms", timings}};
+  nlohmann::ordered_json json = {{"sequence", row.sequence},
+                                 {"variant", row.variant},
+                                 {"sweep", row.sweep},
+                                 {"status", row_status(row)},
+                                 {"reason", row.reason},
+                                 {"runs", row.runs},
+                                 {"succeeded_runs", row.succeeded_runs}};
+  for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory))
+    json[std::string(metric->id)] = number_or_null(metric_of(row, *metric));
+  json["mean_ms"] = timings;
+  return json;
 }
 
 }  // namespace
@@ -147,7 +146,7 @@ std::string markdown_table(std::span<const BenchRow> rows) {
   for (const BenchRow& row : rows) {
     if (!row.reason.empty())
       text += fmt::format("\n{} {}{}{} {}: {}\n", row.sequence, row.variant, row.sweep.empty() ? "" : " ",
-                          row.sweep, row.status, row.reason);
+                          row.sweep, row_status(row), row.reason);
   }
   return text;
 }

@@ -2,6 +2,7 @@
 /// Expands a plan to the list of its runs.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 

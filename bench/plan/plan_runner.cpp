@@ -11,7 +11,7 @@
 #include "bench/plan/run_outcome.h"
 #include "bench/process/machine_load.h"
 #include "bench/process/process_pool.h"
-#include "bench/systems/external_run.h"
+#include "bench/systems/external_system.h"
 #include "bench/systems/own_odometry.h"
 #include "core/base/error.h"
 
@@ -66,8 +66,17 @@ class PlanRunner {
     return own_;
   }
 
-  void count(std::size_t& counter) {
-    ++counter;
+  void count_cached() {
+    ++report_.cached;
+    report_progress();
+  }
+
+  void count_executed() {
+    ++report_.executed;
+    report_progress();
+  }
+
+  void report_progress() const {
     if (hooks_.on_progress)
       hooks_.on_progress(report_.executed + report_.cached, matrix_.runs.size() - report_.missing);
   }
@@ -83,7 +92,7 @@ class PlanRunner {
   void start_next() {
     const std::size_t run = queue_.front();
     queue_.pop_front();
-    if (writer_.is_done(run_key(identity_of(run)))) return count(report_.cached);
+    if (writer_.is_done(run_key(identity_of(run)))) return count_cached();
     try {
       const fs::path folder = folder_of(run);
       if (folder.empty()) return;  // the rendering was stopped
@@ -97,7 +106,7 @@ class PlanRunner {
   /// Requests the lease of a run; counts or postpones the run if it is not granted.
   bool acquire(std::size_t run) {
     const RunLease lease = writer_.acquire(identity_of(run));
-    if (lease == RunLease::kDone) count(report_.cached);
+    if (lease == RunLease::kDone) count_cached();
     if (lease == RunLease::kLeasedByOther) leased_by_other_.push_back(run);
     if (lease == RunLease::kGranted) leased_.insert(run);
     return lease == RunLease::kGranted;
@@ -108,7 +117,7 @@ class PlanRunner {
     if (!leased_.contains(run) && !acquire(run)) return;
     writer_.finish(identity_of(run), {.outcome = Outcome::kBadData, .detail = error.what()});
     leased_.erase(run);
-    count(report_.executed);
+    count_executed();
   }
 
   fs::path folder_of(std::size_t run) {
@@ -125,7 +134,11 @@ class PlanRunner {
   [[nodiscard]] RunRequest request_of(std::size_t run, const fs::path& folder) const {
     // Drawing the annotated images would distort the measured times.
     const bool is_timed = matrix_.plan.kind == RunKind::kTiming || identity_of(run).mode == "realtime";
-    return {.run = matrix_.runs[run],
+    const PlannedRun& planned = matrix_.runs[run];
+    return {.identity = planned.identity,
+            .config = planned.config,
+            .max_frames = planned.max_frames,
+            .program = planned.program,
             .sequence = folder,
             .work = writer_.work_folder(identity_of(run)),
             .images = is_timed ? 0 : matrix_.plan.images};
@@ -167,10 +180,12 @@ class PlanRunner {
     } else {
       RunOutcome outcome = outcome_of_run(system_of(run), request, end, matrix_.plan);
       if (matrix_.plan.kind == RunKind::kTiming) {
-        append_load(outcome.metrics, load_before_, machine_load(), end.user_s + end.system_s);
+        const std::vector<Metric> load =
+            load_metrics(load_before_, machine_load(), end.user_s + end.system_s);
+        outcome.metrics.insert(outcome.metrics.end(), load.begin(), load.end());
       }
       writer_.finish(identity_of(run), outcome);
-      count(report_.executed);
+      count_executed();
     }
     fs::remove_all(request.work);
   }
@@ -200,8 +215,8 @@ PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOpt
                     const PlanHooks& hooks) {
   std::vector<Outcome> repeated = {Outcome::kBadData};
   if (options.retry) {
-    repeated = {Outcome::kLost, Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory,
-                Outcome::kBadData};
+    repeated = {Outcome::kLost,     Outcome::kInterrupted, Outcome::kCrashed,
+                Outcome::kTimedOut, Outcome::kOutOfMemory, Outcome::kBadData};
   }
   writer.remove_runs(matrix.keys, repeated);
   writer.record_plan({.name = matrix.plan.name,

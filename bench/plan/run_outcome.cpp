@@ -7,12 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "bench/model/metrics.h"
 #include "bench/run/heartbeat.h"
 #include "core/base/error.h"
-#include "datasets/sensor_stream.h"
+#include "datasets/open_sequence.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/protocols/protocol.h"
-#include "eval/trajectory/frames.h"
+#include "eval/trajectory/alignment.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -50,47 +51,55 @@ RunOutcome reported_outcome(const SlamSystem& system, const RunRequest& request,
   }
 }
 
-void append_process(std::vector<Metric>& metrics, const ProcessResult& end) {
-  metrics.push_back({"process_wall_s", "wait4", "s", end.wall_s});
-  metrics.push_back({"process_cpu_s", "wait4", "s", end.user_s + end.system_s});
-  metrics.push_back(
-      {"peak_memory_mb", "wait4", "MB", static_cast<double>(end.peak_memory_bytes) / 1048576.0});
+std::vector<Metric> process_metrics(const ProcessResult& end) {
+  return measured_metrics({.process = ProcessCost{.wall_s = end.wall_s,
+                                                  .cpu_s = end.user_s + end.system_s,
+                                                  .peak_memory_bytes = end.peak_memory_bytes}});
 }
 
-void append_protocol(std::vector<Metric>& metrics, const eval::Evaluation& evaluation) {
-  const auto add = [&](const char* name, const char* unit, const std::optional<double>& value) {
-    if (value) metrics.push_back({evaluation.protocol + "/" + name, evaluation.text, unit, *value});
+std::vector<Metric> protocol_metrics(const eval::Evaluation& evaluation) {
+  std::vector<Metric> metrics;
+  const auto add = [&](std::string_view id, const std::optional<double>& value) {
+    if (!value) return;
+    metrics.push_back({.name = evaluation.protocol + "/" + std::string(id),
+                       .protocol = evaluation.text,
+                       .unit = std::string(find_metric(id)->unit),
+                       .value = *value});
   };
   const auto rmse = [](const std::optional<eval::Statistics>& errors) {
     return errors ? std::optional(errors->rmse) : std::nullopt;
   };
-  add("ate_rmse_m", "m", rmse(evaluation.ate_m));
-  add("ate_rmse_deg", "deg", rmse(evaluation.ate_deg));
-  add("rpe_rmse_m", "m", rmse(evaluation.rpe_m));
-  add("rpe_rmse_deg", "deg", rmse(evaluation.rpe_deg));
-  add("drift_percent", "%", evaluation.drift_percent);
-  add("correct_rate", "", evaluation.correct_rate);
-  add("coverage", "", evaluation.coverage);
+  add(metric_id::kAte, rmse(evaluation.ate_m));
+  add(metric_id::kAteRotation, rmse(evaluation.ate_deg));
+  add(metric_id::kRpeTranslationPerDelta, rmse(evaluation.rpe_m));
+  add(metric_id::kRpeRotationPerDelta, rmse(evaluation.rpe_deg));
+  add(metric_id::kDrift, evaluation.drift_percent);
+  add(metric_id::kCorrectRate, evaluation.correct_rate);
+  add(metric_id::kCoverage, evaluation.coverage);
+  return metrics;
 }
 
 /// Attaches the ground-truth trajectory, and evaluates the estimate with the protocols of the plan. Protocols
 /// that are not applicable to the run are logged and have no metrics.
-void append_ground_truth(RunOutcome& outcome, const RunRequest& request, const BenchPlan& plan) {
+RunOutcome with_ground_truth(RunOutcome outcome, const RunRequest& request, const BenchPlan& plan) {
   const auto text = outcome.attachments.find("trajectory");
-  if (text == outcome.attachments.end() || outcome.outcome != Outcome::kOk) return;
+  if (text == outcome.attachments.end() || outcome.outcome != Outcome::kOk) return outcome;
   const Trajectory estimate = eval::parse_tum(text->second, "trajectory", "camera").trajectory;
   const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(request.sequence);
   const datasets::GroundTruth& truth = stream->info().ground_truth;
-  if (truth.trajectory.poses.empty()) return;
+  if (truth.trajectory.poses.empty()) return outcome;
   const Trajectory gt = eval::move_to_frame(truth.trajectory, truth.T_c_f.inverse(), "camera");
   outcome.attachments["truth"] = eval::format_tum(gt);
   for (const std::string& protocol : plan.protocols) {
     try {
-      append_protocol(outcome.metrics, eval::evaluate(protocol, {.gt = gt, .est = estimate, .options = {}}));
+      const std::vector<Metric> metrics =
+          protocol_metrics(eval::evaluate(protocol, {.gt = gt, .est = estimate, .options = {}}));
+      outcome.metrics.insert(outcome.metrics.end(), metrics.begin(), metrics.end());
     } catch (const InputError& error) {
       outcome.attachments["log"] += protocol + ": " + error.what() + "\n";
     }
   }
+  return outcome;
 }
 
 }  // namespace
@@ -100,9 +109,11 @@ RunOutcome outcome_of_run(const SlamSystem& system, const RunRequest& request, c
   const std::optional<RunOutcome> terminated = termination_outcome(request, end, plan);
   RunOutcome outcome = terminated ? *terminated : reported_outcome(system, request, end);
   if (!end.messages.empty()) outcome.attachments["log"] = end.messages;
-  append_ground_truth(outcome, request, plan);
+  outcome = with_ground_truth(std::move(outcome), request, plan);
   // Under valgrind, time and memory of the process are not those of the odometry.
-  if (plan.kind != RunKind::kInstructions) append_process(outcome.metrics, end);
+  if (plan.kind == RunKind::kInstructions) return outcome;
+  const std::vector<Metric> costs = process_metrics(end);
+  outcome.metrics.insert(outcome.metrics.end(), costs.begin(), costs.end());
   return outcome;
 }
 

@@ -2,6 +2,7 @@
 /// Derives the stored outcome of a run from its finished process.
 #pragma once
 
+#include "bench/plan/bench_plan.h"
 #include "bench/systems/slam_system.h"
 
 namespace stillpoint::bench {

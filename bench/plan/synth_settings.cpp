@@ -11,8 +11,6 @@
 namespace stillpoint::bench {
 namespace {
 
-using synth::visit_fields;  // argument-dependent lookup does not find the overload for ImuNoise
-
 /// Visits all fields and sets the one with the given key; collects all keys for the error message.
 class NumberSetter {
  public:

@@ -11,7 +11,6 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr double kMaxQuietLoad = 0.05;
 constexpr int kIdle = 3;     // column of /proc/stat, after user, nice, system
 constexpr int kIoWait = 4;   // also idle
 constexpr int kColumns = 8;  // up to steal
@@ -38,14 +37,12 @@ MachineLoad machine_load() {
   return parse_machine_load(text.str());
 }
 
-void append_load(std::vector<Metric>& metrics, const MachineLoad& before, const MachineLoad& after,
-                 double own_s) {
+std::vector<Metric> load_metrics(const MachineLoad& before, const MachineLoad& after, double own_s) {
   const auto total = static_cast<double>(after.total - before.total);
-  if (total <= 0.0) return;
+  if (total <= 0.0) return {};
   const double own = own_s * static_cast<double>(sysconf(_SC_CLK_TCK));
-  const double other_load = std::max(0.0, (static_cast<double>(after.busy - before.busy) - own) / total);
-  metrics.push_back({"other_load", "/proc/stat", "", other_load});
-  metrics.push_back({"quiet", "other_load below 0.05", "", other_load < kMaxQuietLoad ? 1.0 : 0.0});
+  return measured_metrics(
+      {.other_load = std::max(0.0, (static_cast<double>(after.busy - before.busy) - own) / total)});
 }
 
 }  // namespace stillpoint::bench

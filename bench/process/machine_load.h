@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/model/stored_run.h"
+#include "bench/model/metrics.h"
 
 namespace stillpoint::bench {
 
@@ -21,10 +21,10 @@ struct MachineLoad {
 /// @param stat text of /proc/stat (proc(5)); user time includes guest time
 [[nodiscard]] MachineLoad parse_machine_load(std::string_view stat);
 
-/// Adds the metrics "other_load", the fraction of processor time that other processes used between two
-/// measurements, and "quiet": 1 if it is below 5 %, else 0. Adds nothing if /proc/stat is not available.
+/// The metrics of source `MetricSource::kMachine`: load by other processes between two measurements. Empty if
+/// /proc/stat is not available.
 /// @param own_s processor time of the timed process [s]
-void append_load(std::vector<Metric>& metrics, const MachineLoad& before, const MachineLoad& after,
-                 double own_s);
+[[nodiscard]] std::vector<Metric> load_metrics(const MachineLoad& before, const MachineLoad& after,
+                                               double own_s);
 
 }  // namespace stillpoint::bench

@@ -85,14 +85,9 @@ std::vector<StageInstructions> stage_instructions(const CallgrindCounts& counts,
 }
 
 std::vector<Metric> instruction_metrics(const std::vector<StageInstructions>& stages) {
-  constexpr const char* kProtocol = "valgrind callgrind, sequential, one thread";
-  std::vector<Metric> metrics = {{.name = "instructions", .protocol = kProtocol, .unit = ""}};
-  for (const auto& [stage, count] : stages) {
-    const auto value = static_cast<double>(count);  // exact below 2^53
-    metrics.front().value += value;
-    metrics.push_back({.name = "instructions_" + stage, .protocol = kProtocol, .unit = "", .value = value});
-  }
-  return metrics;
+  Measurements measurements;
+  for (const auto& [stage, count] : stages) measurements.instructions[stage] = count;
+  return measured_metrics(measurements);
 }
 
 std::vector<StageInstructions> read_instructions(const fs::path& folder) {

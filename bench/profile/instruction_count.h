@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/model/stored_run.h"
+#include "bench/model/metrics.h"
 #include "bench/process/child_process.h"
 #include "bench/profile/callgrind_file.h"
 
@@ -38,7 +38,7 @@ struct StageInstructions {
 [[nodiscard]] std::vector<StageInstructions> stage_instructions(const CallgrindCounts& counts,
                                                                 const std::string& place);
 
-/// Metrics "instructions" (sum of all stages) and "instructions_STAGE" of each stage.
+/// The metrics of source `MetricSource::kInstructions`: the sum of all stages, and each stage.
 [[nodiscard]] std::vector<Metric> instruction_metrics(const std::vector<StageInstructions>& stages);
 
 /// Reads the output of a run of `under_callgrind`.

@@ -53,19 +53,38 @@ struct OpenSpan {
   std::chrono::nanoseconds self{};
 };
 
-using StackTimes = std::map<std::string, std::chrono::nanoseconds>;
-
-/// Closes the innermost span and adds its self time.
-void close_innermost(std::vector<OpenSpan>& stack, StackTimes& times) {
-  std::string key(track_name(track_of(stack.back().span.module)));
-  for (const OpenSpan& open : stack) key.append(";").append(module_name(open.span.module));
-  times[key] += stack.back().self;
-  stack.pop_back();
-}
-
 bool lies_within(const ModuleSpan& inner, const ModuleSpan& outer) {
   return track_of(inner.module) == track_of(outer.module) && end_of(inner) <= end_of(outer);
 }
+
+/// Sums self times by stack over spans in their order.
+class StackSums {
+ public:
+  using StackTimes = std::map<std::string, std::chrono::nanoseconds>;
+
+  void add(const ModuleSpan& span) {
+    while (!stack_.empty() && !lies_within(span, stack_.back().span)) close_innermost();
+    if (!stack_.empty()) stack_.back().self -= span.elapsed;
+    stack_.push_back({.span = span, .self = span.elapsed});
+  }
+
+  [[nodiscard]] StackTimes finish() {
+    while (!stack_.empty()) close_innermost();
+    return std::move(times_);
+  }
+
+ private:
+  /// Adds the self time of the innermost span.
+  void close_innermost() {
+    std::string key(track_name(track_of(stack_.back().span.module)));
+    for (const OpenSpan& open : stack_) key.append(";").append(module_name(open.span.module));
+    times_[key] += stack_.back().self;
+    stack_.pop_back();
+  }
+
+  std::vector<OpenSpan> stack_;
+  StackTimes times_;
+};
 
 }  // namespace
 
@@ -109,16 +128,10 @@ std::string chrome_trace(std::span<const FrameSpan> spans, const std::string& pr
 }
 
 std::string folded_stacks(std::span<const FrameSpan> spans) {
-  StackTimes times;
-  std::vector<OpenSpan> stack;
-  for (const FrameSpan& one : in_order(spans)) {
-    while (!stack.empty() && !lies_within(one.span, stack.back().span)) close_innermost(stack, times);
-    if (!stack.empty()) stack.back().self -= one.span.elapsed;
-    stack.push_back({.span = one.span, .self = one.span.elapsed});
-  }
-  while (!stack.empty()) close_innermost(stack, times);
+  StackSums sums;
+  for (const FrameSpan& one : in_order(spans)) sums.add(one.span);
   std::string text;
-  for (const auto& [key, self] : times) text += fmt::format("{} {}\n", key, self.count());
+  for (const auto& [key, self] : sums.finish()) text += fmt::format("{} {}\n", key, self.count());
   return text;
 }
 

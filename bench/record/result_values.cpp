@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/record/result_values.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace stillpoint::bench {
@@ -8,25 +11,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A metric of result.json, its unit, and its key in "protocols".
-struct MetricField {
-  const char* key;
-  const char* unit;
-  const char* protocol;
-};
-constexpr MetricField kNumbers[] = {{"ate_rmse_m", "m", "ate"},
-                                    {"rpe_trans_rmse_m_per_s", "m/s", "rpe"},
-                                    {"rpe_rot_rmse_deg_per_s", "deg/s", "rpe"},
-                                    {"correct_rate", "", "correct_rate"},
-                                    {"coverage", "", "coverage"},
-                                    {"first_pose_s", "s", ""},
-                                    {"frames", "", ""},
-                                    {"poses", "", ""},
-                                    {"resets", "", ""},
-                                    {"wall_s", "s", ""}};
+/// Counts are integers in JSON.
+Json number(const MetricDescriptor& metric, const std::optional<double>& value) {
+  if (!value) return nullptr;
+  return metric.decimals == 0 ? Json(std::llround(*value)) : Json(*value);
+}
 
-void append_costs(std::vector<ModuleCost>& costs, const Json& timings, const char* group, const char* per) {
-  if (!timings.contains(group)) return;
+Json protocols_json() {
+  Json protocols = Json::object();
+  for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
+    if (!metric->protocol.key.empty())
+      protocols[std::string(metric->protocol.key)] = std::string(metric->protocol.text);
+  }
+  return protocols;
+}
+
+/// @param per unit of the statistics
+std::vector<ModuleCost> costs_of(const Json& timings, const char* group, const char* per) {
+  std::vector<ModuleCost> costs;
+  if (!timings.contains(group)) return costs;
   for (const auto& [module, time] : timings.at(group).items()) {
     costs.push_back({.module = module,
                      .per = per,
@@ -36,28 +39,55 @@ void append_costs(std::vector<ModuleCost>& costs, const Json& timings, const cha
                      .p95_ms = time.at("p95").get<double>(),
                      .max_ms = time.at("max").get<double>()});
   }
+  return costs;
 }
 
 }  // namespace
 
-std::vector<Metric> score_metrics(const Json& json) {
+Json metric_members(const Measurements& measurements) {
+  Json json;
+  for (const MetricDescriptor& metric : all_metrics()) {
+    const bool is_measured = (metric.source == MetricSource::kTrajectory && measurements.scored) ||
+                             (metric.source == MetricSource::kRun && measurements.counts);
+    if (is_measured) json[std::string(metric.id)] = number(metric, metric.value(measurements));
+  }
+  if (!measurements.scored) return json;
+  const eval::Score& score = measurements.scored->score;
+  json["ate_pairs"] = score.ate ? score.ate->pairs : 0;
+  json["rpe_pairs"] = score.rpe ? score.rpe->translation_m.count : 0;
+  json["protocols"] = protocols_json();
+  return json;
+}
+
+std::string score_text(const ScoredTrajectory& scored) {
+  const Measurements measurements{.scored = scored};
+  std::string text;
+  for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
+    const std::optional<double> value = metric->value(measurements);
+    text += fmt::format("{:<13} {}\n", metric->label,
+                        value ? fmt::format("{:.6f} {}", *value, metric->unit) : "n/a");
+  }
+  return text;
+}
+
+std::vector<Metric> stored_metrics(const Json& result) {
   std::vector<Metric> metrics;
-  const Json protocols = json.value("protocols", Json::object());
-  for (const MetricField& number : kNumbers) {
-    const auto found = json.find(number.key);
-    if (found == json.end() || !found->is_number()) continue;
-    metrics.push_back({.name = number.key,
-                       .protocol = protocols.value(number.protocol, ""),
-                       .unit = number.unit,
+  const Json protocols = result.value("protocols", Json::object());
+  for (const MetricDescriptor& metric : all_metrics()) {
+    const auto found = result.find(metric.id);
+    if (found == result.end() || !found->is_number()) continue;
+    metrics.push_back({.name = std::string(metric.id),
+                       .protocol = protocols.value(std::string(metric.protocol.key), ""),
+                       .unit = std::string(metric.unit),
                        .value = found->get<double>()});
   }
   return metrics;
 }
 
 std::vector<ModuleCost> module_costs(const Json& timings) {
-  std::vector<ModuleCost> costs;
-  append_costs(costs, timings, "modules", "call");
-  append_costs(costs, timings, "threads", "frame");
+  std::vector<ModuleCost> costs = costs_of(timings, "modules", "call");
+  const std::vector<ModuleCost> threads = costs_of(timings, "threads", "frame");
+  costs.insert(costs.end(), threads.begin(), threads.end());
   return costs;
 }
 

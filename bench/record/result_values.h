@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Conversion of result.json to the metrics and timings of a store.
+/// Metrics and module times of a run in result.json, and their conversion to those of a store.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "bench/model/stored_run.h"
+#include "bench/model/metrics.h"
 
 namespace stillpoint::bench {
 
-/// Scores and counts with unit and protocol; null values are skipped.
-/// @param json with the members of `score_members` and, optionally, the other members of result.json
-[[nodiscard]] std::vector<Metric> score_metrics(const nlohmann::ordered_json& json);
+/// Members of result.json: each metric of the measured parts (null without data), the numbers of matched
+/// pairs, and "protocols", how the metrics are evaluated.
+[[nodiscard]] nlohmann::ordered_json metric_members(const Measurements& measurements);
+
+/// The metrics of the trajectory as plain text, one line each, with unit; "n/a" without data.
+[[nodiscard]] std::string score_text(const ScoredTrajectory& scored);
+
+/// Metrics with unit and protocol; null values are skipped.
+/// @param result with the members of `metric_members`; members of other versions that are not in the list of
+///               metrics are skipped
+[[nodiscard]] std::vector<Metric> stored_metrics(const nlohmann::ordered_json& result);
 
 /// @param timings the member "timings" of a result file: "modules" and "threads", in ms
 /// @throws nlohmann::json::exception if a member is missing or of another type

@@ -12,7 +12,7 @@
 #include "bench/model/timing_text.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
-#include "bench/record/score_text.h"
+#include "bench/record/result_values.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/statistics.h"
 
@@ -94,13 +94,10 @@ std::string result_json(const RunResult& result) {
   json["sequence"] = result.sequence;
   json["variant"] = result.variant;
   json["mode"] = result.mode;
-  json["status"] = status_name(result.status);
+  json["status"] = status_name(result.outcome);
   json["failure"] = result.failure.empty() ? Json(nullptr) : Json(result.failure);
-  json["frames"] = summary.frames;
   json["frames_planned"] = result.run.frames_planned;
-  json["poses"] = result.run.trajectory.poses.size();
-  json.update(score_members(result.score));
-  json["resets"] = summary.resets;
+  json.update(metric_members(measurements_of(result)));
   json["skipped_frames"] = skipped_json(summary.skipped);
   json["imu_health"] = {{"rejected_samples", summary.imu_health.rejected_samples},
                         {"gaps", summary.imu_health.gaps}};
@@ -109,7 +106,6 @@ std::string result_json(const RunResult& result) {
   json["dynamic_labels"] = labels_json(result.run);
   json["realtime"] = realtime_json(summary);
   json["notes"] = result.notes;
-  json["wall_s"] = result.run.wall_s;
   json["timings"] = {{"unit", "ms"},
                      {"modules", timing_json(result.run.timings, false)},
                      {"threads", timing_json(result.run.timings, true)}};
@@ -173,7 +169,7 @@ std::string frames_csv(const OdometryRun& run) {
 
 std::string trajectory_text(const RunResult& result) {
   const std::string poses = eval::format_tum(result.run.trajectory);
-  return result.status == RunStatus::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
+  return result.outcome == Outcome::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
 }
 
 void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest,

@@ -6,11 +6,27 @@
 #include <filesystem>
 #include <string>
 
+#include "bench/record/build_info.h"
+#include "bench/record/host_info.h"
 #include "bench/record/output_folder.h"
-#include "bench/record/run_manifest.h"
 #include "bench/run/run_result.h"
+#include "core/config/odometry_config.h"
 
 namespace stillpoint::bench {
+
+/// What is necessary to reproduce a run, and to decide which results are comparable with it.
+struct RunManifest {
+  std::string sequence;
+  std::string sequence_format;
+  std::string sequence_checksum;  ///< empty when the run was interrupted
+  std::string base;
+  std::string variant;
+  OdometryConfig config;
+  std::string mode;
+  BuildInfo build;
+  HostInfo host;
+  std::string started;  ///< UTC, ISO 8601
+};
 
 /// Text of result.json; numbers without data are null.
 [[nodiscard]] std::string result_json(const RunResult& result);

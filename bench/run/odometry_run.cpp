@@ -44,56 +44,84 @@ FrameCounters counters_of(const OdometryUpdate& update, Timestamp t) {
           .reset = counters.reset};
 }
 
-/// Records an update. The runner's time of image decoding is left out: it is the time of waiting for the
-/// prefetcher, which measures the decoding itself.
-void record(OdometryRun& run, const OdometryUpdate& update, const datasets::SequenceInfo& info) {
-  for (std::size_t i = 0; i < kModuleCount; ++i) {
-    const auto module = static_cast<Module>(i);
-    if (module != Module::kImageDecoding) run.timings.add(module, update.timings[module]);
+/// Records the output of a runner.
+class RunRecorder {
+ public:
+  RunRecorder(const datasets::SensorStream& stream, const RunSpec& spec)
+      : stream_(stream), spec_(spec), drifted_(stream.info()) {
+    run_.trajectory.frame = "camera";
+    run_.frames_planned = frames_to_run(stream.info(), spec.max_frames);
   }
-  run.dynamic_features += update.counters.dynamic_features;
-  run.frame_timings.push_back(update.timings);
-  run.frame_timings.back().drop_spans();
-  run.frame_hashes.push_back(update.hashes);
-  const Timestamp t = info.frame_times[static_cast<std::size_t>(update.frame_id)];
-  run.frame_counters.push_back(counters_of(update, t));
-  if (update.status != OdometryStatus::kTracking) return;
-  run.trajectory.poses.push_back({t, update.T_w_c});
-}
 
-/// Records the time spans of an update.
-void record_spans(OdometryRun& run, const OdometryUpdate& update) {
-  for (const ModuleSpan& span : update.timings.spans()) {
-    if (span.module != Module::kImageDecoding) run.spans.push_back({update.frame_id, span});
+  [[nodiscard]] std::size_t frames_planned() const { return run_.frames_planned; }
+
+  void add(const OdometryUpdate& update) {
+    const auto begin = std::chrono::steady_clock::now();
+    record(update);
+    if (spec_.keep_spans) record_spans(update);
+    // The runner's time of image decoding is the time of waiting for decoded frames.
+    decoded_.for_items.ns += update.timings[Module::kImageDecoding].ns;
+    decoded_.for_items.waits += update.timings[Module::kImageDecoding].calls;
+    run_.recording += std::chrono::steady_clock::now() - begin;
   }
-}
 
-/// The runner's time of image decoding is the time of waiting for decoded frames.
-void add_wait(ChannelWaits& decoded, const OdometryUpdate& update) {
-  decoded.for_items.ns += update.timings[Module::kImageDecoding].ns;
-  decoded.for_items.waits += update.timings[Module::kImageDecoding].calls;
-}
+  /// Scores the labels of a frame if the sequence has ground truth for them.
+  void add(const FrameReport& report) {
+    if (spec_.mode == "realtime") return;  // decoding labels would slow down the run
+    drifted_.add(report.tracked);
+    if (report.dynamic.labels.empty()) return;
+    const std::optional<datasets::MotionLabels> labels =
+        stream_.load_labels(static_cast<std::size_t>(report.frame.id));
+    if (!labels) return;
+    if (!run_.label_score) run_.label_score.emplace();
+    run_.label_score->add(report.tracked.features, report.dynamic.labels, *labels, drifted_);
+  }
 
-void score_labels(OdometryRun& run, const FrameReport& report, const datasets::SensorStream& stream,
-                  DriftedTracks& drifted) {
-  drifted.add(report.tracked);
-  if (report.dynamic.labels.empty()) return;
-  const std::optional<datasets::MotionLabels> labels =
-      stream.load_labels(static_cast<std::size_t>(report.frame.id));
-  if (!labels) return;
-  if (!run.label_score) run.label_score.emplace();
-  run.label_score->add(report.tracked.features, report.dynamic.labels, *labels, drifted);
-}
+  [[nodiscard]] OdometryRun finish(RunSummary summary, double wall_s, const FramePrefetcher& prefetcher) {
+    run_.summary = std::move(summary);
+    run_.wall_s = wall_s;
+    if (!spec_.deterministic_counts) run_.summary.waits.push_back(decoded_);
+    for (const DecodedFrame& frame : prefetcher.decoded()) record_decoding(frame);
+    return std::move(run_);
+  }
 
-void record_decoding(OdometryRun& run, const FramePrefetcher& prefetcher, bool keep_spans) {
-  for (const DecodedFrame& frame : prefetcher.decoded()) {
-    run.timings.add(Module::kImageDecoding, {.ns = frame.elapsed.count(), .calls = 1});
-    if (!keep_spans) continue;
-    run.spans.push_back(
+ private:
+  /// The runner's time of image decoding is left out: the prefetcher measures the decoding itself.
+  void record(const OdometryUpdate& update) {
+    for (std::size_t i = 0; i < kModuleCount; ++i) {
+      const auto module = static_cast<Module>(i);
+      if (module != Module::kImageDecoding) run_.timings.add(module, update.timings[module]);
+    }
+    run_.dynamic_features += update.counters.dynamic_features;
+    run_.frame_timings.push_back(update.timings);
+    run_.frame_timings.back().drop_spans();
+    run_.frame_hashes.push_back(update.hashes);
+    const Timestamp t = stream_.info().frame_times[static_cast<std::size_t>(update.frame_id)];
+    run_.frame_counters.push_back(counters_of(update, t));
+    if (update.status != OdometryStatus::kTracking) return;
+    run_.trajectory.poses.push_back({t, update.T_w_c});
+  }
+
+  void record_spans(const OdometryUpdate& update) {
+    for (const ModuleSpan& span : update.timings.spans()) {
+      if (span.module != Module::kImageDecoding) run_.spans.push_back({update.frame_id, span});
+    }
+  }
+
+  void record_decoding(const DecodedFrame& frame) {
+    run_.timings.add(Module::kImageDecoding, {.ns = frame.elapsed.count(), .calls = 1});
+    if (!spec_.keep_spans) return;
+    run_.spans.push_back(
         {.frame = static_cast<std::int64_t>(frame.index),
          .span = {.module = Module::kImageDecoding, .start = frame.start, .elapsed = frame.elapsed}});
   }
-}
+
+  const datasets::SensorStream& stream_;
+  const RunSpec& spec_;
+  OdometryRun run_;
+  DriftedTracks drifted_;
+  ChannelWaits decoded_{.channel = "decoded frames", .for_items = {}, .for_room = {}};
+};
 
 RunSummary run_in_mode(const RunSpec& spec, const SensorInput& input, const RunControl& control) {
   if (spec.device)
@@ -118,38 +146,26 @@ RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& wor
 
 OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                          const RunControl& control) {
-  const datasets::SequenceInfo& info = stream.info();
-  OdometryRun run;
-  run.trajectory.frame = "camera";
-  run.frames_planned = frames_to_run(info, spec.max_frames);
+  RunRecorder recorder(stream, spec);
   FramePrefetcher prefetcher([&stream](std::size_t index) { return stream.load_frame(index); },
-                             run.frames_planned, spec.deterministic_counts ? 0 : kDecodedAhead);
-  ChannelWaits decoded{.channel = "decoded frames", .for_items = {}, .for_room = {}};
+                             recorder.frames_planned(), spec.deterministic_counts ? 0 : kDecodedAhead);
   const auto on_update = [&](const OdometryUpdate& update) {
-    const auto begin = std::chrono::steady_clock::now();
-    record(run, update, info);
-    if (spec.keep_spans) record_spans(run, update);
-    add_wait(decoded, update);
-    run.recording += std::chrono::steady_clock::now() - begin;
+    recorder.add(update);
     if (control.on_update) control.on_update(update);
   };
-  DriftedTracks drifted(info);
   const auto on_frame = [&](const FrameReport& report) {
-    // Decoding labels would slow down a real-time run.
-    if (spec.mode != "realtime") score_labels(run, report, stream, drifted);
+    recorder.add(report);
     if (control.on_frame) control.on_frame(report);
   };
   const auto start = std::chrono::steady_clock::now();
   const auto work = [&] {
     return run_in_mode(
-        spec, input_of(info, run.frames_planned, prefetcher),
+        spec, input_of(stream.info(), recorder.frames_planned(), prefetcher),
         {.on_update = on_update, .on_frame = on_frame, .stop_requested = control.stop_requested});
   };
-  run.summary = spec.deterministic_counts ? on_fresh_thread(stream, work) : work();
-  run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!spec.deterministic_counts) run.summary.waits.push_back(decoded);
-  record_decoding(run, prefetcher, spec.keep_spans);
-  return run;
+  RunSummary summary = spec.deterministic_counts ? on_fresh_thread(stream, work) : work();
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return recorder.finish(std::move(summary), wall_s, prefetcher);
 }
 
 }  // namespace stillpoint::bench

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "eval/trajectory/frames.h"
+#include "eval/trajectory/alignment.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -22,36 +22,32 @@ Trajectory camera_truth(const datasets::SequenceInfo& info, const std::vector<Ti
   return truth;
 }
 
-RunStatus status_of(const OdometryRun& run) {
-  if (run.summary.interrupted) return RunStatus::kInterrupted;
-  return run.trajectory.poses.empty() ? RunStatus::kFailed : RunStatus::kOk;
+Outcome outcome_of(const OdometryRun& run) {
+  if (run.summary.interrupted) return Outcome::kInterrupted;
+  return run.trajectory.poses.empty() ? Outcome::kLost : Outcome::kOk;
 }
 
 std::string failure_of(const OdometryRun& run) {
-  switch (status_of(run)) {
-    case RunStatus::kOk:
-      return "";
-    case RunStatus::kInterrupted:
+  switch (outcome_of(run)) {
+    case Outcome::kInterrupted:
       return "interrupted after " + std::to_string(run.summary.frames) + " of " +
              std::to_string(run.frames_planned) + " frames";
-    case RunStatus::kFailed:
+    case Outcome::kLost:
       return "no frame has a pose: the estimator never initialized";
+    default:
+      return "";
   }
-  return "";
 }
 
 }  // namespace
 
-std::string status_name(RunStatus status) {
-  switch (status) {
-    case RunStatus::kOk:
-      return "ok";
-    case RunStatus::kInterrupted:
-      return "interrupted";
-    case RunStatus::kFailed:
-      return "failed";
-  }
-  return "";
+Measurements measurements_of(const RunResult& result) {
+  const OdometryRun& run = result.run;
+  return {.scored = ScoredTrajectory{.gt = result.gt, .est = run.trajectory, .score = result.score},
+          .counts = RunCounts{.frames = run.summary.frames,
+                              .poses = run.trajectory.poses.size(),
+                              .resets = run.summary.resets,
+                              .wall_s = run.wall_s}};
 }
 
 RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run) {
@@ -61,10 +57,11 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run) {
                                 info.frame_times.begin() + static_cast<std::ptrdiff_t>(frames));
   RunResult result;
   result.sequence = info.name;
-  result.status = status_of(run);
+  result.outcome = outcome_of(run);
   result.failure = failure_of(run);
   result.notes = info.notes;
-  result.score = eval::score(camera_truth(info, options.expected_times), run.trajectory, options);
+  result.gt = camera_truth(info, options.expected_times);
+  result.score = eval::score(result.gt, run.trajectory, options);
   result.run = std::move(run);
   return result;
 }

@@ -5,30 +5,25 @@
 #include <string>
 #include <vector>
 
+#include "bench/model/metrics.h"
 #include "bench/run/odometry_run.h"
-#include "eval/score.h"
 
 namespace stillpoint::bench {
-
-enum class RunStatus {
-  kOk,
-  kInterrupted,  ///< stopped on request; the results cover the processed frames
-  kFailed,       ///< processed all frames without any pose
-};
-
-/// "ok", "interrupted" or "failed".
-[[nodiscard]] std::string status_name(RunStatus status);
 
 struct RunResult {
   std::string sequence;
   std::string variant;
   std::string mode;
-  RunStatus status = RunStatus::kOk;
+  Outcome outcome = Outcome::kOk;  ///< or kLost or kInterrupted
   std::string failure;             ///< reason when not ok
   std::vector<std::string> notes;  ///< assumptions of the sequence reader
+  Trajectory gt;                   ///< of the camera, over the processed frames
   eval::Score score;
   OdometryRun run;
 };
+
+/// What the metrics of the run are computed from; refers to `result`.
+[[nodiscard]] Measurements measurements_of(const RunResult& result);
 
 /// Scores a run against the sequence's ground truth, transformed to the camera frame. An interrupted run is
 /// scored on its processed frames.

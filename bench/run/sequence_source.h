@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "datasets/sensor_stream.h"
+#include "datasets/open_sequence.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint::bench {

@@ -20,10 +20,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kExportVersion = 2;
 
-void append_rows(std::vector<std::string>& faults, Statement statement, const std::string& what) {
-  while (statement.step()) {
-    if (statement.text(0) != "ok") faults.push_back(what + ": " + statement.text(0));
+/// Runs a check of the database. @return one text per fault
+std::vector<std::string> faults_of(Statement check, const std::string& what) {
+  std::vector<std::string> faults;
+  while (check.step()) {
+    if (check.text(0) != "ok") faults.push_back(what + ": " + check.text(0));
   }
+  return faults;
 }
 
 std::set<std::string> referenced_files(const Database& database) {
@@ -44,15 +47,11 @@ RunOutcome outcome_from(const Store& store, const StoredRun& run) {
   return outcome;
 }
 
-/// Adds one run unless the store already contains it.
-void add_run(StoreWriter& writer, const RunIdentity& identity, const RunOutcome& outcome,
-             MergeReport& report) {
-  if (writer.acquire(identity) != RunLease::kGranted) {
-    ++report.present;
-    return;
-  }
+/// Adds one run unless the store already contains it. @return whether it was added
+bool add_run(StoreWriter& writer, const RunIdentity& identity, const RunOutcome& outcome) {
+  if (writer.acquire(identity) != RunLease::kGranted) return false;
   writer.finish(identity, outcome);
-  ++report.added;
+  return true;
 }
 
 Json identity_json(const RunIdentity& identity) {
@@ -168,9 +167,10 @@ auto read_export(const std::string& text, const std::string& place, const Read& 
 std::vector<std::string> verify_store(const fs::path& file) {
   const Database database(file, DatabaseAccess::kRead);
   require_readable_schema(database);
-  std::vector<std::string> faults;
-  append_rows(faults, database.prepare("PRAGMA integrity_check"), "database");
-  append_rows(faults, database.prepare("PRAGMA foreign_key_check"), "row with a missing reference");
+  std::vector<std::string> faults = faults_of(database.prepare("PRAGMA integrity_check"), "database");
+  for (std::string& fault :
+       faults_of(database.prepare("PRAGMA foreign_key_check"), "row with a missing reference"))
+    faults.push_back(std::move(fault));
   const BlobFiles blobs(files_folder(file) / "blobs");
   for (const std::string& name : referenced_files(database)) {
     try {
@@ -209,7 +209,10 @@ MergeReport merge_stores(const fs::path& from, const fs::path& into) {
   const Store source(from);
   StoreWriter writer(into);
   MergeReport report;
-  for (const StoredRun& run : source.runs()) add_run(writer, run.identity, outcome_from(source, run), report);
+  for (const StoredRun& run : source.runs()) {
+    const bool is_added = add_run(writer, run.identity, outcome_from(source, run));
+    ++(is_added ? report.added : report.present);
+  }
   for (const StoredPlan& plan : source.plans()) writer.record_plan(plan);
   write_acceptances(into, source.acceptances());
   return report;
@@ -238,7 +241,8 @@ MergeReport import_store(const std::string& text, const std::string& place, cons
     StoreWriter writer(into);
     MergeReport report;
     for (const Json& run : json.at("runs")) {
-      add_run(writer, identity_of(run.at("identity")), outcome_of_json(run), report);
+      const bool is_added = add_run(writer, identity_of(run.at("identity")), outcome_of_json(run));
+      ++(is_added ? report.added : report.present);
     }
     for (const Json& plan : json.at("plans")) {
       writer.record_plan({.name = plan.at("name"),

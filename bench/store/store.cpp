@@ -47,8 +47,8 @@ StoredRun run_of(const Statement& row) {
   return run;
 }
 
-/// Reads the tables that reference runs, each in one pass.
-void read_details(const Database& database, std::vector<StoredRun>& runs) {
+/// The runs with their rows of the tables that reference them; reads each table in one pass.
+std::vector<StoredRun> with_details(const Database& database, std::vector<StoredRun> runs) {
   std::unordered_map<std::int64_t, StoredRun*> by_id;
   for (StoredRun& run : runs) by_id[run.id] = &run;
   const auto run_at = [&](const Statement& row) {
@@ -73,6 +73,7 @@ void read_details(const Database& database, std::vector<StoredRun>& runs) {
   while (blobs.step()) {
     if (StoredRun* run = run_at(blobs)) run->blobs[current_kind(blobs.text(1))] = blobs.text(2);
   }
+  return runs;
 }
 
 /// Whether a trajectory file contains poses; that of a run without poses contains only comments.
@@ -99,7 +100,7 @@ std::vector<StoredRun> Store::runs(const RunFilter& filter) const {
   Statement rows = database_.prepare(kRuns);
   rows.bind(filter.system).bind(filter.variant).bind(filter.sequence).bind(filter.build).bind(filter.kind);
   while (rows.step()) runs.push_back(run_of(rows));
-  read_details(database_, runs);
+  runs = with_details(database_, std::move(runs));
   database_.execute("COMMIT");
   return runs;
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Description of an external SLAM system: name, command line, input layout and output files.
+/// An external SLAM system: its description (name, command line, input layout, output files) and its runs.
 #pragma once
 
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "bench/systems/slam_system.h"
 #include "core/base/fields.h"
 
 namespace stillpoint::bench {
@@ -49,5 +51,21 @@ void visit_fields(Visitor&& field, Config& config) {
 /// @param name of an embedded file, or path of one that ends in ".toml"
 /// @throws InputError if there is no such file, if it is invalid, or if name or command are missing
 [[nodiscard]] ExternalSystem load_external_system(const std::string& name);
+
+/// Runs an external system on a sequence.
+class ExternalRun : public SlamSystem {
+ public:
+  explicit ExternalRun(ExternalSystem system) : system_(std::move(system)) {}
+
+  /// Command line of the system. Exports the sequence first if the system requires another layout; exports
+  /// are cached.
+  [[nodiscard]] ProcessSpec command(const RunRequest& request) const override;
+
+  /// Evaluates the trajectory written by the system.
+  [[nodiscard]] RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const override;
+
+ private:
+  ExternalSystem system_;
+};
 
 }  // namespace stillpoint::bench

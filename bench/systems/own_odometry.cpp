@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/systems/own_odometry.h"
 
-#include <cstring>
+#include <map>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -47,24 +48,30 @@ RunOutcome without_result(const ProcessResult& process) {
   return outcome;
 }
 
-/// 000042.jpg becomes "image:000042".
-void append_images(RunOutcome& outcome, const fs::path& folder) {
-  if (!fs::exists(folder)) return;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    outcome.attachments[std::string(kImageKind) + entry.path().stem().string()] =
-        eval::read_text_file(entry.path());
+/// The stored files and the annotated images by attachment name; images/000042.jpg becomes "image:000042".
+std::map<std::string, std::string> read_attachments(const fs::path& folder) {
+  std::map<std::string, std::string> attachments;
+  for (const StoredFile& stored : kStoredFiles) {
+    if (fs::exists(folder / stored.file))
+      attachments[stored.kind] = eval::read_text_file(folder / stored.file);
+  }
+  if (!fs::exists(folder / "images")) return attachments;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "images"))
+    attachments[std::string(kImageKind) + entry.path().stem().string()] = eval::read_text_file(entry.path());
+  return attachments;
 }
 
-bool counts_instructions(const RunRequest& request) { return request.run.identity.kind == "instructions"; }
+bool counts_instructions(const RunRequest& request) { return request.identity.kind == "instructions"; }
 
 /// Times under valgrind are meaningless; they are replaced by instruction counts.
-void replace_times(RunOutcome& outcome, const RunRequest& request) {
-  std::erase_if(outcome.metrics, [](const Metric& metric) { return metric.name == "wall_s"; });
+RunOutcome with_instruction_counts(RunOutcome outcome, const fs::path& folder) {
+  std::erase_if(outcome.metrics, [](const Metric& metric) { return metric.name == metric_id::kWallTime; });
   outcome.costs.clear();
   outcome.attachments.erase("timings");
   outcome.attachments.erase("result");
-  const std::vector<Metric> counts = instruction_metrics(read_instructions(request.work));
+  const std::vector<Metric> counts = instruction_metrics(read_instructions(folder));
   outcome.metrics.insert(outcome.metrics.end(), counts.begin(), counts.end());
+  return outcome;
 }
 
 /// Manifest without the start time, so that runs with equal manifests share one blob.
@@ -77,19 +84,19 @@ std::string without_start_time(const std::string& manifest) {
 }  // namespace
 
 ProcessSpec OwnOdometry::command(const RunRequest& request) const {
-  const ConfigRequest& config = request.run.config;
+  const ConfigRequest& config = request.config;
   const bool counted = counts_instructions(request);
   const fs::path folder = counted ? "." : request.work;  // the same command line in every run
   ProcessSpec spec;
-  spec.program = request.run.program.empty() ? executable_path() : request.run.program;
+  spec.program = request.program.empty() ? executable_path() : request.program;
   spec.arguments = {"run",         request.sequence.string(),
                     "--config",    config.base,
                     "--variant",   config.variant,
-                    "--mode",      request.run.identity.mode,
+                    "--mode",      request.identity.mode,
                     "--out",       folder.string(),
                     "--heartbeat", (folder / kHeartbeatFile).string()};
-  if (request.run.max_frames > 0) {
-    spec.arguments.insert(spec.arguments.end(), {"--max-frames", std::to_string(request.run.max_frames)});
+  if (request.max_frames > 0) {
+    spec.arguments.insert(spec.arguments.end(), {"--max-frames", std::to_string(request.max_frames)});
   }
   for (const std::string& setting : config.settings) {
     spec.arguments.insert(spec.arguments.end(), {"--set", setting});
@@ -97,7 +104,7 @@ ProcessSpec OwnOdometry::command(const RunRequest& request) const {
   if (request.images > 0 && !counted)
     spec.arguments.insert(spec.arguments.end(), {"--images", std::to_string(request.images)});
   if (!counted) return spec;
-  spec.arguments.insert(spec.arguments.end(), {"--sequence-id", request.run.identity.sequence_id});
+  spec.arguments.insert(spec.arguments.end(), {"--sequence-id", request.identity.sequence_id});
   return under_callgrind(std::move(spec), request.work);
 }
 
@@ -107,21 +114,16 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessResult& 
   RunOutcome outcome;
   try {
     const Json result = Json::parse(eval::read_text_file(result_file));
-    outcome.outcome = result.at("status") == "ok" ? Outcome::kOk : Outcome::kLost;
+    outcome.outcome = outcome_of(result.at("status").get<std::string>());
     if (result.at("failure").is_string()) outcome.detail = result.at("failure").get<std::string>();
-    outcome.metrics = score_metrics(result);
+    outcome.metrics = stored_metrics(result);
     outcome.costs = module_costs(result.at("timings"));
     outcome.manifest = without_start_time(eval::read_text_file(request.work / "manifest.json"));
   } catch (const Json::exception& error) {
     throw InputError(result_file.string(), std::string("is not a result file: ") + error.what());
   }
-  for (const StoredFile& stored : kStoredFiles) {
-    if (fs::exists(request.work / stored.file))
-      outcome.attachments[stored.kind] = eval::read_text_file(request.work / stored.file);
-  }
-  append_images(outcome, request.work / "images");
-  if (counts_instructions(request)) replace_times(outcome, request);
-  return outcome;
+  outcome.attachments = read_attachments(request.work);
+  return counts_instructions(request) ? with_instruction_counts(std::move(outcome), request.work) : outcome;
 }
 
 std::string build_name() {

@@ -4,15 +4,18 @@
 
 #include <filesystem>
 
+#include "bench/config/config_file.h"
 #include "bench/model/stored_run.h"
-#include "bench/plan/plan_matrix.h"
 #include "bench/process/child_process.h"
 
 namespace stillpoint::bench {
 
 /// A run to execute.
 struct RunRequest {
-  const PlannedRun& run;
+  RunIdentity identity;
+  ConfigRequest config;            ///< of this odometry
+  int max_frames = 0;              ///< of this odometry; 0 = all
+  std::filesystem::path program;   ///< executable of this odometry; empty = the current executable
   std::filesystem::path sequence;  ///< folder
   std::filesystem::path work;      ///< exclusive output folder of the run
   int images = 0;                  ///< number of annotated images of its worst frames

@@ -3,9 +3,8 @@
 
 #include <utility>
 
-#include "core/backend/marginalization/marginalization.h"
 #include "core/backend/start/depth_initialization.h"
-#include "core/backend/start/gauge.h"
+#include "core/backend/start/initial_prior.h"
 #include "core/backend/start/initializer.h"
 #include "core/backend/start/monocular_structure.h"
 #include "core/backend/window/landmark_tracks.h"
@@ -75,7 +74,8 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
       imu_config_(imu),
       rig_(rig),
       seed_(static_cast<std::uint32_t>(seed)),
-      imu_(imu.max_gap_s) {
+      imu_(imu.max_gap_s),
+      solver_(make_window_solver(backend.solver)) {
   if (imu.enabled && !rig.has_imu) {
     throw InputError("imu.enabled", "the sequence has no inertial data; run with --variant vo");
   }
@@ -160,7 +160,7 @@ void Estimator::try_initialize_imu() {
   const bool instant = backend_.initializer.kind == InitializerKind::kInstant && window_.newest() >= 4;
   if (!is_full() && !(instant && span >= backend_.initializer.min_span_s)) return;
   std::optional<Window> visual =
-      has_metric_scale() ? window_ : reconstruct_window(window_, backend_, rig_.camera.focal_px());
+      has_metric_scale() ? window_ : reconstruct_window(window_, backend_, rig_.camera.focal_px(), *solver_);
   if (!visual) return;
   const std::optional<InertialAlignment> alignment =
       align_with_imu(*visual, imu_config_.gravity, backend_.initializer);
@@ -194,12 +194,12 @@ void Estimator::slide(bool keyframe) {
     keyframe ? remove_oldest_frame(window_) : remove_second_newest_frame(window_);
     window_.prior = initial_prior(window_, backend_.initializer);
   } else if (keyframe) {
-    LinearPrior prior =
-        marginalize_oldest(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
+    LinearPrior prior = solver_->marginalize_oldest(window_, pixel_noise_.applied_to(backend_),
+                                                    rig_.camera.focal_px(), std::move(discarded_prior_));
     remove_oldest_frame(window_);
-    solver_.recycle(std::exchange(window_.prior, std::move(prior)));
+    discarded_prior_ = std::exchange(window_.prior, std::move(prior));
   } else {
-    marginalizer_.remove(window_.newest() - 1, window_.prior);
+    window_.prior = marginalizer_.remove(window_.newest() - 1, std::move(window_.prior));
     remove_second_newest_frame(window_);
   }
   // Nothing connected the removed frame to the others: fix the gauge at the new oldest frame.
@@ -212,11 +212,17 @@ OdometryStatus Estimator::status() const {
   return localized_ ? OdometryStatus::kTracking : OdometryStatus::kLost;
 }
 
-void Estimator::add(const TrackedFrame& frame, OdometryUpdate& update) {
-  update.frame_id = frame.id;
-  update.counters.tracked_features = static_cast<int>(frame.features.size());
+void Estimator::begin_update(std::int64_t frame_id) {
+  ModuleTimings timings = std::move(update_.timings);
+  timings.clear();
+  update_ = {.frame_id = frame_id, .timings = std::move(timings)};
+}
+
+void Estimator::add(const TrackedFrame& frame) {
+  begin_update(frame.id);
+  update_.counters.tracked_features = static_cast<int>(frame.features.size());
   push_frame(frame);
-  const ScopedTimer timer(update.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
+  const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
   add_observations(frame, rig_, backend_.depth, window_);
 }
 
@@ -235,8 +241,8 @@ void Estimator::mark_dynamic(std::span<const DynamicLabel> labels) {
   }
 }
 
-bool Estimator::refine(OdometryUpdate& update) {
-  const ScopedTimer timer(update.timings, Module::kStateOptimization);
+bool Estimator::refine() {
+  const ScopedTimer timer(update_.timings, Module::kStateOptimization);
   keyframe_ = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
   localized_ = localize_newest();
   try_initialize_imu();
@@ -244,21 +250,21 @@ bool Estimator::refine(OdometryUpdate& update) {
   const NavState before = newest_;
   if (has_metric_scale()) {
     initialize_depths(backend_, rig_.camera.focal_px(), window_);
-    const ScopedTimer solve_timer(update.timings, Module::kWindowSolve);
+    const ScopedTimer solve_timer(update_.timings, Module::kWindowSolve);
     const Pose oldest = window_.frames.front().state.T_w_b;
     const SolveReport report =
-        solve_window(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), solver_);
+        solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
     if (!window_.inertial) restore_gauge(oldest, backend_.initializer, window_);
     if (backend_.reprojection_error_px > 0.0) {
       pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
     }
-    update.counters.window_landmarks = report.landmarks;
-    update.counters.depth_landmarks = report.depth_landmarks;
-    update.counters.solver_iterations = report.iterations;
+    update_.counters.window_landmarks = report.landmarks;
+    update_.counters.depth_landmarks = report.depth_landmarks;
+    update_.counters.solver_iterations = report.iterations;
   }
-  update.counters.keyframe = keyframe_;
+  update_.counters.keyframe = keyframe_;
   if (has_failed(before)) {
-    update.counters.reset = true;
+    update_.counters.reset = true;
     restart();
     return false;
   }
@@ -267,26 +273,26 @@ bool Estimator::refine(OdometryUpdate& update) {
   return true;
 }
 
-void Estimator::finish(OdometryUpdate& update) {
+void Estimator::finish() {
   if (!window_.frames.empty()) {
-    const ScopedTimer timer(update.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
-    const ScopedTimer slide_timer(update.timings, Module::kMarginalization);
+    const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
+    const ScopedTimer slide_timer(update_.timings, Module::kMarginalization);
     slide(keyframe_);
   }
-  report(newest_, update);
+  report(newest_);
   drop_old_samples(motion_state(), imu_);
 }
 
-void Estimator::predict(std::int64_t frame_id, Timestamp t, OdometryUpdate& update) {
-  update.frame_id = frame_id;
-  report(extrapolate(motion_state(), imu_, t), update);
+void Estimator::predict(std::int64_t frame_id, Timestamp t) {
+  begin_update(frame_id);
+  report(extrapolate(motion_state(), imu_, t));
 }
 
-void Estimator::report(const NavState& state, OdometryUpdate& update) const {
-  update.state = state;
-  update.T_w_c = state.T_w_b * window_.T_b_c;
-  update.status = status();
-  update.time_offset_s = window_.time_offset_s;
+void Estimator::report(const NavState& state) {
+  update_.state = state;
+  update_.T_w_c = state.T_w_b * window_.T_b_c;
+  update_.status = status();
+  update_.time_offset_s = window_.time_offset_s;
 }
 
 }  // namespace stillpoint

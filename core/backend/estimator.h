@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "core/backend/marginalization/marginalization.h"
-#include "core/backend/solvers/schur_solver.h"
+#include "core/backend/marginalization/frame_marginalizer.h"
 #include "core/backend/solvers/window_solver.h"
 #include "core/backend/start/camera_pose.h"
 #include "core/backend/state_prediction.h"
@@ -38,10 +38,10 @@ class Estimator {
   /// Appends a frame to the window at its predicted pose.
   ///
   /// Call order per frame: `add`, `mark_dynamic` (labels from detections), `refine`, `mark_dynamic` (labels
-  /// from the moving consistency check with the refined poses), `finish`. Each step fills its part of
-  /// `update`.
+  /// from the moving consistency check with the refined poses), `finish`. `add` resets `update()`, and each
+  /// step fills its part of it.
   /// @param frame features sorted by id
-  void add(const TrackedFrame& frame, OdometryUpdate& update);
+  void add(const TrackedFrame& frame);
 
   /// Excludes dynamic landmarks from the estimate and re-admits cleared ones.
   /// @param labels sorted by id; landmarks without a label are unchanged
@@ -49,13 +49,17 @@ class Estimator {
 
   /// Optimizes the window, including the pose of the newest frame.
   /// @return false after a failure: the window has been cleared and restarts with the next frame
-  [[nodiscard]] bool refine(OdometryUpdate& update);
+  [[nodiscard]] bool refine();
 
   /// Slides the window (marginalization) and reports the state.
-  void finish(OdometryUpdate& update);
+  void finish();
 
-  /// Reports the pose of a frame that does not enter the window, propagated from the newest state.
-  void predict(std::int64_t frame_id, Timestamp t, OdometryUpdate& update);
+  /// Resets `update()` to a frame that does not enter the window: its pose, propagated from the newest state.
+  void predict(std::int64_t frame_id, Timestamp t);
+
+  /// Result for the last frame that was added or predicted. The caller may add timings, counters and hashes
+  /// of other modules.
+  [[nodiscard]] OdometryUpdate& update() { return update_; }
 
   /// Input of the tracker's motion prediction.
   [[nodiscard]] MotionState motion_state() const;
@@ -77,15 +81,17 @@ class Estimator {
   void restart();
   void slide(bool keyframe);
   [[nodiscard]] OdometryStatus status() const;
-  void report(const NavState& state, OdometryUpdate& update) const;
+  void begin_update(std::int64_t frame_id);
+  void report(const NavState& state);
 
   BackendConfig backend_;
   ImuConfig imu_config_;
   Rig rig_;
   std::uint32_t seed_;
   ImuBuffer imu_;
-  SchurSolver solver_;              ///< buffers; also used when Ceres solves
+  std::unique_ptr<WindowSolver> solver_;
   FrameMarginalizer marginalizer_;  ///< buffers only
+  LinearPrior discarded_prior_;     ///< its memory is reused
   Window window_;
   std::vector<PointObservation> known_points_;  ///< buffer of `localize_newest`
   ReprojectionErrorMonitor error_monitor_;
@@ -95,6 +101,7 @@ class Estimator {
   bool localized_ = true;        ///< whether the pose of the newest frame was found
   bool keyframe_ = true;         ///< whether the second-newest frame stays in the window
   bool received_frame_ = false;  ///< at least one frame was added
+  OdometryUpdate update_;
 };
 
 }  // namespace stillpoint

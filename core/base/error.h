@@ -18,7 +18,9 @@ class InputError : public std::runtime_error {
   InputError(const std::string& location, const std::string& problem)
       : std::runtime_error(location + ": " + problem) {}
 
+  /// @param file as the user wrote it
   /// @param line line number in `file`, counted from 1
+  /// @param problem as above
   InputError(const std::string& file, long line, const std::string& problem)
       : std::runtime_error(file + ":" + std::to_string(line) + ": " + problem) {}
 };

@@ -48,6 +48,7 @@ struct ModuleSpan {
 /// Timings of one frame by module. Passed along in the messages, so neither locks nor globals are needed.
 class ModuleTimings {
  public:
+  /// @param span also kept for the timeline
   /// @param calls 0 if the span is only part of a call
   void add(const ModuleSpan& span, int calls) {
     add(span.module, span.elapsed, calls);

@@ -40,7 +40,7 @@ struct GridDetectorConfig {
   int fast_threshold = 10;   ///< intensity difference [grey levels]
   bool skip_empty = true;    ///< skip a cell without corners at the next detection
   bool stop_early = false;   ///< search the cells with the fewest features first; stop when enough are found
-  int spare_candidates = 2;  ///< candidates kept per cell beyond its quota
+  int extra_candidates = 2;  ///< candidates kept per cell beyond its quota
   int threads = 1;           ///< size of the thread pool; does not affect the result
 };
 template <class Visitor, class Config>
@@ -52,7 +52,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("fast_threshold", config.fast_threshold, 1, 255);
   field("skip_empty", config.skip_empty);
   field("stop_early", config.stop_early);
-  field("spare_candidates", config.spare_candidates, 0, 64);
+  field("extra_candidates", config.extra_candidates, 0, 64);
   field("threads", config.threads, 1, 64);
 }
 

@@ -63,7 +63,7 @@ int target_of(NetworkBackend backend) {
   return backend == NetworkBackend::kCuda ? cv::dnn::DNN_TARGET_CUDA : cv::dnn::DNN_TARGET_CPU;
 }
 
-void choose_backend(cv::dnn::Net& net, NetworkBackend backend) {
+cv::dnn::Net with_backend(cv::dnn::Net net, NetworkBackend backend) {
   const auto id = static_cast<cv::dnn::Backend>(opencv_backend(backend));
   const std::vector<cv::dnn::Target> targets = cv::dnn::getAvailableTargets(id);
   if (std::find(targets.begin(), targets.end(), target_of(backend)) == targets.end()) {
@@ -71,6 +71,7 @@ void choose_backend(cv::dnn::Net& net, NetworkBackend backend) {
   }
   net.setPreferableBackend(id);
   net.setPreferableTarget(target_of(backend));
+  return net;
 }
 
 /// Silences the OpenCV log: OpenCV also prints the errors that it throws.
@@ -158,7 +159,7 @@ NetworkDetector::NetworkDetector(const DetectorConfig& config, std::span<const s
       output_names_(net_.getUnconnectedOutLayersNames()) {
   require_known_class(config, decode_options_.names, dynamic_classes);
   if (config.layout == NetworkLayout::kDarknet) require_complete_weights(net_, config.weights);
-  choose_backend(net_, config.backend);
+  net_ = with_backend(std::move(net_), config.backend);
   cv::setNumThreads(config.threads);
   const cv::Mat empty(config.input_px, config.input_px, CV_8UC3, cv::Scalar::all(kPadding));
   static_cast<void>(decode_outputs(decode_options_, run(cv::dnn::blobFromImage(empty)), config.weights));
@@ -189,10 +190,10 @@ DetectionSet NetworkDetector::detect(const Frame& frame) {
            .x_max = box.x_max / scale.x,
            .y_max = box.y_max / scale.y};
   }
+  UsableBoxes usable = usable_boxes(std::move(detections), frame.gray.size());
+  counters_.add(usable.counters);
   ++counters_.processed;
-  return {.t = frame.t,
-          .state = DetectionState::kPresent,
-          .detections = usable_boxes(std::move(detections), frame.gray.size(), counters_)};
+  return {.t = frame.t, .state = DetectionState::kPresent, .detections = std::move(usable.detections)};
 }
 
 std::string NetworkDetector::description() const {

@@ -47,8 +47,8 @@ std::optional<cv::Mat> as_rows(const DecodeOptions& options, const cv::Mat& outp
   return last == columns ? std::optional(flat.clone()) : std::nullopt;
 }
 
-/// Converts YOLOX boxes from grid units to px of the input, in place.
-void decode_yolox_grids(cv::Mat& rows, int input_px) {
+/// YOLOX boxes in px of the input instead of grid units.
+cv::Mat decode_yolox_grids(cv::Mat rows, int input_px) {
   int row = 0;
   for (const int stride : kYoloxStrides) {
     const int side = input_px / stride;
@@ -60,6 +60,7 @@ void decode_yolox_grids(cv::Mat& rows, int input_px) {
       values[3] = std::exp(values[3]) * static_cast<float>(stride);
     }
   }
+  return rows;
 }
 
 /// Box of one row; nullopt if its best score is below the threshold.
@@ -94,7 +95,7 @@ std::vector<Detection> decode_outputs(const DecodeOptions& options, const std::v
                                    std::to_string(options.names.size()) +
                                    " classes; check detector.layout, detector.names and detector.input_px");
     }
-    if (options.layout == NetworkLayout::kYolox) decode_yolox_grids(*rows, options.input_px);
+    if (options.layout == NetworkLayout::kYolox) rows = decode_yolox_grids(*rows, options.input_px);
     for (int row = 0; row < rows->rows; ++row) {
       std::optional<Detection> detection = decode_row(options, rows->ptr<float>(row));
       if (detection) detections.push_back(std::move(*detection));

@@ -3,13 +3,55 @@
 
 #include "core/base/error.h"
 #include "core/detector/network_detector.h"
-#include "core/detector/no_detector.h"
 #include "core/detector/recorded_detector.h"
 #include "core/detector/simulated_detector.h"
-#include "core/detector/sparse_detector.h"
 
 namespace stillpoint {
 namespace {
+
+/// Null detector: processes no frame.
+class NoDetector final : public ObjectDetector {
+ public:
+  [[nodiscard]] DetectionSet detect(const Frame& frame) override {
+    ++counters_.skipped;
+    return {.t = frame.t, .state = DetectionState::kNone, .detections = {}};
+  }
+  [[nodiscard]] std::string description() const override { return "none"; }
+  [[nodiscard]] const DetectorCounters& counters() const override { return counters_; }
+
+ private:
+  DetectorCounters counters_;
+};
+
+/// Forwards frames whose id is a multiple of n to another detector, and skips the others.
+class SparseDetector final : public ObjectDetector {
+ public:
+  /// @param every_n at least 1
+  SparseDetector(std::unique_ptr<ObjectDetector> detector, int every_n)
+      : detector_(std::move(detector)), every_n_(every_n) {}
+
+  [[nodiscard]] DetectionSet detect(const Frame& frame) override {
+    if (frame.id % every_n_ == 0) {
+      DetectionSet found = detector_->detect(frame);
+      counters_ = detector_->counters();
+      counters_.skipped += skipped_;
+      return found;
+    }
+    ++skipped_;
+    ++counters_.skipped;
+    return {.t = frame.t, .state = DetectionState::kNone, .detections = {}};
+  }
+  [[nodiscard]] std::string description() const override {
+    return detector_->description() + ", every " + std::to_string(every_n_) + " frames";
+  }
+  [[nodiscard]] const DetectorCounters& counters() const override { return counters_; }
+
+ private:
+  std::unique_ptr<ObjectDetector> detector_;
+  int every_n_;
+  std::int64_t skipped_ = 0;
+  DetectorCounters counters_;
+};
 
 std::unique_ptr<ObjectDetector> make_for_every_frame(const DetectorConfig& config,
                                                      const DetectorInput& input) {

@@ -20,6 +20,14 @@ struct DetectorCounters {
   std::int64_t boxes = 0;      ///< returned boxes
   std::int64_t clipped = 0;    ///< returned boxes that were clipped to the image
   std::int64_t rejected = 0;   ///< boxes that were inverted, not finite, or outside the image
+
+  void add(const DetectorCounters& other) {
+    processed += other.processed;
+    skipped += other.skipped;
+    boxes += other.boxes;
+    clipped += other.clipped;
+    rejected += other.rejected;
+  }
 };
 
 /// Extension point for detectors. `detect` is called once per frame, in order.

@@ -33,10 +33,10 @@ DetectionSet RecordedDetector::detect(const Frame& frame) {
     ++counters_.skipped;
     return {.t = frame.t, .state = fits ? found->state : DetectionState::kNone, .detections = {}};
   }
+  UsableBoxes usable = usable_boxes(found->detections, frame.gray.size());
+  counters_.add(usable.counters);
   ++counters_.processed;
-  return {.t = frame.t,
-          .state = DetectionState::kPresent,
-          .detections = usable_boxes(found->detections, frame.gray.size(), counters_)};
+  return {.t = frame.t, .state = DetectionState::kPresent, .detections = std::move(usable.detections)};
 }
 
 std::string RecordedDetector::description() const {

@@ -107,10 +107,10 @@ DetectionSet SimulatedDetector::detect(const Frame& frame) {
   }
   RandomStream draw(seed_, Stream::kFalsePositive, "", frame.id);
   if (draw.uniform() < config_.false_positive_rate) found.push_back(false_positive(draw, frame.gray.size()));
+  UsableBoxes usable = usable_boxes(std::move(found), frame.gray.size());
+  counters_.add(usable.counters);
   ++counters_.processed;
-  return {.t = frame.t,
-          .state = DetectionState::kPresent,
-          .detections = usable_boxes(std::move(found), frame.gray.size(), counters_)};
+  return {.t = frame.t, .state = DetectionState::kPresent, .detections = std::move(usable.detections)};
 }
 
 std::string SimulatedDetector::description() const {

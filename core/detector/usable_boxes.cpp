@@ -6,22 +6,21 @@
 
 namespace stillpoint {
 
-std::vector<Detection> usable_boxes(std::vector<Detection> detections, cv::Size image_size,
-                                    DetectorCounters& counters) {
+UsableBoxes usable_boxes(std::vector<Detection> detections, cv::Size image_size) {
   const Box image{
       .x_min = 0.0, .y_min = 0.0, .x_max = image_size.width - 1.0, .y_max = image_size.height - 1.0};
-  std::vector<Detection> usable;
+  UsableBoxes usable;
   for (Detection& detection : detections) {
     const Box inside = intersection(detection.box, image);
     if (!has_area(detection.box) || !has_area(inside)) {
-      ++counters.rejected;
+      ++usable.counters.rejected;
       continue;
     }
-    if (inside != detection.box) ++counters.clipped;
+    if (inside != detection.box) ++usable.counters.clipped;
     detection.box = inside;
-    usable.push_back(std::move(detection));
+    usable.detections.push_back(std::move(detection));
   }
-  counters.boxes += static_cast<std::int64_t>(usable.size());
+  usable.counters.boxes = static_cast<std::int64_t>(usable.detections.size());
   return usable;
 }
 

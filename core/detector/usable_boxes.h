@@ -9,9 +9,13 @@
 
 namespace stillpoint {
 
-/// Clips boxes to the image, removes those without area inside it, and updates the counters.
-[[nodiscard]] std::vector<Detection> usable_boxes(std::vector<Detection> detections, cv::Size image_size,
-                                                  DetectorCounters& counters);
+struct UsableBoxes {
+  std::vector<Detection> detections;
+  DetectorCounters counters;  ///< boxes, clipped and rejected
+};
+
+/// Clips boxes to the image and removes those without area inside it.
+[[nodiscard]] UsableBoxes usable_boxes(std::vector<Detection> detections, cv::Size image_size);
 
 /// @param source name of the sets in error messages
 /// @throws InputError if the timestamps are not strictly ascending

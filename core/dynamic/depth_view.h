@@ -18,6 +18,8 @@ inline constexpr int kMaxDepthWindow_px = 31;
 
 /// Median of the valid depths in a square window around a pixel [m]; the upper median for an even count; 0 if
 /// the window has no valid depth. The window is clipped to the image.
+/// @param depth may be empty, which gives 0
+/// @param pixel center of the window, rounded
 /// @param window_px side of the window, odd, at most kMaxDepthWindow_px
 [[nodiscard]] double median_depth(const DepthView& depth, const Eigen::Vector2d& pixel, int window_px);
 

@@ -22,16 +22,9 @@
 #include "core/dynamic/box_association.h"
 #include "core/types/box_geometry.h"
 #include "core/types/detection.h"
+#include "core/types/tracked_box.h"
 
 namespace stillpoint {
-
-/// Box of an object in the current frame.
-struct TrackedBox {
-  std::int64_t id = 0;  ///< object id, unique within a run
-  std::string class_name;
-  Box box;                   ///< detected, or predicted and grown [px]; without the margin of the mask
-  bool compensated = false;  ///< predicted: not detected in this frame
-};
 
 /// Tracks the boxes of dynamic objects; one call of `update` per frame. Detections are assigned to objects by
 /// BoxAssociation, with the predicted and grown box as the gate of an object.

@@ -67,7 +67,10 @@ class SemanticMask {
   SemanticMask() = default;
 
   /// Adds the margin of `config` to each box; ignores boxes that do not overlap the image.
+  /// @param boxes without margin
   /// @param depth image of the size `size`; empty = no valid depth
+  /// @param size of the image [px]
+  /// @param config margin, mask shape and depth thresholds
   SemanticMask(std::span<const Box> boxes, const DepthView& depth, cv::Size size,
                const DynamicConfig& config) {
     assign(boxes, depth, size, config);
@@ -81,6 +84,7 @@ class SemanticMask {
   [[nodiscard]] double threshold_at(const Eigen::Vector2d& pixel) const;
 
   /// Whether a point at this pixel and depth belongs to an object.
+  /// @param pixel in the image
   /// @param depth_m > 0
   [[nodiscard]] bool covers(const Eigen::Vector2d& pixel, double depth_m) const;
 

@@ -22,9 +22,9 @@ TrackerPrediction usable_prediction(TrackerPrediction wanted, const MotionPrior&
   return translation ? wanted : TrackerPrediction::kRotation;
 }
 
-std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks, const MotionPrior& prior,
-                                        TrackerPrediction kind, const Camera& camera,
-                                        std::vector<cv::Point2f> recycled) {
+std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks, const FeatureMotion& motion,
+                                        const Camera& camera, std::vector<cv::Point2f> recycled) {
+  const auto& [prior, kind] = motion;
   const Eigen::Matrix3d R_ccur_cprev = prior.T_ccur_cprev.R();
   std::vector<cv::Point2f> pixels = std::move(recycled);
   pixels.clear();

@@ -17,6 +17,12 @@ namespace stillpoint {
 /// valid translation, and both to kNone without a valid rotation. Non-finite values make a prior invalid.
 [[nodiscard]] TrackerPrediction usable_prediction(TrackerPrediction wanted, const MotionPrior& prior);
 
+/// Motion by which features are predicted.
+struct FeatureMotion {
+  const MotionPrior& prior;
+  TrackerPrediction kind;  ///< as returned by `usable_prediction`
+};
+
 /// Predicted pixel of each track, the initial guess of KLT in the current frame:
 ///   kFull:     u_cur = proj(R_ccur_cprev m + t_ccur_cprev / d)
 ///   kRotation: u_cur = proj(R_ccur_cprev m), also used by kFull for tracks without known depth
@@ -24,10 +30,9 @@ namespace stillpoint {
 /// where m = (x, y, 1) are the normalized coordinates of the track in the previous frame, d is its depth [m],
 /// and proj is `Camera::project`, including distortion. Tracks that would leave the field of view stay at
 /// u_prev. The paper does not state whether translation is used; the published code rotates only.
-/// @param kind     as returned by `usable_prediction`
 /// @param recycled buffer reused for the result
-[[nodiscard]] std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks, const MotionPrior& prior,
-                                                      TrackerPrediction kind, const Camera& camera,
+[[nodiscard]] std::vector<cv::Point2f> predict_pixels(std::span<const Track> tracks,
+                                                      const FeatureMotion& motion, const Camera& camera,
                                                       std::vector<cv::Point2f> recycled = {});
 
 }  // namespace stillpoint

@@ -67,7 +67,7 @@ struct FeatureTracker::State {
     if (config.equalize) equalizer = cv::createCLAHE(kClaheClip, kClaheTiles);
   }
 
-  void advance(const Frame& frame, const MotionPrior& prior, bool detect, DynamicIds dynamic_ids);
+  void advance(const Frame& frame, const MotionPrior& prior, const TrackingOptions& options);
   void track_features(const MotionPrior& prior, double interval_s);
   void match_features(TrackerPrediction kind);
   void update_tracks(double interval_s);
@@ -107,8 +107,8 @@ struct FeatureTracker::State {
   ModuleTimings timings;
 };
 
-void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior, bool detect,
-                                    DynamicIds dynamic_ids) {
+void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior,
+                                    const TrackingOptions& options) {
   lost = 0;
   detected = 0;
   if (equalizer) equalizer->apply(frame.gray, equalized);
@@ -116,22 +116,22 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
   {
     const ScopedTimer timer(timings, Module::kFeatureTracking);
     std::swap(previous, current);
-    rebuild_pyramid(config, gray, current);
+    current = build_pyramid(config, gray, std::move(current));
     if (!tracks.empty()) track_features(prior, seconds_between(current_t, frame.t));
     current_t = frame.t;
   }
-  if (detect) {
-    reject_outliers(dynamic_ids);
+  if (options.detect) {
+    reject_outliers(options.dynamic_ids);
     apply_mask();
     detect_features(gray);
   }
   measure_depth(frame);
-  if (detect) update_references();
+  if (options.detect) update_references();
 }
 
 void FeatureTracker::State::track_features(const MotionPrior& prior, double interval_s) {
   const TrackerPrediction kind = usable_prediction(config.prediction, prior);
-  predicted = predict_pixels(tracks, prior, kind, camera, std::move(predicted));
+  predicted = predict_pixels(tracks, {prior, kind}, camera, std::move(predicted));
   match_features(kind);
   update_tracks(interval_s);
 }
@@ -140,13 +140,15 @@ void FeatureTracker::State::match_features(TrackerPrediction kind) {
   const bool predicts = kind != TrackerPrediction::kNone;
   const int levels = predicts ? config.pyramid_levels : config.unpredicted_pyramid_levels;
   pixels = pixels_of(tracks, std::move(pixels));
-  forward =
-      track_points(config, previous, current,
-                   {.points = pixels, .initial_guesses = predicted, .levels = levels}, std::move(forward));
+  forward = track_points(
+      config,
+      {.from = previous, .to = current, .points = pixels, .initial_guesses = predicted, .levels = levels},
+      std::move(forward));
   if (!config.forward_backward) return;
-  backward =
-      track_points(config, current, previous,
-                   {.points = forward.pixels, .initial_guesses = pixels, .levels = 1}, std::move(backward));
+  backward = track_points(
+      config,
+      {.from = current, .to = previous, .points = forward.pixels, .initial_guesses = pixels, .levels = 1},
+      std::move(backward));
   forward = forward_backward_check(pixels, std::move(forward), backward, config.forward_backward_px);
 }
 
@@ -257,15 +259,15 @@ FeatureTracker::FeatureTracker(const FrontendConfig& config, const Camera& camer
 
 FeatureTracker::~FeatureTracker() = default;
 
-TrackedFrame FeatureTracker::track(const Frame& frame, const MotionPrior& prior, bool detect,
-                                   std::span<const std::int64_t> dynamic_ids, TrackedFrame recycled) {
+TrackedFrame FeatureTracker::track(const Frame& frame, const MotionPrior& prior,
+                                   const TrackingOptions& options, TrackedFrame recycled) {
   check_frame(frame, state_->camera);
   TrackedFrame result = std::move(recycled);
   state_->timings = std::move(result.timings);
   state_->timings.clear();
   {
     const ScopedTimer timer(state_->timings, Module::kTrackingThread);
-    state_->advance(frame, prior, detect, dynamic_ids);
+    state_->advance(frame, prior, options);
   }
   result.id = frame.id;
   result.t = frame.t;

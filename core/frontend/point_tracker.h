@@ -7,19 +7,13 @@
 
 namespace stillpoint {
 
-/// Points of one image to find in another.
-struct TrackingRequest {
-  const std::vector<cv::Point2f>& points;
-  const std::vector<cv::Point2f>& initial_guesses;  ///< in the other image, one per point
-  int levels;                                       ///< pyramid levels to use
-};
-
-/// Builds the pyramid that `track_points` needs.
-void rebuild_pyramid(const FrontendConfig& config, const cv::Mat& gray, ImagePyramid& pyramid);
+/// The pyramid that `track_points` needs.
+/// @param recycled a pyramid that is no longer needed; its memory is reused
+[[nodiscard]] ImagePyramid build_pyramid(const FrontendConfig& config, const cv::Mat& gray,
+                                         ImagePyramid recycled = {});
 
 /// @param recycled buffers reused for the result
-[[nodiscard]] KltResult track_points(const FrontendConfig& config, const ImagePyramid& from,
-                                     const ImagePyramid& to, const TrackingRequest& request,
+[[nodiscard]] KltResult track_points(const FrontendConfig& config, const TrackingRequest& request,
                                      KltResult recycled = {});
 
 }  // namespace stillpoint

@@ -7,6 +7,9 @@
 
 namespace stillpoint {
 
+static_assert(alignof(Eigen::Quaterniond) == 16,
+              "compile with EIGEN_MAX_ALIGN_BYTES=16: the library is, and both must lay out poses alike");
+
 /// Rotation and translation [m]; code that sets `q` must keep it normalized.
 struct Pose {
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();

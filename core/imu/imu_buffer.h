@@ -5,15 +5,10 @@
 #include <limits>
 #include <vector>
 
+#include "core/types/imu_health.h"
 #include "core/types/imu_sample.h"
 
 namespace stillpoint {
-
-/// Counts of irregularities in the IMU stream; reported with the run.
-struct ImuHealth {
-  int rejected_samples = 0;  ///< not finite, out of order or repeated
-  int gaps = 0;              ///< gaps longer than `max_gap_s` in extracted intervals, each counted once
-};
 
 class ImuBuffer {
  public:

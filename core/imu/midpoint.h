@@ -34,6 +34,8 @@ struct MidpointStep {
 
 /// q_1 = q_0 Exp(theta),  f = 1/2 (q_0 (a_0 - b_a) + q_1 (a_1 - b_a)), with 0 = `from`, 1 = `to`.
 /// @param q_r_b q_0: attitude at `from`
+/// @param from, to consecutive samples
+/// @param bias b_g and b_a
 [[nodiscard]] inline MidpointStep midpoint_step(const Eigen::Quaterniond& q_r_b, const ImuSample& from,
                                                 const ImuSample& to, const ImuBias& bias) {
   MidpointStep step;

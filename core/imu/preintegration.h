@@ -64,6 +64,8 @@ using Vector15 = Eigen::Matrix<double, 15, 1>;
 /// where b_g0, b_a0, the linearization point, are the biases of the integration.
 class Preintegration {
  public:
+  /// @param noise per sqrt(Hz), from which the covariance is propagated
+  /// @param gyro_bias, accel_bias linearization point
   /// @param recycled storage for the samples; its content is ignored
   Preintegration(const ImuNoise& noise, const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias,
                  std::vector<ImuSample> recycled = {});
@@ -95,7 +97,9 @@ class Preintegration {
                                         const Eigen::Vector3d& accel_bias) const;
   [[nodiscard]] Eigen::Quaterniond delta_q(const Eigen::Vector3d& gyro_bias) const;
 
-  /// State at j from the state at i. @param gravity_w e.g. (0, 0, -9.81) [m/s^2]
+  /// State at j from the state at i.
+  /// @param state_i its biases correct the deltas and are kept
+  /// @param gravity_w e.g. (0, 0, -9.81) [m/s^2]
   [[nodiscard]] NavState predict(const NavState& state_i, const Eigen::Vector3d& gravity_w) const;
 
  private:

@@ -13,6 +13,7 @@ namespace stillpoint {
 /// State at the last sample by midpoint integration from `start` with its biases. Per step, with the rotation
 /// and mean specific force f of midpoint_step in the world frame: a = f + g, p += v dt + 1/2 a dt^2, v += a
 /// dt. Returns `start` for fewer than two samples.
+/// @param start its biases are held constant
 /// @param samples sorted by time; the first is at start.t
 /// @param gravity_w e.g. (0, 0, -9.81) [m/s^2]
 [[nodiscard]] NavState propagate(const NavState& start, std::span<const ImuSample> samples,

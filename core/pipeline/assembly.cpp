@@ -4,10 +4,8 @@
 #include "core/base/error.h"
 
 namespace stillpoint {
-namespace {
 
-/// Disables the detector if the mask is off.
-std::unique_ptr<ObjectDetector> detector_for(const SensorInput& input, const OdometryConfig& config) {
+std::unique_ptr<ObjectDetector> make_detector(const SensorInput& input, const OdometryConfig& config) {
   DetectorConfig detector = config.detector;
   if (config.dynamic.mask == DynamicMask::kOff) detector.kind = DetectorKind::kNone;
   const bool simulated = detector.kind == DetectorKind::kSimulated;
@@ -22,12 +20,10 @@ std::unique_ptr<ObjectDetector> detector_for(const SensorInput& input, const Odo
                                          .seed = config.seed});
 }
 
-}  // namespace
-
 Stages assemble(const SensorInput& input, const OdometryConfig& config) {
   return {.rate = WindowRate(config.backend.rate_hz),
           .tracking = TrackingStage(config, input.rig),
-          .detector = detector_for(input, config),
+          .detector = make_detector(input, config),
           .optimization = OptimizationStage(config, input.rig)};
 }
 

@@ -20,7 +20,12 @@ struct Stages {
   OptimizationStage optimization;
 };
 
-/// @throws InputError if the input lacks data that the configuration requires, or a network cannot be loaded
+/// Detector of the configuration; none if the mask is off.
+/// @throws InputError if the input lacks data that the detector requires, or a network cannot be loaded
+[[nodiscard]] std::unique_ptr<ObjectDetector> make_detector(const SensorInput& input,
+                                                            const OdometryConfig& config);
+
+/// @throws InputError as `make_detector`, or if the rig lacks a sensor that the configuration requires
 [[nodiscard]] Stages assemble(const SensorInput& input, const OdometryConfig& config);
 
 }  // namespace stillpoint

@@ -40,40 +40,35 @@ OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& ri
       recognition_(config.dynamic),
       static_readmission_(config.dynamic.min_static_frames, config.dynamic.static_residual_px) {}
 
-void OptimizationStage::begin_update() {
-  ModuleTimings timings = std::move(update_.timings);
-  timings.clear();
-  update_ = {.timings = std::move(timings)};
-  dynamic_.clear();
-}
-
 OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const DetectionSet& detections) {
-  begin_update();
+  dynamic_.clear();
+  OdometryUpdate& update = estimator_.update();
   {
-    const ScopedTimer timer(update_.timings, Module::kOptimizationThread);
-    estimator_.add(frame, update_);
-    apply_semantic_mask(frame, detections, update_.timings);
-    check_motion_before_solve(update_.timings);
-    if (estimator_.refine(update_)) {
-      check_motion_after_solve(update_.timings);
+    const ScopedTimer timer(update.timings, Module::kOptimizationThread);
+    estimator_.add(frame);
+    apply_semantic_mask(frame, detections);
+    check_motion_before_solve();
+    if (estimator_.refine()) {
+      check_motion_after_solve();
     } else {
       reset_recognition();
     }
-    estimator_.finish(update_);
+    estimator_.finish();
   }
   dynamic_ids_ = dynamic_ids(dynamic_.labels, std::move(dynamic_ids_));
-  update_.counters.dynamic_features = static_cast<int>(dynamic_ids_.size());
-  update_.hashes = {.tracking = state_hash(frame.features),
-                    .dynamic = state_hash(dynamic_.labels),
-                    .optimization = state_hash(update_.state)};
-  return update_;
+  update.counters.dynamic_features = static_cast<int>(dynamic_ids_.size());
+  update.hashes = {.tracking = state_hash(frame.features),
+                   .dynamic = state_hash(dynamic_.labels),
+                   .optimization = state_hash(update.state)};
+  return update;
 }
 
 OdometryUpdate& OptimizationStage::predict(const TrackedFrame& frame) {
-  begin_update();
-  estimator_.predict(frame.id, frame.t, update_);
-  update_.hashes = {.tracking = state_hash(frame.features), .optimization = state_hash(update_.state)};
-  return update_;
+  dynamic_.clear();
+  estimator_.predict(frame.id, frame.t);
+  OdometryUpdate& update = estimator_.update();
+  update.hashes = {.tracking = state_hash(frame.features), .optimization = state_hash(update.state)};
+  return update;
 }
 
 Feedback OptimizationStage::feedback(Feedback recycled) const {
@@ -84,9 +79,8 @@ Feedback OptimizationStage::feedback(Feedback recycled) const {
 }
 
 /// Sec. III-C and III-D.
-void OptimizationStage::apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections,
-                                            ModuleTimings& timings) {
-  const ScopedTimer timer(timings, Module::kDynamicRecognition);
+void OptimizationStage::apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections) {
+  const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition);
   if (config_.mask != DynamicMask::kOff) {
     dynamic_.boxes = box_tracker_.update(detections);
     boxes_ = boxes_of(dynamic_.boxes, std::move(boxes_));
@@ -97,17 +91,17 @@ void OptimizationStage::apply_semantic_mask(const TrackedFrame& frame, const Det
 }
 
 /// Sec. III-E at the predicted pose, which requires inertial data.
-void OptimizationStage::check_motion_before_solve(ModuleTimings& timings) {
+void OptimizationStage::check_motion_before_solve() {
   if (!config_.moving_consistency || !config_.gate_before_solve || !estimator_.window().inertial) return;
-  const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
+  const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition, Kind::kPart);
   residuals_ = gate_on_prediction(update_view(), std::move(residuals_));
   apply_labels(recognition_.gate(residuals_));
 }
 
 /// Sec. III-E at the optimized poses.
-void OptimizationStage::check_motion_after_solve(ModuleTimings& timings) {
+void OptimizationStage::check_motion_after_solve() {
   if (!config_.moving_consistency) return;
-  const ScopedTimer timer(timings, Module::kDynamicRecognition, Kind::kPart);
+  const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition, Kind::kPart);
   const ConsistencyView& view = update_view();
   std::span<const std::int64_t> readmitted;
   if (config_.min_static_frames > 0) readmitted = static_readmission_.update(view);

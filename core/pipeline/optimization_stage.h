@@ -11,21 +11,9 @@
 #include "core/dynamic/missed_detection.h"
 #include "core/dynamic/static_readmission.h"
 #include "core/pipeline/feedback.h"
+#include "core/pipeline/frame_report.h"
 
 namespace stillpoint {
-
-/// Result of dynamic feature recognition for the newest frame.
-struct DynamicReport {
-  std::vector<TrackedBox> boxes;     ///< detected and predicted; without margin
-  SemanticMask mask;                 ///< the boxes with margin and depth thresholds
-  std::vector<DynamicLabel> labels;  ///< of all features, by ascending id
-
-  void clear() {
-    boxes.clear();
-    mask.clear();
-    labels.clear();
-  }
-};
 
 /// Combines the estimator with dynamic feature recognition. Single-threaded; the runners provide the threads.
 class OptimizationStage {
@@ -52,10 +40,9 @@ class OptimizationStage {
   [[nodiscard]] const DynamicReport& dynamic() const { return dynamic_; }
 
  private:
-  void begin_update();
-  void apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections, ModuleTimings& timings);
-  void check_motion_before_solve(ModuleTimings& timings);
-  void check_motion_after_solve(ModuleTimings& timings);
+  void apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections);
+  void check_motion_before_solve();
+  void check_motion_after_solve();
   [[nodiscard]] const ConsistencyView& update_view();
   void apply_labels(const std::vector<DynamicLabel>& labels);
   void reset_recognition();
@@ -69,7 +56,6 @@ class OptimizationStage {
   StaticReadmission static_readmission_;
   DynamicReport dynamic_;
   std::vector<std::int64_t> dynamic_ids_;  ///< of the last frame that entered the window
-  OdometryUpdate update_;                  ///< of the last frame
   // Members only to reuse the memory.
   std::vector<Box> boxes_;
   ConsistencyView view_;

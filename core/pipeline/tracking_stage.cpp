@@ -16,8 +16,10 @@ TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, cons
   MotionPrior prior;
   if (uses_prediction_ && last_frame_) prior = motion_prior(motion, imu_, *last_frame_, frame.t);
   drop_old_samples(motion, imu_);
+  const TrackingOptions options{.detect = enters_window, .dynamic_ids = feedback.dynamic_ids};
+  TrackedFrame tracked = tracker_.track(frame, prior, options, std::move(recycled));
   last_frame_ = frame.t;
-  return tracker_.track(frame, prior, enters_window, feedback.dynamic_ids, std::move(recycled));
+  return tracked;
 }
 
 }  // namespace stillpoint

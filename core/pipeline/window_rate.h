@@ -13,10 +13,18 @@ class WindowRate {
   /// @param rate_hz maximum rate of the window; 0 = every frame
   explicit WindowRate(double rate_hz) : rate_hz_(rate_hz) {}
 
+  /// Whether a frame at `t` would enter the window, if it was the next one.
+  [[nodiscard]] bool is_due(Timestamp t) const {
+    return rate_hz_ <= 0.0 || !last_ || seconds_between(*last_, t) >= 1.0 / rate_hz_ - kSlack_s;
+  }
+
+  /// Records that the frame at `t` enters the window.
+  void accept(Timestamp t) { last_ = t; }
+
   /// Whether the frame enters the window; call once per frame, in temporal order.
   [[nodiscard]] bool admits(Timestamp t) {
-    const bool due = rate_hz_ <= 0.0 || !last_ || seconds_between(*last_, t) >= 1.0 / rate_hz_ - kSlack_s;
-    if (due) last_ = t;
+    const bool due = is_due(t);
+    if (due) accept(t);
     return due;
   }
 

@@ -3,12 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
 #include "datasets/formats/formats.h"
+#include "datasets/io/image_list.h"
 #include "datasets/io/imu_file.h"
 #include "datasets/io/sensor_yaml.h"
-#include "datasets/io/text_table.h"
-#include "datasets/io/trajectory_file.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -37,16 +36,11 @@ Camera camera_of(const SensorYaml& sensor) {
 }
 
 void add_images(const std::filesystem::path& camera_folder, SequenceContent& content, FaultLog& faults) {
-  const TextTable table(camera_folder / "data.csv");
-  std::vector<Timestamp>& times = content.info.frame_times;
-  table.for_each(faults, [&](const TextRow& row) {
-    const Timestamp t = table.nanoseconds(row, 0);
-    const std::filesystem::path file = camera_folder / "data" / table.text(row, 1);
-    if (!times.empty()) table.require_increasing(row, times.back(), t);
-    times.push_back(t);
-    content.frame_files.push_back(FrameFiles{.color = file, .depth = {}, .depth_offset_s = 0.0});
-  });
-  if (times.empty()) table.fail("lists no images; is the sequence complete?");
+  for (const StampedFile& image : read_image_list(camera_folder / "data.csv", camera_folder / "data",
+                                                  eval::TimeUnit::kNanoseconds, faults)) {
+    content.info.frame_times.push_back(image.t);
+    content.frame_files.push_back(FrameFiles{.color = image.file, .depth = {}, .depth_offset_s = 0.0});
+  }
 }
 
 /// @param T_body_b pose of the IMU in the body frame of EuRoC
@@ -56,13 +50,13 @@ void add_ground_truth(const std::filesystem::path& folder, const Pose& T_body_b,
   const Pose T_c_b = content.info.rig.T_b_c.inverse();
   const std::filesystem::path estimate = sensors_folder(folder) / "state_groundtruth_estimate0";
   if (std::filesystem::exists(estimate / "data.csv")) {
-    truth.trajectory = read_euroc_trajectory(estimate / "data.csv", "body", faults);
+    truth.trajectory = eval::read_euroc_ground_truth(estimate / "data.csv", "body", faults);
     truth.T_c_f = T_c_b * T_body_b.inverse() * SensorYaml(estimate / "sensor.yaml").pose("T_BS");
     return;
   }
   const std::filesystem::path text = sensors_folder(folder).parent_path() / "groundtruth_tum.txt";
   if (!std::filesystem::exists(text)) return;
-  truth.trajectory = read_tum_trajectory(text, "imu", faults);
+  truth.trajectory = eval::read_tum_ground_truth(text, "imu", faults);
   truth.T_c_f = T_c_b;
 }
 
@@ -72,7 +66,7 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   content.info.name = folder.filename().string();
   content.info.folder = folder;
   add_images(sensors / "cam0", content, faults);
-  content.info.imu = read_imu_file(sensors / "imu0" / "data.csv", TimeUnit::kNanoseconds, faults);
+  content.info.imu = read_imu_file(sensors / "imu0" / "data.csv", eval::TimeUnit::kNanoseconds, faults);
 
   const SensorYaml camera(sensors / "cam0" / "sensor.yaml");
   const SensorYaml imu(sensors / "imu0" / "sensor.yaml");

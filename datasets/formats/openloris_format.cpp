@@ -2,6 +2,7 @@
 /// OpenLORIS-Scene packages (Shi et al., ICRA 2020), the D435i part.
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -10,7 +11,7 @@
 #include "datasets/formats/paired_images.h"
 #include "datasets/io/imu_file.h"
 #include "datasets/io/sensor_yaml.h"
-#include "datasets/io/trajectory_file.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -107,11 +108,12 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  add_paired_images(folder / "color.txt", folder / "aligned_depth.txt", content, faults);
+  content = with_frames(std::move(content),
+                        pair_images(folder / "color.txt", folder / "aligned_depth.txt", faults));
   add_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {
     content.info.ground_truth.trajectory =
-        read_tum_trajectory(folder / "groundtruth.txt", kGroundTruthFrame, faults);
+        eval::read_tum_ground_truth(folder / "groundtruth.txt", kGroundTruthFrame, faults);
   }
   const SensorYaml sensors(folder / "sensors.yaml");
   content.info.rig.camera = camera_of(sensors.child(kCamera));

@@ -2,39 +2,59 @@
 #include "datasets/formats/paired_images.h"
 
 #include <string>
-#include <utility>
 
 #include "core/base/error.h"
 #include "datasets/io/image_list.h"
+#include "eval/trajectory/association.h"
 
 namespace stillpoint::datasets {
 namespace {
 
-constexpr double kMaxDifference_s = 0.02;  ///< default of the TUM RGB-D benchmark tools
+constexpr eval::AssociationOptions kAssociation{.max_difference_s =
+                                                    0.02};  ///< default of the TUM RGB-D benchmark tools
+
+std::vector<StampedFile> read_list(const std::filesystem::path& list, FaultLog& faults) {
+  return read_image_list(list, list.parent_path(), eval::TimeUnit::kSeconds, faults);
+}
+
+std::vector<Timestamp> stamps_of(const std::vector<StampedFile>& files) {
+  std::vector<Timestamp> stamps;
+  for (const StampedFile& file : files) stamps.push_back(file.t);
+  return stamps;
+}
 
 }  // namespace
 
-void add_paired_images(const std::filesystem::path& color_list, const std::filesystem::path& depth_list,
-                       SequenceContent& content, FaultLog& faults) {
-  const std::vector<StampedFile> color = read_image_list(color_list, faults);
-  const std::vector<StampedFile> depth = read_image_list(depth_list, faults);
-  const std::vector<std::pair<std::size_t, std::size_t>> pairs = associate(color, depth, kMaxDifference_s);
-  if (pairs.empty()) {
-    throw InputError(depth_list.string(), "no depth image is within 20 ms of a color image of " +
-                                              color_list.filename().string() +
-                                              "; are both of the same recording?");
-  }
-  for (const auto& [in_color, in_depth] : pairs) {
-    content.info.frame_times.push_back(color[in_color].t);
-    content.frame_files.push_back(
+PairedImages pair_images(const std::filesystem::path& color_list, const std::filesystem::path& depth_list,
+                         FaultLog& faults) {
+  const std::vector<StampedFile> color = read_list(color_list, faults);
+  const std::vector<StampedFile> depth = read_list(depth_list, faults);
+  PairedImages images{.times = {}, .files = {}, .color_images = color.size()};
+  // The pairs are in the order of the second list, which the frame times must follow.
+  for (const auto& [in_depth, in_color] :
+       eval::associate_tum(stamps_of(depth), stamps_of(color), kAssociation)) {
+    images.times.push_back(color[in_color].t);
+    images.files.push_back(
         FrameFiles{.color = color[in_color].file,
                    .depth = depth[in_depth].file,
                    .depth_offset_s = seconds_between(color[in_color].t, depth[in_depth].t)});
   }
-  if (const std::size_t unpaired = color.size() - pairs.size(); unpaired > 0) {
-    content.info.notes.push_back(std::to_string(unpaired) + " of " + std::to_string(color.size()) +
-                                 " color images have no depth image within 20 ms and are dropped");
+  if (images.times.empty()) {
+    throw InputError(depth_list.string(), "no depth image is less than 20 ms from a color image of " +
+                                              color_list.filename().string() +
+                                              "; are both of the same recording?");
   }
+  return images;
+}
+
+SequenceContent with_frames(SequenceContent content, const PairedImages& images) {
+  content.info.frame_times = images.times;
+  content.frame_files = images.files;
+  if (const std::size_t unpaired = images.color_images - images.times.size(); unpaired > 0) {
+    content.info.notes.push_back(std::to_string(unpaired) + " of " + std::to_string(images.color_images) +
+                                 " color images have no depth image less than 20 ms away and are dropped");
+  }
+  return content;
 }
 
 }  // namespace stillpoint::datasets

@@ -2,16 +2,29 @@
 /// Frames of the formats that list color and depth images with separate timestamps.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
-#include "datasets/sequence_content.h"
+#include "core/base/fault_log.h"
+#include "datasets/formats/sequence_content.h"
 
 namespace stillpoint::datasets {
 
-/// Pairs the images of two lists, at most 20 ms apart, into frames with the timestamp of the color image.
-/// Color images without depth are dropped, and their number is added to the notes.
+/// The frames of a sequence.
+struct PairedImages {
+  std::vector<Timestamp> times;
+  std::vector<FrameFiles> files;  ///< one per time
+  std::size_t color_images = 0;   ///< of the list, including those without depth
+};
+
+/// Pairs the images of two lists, less than 20 ms apart, into frames with the timestamp of the color image,
+/// as `eval::associate_tum` does. Color images without depth are dropped.
 /// @throws InputError if a list is missing, empty or unsorted, or there are no pairs
-void add_paired_images(const std::filesystem::path& color_list, const std::filesystem::path& depth_list,
-                       SequenceContent& content, FaultLog& faults);
+[[nodiscard]] PairedImages pair_images(const std::filesystem::path& color_list,
+                                       const std::filesystem::path& depth_list, FaultLog& faults);
+
+/// `content` with the frames, and a note on the color images that were dropped.
+[[nodiscard]] SequenceContent with_frames(SequenceContent content, const PairedImages& images);
 
 }  // namespace stillpoint::datasets

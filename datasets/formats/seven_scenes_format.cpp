@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Microsoft 7-Scenes (Shotton et al., CVPR 2013): `frame-000000.{color.png,depth.png,pose.txt}`.
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
 #include "datasets/formats/formats.h"
-#include "datasets/io/trajectory_file.h"
+#include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {
 namespace {
 
-constexpr std::string_view kPrefix = "frame-";
-constexpr std::int64_t kFramesPerSecond = 30;  ///< of the Kinect; the frames have no timestamps
 constexpr std::uint16_t kNoDepth = 65535;
 
 /// The dataset provides only the focal length of the depth camera, and its poses are those of the depth
@@ -55,14 +51,8 @@ struct NumberedFrame {
 
 /// The frame number in the file name of a color image; empty for other files.
 std::optional<std::int64_t> frame_number(const std::string& name) {
-  if (!name.starts_with(kPrefix)) return std::nullopt;
-  std::int64_t number = 0;
-  const char* const last = name.data() + name.size();
-  const auto [end, error] = std::from_chars(name.data() + kPrefix.size(), last, number);
-  const std::string_view rest(end, static_cast<std::size_t>(last - end));
-  if (error != std::errc() || number < 0) return std::nullopt;
-  if (rest != ".color.png" && rest != ".color.jpg") return std::nullopt;
-  return number;
+  const std::optional<std::int64_t> number = eval::seven_scenes_number(name, ".color.png");
+  return number ? number : eval::seven_scenes_number(name, ".color.jpg");
 }
 
 std::vector<NumberedFrame> list_frames(const std::filesystem::path& folder) {
@@ -76,12 +66,8 @@ std::vector<NumberedFrame> list_frames(const std::filesystem::path& folder) {
   return frames;
 }
 
-Timestamp time_of(std::int64_t number) {
-  return Timestamp{(number * 1'000'000'000 + kFramesPerSecond / 2) / kFramesPerSecond};
-}
-
 void add_frame(const NumberedFrame& frame, SequenceContent& content, FaultLog& faults) {
-  const Timestamp t = time_of(frame.number);
+  const Timestamp t = eval::seven_scenes_time(frame.number);
   const std::string name = frame.color.filename().string();
   const std::filesystem::path stem = frame.color.parent_path() / name.substr(0, name.find('.'));
   if (!content.info.frame_times.empty() && content.info.frame_times.back() == t) {
@@ -93,7 +79,7 @@ void add_frame(const NumberedFrame& frame, SequenceContent& content, FaultLog& f
   if (!std::filesystem::exists(pose)) return;
   faults.guard([&] {
     content.info.ground_truth.trajectory.poses.push_back(
-        StampedPose{.t = t, .T_w_f = read_pose_matrix(pose)});
+        StampedPose{.t = t, .T_w_f = *eval::read_pose_matrix(pose, eval::PoseCheck::kGroundTruth)});
   });
 }
 

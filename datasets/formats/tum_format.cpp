@@ -3,11 +3,12 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "datasets/formats/formats.h"
 #include "datasets/formats/paired_images.h"
 #include "datasets/io/imu_file.h"
-#include "datasets/io/trajectory_file.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -72,9 +73,9 @@ void add_imu(SequenceContent& content, FaultLog& faults) {
   const std::filesystem::path txt = content.info.folder / "imu.txt";
   const std::filesystem::path csv = content.info.folder / "imu.csv";
   if (std::filesystem::exists(txt)) {
-    content.info.imu = read_imu_file(txt, TimeUnit::kSeconds, faults);
+    content.info.imu = read_imu_file(txt, eval::TimeUnit::kSeconds, faults);
   } else if (std::filesystem::exists(csv)) {
-    content.info.imu = read_imu_file(csv, TimeUnit::kNanoseconds, faults);
+    content.info.imu = read_imu_file(csv, eval::TimeUnit::kNanoseconds, faults);
   } else {
     return;
   }
@@ -86,11 +87,12 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  add_paired_images(folder / "rgb.txt", folder / "depth.txt", content, faults);
+  content = with_frames(std::move(content), pair_images(folder / "rgb.txt", folder / "depth.txt", faults));
   set_calibration(content);
   add_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {
-    content.info.ground_truth.trajectory = read_tum_trajectory(folder / "groundtruth.txt", "camera", faults);
+    content.info.ground_truth.trajectory =
+        eval::read_tum_ground_truth(folder / "groundtruth.txt", "camera", faults);
   }
   return content;
 }

@@ -5,29 +5,31 @@
 
 #include <string>
 
-#include "datasets/io/text_table.h"
+#include "eval/io/text_table.h"
 
 namespace stillpoint::datasets {
 namespace {
 
 constexpr std::size_t kNumbers = 5;  ///< score and four edges, after timestamp and class
 
-Detection parse_detection(const TextTable& table, const TextRow& row) {
+Detection parse_detection(const eval::TextRow& row) {
   const std::size_t count = row.fields.size();
   if (count < kNumbers + 2) {
-    table.fail(row, "expected `timestamp class score x_min y_min x_max y_max`, or only a timestamp");
+    throw row.error("expected `timestamp class score x_min y_min x_max y_max`, or only a timestamp");
   }
   const std::size_t score = count - kNumbers;
   Detection detection;
-  for (std::size_t i = 1; i < score; ++i) detection.class_name += (i > 1 ? " " : "") + row.fields[i];
-  detection.score = table.number(row, score);
-  detection.box = Box{.x_min = table.number(row, score + 1),
-                      .y_min = table.number(row, score + 2),
-                      .x_max = table.number(row, score + 3),
-                      .y_max = table.number(row, score + 4)};
-  if (detection.score < 0.0 || detection.score > 1.0) table.fail(row, "the score is outside [0, 1]");
+  for (std::size_t i = 1; i < score; ++i) {
+    detection.class_name.append(i > 1 ? " " : "").append(row.fields[i]);
+  }
+  detection.score = row.finite_number(score);
+  detection.box = Box{.x_min = row.finite_number(score + 1),
+                      .y_min = row.finite_number(score + 2),
+                      .x_max = row.finite_number(score + 3),
+                      .y_max = row.finite_number(score + 4)};
+  if (detection.score < 0.0 || detection.score > 1.0) throw row.error("the score is outside [0, 1]");
   if (detection.box.x_max <= detection.box.x_min || detection.box.y_max <= detection.box.y_min) {
-    table.fail(row, "the box is empty or inverted; the order is x_min y_min x_max y_max");
+    throw row.error("the box is empty or inverted; the order is x_min y_min x_max y_max");
   }
   return detection;
 }
@@ -35,14 +37,15 @@ Detection parse_detection(const TextTable& table, const TextRow& row) {
 }  // namespace
 
 std::vector<DetectionSet> read_detections(const std::filesystem::path& file, FaultLog& faults) {
-  const TextTable table(file);
+  const std::string text = eval::read_text_file(file);
+  const std::string name = file.string();
   std::vector<DetectionSet> sets;
-  table.for_each(faults, [&](const TextRow& row) {
-    const Timestamp t = table.seconds(row, 0);
+  eval::for_each_row(text, name, faults, [&](const eval::TextRow& row) {
+    const Timestamp t = row.time(0, eval::TimeUnit::kSeconds);
     const bool new_stamp = sets.empty() || t != sets.back().t;
-    if (!sets.empty() && new_stamp) table.require_increasing(row, sets.back().t, t);
+    if (!sets.empty() && new_stamp) row.require_increasing(sets.back().t, t);
     DetectionSet set{.t = t, .state = DetectionState::kPresent, .detections = {}};
-    if (row.fields.size() > 1) set.detections.push_back(parse_detection(table, row));
+    if (row.fields.size() > 1) set.detections.push_back(parse_detection(row));
     if (new_stamp) {
       sets.push_back(std::move(set));
     } else {
@@ -57,7 +60,7 @@ std::string detections_text(std::span<const DetectionSet> sets) {
   std::string text = "# timestamp class score x_min y_min x_max y_max; only a timestamp: no detections\n";
   for (const DetectionSet& set : sets) {
     if (set.state != DetectionState::kPresent) continue;
-    const std::string stamp = fmt::format("{}.{:09}", set.t.ns / 1'000'000'000, set.t.ns % 1'000'000'000);
+    const std::string stamp = eval::format_stamp(set.t);
     if (set.detections.empty()) text += stamp + "\n";
     for (const Detection& found : set.detections) {
       text += fmt::format("{} {} {:.4f} {:.2f} {:.2f} {:.2f} {:.2f}\n", stamp, found.class_name, found.score,

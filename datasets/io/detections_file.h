@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/fault_log.h"
 #include "core/types/detection.h"
-#include "datasets/io/fault_log.h"
 
 namespace stillpoint::datasets {
 

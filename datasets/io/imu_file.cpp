@@ -1,44 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/io/imu_file.h"
 
-#include "datasets/io/text_table.h"
+#include <string>
 
 namespace stillpoint::datasets {
 namespace {
 
-Eigen::Vector3d vector_at(const TextTable& table, const TextRow& row, std::size_t field) {
-  return {table.number(row, field), table.number(row, field + 1), table.number(row, field + 2)};
+Eigen::Vector3d vector_at(const eval::TextRow& row, std::size_t field) {
+  return {row.finite_number(field), row.finite_number(field + 1), row.finite_number(field + 2)};
 }
 
-/// Reads one sample per row with `parse(table, row)` and checks the order of the timestamps.
+/// Reads one sample per row with `parse(row)` and checks the order of the timestamps.
 template <class Sample, class Parse>
 std::vector<Sample> read_samples(const std::filesystem::path& file, FaultLog& faults, const Parse& parse) {
-  const TextTable table(file);
+  const std::string text = eval::read_text_file(file);
+  const std::string name = file.string();
   std::vector<Sample> samples;
-  samples.reserve(table.rows().size());
-  table.for_each(faults, [&](const TextRow& row) {
-    const Sample sample = parse(table, row);
-    if (!samples.empty()) table.require_increasing(row, samples.back().t, sample.t);
+  eval::for_each_row(text, name, faults, [&](const eval::TextRow& row) {
+    const Sample sample = parse(row);
+    if (!samples.empty()) row.require_increasing(samples.back().t, sample.t);
     samples.push_back(sample);
   });
   faults.guard([&] {
-    if (samples.empty()) table.fail("contains no samples; remove the file to run without this sensor");
+    if (samples.empty()) {
+      throw InputError(name, "contains no samples; remove the file to run without this sensor");
+    }
   });
   return samples;
 }
 
 }  // namespace
 
-std::vector<ImuSample> read_imu_file(const std::filesystem::path& file, TimeUnit unit, FaultLog& faults) {
-  return read_samples<ImuSample>(file, faults, [unit](const TextTable& table, const TextRow& row) {
-    const Timestamp t = unit == TimeUnit::kSeconds ? table.seconds(row, 0) : table.nanoseconds(row, 0);
-    return ImuSample{.t = t, .gyro_b = vector_at(table, row, 1), .accel_b = vector_at(table, row, 4)};
+std::vector<ImuSample> read_imu_file(const std::filesystem::path& file, eval::TimeUnit unit,
+                                     FaultLog& faults) {
+  return read_samples<ImuSample>(file, faults, [unit](const eval::TextRow& row) {
+    return ImuSample{.t = row.time(0, unit), .gyro_b = vector_at(row, 1), .accel_b = vector_at(row, 4)};
   });
 }
 
 std::vector<VectorSample> read_vector_file(const std::filesystem::path& file, FaultLog& faults) {
-  return read_samples<VectorSample>(file, faults, [](const TextTable& table, const TextRow& row) {
-    return VectorSample{.t = table.seconds(row, 0), .value = vector_at(table, row, 1)};
+  return read_samples<VectorSample>(file, faults, [](const eval::TextRow& row) {
+    return VectorSample{.t = row.time(0, eval::TimeUnit::kSeconds), .value = vector_at(row, 1)};
   });
 }
 

@@ -7,17 +7,16 @@
 #include <span>
 #include <vector>
 
+#include "core/base/fault_log.h"
 #include "core/types/imu_sample.h"
-#include "datasets/io/fault_log.h"
+#include "eval/io/text_table.h"
 
 namespace stillpoint::datasets {
-
-enum class TimeUnit { kSeconds, kNanoseconds };
 
 /// Reads rows `t wx wy wz ax ay az` [rad/s, m/s^2] (column order of EuRoC).
 /// @return strictly increasing in time, not empty
 /// @throws InputError if the file is missing, empty, unsorted, or a row is not seven finite numbers
-[[nodiscard]] std::vector<ImuSample> read_imu_file(const std::filesystem::path& file, TimeUnit unit,
+[[nodiscard]] std::vector<ImuSample> read_imu_file(const std::filesystem::path& file, eval::TimeUnit unit,
                                                    FaultLog& faults);
 
 /// A timestamped 3-vector.

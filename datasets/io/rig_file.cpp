@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "datasets/io/trajectory_file.h"
+#include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -132,7 +132,7 @@ Camera override_camera(const Section& section, Camera camera) {
 Pose extrinsic_of(const Section& imu, const toml::node& node) {
   const std::vector<double> values = imu.numbers(node, "T_b_c");
   if (values.size() != 16) imu.fail(node, "T_b_c", "must have 16 numbers (4x4, row-major)");
-  const std::optional<Pose> pose = rigid_pose(std::span<const double, 16>(values));
+  const std::optional<Pose> pose = eval::rigid_pose(std::span<const double, 16>(values));
   if (!pose) imu.fail(node, "T_b_c", "is not a rigid transform; the last row must be 0 0 0 1");
   return *pose;
 }

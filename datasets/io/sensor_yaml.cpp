@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "datasets/io/trajectory_file.h"
+#include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -104,7 +104,7 @@ std::vector<double> SensorYaml::numbers(const std::string& key) const {
 Pose SensorYaml::pose(const std::string& key) const {
   const std::vector<double> values = numbers(key);
   if (values.size() != 16) fail(key, "must have 16 numbers, not " + std::to_string(values.size()));
-  const std::optional<Pose> result = rigid_pose(std::span<const double, 16>(values));
+  const std::optional<Pose> result = eval::rigid_pose(std::span<const double, 16>(values));
   if (!result) fail(key, "is not a rigid transform");
   return *result;
 }

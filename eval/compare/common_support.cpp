@@ -50,8 +50,9 @@ bool ranks_before(const ComparedRun& a, const ComparedRun& b) {
   return a.common_ate_rmse_m.value_or(kNone) < b.common_ate_rmse_m.value_or(kNone);
 }
 
-void fill_common(ComparedRun& run, std::span<const MatchedPose> matches, std::span<const TimeSpan> common,
-                 Alignment alignment) {
+/// `run` with its errors over the common spans.
+ComparedRun with_common_errors(ComparedRun run, std::span<const MatchedPose> matches,
+                               std::span<const TimeSpan> common, Alignment alignment) {
   const std::vector<MatchedPose> shared = matches_within(matches, common);
   run.common_pairs = shared.size();
   run.common_ate_rmse_m = ate_rmse(shared, alignment);
@@ -59,6 +60,7 @@ void fill_common(ComparedRun& run, std::span<const MatchedPose> matches, std::sp
     run.common_rpe_m = rpe.errors->translation_m.rmse;
     run.common_rpe_deg = rpe.errors->rotation_deg.rmse;
   }
+  return run;
 }
 
 }  // namespace
@@ -83,8 +85,8 @@ Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs, co
   const std::vector<TimeSpan> common = complement_of(lost_by_any, whole);
   for (const TimeSpan& span : common) comparison.common_s += seconds_between(span.begin, span.end);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!comparison.ranking[i].failed)
-      fill_common(comparison.ranking[i], matches[i], common, options.alignment);
+    ComparedRun& run = comparison.ranking[i];
+    if (!run.failed) run = with_common_errors(run, matches[i], common, options.alignment);
   }
   std::stable_sort(comparison.ranking.begin(), comparison.ranking.end(), ranks_before);
   return comparison;

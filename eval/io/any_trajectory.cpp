@@ -2,13 +2,12 @@
 #include "eval/io/any_trajectory.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/base/error.h"
-#include "eval/io/euroc_file.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
 #include "eval/io/text_reader.h"
+#include "eval/io/text_table.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -31,40 +30,41 @@ LoadedTrajectory one_sequence(OpenlorisFile file, const TrajectorySource& source
 
 }  // namespace
 
-std::string detect_format(std::string_view text) {
-  LineReader lines(text);
-  std::vector<std::string_view> fields;
-  while (const std::optional<std::string_view> line = lines.next()) {
-    split_fields(*line, fields);
-    if (fields.empty() || fields.front().front() == '#') continue;
-    if (line->find(':') != std::string_view::npos) return "openloris";
-    if (fields.size() == 12) return "kitti";
-    const std::string_view first = fields.front();
+TrajectoryFormat detect_format(std::string_view text) {
+  RowReader rows(text, "");
+  while (const std::optional<TextRow> row = rows.next()) {
+    if (row->content.find(':') != std::string_view::npos) return TrajectoryFormat::kOpenloris;
+    if (row->fields.size() == 12) return TrajectoryFormat::kKitti;
+    const std::string_view first = row->fields.front();
     const bool is_integer =
         std::all_of(first.begin(), first.end(), [](char c) { return c >= '0' && c <= '9'; });
-    return is_integer && first.size() >= kMinNanosecondDigits ? "euroc" : "tum";
+    return is_integer && first.size() >= kMinNanosecondDigits ? TrajectoryFormat::kEuroc
+                                                              : TrajectoryFormat::kTum;
   }
-  return "tum";
+  return TrajectoryFormat::kTum;
 }
 
 LoadedTrajectory read_trajectory(const TrajectorySource& source) {
   std::error_code ignored;
   const bool is_folder = std::filesystem::is_directory(source.path, ignored);
-  if (source.format == "7scenes" || (source.format.empty() && is_folder))
+  if (source.format == TrajectoryFormat::kSevenScenes || (!source.format && is_folder)) {
     return read_seven_scenes(source.path);
+  }
   const std::string text = read_text_file(source.path);
   const std::string name = source.path.string();
-  const std::string format = source.format.empty() ? detect_format(text) : source.format;
-  if (format == "tum") return parse_tum(text, name);
-  if (format == "euroc") return parse_euroc(text, name);
-  if (format == "openloris") return one_sequence(parse_openloris(text, name), source);
-  if (format == "kitti") {
-    if (source.times.empty())
-      throw InputError(name, "KITTI poses have no time stamps; specify their file with --times");
-    return parse_kitti(text, name, read_text_file(source.times), source.times.string());
+  switch (source.format.value_or(detect_format(text))) {
+    case TrajectoryFormat::kEuroc:
+      return parse_euroc(text, name);
+    case TrajectoryFormat::kOpenloris:
+      return one_sequence(parse_openloris(text, name), source);
+    case TrajectoryFormat::kKitti:
+      if (source.times.empty()) {
+        throw InputError(name, "KITTI poses have no time stamps; specify their file with --times");
+      }
+      return parse_kitti(text, name, read_text_file(source.times), source.times.string());
+    default:
+      return parse_tum(text, name);
   }
-  throw InputError("--format " + format,
-                   "unknown format; expected one of: tum, euroc, kitti, openloris, 7scenes");
 }
 
 }  // namespace stillpoint::eval

@@ -3,27 +3,38 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+#include <optional>
+#include <string_view>
 
+#include "core/base/fields.h"
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::eval {
 
+enum class TrajectoryFormat { kTum, kEuroc, kKitti, kOpenloris, kSevenScenes };
+constexpr auto enum_names(TrajectoryFormat) {
+  return EnumNames<TrajectoryFormat, 5>{{{TrajectoryFormat::kTum, "tum"},
+                                         {TrajectoryFormat::kEuroc, "euroc"},
+                                         {TrajectoryFormat::kKitti, "kitti"},
+                                         {TrajectoryFormat::kOpenloris, "openloris"},
+                                         {TrajectoryFormat::kSevenScenes, "7scenes"}}};
+}
+
 struct TrajectorySource {
   std::filesystem::path path;
-  std::string format;           ///< tum, euroc, kitti, openloris, 7scenes; empty: detected from the content
-  std::filesystem::path times;  ///< file with the time stamps, for KITTI
-  int sequence = 0;             ///< sequence number, for OpenLORIS; 0: the only one
+  std::optional<TrajectoryFormat> format = std::nullopt;  ///< nullopt: detected from the content
+  std::filesystem::path times = {};                       ///< file with the time stamps, for KITTI
+  int sequence = 0;                                       ///< sequence number, for OpenLORIS; 0: the only one
 };
 
 /// Reads a trajectory. Format detection: a folder is 7-Scenes; a file with a "key: value" line is OpenLORIS;
 /// rows of 12 numbers are KITTI; rows whose first field is an integer of 16 digits or more are EuRoC; other
 /// rows are TUM.
-/// @throws InputError for unreadable or malformed input, an unknown format, KITTI without times, or several
-/// sequences without a sequence number
+/// @throws InputError for unreadable or malformed input, KITTI without times, or several sequences without a
+/// sequence number
 [[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);
 
 /// The format of a text by the rules of `read_trajectory`.
-[[nodiscard]] std::string detect_format(std::string_view text);
+[[nodiscard]] TrajectoryFormat detect_format(std::string_view text);
 
 }  // namespace stillpoint::eval

@@ -2,6 +2,7 @@
 #include "eval/io/matrix_files.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -9,8 +10,10 @@
 #include <map>
 #include <vector>
 
+#include "core/base/error.h"
 #include "eval/io/pose_row.h"
 #include "eval/io/text_reader.h"
+#include "eval/io/text_table.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -19,23 +22,12 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kSevenScenesRate = 30;  // [Hz]
-constexpr double kRotationTolerance = 0.05;    // on |R^T R - I|; files have 6 digits or more
+constexpr double kEstimateTolerance = 0.05;    // of R R^T; estimates may be written with few digits
 
-/// The pose of the first 12 numbers; nullopt if one is not finite.
-std::optional<Pose> parse_matrix(std::span<const std::string_view> fields, const RowLocation& location) {
-  Eigen::Matrix<double, 3, 4> matrix;
-  for (std::size_t i = 0; i < 12; ++i) {
-    const std::optional<double> value = parse_number(fields[i]);
-    if (!value) throw location.error("\"" + std::string(fields[i]) + "\" is not a number");
-    matrix(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = *value;
-  }
-  if (!matrix.allFinite()) return std::nullopt;
-  const Eigen::Matrix3d R = matrix.leftCols<3>();
-  const double deviation = (R.transpose() * R - Eigen::Matrix3d::Identity()).norm();
-  if (!(deviation < kRotationTolerance) || R.determinant() < 0.0) {
-    throw location.error("the left 3x3 part is not a rotation; expected a row-major pose");
-  }
-  return Pose{Eigen::Quaterniond(R).normalized(), matrix.col(3)};
+using MatrixNumbers = std::array<double, 16>;
+
+bool all_finite(const MatrixNumbers& matrix) {
+  return std::all_of(matrix.begin(), matrix.end(), [](double value) { return std::isfinite(value); });
 }
 
 std::string matrix_rows(const Pose& pose, char row_end) {
@@ -52,51 +44,74 @@ std::string matrix_rows(const Pose& pose, char row_end) {
 
 std::vector<Timestamp> parse_times(std::string_view text, const std::string& name) {
   std::vector<Timestamp> times;
-  LineReader lines(text);
-  std::vector<std::string_view> fields;
-  while (const std::optional<std::string_view> line = lines.next()) {
-    split_fields(*line, fields);
-    if (fields.empty() || fields.front().front() == '#') continue;
-    times.push_back(require_stamp(fields.front(), {name, lines.line_number()}));
-  }
+  RowReader rows(text, name);
+  while (const std::optional<TextRow> row = rows.next()) times.push_back(row->time(0, TimeUnit::kSeconds));
   return times;
 }
 
-/// N of "frame-N.pose.txt".
-std::optional<std::int64_t> frame_number(const std::string& name) {
-  constexpr std::string_view kPrefix = "frame-";
-  constexpr std::string_view kSuffix = ".pose.txt";
-  if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) return std::nullopt;
-  const char* const begin = name.data() + kPrefix.size();
-  const char* const end = name.data() + name.size() - kSuffix.size();
-  std::int64_t number = 0;
-  const auto [stop, error] = std::from_chars(begin, end, number);
-  if (error != std::errc() || stop != end || number < 0) return std::nullopt;
-  return number;
+/// The pose of a row of 12 numbers; nullopt if one of them is not finite.
+std::optional<Pose> parse_kitti_pose(const TextRow& row) {
+  if (row.fields.size() != 12) {
+    throw row.error("a KITTI pose has 12 numbers, found " + std::to_string(row.fields.size()));
+  }
+  MatrixNumbers matrix{};
+  for (std::size_t i = 0; i < 12; ++i) matrix[i] = row.number(i);
+  matrix[15] = 1.0;
+  if (!all_finite(matrix)) return std::nullopt;
+  const std::optional<Pose> pose = rigid_pose(matrix, kEstimateTolerance);
+  if (!pose) throw row.error("the left 3x3 part is not a rotation; expected a row-major pose");
+  return pose;
 }
 
 }  // namespace
 
+std::optional<Pose> rigid_pose(std::span<const double, 16> row_major, double tolerance) {
+  const Eigen::Matrix4d matrix =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(row_major.data());
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  const Eigen::RowVector4d last(0.0, 0.0, 0.0, 1.0);
+  const bool rigid = matrix.allFinite() && (R * R.transpose()).isIdentity(tolerance) &&
+                     R.determinant() > 0.0 && (matrix.row(3) - last).norm() < tolerance;
+  if (!rigid) return std::nullopt;
+  return Pose::from_matrix(matrix);
+}
+
+std::optional<Pose> read_pose_matrix(const fs::path& file, PoseCheck check) {
+  const bool estimate = check == PoseCheck::kEstimate;
+  const std::string text = read_text_file(file);
+  const std::string name = file.string();
+  std::vector<double> numbers;
+  RowReader rows(text, name);
+  while (const std::optional<TextRow> row = rows.next()) {
+    for (std::size_t i = 0; i < row->fields.size(); ++i) {
+      numbers.push_back(estimate ? row->number(i) : row->finite_number(i));
+    }
+  }
+  MatrixNumbers matrix{};
+  if (numbers.size() != matrix.size()) {
+    throw InputError(name, "contains " + std::to_string(numbers.size()) + " numbers, expected 16");
+  }
+  std::copy(numbers.begin(), numbers.end(), matrix.begin());
+  if (!all_finite(matrix)) return std::nullopt;
+  const std::optional<Pose> pose = rigid_pose(matrix, estimate ? kEstimateTolerance : kRigidTolerance);
+  if (!pose) throw InputError(name, "is not a rigid transform; remove the file if the pose is unknown");
+  return pose;
+}
+
 LoadedTrajectory parse_kitti(std::string_view poses, const std::string& poses_name, std::string_view times,
                              const std::string& times_name) {
   const std::vector<Timestamp> stamps = parse_times(times, times_name);
-  LoadedTrajectory loaded;
-  LineReader lines(poses);
-  std::vector<std::string_view> fields;
-  std::size_t row = 0;
-  while (const std::optional<std::string_view> line = lines.next()) {
-    split_fields(*line, fields);
-    if (fields.empty() || fields.front().front() == '#') continue;
-    const RowLocation location{poses_name, lines.line_number()};
-    if (fields.size() != 12) {
-      throw location.error("a KITTI pose has 12 numbers, found " + std::to_string(fields.size()));
-    }
-    if (row == stamps.size()) throw location.error("more poses than times in " + times_name);
-    append_row(loaded, stamps[row++], parse_matrix(fields, location), location);
+  TrajectoryBuilder builder;
+  RowReader rows(poses, poses_name);
+  std::size_t next = 0;
+  while (const std::optional<TextRow> row = rows.next()) {
+    const std::optional<Pose> pose = parse_kitti_pose(*row);
+    if (next == stamps.size()) throw row->error("more poses than times in " + times_name);
+    builder.add(*row, stamps[next++], pose);
   }
-  if (row < stamps.size()) throw InputError(times_name, "has more times than " + poses_name + " has poses");
-  require_poses(loaded, poses_name);
-  return loaded;
+  if (next < stamps.size()) throw InputError(times_name, "has more times than " + poses_name + " has poses");
+  builder.require_poses(poses_name);
+  return builder.release();
 }
 
 KittiTexts format_kitti(const Trajectory& trajectory) {
@@ -108,32 +123,40 @@ KittiTexts format_kitti(const Trajectory& trajectory) {
   return texts;
 }
 
+std::optional<std::int64_t> seven_scenes_number(std::string_view file_name, std::string_view suffix) {
+  constexpr std::string_view kPrefix = "frame-";
+  if (!file_name.starts_with(kPrefix) || !file_name.ends_with(suffix)) return std::nullopt;
+  if (file_name.size() < kPrefix.size() + suffix.size()) return std::nullopt;
+  const char* const begin = file_name.data() + kPrefix.size();
+  const char* const end = file_name.data() + file_name.size() - suffix.size();
+  std::int64_t number = 0;
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  if (error != std::errc() || stop != end || number < 0) return std::nullopt;
+  return number;
+}
+
+Timestamp seven_scenes_time(std::int64_t number) {
+  return Timestamp{(number * kNsPerSecond + kSevenScenesRate / 2) / kSevenScenesRate};
+}
+
 LoadedTrajectory read_seven_scenes(const fs::path& folder) {
   std::map<std::int64_t, fs::path> files;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (const auto number = frame_number(entry.path().filename().string())) files[*number] = entry.path();
+    const std::string name = entry.path().filename().string();
+    if (const auto number = seven_scenes_number(name, ".pose.txt")) files[*number] = entry.path();
   }
   if (error || files.empty()) {
     throw InputError(folder.string(), "no frame-N.pose.txt found; expected a 7-Scenes sequence folder");
   }
-  LoadedTrajectory loaded;
-  std::vector<std::string_view> fields;
+  TrajectoryBuilder builder;
   for (const auto& [number, file] : files) {
-    const std::string text = read_text_file(file);
-    std::string one_line = text;
-    std::replace(one_line.begin(), one_line.end(), '\n', ' ');
-    split_fields(one_line, fields);
     const std::string name = file.string();
-    const RowLocation location{name, 1};
-    if (fields.size() != 16) {
-      throw location.error("a pose has 16 numbers, found " + std::to_string(fields.size()));
-    }
-    const std::int64_t ns = (number * kNsPerSecond + kSevenScenesRate / 2) / kSevenScenesRate;
-    append_row(loaded, Timestamp{ns}, parse_matrix(fields, location), location);
+    const TextRow whole_file{.file = name, .line = 1, .content = {}, .fields = {}};
+    builder.add(whole_file, seven_scenes_time(number), read_pose_matrix(file, PoseCheck::kEstimate));
   }
-  require_poses(loaded, folder.string());
-  return loaded;
+  builder.require_poses(folder.string());
+  return builder.release();
 }
 
 void write_seven_scenes(const Trajectory& trajectory, const fs::path& folder) {

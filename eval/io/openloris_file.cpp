@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "eval/io/pose_row.h"
 #include "eval/io/text_reader.h"
+#include "eval/io/text_table.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -26,71 +27,60 @@ std::string lower_case_trimmed(std::string_view text) {
   return result;
 }
 
-/// Fills an `OpenlorisFile` line by line.
+/// Fills an `OpenlorisFile` row by row.
 class OpenlorisParser {
  public:
-  OpenlorisParser(const std::string& name, RepeatedPoses repeated) : name_(name), repeated_(repeated) {
-    file_.frame = "base_link";
-  }
+  explicit OpenlorisParser(RepeatedPoses repeated) : repeated_(repeated) { file_.frame = "base_link"; }
 
-  void parse_line(std::string_view line, long line_number) {
-    split_fields(line, fields_);
-    if (fields_.empty() || fields_.front().front() == '#') return;
-    const RowLocation location{name_, line_number};
-    const std::size_t colon = line.find(':');
-    if (colon != std::string_view::npos) {
-      parse_header(lower_case_trimmed(line.substr(0, colon)), lower_case_trimmed(line.substr(colon + 1)),
-                   location);
+  void parse_row(const TextRow& row) {
+    if (row.content.find(':') != std::string_view::npos) {
+      parse_header(row);
     } else {
-      parse_row(location);
+      parse_pose_row(row);
     }
   }
 
-  [[nodiscard]] OpenlorisFile finish() {
+  [[nodiscard]] OpenlorisFile finish(const std::string& name) {
     if (file_.sequences.empty()) {
-      throw InputError(name_, "no \"seq:\" line found; an OpenLORIS file has one before each sequence");
+      throw InputError(name, "no \"seq:\" line found; an OpenLORIS file has one before each sequence");
     }
     return std::move(file_);
   }
 
  private:
-  void parse_header(const std::string& key, const std::string& value, const RowLocation& location) {
+  void parse_header(const TextRow& row) {
+    const std::size_t colon = row.content.find(':');
+    const std::string key = lower_case_trimmed(row.content.substr(0, colon));
+    const std::string value = lower_case_trimmed(row.content.substr(colon + 1));
     if (key == "scene") file_.scene = value;
     if (key == "frame") file_.frame = value;
     if (key != "seq") return;
     int number = 0;
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
     if (error != std::errc() || end != value.data() + value.size()) {
-      throw location.error("sequence \"" + value + "\" is not a number");
+      throw row.error("sequence \"" + value + "\" is not a number");
     }
     const auto [entry, is_new] = file_.sequences.try_emplace(number);
-    if (!is_new) throw location.error("duplicate sequence " + value + "; expected unique numbers");
-    sequence_ = &entry->second;
+    if (!is_new) throw row.error("duplicate sequence " + value + "; expected unique numbers");
+    poses_ = &entry->second.poses;
   }
 
-  void parse_row(const RowLocation& location) {
-    if (sequence_ == nullptr) throw location.error("pose before the first \"seq:\" line");
-    if (fields_.size() < 1 + kPoseColumns) {
-      throw location.error("a pose needs 8 numbers, found " + std::to_string(fields_.size()) +
-                           "; expected \"t tx ty tz qx qy qz qw\"");
+  void parse_pose_row(const TextRow& row) {
+    if (poses_ == nullptr) throw row.error("pose before the first \"seq:\" line");
+    if (row.fields.size() < 1 + kPoseColumns) {
+      throw row.error("a pose needs 8 numbers, found " + std::to_string(row.fields.size()) +
+                      "; expected \"t tx ty tz qx qy qz qw\"");
     }
-    const Timestamp t = require_stamp(fields_.front(), location);
-    const std::span<const std::string_view> columns = std::span(fields_).last(kPoseColumns);
-    const std::optional<Pose> pose = parse_pose(columns, QuaternionOrder::kXyzw, location);
+    const Timestamp t = row.time(0, TimeUnit::kSeconds);
+    const std::optional<Pose> pose = parse_pose(row, {.first = row.fields.size() - kPoseColumns});
     if (!pose) {
       ++file_.skipped_rows;
-    } else if (repeated_ == RepeatedPoses::kDrop && repeats(columns)) {
+    } else if (repeated_ == RepeatedPoses::kDrop && repeats(row.fields.last(kPoseColumns))) {
       ++file_.repeated_poses;
     } else {
-      append(t, *pose, location);
+      if (!poses_->empty()) row.require_increasing(poses_->back().t, t);
+      poses_->push_back({t, *pose});
     }
-  }
-
-  void append(Timestamp t, const Pose& pose, const RowLocation& location) {
-    LoadedTrajectory loaded;
-    std::swap(loaded.trajectory, *sequence_);
-    append_row(loaded, t, pose, location);
-    std::swap(loaded.trajectory, *sequence_);
   }
 
   /// Whether the pose equals that of the previous row. As in the OpenLORIS tools, the previous row may belong
@@ -103,12 +93,10 @@ class OpenlorisParser {
     return same;
   }
 
-  const std::string& name_;
   RepeatedPoses repeated_;
   OpenlorisFile file_;
-  Trajectory* sequence_ = nullptr;
+  std::vector<StampedPose>* poses_ = nullptr;  ///< of the current sequence
   std::optional<std::array<double, kPoseColumns>> last_pose_;
-  std::vector<std::string_view> fields_;
 };
 
 }  // namespace
@@ -118,11 +106,10 @@ OpenlorisFile read_openloris(const std::filesystem::path& file, RepeatedPoses re
 }
 
 OpenlorisFile parse_openloris(std::string_view text, const std::string& name, RepeatedPoses repeated) {
-  OpenlorisParser parser(name, repeated);
-  LineReader lines(text);
-  while (const std::optional<std::string_view> line = lines.next())
-    parser.parse_line(*line, lines.line_number());
-  OpenlorisFile file = parser.finish();
+  OpenlorisParser parser(repeated);
+  RowReader rows(text, name);
+  while (const std::optional<TextRow> row = rows.next()) parser.parse_row(*row);
+  OpenlorisFile file = parser.finish(name);
   for (auto& [number, sequence] : file.sequences) sequence.frame = file.frame;
   return file;
 }

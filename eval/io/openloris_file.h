@@ -32,7 +32,9 @@ enum class RepeatedPoses { kDrop, kKeep };
                                            RepeatedPoses repeated = RepeatedPoses::kDrop);
 
 /// `read_openloris` for a text in memory.
+/// @param text contents of the file
 /// @param name of the file, for error messages
+/// @param repeated see `read_openloris`
 [[nodiscard]] OpenlorisFile parse_openloris(std::string_view text, const std::string& name,
                                             RepeatedPoses repeated = RepeatedPoses::kDrop);
 

@@ -4,74 +4,53 @@
 #include <array>
 #include <cmath>
 
-#include "eval/io/text_reader.h"
-
 namespace stillpoint::eval {
 namespace {
 
-constexpr double kNormTolerance = 0.1;  // rounding to 3 decimals changes the norm by 0.1 % only
-constexpr double kMaxCoordinate = 1e9;  // [m]; limits the loss of precision in sums of squares
-
-std::string quoted(std::string_view field) {
-  constexpr std::size_t kMaxLength = 40;
-  return "\"" + std::string(field.substr(0, kMaxLength)) + (field.size() > kMaxLength ? "...\"" : "\"");
-}
+constexpr double kEstimateTolerance = 0.1;      // rounding to 3 decimals changes the norm by 0.1 % only
+constexpr double kGroundTruthTolerance = 0.01;  // rounding to 4 decimals stays far below
+constexpr double kMaxCoordinate = 1e9;          // [m]; limits the loss of precision in sums of squares
 
 }  // namespace
 
-Timestamp require_stamp(std::string_view field, const RowLocation& location) {
-  const std::optional<Timestamp> t = parse_stamp(field);
-  if (t) return *t;
-  if (parse_number(field).value_or(0.0) > 1.0) {
-    throw location.error("stamp " + quoted(field) +
-                         " exceeds 292 years; is it in nanoseconds instead of seconds?");
-  }
-  throw location.error("stamp " + quoted(field) + " is not a number of seconds");
-}
-
-std::optional<Pose> parse_pose(std::span<const std::string_view> fields, QuaternionOrder order,
-                               const RowLocation& location) {
+std::optional<Pose> parse_pose(const TextRow& row, const PoseFields& fields) {
+  const bool may_skip = fields.check == PoseCheck::kEstimate;
   std::array<double, 7> v{};
   bool finite = true;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    const std::optional<double> value = parse_number(fields[i]);
-    if (!value) throw location.error(quoted(fields[i]) + " is not a number");
-    v[i] = *value;
+    v[i] = may_skip ? row.number(fields.first + i) : row.finite_number(fields.first + i);
     finite = finite && std::isfinite(v[i]);
   }
   if (!finite) return std::nullopt;
-  const Eigen::Quaterniond q = order == QuaternionOrder::kXyzw ? Eigen::Quaterniond(v[6], v[3], v[4], v[5])
-                                                               : Eigen::Quaterniond(v[3], v[4], v[5], v[6]);
+  const Eigen::Quaterniond q = fields.order == QuaternionOrder::kXyzw
+                                   ? Eigen::Quaterniond(v[6], v[3], v[4], v[5])
+                                   : Eigen::Quaterniond(v[3], v[4], v[5], v[6]);
   const double norm = q.norm();
-  if (norm == 0.0) return std::nullopt;
-  if (std::abs(norm - 1.0) > kNormTolerance) {
-    throw location.error("quaternion of norm " + std::to_string(norm) +
-                         " is not a rotation; check the order of the columns");
+  if (may_skip && norm == 0.0) return std::nullopt;
+  if (std::abs(norm - 1.0) > (may_skip ? kEstimateTolerance : kGroundTruthTolerance)) {
+    throw row.error("the quaternion has norm " + std::to_string(norm) +
+                    ", expected 1; check the order of the columns");
   }
   const Eigen::Vector3d p(v[0], v[1], v[2]);
   if (p.cwiseAbs().maxCoeff() > kMaxCoordinate) {
-    throw location.error("position exceeds 1e9 m; is the file in meters?");
+    throw row.error("position exceeds 1e9 m; is the file in meters?");
   }
   return Pose{Eigen::Quaterniond(q.coeffs() / norm), p};
 }
 
-void append_row(LoadedTrajectory& loaded, Timestamp t, const std::optional<Pose>& pose,
-                const RowLocation& location) {
-  std::vector<StampedPose>& poses = loaded.trajectory.poses;
+void TrajectoryBuilder::add(const TextRow& row, Timestamp t, const std::optional<Pose>& pose) {
+  std::vector<StampedPose>& poses = loaded_.trajectory.poses;
   if (!pose) {
-    ++loaded.skipped_rows;
+    ++loaded_.skipped_rows;
     return;
   }
-  if (!poses.empty() && t <= poses.back().t) {
-    throw location.error("stamp " + format_stamp(t) + " s does not increase; the previous one is " +
-                         format_stamp(poses.back().t) + " s; sort the file and remove duplicate stamps");
-  }
+  if (!poses.empty()) row.require_increasing(poses.back().t, t);
   poses.push_back({t, *pose});
 }
 
-void require_poses(const LoadedTrajectory& loaded, const std::string& file) {
-  if (!loaded.trajectory.poses.empty()) return;
-  throw InputError(file, loaded.skipped_rows > 0
+void TrajectoryBuilder::require_poses(const std::string& file) const {
+  if (!loaded_.trajectory.poses.empty()) return;
+  throw InputError(file, loaded_.skipped_rows > 0
                              ? "no valid pose: all rows have NaN or a zero quaternion"
                              : "no poses found; expected rows \"t tx ty tz qx qy qz qw\"");
 }

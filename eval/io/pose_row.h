@@ -1,44 +1,55 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Parsing of one row of a trajectory file; common to all text formats.
+/// Poses in the rows of a text table; common to all text formats of trajectories.
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 
-#include "core/base/error.h"
+#include "eval/io/text_table.h"
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::eval {
 
-/// Position of a row in its file, for error messages.
-struct RowLocation {
-  const std::string& file;
-  long line;
-
-  [[nodiscard]] InputError error(const std::string& problem) const { return {file, line, problem}; }
-};
-
 enum class QuaternionOrder { kXyzw, kWxyz };
 
-/// Parses a time stamp in seconds.
-/// @throws InputError if the field is not a number of seconds, with a hint if it may be in nanoseconds
-[[nodiscard]] Timestamp require_stamp(std::string_view field, const RowLocation& location);
+/// Which rows are accepted.
+enum class PoseCheck {
+  kEstimate,     ///< the norm of the quaternion is within 0.1 of 1; a row without a pose is skipped
+  kGroundTruth,  ///< the norm of the quaternion is within 0.01 of 1; every row must be a pose
+};
 
-/// Parses the seven fields `tx ty tz` + quaternion and normalizes the quaternion.
-/// @return nullopt if the row has no pose (a value that is not finite, or a zero quaternion)
-/// @throws InputError if a field is not a number, or if the norm of the quaternion differs from 1 by more
-/// than 0.1
-[[nodiscard]] std::optional<Pose> parse_pose(std::span<const std::string_view> fields, QuaternionOrder order,
-                                             const RowLocation& location);
+/// Layout of the seven numbers of a pose: position, then quaternion.
+struct PoseFields {
+  std::size_t first = 1;  ///< index of tx
+  QuaternionOrder order = QuaternionOrder::kXyzw;
+  PoseCheck check = PoseCheck::kEstimate;
+};
 
-/// Appends a row, or counts it as skipped if it has no pose.
-/// @throws InputError if the stamp does not increase
-void append_row(LoadedTrajectory& loaded, Timestamp t, const std::optional<Pose>& pose,
-                const RowLocation& location);
+/// Parses a pose and normalizes its quaternion.
+/// @return nullopt if the row has no pose (a value that is not finite, or a zero quaternion) and may be
+/// skipped
+/// @throws InputError if a field is not a number, the quaternion is not a rotation, or a coordinate exceeds
+/// 1e9 m
+[[nodiscard]] std::optional<Pose> parse_pose(const TextRow& row, const PoseFields& fields);
 
-/// @throws InputError if no pose was loaded
-void require_poses(const LoadedTrajectory& loaded, const std::string& file);
+/// Collects the poses of a file in order of time.
+class TrajectoryBuilder {
+ public:
+  explicit TrajectoryBuilder(const std::string& frame = "") { loaded_.trajectory.frame = frame; }
+
+  /// Appends the pose of a row, or counts the row as skipped if it has none.
+  /// @throws InputError if the stamp does not increase
+  void add(const TextRow& row, Timestamp t, const std::optional<Pose>& pose);
+
+  /// @param file its name, for messages
+  /// @throws InputError if no pose was added
+  void require_poses(const std::string& file) const;
+
+  [[nodiscard]] LoadedTrajectory release() { return std::move(loaded_); }
+
+ private:
+  LoadedTrajectory loaded_;
+};
 
 }  // namespace stillpoint::eval

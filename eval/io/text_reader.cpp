@@ -13,7 +13,6 @@
 namespace stillpoint::eval {
 namespace {
 
-constexpr std::string_view kSeparators = " \t,\r";
 constexpr int kStampDecimals = 9;
 constexpr int kMaxExponent = 64;
 
@@ -105,16 +104,6 @@ std::optional<std::string_view> LineReader::next() {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   ++line_number_;
   return line;
-}
-
-void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
-  fields.clear();
-  std::size_t begin = line.find_first_not_of(kSeparators);
-  while (begin != std::string_view::npos) {
-    const std::size_t end = line.find_first_of(kSeparators, begin);
-    fields.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(kSeparators, end);
-  }
 }
 
 std::optional<double> parse_number(std::string_view field) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Text file input and output: lines, fields, numbers and exact time stamps.
+/// Text file input and output: lines, numbers and exact time stamps.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/base/timestamp.h"
 
@@ -35,9 +34,6 @@ class LineReader {
   std::string_view rest_;
   long line_number_ = 0;
 };
-
-/// Splits a line at spaces, tabs and commas into `fields`, whose storage is reused.
-void split_fields(std::string_view line, std::vector<std::string_view>& fields);
 
 /// Parses a decimal number, "nan" or "inf"; nullopt unless the whole field is a number.
 [[nodiscard]] std::optional<double> parse_number(std::string_view field);

@@ -2,37 +2,81 @@
 #include "eval/io/trajectory_file.h"
 
 #include <cstdio>
-#include <vector>
 
 #include "core/base/error.h"
 #include "eval/io/pose_row.h"
 #include "eval/io/text_reader.h"
+#include "eval/io/text_table.h"
 
 namespace stillpoint::eval {
+namespace {
+
+/// A format with one pose per row: the stamp, then the pose.
+struct RowFormat {
+  TimeUnit unit;
+  QuaternionOrder order;
+  const char* columns;  ///< for messages
+};
+constexpr RowFormat kTum{TimeUnit::kSeconds, QuaternionOrder::kXyzw, "t tx ty tz qx qy qz qw"};
+constexpr RowFormat kEuroc{TimeUnit::kNanoseconds, QuaternionOrder::kWxyz, "ns,px,py,pz,qw,qx,qy,qz"};
+
+/// A text and the name of its file.
+struct NamedText {
+  std::string_view text;
+  const std::string& name;
+};
+
+LoadedTrajectory parse_rows(const NamedText& source, const RowFormat& format, PoseCheck check,
+                            FaultLog& faults) {
+  TrajectoryBuilder builder;
+  for_each_row(source.text, source.name, faults, [&](const TextRow& row) {
+    if (row.fields.size() < 8) {
+      throw row.error("a pose needs 8 numbers, found " + std::to_string(row.fields.size()) + "; expected \"" +
+                      format.columns + "\"");
+    }
+    const Timestamp t = row.time(0, format.unit);
+    builder.add(row, t, parse_pose(row, {.first = 1, .order = format.order, .check = check}));
+  });
+  faults.guard([&] { builder.require_poses(source.name); });
+  return builder.release();
+}
+
+Trajectory read_ground_truth(const std::filesystem::path& file, const RowFormat& format, FaultLog& faults) {
+  const std::string text = read_text_file(file);
+  const std::string name = file.string();
+  return parse_rows({text, name}, format, PoseCheck::kGroundTruth, faults).trajectory;
+}
+
+}  // namespace
 
 LoadedTrajectory read_tum(const std::filesystem::path& file, const std::string& frame) {
   return parse_tum(read_text_file(file), file.string(), frame);
 }
 
 LoadedTrajectory parse_tum(std::string_view text, const std::string& name, const std::string& frame) {
-  LoadedTrajectory loaded;
+  FaultLog strict;
+  LoadedTrajectory loaded = parse_rows({text, name}, kTum, PoseCheck::kEstimate, strict);
   loaded.trajectory.frame = frame;
-  LineReader lines(text);
-  std::vector<std::string_view> fields;
-  while (const std::optional<std::string_view> line = lines.next()) {
-    split_fields(*line, fields);
-    if (fields.empty() || fields.front().front() == '#') continue;
-    const RowLocation location{name, lines.line_number()};
-    if (fields.size() < 8) {
-      throw location.error("a pose needs 8 numbers, found " + std::to_string(fields.size()) +
-                           "; expected \"t tx ty tz qx qy qz qw\"");
-    }
-    const Timestamp t = require_stamp(fields[0], location);
-    append_row(loaded, t, parse_pose(std::span(fields).subspan(1, 7), QuaternionOrder::kXyzw, location),
-               location);
-  }
-  require_poses(loaded, name);
   return loaded;
+}
+
+LoadedTrajectory parse_euroc(std::string_view text, const std::string& name) {
+  FaultLog strict;
+  return parse_rows({text, name}, kEuroc, PoseCheck::kEstimate, strict);
+}
+
+Trajectory read_tum_ground_truth(const std::filesystem::path& file, const std::string& frame,
+                                 FaultLog& faults) {
+  Trajectory trajectory = read_ground_truth(file, kTum, faults);
+  trajectory.frame = frame;
+  return trajectory;
+}
+
+Trajectory read_euroc_ground_truth(const std::filesystem::path& file, const std::string& frame,
+                                   FaultLog& faults) {
+  Trajectory trajectory = read_ground_truth(file, kEuroc, faults);
+  trajectory.frame = frame;
+  return trajectory;
 }
 
 void write_tum(const Trajectory& trajectory, const std::filesystem::path& file) {
@@ -49,6 +93,18 @@ std::string format_tum(const Trajectory& trajectory) {
     STILLPOINT_CHECK(length > 0 && length < static_cast<int>(sizeof row));
     text += format_stamp(t);
     text.append(row, static_cast<std::size_t>(length));
+  }
+  return text;
+}
+
+std::string format_euroc(const Trajectory& trajectory) {
+  std::string text =
+      "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
+  char row[360];
+  for (const auto& [t, pose] : trajectory.poses) {
+    std::snprintf(row, sizeof row, "%lld,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n", static_cast<long long>(t.ns),
+                  pose.p.x(), pose.p.y(), pose.p.z(), pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z());
+    text += row;
   }
   return text;
 }

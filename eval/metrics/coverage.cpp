@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "eval/metrics/ate.h"
 
 namespace stillpoint::eval {
 
@@ -48,13 +47,14 @@ std::optional<double> time_coverage(std::span<const TimeSpan> lost, const TimeSp
   return 1.0 - lost_s / duration_s;
 }
 
-double correct_seconds(std::span<const MatchedPose> matches, std::span<const double> errors_m,
-                       std::span<const double> errors_deg, Timestamp end, const CorrectRateOptions& options) {
-  STILLPOINT_CHECK(errors_m.size() == matches.size() && errors_deg.size() == matches.size());
+double correct_seconds(std::span<const MatchedPose> matches, const AteErrors& errors, Timestamp end,
+                       const CorrectRateOptions& options) {
+  STILLPOINT_CHECK(errors.translation_m.size() == matches.size() &&
+                   errors.rotation_deg.size() == matches.size());
   double seconds = 0.0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    const bool correct =
-        errors_m[i] <= options.max_translation_m && errors_deg[i] <= options.max_rotation_deg;
+    const bool correct = errors.translation_m[i] <= options.max_translation_m &&
+                         errors.rotation_deg[i] <= options.max_rotation_deg;
     const Timestamp until = i + 1 < matches.size() ? matches[i + 1].t : end;
     if (correct) seconds += std::clamp(seconds_between(matches[i].t, until), 0.0, options.max_hold_s);
   }
@@ -70,8 +70,7 @@ std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
   if (matches.empty()) return 0.0;
   for (MatchedPose& match : matches) match.t = after(match.t, offset_s);
   const AteErrors errors = ate_errors(matches, align(matches, Alignment::kSe3).S_w_v);
-  const double correct =
-      correct_seconds(matches, errors.translation_m, errors.rotation_deg, gt.poses.back().t, options);
+  const double correct = correct_seconds(matches, errors, gt.poses.back().t, options);
   return correct / seconds_between(gt.poses.front().t, gt.poses.back().t);
 }
 

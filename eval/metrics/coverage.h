@@ -17,12 +17,15 @@
 #include <span>
 #include <vector>
 
+#include "eval/metrics/ate.h"
 #include "eval/trajectory/association.h"
 
 namespace stillpoint::eval {
 
 /// Fraction of the expected time stamps that have a pose within `tolerance_s`; each pose counts once.
+/// @param est poses with strictly increasing stamps
 /// @param expected strictly increasing, e.g. the frame times of the sequence
+/// @param tolerance_s greater than the rounding of stamps in files
 /// @return nullopt if `expected` is empty
 [[nodiscard]] std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp> expected,
                                              double tolerance_s = 1e-3);
@@ -58,10 +61,11 @@ struct CorrectRateOptions {
                                                  double offset_s = 0.0);
 
 /// Numerator of the correct rate [s].
-/// @param errors_m, errors_deg e_k and theta_k of `matches`
+/// @param matches in order of time
+/// @param errors e_k and theta_k of `matches`
 /// @param end end of the validity of the last pose, if `max_hold_s` does not end it before
-[[nodiscard]] double correct_seconds(std::span<const MatchedPose> matches, std::span<const double> errors_m,
-                                     std::span<const double> errors_deg, Timestamp end,
-                                     const CorrectRateOptions& options);
+/// @param options thresholds of e_k and theta_k; how long a pose is valid
+[[nodiscard]] double correct_seconds(std::span<const MatchedPose> matches, const AteErrors& errors,
+                                     Timestamp end, const CorrectRateOptions& options);
 
 }  // namespace stillpoint::eval

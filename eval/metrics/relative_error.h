@@ -48,6 +48,8 @@ enum class PathOf { kGroundTruth, kEstimate };
 /// equally close ones. Pairs that miss `delta_m` by more than `tolerance_m` are dropped. Same pairs as evo's
 /// all_pairs in meters, which has a tolerance of 10 %.
 /// @param lengths_m non-decreasing, as from `path_lengths`
+/// @param delta_m desired path length between the matches of a pair
+/// @param tolerance_m inclusive
 [[nodiscard]] PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m,
                                           double tolerance_m);
 
@@ -59,6 +61,7 @@ struct RelativeErrors {
 };
 
 /// @param matches aligned, if the yaw error shall refer to the vertical axis of the ground truth
+/// @param pairs indices into `matches`
 [[nodiscard]] RelativeErrors relative_errors(std::span<const MatchedPose> matches,
                                              std::span<const PosePair> pairs);
 

@@ -33,6 +33,7 @@ struct SegmentOptions {
 };
 
 /// @param matches aligned
+/// @param options lengths of the segments and how their ends are found
 /// @return one entry per length that has at least one segment
 [[nodiscard]] std::vector<SegmentErrors> segment_errors(std::span<const MatchedPose> matches,
                                                         const SegmentOptions& options);

@@ -24,6 +24,7 @@ struct Statistics {
 [[nodiscard]] std::optional<Statistics> statistics(std::span<const double> values);
 
 /// Percentile with linear interpolation between the closest ranks (NumPy's default).
+/// @param values in any order
 /// @param fraction in [0, 1]
 /// @return nullopt for an empty list
 [[nodiscard]] std::optional<double> percentile(std::span<const double> values, double fraction);

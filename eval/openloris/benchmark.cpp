@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "eval/io/openloris_file.h"
 #include "eval/openloris/robot_frames.h"
-#include "eval/trajectory/frames.h"
+#include "eval/trajectory/alignment.h"
 
 namespace stillpoint::eval {
 namespace {

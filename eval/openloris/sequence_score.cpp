@@ -79,8 +79,7 @@ OpenlorisSequenceScore score_openloris_sequence(const Trajectory& gt, const Traj
 
   const Timestamp end = std::max(gt.poses.back().t, matches.back().t);
   score.tracked_spans = spans_of(matches, correct, gt, options.correct.max_hold_s);
-  score.correct_time_s =
-      correct_seconds(matches, errors.translation_m, errors.rotation_deg, end, options.correct);
+  score.correct_time_s = correct_seconds(matches, errors, end, options.correct);
   score.tracked_time_s = seconds_between(matches.front().t, end);
   score.correct_rate = score.correct_time_s / seconds_between(start, end);
   if (score.tracked_time_s > 0.0) score.tracked_rate = score.correct_time_s / score.tracked_time_s;

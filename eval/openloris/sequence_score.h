@@ -53,7 +53,9 @@ struct OpenlorisSequenceScore {
 };
 
 /// @param gt ground truth of the body frame of the estimate
+/// @param est poses as in the result file, before the alignment
 /// @param S_w_v alignment, see `align_openloris`
+/// @param options `scale` has no effect: the alignment is given
 [[nodiscard]] OpenlorisSequenceScore score_openloris_sequence(const Trajectory& gt, const Trajectory& est,
                                                               const Similarity& S_w_v,
                                                               const OpenlorisOptions& options = {});
@@ -61,6 +63,8 @@ struct OpenlorisSequenceScore {
 /// Alignment for all sequences of a result file: that of its lowest-numbered sequence with matches, or
 /// identity.
 /// @param gt by sequence number, of the body frame of the estimate
+/// @param est by sequence number
+/// @param options `correct` has no effect: all matches are aligned
 [[nodiscard]] Similarity align_openloris(const std::map<int, Trajectory>& gt,
                                          const std::map<int, Trajectory>& est,
                                          const OpenlorisOptions& options = {});

@@ -11,7 +11,11 @@ namespace stillpoint::eval {
 [[nodiscard]] Evaluation evaluate_compat_rpg(const EvaluationInput& input);
 [[nodiscard]] Evaluation evaluate_compat_openloris(const EvaluationInput& input);
 
-/// Fills the alignment, the ATE and the errors per pose.
-void fill_ate(Evaluation& evaluation, std::span<const MatchedPose> matches, const AlignmentResult& alignment);
+/// An evaluation with the alignment, the ATE and the errors per pose; the other fields are empty.
+[[nodiscard]] Evaluation ate_evaluation(std::span<const MatchedPose> matches,
+                                        const AlignmentResult& alignment);
+
+/// `evaluation` with an RPE and its notes.
+[[nodiscard]] Evaluation with_rpe(Evaluation evaluation, const RpeEvaluation& rpe);
 
 }  // namespace stillpoint::eval

@@ -61,6 +61,13 @@ struct Evaluation {
   std::vector<PoseError> per_pose;
 };
 
+/// RPE of a protocol, and the warnings that belong to it.
+struct RpeEvaluation {
+  std::optional<Statistics> translation_m;
+  std::optional<Statistics> rotation_deg;
+  std::vector<std::string> notes;
+};
+
 struct EvaluationInput {
   const Trajectory& gt;
   const Trajectory& est;  ///< of the same body frame as gt

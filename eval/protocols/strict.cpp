@@ -2,6 +2,7 @@
 #include "eval/protocols/strict.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 #include "eval/metrics/relative_error.h"
@@ -14,18 +15,19 @@ namespace {
 constexpr double kSegmentTolerance = 0.02;  // relative to the length of the segment, or to delta in meters
 constexpr double kMaxHold = 1.0;            // [s], validity of a pose
 
-void fill_rpe(Evaluation& evaluation, std::span<const MatchedPose> matches, const ProtocolOptions& options) {
+RpeEvaluation strict_rpe_evaluation(std::span<const MatchedPose> matches, const ProtocolOptions& options) {
   if (options.rpe_unit == RpeUnit::kFrames) {
     throw InputError("--rpe-unit f",
                      "frame deltas are not comparable across runs; strict protocols support s and m");
   }
+  RpeEvaluation rpe;
   std::size_t dropped = 0;
   if (options.rpe_unit == RpeUnit::kSeconds) {
     const StrictRpeResult result = strict_rpe(matches, options.rpe_delta);
     dropped = result.dropped;
     if (result.errors) {
-      evaluation.rpe_m = result.errors->translation_m;
-      evaluation.rpe_deg = result.errors->rotation_deg;
+      rpe.translation_m = result.errors->translation_m;
+      rpe.rotation_deg = result.errors->rotation_deg;
     }
   } else {
     const std::vector<double> lengths = path_lengths(matches, PathOf::kGroundTruth);
@@ -33,13 +35,14 @@ void fill_rpe(Evaluation& evaluation, std::span<const MatchedPose> matches, cons
         pairs_over_meters(lengths, options.rpe_delta, kSegmentTolerance * options.rpe_delta);
     const RelativeErrors errors = relative_errors(matches, found.pairs);
     dropped = found.dropped;
-    evaluation.rpe_m = statistics(errors.translation_m);
-    evaluation.rpe_deg = statistics(errors.rotation_deg);
+    rpe.translation_m = statistics(errors.translation_m);
+    rpe.rotation_deg = statistics(errors.rotation_deg);
   }
   if (dropped > 0) {
-    evaluation.notes.push_back(std::to_string(dropped) + " of " + std::to_string(matches.size()) +
-                               " RPE starts dropped: no pose at delta within the tolerance");
+    rpe.notes.push_back(std::to_string(dropped) + " of " + std::to_string(matches.size()) +
+                        " RPE starts dropped: no pose at delta within the tolerance");
   }
+  return rpe;
 }
 
 /// RMS of e_(i-1) - 2 e_i + e_(i+1), e: aligned position error. A smooth drift contributes little to it.
@@ -59,16 +62,20 @@ std::optional<double> jitter_of(std::span<const MatchedPose> matches, const Simi
 
 Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   const ProtocolOptions& options = input.options;
-  Evaluation evaluation;
   Trajectory est = input.est;
   for (StampedPose& pose : est.poses) pose.t = after(pose.t, options.offset_s);
+  std::vector<MatchedPose> matches = strict_matches(input.gt, est);
+  Evaluation evaluation;
+  if (!matches.empty()) {
+    evaluation = ate_evaluation(matches, align_or_throw(matches, options.alignment.value_or(alignment),
+                                                        options.align_first_n, "strict protocol"));
+  }
   if (!input.gt.poses.empty()) {
     const TimeSpan whole{input.gt.poses.front().t, input.gt.poses.back().t};
     evaluation.lost = lost_spans(est, whole, kMaxHold);
     evaluation.coverage = time_coverage(evaluation.lost, whole);
     evaluation.first_pose_s = first_pose_seconds(est, whole.begin);
   }
-  std::vector<MatchedPose> matches = strict_matches(input.gt, est);
   if (matches.size() < est.poses.size()) {
     evaluation.notes.push_back(std::to_string(est.poses.size() - matches.size()) + " of " +
                                std::to_string(est.poses.size()) +
@@ -76,12 +83,10 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   }
   evaluation.correct_rate = correct_rate(input.gt, est, options.correct);
   if (matches.empty()) return evaluation;
-  const AlignmentResult fit = align_or_throw(matches, options.alignment.value_or(alignment),
-                                             options.align_first_n, "strict protocol");
-  fill_ate(evaluation, matches, fit);
-  evaluation.jitter_m = jitter_of(matches, fit.S_w_v);
-  for (MatchedPose& match : matches) match.est = fit.S_w_v * match.est;
-  fill_rpe(evaluation, matches, options);
+  const Similarity S_w_v = evaluation.alignment.S_w_v;
+  evaluation.jitter_m = jitter_of(matches, S_w_v);
+  for (MatchedPose& match : matches) match.est = S_w_v * match.est;
+  evaluation = with_rpe(std::move(evaluation), strict_rpe_evaluation(matches, options));
   evaluation.segments =
       segment_errors(matches, {.lengths_m = options.segment_lengths_m, .tolerance = kSegmentTolerance});
   evaluation.drift_percent = drift_percent(evaluation.segments);

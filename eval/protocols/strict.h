@@ -6,6 +6,7 @@
 
 namespace stillpoint::eval {
 
+/// @param input both trajectories have the same body frame
 /// @param alignment used unless the options override it
 /// @throws InputError if the matches do not determine the alignment, or for an RPE over frames
 [[nodiscard]] Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment);

@@ -39,6 +39,7 @@ struct ChangePoint {
 ///
 /// O(R n^2) for each change point, n: number of values.
 /// @param values finite
+/// @param options the same seed gives the same result
 [[nodiscard]] std::vector<ChangePoint> change_points(std::span<const double> values,
                                                      const ChangePointOptions& options = {});
 

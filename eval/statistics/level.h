@@ -44,6 +44,8 @@ struct Trend {
 ///
 /// q: number of parameters, 2 for the line and 2 c + 1 for c steps (c + 1 levels and c positions). Constant
 /// terms are omitted.
+/// @param values the series
+/// @param trend the line, as from `trend_of`
 /// @param changes indices of the first value of each new level
 [[nodiscard]] bool linear_trend_fits_better(std::span<const double> values, const Trend& trend,
                                             const std::vector<std::size_t>& changes);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Alignment of an estimate to its ground truth by least squares over the positions:
+/// Alignment of an estimate to its ground truth by least squares over the positions, and change of the body
+/// frame:
 ///
 ///   (s, R, t) = argmin sum_i |g_i - (s R e_i + t)|^2
 ///
@@ -60,6 +61,8 @@ struct AlignmentResult {
 };
 
 /// Alignment as defined above; identity without matches.
+/// @param matches positions e_i and g_i
+/// @param kind which of s, R and t are estimated
 /// @param first_n use the first n matches only; 0 = all
 [[nodiscard]] AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind,
                                     std::size_t first_n = 0);
@@ -68,5 +71,12 @@ struct AlignmentResult {
 /// @throws InputError if the alignment is not determined; the message begins with `context`
 [[nodiscard]] AlignmentResult align_or_throw(std::span<const MatchedPose> matches, Alignment kind,
                                              std::size_t first_n, const std::string& context);
+
+/// Change of the body frame: T_w_g = T_w_f T_f_g for every pose; f and g are rigidly connected.
+/// @param trajectory poses T_w_f
+/// @param T_f_g pose of frame g in frame f
+/// @param name of frame g
+[[nodiscard]] Trajectory move_to_frame(const Trajectory& trajectory, const Pose& T_f_g,
+                                       const std::string& name);
 
 }  // namespace stillpoint::eval

@@ -10,7 +10,14 @@ namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// A pose of either trajectory on the common time axis. Unmatched ones form a doubly linked list.
+std::vector<Timestamp> stamps_of(const Trajectory& trajectory) {
+  std::vector<Timestamp> stamps;
+  stamps.reserve(trajectory.poses.size());
+  for (const StampedPose& pose : trajectory.poses) stamps.push_back(pose.t);
+  return stamps;
+}
+
+/// A stamp of either list on the common time axis. Unmatched ones form a doubly linked list.
 struct Event {
   std::size_t index;
   bool is_gt;
@@ -19,7 +26,7 @@ struct Event {
   bool matched = false;
 };
 
-/// Neighbors on the time axis, one of each trajectory.
+/// Neighbors on the time axis, one of each list.
 struct Candidate {
   double difference_s;
   std::size_t left;  ///< event indices
@@ -31,7 +38,8 @@ struct Candidate {
 /// suffices, and removing a pair creates at most one new pair of neighbors.
 class GreedyMatcher {
  public:
-  GreedyMatcher(const Trajectory& gt, const Trajectory& est, const AssociationOptions& options)
+  GreedyMatcher(std::span<const Timestamp> gt, std::span<const Timestamp> est,
+                const AssociationOptions& options)
       : gt_(gt), est_(est), options_(options) {
     merge();
     for (std::size_t i = 0; i + 1 < events_.size(); ++i) add_candidate(i, i + 1);
@@ -53,18 +61,16 @@ class GreedyMatcher {
 
  private:
   [[nodiscard]] double difference(std::size_t gt, std::size_t est) const {
-    return std::abs(
-        stamp_difference(gt_.poses[gt].t, est_.poses[est].t, options_.offset_s, options_.arithmetic));
+    return std::abs(stamp_difference(gt_[gt], est_[est], options_.offset_s, options_.arithmetic));
   }
 
   void merge() {
-    events_.reserve(gt_.poses.size() + est_.poses.size());
+    events_.reserve(gt_.size() + est_.size());
     std::size_t g = 0;
     std::size_t e = 0;
-    while (g < gt_.poses.size() || e < est_.poses.size()) {
+    while (g < gt_.size() || e < est_.size()) {
       const bool gt_first =
-          e == est_.poses.size() ||
-          (g < gt_.poses.size() && gt_.poses[g].t <= after(est_.poses[e].t, options_.offset_s));
+          e == est_.size() || (g < gt_.size() && gt_[g] <= after(est_[e], options_.offset_s));
       const std::size_t index = events_.size();
       events_.push_back({gt_first ? g++ : e++, gt_first, index == 0 ? kNone : index - 1, index + 1});
     }
@@ -100,8 +106,8 @@ class GreedyMatcher {
     }
   };
 
-  const Trajectory& gt_;
-  const Trajectory& est_;
+  std::span<const Timestamp> gt_;
+  std::span<const Timestamp> est_;
   const AssociationOptions& options_;
   std::vector<Event> events_;
   std::priority_queue<Candidate, std::vector<Candidate>, LowerPriority> heap_;
@@ -109,9 +115,14 @@ class GreedyMatcher {
 
 }  // namespace
 
-std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
+std::vector<IndexPair> associate_tum(std::span<const Timestamp> gt, std::span<const Timestamp> est,
                                      const AssociationOptions& options) {
   return GreedyMatcher(gt, est, options).run();
+}
+
+std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
+                                     const AssociationOptions& options) {
+  return associate_tum(stamps_of(gt), stamps_of(est), options);
 }
 
 std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est,

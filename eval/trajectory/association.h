@@ -32,8 +32,12 @@ struct AssociationOptions {
 /// Association of the TUM RGB-D tools (associate.py): all candidates with
 /// |t_gt - (t_est + offset_s)| < max_difference_s, sorted by the difference, matched greedily and one-to-one.
 /// O((n + m) log(n + m)).
-/// @param gt, est poses with strictly increasing stamps
+/// @param gt, est strictly increasing
+/// @param options `arithmetic` decides between candidates with equal differences
 /// @return pairs in order of time
+[[nodiscard]] std::vector<IndexPair> associate_tum(std::span<const Timestamp> gt,
+                                                   std::span<const Timestamp> est,
+                                                   const AssociationOptions& options = {});
 [[nodiscard]] std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
                                                    const AssociationOptions& options = {});
 

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/model/metrics.h"
 #include "reports/dashboard/dashboard_data.h"
 #include "reports/dashboard/history_text.h"
-#include "reports/page/embedded_web.h"
 #include "reports/page/html_parts.h"
 #include "reports/tables/escaping.h"
 
@@ -39,7 +39,8 @@ std::vector<MetricDifference> differences_at(const bench::CommitHistory& history
   std::vector<MetricDifference> differences;
   for (const bench::HistorySeries& series : history.series) {
     const auto found = std::lower_bound(series.commits.begin(), series.commits.end(), commit);
-    if (!series.rule || found == series.commits.end() || *found != commit || found == series.commits.begin())
+    if (series.gated == nullptr || found == series.commits.end() || *found != commit ||
+        found == series.commits.begin())
       continue;
     const auto i = static_cast<std::size_t>(found - series.commits.begin());
     differences.push_back({&series, series.commits[i - 1], series.values[i - 1], series.values[i]});
@@ -55,10 +56,10 @@ std::string difference_row(const bench::CommitHistory& history, const MetricDiff
   const bench::HistorySeries& series = *metric.series;
   const double difference = metric.difference();
   return fmt::format(
-      "<tr><th scope=\"row\">{}</th><td class=\"text\">{}</td><td "
+      "<tr>{}<td class=\"text\">{}</td><td "
       "class=\"text\">{}</td><td class=\"text\">{}</td><td>{}</td>"
       "<td>{}</td><td>{}</td></tr>\n",
-      escape_html(series.metric), escape_html(subject_label(series.subject)),
+      metric_heading(series.metric), escape_html(subject_label(series.subject)),
       escape_html(series.subject.host),
       escape_html(commit_label(history.commits[metric.previous_commit].name)),
       escape_html(value_label(metric.before, series.unit)),
@@ -94,14 +95,15 @@ std::string differences_html(const bench::CommitHistory& history, std::size_t co
 std::string shift_row(const bench::CommitHistory& history, const bench::LevelShift& shift) {
   const bench::HistorySeries& series = history.series[shift.series];
   return fmt::format(
-      "<tr class=\"{0}\"><th scope=\"row\"><a href=\"../index.html#series={1}\">{2}</a></th>"
+      "<tr class=\"{0}\"><th scope=\"row\" title=\"{9}\"><a href=\"../index.html#series={1}\">{2}</a></th>"
       "<td class=\"text\">{3}</td><td>{4}</td><td>{5}</td><td>{6}</td><td>{7}</td><td "
       "class=\"text\">{0}{8}</td>"
       "</tr>\n",
       bench::state_name(shift.state), shift.series, escape_html(series.metric),
       escape_html(subject_label(series.subject)), escape_html(value_label(shift.level_before, series.unit)),
       escape_html(value_label(shift.level_after, series.unit)), change_label(shift), interval_label(shift),
-      shift.reason.empty() ? "" : ": " + escape_html(shift.reason));
+      shift.reason.empty() ? "" : ": " + escape_html(shift.reason),
+      escape_html(bench::tooltip_of(series.metric)));
 }
 
 std::string shifts_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes,

@@ -11,7 +11,6 @@
 #include "reports/dashboard/dashboard_data.h"
 #include "reports/dashboard/history_text.h"
 #include "reports/dashboard/regression_list.h"
-#include "reports/page/embedded_web.h"
 #include "reports/page/html_parts.h"
 #include "reports/tables/escaping.h"
 
@@ -70,10 +69,10 @@ std::string group_row(const bench::CommitHistory& history, const ShiftGroup& gro
   const bench::LevelShift& largest = *group.shifts.front();
   const bench::HistorySeries& series = history.series[largest.series];
   return fmt::format(
-      "<tr><th scope=\"row\">{}</th><td class=\"text\">{} .. {}</td><td class=\"text\">{}{}</td>"
+      "<tr>{}<td class=\"text\">{} .. {}</td><td class=\"text\">{}{}</td>"
       "<td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
       "class=\"text\">{}</td></tr>\n",
-      escape_html(group.metric), commit_link(history, group.before), commit_link(history, group.after),
+      metric_heading(group.metric), commit_link(history, group.before), commit_link(history, group.after),
       series_link(history, largest.series), members_html(history, group), escape_html(series.subject.host),
       escape_html(value_label(largest.level_before, series.unit)),
       escape_html(value_label(largest.level_after, series.unit)), change_label(largest),
@@ -104,16 +103,22 @@ std::string drifts_html(const bench::CommitHistory& history, const bench::Histor
   for (const bench::MetricDrift& drift : changes.drifts) {
     const bench::HistorySeries& series = history.series[drift.series];
     rows += fmt::format(
-        "<tr><th scope=\"row\">{}</th><td class=\"text\">{}</td><td class=\"text\">{} .. {}</td><td>{:+.1f} "
+        "<tr>{}<td class=\"text\">{}</td><td class=\"text\">{} .. {}</td><td>{:+.1f} "
         "%</td>"
         "<td class=\"text\">{}</td></tr>\n",
-        escape_html(series.metric), series_link(history, drift.series), commit_link(history, drift.first),
+        metric_heading(series.metric), series_link(history, drift.series), commit_link(history, drift.first),
         commit_link(history, drift.last), 100.0 * drift.change, drift.worse ? "worse" : "better");
   }
   if (rows.empty()) return "<p class=\"none\">No metric drifts by more than its margin.</p>";
   return html_table(
       "drifts", "",
       {{"metric", true}, {"on", true}, {"commits", true}, {"total change"}, {"direction", true}}, rows);
+}
+
+std::set<std::string> metric_names(const bench::CommitHistory& history) {
+  std::set<std::string> names;
+  for (const bench::HistorySeries& series : history.series) names.insert(series.metric);
+  return names;
 }
 
 std::string scripts_html() {
@@ -131,6 +136,7 @@ std::string index_html(const bench::CommitHistory& history, const bench::History
       web_file("dashboard/dashboard.html"),
       {{"styles", styles},
        {"summary", summary_html(history, changes)},
+       {"glossary", glossary_html(metric_names(history))},
        {"open", groups_html(history, changes, bench::ChangeState::kOpen, "None.")},
        {"accepted", groups_html(history, changes, bench::ChangeState::kAccepted, "None.")},
        {"improved", groups_html(history, changes, bench::ChangeState::kImproved, "None.")},

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/model/content_hash.h"
+#include "bench/model/metrics.h"
+#include "core/base/module_timings.h"
 #include "reports/dashboard/history_text.h"
 #include "reports/tables/escaping.h"
 
@@ -36,9 +38,27 @@ class NameTable {
   std::vector<std::string> names_;
 };
 
-std::string family_name(const std::optional<bench::MetricRule>& rule) {
-  if (!rule) return "other";
-  return rule->family == bench::MetricFamily::kAccuracy ? "accuracy" : "cost";
+std::string family_name(bench::MetricFamily family) {
+  return family == bench::MetricFamily::kAccuracy ? "accuracy" : "cost";
+}
+
+/// Metrics that the charts show first, by family: the first that a subject has.
+Json preferred_json() {
+  Json json = {{"accuracy", Json::array()}, {"cost", Json::array()}};
+  for (const bench::MetricDescriptor& metric : bench::all_metrics()) {
+    if (!metric.gate) continue;
+    const bool is_module = metric.id == bench::metric_id::kModuleTime;
+    json[family_name(metric.gate->family)].push_back(
+        std::string(is_module ? module_name(Module::kStateOptimization) : metric.id));
+  }
+  return json;
+}
+
+Json tooltips_json(const bench::CommitHistory& history) {
+  Json json = Json::object();
+  for (const bench::HistorySeries& series : history.series)
+    json[clean_line(series.metric)] = bench::tooltip_of(series.metric);
+  return json;
 }
 
 Json commits_json(const std::vector<bench::Commit>& commits) {
@@ -58,7 +78,7 @@ Json series_json(const bench::HistorySeries& series, std::size_t subject) {
   return {{"subject", subject},
           {"metric", clean_line(series.metric)},
           {"unit", clean_line(series.unit)},
-          {"family", family_name(series.rule)},
+          {"family", series.gated == nullptr ? "other" : family_name(series.gated->gate->family)},
           {"commits", series.commits},
           {"values", values},
           {"runs", series.runs}};
@@ -129,6 +149,8 @@ std::string dashboard_data(const bench::CommitHistory& history, const bench::His
                      {"plans", plans.all()},
                      {"hosts", hosts.all()},
                      {"subjects", subjects},
+                     {"preferred", preferred_json()},
+                     {"tooltips", tooltips_json(history)},
                      {"series", all_series},
                      {"shifts", shifts},
                      {"drifts", drifts}};

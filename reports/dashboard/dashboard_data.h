@@ -15,7 +15,8 @@ namespace stillpoint::report {
 /// Distinct subjects in the order of the series; series of one subject are contiguous.
 [[nodiscard]] std::vector<bench::HistorySubject> subjects_of(const bench::CommitHistory& history);
 
-/// JSON: commits, plans, machines, subjects, series, shifts and drifts; they refer to each other by index.
+/// JSON: commits, plans, machines, subjects, series, shifts, drifts and tooltips of metrics; they refer to
+/// each other by index.
 [[nodiscard]] std::string dashboard_data(const bench::CommitHistory& history,
                                          const bench::HistoryChanges& changes);
 

@@ -2,6 +2,7 @@
 /// Vector drawing as a list of marks, written as SVG or PNG.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
@@ -52,5 +53,12 @@ struct Drawing {
   double height = 100.0;
   std::vector<Mark> marks;
 };
+
+/// A self-contained SVG 1.1 document. Coordinates have 2 decimals, so that equal drawings give equal bytes.
+[[nodiscard]] std::string svg_text(const Drawing& drawing);
+
+/// Writes a PNG of `scale` pixels per unit of the drawing, antialiased.
+/// @throws InputError if the file cannot be written
+void write_drawing_png(const std::filesystem::path& file, const Drawing& drawing, double scale);
 
 }  // namespace stillpoint::report

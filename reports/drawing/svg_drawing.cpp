@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/drawing/svg_drawing.h"
+#include "reports/drawing/drawing.h"
 
 #include <fmt/format.h>
 

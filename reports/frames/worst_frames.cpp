@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "datasets/io/image_io.h"
 #include "eval/metrics/strict_rpe.h"
-#include "eval/trajectory/frames.h"
+#include "eval/trajectory/alignment.h"
 
 namespace stillpoint::report {
 namespace {

@@ -3,9 +3,21 @@
 
 #include <fmt/format.h>
 
+#include "bench/config/embedded_files.h"
+#include "bench/model/metrics.h"
+#include "core/base/error.h"
 #include "reports/tables/escaping.h"
 
 namespace stillpoint::report {
+
+std::string_view web_file(std::string_view name) {
+  constexpr std::string_view kRoot = "reports/web/";
+  for (const bench::EmbeddedFile& file : bench::web_files()) {
+    if (file.path.substr(kRoot.size()) == name) return file.text;
+  }
+  STILLPOINT_CHECK(!"every requested file is listed in reports/CMakeLists.txt");
+  return {};
+}
 
 std::string filled_template(std::string_view text, const TemplateParts& parts) {
   constexpr std::string_view kOpen = "<!--";
@@ -42,6 +54,24 @@ std::string html_table(const std::string& id, const std::string& caption,
   return fmt::format(
       "<div class=\"table\"><table id=\"{}\">{}<thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>",
       id, caption.empty() ? "" : "<caption>" + caption + "</caption>", head, rows);
+}
+
+std::string metric_heading(const std::string& name) {
+  const std::string tooltip = bench::tooltip_of(name);
+  return fmt::format("<th scope=\"row\"{}>{}</th>",
+                     tooltip.empty() ? "" : fmt::format(" title=\"{}\"", escape_html(tooltip)),
+                     escape_html(name));
+}
+
+std::string glossary_html(const std::set<std::string>& names) {
+  std::string items;
+  for (const std::string& name : names) {
+    if (const std::string text = bench::tooltip_of(name); !text.empty())
+      items += "<dt>" + escape_html(name) + "</dt><dd>" + escape_html(text) + "</dd>\n";
+  }
+  return items.empty() ? ""
+                       : "<details class=\"glossary\"><summary>What the metrics mean</summary><dl>\n" +
+                             items + "</dl></details>\n";
 }
 
 std::string data_script(const std::string& id, const std::string& json) {

@@ -4,11 +4,16 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace stillpoint::report {
+
+/// A file of reports/web, embedded in the binary: template, style sheet, script, library or license.
+/// @param name relative to reports/web, e.g. "page.css"; must be listed in reports/CMakeLists.txt
+[[nodiscard]] std::string_view web_file(std::string_view name);
 
 /// Texts by placeholder name.
 using TemplateParts = std::map<std::string, std::string, std::less<>>;
@@ -30,6 +35,12 @@ struct ColumnHead {
 /// @param rows HTML of the table body
 [[nodiscard]] std::string html_table(const std::string& id, const std::string& caption,
                                      const std::vector<ColumnHead>& heads, const std::string& rows);
+
+/// Row heading with the name of a metric or module, and its description as a tooltip.
+[[nodiscard]] std::string metric_heading(const std::string& name);
+
+/// Collapsed list of metrics and modules with their descriptions; names without one are omitted.
+[[nodiscard]] std::string glossary_html(const std::set<std::string>& names);
 
 /// A script element with JSON, looked up by id.
 [[nodiscard]] std::string data_script(const std::string& id, const std::string& json);

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/model/metrics.h"
 #include "bench/profile/timeline.h"
 #include "reports/page/charts/flame_stacks.h"
 #include "reports/page/charts/run_series.h"
@@ -87,13 +88,14 @@ Json series_json(const RunSeries& series) {
 /// Times [ms] of all frames by module and variant.
 using ModuleTimes = std::map<std::pair<std::string, std::string>, std::vector<double>>;
 
-void add_times(ModuleTimes& times, const RunSeries& series, const std::string& label) {
+ModuleTimes with_times(ModuleTimes times, const RunSeries& series, const std::string& label) {
   for (const SeriesColumn& column : series.columns) {
     if (!column.name.starts_with(kModulePrefix)) continue;
     std::vector<double>& values = times[{column.name.substr(std::string_view(kModulePrefix).size()), label}];
     std::copy_if(column.values.begin(), column.values.end(), std::back_inserter(values),
                  [](double value) { return std::isfinite(value); });
   }
+  return times;
 }
 
 std::vector<PlotBox> boxes_of(const ModuleTimes& times) {
@@ -108,16 +110,12 @@ std::vector<PlotBox> boxes_of(const ModuleTimes& times) {
 struct Flame {
   StackTimes stacks;
   std::size_t frames = 0;
-};
 
-void add_run_stacks(std::map<std::string, Flame>& flames, const bench::Store& store,
-                    const bench::StoredRun& run, std::size_t frames) {
-  const std::string folded = store.attachment(run, "stacks");
-  if (folded.empty()) return;
-  Flame& flame = flames[clean_line(system_label(run.identity))];
-  add_stacks(flame.stacks, folded, "stacks of run " + run.key);
-  flame.frames += frames;
-}
+  void add(const StackTimes& run, std::size_t run_frames) {
+    for (const auto& [stack, ns] : run) stacks[stack] += ns;
+    frames += run_frames;
+  }
+};
 
 Json flames_json(std::map<std::string, Flame> flames) {
   Json json = Json::array();
@@ -147,6 +145,23 @@ Json segments_json(const std::vector<SegmentFigure>& figures) {
   return json;
 }
 
+/// The metric of sweep curves.
+Json headline_json() {
+  const bench::MetricDescriptor& metric = bench::headline_metric();
+  return {{"id", std::string(metric.id)},
+          {"label", std::string(metric.label)},
+          {"unit", std::string(metric.unit)}};
+}
+
+Json tooltips_json(std::span<const bench::StoredRun> runs) {
+  Json json = Json::object();
+  for (const bench::StoredRun& run : runs) {
+    for (const bench::Metric& metric : run.metrics)
+      json[clean_line(metric.name)] = bench::tooltip_of(metric.name);
+  }
+  return json;
+}
+
 }  // namespace
 
 PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> runs) {
@@ -162,8 +177,11 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
     entry["images"] = series.images.size();
     data.series.push_back(dump_replacing_invalid_utf8(series_json(series)));
     if (is_timing_source(runs, run)) {
-      add_times(times, series, system_label(run.identity));
-      add_run_stacks(flames, store, run, series.t_s.size());
+      times = with_times(std::move(times), series, system_label(run.identity));
+      if (const std::string folded = store.attachment(run, "stacks"); !folded.empty()) {
+        flames[clean_line(system_label(run.identity))].add(parse_stacks(folded, "stacks of run " + run.key),
+                                                           series.t_s.size());
+      }
     }
     if (entry["truth"].is_string() && !index["truths"].contains(entry["truth"].get<std::string>())) {
       index["truths"][entry["truth"].get<std::string>()] = truth_json(store.truth(run));
@@ -172,6 +190,8 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
       index["manifests"][run.manifest_hash] = Json::parse(store.manifest(run), nullptr, false);
     }
   }
+  index["headline"] = headline_json();
+  index["tooltips"] = tooltips_json(runs);
   index["flames"] = flames_json(flames);
   index["segments"] = segments_json(segment_figures(store, runs));
   data.index = dump_replacing_invalid_utf8(index);

@@ -13,7 +13,7 @@
 namespace stillpoint::report {
 
 struct PageData {
-  std::string index;                  ///< JSON: runs; truths and manifests by hash; flames; segments
+  std::string index;  ///< JSON: runs; truths and manifests by hash; flames; segments; tooltips of metrics
   std::vector<std::string> series;    ///< JSON of each run, in the order of the index
   std::vector<std::string> images;    ///< JSON of each run: annotated images by frame index
   std::vector<PlotBox> module_boxes;  ///< time per frame and module [ms], by variant

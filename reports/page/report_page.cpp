@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/page/report_page.h"
 
+#include <set>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/analysis/comparison.h"
+#include "bench/model/metrics.h"
+#include "reports/drawing/drawing.h"
 #include "reports/drawing/openloris_figure.h"
-#include "reports/drawing/svg_drawing.h"
 #include "reports/page/charts/heat_map.h"
 #include "reports/page/charts/openloris_runs.h"
-#include "reports/page/embedded_web.h"
 #include "reports/page/html_parts.h"
 #include "reports/page/page_data.h"
 #include "reports/page/summary.h"
@@ -27,7 +29,6 @@ constexpr const char* kLicenses[] = {"vendor/LICENSE.uPlot", "vendor/LICENSE.d3-
 constexpr const char* kScripts[] = {"unpack.js",    "charts.js",     "curves.js",   "paths.js",
                                     "inspector.js", "histograms.js", "explorer.js", "flames.js",
                                     "downloads.js", "page.js"};
-constexpr const char* kHeatMetrics[] = {"ate_rmse_m", "rpe_trans_rmse_m_per_s", "rpe_rot_rmse_deg_per_s"};
 
 /// Runs of the latest other build, the baseline of the change summary; empty without one.
 std::vector<bench::StoredRun> previous_runs(const ReportSubject& subject) {
@@ -72,8 +73,21 @@ std::string tables_html(const std::vector<ReportTable>& tables, bool published) 
 std::string heat_html(const ReportSubject& subject) {
   const std::string base = base_variant(subject.runs);
   std::string text;
-  for (const char* metric : kHeatMetrics) text += heat_map_html(subject.runs, base, metric);
+  for (const bench::MetricDescriptor* metric : bench::metrics_of(bench::MetricSource::kTrajectory)) {
+    const bool is_error = metric->gate && metric->direction == bench::MetricDirection::kSmallerIsBetter;
+    if (is_error) text += heat_map_html(subject.runs, base, *metric);
+  }
   return text.empty() ? "<p class=\"none\">At least two variants are required for a comparison.</p>" : text;
+}
+
+/// Explains every metric and module of the runs.
+std::string runs_glossary(const ReportSubject& subject) {
+  std::set<std::string> names;
+  for (const bench::StoredRun& run : subject.runs) {
+    for (const bench::Metric& metric : run.metrics) names.insert(metric.name);
+    for (const bench::ModuleCost& cost : run.costs) names.insert(cost.module);
+  }
+  return glossary_html(names);
 }
 
 std::string plans_html(const bench::Store& store, const ReportSubject& subject) {
@@ -145,6 +159,7 @@ std::string report_html(const bench::Store& store, const ReportSubject& subject)
        {"styles", std::string(web_file("vendor/uPlot.min.css")) + std::string(web_file("page.css"))},
        {"summary", summary_html(subject)},
        {"results", tables_html(tables, false)},
+       {"glossary", runs_glossary(subject)},
        {"heat", heat_html(subject)},
        {"published", tables_html(tables, true)},
        {"openloris", openloris_html(store, subject)},

@@ -45,14 +45,15 @@ std::string newest_build(const std::vector<bench::StoredRun>& runs) {
   return newest == first_run.end() ? "" : newest->first;
 }
 
-/// Moves runs of older Stillpoint builds to `other_runs`; runs of other systems stay.
-void separate_older_builds(ReportSubject& subject) {
+/// The subject with runs of older Stillpoint builds moved to `other_runs`; runs of other systems stay.
+ReportSubject with_newest_build(ReportSubject subject) {
   const std::string newest = newest_build(subject.runs);
   const auto is_older = [&](const bench::StoredRun& run) {
     return run.identity.system == kOwnSystem && run.identity.build != newest;
   };
   std::copy_if(subject.runs.begin(), subject.runs.end(), std::back_inserter(subject.other_runs), is_older);
   std::erase_if(subject.runs, is_older);
+  return subject;
 }
 
 std::vector<ReportTable> paper_tables(const ReportSubject& subject) {
@@ -92,7 +93,7 @@ ReportSubject report_subject(const bench::Store& store, const std::string& plan)
   if (subject.runs.empty())
     throw InputError(store.file().string(),
                      "contains no finished runs; create some with `stillpoint bench PLAN --store FILE`");
-  separate_older_builds(subject);
+  subject = with_newest_build(std::move(subject));
   subject.paper = paper_tables(subject);
   const NameChanges changes = disambiguate_names(subject.plans, subject.runs);
   subject.runs = renamed(std::move(subject.runs), changes);

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bench/model/metrics.h"
 #include "reports/tables/run_cells.h"
 
 namespace stillpoint::report {
 namespace {
 
 constexpr std::size_t kMaxListed = 5;
-constexpr const char* kMetric = "ate_rmse_m";
 
 std::string counted(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
@@ -36,7 +36,7 @@ std::string best_on(std::span<const bench::StoredRun> runs, const std::vector<st
   double smallest = 0.0;
   std::size_t candidates = 0;
   for (const std::string& label : labels) {
-    const TableCell cell = metric_cell(runs_of(runs, label, sequence), kMetric);
+    const TableCell cell = metric_cell(runs_of(runs, label, sequence), bench::headline_metric().id);
     if (!cell.number) continue;
     if (candidates++ == 0 || *cell.number < smallest) {
       best = label;
@@ -91,8 +91,8 @@ std::string best_sentence(std::span<const bench::StoredRun> runs) {
     if (wins.contains(label) && wins.at(label) == most) winners.push_back(label);
   }
   const char* verb = winners.size() == 1 ? "has" : "each have";
-  return fmt::format("{} {} the smallest ATE on {} of {} sequences.", fmt::join(winners, ", "), verb, most,
-                     compared);
+  return fmt::format("{} {} the smallest {} on {} of {} sequences.", fmt::join(winners, ", "), verb,
+                     bench::headline_metric().label, most, compared);
 }
 
 std::vector<std::string> change_sentences(const std::string& base, const bench::Comparison& comparison) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 
+#include "bench/model/metrics.h"
 #include "bench/systems/published_table.h"
+#include "core/base/module_timings.h"
 #include "reports/tables/run_cells.h"
 
 namespace stillpoint::report {
@@ -18,8 +20,7 @@ struct PaperSystem {
 };
 
 struct PaperMetric {
-  const char* name;
-  const char* unit;
+  const bench::MetricDescriptor* metric;
   bench::PublishedTable published;
 };
 using PaperMetrics = std::array<PaperMetric, 3>;
@@ -81,15 +82,15 @@ std::vector<TableRow> sequence_rows(std::span<const bench::StoredRun> runs, cons
     const auto own = runs_of(runs, system.variant, sequence);
     for (std::size_t i = 0; i < metrics.size(); ++i) {
       rows[0].cells.push_back(published_cell(metrics, i, system, sequence));
-      rows[1].cells.push_back(metric_cell(own, metrics[i].published.metric));
+      rows[1].cells.push_back(metric_cell(own, metrics[i].metric->id));
       rows[2].cells.push_back(difference_cell(rows[1].cells.back(), rows[0].cells.back()));
     }
   }
   return rows;
 }
 
-/// Best of each metric among the systems of a row.
-void mark_best_systems(TableRow& row) {
+/// The row with the best system of each metric marked.
+TableRow with_best_systems(TableRow row) {
   constexpr std::size_t kMetrics = std::tuple_size_v<PaperMetrics>;
   for (std::size_t metric = 0; metric < kMetrics; ++metric) {
     std::vector<TableCell*> cells;
@@ -98,6 +99,7 @@ void mark_best_systems(TableRow& row) {
                                        [](const TableCell* cell) { return cell->number.has_value(); });
     if (numbers > 1) mark_best(cells, false);
   }
+  return row;
 }
 
 ReportTable accuracy_table(ReportTable table, std::span<const bench::StoredRun> runs,
@@ -105,13 +107,15 @@ ReportTable accuracy_table(ReportTable table, std::span<const bench::StoredRun> 
   table.row_heading = "sequence";
   for (const PaperSystem& system : systems) {
     for (const PaperMetric& metric : metrics)
-      table.columns.push_back(
-          {.group = system.heading, .name = metric.name, .unit = metric.unit, .decimals = 4});
+      table.columns.push_back({.group = system.heading,
+                               .name = std::string(metric.metric->label),
+                               .unit = std::string(metric.metric->unit),
+                               .decimals = 4,
+                               .tooltip = bench::tooltip(*metric.metric)});
   }
   for (const char* sequence : kSequences) {
     for (TableRow& row : sequence_rows(runs, sequence, metrics, systems)) {
-      if (row.source != "difference") mark_best_systems(row);
-      table.rows.push_back(std::move(row));
+      table.rows.push_back(row.source == "difference" ? std::move(row) : with_best_systems(std::move(row)));
     }
   }
   table.notes.emplace_back("Bold: best of a row. Ours: median over runs. Difference: ours minus published.");
@@ -122,9 +126,11 @@ ReportTable accuracy_table(ReportTable table, std::span<const bench::StoredRun> 
 }
 
 PaperMetrics metrics_of(const std::string& prefix) {
-  return {{{"ATE", "m", bench::load_published(prefix + "_ate")},
-           {"T.RPE", "m/s", bench::load_published(prefix + "_rpe_trans")},
-           {"R.RPE", "deg/s", bench::load_published(prefix + "_rpe_rot")}}};
+  const auto metric_of = [&](const std::string& suffix) {
+    bench::PublishedTable published = bench::load_published(prefix + suffix);
+    return PaperMetric{bench::find_metric(published.metric), std::move(published)};
+  };
+  return {metric_of("_ate"), metric_of("_rpe_trans"), metric_of("_rpe_rot")};
 }
 
 ReportTable table1(std::span<const bench::StoredRun> runs) {
@@ -151,14 +157,18 @@ ReportTable table2(std::span<const bench::StoredRun> runs) {
 
 /// A column of Table III.
 struct PaperModule {
-  const char* module;
+  Module module;
   const char* heading;
+
+  [[nodiscard]] std::string name() const { return std::string(module_name(module)); }
 };
-constexpr PaperModule kModules[] = {
-    {"feature_tracking", "Feature Tracking"},     {"feature_detection", "Feature Detection"},
-    {"tracking_thread", "Tracking Thread*"},      {"dynamic_recognition", "Dynamic Feature Recognition"},
-    {"state_optimization", "State Optimization"}, {"optimization_thread", "Optimization Thread*"},
-    {"object_detection", "Object Detection*"}};
+constexpr PaperModule kModules[] = {{Module::kFeatureTracking, "Feature Tracking"},
+                                    {Module::kFeatureDetection, "Feature Detection"},
+                                    {Module::kTrackingThread, "Tracking Thread*"},
+                                    {Module::kDynamicRecognition, "Dynamic Feature Recognition"},
+                                    {Module::kStateOptimization, "State Optimization"},
+                                    {Module::kOptimizationThread, "Optimization Thread*"},
+                                    {Module::kObjectDetection, "Object Detection*"}};
 
 ReportTable table3(std::span<const bench::StoredRun> runs) {
   ReportTable table{
@@ -166,12 +176,16 @@ ReportTable table3(std::span<const bench::StoredRun> runs) {
       .title = "Table III: average computation time of each module and thread on OpenLORIS market",
       .row_heading = "method"};
   for (const PaperModule& module : kModules)
-    table.columns.push_back({.group = "", .name = module.heading, .unit = "ms", .decimals = 4});
+    table.columns.push_back({.group = "",
+                             .name = module.heading,
+                             .unit = "ms",
+                             .decimals = 4,
+                             .tooltip = bench::tooltip_of(module.name())});
   for (const bench::PublishedRow& published : bench::load_published("runtime_market").rows) {
     TableRow& row = table.rows.emplace_back(TableRow{published.system, "published", {}});
     for (const PaperModule& module : kModules) {
       TableCell& cell = row.cells.emplace_back();
-      const auto found = published.values.find(module.module);
+      const auto found = published.values.find(module.name());
       if (found == published.values.end()) continue;
       cell.number = found->second;
       cell.state = CellState::kOk;
@@ -180,7 +194,7 @@ ReportTable table3(std::span<const bench::StoredRun> runs) {
   for (const std::string& label : distinct(runs, system_label)) {
     TableRow& row = table.rows.emplace_back(TableRow{label, "ours", {}});
     for (const PaperModule& module : kModules)
-      row.cells.push_back(cost_cell(runs_of(runs, label, ""), module.module));
+      row.cells.push_back(cost_cell(runs_of(runs, label, ""), module.name()));
   }
   table.notes = {
       "* separate thread, averaged per frame; modules are averaged per call.",

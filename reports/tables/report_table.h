@@ -16,6 +16,7 @@ struct TableColumn {
   std::string name;
   std::string unit;
   int decimals = 4;
+  std::string tooltip;  ///< what the column means; may be empty
 };
 
 enum class CellState {
@@ -49,6 +50,7 @@ struct TableRow {
 struct ReportTable {
   std::string name;  ///< base name of its files, e.g. "table2"
   std::string title;
+  std::string description;  ///< what its numbers mean; may be empty
   std::string row_heading;
   std::vector<TableColumn> columns;
   std::vector<TableRow> rows;  ///< each with one cell per column

@@ -3,35 +3,15 @@
 
 #include <algorithm>
 
+#include "bench/model/metrics.h"
 #include "reports/tables/run_cells.h"
 
 namespace stillpoint::report {
 namespace {
 
-/// Display properties of a metric.
-struct ShownMetric {
-  const char* name;
-  const char* title;
-  const char* unit;
-  int decimals;
-  enum class Best { kSmallest, kLargest, kNone } best;
-};
-constexpr ShownMetric kShown[] = {
-    {"ate_rmse_m", "Absolute trajectory error (ATE), RMSE", "m", 4, ShownMetric::Best::kSmallest},
-    {"rpe_trans_rmse_m_per_s", "Translational relative pose error (RPE) over 1 s, RMSE", "m/s", 4,
-     ShownMetric::Best::kSmallest},
-    {"rpe_rot_rmse_deg_per_s", "Rotational relative pose error (RPE) over 1 s, RMSE", "deg/s", 4,
-     ShownMetric::Best::kSmallest},
-    {"correct_rate", "Correct rate", "", 4, ShownMetric::Best::kLargest},
-    {"coverage", "Coverage: fraction of the frames with a pose", "", 4, ShownMetric::Best::kLargest},
-    {"first_pose_s", "Time until the first pose", "s", 3, ShownMetric::Best::kSmallest},
-    {"resets", "Estimator resets", "", 0, ShownMetric::Best::kNone},
-    {"process_cpu_s", "CPU time per run", "s", 2, ShownMetric::Best::kNone},
-    {"peak_memory_mb", "Peak memory per run", "MB", 1, ShownMetric::Best::kNone}};
-
 bool is_outside_sweeps(const bench::StoredRun& run) { return run.identity.axis.empty(); }
 
-bool has_metric(std::span<const bench::StoredRun> runs, const std::string& name) {
+bool has_metric(std::span<const bench::StoredRun> runs, std::string_view name) {
   return std::any_of(runs.begin(), runs.end(), [&](const bench::StoredRun& run) {
     return is_outside_sweeps(run) && bench::metric_value(run, name).has_value();
   });
@@ -44,32 +24,41 @@ std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
   return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
 }
 
-/// Marks the best number of each column.
-void mark_best_in_columns(ReportTable& table, bool larger_is_better) {
+/// The table with the best number of each column marked.
+ReportTable with_best_in_columns(ReportTable table, bool larger_is_better) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     std::vector<TableCell*> cells;
     for (TableRow& row : table.rows) cells.push_back(&row.cells[i]);
     mark_best(cells, larger_is_better);
   }
+  return table;
 }
 
-ReportTable metric_table(std::span<const bench::StoredRun> runs, const ShownMetric& metric) {
-  ReportTable table{.name = metric.name, .title = metric.title, .row_heading = "variant"};
+ReportTable metric_table(std::span<const bench::StoredRun> runs, const bench::MetricDescriptor& metric) {
+  ReportTable table{.name = std::string(metric.id),
+                    .title = std::string(metric.title),
+                    .description = bench::tooltip(metric),
+                    .row_heading = "variant"};
   const std::vector<std::string> sequences = sequences_of(runs);
   for (const std::string& sequence : sequences) {
-    table.columns.push_back(
-        {.group = "", .name = sequence, .unit = metric.unit, .decimals = metric.decimals});
+    table.columns.push_back({.group = "",
+                             .name = sequence,
+                             .unit = std::string(metric.unit),
+                             .decimals = metric.decimals,
+                             .tooltip = table.description});
   }
   for (const std::string& label : labels_of(runs)) {
     TableRow row{.label = label, .source = "", .cells = {}};
     for (const std::string& sequence : sequences)
-      row.cells.push_back(metric_cell(runs_of(runs, label, sequence), metric.name));
+      row.cells.push_back(metric_cell(runs_of(runs, label, sequence), table.name));
     table.rows.push_back(std::move(row));
   }
-  if (metric.best != ShownMetric::Best::kNone)
-    mark_best_in_columns(table, metric.best == ShownMetric::Best::kLargest);
   table.notes = {"Medians over the successful runs; bold: best of a column."};
-  return table;
+  // Costs depend on the machine and on what a system computes: no system is best.
+  const bool has_best = metric.source == bench::MetricSource::kTrajectory;
+  return has_best ? with_best_in_columns(std::move(table),
+                                         metric.direction == bench::MetricDirection::kLargerIsBetter)
+                  : table;
 }
 
 std::vector<std::string> modules_of(std::span<const bench::StoredRun> runs) {
@@ -113,9 +102,10 @@ std::vector<ReportTable> metric_tables(std::span<const bench::StoredRun> runs) {
   std::vector<bench::StoredRun> shown(runs.begin(), runs.end());
   std::erase_if(shown, [](const bench::StoredRun& run) { return !is_outside_sweeps(run); });
   std::vector<ReportTable> tables;
-  for (const ShownMetric& metric : kShown) {
-    // The ATE table is kept even if every run failed, to show the failures.
-    if (&metric == &kShown[0] ? !shown.empty() : has_metric(shown, metric.name))
+  for (const bench::MetricDescriptor& metric : bench::all_metrics()) {
+    if (metric.title.empty()) continue;
+    // The first table is kept even if every run failed, to show the failures.
+    if (&metric == &bench::headline_metric() ? !shown.empty() : has_metric(shown, metric.id))
       tables.push_back(metric_table(shown, metric));
   }
   return tables;
@@ -126,7 +116,8 @@ ReportTable cost_table(std::span<const bench::StoredRun> runs) {
       .name = "module_times", .title = "Mean time of modules and threads", .row_heading = "variant"};
   const std::vector<std::string> modules = modules_of(runs);
   for (const std::string& module : modules)
-    table.columns.push_back({.group = "", .name = module, .unit = "ms", .decimals = 3});
+    table.columns.push_back(
+        {.group = "", .name = module, .unit = "ms", .decimals = 3, .tooltip = bench::tooltip_of(module)});
   if (modules.empty()) return table;
   for (const std::string& label : labels_of(runs)) {
     TableRow row{.label = label, .source = "", .cells = {}};

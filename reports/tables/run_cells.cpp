@@ -60,7 +60,7 @@ TableCell run_cell(const std::vector<const bench::StoredRun*>& runs, const RunNu
   return cell;
 }
 
-TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, const std::string& metric) {
+TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::string_view metric) {
   TableCell cell =
       run_cell(runs, [&](const bench::StoredRun& run) { return bench::metric_value(run, metric); });
   for (const bench::StoredRun* run : runs) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/model/stored_run.h"
@@ -29,7 +30,7 @@ using RunNumber = std::function<std::optional<double>(const bench::StoredRun&)>;
 
 /// `run_cell` over a metric, with its protocol.
 [[nodiscard]] TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs,
-                                    const std::string& metric);
+                                    std::string_view metric);
 
 /// `run_cell` over the mean time of a module.
 [[nodiscard]] TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs,

@@ -64,7 +64,8 @@ struct HtmlTable {
       text += "</tr><tr>";
     }
     for (const TableColumn& column : table.columns) {
-      text += "<th scope=\"col\">" + escape_html(column_heading(column)) + "</th>";
+      text += "<th scope=\"col\"" + attribute("title", column.tooltip) + ">" +
+              escape_html(column_heading(column)) + "</th>";
     }
     return text + "</tr></thead>\n";
   }
@@ -92,8 +93,10 @@ struct HtmlTable {
 
 std::string table_html(const ReportTable& table) {
   const HtmlTable html{table, footnotes(table)};
+  const std::string caption =
+      table.description.empty() ? table.title : table.title + ". " + table.description;
   std::string text = fmt::format("<div class=\"table\"><table id=\"table-{}\"><caption>{}</caption>\n",
-                                 escape_html(table.name), escape_html(table.title));
+                                 escape_html(table.name), escape_html(caption));
   text += html.head() + "<tbody>\n";
   for (const TableRow& row : table.rows) text += html.row(row);
   return text + "</tbody></table></div>\n" + html.foot();

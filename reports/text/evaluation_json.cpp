@@ -3,10 +3,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/model/metrics.h"
+
 namespace stillpoint::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
+namespace metric_id = bench::metric_id;
+
+std::string id(std::string_view metric) { return std::string(metric); }
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
@@ -55,14 +60,14 @@ Json run_json(const eval::OpenlorisRun& run) {
   return {{"poses", score.poses},
           {"matches", score.matches},
           {"correct", score.correct},
-          {"correct_rate", score.correct_rate},
+          {id(metric_id::kCorrectRate), score.correct_rate},
           {"tracked_rate", score.tracked_rate},
-          {"ate_rmse_m", number(score.ate_rmse_m)},
+          {id(metric_id::kAte), number(score.ate_rmse_m)},
           {"aoe_rmse_deg", number(score.aoe_rmse_deg)},
           {"correct_ate_rmse_m", number(score.correct_ate_rmse_m)},
           {"correct_aoe_rmse_deg", number(score.correct_aoe_rmse_deg)},
-          {"rpe_trans_rmse_m_per_s", number(rmse_per(run.rpe_m, 1.0))},
-          {"rpe_rot_rmse_deg_per_s", number(rmse_per(run.rpe_deg, 1.0))},
+          {id(metric_id::kRpeTranslation), number(rmse_per(run.rpe_m, 1.0))},
+          {id(metric_id::kRpeRotation), number(rmse_per(run.rpe_deg, 1.0))},
           {"rpe_dropped", run.rpe_dropped},
           {"gt_duration_s", score.gt_duration_s},
           {"tracked_time_s", score.tracked_time_s},
@@ -79,8 +84,8 @@ Json scene_json(const eval::OpenlorisScene& scene) {
             {"tracked_rate", number(score.tracked_rate)},
             {"weighted_ate_rmse_m", number(score.weighted_ate_rmse_m)},
             {"pooled_ate_rmse_m", number(score.pooled_ate_rmse_m)},
-            {"rpe_trans_rmse_m_per_s", number(score.rpe.trans_rmse_m_per_s)},
-            {"rpe_rot_rmse_deg_per_s", number(score.rpe.rot_rmse_deg_per_s)},
+            {id(metric_id::kRpeTranslation), number(score.rpe.trans_rmse_m_per_s)},
+            {id(metric_id::kRpeRotation), number(score.rpe.rot_rmse_deg_per_s)},
             {"rpe_pairs", score.rpe.pairs},
             {"rpe_dropped", score.rpe.dropped}};
   for (const auto& [sequence, run] : scene.runs) json["runs"][std::to_string(sequence)] = run_json(run);
@@ -96,13 +101,13 @@ Json evaluation_json(const eval::Evaluation& evaluation) {
             {"gt_poses", evaluation.gt_poses},
             {"est_poses", evaluation.est_poses},
             {"pairs", evaluation.pairs},
-            {"coverage", number(evaluation.coverage)},
-            {"correct_rate", number(evaluation.correct_rate)},
-            {"first_pose_s", number(evaluation.first_pose_s)},
-            {"ate_rmse_m", number(rmse_per(evaluation.ate_m, 1.0))}};
+            {id(metric_id::kCoverage), number(evaluation.coverage)},
+            {id(metric_id::kCorrectRate), number(evaluation.correct_rate)},
+            {id(metric_id::kFirstPose), number(evaluation.first_pose_s)},
+            {id(metric_id::kAte), number(rmse_per(evaluation.ate_m, 1.0))}};
   if (evaluation.rpe_unit == eval::RpeUnit::kSeconds) {
-    json["rpe_trans_rmse_m_per_s"] = number(rmse_per(evaluation.rpe_m, evaluation.rpe_delta));
-    json["rpe_rot_rmse_deg_per_s"] = number(rmse_per(evaluation.rpe_deg, evaluation.rpe_delta));
+    json[id(metric_id::kRpeTranslation)] = number(rmse_per(evaluation.rpe_m, evaluation.rpe_delta));
+    json[id(metric_id::kRpeRotation)] = number(rmse_per(evaluation.rpe_deg, evaluation.rpe_delta));
   }
   json["ate_m"] = statistics_json(evaluation.ate_m);
   json["ate_deg"] = statistics_json(evaluation.ate_deg);
@@ -112,7 +117,7 @@ Json evaluation_json(const eval::Evaluation& evaluation) {
   }
   json["rpe_m"] = statistics_json(evaluation.rpe_m);
   json["rpe_deg"] = statistics_json(evaluation.rpe_deg);
-  json["drift_percent"] = number(evaluation.drift_percent);
+  json[id(metric_id::kDrift)] = number(evaluation.drift_percent);
   json["jitter_m"] = number(evaluation.jitter_m);
   json["alignment"] = alignment_json(evaluation.alignment);
   json["segments"] = segments_json(evaluation.segments);
@@ -126,12 +131,12 @@ Json comparison_json(const eval::Comparison& comparison) {
   for (const eval::ComparedRun& run : comparison.ranking) {
     json["ranking"].push_back({{"estimate", run.name},
                                {"failed", run.failed},
-                               {"coverage", run.coverage},
+                               {id(metric_id::kCoverage), run.coverage},
                                {"common_pairs", run.common_pairs},
-                               {"common_ate_rmse_m", number(run.common_ate_rmse_m)},
-                               {"common_rpe_trans_rmse_m_per_s", number(run.common_rpe_m)},
-                               {"common_rpe_rot_rmse_deg_per_s", number(run.common_rpe_deg)},
-                               {"own_ate_rmse_m", number(run.own_ate_rmse_m)}});
+                               {"common_" + id(metric_id::kAte), number(run.common_ate_rmse_m)},
+                               {"common_" + id(metric_id::kRpeTranslation), number(run.common_rpe_m)},
+                               {"common_" + id(metric_id::kRpeRotation), number(run.common_rpe_deg)},
+                               {"own_" + id(metric_id::kAte), number(run.own_ate_rmse_m)}});
   }
   return json;
 }

@@ -14,6 +14,10 @@ std::string cell(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "n/a";
 }
 
+std::string percent_cell(const std::optional<double>& ratio) {
+  return ratio ? fmt::format("{:.1f}", 100.0 * *ratio) : "n/a";
+}
+
 std::optional<double> rmse(const std::optional<eval::Statistics>& values) {
   if (!values) return std::nullopt;
   return values->rmse;
@@ -51,6 +55,22 @@ std::string comparison_table(const eval::Comparison& comparison, TableStyle styl
     rows.push_back({run.failed ? "failed" : std::to_string(rank), run.name, cell(run.coverage, 4),
                     cell(run.common_ate_rmse_m, 6), cell(run.common_rpe_m, 6), cell(run.common_rpe_deg, 6),
                     cell(run.own_ate_rmse_m, 6)});
+  }
+  return format_table(rows, style);
+}
+
+std::string openloris_table(const eval::OpenlorisBenchmark& benchmark, TableStyle style) {
+  TableRows rows{{"system", "scene", "runs", "figure CR [%]", "CR-T [%]", "weighted ATE [m]",
+                  "pooled ATE [m]", "T.RPE [m/s]", "R.RPE [deg/s]", "RPE pairs", "dropped"}};
+  for (const auto& [system, scenes] : benchmark.systems) {
+    for (const auto& [name, scene] : scenes) {
+      const eval::OpenlorisSceneScore& score = scene.score;
+      rows.push_back({system, name, fmt::format("{}/{}", score.sequences, score.expected_sequences),
+                      percent_cell(score.figure_correct_rate), percent_cell(score.tracked_rate),
+                      cell(score.weighted_ate_rmse_m, 4), cell(score.pooled_ate_rmse_m, 4),
+                      cell(score.rpe.trans_rmse_m_per_s, 4), cell(score.rpe.rot_rmse_deg_per_s, 3),
+                      std::to_string(score.rpe.pairs), std::to_string(score.rpe.dropped)});
+    }
   }
   return format_table(rows, style);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/compare/common_support.h"
+#include "eval/openloris/scene_score.h"
 #include "eval/protocols/protocol.h"
 #include "reports/tables/text_table.h"
 
@@ -23,6 +24,10 @@ struct EvaluatedRun {
 
 /// The ranking on the common support.
 [[nodiscard]] std::string comparison_table(const eval::Comparison& comparison, TableStyle style);
+
+/// OpenLORIS scores: one row per system and scene; every definition of correct rate and error has a column of
+/// its own.
+[[nodiscard]] std::string openloris_table(const eval::OpenlorisBenchmark& benchmark, TableStyle style);
 
 /// `run,protocol,t,translation_m,rotation_deg`, one row per matched pose.
 [[nodiscard]] std::string per_pose_csv(const std::vector<EvaluatedRun>& runs);

@@ -27,15 +27,16 @@
 
   // One chart per sweep axis, one line per variant and sequence. @return number of charts
   page.drawSweeps = function (place) {
+    const headline = page.index.headline;
     const swept = page.index.runs.filter((run) => run.sweep);
     const axes = [...new Set(swept.map((run) => run.sweep.axis))];
-    const error = (run) => { const found = run.metrics.find((metric) => metric[0] === "ate_rmse_m"); return found && run.outcome === "ok" ? found[1] : null; };
+    const error = (run) => { const found = run.metrics.find((metric) => metric[0] === headline.id); return found && run.outcome === "ok" ? found[1] : null; };
     return drawAll(place, axes.map((axis) => {
       const runs = swept.filter((run) => run.sweep.axis === axis);
       const values = [...new Set(runs.map((run) => run.sweep.value))].sort((a, b) => a - b);
       const names = [...new Set(runs.map((run) => run.label + ", " + run.sequence))];
       const data = names.map((name) => values.map((value) => median(runs.filter((run) => run.sweep.value === value && run.label + ", " + run.sequence === name).map(error))));
-      return { title: "ATE RMSE over " + axis, xLabel: axis, unit: "m", values, names, data };
+      return { title: headline.label + " over " + axis, xLabel: axis, unit: headline.unit, values, names, data };
     }));
   };
 

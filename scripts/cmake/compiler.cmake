@@ -24,10 +24,11 @@ else()
 endif()
 
 add_library(stillpoint_warnings INTERFACE)
-# Off: designated initializers leave the other fields at their defaults; and two warnings that g++ 12 raises for correct
+# Off: designated initializers leave the other fields at their defaults; and warnings that g++ 12 raises for correct
 # uses of std::string and Eigen at -O3.
 target_compile_options(stillpoint_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion
-                       -Wno-missing-field-initializers -Wno-array-bounds -Wno-restrict)
+                       -Wno-missing-field-initializers -Wno-array-bounds -Wno-restrict
+                       -Wno-stringop-overflow -Wno-stringop-overread)
 # Warnings are errors except under sanitizers, whose instrumentation makes g++ 12 see flows that do not exist.
 if(STILLPOINT_SANITIZE)
   target_compile_options(stillpoint_warnings INTERFACE -Wno-maybe-uninitialized)

@@ -51,5 +51,6 @@ function(stillpoint_install_package)
   write_basic_package_version_file(${generated}/stillpointConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${generated}/stillpointConfig.cmake ${generated}/stillpointConfigVersion.cmake
           DESTINATION ${stillpoint_package_folder} COMPONENT library)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/stillpoint COMPONENT library)
   install(TARGETS stillpoint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endfunction()

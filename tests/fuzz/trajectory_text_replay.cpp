@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "eval/io/euroc_file.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
+#include "eval/io/trajectory_file.h"
 #include "tests/support/smooth_path.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "eval/io/any_trajectory.h"
-#include "eval/io/euroc_file.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
 #include "eval/protocols/protocol.h"

@@ -6,7 +6,7 @@
 #include "eval/openloris/benchmark.h"
 #include "eval/openloris/robot_frames.h"
 #include "eval/openloris/sequence_score.h"
-#include "eval/trajectory/frames.h"
+#include "eval/trajectory/alignment.h"
 #include "tests/golden/golden_file.h"
 #include "tests/support/test_data.h"
 

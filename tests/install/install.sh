@@ -14,7 +14,8 @@ if grep -rnE '#include "(core|eval|datasets|bench)/' "$prefix/include" "$prefix/
   echo "the installed files above include paths of the source tree"
   exit 1
 fi
-if grep -rnF -e '-march' -e '-Werror' -e "$PWD" "$prefix/lib/cmake"; then
-  echo "the package config exports compiler flags or paths of the build"
+sources="$(cd "$(dirname "$0")/../.." && pwd)"
+if grep -rnF -e '-march' -e '-Werror' -e "$sources" "$prefix/lib/cmake"; then
+  echo "the package config above exports compiler flags or paths of this machine"
   exit 1
 fi

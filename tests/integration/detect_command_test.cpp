@@ -33,7 +33,7 @@ TEST(DetectCommand, RecordsTheBoxesOfEachFrame) {
   const ProgramResult result = run_program(detect_arguments(folder));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("5 boxes in 5 frames"), std::string::npos) << result.out;
-  datasets::FaultLog strict;
+  FaultLog strict;
   const auto sets = datasets::read_detections(folder.path() / "detections.txt", strict);
   ASSERT_EQ(sets.size(), 5U);
   ASSERT_EQ(sets[4].detections.size(), 1U);

@@ -6,12 +6,11 @@
 
 namespace stillpoint {
 
-inline OdometryUpdate process_frame(Estimator& estimator, const TrackedFrame& frame) {
-  OdometryUpdate update;
-  estimator.add(frame, update);
-  static_cast<void>(estimator.refine(update));
-  estimator.finish(update);
-  return update;
+inline const OdometryUpdate& process_frame(Estimator& estimator, const TrackedFrame& frame) {
+  estimator.add(frame);
+  static_cast<void>(estimator.refine());
+  estimator.finish();
+  return estimator.update();
 }
 
 }  // namespace stillpoint

@@ -97,14 +97,21 @@ std::vector<Command> acceptance_commands() {
       {"--sequence", "Only this sequence [all]", &subject.sequence}};
   std::vector<Option> with_reason = subject_options;
   with_reason.push_back({"--reason", "Why the change is accepted", &subject.reason});
-  return {
-      store_subcommand("accept", "Mark a metric change as accepted, so that it is no open regression",
-                       "accept 11826db --metric state_optimization --reason \"exact solver\"", with_reason,
-                       arguments, accept),
-      store_subcommand("withdraw", "Withdraw an acceptance", "withdraw 11826db --metric state_optimization",
-                       subject_options, arguments, withdraw),
-      store_subcommand("accepted", "List all accepted changes, one per line", "accepted", {}, arguments,
-                       list)};
+  return {store_subcommand(
+              {.name = "accept",
+               .summary = "Mark a metric change as accepted, so that it is no open regression",
+               .example = "store accept 11826db --metric state_optimization --reason \"exact solver\"",
+               .options = with_reason},
+              arguments, accept),
+          store_subcommand({.name = "withdraw",
+                            .summary = "Withdraw an acceptance",
+                            .example = "store withdraw 11826db --metric state_optimization",
+                            .options = subject_options},
+                           arguments, withdraw),
+          store_subcommand({.name = "accepted",
+                            .summary = "List all accepted changes, one per line",
+                            .example = "store accepted"},
+                           arguments, list)};
 }
 
 }  // namespace stillpoint::bench

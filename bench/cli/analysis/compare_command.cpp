@@ -140,8 +140,7 @@ Command compare_command() {
            {"--pairs", "Number of base-head pairs, executed in the order base, head, head, base [10]",
             &arguments->pairs},
            {"--out", "Output folder of compare.md, compare.json and compare.xml (JUnit)", &arguments->out}},
-      .action = [arguments] { return compare(*arguments); },
-      .subcommands = {}};
+      .action = [arguments] { return compare(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

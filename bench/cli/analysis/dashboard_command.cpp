@@ -59,8 +59,7 @@ Command dashboard_command() {
           .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
                       {"--out", "Output folder of index.html, commits/ and the list of regressions",
                        &arguments->out}},
-          .action = [arguments] { return dashboard(*arguments); },
-          .subcommands = {}};
+          .action = [arguments] { return dashboard(*arguments); }};
 }
 
 Command regressions_command() {
@@ -70,8 +69,7 @@ Command regressions_command() {
           .example = "regressions build/bench/store.sqlite --format json",
           .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
                       {"--format", "Output format: markdown or json [markdown]", &arguments->format}},
-          .action = [arguments] { return regressions(*arguments); },
-          .subcommands = {}};
+          .action = [arguments] { return regressions(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -10,14 +10,14 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
-#include "bench/record/score_text.h"
+#include "bench/cli/enum_option.h"
+#include "bench/record/result_values.h"
 #include "core/base/error.h"
 #include "eval/compare/conventions.h"
 #include "eval/compare/time_offset.h"
 #include "eval/io/any_trajectory.h"
 #include "eval/io/text_reader.h"
-#include "reports/drawing/raster_drawing.h"
-#include "reports/drawing/svg_drawing.h"
+#include "reports/drawing/drawing.h"
 #include "reports/drawing/trajectory_plot.h"
 #include "reports/text/evaluation_json.h"
 #include "reports/text/evaluation_table.h"
@@ -49,16 +49,6 @@ struct EvalArguments {
   std::string per_pose;
 };
 
-template <class Enum>
-Enum enum_of(const std::string& option, const std::string& value) {
-  std::string known;
-  for (const auto& [candidate, name] : enum_names(Enum{})) {
-    if (name == value) return candidate;
-    known += (known.empty() ? "" : ", ") + std::string(name);
-  }
-  throw InputError(option, "unknown value \"" + value + "\"; expected one of: " + known);
-}
-
 eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   if (!(arguments.rpe_delta > 0.0)) throw InputError("--rpe-delta", "must be above 0");
   eval::ProtocolOptions options;
@@ -73,8 +63,10 @@ eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
 }
 
 Trajectory load(const EvalArguments& arguments, const std::string& path) {
-  eval::LoadedTrajectory loaded = eval::read_trajectory(
-      {.path = path, .format = arguments.format, .times = arguments.times, .sequence = arguments.sequence});
+  eval::TrajectorySource source{.path = path, .times = arguments.times, .sequence = arguments.sequence};
+  if (!arguments.format.empty())
+    source.format = enum_of<eval::TrajectoryFormat>("--format", arguments.format);
+  eval::LoadedTrajectory loaded = eval::read_trajectory(source);
   if (loaded.skipped_rows > 0)
     spdlog::warn("{}: skipped {} rows that are not a pose", path, loaded.skipped_rows);
   return std::move(loaded.trajectory);
@@ -135,7 +127,8 @@ Json document(const EvalArguments& arguments, const Trajectory& gt,
   Json list = Json::array();
   for (const report::EvaluatedRun& run : runs) {
     const eval::ScoreOptions options{.offset_s = arguments.offset_s, .expected_times = {}};
-    Json json = score_members(eval::score(gt, run.est, options));
+    const eval::Score score = eval::score(gt, run.est, options);
+    Json json = metric_members({.scored = ScoredTrajectory{.gt = gt, .est = run.est, .score = score}});
     json["estimate"] = run.name;
     json["warnings"] = warnings_about(gt, run);
     for (const eval::Evaluation& evaluation : run.evaluations)
@@ -216,7 +209,7 @@ std::vector<Option> options_of(EvalArguments& a) {
        "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
        "repeated",
        &a.protocols, "--recipe"},
-      {"--align", "Override the alignment of the protocol: none, first_pose, yaw, se3 or sim3", &a.alignment},
+      {"--align", "Override the alignment of the protocol: " + enum_list<eval::Alignment>(), &a.alignment},
       {"--align-first", "Align with the first N matches only", &a.align_first},
       {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta},
       {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
@@ -224,7 +217,7 @@ std::vector<Option> options_of(EvalArguments& a) {
       {"--find-offset", "Estimate the time offset and print it, without applying it", &a.find_offset},
       {"--max-difference", "Override the maximum time difference of matched poses of the protocol [s]",
        &a.max_difference_s},
-      {"--format", "Trajectory format: tum, euroc, kitti, openloris or 7scenes [detected]", &a.format},
+      {"--format", "Trajectory format: " + enum_list<eval::TrajectoryFormat>() + " [detected]", &a.format},
       {"--times", "File of time stamps of a KITTI trajectory", &a.times},
       {"--seq", "Sequence number in an OpenLORIS file", &a.sequence},
       {"--explain", "Print a description of each protocol", &a.explain},

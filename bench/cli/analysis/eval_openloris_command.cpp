@@ -11,11 +11,10 @@
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 #include "eval/openloris/benchmark.h"
+#include "reports/drawing/drawing.h"
 #include "reports/drawing/openloris_figure.h"
-#include "reports/drawing/raster_drawing.h"
-#include "reports/drawing/svg_drawing.h"
 #include "reports/text/evaluation_json.h"
-#include "reports/text/openloris_table.h"
+#include "reports/text/evaluation_table.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -78,8 +77,7 @@ Command eval_openloris_command() {
                   {"--json", "Print JSON with full precision", &a.json},
                   {"--csv", "Print CSV", &a.csv},
                   {"--markdown", "Print Markdown", &a.markdown}},
-      .action = [arguments] { return evaluate_folder(*arguments); },
-      .subcommands = {}};
+      .action = [arguments] { return evaluate_folder(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -52,8 +52,7 @@ Command report_command() {
           .options = {{"STORE", "Store created by `stillpoint bench`", &arguments->store},
                       {"--out", "Output folder of index.html and tables/", &arguments->out},
                       {"--plan", "Only the runs of this plan [all plans]", &arguments->plan}},
-          .action = [arguments] { return write_report(*arguments); },
-          .subcommands = {}};
+          .action = [arguments] { return write_report(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -43,8 +43,7 @@ Command serve_command() {
                        "IPv4 address to listen on; addresses other than loopback give other machines access "
                        "[127.0.0.1]",
                        &arguments->server.address}},
-          .action = [arguments] { return serve(*arguments); },
-          .subcommands = {}};
+          .action = [arguments] { return serve(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

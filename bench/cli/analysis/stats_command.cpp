@@ -7,6 +7,7 @@
 #include "bench/analysis/run_statistics.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/model/metrics.h"
 #include "core/base/error.h"
 #include "reports/tables/text_table.h"
 
@@ -16,7 +17,7 @@ namespace {
 struct StatsArguments {
   std::string store = "build/bench/store.sqlite";
   std::string plan;
-  std::string metric = "ate_rmse_m";
+  std::string metric{headline_metric().id};
   std::string base = "stillpoint";
   bool csv = false;
 };
@@ -127,53 +128,49 @@ int sweep(const StatsArguments& arguments) {
   return kExitOk;
 }
 
-std::vector<Option> options_of(StatsArguments& arguments, bool metric, bool base) {
-  std::vector<Option> options = {{"--store", "Database of runs [build/bench/store.sqlite]", &arguments.store},
-                                 {"--plan", "Only the runs of this plan", &arguments.plan},
-                                 {"--csv", "CSV instead of Markdown", &arguments.csv}};
-  if (metric) options.push_back({"--metric", "Metric to evaluate [ate_rmse_m]", &arguments.metric});
-  if (base)
-    options.push_back({"--base", "Variant that the others are compared with [stillpoint]", &arguments.base});
-  return options;
+/// Adds the action and the options that all subcommands have.
+Command subcommand(Command command, const std::shared_ptr<StatsArguments>& arguments,
+                   int (*action)(const StatsArguments&)) {
+  command.options.insert(command.options.begin(),
+                         {{"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
+                          {"--plan", "Only the runs of this plan", &arguments->plan},
+                          {"--csv", "CSV instead of Markdown", &arguments->csv}});
+  command.action = [arguments, action] { return action(*arguments); };
+  return command;
 }
 
 }  // namespace
 
 Command stats_command() {
   const auto arguments = std::make_shared<StatsArguments>();
-  const auto subcommand = [&](const std::string& name, const std::string& summary_text,
-                              const std::string& example, std::vector<Option> options,
-                              int (*action)(const StatsArguments&)) {
-    return Command{.name = name,
-                   .summary = summary_text,
-                   .example = example,
-                   .options = std::move(options),
-                   .action = [arguments, action] { return action(*arguments); },
-                   .subcommands = {}};
-  };
-  return {
-      .name = "stats",
-      .summary = "Statistics over the runs of a store",
-      .example = "stats ablation --plan table2_ablation_synthetic --base dynamic_vins",
-      .options = {},
-      .action = {},
-      .subcommands = {
-          subcommand("summary",
-                     "Median with confidence interval, quartiles, worst value and failures of each variant "
-                     "on each sequence",
-                     "stats summary --plan quick --metric ate_rmse_m", options_of(*arguments, true, false),
-                     summary),
-          subcommand("ablation",
-                     "Paired differences from a base variant, with confidence interval and effect size",
-                     "stats ablation --plan quick --base stillpoint", options_of(*arguments, true, true),
-                     show_ablation),
-          subcommand(
-              "repeat",
-              "Check that repetitions are bit-equal; if not, print the first frame and module that differ",
-              "stats repeat --store build/bench/store.sqlite", options_of(*arguments, false, false), repeat),
-          subcommand("sweep", "Degradation curves: one row per value, sequence and variant",
-                     "stats sweep --plan sweep_synthetic --csv", options_of(*arguments, true, false),
-                     sweep)}};
+  const Option metric{"--metric", "Metric to evaluate [" + arguments->metric + "]", &arguments->metric};
+  const Option base{"--base", "Variant that the others are compared with [stillpoint]", &arguments->base};
+  return {.name = "stats",
+          .summary = "Statistics over the runs of a store",
+          .example = "stats ablation --plan table2_ablation_synthetic --base dynamic_vins",
+          .subcommands = {
+              subcommand({.name = "summary",
+                          .summary = "Median with confidence interval, quartiles, worst value and failures "
+                                     "of each variant on each sequence",
+                          .example = "stats summary --plan quick --metric " + arguments->metric,
+                          .options = {metric}},
+                         arguments, summary),
+              subcommand({.name = "ablation",
+                          .summary = "Paired differences from a base variant, with confidence interval and "
+                                     "effect size",
+                          .example = "stats ablation --plan quick --base stillpoint",
+                          .options = {metric, base}},
+                         arguments, show_ablation),
+              subcommand({.name = "repeat",
+                          .summary = "Check that repetitions are bit-equal; if not, print the first frame "
+                                     "and module that differ",
+                          .example = "stats repeat --store build/bench/store.sqlite"},
+                         arguments, repeat),
+              subcommand({.name = "sweep",
+                          .summary = "Degradation curves: one row per value, sequence and variant",
+                          .example = "stats sweep --plan sweep_synthetic --csv",
+                          .options = {metric}},
+                         arguments, sweep)}};
 }
 
 }  // namespace stillpoint::bench

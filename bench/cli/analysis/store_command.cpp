@@ -7,6 +7,7 @@
 #include "bench/cli/analysis/store_subcommand.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/model/metrics.h"
 #include "bench/record/output_folder.h"
 #include "bench/store/maintenance.h"
 #include "bench/store/store.h"
@@ -27,12 +28,12 @@ int list(const StoreArguments& arguments) {
   const Store store(arguments.store);
   for (const StoredRun& run : store.runs()) {
     const RunIdentity& identity = run.identity;
-    const std::optional<double> ate = metric_value(run, "ate_rmse_m");
+    const std::optional<double> headline = metric_value(run, headline_metric().id);
     std::cout << fmt::format(
         "{}  {}  {:<20} {:<24} seed {} repetition {}{}  {:<9} {}\n", run.key, identity.build.substr(0, 10),
         identity.sequence, identity.variant, identity.seed, identity.repetition,
         identity.axis.empty() ? "" : fmt::format(" {} = {}", identity.axis, identity.axis_value),
-        outcome_name(run.outcome), ate ? fmt::format("ATE {:.4f} m", *ate) : run.detail);
+        outcome_name(run.outcome), headline ? value_text(headline_metric(), *headline) : run.detail);
   }
   if (store.unfinished() > 0)
     std::cout << fmt::format("{} runs in progress or interrupted\n", store.unfinished());
@@ -126,41 +127,64 @@ int import_from(const StoreArguments& arguments) {
   return kExitOk;
 }
 
+/// Subcommands that inspect single runs.
+std::vector<Command> run_subcommands(const std::shared_ptr<StoreArguments>& arguments) {
+  const Option key{"KEY", "Key of the run or a prefix of it", &arguments->run};
+  return {
+      store_subcommand({.name = "list", .summary = "List all runs, one per line", .example = "store list"},
+                       arguments, list),
+      store_subcommand({.name = "show",
+                        .summary = "Print all data of a run",
+                        .example = "store show 8f18e31477d2f9b7",
+                        .options = {key}},
+                       arguments, show),
+      store_subcommand({.name = "extract",
+                        .summary = "Write trajectory, timings, result and manifest of a run as files",
+                        .example = "store extract 8f18e31477d2f9b7 /tmp/run",
+                        .options = {key, {"DIR", "Output folder", &arguments->file}}},
+                       arguments, extract)};
+}
+
+/// Subcommands that check, clean, merge and transfer whole stores.
+std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArguments>& arguments) {
+  const Option without_blobs{"--numbers",
+                             "Without trajectories and manifests; sufficient as a baseline for `compare`",
+                             &arguments->numbers};
+  return {
+      store_subcommand({.name = "verify",
+                        .summary = "Check the integrity of the database and its files; exit code 1 on errors",
+                        .example = "store verify"},
+                       arguments, verify),
+      store_subcommand(
+          {.name = "gc", .summary = "Remove files that are not referenced by any run", .example = "store gc"},
+          arguments, collect),
+      store_subcommand({.name = "merge",
+                        .summary = "Add the runs of another store",
+                        .example = "store merge other.sqlite --store all.sqlite",
+                        .options = {{"FROM", "The other store", &arguments->file}}},
+                       arguments, merge),
+      store_subcommand({.name = "export",
+                        .summary = "Write the store as one JSON file",
+                        .example = "store export runs.json",
+                        .options = {{"FILE", "Output file", &arguments->file}, without_blobs}},
+                       arguments, export_to),
+      store_subcommand({.name = "import",
+                        .summary = "Add the runs of an exported JSON file",
+                        .example = "store import runs.json",
+                        .options = {{"FILE", "Input file", &arguments->file}}},
+                       arguments, import_from)};
+}
+
 }  // namespace
 
 Command store_command() {
   const auto arguments = std::make_shared<StoreArguments>();
-  const auto subcommand = [&](const std::string& name, const std::string& summary, const std::string& example,
-                              std::vector<Option> options, int (*action)(const StoreArguments&)) {
-    return store_subcommand(name, summary, example, std::move(options), arguments, action);
-  };
-  std::vector<Command> subcommands = {
-      subcommand("list", "List all runs, one per line", "list", {}, list),
-      subcommand("show", "Print all data of a run", "show 8f18e31477d2f9b7",
-                 {{"KEY", "Key of the run or a prefix of it", &arguments->run}}, show),
-      subcommand("extract", "Write trajectory, timings, result and manifest of a run as files",
-                 "extract 8f18e31477d2f9b7 /tmp/run",
-                 {{"KEY", "Key of the run or a prefix of it", &arguments->run},
-                  {"DIR", "Output folder", &arguments->file}},
-                 extract),
-      subcommand("verify", "Check the integrity of the database and its files; exit code 1 on errors",
-                 "verify", {}, verify),
-      subcommand("gc", "Remove files that are not referenced by any run", "gc", {}, collect),
-      subcommand("merge", "Add the runs of another store", "merge other.sqlite --store all.sqlite",
-                 {{"FROM", "The other store", &arguments->file}}, merge),
-      subcommand("export", "Write the store as one JSON file", "export runs.json",
-                 {{"FILE", "Output file", &arguments->file},
-                  {"--numbers", "Without trajectories and manifests; sufficient as a baseline for `compare`",
-                   &arguments->numbers}},
-                 export_to),
-      subcommand("import", "Add the runs of an exported JSON file", "import runs.json",
-                 {{"FILE", "Input file", &arguments->file}}, import_from)};
+  std::vector<Command> subcommands = run_subcommands(arguments);
+  for (Command& command : maintenance_subcommands(arguments)) subcommands.push_back(std::move(command));
   for (Command& command : acceptance_commands()) subcommands.push_back(std::move(command));
   return {.name = "store",
           .summary = "Inspect, verify, merge, export and import stores of runs",
           .example = "store list --store build/bench/store.sqlite",
-          .options = {},
-          .action = {},
           .subcommands = std::move(subcommands)};
 }
 

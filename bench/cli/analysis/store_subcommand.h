@@ -3,29 +3,19 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "bench/cli/command.h"
+#include "bench/cli/command_line.h"
 
 namespace stillpoint::bench {
 
-/// @param example   without `store`
-/// @param options   without `--store`, which is added
+/// Adds the option `--store` and the action to a command.
 /// @param arguments target of the options; must have a member `store`
 template <class Arguments>
-[[nodiscard]] Command store_subcommand(const std::string& name, const std::string& summary,
-                                       const std::string& example, std::vector<Option> options,
-                                       const std::shared_ptr<Arguments>& arguments,
+[[nodiscard]] Command store_subcommand(Command command, const std::shared_ptr<Arguments>& arguments,
                                        int (*action)(const Arguments&)) {
-  options.push_back({"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store});
-  return Command{.name = name,
-                 .summary = summary,
-                 .example = "store " + example,
-                 .options = std::move(options),
-                 .action = [arguments, action] { return action(*arguments); },
-                 .subcommands = {}};
+  command.options.push_back({"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store});
+  command.action = [arguments, action] { return action(*arguments); };
+  return command;
 }
 
 }  // namespace stillpoint::bench

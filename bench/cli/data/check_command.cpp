@@ -40,10 +40,10 @@ Command check_command() {
           "unreadable",
       .example = "data check my_sequence",
       .options = {{"DIR", "Sequence folder", &arguments->folder},
-                  {"--format", "tum, openloris, euroc, 7scenes or folder [detected]", &arguments->format},
+                  {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
+                   &arguments->format},
                   {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig_file}},
-      .action = [arguments] { return check(*arguments); },
-      .subcommands = {}};
+      .action = [arguments] { return check(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -1,15 +1,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/plan/sequence_registry.h"
+#include "bench/record/sequence_checksum.h"
+#include "datasets/open_sequence.h"
 
 namespace stillpoint::bench {
+namespace {
+
+struct AddArguments {
+  std::string name;
+  std::string folder;
+};
+
+int add(const AddArguments& arguments) {
+  const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(arguments.folder);
+  const RegisteredSequence sequence{.name = arguments.name,
+                                    .folder = std::filesystem::canonical(arguments.folder),
+                                    .checksum = sequence_checksum(arguments.folder),
+                                    .format = stream->info().format};
+  register_sequence(registry_file(), sequence);
+  std::cout << fmt::format("registered {}: {} ({}, {} frames, checksum {})\n", sequence.name,
+                           sequence.folder.string(), sequence.format, stream->info().frame_times.size(),
+                           sequence.checksum);
+  return kExitOk;
+}
+
+int list() {
+  for (const RegisteredSequence& sequence : read_registry(registry_file())) {
+    std::cout << fmt::format("{:<24} {:<10} {}  {}{}\n", sequence.name, sequence.format, sequence.checksum,
+                             sequence.folder.string(),
+                             std::filesystem::is_directory(sequence.folder) ? "" : "  (missing)");
+  }
+  return kExitOk;
+}
+
+Command add_command() {
+  const auto arguments = std::make_shared<AddArguments>();
+  return {.name = "add",
+          .summary = "Register a recorded sequence under a name for plans; stores its current checksum",
+          .example = "data add cafe1 /data/openloris/cafe1-1",
+          .options = {{"NAME", "Name of the sequence in plans", &arguments->name},
+                      {"DIR", "Sequence folder", &arguments->folder}},
+          .action = [arguments] { return add(*arguments); }};
+}
+
+Command list_command() {
+  return {.name = "list", .summary = "List the registered sequences", .example = "data list", .action = list};
+}
+
+}  // namespace
 
 Command data_command() {
   return {.name = "data",
           .summary = "Create and inspect sequences",
           .example = "data synth walking_xyz --out build/walking_xyz",
-          .options = {},
-          .action = {},
-          .subcommands = {check_command(), synth_command(), data_add_command(), data_list_command()}};
+          .subcommands = {check_command(), synth_command(), add_command(), list_command()}};
 }
 
 }  // namespace stillpoint::bench

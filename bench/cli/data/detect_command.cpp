@@ -113,8 +113,7 @@ Command detect_command() {
                       {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
                       {"--format", "Sequence format [detected]", &arguments->format},
                       {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames}},
-          .action = [arguments] { return detect(*arguments); },
-          .subcommands = {}};
+          .action = [arguments] { return detect(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -6,6 +6,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/enum_option.h"
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
 #include "core/base/error.h"
@@ -40,12 +41,7 @@ void override_with(Value& value, Given given, double factor = 1.0) {
 
 synth::SynthRequest request_of(const SynthArguments& arguments) {
   synth::SynthRequest request = synth::preset_request(arguments.preset);
-  if (arguments.layout != "openloris" && arguments.layout != "tum") {
-    throw InputError("--layout",
-                     "unknown layout \"" + arguments.layout + "\"; expected one of: openloris, tum");
-  }
-  request.layout =
-      arguments.layout == "tum" ? synth::SequenceLayout::kTum : synth::SequenceLayout::kOpenLoris;
+  request.layout = enum_of<synth::SequenceLayout>("--layout", arguments.layout);
   request.labels = arguments.labels;
   request.trajectory_file = arguments.trajectory;
   request.imu_file = arguments.imu;
@@ -101,7 +97,7 @@ std::vector<Option> options_of(SynthArguments& arguments) {
       {"--people", "Number of walking people", &arguments.people},
       {"--seated", "Number of seated people", &arguments.seated},
       {"--unknown", "Number of moving carts and chairs without detections", &arguments.unknown},
-      {"--layout", "Output layout: openloris or tum", &arguments.layout},
+      {"--layout", "Output layout: " + enum_list<synth::SequenceLayout>(), &arguments.layout},
       {"--labels", "Also write instance masks", &arguments.labels},
       {"--trajectory", "Preset flight: IMU poses (TUM text)", &arguments.trajectory},
       {"--imu", "Preset flight: IMU samples (EuRoC CSV)", &arguments.imu},
@@ -127,8 +123,7 @@ Command synth_command() {
           .summary = "Render a sequence with exact ground truth",
           .example = "data synth walking_xyz --out build/walking_xyz --seed 1 --seconds 10 --people 2",
           .options = options_of(*arguments),
-          .action = [arguments] { return render(*arguments); },
-          .subcommands = {}};
+          .action = [arguments] { return render(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -35,7 +35,7 @@ struct BenchArguments {
 int exit_code(const std::vector<BenchRow>& rows) {
   if (interrupt_requested()) return kExitInterrupted;
   const bool all_ok = std::all_of(rows.begin(), rows.end(), [](const BenchRow& row) {
-    return row.status == "ok" || row.status == "skipped";
+    return !row.is_available || row.outcome == Outcome::kOk;
   });
   return all_ok ? kExitOk : kExitFindings;
 }
@@ -122,8 +122,7 @@ Command bench_command() {
                    &arguments->filters},
                   {"--dry-run", "List the runs and their state; execute none", &arguments->dry_run},
                   {"--retry", "Execute failed runs again", &arguments->retry}},
-      .action = [arguments] { return run_bench(*arguments); },
-      .subcommands = {}};
+      .action = [arguments] { return run_bench(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

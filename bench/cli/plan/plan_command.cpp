@@ -36,23 +36,17 @@ int show(const std::string& name) {
 
 Command plan_command() {
   const auto name = std::make_shared<std::string>();
-  return {.name = "plan",
-          .summary = "List plans and their runs",
-          .example = "plan show quick",
-          .options = {},
-          .action = {},
-          .subcommands = {{.name = "show",
-                           .summary = "List all runs of a plan with their keys",
-                           .example = "plan show quick",
-                           .options = {{"PLAN", "Plan: an embedded name or a TOML file", name.get()}},
-                           .action = [name] { return show(*name); },
-                           .subcommands = {}},
-                          {.name = "list",
-                           .summary = "List the embedded plans",
-                           .example = "plan list",
-                           .options = {},
-                           .action = list,
-                           .subcommands = {}}}};
+  return {
+      .name = "plan",
+      .summary = "List plans and their runs",
+      .example = "plan show quick",
+      .subcommands = {
+          {.name = "show",
+           .summary = "List all runs of a plan with their keys",
+           .example = "plan show quick",
+           .options = {{"PLAN", "Plan: an embedded name or a TOML file", name.get()}},
+           .action = [name] { return show(*name); }},
+          {.name = "list", .summary = "List the embedded plans", .example = "plan list", .action = list}}};
 }
 
 }  // namespace stillpoint::bench

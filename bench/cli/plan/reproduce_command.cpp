@@ -153,8 +153,7 @@ Command reproduce_command() {
                   {"--store", "Database of runs [build/bench/reproduce.sqlite]", &arguments->store},
                   {"--out", "Output folder of tables and the HTML report [build/reproduce]", &arguments->out},
                   {"--jobs", "Number of concurrent accuracy runs [number of processors]", &arguments->jobs}},
-      .action = [arguments] { return reproduce(*arguments); },
-      .subcommands = {}};
+      .action = [arguments] { return reproduce(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -38,25 +38,18 @@ Command config_command() {
       .options = {{"--config", "Base config: an embedded name or a TOML file", &request->base},
                   {"--variant", "Overlays joined by +", &request->variant},
                   {"--set", "Override a config key: key=value; may be repeated", &request->settings}},
-      .action = [request] { return show(*request); },
-      .subcommands = {}};
+      .action = [request] { return show(*request); }};
   Command list_configs{.name = "list",
                        .summary = "Print the names of the embedded configs and overlays",
                        .example = "config list",
-                       .options = {},
-                       .action = list,
-                       .subcommands = {}};
+                       .action = list};
   Command print_reference{.name = "reference",
                           .summary = "Print a reference of all keys (Markdown)",
                           .example = "config reference",
-                          .options = {},
-                          .action = reference,
-                          .subcommands = {}};
+                          .action = reference};
   return {.name = "config",
           .summary = "Show configs and their keys",
           .example = "config show",
-          .options = {},
-          .action = {},
           .subcommands = {std::move(show_config), std::move(list_configs), std::move(print_reference)}};
 }
 

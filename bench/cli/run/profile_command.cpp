@@ -207,8 +207,7 @@ Command profile_command() {
                    &arguments->tegrastats},
                   {"--instructions", "Count instructions with callgrind instead of measuring times",
                    &arguments->instructions}},
-      .action = [arguments] { return run_profile(*arguments); },
-      .subcommands = {}};
+      .action = [arguments] { return run_profile(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
@@ -11,6 +12,7 @@
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
 #include "bench/config/config_file.h"
+#include "bench/model/metrics.h"
 #include "bench/model/utc_time.h"
 #include "bench/record/label_dump.h"
 #include "bench/record/output_folder.h"
@@ -19,9 +21,10 @@
 #include "bench/run/heartbeat.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
+#include "datasets/open_sequence.h"
 #include "datasets/ping_pong_playback.h"
 #include "reports/drawing/cost_trend.h"
-#include "reports/drawing/svg_drawing.h"
+#include "reports/drawing/drawing.h"
 #include "reports/frames/run_video.h"
 #include "reports/frames/worst_frames.h"
 
@@ -52,7 +55,7 @@ struct RunArguments {
 };
 
 /// A run to execute; one for each --variant.
-struct PlannedRun {
+struct ConfiguredRun {
   std::string variant;
   RunSpec spec;
   fs::path folder;
@@ -60,10 +63,10 @@ struct PlannedRun {
 };
 
 /// Loads all configs before the first run starts, so that errors are reported early.
-std::vector<PlannedRun> plan_runs(const RunArguments& arguments) {
+std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   std::vector<std::string> variants = arguments.variants;
   if (variants.empty()) variants.emplace_back();
-  std::vector<PlannedRun> runs;
+  std::vector<ConfiguredRun> runs;
   for (const std::string& variant : variants) {
     runs.push_back({.variant = variant.empty() ? arguments.base : variant,
                     .spec = {.config = load_config({arguments.base, variant, arguments.settings}),
@@ -79,11 +82,11 @@ std::vector<PlannedRun> plan_runs(const RunArguments& arguments) {
 }
 
 /// Sets the output folder of each run: --out for a single run, else a subfolder. Checks that it is writable.
-std::vector<PlannedRun> with_folders(std::vector<PlannedRun> runs, const std::string& out,
-                                     const std::string& sequence) {
+std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const std::string& out,
+                                        const std::string& sequence) {
   const fs::path root = out.empty() ? fs::path("build/runs") / sequence : fs::path(out);
   const bool shared_root = out.empty() || runs.size() > 1;
-  for (PlannedRun& run : runs) {
+  for (ConfiguredRun& run : runs) {
     if (!run.video.empty() && runs.size() > 1) run.video /= folder_name(run.variant);
     run.folder = shared_root ? root / folder_name(run.variant) : root;
     require_writable(run.folder);
@@ -99,21 +102,22 @@ void log_update(const OdometryUpdate& update) {
 }
 
 /// The video requested by --video.
-std::optional<report::RunVideo> start_video(const datasets::SequenceInfo& info, const PlannedRun& planned) {
-  if (planned.video.empty()) return std::nullopt;
-  return std::optional<report::RunVideo>(std::in_place, planned.video,
-                                         report::annotation_style(planned.spec.config.frontend),
+std::optional<report::RunVideo> start_video(const datasets::SequenceInfo& info,
+                                            const ConfiguredRun& configured) {
+  if (configured.video.empty()) return std::nullopt;
+  return std::optional<report::RunVideo>(std::in_place, configured.video,
+                                         report::annotation_style(configured.spec.config.frontend),
                                          report::mean_rate_hz(info.frame_times));
 }
 
 /// The annotated frames requested by --images.
 std::optional<report::WorstFrames> start_worst_frames(const datasets::SequenceInfo& info,
                                                       const RunArguments& arguments,
-                                                      const PlannedRun& planned) {
+                                                      const ConfiguredRun& configured) {
   if (arguments.images == 0) return std::nullopt;
-  return std::optional<report::WorstFrames>(std::in_place, planned.folder / "images",
+  return std::optional<report::WorstFrames>(std::in_place, configured.folder / "images",
                                             static_cast<std::size_t>(arguments.images),
-                                            report::annotation_style(planned.spec.config.frontend), info);
+                                            report::annotation_style(configured.spec.config.frontend), info);
 }
 
 bool is_requested(const RunArguments& arguments, const std::string& dump) {
@@ -127,11 +131,11 @@ struct Executed {
 };
 
 Executed execute(const datasets::SensorStream& stream, const RunArguments& arguments,
-                 const PlannedRun& planned) {
+                 const ConfiguredRun& configured) {
   const std::size_t total = stream.info().frame_times.size();
   const std::optional<Heartbeat> heartbeat =
       arguments.heartbeat.empty() ? std::nullopt : std::make_optional<Heartbeat>(arguments.heartbeat);
-  ProgressLine progress(stream.info().name + " " + planned.variant, total, "frames");
+  ProgressLine progress(stream.info().name + " " + configured.variant, total, "frames");
   const auto on_update = [&](const OdometryUpdate& update) {
     log_update(update);
     if (heartbeat) heartbeat->beat(update.frame_id);
@@ -140,8 +144,8 @@ Executed execute(const datasets::SensorStream& stream, const RunArguments& argum
   LabelDump labels;
   RunControl control{.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested};
   const bool dump_labels = is_requested(arguments, "labels");
-  std::optional<report::RunVideo> video = start_video(stream.info(), planned);
-  std::optional<report::WorstFrames> worst_frames = start_worst_frames(stream.info(), arguments, planned);
+  std::optional<report::RunVideo> video = start_video(stream.info(), configured);
+  std::optional<report::WorstFrames> worst_frames = start_worst_frames(stream.info(), arguments, configured);
   if (dump_labels || video || worst_frames) {
     control.on_frame = [&](const FrameReport& report) {
       if (dump_labels) labels.add(report);
@@ -149,9 +153,10 @@ Executed execute(const datasets::SensorStream& stream, const RunArguments& argum
       if (worst_frames) worst_frames->add(report);
     };
   }
-  Executed run{.result = score_run(stream.info(), run_odometry(stream, planned.spec, control)), .dumps = {}};
-  run.result.variant = planned.variant;
-  run.result.mode = planned.spec.mode;
+  Executed run{.result = score_run(stream.info(), run_odometry(stream, configured.spec, control)),
+               .dumps = {}};
+  run.result.variant = configured.variant;
+  run.result.mode = configured.spec.mode;
   if (video) video->finish();
   if (dump_labels) run.dumps.push_back({"labels.csv", labels.text()});
   if (is_requested(arguments, "cost") && !interrupt_requested()) {
@@ -168,42 +173,43 @@ std::string id_of(const datasets::SequenceInfo& info, const RunArguments& argume
 }
 
 RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& arguments,
-                        const PlannedRun& planned) {
+                        const ConfiguredRun& configured) {
   return {.sequence = info.name,
           .sequence_format = info.format,
           .sequence_checksum = id_of(info, arguments),
           .base = arguments.base,
-          .variant = planned.variant,
-          .config = planned.spec.config,
-          .mode = planned.spec.mode,
+          .variant = configured.variant,
+          .config = configured.spec.config,
+          .mode = configured.spec.mode,
           .build = build_info(),
           .host = host_info(),
           .started = utc_now()};
 }
 
-std::string text_or_na(const std::optional<double>& value, const char* unit) {
-  return value ? fmt::format("{:.4f}{}", *value, unit) : "n/a";
+/// "ATE 0.0123 m, ..., first pose n/a".
+std::string score_line(const RunResult& result) {
+  const Measurements measurements = measurements_of(result);
+  std::vector<std::string> parts;
+  for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
+    const std::optional<double> value = metric->value(measurements);
+    parts.push_back(value ? value_text(*metric, *value) : fmt::format("{} n/a", metric->label));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 void print_result(const RunResult& result, const fs::path& folder) {
-  const eval::Score& score = result.score;
   for (const SkippedFrame& frame : result.run.summary.skipped) {
     spdlog::warn("frame {} skipped: {}", frame.index, frame.reason);
   }
   if (!result.failure.empty()) spdlog::warn("{}", result.failure);
-  std::cout << fmt::format(
-      "{} {}: {}, {} of {} frames, ATE {}, T.RPE {}, R.RPE {}, correct {}, coverage {}, first pose {}\n  "
-      "{}\n",
-      result.sequence, result.variant, status_name(result.status), result.run.summary.frames,
-      result.run.frames_planned, text_or_na(score.ate_rmse_m, " m"),
-      text_or_na(score.rpe_trans_rmse_m_per_s, " m/s"), text_or_na(score.rpe_rot_rmse_deg_per_s, " deg/s"),
-      text_or_na(score.correct_rate, ""), text_or_na(score.coverage, ""),
-      text_or_na(score.first_pose_s, " s"), (folder / "result.json").string());
+  std::cout << fmt::format("{} {}: {}, {} of {} frames, {}\n  {}\n", result.sequence, result.variant,
+                           status_name(result.outcome), result.run.summary.frames, result.run.frames_planned,
+                           score_line(result), (folder / "result.json").string());
 }
 
-int exit_code(RunStatus status) {
-  if (status == RunStatus::kInterrupted) return kExitInterrupted;
-  return status == RunStatus::kFailed ? kExitFindings : kExitOk;
+int exit_code(Outcome outcome) {
+  if (outcome == Outcome::kInterrupted) return kExitInterrupted;
+  return outcome == Outcome::kLost ? kExitFindings : kExitOk;
 }
 
 /// Opens the sequence; renders it first if necessary. @return null if interrupted
@@ -230,18 +236,18 @@ int run(const RunArguments& arguments) {
     throw InputError("--dump", "unknown value \"" + dump + "\"; expected one of: labels, cost");
   }
   install_interrupt_handlers();
-  const std::vector<PlannedRun> runs = plan_runs(arguments);
+  const std::vector<ConfiguredRun> runs = plan_runs(arguments);
   const std::unique_ptr<datasets::SensorStream> stream = open(arguments);
   if (!stream) return kExitInterrupted;
   for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
   int code = kExitOk;
-  for (const PlannedRun& planned : with_folders(runs, arguments.out, stream->info().name)) {
+  for (const ConfiguredRun& configured : with_folders(runs, arguments.out, stream->info().name)) {
     if (interrupt_requested()) return kExitInterrupted;
-    Executed run = execute(*stream, arguments, planned);
-    write_run(planned.folder, run.result, manifest_of(stream->info(), arguments, planned),
+    Executed run = execute(*stream, arguments, configured);
+    write_run(configured.folder, run.result, manifest_of(stream->info(), arguments, configured),
               std::move(run.dumps));
-    print_result(run.result, planned.folder);
-    code = std::max(code, exit_code(run.result.status));
+    print_result(run.result, configured.folder);
+    code = std::max(code, exit_code(run.result.outcome));
   }
   return code;
 }
@@ -263,7 +269,7 @@ Command run_command() {
            {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
            {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed},
            {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
-           {"--format", "Sequence format: tum, openloris, euroc, 7scenes or folder [detected]",
+           {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
             &arguments->format},
            {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
            {"--dump",
@@ -282,8 +288,7 @@ Command run_command() {
            {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames},
            {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
             &arguments->deterministic_counts}},
-      .action = [arguments] { return run(*arguments); },
-      .subcommands = {}};
+      .action = [arguments] { return run(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

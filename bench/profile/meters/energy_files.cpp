@@ -45,7 +45,8 @@ std::vector<fs::path> entries_of(const fs::path& folder, std::string_view start)
 /// hwmon channels ("in1_label") are numbered from 1, iio channels ("rail_name_0") from 0.
 constexpr int kMaxChannels = 8;
 
-void append_hwmon(std::vector<RailPower>& rails, const fs::path& folder) {
+std::vector<RailPower> hwmon_rails(const fs::path& folder) {
+  std::vector<RailPower> rails;
   for (int i = 1; i <= kMaxChannels; ++i) {
     const std::string number = std::to_string(i);
     const auto name = word_in(folder / ("in" + number + "_label"));
@@ -54,15 +55,18 @@ void append_hwmon(std::vector<RailPower>& rails, const fs::path& folder) {
     if (!name || !millivolts || !milliamperes) continue;
     rails.push_back({*name, 1e-6 * static_cast<double>(*millivolts) * static_cast<double>(*milliamperes)});
   }
+  return rails;
 }
 
-void append_iio(std::vector<RailPower>& rails, const fs::path& folder) {
+std::vector<RailPower> iio_rails(const fs::path& folder) {
+  std::vector<RailPower> rails;
   for (int i = 0; i < kMaxChannels; ++i) {
     const std::string number = std::to_string(i);
     const auto name = word_in(folder / ("rail_name_" + number));
     const auto milliwatts = number_in(folder / ("in_power" + number + "_input"));
     if (name && milliwatts) rails.push_back({*name, 1e-3 * static_cast<double>(*milliwatts)});
   }
+  return rails;
 }
 
 /// "4060/4060" or "4060mW/4060mW"; memory usage ("2457/15823MB") is not accepted.
@@ -105,10 +109,13 @@ double joules_between(const std::vector<EnergyCounter>& before, const std::vecto
 
 std::vector<RailPower> read_ina3221(const fs::path& root) {
   std::vector<RailPower> rails;
+  const auto add = [&](const std::vector<RailPower>& more) {
+    rails.insert(rails.end(), more.begin(), more.end());
+  };
   for (const char* name : {"ina3221", "ina3221x"}) {
     for (const fs::path& device : entries_of(root / "sys/bus/i2c/drivers" / name, "")) {
-      for (const fs::path& folder : entries_of(device / "hwmon", "hwmon")) append_hwmon(rails, folder);
-      for (const fs::path& folder : entries_of(device, "iio:device")) append_iio(rails, folder);
+      for (const fs::path& folder : entries_of(device / "hwmon", "hwmon")) add(hwmon_rails(folder));
+      for (const fs::path& folder : entries_of(device, "iio:device")) add(iio_rails(folder));
     }
   }
   return rails;

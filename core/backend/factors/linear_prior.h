@@ -37,7 +37,8 @@ struct PriorBlock {
 /// where x stacks the states in the order of `blocks`, x0 is their linearization point, J = `jacobian` and r0
 /// = `residual`. J and r0 are computed once, at x0, and never relinearized (first-estimates Jacobian): only
 /// the difference x [-] x0 follows the states. The normal equations of the prior at x are J^T J dx = -J^T
-/// r(x). See marginalization.h for how J and r0 are obtained.
+/// r(x). See WindowSolver::marginalize_oldest
+/// for how J and r0 are obtained.
 struct LinearPrior {
   std::vector<PriorBlock> blocks;
   ReusableMatrix<Eigen::MatrixXd> jacobian;

@@ -21,8 +21,8 @@ struct Linearized {
   std::vector<RowMajorMatrix> jacobians;  ///< in block order, tangent columns only
 };
 
-Linearized linearize(const Residual& source, ParameterBlocks& blocks) {
-  const std::vector<double*> addresses = parameter_addresses(source, blocks);
+Linearized linearize(const Residual& source, const ParameterBlocks& blocks) {
+  const std::vector<const double*> addresses = parameter_addresses(source, blocks);
   const std::vector<int>& sizes = source.cost->parameter_block_sizes();
   Linearized out{Eigen::VectorXd(source.cost->num_residuals()), {}};
   std::vector<double*> pointers;
@@ -64,7 +64,7 @@ NormalEquations::NormalEquations(int frames)
       H(Eigen::MatrixXd::Zero(layout.size(), layout.size())),
       b(Eigen::VectorXd::Zero(layout.size())) {}
 
-void NormalEquations::add(const std::vector<Residual>& group, ParameterBlocks& blocks, bool fixed) {
+void NormalEquations::add(const std::vector<Residual>& group, const ParameterBlocks& blocks, bool fixed) {
   Eigen::VectorXd landmark_column = Eigen::VectorXd::Zero(layout.size());
   double landmark_information = 0.0;
   double landmark_gradient = 0.0;

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "core/backend/solvers/window_problem.h"
+#include "core/backend/solvers/ceres_residuals.h"
 
 namespace stillpoint {
 
@@ -40,7 +40,7 @@ struct NormalEquations {
 
   /// Adds the residuals of one landmark (or of none), linearized at `blocks`. Unless it is `fixed`, the
   /// inverse depth l of the landmark is eliminated: H -= H_xl H_xl^T / H_ll, b -= H_xl b_l / H_ll.
-  void add(const std::vector<Residual>& group, ParameterBlocks& blocks, bool fixed);
+  void add(const std::vector<Residual>& group, const ParameterBlocks& blocks, bool fixed);
 
   StateLayout layout;
   Eigen::MatrixXd H;
@@ -48,7 +48,8 @@ struct NormalEquations {
 };
 
 /// (J, r) with J^T J = H_rr - H_rm H_mm^-1 H_mr and J^T r = b_r - H_rm H_mm^-1 b_m, where m are the columns
-/// `marginalized` and r the columns `remaining`. See marginalize_oldest.
+/// `marginalized` and r the columns `remaining`. See
+/// WindowSolver::marginalize_oldest.
 struct SquareRoot {
   Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/backend/marginalization/marginalization.h"
 #include "core/backend/marginalization/normal_equations.h"
 #include "core/backend/solvers/schur_solver.h"
 
@@ -38,8 +37,9 @@ bool SchurSolver::factorize_columns() {
 }
 
 /// With H = L L^T in the order (m, r), L_rr L_rr^T = H_rr - H_rm H_mm^-1 H_mr.
+/// @param prior with its blocks; its matrices are replaced
 /// @param marginalized number of leading `columns_` to marginalize; `newton_.states` holds -b
-void SchurSolver::write_square_root(Eigen::Index marginalized, LinearPrior& prior) {
+LinearPrior SchurSolver::with_square_root(LinearPrior prior, Eigen::Index marginalized) {
   if (!factorize_columns()) {
     const Eigen::MatrixXd H = system_.H.selfadjointView<Eigen::Lower>();
     const std::vector<int> marginalized_columns(columns_.begin(), columns_.begin() + marginalized);
@@ -47,7 +47,7 @@ void SchurSolver::write_square_root(Eigen::Index marginalized, LinearPrior& prio
     const SquareRoot root = eliminate(H, -newton_.states, marginalized_columns, remaining_columns);
     prior.jacobian = root.jacobian;
     prior.residual = root.residual;
-    return;
+    return prior;
   }
   step_.states.resize(S_.rows());
   for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -60,10 +60,11 @@ void SchurSolver::write_square_root(Eigen::Index marginalized, LinearPrior& prio
   prior.jacobian.resize(remaining, remaining);
   prior.jacobian.setZero();
   prior.jacobian.triangularView<Eigen::Upper>() = S_.bottomRightCorner(remaining, remaining).transpose();
+  return prior;
 }
 
 LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendConfig& config,
-                                            double focal_px) {
+                                            double focal_px, LinearPrior recycled) {
   blocks_.assign(window);
   visual_.read(window, config, focal_px, LandmarkSelection::kHostedByOldest);
   system_.reset(ReducedLayout(static_cast<int>(window.frames.size()), window.inertial, {}));
@@ -78,19 +79,18 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
   append_columns({BlockKind::kPose, 0});
   if (window.inertial) append_columns({BlockKind::kSpeedBias, 0});
   const auto marginalized = static_cast<Eigen::Index>(columns_.size());
-  LinearPrior prior = std::move(recycled_prior_);
+  LinearPrior prior = std::move(recycled);
   prior.blocks.clear();
   prior_blocks_ = candidate_blocks(window, std::move(prior_blocks_));
   for (const BlockRef block : prior_blocks_) {
     const int size = local_size(block.kind);
     if (system_.H.diagonal().segment(system_.layout.column(block), size).isZero(0.0)) continue;
     append_columns(block);
-    prior.blocks.push_back(
-        {block.kind, block.frame - 1,
-         Eigen::Map<const BlockVector>(block_address(blocks_, block), global_size(block.kind))});
+    prior.blocks.push_back({block.kind, block.frame - 1,
+                            Eigen::Map<const BlockVector>(blocks_.at(block), global_size(block.kind))});
   }
-  if (!prior.blocks.empty()) write_square_root(marginalized, prior);
-  return prior;
+  if (prior.blocks.empty()) return prior;
+  return with_square_root(std::move(prior), marginalized);
 }
 
 }  // namespace stillpoint

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/backend/factors/imu_factor.h"
+#include "core/backend/factors/imu_residual.h"
 
 namespace stillpoint {
 namespace {
@@ -16,13 +16,12 @@ std::array<BlockRef, 4> imu_blocks(int frame) {
            {BlockKind::kSpeedBias, frame}}};
 }
 
-std::array<double*, 4> addresses(const std::array<BlockRef, 4>& refs, ParameterBlocks& blocks) {
-  return {block_address(blocks, refs[0]), block_address(blocks, refs[1]), block_address(blocks, refs[2]),
-          block_address(blocks, refs[3])};
+std::array<const double*, 4> addresses(const std::array<BlockRef, 4>& refs, const ParameterBlocks& blocks) {
+  return {blocks.at(refs[0]), blocks.at(refs[1]), blocks.at(refs[2]), blocks.at(refs[3])};
 }
 
-const Preintegration& imu_of(const Window& window, int frame) {
-  return *window.frames[static_cast<std::size_t>(frame)].from_previous;
+ImuResidual imu_residual(const Window& window, int frame) {
+  return {*window.frames[static_cast<std::size_t>(frame)].from_previous, window.gravity_w};
 }
 
 /// The residual and its Jacobians as written by the factor; `jacobian` stacks their tangent columns.
@@ -38,13 +37,12 @@ struct ImuLinearization {
   }
 };
 
-ImuLinearization linearize_imu(const Window& window, int frame, ParameterBlocks& blocks) {
+ImuLinearization linearize_imu(const Window& window, int frame, const ParameterBlocks& blocks) {
   ImuLinearization out;
-  const std::array<double*, 4> states = addresses(imu_blocks(frame), blocks);
+  const std::array<const double*, 4> states = addresses(imu_blocks(frame), blocks);
   std::array<double*, 4> jacobians = {out.J_pose_i.data(), out.J_speed_bias_i.data(), out.J_pose_j.data(),
                                       out.J_speed_bias_j.data()};
-  evaluate_imu_residual(imu_of(window, frame), window.gravity_w, states.data(), out.residual.data(),
-                        jacobians.data());
+  imu_residual(window, frame).evaluate(states.data(), out.residual.data(), jacobians.data());
   return out;
 }
 
@@ -97,14 +95,14 @@ bool has_imu_term(const Window& window, int frame) {
   return window.inertial && window.frames[static_cast<std::size_t>(frame)].from_previous.has_value();
 }
 
-double imu_cost(const Window& window, int frame, ParameterBlocks& blocks) {
+double imu_cost(const Window& window, int frame, const ParameterBlocks& blocks) {
   Vector15 residual;
-  const std::array<double*, 4> states = addresses(imu_blocks(frame), blocks);
-  evaluate_imu_residual(imu_of(window, frame), window.gravity_w, states.data(), residual.data(), nullptr);
+  const std::array<const double*, 4> states = addresses(imu_blocks(frame), blocks);
+  imu_residual(window, frame).evaluate(states.data(), residual.data(), nullptr);
   return 0.5 * residual.squaredNorm();
 }
 
-double add_imu_term(const Window& window, int frame, ParameterBlocks& blocks, ReducedSystem& system) {
+double add_imu_term(const Window& window, int frame, const ParameterBlocks& blocks, ReducedSystem& system) {
   system.widen_profile(imu_blocks(frame));
   const ImuLinearization linear = linearize_imu(window, frame, blocks);
   const Eigen::Matrix<double, 15, 30> J = linear.jacobian();
@@ -138,12 +136,12 @@ void PriorTerm::read(const LinearPrior& prior) {
   gradient_.resize(size);
 }
 
-double PriorTerm::cost(ParameterBlocks& blocks) {
+double PriorTerm::cost(const ParameterBlocks& blocks) {
   int column = 0;
   for (const PriorBlock& block : prior_->blocks) {
     const int size = local_size(block.kind);
     difference_.segment(column, size) =
-        block_difference(block.kind, block_address(blocks, {block.kind, block.frame}), block.linearization);
+        block_difference(block.kind, blocks.at({block.kind, block.frame}), block.linearization);
     column += size;
   }
   error_ = prior_->residual;
@@ -151,7 +149,7 @@ double PriorTerm::cost(ParameterBlocks& blocks) {
   return 0.5 * error_.squaredNorm();
 }
 
-double PriorTerm::add_to(ReducedSystem& system, ParameterBlocks& blocks) {
+double PriorTerm::add_to(ReducedSystem& system, const ParameterBlocks& blocks) {
   const double cost_now = cost(blocks);
   gradient_.noalias() = prior_->jacobian.transpose() * error_;
   int row = 0;

@@ -61,9 +61,9 @@ class ReducedSystem {
 /// Whether there is an IMU factor between frame - 1 and frame.
 [[nodiscard]] bool has_imu_term(const Window& window, int frame);
 /// Cost of the IMU factor between frame - 1 and frame; requires `has_imu_term`.
-[[nodiscard]] double imu_cost(const Window& window, int frame, ParameterBlocks& blocks);
+[[nodiscard]] double imu_cost(const Window& window, int frame, const ParameterBlocks& blocks);
 /// Adds J^T J and J^T r of that factor. @return the cost
-double add_imu_term(const Window& window, int frame, ParameterBlocks& blocks, ReducedSystem& system);
+double add_imu_term(const Window& window, int frame, const ParameterBlocks& blocks, ReducedSystem& system);
 
 /// A LinearPrior (of marginalization or calibration) as a term of the system; its Jacobian is constant.
 class PriorTerm {
@@ -71,9 +71,9 @@ class PriorTerm {
   /// @param prior outlives the term
   void read(const LinearPrior& prior);
   [[nodiscard]] std::span<const BlockRef> blocks() const { return blocks_; }
-  [[nodiscard]] double cost(ParameterBlocks& blocks);
+  [[nodiscard]] double cost(const ParameterBlocks& blocks);
   /// @return the cost
-  double add_to(ReducedSystem& system, ParameterBlocks& blocks);
+  double add_to(ReducedSystem& system, const ParameterBlocks& blocks);
 
  private:
   const LinearPrior* prior_ = nullptr;

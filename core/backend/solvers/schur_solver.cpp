@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -53,7 +52,7 @@ double SchurSolver::linearize(const Window& window) {
   return cost;
 }
 
-double SchurSolver::cost_at(const Window& window, ParameterBlocks& blocks) {
+double SchurSolver::cost_at(const Window& window, const ParameterBlocks& blocks) {
   double cost = prior_.cost(blocks) + calibration_.cost(blocks);
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) cost += imu_cost(window, frame, blocks);
@@ -179,8 +178,7 @@ SolveReport SchurSolver::iterate(const Window& window, const BackendConfig& conf
   return report;
 }
 
-SolveReport SchurSolver::solve(Window& window, const BackendConfig& config, double focal_px) {
-  STILLPOINT_CHECK(!window.prior.empty());
+SolveReport SchurSolver::minimize(Window& window, const BackendConfig& config, double focal_px) {
   read(window, config, focal_px);
   SolveReport report = iterate(window, config);
   report.landmarks = visual_.landmarks();

@@ -3,7 +3,6 @@
 /// dogleg. Paper Sec. II (state optimization).
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "core/backend/solvers/visual_terms.h"
@@ -11,7 +10,7 @@
 
 namespace stillpoint {
 
-/// Minimizes the same cost as the Ceres backend (tests compare the normal equations of both).
+/// Specialized implementation of WindowSolver (tests compare its normal equations with those of Ceres).
 ///
 /// The variables are the states p (velocities and biases, poses, calibration) and the inverse depths l. With
 /// the Jacobian J of the residuals r, weighted by the robust loss, the Gauss-Newton equations H dx = -g with
@@ -35,20 +34,17 @@ namespace stillpoint {
 /// the trust region, otherwise the point where the path 0 -> Cauchy point -> Gauss-Newton step leaves it. The
 /// Cauchy point is -a D^-1 g with a = g^T D^-1 g / (d^T H d), d = D^-1 g. The trust region is updated by the
 /// ratio of the actual decrease of the cost to the predicted one, -g^T dx - 1/2 dx^T H dx.
-///
-/// The object is reused for its buffers only: results depend on nothing but the arguments.
-class SchurSolver {
+class SchurSolver final : public WindowSolver {
  public:
-  /// Updates the window's states; see `solve_window`, but without the reset of lost depths.
-  [[nodiscard]] SolveReport solve(Window& window, const BackendConfig& config, double focal_px);
-
-  /// See `marginalize_oldest`, kSchur.
+  /// The square root of H* is taken from the Cholesky factor L of H in the order (m, r): its lower right
+  /// block is the factor of H*, so J = L_rr^T, and r0 is the lower part of L^-1 b. Small pivots fall back to
+  /// the eigenvalues, as in CeresSolver. Allocation-free in the steady state.
   [[nodiscard]] LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config,
-                                               double focal_px);
-  /// Passes on a discarded prior whose buffers the next `marginalize_oldest` reuses.
-  void recycle(LinearPrior discarded) { recycled_prior_ = std::move(discarded); }
+                                               double focal_px, LinearPrior recycled) override;
 
  private:
+  [[nodiscard]] SolveReport minimize(Window& window, const BackendConfig& config, double focal_px) override;
+
   /// A vector (p, l) in the space of all states and variable landmarks.
   struct Direction {
     ReusableVector states;
@@ -57,7 +53,7 @@ class SchurSolver {
 
   void read(const Window& window, const BackendConfig& config, double focal_px);
   [[nodiscard]] double linearize(const Window& window);
-  [[nodiscard]] double cost_at(const Window& window, ParameterBlocks& blocks);
+  [[nodiscard]] double cost_at(const Window& window, const ParameterBlocks& blocks);
   [[nodiscard]] bool compute_newton_step();
   void compute_dogleg_step(double radius);
   [[nodiscard]] double scaled_norm(const Direction& direction) const;
@@ -67,7 +63,7 @@ class SchurSolver {
   [[nodiscard]] SolveReport iterate(const Window& window, const BackendConfig& config);
   void append_columns(BlockRef block);
   [[nodiscard]] bool factorize_columns();
-  void write_square_root(Eigen::Index marginalized, LinearPrior& prior);
+  [[nodiscard]] LinearPrior with_square_root(LinearPrior prior, Eigen::Index marginalized);
 
   ReducedLayout layout_;
   ReducedSystem system_;
@@ -87,7 +83,6 @@ class SchurSolver {
   std::vector<int> dense_;           // skyline profile of a dense matrix
   std::vector<BlockRef> prior_blocks_;
   ReusableVector diagonal_;
-  LinearPrior recycled_prior_;
 };
 
 }  // namespace stillpoint

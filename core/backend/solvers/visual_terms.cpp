@@ -69,7 +69,7 @@ void VisualTerms::add_landmark(const Landmark& landmark, std::size_t index, cons
 }
 
 /// Linearizes the relative poses of all frame pairs that share landmarks at the current states.
-void VisualTerms::update_relative_poses(ParameterBlocks& blocks) {
+void VisualTerms::update_relative_poses(const ParameterBlocks& blocks) {
   time_offset_ = *blocks.time_offset();
   const Pose T_b_c = pose_at(blocks.extrinsics());
   for (int host = 0; host < frames_; ++host) {
@@ -83,7 +83,7 @@ void VisualTerms::update_relative_poses(ParameterBlocks& blocks) {
 }
 
 VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
-                                                 ParameterBlocks& blocks) const {
+                                                 const ParameterBlocks& blocks) const {
   return {*blocks.inverse_depth(landmark.index), at_state(landmark.in_host, time_offset_).homogeneous(),
           landmark.in_host.velocity};
 }
@@ -102,7 +102,7 @@ BoundedError VisualTerms::host_depth(const VisualLandmark& landmark, double lamb
   return {depth.value, depth.slope / noise_.inverse_depth};
 }
 
-double VisualTerms::cost(ParameterBlocks& blocks) {
+double VisualTerms::cost(const ParameterBlocks& blocks) {
   update_relative_poses(blocks);
   double total = 0.0;
   for (const VisualLandmark& landmark : landmarks_) {
@@ -120,7 +120,7 @@ double VisualTerms::cost(ParameterBlocks& blocks) {
   return 0.5 * total;
 }
 
-double VisualTerms::add_to(ReducedSystem& system, ParameterBlocks& blocks) {
+double VisualTerms::add_to(ReducedSystem& system, const ParameterBlocks& blocks) {
   update_relative_poses(blocks);
   for (PairSum& sum : sums_) sum.setZero();
   information_.setZero();
@@ -158,7 +158,7 @@ VisualTerms::ObservationTerm VisualTerms::linearize(const TimedObservation& time
 }
 
 /// @return twice the cost
-double VisualTerms::linearize(const VisualLandmark& landmark, ParameterBlocks& blocks,
+double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlocks& blocks,
                               const ReducedLayout& layout) {
   const LandmarkState state = state_of(landmark, blocks);
   const BoundedError depth = host_depth(landmark, state.lambda);

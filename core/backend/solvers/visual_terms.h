@@ -32,9 +32,9 @@ class VisualTerms {
   /// Reads the observations of a window; allocates only if it is larger than all windows before.
   void read(const Window& window, const BackendConfig& config, double focal_px, LandmarkSelection selection);
 
-  [[nodiscard]] double cost(ParameterBlocks& blocks);
+  [[nodiscard]] double cost(const ParameterBlocks& blocks);
   /// Adds H_pp and g_p to the system and stores H_ll, g_l and H_pl. @return the cost
-  double add_to(ReducedSystem& system, ParameterBlocks& blocks);
+  double add_to(ReducedSystem& system, const ParameterBlocks& blocks);
 
   /// Schur complement with damped landmarks, H_ll' = (1 + damping) H_ll:
   /// S -= H_pl H_ll'^-1 H_lp (lower triangle), rhs += H_pl H_ll'^-1 g_l.
@@ -82,8 +82,8 @@ class VisualTerms {
   };
 
   void add_landmark(const Landmark& landmark, std::size_t index, const BackendConfig& config);
-  void update_relative_poses(ParameterBlocks& blocks);
-  [[nodiscard]] LandmarkState state_of(const VisualLandmark& landmark, ParameterBlocks& blocks) const;
+  void update_relative_poses(const ParameterBlocks& blocks);
+  [[nodiscard]] LandmarkState state_of(const VisualLandmark& landmark, const ParameterBlocks& blocks) const;
   [[nodiscard]] MeasuredPoint measured_point_at(const TimedObservation& observation) const;
   [[nodiscard]] const TimedObservation& observation_of(const VisualLandmark& landmark, int frame) const {
     return timed_observations_[landmark.first_observation +
@@ -92,7 +92,7 @@ class VisualTerms {
   [[nodiscard]] BoundedError host_depth(const VisualLandmark& landmark, double lambda) const;
   [[nodiscard]] ObservationTerm linearize(const TimedObservation& timed, const RelativePoseLinearization& to,
                                           const LandmarkState& host) const;
-  [[nodiscard]] double linearize(const VisualLandmark& landmark, ParameterBlocks& blocks,
+  [[nodiscard]] double linearize(const VisualLandmark& landmark, const ParameterBlocks& blocks,
                                  const ReducedLayout& layout);
   void add_coupling(const VisualLandmark& landmark, int frame, const Column8& column,
                     const ReducedLayout& layout);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/window_problem.h"
 
-#include "core/backend/factors/imu_factor.h"
-#include "core/backend/factors/prior_factor.h"
-#include "core/backend/factors/reprojection_factor.h"
-#include "core/geometry/so3.h"
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -19,12 +16,6 @@ void pack_pose(const Pose& pose, double* values) {
 
 Pose unpack_pose(const double* values) {
   return Pose{Eigen::Quaterniond(values + 3).normalized(), Eigen::Vector3d(values)};
-}
-
-Residual prior_residual(const LinearPrior& prior) {
-  Residual residual{std::make_unique<PriorFactor>(prior), nullptr, {}, -1};
-  for (const PriorBlock& block : prior.blocks) residual.states.push_back({block.kind, block.frame});
-  return residual;
 }
 
 }  // namespace
@@ -44,7 +35,21 @@ void ParameterBlocks::assign(const Window& window) {
   }
 }
 
-void unpack(ParameterBlocks& blocks, Window& window) {
+std::size_t ParameterBlocks::offset(BlockRef block) const {
+  switch (block.kind) {
+    case BlockKind::kPose:
+      return 7 * static_cast<std::size_t>(block.frame);
+    case BlockKind::kSpeedBias:
+      return 7 * frames_ + 9 * static_cast<std::size_t>(block.frame);
+    case BlockKind::kExtrinsics:
+      return 16 * frames_;
+    case BlockKind::kTimeOffset:
+      break;
+  }
+  return 16 * frames_ + 7;
+}
+
+void unpack(const ParameterBlocks& blocks, Window& window) {
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     NavState& state = window.frames[i].state;
     state.T_w_b = unpack_pose(blocks.pose(i));
@@ -58,28 +63,6 @@ void unpack(ParameterBlocks& blocks, Window& window) {
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     window.landmarks[i].inverse_depth = *blocks.inverse_depth(i);
   }
-}
-
-double* block_address(ParameterBlocks& blocks, BlockRef block) {
-  switch (block.kind) {
-    case BlockKind::kPose:
-      return blocks.pose(static_cast<std::size_t>(block.frame));
-    case BlockKind::kSpeedBias:
-      return blocks.speed_bias(static_cast<std::size_t>(block.frame));
-    case BlockKind::kExtrinsics:
-      return blocks.extrinsics();
-    case BlockKind::kTimeOffset:
-      break;
-  }
-  return blocks.time_offset();
-}
-
-std::vector<double*> parameter_addresses(const Residual& residual, ParameterBlocks& blocks) {
-  std::vector<double*> addresses;
-  for (const BlockRef state : residual.states) addresses.push_back(block_address(blocks, state));
-  if (residual.landmark >= 0)
-    addresses.push_back(blocks.inverse_depth(static_cast<std::size_t>(residual.landmark)));
-  return addresses;
 }
 
 ReprojectionNoise reprojection_noise(const BackendConfig& config, double focal_px) {
@@ -102,66 +85,13 @@ VariableCalibration variable_calibration(const Window& window, const BackendConf
           .time_offset = config.estimate_time_offset && moving};
 }
 
-ResidualBuilder::ResidualBuilder(const Window& window, const BackendConfig& config, double focal_px)
-    : window_(window),
-      config_(config),
-      noise_(reprojection_noise(config, focal_px)),
-      loss_(std::make_unique<ceres::CauchyLoss>(config.cauchy_scale)) {
-  observation_model_.read(window);
-}
-
-void ResidualBuilder::add_landmark(int index, std::vector<Residual>& out) {
-  const Landmark& landmark = window_.landmarks[static_cast<std::size_t>(index)];
-  const Observation& host = landmark.observations.front();
-  if (uses_depth(host, config_)) {
-    out.push_back({std::make_unique<HostDepthFactor>(1.0 / host.depth, noise_), nullptr, {}, index});
-  }
-
-  const Eigen::Vector3d position_w = observation_model_.position(landmark);
-  const TimedBearing in_host = observation_model_.at(landmark, landmark.host, position_w);
-  ReprojectionMeasurement m{
-      .bearing_i = in_host.bearing, .velocity_i = in_host.velocity, .exposure_i_s = in_host.exposure_s};
-  for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
-    const Observation& observation = landmark.observation_in(frame);
-    const TimedBearing timed = observation_model_.at(landmark, frame, position_w);
-    m.bearing_j = timed.bearing;
-    m.velocity_j = timed.velocity;
-    m.exposure_j_s = timed.exposure_s;
-    std::unique_ptr<ceres::CostFunction> cost;
-    if (uses_depth(observation, config_)) {
-      m.inverse_depth_j = 1.0 / observation.depth;
-      cost = std::make_unique<ReprojectionFactor<3>>(m, noise_);
-    } else {
-      cost = std::make_unique<ReprojectionFactor<2>>(m, noise_);
-    }
-    out.push_back({std::move(cost),
-                   loss_.get(),
-                   {{BlockKind::kPose, landmark.host},
-                    {BlockKind::kPose, frame},
-                    {BlockKind::kExtrinsics},
-                    {BlockKind::kTimeOffset}},
-                   index});
-  }
-}
-
-void ResidualBuilder::add_imu(int frame, std::vector<Residual>& out) {
-  const std::optional<Preintegration>& imu = window_.frames[static_cast<std::size_t>(frame)].from_previous;
-  if (!window_.inertial || !imu) return;
-  out.push_back({std::make_unique<ImuFactor>(*imu, window_.gravity_w),
-                 nullptr,
-                 {{BlockKind::kPose, frame - 1},
-                  {BlockKind::kSpeedBias, frame - 1},
-                  {BlockKind::kPose, frame},
-                  {BlockKind::kSpeedBias, frame}},
-                 -1});
-}
-
-void ResidualBuilder::add_prior(std::vector<Residual>& out) {
-  if (!window_.prior.empty()) out.push_back(prior_residual(window_.prior));
-}
-
-void ResidualBuilder::add_calibration(std::vector<Residual>& out) {
-  if (!window_.calibration.empty()) out.push_back(prior_residual(window_.calibration));
+std::vector<BlockRef> candidate_blocks(const Window& window, std::vector<BlockRef> recycled) {
+  std::vector<BlockRef> blocks = std::move(recycled);
+  blocks.clear();
+  for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
+  if (!window.inertial) return blocks;
+  for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
+  return blocks;
 }
 
 }  // namespace stillpoint

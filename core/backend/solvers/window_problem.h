@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Parameter blocks and residuals of a window, shared by solve and marginalization.
+/// Parameter blocks of a window and the rules of its residuals, shared by all solvers.
 #pragma once
 
-#include <memory>
 #include <vector>
-
-#include <ceres/cost_function.h>
-#include <ceres/loss_function.h>
 
 #include "core/backend/factors/reprojection_rows.h"
 #include "core/backend/window/observation_model.h"
@@ -14,6 +10,12 @@
 #include "core/config/backend_config.h"
 
 namespace stillpoint {
+
+/// One block of the window's states; `frame` is -1 for calibration.
+struct BlockRef {
+  BlockKind kind = BlockKind::kPose;
+  int frame = -1;
+};
 
 /// Copies of the window's states in the solver's layout: T_w_b of each frame as (p, q xyzw), then each
 /// frame's v, gyro bias and accel bias, then T_b_c, the time offset, and the inverse depth of each landmark,
@@ -28,35 +30,34 @@ class ParameterBlocks {
 
   /// Copies the states of a window; allocates only if it is larger than all windows before.
   void assign(const Window& window);
+
   [[nodiscard]] double* pose(std::size_t frame) { return &values_[7 * frame]; }
   [[nodiscard]] double* speed_bias(std::size_t frame) { return &values_[7 * frames_ + 9 * frame]; }
   [[nodiscard]] double* extrinsics() { return &values_[16 * frames_]; }
   [[nodiscard]] double* time_offset() { return &values_[16 * frames_ + 7]; }
   [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 8 + landmark]; }
+  [[nodiscard]] double* at(BlockRef block) { return &values_[offset(block)]; }
+
+  [[nodiscard]] const double* pose(std::size_t frame) const { return &values_[7 * frame]; }
+  [[nodiscard]] const double* speed_bias(std::size_t frame) const {
+    return &values_[7 * frames_ + 9 * frame];
+  }
+  [[nodiscard]] const double* extrinsics() const { return &values_[16 * frames_]; }
+  [[nodiscard]] const double* time_offset() const { return &values_[16 * frames_ + 7]; }
+  [[nodiscard]] const double* inverse_depth(std::size_t landmark) const {
+    return &values_[16 * frames_ + 8 + landmark];
+  }
+  [[nodiscard]] const double* at(BlockRef block) const { return &values_[offset(block)]; }
 
  private:
+  [[nodiscard]] std::size_t offset(BlockRef block) const;
+
   std::size_t frames_ = 0;
   std::vector<double> values_;
 };
 
 /// Writes the values of the blocks back to the states of the window.
-void unpack(ParameterBlocks& blocks, Window& window);
-
-/// One block of the window's states; `frame` is -1 for calibration.
-struct BlockRef {
-  BlockKind kind = BlockKind::kPose;
-  int frame = -1;
-};
-[[nodiscard]] double* block_address(ParameterBlocks& blocks, BlockRef block);
-
-/// A residual and its parameter blocks: states first, then the inverse depth of a landmark (index, or -1 for
-/// none).
-struct Residual {
-  std::unique_ptr<ceres::CostFunction> cost;
-  ceres::LossFunction* loss = nullptr;  ///< not owned; null = squared loss
-  std::vector<BlockRef> states;
-  int landmark = -1;
-};
+void unpack(const ParameterBlocks& blocks, Window& window);
 
 /// Standard deviations of the visual residuals.
 [[nodiscard]] ReprojectionNoise reprojection_noise(const BackendConfig& config, double focal_px);
@@ -74,29 +75,11 @@ struct VariableCalibration {
 };
 [[nodiscard]] VariableCalibration variable_calibration(const Window& window, const BackendConfig& config);
 
-/// Addresses of the parameter blocks of a residual, in the order of its cost function.
-[[nodiscard]] std::vector<double*> parameter_addresses(const Residual& residual, ParameterBlocks& blocks);
-
-/// Builds the residuals of a window. The builder and the window must outlive the residuals.
-class ResidualBuilder {
- public:
-  ResidualBuilder(const Window& window, const BackendConfig& config, double focal_px);
-
-  /// All residuals of one usable landmark: host depth, and one per further observation.
-  void add_landmark(int index, std::vector<Residual>& out);
-  /// IMU factor between frame - 1 and frame, if there is one.
-  void add_imu(int frame, std::vector<Residual>& out);
-  /// Marginalization prior.
-  void add_prior(std::vector<Residual>& out);
-  /// Prior on extrinsics and time offset from the calibrated values.
-  void add_calibration(std::vector<Residual>& out);
-
- private:
-  const Window& window_;
-  const BackendConfig& config_;
-  ObservationModel observation_model_;
-  ReprojectionNoise noise_;
-  std::unique_ptr<ceres::LossFunction> loss_;
-};
+/// Blocks that the prior of marginalize_oldest may involve: the states after the oldest frame. Calibration is
+/// treated as constant, because linearizing at an early, inaccurate time offset would add overconfident
+/// information.
+/// @param recycled storage for the result; its content is ignored
+[[nodiscard]] std::vector<BlockRef> candidate_blocks(const Window& window,
+                                                     std::vector<BlockRef> recycled = {});
 
 }  // namespace stillpoint

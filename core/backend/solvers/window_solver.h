@@ -2,6 +2,8 @@
 /// Nonlinear least squares over the window: the state optimization of Paper Sec. II.
 #pragma once
 
+#include <memory>
+
 #include "core/backend/window/window.h"
 #include "core/config/backend_config.h"
 
@@ -16,20 +18,54 @@ struct SolveReport {
   bool usable = true;  ///< false: the solver failed and the window is unchanged
 };
 
-/// Minimizes over all states x of the window, with a limit on iterations but not on time (deterministic),
-///
-///   1/2 ( |r_prior(x)|^2 + |r_calibration(x)|^2 + sum_k |r_imu,k(x)|^2 + sum_l r_depth,l(x)^2
-///         + sum_(l,j) rho(|r_visual,lj(x)|^2) ),    rho(s) = c^2 log(1 + s / c^2)   (Cauchy)
-///
-/// with the whitened residuals of LinearPrior, ImuFactor, HostDepthFactor and ReprojectionFactor, and
-/// c = `cauchy_scale`. The window's prior fixes the gauge, so it must not be empty.
-/// @param focal_px focal length of the camera, converts pixels to bearings
-[[nodiscard]] SolveReport solve_window(Window& window, const BackendConfig& config, double focal_px);
+/// Extension point for solvers. An instance is reused for its buffers only: results depend on nothing but the
+/// arguments. All solvers minimize the same cost and differ in their rounding errors and their speed.
+class WindowSolver {
+ public:
+  virtual ~WindowSolver() = default;
 
-class SchurSolver;
+  /// Minimizes over all states x of the window, with a limit on iterations but not on time (deterministic),
+  ///
+  ///   1/2 ( |r_prior(x)|^2 + |r_calibration(x)|^2 + sum_k |r_imu,k(x)|^2 + sum_l r_depth,l(x)^2
+  ///         + sum_(l,j) rho(|r_visual,lj(x)|^2) ),    rho(s) = c^2 log(1 + s / c^2)   (Cauchy)
+  ///
+  /// with the whitened residuals of LinearPrior, ImuFactor, HostDepthFactor and ReprojectionFactor, and
+  /// c = `cauchy_scale`. Landmarks at infinity or behind their host lose their depth.
+  /// @param window its prior fixes the gauge, so it must not be empty
+  /// @param config `config.solver` is ignored
+  /// @param focal_px focal length of the camera, converts pixels to bearings
+  [[nodiscard]] SolveReport solve(Window& window, const BackendConfig& config, double focal_px);
 
-/// Same, with the buffers of `solver`; the result does not depend on earlier calls.
-[[nodiscard]] SolveReport solve_window(Window& window, const BackendConfig& config, double focal_px,
-                                       SchurSolver& solver);
+  /// Prior of the remaining states after marginalizing the oldest frame and the landmarks hosted in it.
+  ///
+  /// All residuals that involve these variables (the current prior, the IMU factor to frame 1, the
+  /// reprojection residuals of the landmarks, the latter weighted by their robust loss) are linearized once
+  /// at the current estimate x0. With H = sum J_k^T J_k and b = sum J_k^T r_k, split into the marginalized
+  /// states m (frame 0; its landmarks are eliminated first, in the same way) and the remaining states r,
+  ///
+  ///   [ H_mm  H_mr ] [dx_m]     [ b_m ]
+  ///   [ H_rm  H_rr ] [dx_r] = - [ b_r ],
+  ///
+  /// minimizing over dx_m leaves the Schur complement
+  ///
+  ///   H* = H_rr - H_rm H_mm^-1 H_mr,    b* = b_r - H_rm H_mm^-1 b_m.
+  ///
+  /// A square root J^T J = H*, J^T r0 = b* gives the residual of LinearPrior, r(x) = r0 + J (x [-] x0); x0 is
+  /// stored as the linearization point of its blocks. See the solvers for how it is computed.
+  ///
+  /// Qin et al. 2018, Sec. VI. Frame indices of the result are those after the slide (one less). The result
+  /// is empty if no residual connects frame 0 to the others.
+  /// @param recycled a prior that is no longer needed; its memory is reused
+  [[nodiscard]] virtual LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config,
+                                                       double focal_px, LinearPrior recycled) = 0;
+
+ private:
+  /// `solve` without the reset of lost depths.
+  [[nodiscard]] virtual SolveReport minimize(Window& window, const BackendConfig& config,
+                                             double focal_px) = 0;
+};
+
+/// Creates the solver selected by `BackendConfig::solver`.
+[[nodiscard]] std::unique_ptr<WindowSolver> make_window_solver(WindowSolverKind kind);
 
 }  // namespace stillpoint

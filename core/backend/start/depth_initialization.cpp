@@ -8,12 +8,18 @@ namespace {
 
 constexpr double kMaxRelativeSigma = 1.0 / 3.0;
 
-/// Whether the reprojection error of a point is below `tolerance` in some frame other than `excluded_frame`.
-bool another_view_agrees(const Window& window, const Landmark& landmark, const Eigen::Vector3d& p_w,
-                         int excluded_frame, double tolerance) {
+/// Position of a landmark from the depth measured in one frame.
+struct MeasuredPosition {
+  Eigen::Vector3d p_w;
+  int frame;
+};
+
+/// Whether the reprojection error of a position is below `tolerance` in some frame other than its own.
+bool another_view_agrees(const Window& window, const Landmark& landmark, const MeasuredPosition& measured,
+                         double tolerance) {
   for (int frame = landmark.host; frame <= landmark.last(); ++frame) {
-    if (frame == excluded_frame) continue;
-    const Eigen::Vector3d p_c = window.T_w_c(frame).inverse() * p_w;
+    if (frame == measured.frame) continue;
+    const Eigen::Vector3d p_c = window.T_w_c(frame).inverse() * measured.p_w;
     if (p_c.z() > 0.0 && (p_c.hnormalized() - landmark.observation_in(frame).bearing).norm() < tolerance)
       return true;
   }
@@ -32,7 +38,7 @@ double confirmed_depth(const Window& window, const Landmark& landmark, const Dep
     const Eigen::Vector3d p_w =
         window.T_w_c(frame) * Eigen::Vector3d(observation.depth * observation.bearing.homogeneous());
     const double depth = (T_chost_w * p_w).z();
-    if (depth <= 0.0 || !another_view_agrees(window, landmark, p_w, frame, tolerance)) continue;
+    if (depth <= 0.0 || !another_view_agrees(window, landmark, {p_w, frame}, tolerance)) continue;
     sum += depth;
     ++count;
   }

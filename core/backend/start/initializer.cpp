@@ -7,15 +7,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include "core/backend/solvers/window_problem.h"
 #include "core/imu/gyro_bias.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kGravitySteps = 4;
-constexpr double kGaugeSigma_m = 1e-3;
-constexpr double kGaugeSigma_rad = 1e-3;
 
 /// Gyro bias that aligns the preintegrated rotations with the visual ones.
 Eigen::Vector3d solve_gyro_bias(const Window& window) {
@@ -108,18 +105,6 @@ void rescale(double scale, Window& window) {
   for (Landmark& landmark : window.landmarks) landmark.inverse_depth /= scale;
 }
 
-PriorBlock prior_block(const Window& window, BlockKind kind, int frame) {
-  ParameterBlocks blocks(window);
-  const double* values = block_address(blocks, {kind, frame});
-  return {kind, frame, Eigen::Map<const Eigen::VectorXd>(values, global_size(kind))};
-}
-
-Eigen::Matrix<double, 6, 6> pose_root_information(double sigma_m, double sigma_rad) {
-  Eigen::Matrix<double, 6, 1> diagonal;
-  diagonal << Eigen::Vector3d::Constant(1.0 / sigma_m), Eigen::Vector3d::Constant(1.0 / sigma_rad);
-  return diagonal.asDiagonal();
-}
-
 }  // namespace
 
 std::optional<InertialAlignment> align_with_imu(const Window& window, double gravity,
@@ -171,37 +156,6 @@ void apply_alignment(const InertialAlignment& alignment, const Pose& anchor, Win
     }
     state.v_w = velocity;
   }
-}
-
-LinearPrior initial_prior(const Window& window, const InitializerConfig& config) {
-  LinearPrior prior;
-  prior.blocks.push_back(prior_block(window, BlockKind::kPose, 0));
-  if (!window.inertial) {
-    prior.residual = Eigen::VectorXd::Zero(6);
-    prior.jacobian = pose_root_information(kGaugeSigma_m, kGaugeSigma_rad);
-    return prior;
-  }
-  prior.blocks.push_back(prior_block(window, BlockKind::kSpeedBias, 0));
-  // Rows: position, heading, gyro bias, accel bias. d heading / d theta = e_z^T R.
-  prior.residual = Eigen::VectorXd::Zero(10);
-  prior.jacobian = Eigen::MatrixXd::Zero(10, 15);
-  prior.jacobian.block<3, 3>(0, 0).diagonal().setConstant(1.0 / kGaugeSigma_m);
-  prior.jacobian.block<1, 3>(3, 3) = window.frames.front().state.T_w_b.R().row(2) / kGaugeSigma_rad;
-  prior.jacobian.block<3, 3>(4, 9).diagonal().setConstant(1.0 / config.gyro_bias_sigma);
-  prior.jacobian.block<3, 3>(7, 12).diagonal().setConstant(1.0 / config.accel_bias_sigma);
-  return prior;
-}
-
-LinearPrior calibration_prior(const Window& window, const BackendConfig& config) {
-  LinearPrior prior;
-  prior.blocks.push_back(prior_block(window, BlockKind::kExtrinsics, -1));
-  prior.blocks.push_back(prior_block(window, BlockKind::kTimeOffset, -1));
-  prior.residual = Eigen::VectorXd::Zero(7);
-  prior.jacobian = Eigen::MatrixXd::Zero(7, 7);
-  prior.jacobian.topLeftCorner<6, 6>() =
-      pose_root_information(config.extrinsics_sigma_m, config.extrinsics_sigma_rad);
-  prior.jacobian(6, 6) = 1.0 / config.time_offset_sigma_s;
-  return prior;
 }
 
 }  // namespace stillpoint

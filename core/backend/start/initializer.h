@@ -50,11 +50,4 @@ struct InertialAlignment {
 /// samples.
 void apply_alignment(const InertialAlignment& alignment, const Pose& anchor, Window& window);
 
-/// Initial prior of a window: fixes the gauge at frame 0 (position and heading, or the whole pose without
-/// IMU) and constrains its biases by their configured uncertainty.
-[[nodiscard]] LinearPrior initial_prior(const Window& window, const InitializerConfig& config);
-
-/// Prior on extrinsics and time offset at their current values, with the configured uncertainty.
-[[nodiscard]] LinearPrior calibration_prior(const Window& window, const BackendConfig& config);
-
 }  // namespace stillpoint

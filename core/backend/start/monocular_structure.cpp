@@ -2,11 +2,11 @@
 #include "core/backend/start/monocular_structure.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "core/backend/solvers/window_solver.h"
 #include "core/backend/start/camera_pose.h"
 #include "core/backend/start/depth_initialization.h"
-#include "core/backend/start/initializer.h"
+#include "core/backend/start/initial_prior.h"
 #include "core/backend/start/relative_pose.h"
 
 namespace stillpoint {
@@ -82,24 +82,66 @@ std::optional<Reference> find_reference(const Window& window, const Rotations& r
   return std::nullopt;
 }
 
-void set_camera_pose(const Pose& T_w_c, int frame, Window& window) {
-  window.frames[static_cast<std::size_t>(frame)].state.T_w_b = T_w_c * window.T_b_c.inverse();
+/// The landmark with its observations in the frames from `first` on only.
+Landmark truncate_before(int first, Landmark landmark) {
+  if (landmark.host >= first) return landmark;
+  landmark.observations.erase(landmark.observations.begin(),
+                              landmark.observations.begin() + (first - landmark.host));
+  landmark.host = first;
+  return landmark;
+}
+
+/// The window whose poses and depths are estimated, step by step.
+class Structure {
+ public:
+  Structure(const Window& window, const BackendConfig& config, double focal_px)
+      : window_(window),
+        config_(config),
+        focal_px_(focal_px),
+        bearing_sigma_(config.pixel_sigma_px / focal_px) {}
+
+  // The steps of `reconstruct_window`, in this order; false if a step fails.
+  [[nodiscard]] Points triangulate_reference_pair(const Reference& reference);
+  [[nodiscard]] bool localize_remaining(const Reference& reference, const Points& initial_points,
+                                        const Rotations& rotations);
+  void triangulate_landmarks();
+  [[nodiscard]] bool bundle_adjust(WindowSolver& solver);
+
+  [[nodiscard]] Window release() { return std::move(window_); }
+
+ private:
+  struct Neighbor {
+    int frame;  ///< localized
+    Eigen::Quaterniond q_neighbor_frame;
+  };
+  void set_camera_pose(const Pose& T_w_c, int frame);
+  [[nodiscard]] bool localize(int frame, const Neighbor& neighbor, const Points& points);
+  [[nodiscard]] Points triangulate_from(int first) const;
+
+  Window window_;
+  const BackendConfig& config_;
+  double focal_px_;
+  double bearing_sigma_;
+};
+
+void Structure::set_camera_pose(const Pose& T_w_c, int frame) {
+  window_.frames[static_cast<std::size_t>(frame)].state.T_w_b = T_w_c * window_.T_b_c.inverse();
 }
 
 /// Triangulates the common features of reference and newest frame, scaled to a median depth of 1.
-Points triangulate_reference_pair(const Reference& reference, double bearing_sigma, Window& window) {
-  set_camera_pose(Pose{}, reference.frame, window);
-  set_camera_pose(reference.T_reference_newest, window.newest(), window);
-  Window pair = window;
-  pair.frames = {window.frames[static_cast<std::size_t>(reference.frame)], window.frames.back()};
-  Points points(window.landmarks.size());
+Points Structure::triangulate_reference_pair(const Reference& reference) {
+  set_camera_pose(Pose{}, reference.frame);
+  set_camera_pose(reference.T_reference_newest, window_.newest());
+  Window pair = window_;
+  pair.frames = {window_.frames[static_cast<std::size_t>(reference.frame)], window_.frames.back()};
+  Points points(window_.landmarks.size());
   std::vector<double> depths;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Landmark& landmark = window.landmarks[i];
-    if (landmark.dynamic || landmark.host > reference.frame || landmark.last() != window.newest()) continue;
+    const Landmark& landmark = window_.landmarks[i];
+    if (landmark.dynamic || landmark.host > reference.frame || landmark.last() != window_.newest()) continue;
     const Landmark in_pair{
         .observations = {landmark.observation_in(reference.frame), landmark.observations.back()}};
-    const double depth = triangulate_depth(pair, in_pair, bearing_sigma);
+    const double depth = triangulate_depth(pair, in_pair, bearing_sigma_);
     if (depth <= 0.0) continue;
     points[i] = depth * in_pair.observations.front().bearing.homogeneous();
     depths.push_back(depth);
@@ -111,75 +153,73 @@ Points triangulate_reference_pair(const Reference& reference, double bearing_sig
   for (std::optional<Eigen::Vector3d>& point : points) {
     if (point) *point /= *middle;
   }
-  set_camera_pose({reference.T_reference_newest.q, reference.T_reference_newest.p / *middle}, window.newest(),
-                  window);
+  set_camera_pose({reference.T_reference_newest.q, reference.T_reference_newest.p / *middle},
+                  window_.newest());
   return points;
 }
 
 /// Estimates the pose of a frame from known points (PnP), predicted from a localized neighbor.
-bool localize(int frame, int neighbor, const Points& points, const Eigen::Quaterniond& q_neighbor_frame,
-              double focal_px, Window& window) {
+bool Structure::localize(int frame, const Neighbor& neighbor, const Points& points) {
   std::vector<PointObservation> observations;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Landmark& landmark = window.landmarks[i];
+    const Landmark& landmark = window_.landmarks[i];
     if (points[i] && landmark.observed_in(frame))
       observations.push_back({*points[i], landmark.observation_in(frame).bearing});
   }
-  const Pose T_w_cneighbor = window.T_w_c(neighbor);
-  const Pose prediction{T_w_cneighbor.q * q_neighbor_frame, T_w_cneighbor.p};
-  const std::optional<CameraPose> found =
-      estimate_camera_pose(observations, prediction, {.inlier_threshold = kLocalizationInlier_px / focal_px});
-  if (found) set_camera_pose(found->T_w_c, frame, window);
+  const Pose T_w_cneighbor = window_.T_w_c(neighbor.frame);
+  const Pose prediction{T_w_cneighbor.q * neighbor.q_neighbor_frame, T_w_cneighbor.p};
+  const std::optional<CameraPose> found = estimate_camera_pose(
+      observations, prediction, {.inlier_threshold = kLocalizationInlier_px / focal_px_});
+  if (found) set_camera_pose(found->T_w_c, frame);
   return found.has_value();
 }
 
-/// The landmark with its observations in the frames from `first` on only.
-Landmark truncate_before(int first, Landmark landmark) {
-  if (landmark.host >= first) return landmark;
-  landmark.observations.erase(landmark.observations.begin(),
-                              landmark.observations.begin() + (first - landmark.host));
-  landmark.host = first;
-  return landmark;
-}
-
 /// Triangulates all landmarks from the frames from `first` on, which must be localized.
-Points triangulate_from(int first, double bearing_sigma, const Window& window) {
-  Points points(window.landmarks.size());
+Points Structure::triangulate_from(int first) const {
+  Points points(window_.landmarks.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (window.landmarks[i].dynamic || window.landmarks[i].last() <= first) continue;
-    Landmark landmark = truncate_before(first, window.landmarks[i]);
-    const double depth = triangulate_depth(window, landmark, bearing_sigma);
+    if (window_.landmarks[i].dynamic || window_.landmarks[i].last() <= first) continue;
+    Landmark landmark = truncate_before(first, window_.landmarks[i]);
+    const double depth = triangulate_depth(window_, landmark, bearing_sigma_);
     if (depth <= 0.0) continue;
     landmark.inverse_depth = 1.0 / depth;
-    points[i] = window.position(landmark);
+    points[i] = window_.position(landmark);
   }
   return points;
 }
 
 /// Localizes all frames except the initial pair.
-bool localize_remaining(const Reference& reference, const Points& initial_points, const Rotations& rotations,
-                        double focal_px, double bearing_sigma, Window& window) {
-  for (int frame = reference.frame + 1; frame < window.newest(); ++frame) {
-    const Eigen::Quaterniond q = camera_rotation(window, rotations, frame - 1, frame);
-    if (!localize(frame, frame - 1, initial_points, q, focal_px, window)) return false;
+bool Structure::localize_remaining(const Reference& reference, const Points& initial_points,
+                                   const Rotations& rotations) {
+  for (int frame = reference.frame + 1; frame < window_.newest(); ++frame) {
+    const Eigen::Quaterniond q = camera_rotation(window_, rotations, frame - 1, frame);
+    if (!localize(frame, {frame - 1, q}, initial_points)) return false;
   }
   for (int frame = reference.frame - 1; frame >= 0; --frame) {
-    const Points points = triangulate_from(frame + 1, bearing_sigma, window);
-    const Eigen::Quaterniond q = camera_rotation(window, rotations, frame + 1, frame);
-    if (!localize(frame, frame + 1, points, q, focal_px, window)) return false;
+    const Points points = triangulate_from(frame + 1);
+    const Eigen::Quaterniond q = camera_rotation(window_, rotations, frame + 1, frame);
+    if (!localize(frame, {frame + 1, q}, points)) return false;
   }
   return true;
 }
 
+void Structure::triangulate_landmarks() {
+  for (Landmark& landmark : window_.landmarks) {
+    const double depth = triangulate_depth(window_, landmark, bearing_sigma_);
+    landmark.inverse_depth = depth > 0.0 ? 1.0 / depth : 0.0;
+    landmark.source = depth > 0.0 ? DepthSource::kTriangulated : DepthSource::kNone;
+  }
+}
+
 /// Bundle adjustment. @return whether it converged to a sufficiently low cost
-bool bundle_adjust(const BackendConfig& config, double focal_px, Window& window) {
-  window.prior = initial_prior(window, config.initializer);
-  BackendConfig adjustment = config;
+bool Structure::bundle_adjust(WindowSolver& solver) {
+  window_.prior = initial_prior(window_, config_.initializer);
+  BackendConfig adjustment = config_;
   adjustment.max_iterations = kBundleAdjustmentIterations;
-  const SolveReport report = solve_window(window, adjustment, focal_px);
-  if (!report.usable || report.landmarks < config.initializer.min_common_features) return false;
+  const SolveReport report = solver.solve(window_, adjustment, focal_px_);
+  if (!report.usable || report.landmarks < config_.initializer.min_common_features) return false;
   std::size_t observations = 0;
-  for (const Landmark& landmark : window.landmarks) {
+  for (const Landmark& landmark : window_.landmarks) {
     if (is_usable(landmark)) observations += landmark.observations.size() - 1;
   }
   return report.final_cost <= kMaxMeanCost * static_cast<double>(observations);
@@ -187,24 +227,19 @@ bool bundle_adjust(const BackendConfig& config, double focal_px, Window& window)
 
 }  // namespace
 
-std::optional<Window> reconstruct_window(const Window& window, const BackendConfig& config, double focal_px) {
+std::optional<Window> reconstruct_window(const Window& window, const BackendConfig& config, double focal_px,
+                                         WindowSolver& solver) {
   const std::optional<Rotations> rotations = inertial_rotations(window);
   if (!rotations) return std::nullopt;
   const std::optional<Reference> reference = find_reference(window, *rotations, config.initializer, focal_px);
   if (!reference) return std::nullopt;
 
-  const double bearing_sigma = config.pixel_sigma_px / focal_px;
-  Window structure = window;
-  const Points initial_points = triangulate_reference_pair(*reference, bearing_sigma, structure);
-  if (!localize_remaining(*reference, initial_points, *rotations, focal_px, bearing_sigma, structure))
-    return std::nullopt;
-  for (Landmark& landmark : structure.landmarks) {
-    const double depth = triangulate_depth(structure, landmark, bearing_sigma);
-    landmark.inverse_depth = depth > 0.0 ? 1.0 / depth : 0.0;
-    landmark.source = depth > 0.0 ? DepthSource::kTriangulated : DepthSource::kNone;
-  }
-  if (!bundle_adjust(config, focal_px, structure)) return std::nullopt;
-  return structure;
+  Structure structure(window, config, focal_px);
+  const Points initial_points = structure.triangulate_reference_pair(*reference);
+  if (!structure.localize_remaining(*reference, initial_points, *rotations)) return std::nullopt;
+  structure.triangulate_landmarks();
+  if (!structure.bundle_adjust(solver)) return std::nullopt;
+  return structure.release();
 }
 
 }  // namespace stillpoint

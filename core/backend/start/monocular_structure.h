@@ -4,8 +4,7 @@
 
 #include <optional>
 
-#include "core/backend/window/window.h"
-#include "core/config/backend_config.h"
+#include "core/backend/solvers/window_solver.h"
 
 namespace stillpoint {
 
@@ -20,9 +19,10 @@ namespace stillpoint {
 /// Gyroscope data are used only to compensate rotation in the parallax and to predict rotations for PnP.
 /// @param window every frame but the first with inertial samples; its poses and depths are not used
 /// @param focal_px focal length of the camera, converts pixels to bearings
+/// @param solver for the bundle adjustment
 /// @return the window in the frame of the reference camera; nothing if the parallax is insufficient or a step
 /// fails
 [[nodiscard]] std::optional<Window> reconstruct_window(const Window& window, const BackendConfig& config,
-                                                       double focal_px);
+                                                       double focal_px, WindowSolver& solver);
 
 }  // namespace stillpoint

@@ -40,16 +40,19 @@ Landmark make_landmark(const TrackedFeature& feature, const Observation& observa
   return landmark;
 }
 
-void remove(std::optional<Preintegration>& imu, Window& window) {
+void remove_preintegration(int frame, Window& window) {
+  std::optional<Preintegration>& imu = window.frames[static_cast<std::size_t>(frame)].from_previous;
   if (imu) window.sample_pool.release(imu->release_samples());
   imu.reset();
 }
 
-/// Replaces `later` by the preintegration over both intervals; by none if either is absent.
-void merge(std::optional<Preintegration>& earlier, std::optional<Preintegration>& later, Window& window) {
+/// Replaces the preintegration to frame + 1 by the one from frame - 1 on; by none if either is absent.
+void merge_preintegrations(int frame, Window& window) {
+  std::optional<Preintegration>& earlier = window.frames[static_cast<std::size_t>(frame)].from_previous;
+  std::optional<Preintegration>& later = window.frames[static_cast<std::size_t>(frame + 1)].from_previous;
   if (earlier && later) earlier->integrate(later->samples());
-  if (!later) remove(earlier, window);
-  remove(later, window);
+  if (!later) remove_preintegration(frame, window);
+  remove_preintegration(frame + 1, window);
   later = std::exchange(earlier, std::nullopt);
 }
 
@@ -119,7 +122,7 @@ void remove_oldest_frame(Window& window) {
     --landmark.host;
   }
   window.frames.erase(window.frames.begin());
-  remove(window.frames.front().from_previous, window);
+  remove_preintegration(0, window);
   remove_expired(window);
 }
 
@@ -133,8 +136,7 @@ void remove_second_newest_frame(Window& window) {
     }
     if (landmark.host > second) --landmark.host;
   }
-  merge(window.frames[static_cast<std::size_t>(second)].from_previous, window.frames.back().from_previous,
-        window);
+  merge_preintegrations(second, window);
   window.frames.erase(window.frames.end() - 2);
   remove_expired(window);
 }

@@ -47,12 +47,18 @@ HWY_INLINE V best_arc(const std::array<V, kCircle>& circle, Least least, Greates
   return best;
 }
 
+/// Pixels from some position in an image on.
+struct PixelRow {
+  const std::uint8_t* pixels;
+  std::ptrdiff_t stride;  ///< [bytes]
+};
+
 /// Quick rejection test: whether any of the pixels can be a corner. Every arc of 9 contains two adjacent
 /// pixels of the four on the axes.
 template <class D>
-HWY_INLINE bool may_contain_corner(D lanes, const std::uint8_t* pixels, std::ptrdiff_t stride,
-                                   hn::Vec<D> threshold) {
+HWY_INLINE bool may_contain_corner(D lanes, PixelRow row, hn::Vec<D> threshold) {
   using V = hn::Vec<D>;
+  const auto [pixels, stride] = row;
   const V own = hn::LoadU(lanes, pixels);
   const V right = hn::LoadU(lanes, pixels + 3);
   const V left = hn::LoadU(lanes, pixels - 3);
@@ -66,11 +72,11 @@ HWY_INLINE bool may_contain_corner(D lanes, const std::uint8_t* pixels, std::ptr
 }
 
 template <class D>
-HWY_INLINE void score(D lanes, const std::uint8_t* pixels, std::ptrdiff_t stride, int threshold,
-                      std::uint8_t* scores) {
+HWY_INLINE void score(D lanes, PixelRow row, int threshold, std::uint8_t* scores) {
   using V = hn::Vec<D>;
+  const auto [pixels, stride] = row;
   const V least = hn::Set(lanes, static_cast<std::uint8_t>(threshold));
-  if (!may_contain_corner(lanes, pixels, stride, least)) {
+  if (!may_contain_corner(lanes, row, least)) {
     hn::StoreU(hn::Zero(lanes), lanes, scores);
     return;
   }
@@ -94,13 +100,13 @@ void score_row(const std::uint8_t* pixels, std::ptrdiff_t stride, int threshold,
   const std::size_t width = hn::Lanes(lanes);
   if (scores.size() < width) {
     for (std::size_t x = 0; x < scores.size(); ++x) {
-      score(single, pixels + x, stride, threshold, scores.data() + x);
+      score(single, {pixels + x, stride}, threshold, scores.data() + x);
     }
     return;
   }
   for (std::size_t x = 0; x < scores.size(); x += width) {
     const std::size_t from = std::min(x, scores.size() - width);
-    score(lanes, pixels + from, stride, threshold, scores.data() + from);
+    score(lanes, {pixels + from, stride}, threshold, scores.data() + from);
   }
 }
 

@@ -41,7 +41,7 @@ const std::vector<cv::Point2f>& GridDetector::detect(const DetectionRequest& req
   count_features(request);
   features_per_cell_ = tracked_per_cell_;
   schedule();
-  for (int fill = 0; fill < quota_ + config_.spare_candidates; ++fill) {
+  for (int fill = 0; fill < quota_ + config_.extra_candidates; ++fill) {
     const bool enough = selected_.size() == static_cast<std::size_t>(request.wanted);
     if (enough && config_.stop_early) break;
     search(request, fill);
@@ -95,7 +95,7 @@ void GridDetector::search(const DetectionRequest& request, int fill) {
                         {.padding_px = config_.padding_px,
                          .threshold = config_.fast_threshold,
                          .min_distance_px = request.min_distance_px,
-                         .limit = static_cast<std::size_t>(missing + config_.spare_candidates)});
+                         .limit = static_cast<std::size_t>(missing + config_.extra_candidates)});
   };
   pool_.for_each_index(searched_.size() - first, std::ref(search_cell));  // copying it would allocate
   for (std::size_t i = first; i < searched_.size(); ++i) {

@@ -54,17 +54,15 @@ void ImagePyramid::rebuild_images(const cv::Mat& gray, int border_px, int levels
   images_.resize(level);
 }
 
-KltResult track_points_klt(const ImagePyramid& from, const ImagePyramid& to,
-                           const std::vector<cv::Point2f>& points,
-                           const std::vector<cv::Point2f>& initial_guesses, const KltSettings& settings) {
-  STILLPOINT_CHECK(points.size() == initial_guesses.size());
-  KltResult result{.pixels = initial_guesses, .found = {}};
-  if (points.empty()) return result;
+KltResult track_points_klt(const TrackingRequest& request, const KltSettings& settings) {
+  STILLPOINT_CHECK(request.points.size() == request.initial_guesses.size());
+  KltResult result{.pixels = request.initial_guesses, .found = {}};
+  if (request.points.empty()) return result;
   const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, settings.max_iterations,
                               kConvergedPx);
-  cv::calcOpticalFlowPyrLK(from.images(), to.images(), points, result.pixels, result.found, cv::noArray(),
-                           cv::Size(settings.window_px, settings.window_px), settings.levels - 1, stop,
-                           cv::OPTFLOW_USE_INITIAL_FLOW);
+  cv::calcOpticalFlowPyrLK(request.from.images(), request.to.images(), request.points, result.pixels,
+                           result.found, cv::noArray(), cv::Size(settings.window_px, settings.window_px),
+                           request.levels - 1, stop, cv::OPTFLOW_USE_INITIAL_FLOW);
   return result;
 }
 

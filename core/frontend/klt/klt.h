@@ -36,9 +36,17 @@ class ImagePyramid {
   int border_px_ = 0;                       ///< of pyramids without derivatives
 };
 
+/// Points of one image to find in another.
+struct TrackingRequest {
+  const ImagePyramid& from;
+  const ImagePyramid& to;
+  const std::vector<cv::Point2f>& points;           ///< in `from`
+  const std::vector<cv::Point2f>& initial_guesses;  ///< in `to`, one per point; the points if unknown
+  int levels = 2;                                   ///< pyramid levels to use, at most those built
+};
+
 struct KltSettings {
   int window_px = 21;
-  int levels = 2;  ///< pyramid levels to use, at most those built
   int max_iterations = 30;
 };
 
@@ -48,12 +56,8 @@ struct KltResult {
   std::vector<std::uint8_t> found;  ///< 0: no match, the pixel is undefined
 };
 
-/// Finds `points` of image `from` in image `to`.
-/// @param initial_guesses start of the search in `to`, one per point; the points themselves if unknown
-[[nodiscard]] KltResult track_points_klt(const ImagePyramid& from, const ImagePyramid& to,
-                                         const std::vector<cv::Point2f>& points,
-                                         const std::vector<cv::Point2f>& initial_guesses,
-                                         const KltSettings& settings);
+/// Finds the points by cv::calcOpticalFlowPyrLK.
+[[nodiscard]] KltResult track_points_klt(const TrackingRequest& request, const KltSettings& settings);
 
 /// Forward-backward check: clears `found` of the points that tracking back from the second image to the first
 /// loses or finds more than `tolerance_px` from the original point.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Scalar part of the patch tracker: bilinear sampling position and Gauss-Newton step.
+/// Scalar part of the patch tracker: bilinear sampling position, sums and Gauss-Newton step.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "core/frontend/patch/patch_kernel.h"
 
@@ -21,22 +23,28 @@ struct PatchSampler {
   float frac_y;
 };
 
-/// Sampling position of the patch around `center`. @return false if the center is not inside the image
-[[nodiscard]] inline bool make_sampler(const PatchImage& image, PatchPoint center, PatchSampler& sampler) {
-  const bool inside = center.x >= 0.0F && center.y >= 0.0F &&
-                      center.x <= static_cast<float>(image.width - 1) &&
-                      center.y <= static_cast<float>(image.height - 1);
-  if (!inside) return false;  // also if a coordinate is NaN
+/// Whether the image contains a point; false if a coordinate is NaN.
+[[nodiscard]] inline bool is_inside(const PatchImage& image, PatchPoint point) {
+  return point.x >= 0.0F && point.y >= 0.0F && point.x <= static_cast<float>(image.width - 1) &&
+         point.y <= static_cast<float>(image.height - 1);
+}
+
+/// Sampling position of the patch around `center`. @return nullopt if the center is not inside the image
+[[nodiscard]] inline std::optional<PatchSampler> make_sampler(const PatchImage& image, PatchPoint center) {
+  if (!is_inside(image, center)) return std::nullopt;
   constexpr float kHalf = 0.5F * (kPatchSide - 1);
   const float x = std::floor(center.x - kHalf);
   const float y = std::floor(center.y - kHalf);
-  sampler = {
+  return PatchSampler{
       .pixels = image.pixels + static_cast<std::ptrdiff_t>(y) * image.stride + static_cast<std::ptrdiff_t>(x),
       .stride = image.stride,
       .frac_x = center.x - kHalf - x,
       .frac_y = center.y - kHalf - y};
-  return true;
 }
+
+/// Sums over a patch before the means are removed: grey (G), grad_x (X), grad_y (Y) and their products.
+enum Moment : std::size_t { kG, kX, kY, kGG, kGX, kGY, kXX, kXY, kYY, kMoments };
+using Moments = std::array<float, kMoments>;
 
 /// Structure tensor of a patch, sum of grad grad^T: the Gauss-Newton Hessian H of the patch search.
 struct StructureTensor {
@@ -64,5 +72,11 @@ struct StructureTensor {
   return {scale * (hessian.yy * gradient.x - hessian.xy * gradient.y),
           scale * (hessian.xx * gradient.y - hessian.xy * gradient.x)};
 }
+
+/// Last position of a search; without a match, also outside the image.
+struct PatchMatch {
+  PatchPoint position;
+  bool found;
+};
 
 }  // namespace stillpoint

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/frontend/patch/patch_geometry.h"
 
@@ -47,17 +48,20 @@ HWY_INLINE Vector blend(Vector a, Vector b, Vector weight) {
 
 /// The template: intensities and gradients of a patch, and the terms of the search that depend only on it.
 struct Patch {
+  /// @return false if the patch has too little texture
+  bool extract(const PatchSampler& sampler, float min_eigenvalue);
+
   HWY_ALIGN std::array<float, kArea> grey;    ///< T - mean(T)
   HWY_ALIGN std::array<float, kArea> grad_x;  ///< G = grad T - mean(grad T)
   HWY_ALIGN std::array<float, kArea> grad_y;
   PatchPoint template_term;  ///< sum of G T
   StructureTensor hessian;   ///< sum of G G^T
   float norm = 0.0F;         ///< square root of the sum of grey^2
-};
 
-/// Sums over the patch before the means are removed: grey (G), grad_x (X), grad_y (Y) and their products.
-enum Moment : std::size_t { kG, kX, kY, kGG, kGX, kGY, kXX, kXY, kYY, kMoments };
-using Moments = std::array<float, kMoments>;
+ private:
+  Moments sample(const PatchSampler& sampler);
+  void remove_means(const Moments& m);
+};
 
 /// The same sums per column, accumulated over rows.
 struct MomentRow {
@@ -71,7 +75,7 @@ struct MomentRow {
 };
 
 /// Bilinearly interpolated intensities and central-difference gradients, without removing the means.
-Moments sample_patch(const PatchSampler& sampler, Patch& patch) {
+Moments Patch::sample(const PatchSampler& sampler) {
   const Row row;
   const Vector frac_x = hn::Set(row, sampler.frac_x);
   const Vector frac_y = hn::Set(row, sampler.frac_y);
@@ -96,12 +100,12 @@ Moments sample_patch(const PatchSampler& sampler, Patch& patch) {
       const Vector lower = blend(previous, center, frac_y);
       if (y > 2) {
         const std::size_t at = (y - 3) * kSide + x;
-        const Vector grad_x = hn::Mul(half, diff_x_middle);
-        const Vector grad_y = hn::Mul(half, hn::Sub(lower, upper));
-        moments.add(middle, grad_x, grad_y);
-        hn::Store(middle, row, patch.grey.data() + at);
-        hn::Store(grad_x, row, patch.grad_x.data() + at);
-        hn::Store(grad_y, row, patch.grad_y.data() + at);
+        const Vector slope_x = hn::Mul(half, diff_x_middle);
+        const Vector slope_y = hn::Mul(half, hn::Sub(lower, upper));
+        moments.add(middle, slope_x, slope_y);
+        hn::Store(middle, row, grey.data() + at);
+        hn::Store(slope_x, row, grad_x.data() + at);
+        hn::Store(slope_y, row, grad_y.data() + at);
       }
       upper = middle;
       middle = lower;
@@ -116,29 +120,28 @@ Moments sample_patch(const PatchSampler& sampler, Patch& patch) {
   return total;
 }
 
-void remove_means(const Moments& m, Patch& patch) {
+void Patch::remove_means(const Moments& m) {
   const Row row;
   const Vector mean_grey = hn::Set(row, m[kG] * (1.0F / kArea));
   const Vector mean_x = hn::Set(row, m[kX] * (1.0F / kArea));
   const Vector mean_y = hn::Set(row, m[kY] * (1.0F / kArea));
   for (std::size_t at = 0; at < kArea; at += hn::Lanes(row)) {
-    hn::Store(hn::Sub(hn::Load(row, patch.grey.data() + at), mean_grey), row, patch.grey.data() + at);
-    hn::Store(hn::Sub(hn::Load(row, patch.grad_x.data() + at), mean_x), row, patch.grad_x.data() + at);
-    hn::Store(hn::Sub(hn::Load(row, patch.grad_y.data() + at), mean_y), row, patch.grad_y.data() + at);
+    hn::Store(hn::Sub(hn::Load(row, grey.data() + at), mean_grey), row, grey.data() + at);
+    hn::Store(hn::Sub(hn::Load(row, grad_x.data() + at), mean_x), row, grad_x.data() + at);
+    hn::Store(hn::Sub(hn::Load(row, grad_y.data() + at), mean_y), row, grad_y.data() + at);
   }
 }
 
-/// @return false if the patch has too little texture
-bool extract_patch(const PatchSampler& sampler, float min_eigenvalue, Patch& patch) {
-  const Moments m = sample_patch(sampler, patch);
+bool Patch::extract(const PatchSampler& sampler, float min_eigenvalue) {
+  const Moments m = sample(sampler);
   constexpr float kInverseArea = 1.0F / kArea;
-  patch.hessian = {.xx = m[kXX] - m[kX] * m[kX] * kInverseArea,
-                   .xy = m[kXY] - m[kX] * m[kY] * kInverseArea,
-                   .yy = m[kYY] - m[kY] * m[kY] * kInverseArea};
-  if (!(patch.hessian.smaller_eigenvalue() >= min_eigenvalue * kArea)) return false;
-  remove_means(m, patch);
-  patch.template_term = {m[kGX] - m[kG] * m[kX] * kInverseArea, m[kGY] - m[kG] * m[kY] * kInverseArea};
-  patch.norm = std::sqrt(m[kGG] - m[kG] * m[kG] * kInverseArea);
+  hessian = {.xx = m[kXX] - m[kX] * m[kX] * kInverseArea,
+             .xy = m[kXY] - m[kX] * m[kY] * kInverseArea,
+             .yy = m[kYY] - m[kY] * m[kY] * kInverseArea};
+  if (!(hessian.smaller_eigenvalue() >= min_eigenvalue * kArea)) return false;
+  remove_means(m);
+  template_term = {m[kGX] - m[kG] * m[kX] * kInverseArea, m[kGY] - m[kG] * m[kY] * kInverseArea};
+  norm = std::sqrt(m[kGG] - m[kG] * m[kG] * kInverseArea);
   return true;
 }
 
@@ -205,69 +208,68 @@ struct PatchTemplate {
   const PatchImage* coarse_image = nullptr;
 };
 
-/// Gauss-Newton step at `match`. @return false if the patch center is outside the image
-bool compute_step(const PatchTemplate& tmpl, PatchPoint match, PatchPoint& step) {
-  PatchSampler sampler;
-  if (!make_sampler(*tmpl.image, match, sampler)) return false;
-  PatchPoint gradient = gradient_at(sampler, *tmpl.patch);
+/// Gauss-Newton step at `match`; nullopt if the patch center is outside the image.
+HWY_INLINE std::optional<PatchPoint> compute_step(const PatchTemplate& tmpl, PatchPoint match) {
+  const std::optional<PatchSampler> sampler = make_sampler(*tmpl.image, match);
+  if (!sampler) return std::nullopt;
+  PatchPoint gradient = gradient_at(*sampler, *tmpl.patch);
   StructureTensor hessian = tmpl.patch->hessian;
   if (tmpl.coarse != nullptr) {
-    if (!make_sampler(*tmpl.coarse_image, {0.5F * match.x, 0.5F * match.y}, sampler)) return false;
-    gradient = add_coarse(gradient, gradient_at(sampler, *tmpl.coarse));
+    const std::optional<PatchSampler> coarse =
+        make_sampler(*tmpl.coarse_image, {0.5F * match.x, 0.5F * match.y});
+    if (!coarse) return std::nullopt;
+    gradient = add_coarse(gradient, gradient_at(*coarse, *tmpl.coarse));
     hessian = add_coarse(hessian, tmpl.coarse->hessian);
   }
-  step = gauss_newton_step(hessian, gradient);
-  return true;
+  return gauss_newton_step(hessian, gradient);
 }
 
-/// Iterates `match` to convergence. @return false if it leaves the image
-bool iterate(const PatchTemplate& tmpl, int max_iterations, float converged_px, PatchPoint& match) {
-  PatchPoint step;
+/// Iterates from `match` to convergence; not found if it leaves the image.
+HWY_INLINE PatchMatch iterate(const PatchTemplate& tmpl, PatchPoint match, int max_iterations,
+                              float converged_px) {
   for (int i = 0; i < max_iterations; ++i) {
-    if (!compute_step(tmpl, match, step)) return false;
-    match = {match.x + step.x, match.y + step.y};
-    if (step.x * step.x + step.y * step.y < converged_px * converged_px) break;
+    const std::optional<PatchPoint> step = compute_step(tmpl, match);
+    if (!step) return {match, false};
+    match = {match.x + step->x, match.y + step->y};
+    if (step->x * step->x + step->y * step->y < converged_px * converged_px) break;
   }
-  PatchSampler sampler;
-  return make_sampler(*tmpl.image, match, sampler);
+  return {match, is_inside(*tmpl.image, match)};
 }
 
-bool extract_patch_at(const PatchImage& image, PatchPoint center, float min_eigenvalue, Patch& patch) {
-  PatchSampler sampler;
-  return make_sampler(image, center, sampler) && extract_patch(sampler, min_eigenvalue, patch);
-}
-
-bool track_patch(const PatchSearch& search, PatchPoint point, const PatchSettings& settings,
-                 PatchPoint& match) {
+PatchMatch track_patch(const PatchSearch& search, PatchPoint point, PatchPoint initial_guess,
+                       const PatchSettings& settings) {
   std::array<Patch, 2> patches;  // current and next coarser level, indexed by parity
+  PatchPoint match = initial_guess;
   bool valid = false;
   for (std::size_t level = search.from.size(); level-- > 0;) {
     const float scale = 1.0F / static_cast<float>(1U << level);
     const bool coarser_valid = valid;
     Patch& patch = patches[level % 2];
-    valid = extract_patch_at(search.from[level], {point.x * scale, point.y * scale}, settings.min_eigenvalue,
-                             patch);
+    const std::optional<PatchSampler> sampler =
+        make_sampler(search.from[level], {point.x * scale, point.y * scale});
+    valid = sampler && patch.extract(*sampler, settings.min_eigenvalue);
     if (!valid) continue;  // levels without texture are skipped
     PatchTemplate tmpl{.patch = &patch, .image = &search.to[level]};
     if (level == 0 && coarser_valid) {
       tmpl.coarse = &patches[1];
       tmpl.coarse_image = &search.to[1];
     }
-    PatchPoint scaled{match.x * scale, match.y * scale};
     const float converged_px = level > 0 ? kCoarseConverged_px : settings.converged_px;
-    const bool inside = iterate(tmpl, settings.max_iterations, converged_px, scaled);
+    const auto [scaled, inside] =
+        iterate(tmpl, {match.x * scale, match.y * scale}, settings.max_iterations, converged_px);
     if (inside || level == 0) match = {scaled.x / scale, scaled.y / scale};
-    if (!inside && level == 0) return false;
+    if (!inside && level == 0) return {match, false};
   }
-  PatchSampler sampler;
-  return valid && make_sampler(search.to[0], match, sampler) &&
-         correlation(sampler, patches[0]) >= settings.min_correlation;
+  if (!valid) return {match, false};
+  const std::optional<PatchSampler> sampler = make_sampler(search.to[0], match);
+  return {match, sampler && correlation(*sampler, patches[0]) >= settings.min_correlation};
 }
 
 void track_patches(const PatchSearch& search, const PatchSettings& settings) {
   for (std::size_t i = 0; i < search.points.size(); ++i) {
-    const bool found = track_patch(search, search.points[i], settings, search.matches[i]);
-    search.found[i] = found ? 1 : 0;
+    const PatchMatch match = track_patch(search, search.points[i], search.matches[i], settings);
+    search.matches[i] = match.position;
+    search.found[i] = match.found ? 1 : 0;
   }
 }
 

@@ -46,16 +46,16 @@ struct PyramidView {
 
 }  // namespace
 
-KltResult track_points_patch(const ImagePyramid& from, const ImagePyramid& to,
-                             const std::vector<cv::Point2f>& points,
-                             const std::vector<cv::Point2f>& initial_guesses, int levels,
-                             const PatchSettings& settings, PatchTarget target, KltResult recycled) {
+KltResult track_points_patch(const TrackingRequest& request, const PatchSettings& settings,
+                             PatchTarget target, KltResult recycled) {
+  const std::vector<cv::Point2f>& points = request.points;
+  const std::vector<cv::Point2f>& initial_guesses = request.initial_guesses;
   STILLPOINT_CHECK(points.size() == initial_guesses.size());
   KltResult result = std::move(recycled);
   result.pixels.resize(points.size());
   result.found.resize(points.size());
-  const PyramidView from_views(from, levels);
-  const PyramidView to_views(to, levels);
+  const PyramidView from_views(request.from, request.levels);
+  const PyramidView to_views(request.to, request.levels);
   const std::size_t common_levels = std::min(from_views.count, to_views.count);
   // cv::Point2f and PatchPoint have the same layout, but a cast would violate strict aliasing.
   std::array<PatchPoint, kBatch> centers;

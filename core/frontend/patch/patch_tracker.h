@@ -7,14 +7,9 @@
 
 namespace stillpoint {
 
-/// Finds `points` of image `from` in image `to`; drop-in replacement of `track_points_klt`.
-/// @param initial_guesses start of the search in `to`, one per point; the points themselves if unknown
-/// @param levels pyramid levels to use, at most those built
+/// Finds the points by `track_patches`; drop-in replacement of `track_points_klt`.
 /// @param recycled buffers reused for the result
-[[nodiscard]] KltResult track_points_patch(const ImagePyramid& from, const ImagePyramid& to,
-                                           const std::vector<cv::Point2f>& points,
-                                           const std::vector<cv::Point2f>& initial_guesses, int levels,
-                                           const PatchSettings& settings,
+[[nodiscard]] KltResult track_points_patch(const TrackingRequest& request, const PatchSettings& settings,
                                            PatchTarget target = PatchTarget::kBest, KltResult recycled = {});
 
 }  // namespace stillpoint

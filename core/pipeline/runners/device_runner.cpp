@@ -5,6 +5,8 @@
 #include <deque>
 
 #include "core/base/error.h"
+#include "core/pipeline/assembly.h"
+#include "core/pipeline/optimize_frame.h"
 #include "core/pipeline/runners/device_cores.h"
 #include "core/pipeline/runners/runner_parts.h"
 
@@ -52,12 +54,15 @@ class DeviceRun {
         summary_.interrupted = true;
         break;
       }
-      std::optional<FrameJob> job = load_frame_job(input_, *index, summary_.skipped);
-      if (job) process(*job, exposure(*index));
+      LoadedFrame loaded = load_frame(input_, *index);
+      if (loaded.job) {
+        process(*loaded.job, exposure(*index));
+      } else {
+        summary_.skipped.push_back({*index, std::move(loaded.error)});
+      }
     }
     summary_.realtime = std::move(report_);
-    complete_summary(stages_, summary_);
-    return std::move(summary_);
+    return completed(std::move(summary_), stages_.optimization.imu_health(), *stages_.detector);
   }
 
  private:
@@ -87,7 +92,7 @@ class DeviceRun {
   }
 
   void process(FrameJob& job, Time exposed) {
-    const Timestamp imu_end = after(job.frame.t, input_.rig.time_offset_s + kImuLookahead_s);
+    const Timestamp imu_end = imu_end_of(job.frame.t, input_.rig);
     imu_of_tracker_.feed_until(imu_end, stages_.tracking);
     imu_of_estimator_.feed_until(imu_end, stages_.optimization);
     job.enters_window = stages_.rate.admits(job.frame.t);
@@ -117,14 +122,17 @@ class DeviceRun {
   void optimize(const FrameJob& job, Time ready, Time exposed) {
     Time start = std::max(ready, optimizer_free_);
     std::optional<DetectionJob> found;
-    if (job.enters_window) found = take_detection(job.frame.t, start);
-    ModuleTime measured;
-    RunControl control = control_;
-    control.on_update = [&](const OdometryUpdate& update) {
-      measured = update.timings[Module::kOptimizationThread];
-      if (control_.on_update) control_.on_update(update);
-    };
-    finish_frame(job, found, stages_.optimization, control, summary_);
+    if (job.enters_window) {
+      start = end_of_detection_wait(job.frame.t, start);
+      found = take_detection(job.frame.t, start);
+    }
+    const OdometryUpdate& update = optimize_frame(job, found, stages_.optimization);
+    const ModuleTime measured = update.timings[Module::kOptimizationThread];
+    summary_.resets += update.counters.reset;
+    notify(control_, {.frame = job.frame,
+                      .tracked = job.tracked,
+                      .dynamic = stages_.optimization.dynamic(),
+                      .update = update});
     const bool free = !job.enters_window && clock_.device.optimization.fixed_ms;
     const Time cost = free ? Time{} : cost_of(clock_.device.optimization, measured);
     optimization_start_ = start;
@@ -133,15 +141,18 @@ class DeviceRun {
     feedback_.push_back({stages_.optimization.feedback(), optimizer_free_});
   }
 
-  /// Detections for a frame, by the rules of `NewestDetections::take`; advances `start` to the time at which
-  /// they are available or the wait times out.
-  DetectionJob take_detection(Timestamp t, Time& start) {
+  /// Time at which the detections of the frame at `t` are available or the wait for them times out.
+  [[nodiscard]] Time end_of_detection_wait(Timestamp t, Time start) const {
     const Time limit = start + Time(std::llround(1e6 * kDetectionWaitFraction * report_.deadline_ms));
     const bool own = !detections_.empty() && detections_.back().job.set.t == t;
-    start = own && detections_.back().available_at <= limit ? std::max(start, detections_.back().available_at)
-                                                            : limit;
+    return own && detections_.back().available_at <= limit ? std::max(start, detections_.back().available_at)
+                                                           : limit;
+  }
+
+  /// Detections for a frame at the end of the wait, by the rules of `NewestDetections::take`.
+  DetectionJob take_detection(Timestamp t, Time end_of_wait) {
     std::optional<DetectionJob> newest;
-    while (!detections_.empty() && detections_.front().available_at <= start) {
+    while (!detections_.empty() && detections_.front().available_at <= end_of_wait) {
       newest = std::move(detections_.front().job);
       detections_.pop_front();
     }

@@ -5,10 +5,12 @@
 #include "core/base/bounded_channel.h"
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
+#include "core/pipeline/assembly.h"
+#include "core/pipeline/optimize_frame.h"
 #include "core/pipeline/runners/newest_detections.h"
 #include "core/pipeline/runners/pacing_clock.h"
 #include "core/pipeline/runners/runner_parts.h"
-#include "core/pipeline/runners/thread_errors.h"
+#include "core/pipeline/thread_errors.h"
 
 namespace stillpoint {
 namespace {
@@ -43,8 +45,7 @@ class RealtimeRun {
     summary_.waits = {exposed_.waits("exposed frames"), to_detect_.waits("frames to detect"),
                       tracked_.waits("tracked frames")};
     summary_.realtime = std::move(report_);
-    complete_summary(stages_, summary_);
-    return std::move(summary_);
+    return completed(std::move(summary_), stages_.optimization.imu_health(), *stages_.detector);
   }
 
  private:
@@ -56,8 +57,12 @@ class RealtimeRun {
         break;
       }
       ++summary_.frames;
-      std::optional<FrameJob> job = load_frame_job(input_, i, summary_.skipped);
-      if (job) report_.dropped += exposed_.push_dropping_oldest(std::move(*job)).has_value();
+      LoadedFrame loaded = load_frame(input_, i);
+      if (loaded.job) {
+        report_.dropped += exposed_.push_dropping_oldest(std::move(*loaded.job)).has_value();
+      } else {
+        summary_.skipped.push_back({i, std::move(loaded.error)});
+      }
     }
     exposed_.close();
   }
@@ -98,7 +103,12 @@ class RealtimeRun {
           after(t, stages_.optimization.motion_state().time_offset_s + kRealtimeImuLookahead_s);
       clock_.wait_until(imu_end, {});
       imu.feed_until(imu_end, stages_.optimization);
-      finish_frame(*job, detections_for(*job), stages_.optimization, control_, summary_);
+      const OdometryUpdate& update = optimize_frame(*job, detections_for(*job), stages_.optimization);
+      summary_.resets += update.counters.reset;
+      notify(control_, {.frame = job->frame,
+                        .tracked = job->tracked,
+                        .dynamic = stages_.optimization.dynamic(),
+                        .update = update});
       report_.latencies_ms.push_back(1e3 * clock_.wall_seconds_late(t));
       feedback_.push_dropping_oldest(
           {stages_.optimization.feedback(std::move(job->feedback)), std::move(job->tracked)});

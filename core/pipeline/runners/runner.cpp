@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/pipeline/assembly.h"
+#include "core/pipeline/odometry.h"
 #include "core/pipeline/runners/runner_parts.h"
+#include "core/pipeline/threaded_odometry.h"
 
 namespace stillpoint {
 
@@ -14,37 +17,49 @@ int RealtimeReport::deadline_misses() const {
 }
 
 RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config, const RunControl& control) {
-  Stages stages = assemble(input, config);
-  ImuFeed imu_of_tracker(input.imu), imu_of_estimator(input.imu);
-  // Ring buffer of `feedback_lag + 1` feedback messages.
-  std::vector<TrackerFeedback> ring(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1,
-                                    {stages.optimization.feedback(), {}});
-  std::size_t oldest = 0;
-  RunSummary summary;
-  for (std::size_t i = 0; i < input.frame_times.size(); ++i) {
-    if (control.stop_requested && control.stop_requested()) {
-      summary.interrupted = true;
-      break;
-    }
-    ++summary.frames;
-    std::optional<FrameJob> job = load_frame_job(input, i, summary.skipped);
-    if (!job) continue;
-    const Timestamp imu_end = after(job->frame.t, input.rig.time_offset_s + kImuLookahead_s);
-    imu_of_tracker.feed_until(imu_end, stages.tracking);
-    imu_of_estimator.feed_until(imu_end, stages.optimization);
-
-    job->enters_window = stages.rate.admits(job->frame.t);
-    auto& [feedback, recycled_frame] = ring[oldest];
-    job->tracked =
-        stages.tracking.process(job->frame, job->enters_window, feedback, std::move(recycled_frame));
-    std::optional<DetectionJob> detections;
-    if (job->enters_window) detections = detect_objects(*stages.detector, job->frame);
-    finish_frame(*job, detections, stages.optimization, control, summary);
-    feedback = stages.optimization.feedback(std::move(feedback));
-    recycled_frame = std::move(job->tracked);
-    oldest = (oldest + 1) % ring.size();
+  const std::unique_ptr<ObjectDetector> detector = make_detector(input, config);
+  Odometry odometry(config, input.rig);
+  FrameLoader loader(input, control);
+  ImuFeed imu(input.imu);
+  int resets = 0;
+  while (const std::optional<FrameJob> job = loader.next()) {
+    const Frame& frame = job->frame;
+    imu.feed_through(imu_end_of(frame.t, input.rig), odometry);
+    DetectionJob detections;
+    if (odometry.enters_window(frame.t)) detections = detect_objects(*detector, frame);
+    OdometryUpdate& update = odometry.track(frame, detections.set);
+    update.timings.add(*job->decoding, 1);
+    if (detections.timing) update.timings.add(*detections.timing, 1);
+    resets += update.counters.reset;
+    notify(control,
+           {.frame = frame, .tracked = odometry.tracked(), .dynamic = odometry.dynamic(), .update = update});
   }
-  complete_summary(stages, summary);
+  RunSummary summary = completed(loader.summary(), odometry.imu_health(), *detector);
+  summary.resets = resets;
+  return summary;
+}
+
+RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config, const RunControl& control) {
+  const std::unique_ptr<ObjectDetector> detector = make_detector(input, config);
+  int resets = 0;  // written by the optimization thread
+  ThreadedOdometry odometry(config, input.rig,
+                            {.detect = [&](const Frame& frame) { return detector->detect(frame); },
+                             .on_update =
+                                 [&](const OdometryUpdate& update) {
+                                   resets += update.counters.reset;
+                                   if (control.on_update) control.on_update(update);
+                                 },
+                             .on_frame = control.on_frame});
+  FrameLoader loader(input, control);
+  ImuFeed imu(input.imu);
+  while (std::optional<FrameJob> job = loader.next()) {
+    if (!imu.feed_through(imu_end_of(job->frame.t, input.rig), odometry)) odometry.finish_imu();
+    odometry.add_frame(std::move(job->frame), job->decoding);
+  }
+  odometry.finish();
+  RunSummary summary = completed(loader.summary(), odometry.imu_health(), *detector);
+  summary.resets = resets;
+  summary.waits = odometry.waits();
   return summary;
 }
 

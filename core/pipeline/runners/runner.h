@@ -8,22 +8,17 @@
 #include <vector>
 
 #include "core/base/channel_waits.h"
-#include "core/pipeline/assembly.h"
+#include "core/config/odometry_config.h"
+#include "core/detector/object_detector.h"
+#include "core/pipeline/frame_report.h"
 #include "core/pipeline/runners/device.h"
-#include "core/types/odometry_update.h"
+#include "core/pipeline/sensor_input.h"
+#include "core/types/imu_health.h"
 
 namespace stillpoint {
 
-/// Inputs and results of one frame, for dumps and videos; valid during the call.
-struct FrameReport {
-  const Frame& frame;
-  const TrackedFrame& tracked;
-  const DynamicReport& dynamic;  ///< empty for a frame that does not enter the window
-  const OdometryUpdate& update;
-};
-
-/// Both `on_` callbacks are invoked on the thread that called the runner, in order of the frames. Any
-/// callback may be empty.
+/// Both `on_` callbacks are invoked in order of the frames, on one thread: that of the optimization in
+/// `run_pipelined`, else the one that called the runner. Any callback may be empty.
 struct RunControl {
   std::function<void(const OdometryUpdate&)> on_update;
   std::function<void(const FrameReport&)> on_frame;
@@ -57,12 +52,14 @@ struct RunSummary {
   std::optional<RealtimeReport> realtime;  ///< only `run_realtime` and `run_on_device`
 };
 
-/// Single-threaded, frame by frame. Deterministic: the same input and config give bit-identical results.
+/// Single-threaded (`Odometry`), frame by frame. Deterministic: the same input and config give bit-identical
+/// results.
 /// @throws InputError if the input lacks data that the config requires (e.g. an IMU), or no frame is readable
 [[nodiscard]] RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config,
                                         const RunControl& control);
 
-/// One thread each for tracking, detection and optimization. The feedback to the tracker has the lag of the
+/// One thread each for tracking, detection and optimization (`ThreadedOdometry`), while the calling thread
+/// loads the frames. The feedback to the tracker has the lag of the
 /// config, so that the result is bit-identical to that of `run_sequential`.
 /// @throws InputError as `run_sequential`
 [[nodiscard]] RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config,

@@ -3,17 +3,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "core/base/error.h"
 
 namespace stillpoint {
-namespace {
-
-ModuleSpan span_since(std::chrono::steady_clock::time_point start, Module module) {
-  return {.module = module, .start = start, .elapsed = std::chrono::steady_clock::now() - start};
-}
-
-}  // namespace
 
 double median_interval_s(std::span<const Timestamp> times) {
   std::vector<double> intervals;
@@ -24,18 +18,30 @@ double median_interval_s(std::span<const Timestamp> times) {
   return *middle;
 }
 
-std::optional<FrameJob> load_frame_job(const SensorInput& input, std::size_t index,
-                                       std::vector<SkippedFrame>& skipped) {
+LoadedFrame load_frame(const SensorInput& input, std::size_t index) {
   FrameJob job;
   const auto start = std::chrono::steady_clock::now();
   try {
     job.frame = input.load_frame(index);
   } catch (const InputError& error) {
-    skipped.push_back({index, error.what()});
-    return std::nullopt;
+    return {.job = std::nullopt, .error = error.what()};
   }
   job.decoding = span_since(start, Module::kImageDecoding);
-  return job;
+  return {.job = std::move(job), .error = {}};
+}
+
+std::optional<FrameJob> FrameLoader::next() {
+  while (summary_.frames < input_.frame_times.size()) {
+    if (control_.stop_requested && control_.stop_requested()) {
+      summary_.interrupted = true;
+      return std::nullopt;
+    }
+    const std::size_t index = summary_.frames++;
+    LoadedFrame loaded = load_frame(input_, index);
+    if (loaded.job) return std::move(loaded.job);
+    summary_.skipped.push_back({index, std::move(loaded.error)});
+  }
+  return std::nullopt;
 }
 
 DetectionJob detect_objects(ObjectDetector& detector, const Frame& frame) {
@@ -45,29 +51,20 @@ DetectionJob detect_objects(ObjectDetector& detector, const Frame& frame) {
   return detection;
 }
 
-void finish_frame(const FrameJob& job, const std::optional<DetectionJob>& detections,
-                  OptimizationStage& optimization, const RunControl& control, RunSummary& summary) {
-  OdometryUpdate& update = job.enters_window ? optimization.process(job.tracked, detections->set)
-                                             : optimization.predict(job.tracked);
-  update.timings.add(job.decoding, 1);
-  update.timings.add(job.tracked.timings);
-  if (detections && detections->timing) update.timings.add(*detections->timing, 1);
-  summary.resets += update.counters.reset;
-  if (control.on_update) control.on_update(update);
-  if (control.on_frame) {
-    control.on_frame(
-        {.frame = job.frame, .tracked = job.tracked, .dynamic = optimization.dynamic(), .update = update});
-  }
+void notify(const RunControl& control, const FrameReport& report) {
+  if (control.on_update) control.on_update(report.update);
+  if (control.on_frame) control.on_frame(report);
 }
 
-void complete_summary(const Stages& stages, RunSummary& summary) {
-  summary.imu_health = stages.optimization.imu_health();
-  summary.detector = stages.detector->description();
-  summary.detector_counters = stages.detector->counters();
+RunSummary completed(RunSummary summary, const ImuHealth& imu_health, const ObjectDetector& detector) {
   if (summary.frames > 0 && summary.skipped.size() == summary.frames) {
     throw InputError("no frame of the sequence could be read; the first error: " +
                      summary.skipped.front().reason);
   }
+  summary.imu_health = imu_health;
+  summary.detector = detector.description();
+  summary.detector_counters = detector.counters();
+  return summary;
 }
 
 }  // namespace stillpoint

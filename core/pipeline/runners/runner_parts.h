@@ -5,13 +5,11 @@
 #include <optional>
 #include <span>
 
+#include "core/pipeline/imu_queue.h"
 #include "core/pipeline/runners/runner.h"
+#include "core/pipeline/stage_messages.h"
 
 namespace stillpoint {
-
-/// IMU samples up to this much later than a frame are added before it: the sample at the exposure is
-/// interpolated, and the estimated time offset may increase.
-constexpr double kImuLookahead_s = 0.02;
 
 /// Capacity of the queue before the tracker in paced modes; the oldest frame is dropped when it is full.
 constexpr std::size_t kMaxQueuedFrames = 2;
@@ -22,7 +20,7 @@ constexpr double kDetectionWaitFraction = 0.3;
 /// Median interval between successive frames; 0 for fewer than two frames.
 [[nodiscard]] double median_interval_s(std::span<const Timestamp> times);
 
-/// Feeds IMU samples to a stage, up to a given time.
+/// Feeds the IMU samples of a sequence to a stage or an odometry.
 class ImuFeed {
  public:
   explicit ImuFeed(std::span<const ImuSample> samples) : samples_(samples) {}
@@ -32,45 +30,55 @@ class ImuFeed {
     for (; next_ < samples_.size() && samples_[next_].t <= end; ++next_) stage.add_imu(samples_[next_]);
   }
 
+  /// Feeds samples until one at or after `end`. @return false once all samples have been fed
+  template <class Odometry>
+  bool feed_through(Timestamp end, Odometry& odometry) {
+    while (next_ < samples_.size()) {
+      const ImuSample& sample = samples_[next_++];
+      odometry.add_imu(sample);
+      if (sample.t >= end) return true;
+    }
+    return false;
+  }
+
  private:
   std::span<const ImuSample> samples_;
   std::size_t next_ = 0;
 };
 
-/// Message from the optimization thread to the tracking thread.
-struct TrackerFeedback {
-  Feedback feedback;
-  TrackedFrame recycled_frame;  ///< a processed frame, whose memory the tracker reuses
+/// A loaded frame, or the reason why it could not be read.
+struct LoadedFrame {
+  std::optional<FrameJob> job;
+  std::string error;  ///< if there is no `job`
 };
+[[nodiscard]] LoadedFrame load_frame(const SensorInput& input, std::size_t index);
 
-/// A frame with its intermediate results, passed from stage to stage.
-struct FrameJob {
-  Frame frame;
-  bool enters_window = false;
-  Feedback feedback;     ///< input of the tracker; goes back to the optimization stage for reuse
-  TrackedFrame tracked;  ///< result of the tracking stage
-  ModuleSpan decoding;   ///< time of image decoding
+/// Loads the frames of a sequence one after the other, and skips those that cannot be read.
+class FrameLoader {
+ public:
+  /// @param input, control must outlive this object
+  FrameLoader(const SensorInput& input, const RunControl& control) : input_(input), control_(control) {}
+
+  /// @return nullopt at the end of the sequence and after `stop_requested`
+  [[nodiscard]] std::optional<FrameJob> next();
+
+  /// Contains `frames`, `skipped` and `interrupted`.
+  [[nodiscard]] const RunSummary& summary() const { return summary_; }
+
+ private:
+  const SensorInput& input_;
+  const RunControl& control_;
+  RunSummary summary_;
 };
-
-/// Detections of a frame, and the time the detector took.
-struct DetectionJob {
-  DetectionSet set;
-  std::optional<ModuleSpan> timing;  ///< nullopt if no detection finished in time
-};
-
-/// Loads a frame; returns nullopt and adds the reason to `skipped` if it cannot be read.
-[[nodiscard]] std::optional<FrameJob> load_frame_job(const SensorInput& input, std::size_t index,
-                                                     std::vector<SkippedFrame>& skipped);
 
 [[nodiscard]] DetectionJob detect_objects(ObjectDetector& detector, const Frame& frame);
 
-/// Last steps of a frame: optimization stage, timings, and callbacks.
-/// @param detections nullopt if the frame does not enter the window
-void finish_frame(const FrameJob& job, const std::optional<DetectionJob>& detections,
-                  OptimizationStage& optimization, const RunControl& control, RunSummary& summary);
+/// Calls `on_update` and `on_frame`.
+void notify(const RunControl& control, const FrameReport& report);
 
-/// Adds the final state of the stages to the summary.
+/// Adds the final state of the IMU and of the detector to the summary.
 /// @throws InputError if no frame could be read
-void complete_summary(const Stages& stages, RunSummary& summary);
+[[nodiscard]] RunSummary completed(RunSummary summary, const ImuHealth& imu_health,
+                                   const ObjectDetector& detector);
 
 }  // namespace stillpoint

@@ -6,8 +6,14 @@
 namespace stillpoint::synth {
 namespace {
 
-void add_part(MoverFrame& frame, const RigidPart& part, int object, const Pose& T_w_start,
-              const Pose& T_w_end) {
+/// Poses of a part at the start and the end of the frame's time interval.
+struct PartMotion {
+  const Pose& T_w_start;
+  const Pose& T_w_end;
+};
+
+void add_part(MoverFrame& frame, const RigidPart& part, int object, const PartMotion& motion) {
+  const auto& [T_w_start, T_w_end] = motion;
   const auto first = static_cast<std::uint32_t>(frame.mesh.start.size());
   const Eigen::Matrix3f R_start = T_w_start.R().cast<float>(), R_end = T_w_end.R().cast<float>();
   const Eigen::Vector3f p_start = T_w_start.p.cast<float>(), p_end = T_w_end.p.cast<float>();
@@ -33,7 +39,7 @@ MoverFrame assemble_movers(std::span<const Actor> actors, double start_s, double
     const std::vector<Pose> start = actor.poses_at(start_s), end = actor.poses_at(end_s);
     STILLPOINT_CHECK(start.size() == actor.parts.size() && end.size() == actor.parts.size());
     for (std::size_t i = 0; i < actor.parts.size(); ++i) {
-      add_part(frame, actor.parts[i], actor.object, start[i], end[i]);
+      add_part(frame, actor.parts[i], actor.object, {start[i], end[i]});
     }
   }
   return frame;

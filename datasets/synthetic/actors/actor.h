@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/geometry/pose.h"
-#include "datasets/sensor_stream.h"
+#include "datasets/io/sequence_info.h"
 #include "datasets/synthetic/actors/rigid_part.h"
 #include "datasets/synthetic/render/frame_renderer.h"
 

@@ -23,10 +23,10 @@ double heading_at(const ClosedRoute& route, double distance_m) {
 
 }  // namespace
 
-Walk::Walk(const ClosedRoute& route, const WalkStyle& style,
-           const std::function<Eigen::Vector2d(double t_s)>& camera_at, std::uint64_t random_key,
-           double from_s, double to_s)
-    : route_(route), nominal_speed_(style.speed), from_s_(from_s) {
+Walk::Walk(const ClosedRoute& route, const WalkStyle& style, const CameraMotion& camera_motion,
+           std::uint64_t random_key)
+    : route_(route), nominal_speed_(style.speed), from_s_(camera_motion.from_s) {
+  const auto& [camera_at, from_s, to_s] = camera_motion;
   RandomSequence random(random_key);
   double distance = style.start_m, speed = style.speed, stop_until_s = from_s;
   for (double t_s = from_s; t_s < to_s + kStep_s; t_s += kStep_s) {

@@ -20,13 +20,18 @@ struct WalkStyle {
       1.0;  ///< stops if the route ahead comes closer to the camera than this, retreats if closer still
 };
 
+/// Camera to keep clear of, and the time interval to simulate.
+struct CameraMotion {
+  std::function<Eigen::Vector2d(double t_s)> camera_at;  ///< camera position on the floor
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
 /// Simulated once on construction, so that `at` is a pure function of time.
 class Walk {
  public:
-  /// @param camera_at camera position on the floor at a time
-  Walk(const ClosedRoute& route, const WalkStyle& style,
-       const std::function<Eigen::Vector2d(double t_s)>& camera_at, std::uint64_t random_key, double from_s,
-       double to_s);
+  Walk(const ClosedRoute& route, const WalkStyle& style, const CameraMotion& camera,
+       std::uint64_t random_key);
 
   struct State {
     Eigen::Vector2d position;

@@ -45,19 +45,19 @@ Color random_color(RandomSequence& random, double brightness, double saturation)
 
 cv::Mat blank_canvas(int width, int height, const Color& color) { return {height, width, CV_8UC3, color}; }
 
-void add_noise(cv::Mat& canvas, double amplitude, int cell_x, int cell_y, RandomSequence& random) {
-  const int columns = std::max(1, canvas.cols / cell_x), rows = std::max(1, canvas.rows / cell_y);
+void add_noise(cv::Mat& canvas, double amplitude, const cv::Size& cell, RandomSequence& random) {
+  const int columns = std::max(1, canvas.cols / cell.width), rows = std::max(1, canvas.rows / cell.height);
   std::vector<double> lattice(static_cast<std::size_t>(columns * rows));
   for (double& node : lattice) node = random.uniform(-amplitude, amplitude);
   const auto node = [&](int row, int column) {
     return lattice[static_cast<std::size_t>((row % rows) * columns + column % columns)];
   };
   for (int y = 0; y < canvas.rows; ++y) {
-    const int row = y / cell_y;
-    const double weight_y = smooth_step(static_cast<double>(y % cell_y) / cell_y);
+    const int row = y / cell.height;
+    const double weight_y = smooth_step(static_cast<double>(y % cell.height) / cell.height);
     for (int x = 0; x < canvas.cols; ++x) {
-      const int column = x / cell_x;
-      const double weight_x = smooth_step(static_cast<double>(x % cell_x) / cell_x);
+      const int column = x / cell.width;
+      const double weight_x = smooth_step(static_cast<double>(x % cell.width) / cell.width);
       const double top = std::lerp(node(row, column), node(row, column + 1), weight_x);
       const double bottom = std::lerp(node(row + 1, column), node(row + 1, column + 1), weight_x);
       add_to_pixel(canvas.at<cv::Vec3b>(y, x), std::lerp(top, bottom, weight_y));
@@ -67,7 +67,7 @@ void add_noise(cv::Mat& canvas, double amplitude, int cell_x, int cell_y, Random
 
 void add_rough_noise(cv::Mat& canvas, double amplitude, int cell, RandomSequence& random) {
   for (int size = cell; size >= std::max(2, cell / 16); size /= 4, amplitude *= 0.5) {
-    add_noise(canvas, amplitude, size, size, random);
+    add_noise(canvas, amplitude, {size, size}, random);
   }
 }
 
@@ -99,8 +99,8 @@ void draw_words(cv::Mat& canvas, const cv::Rect& area, const Color& ink, RandomS
               cv::LINE_AA);
 }
 
-void draw_print(cv::Mat& canvas, const cv::Rect& area, int line_px, const Color& ink,
-                RandomSequence& random) {
+void draw_print(cv::Mat& canvas, const cv::Rect& area, const PrintStyle& style, RandomSequence& random) {
+  const auto& [line_px, ink] = style;
   for (int y = area.y; y + line_px <= area.y + area.height; y += line_px) {
     if (random.chance(0.12)) continue;  // a blank line between paragraphs
     const int width = static_cast<int>(area.width * (random.chance(0.2) ? random.uniform(0.3, 0.8) : 1.0));
@@ -128,7 +128,7 @@ void draw_illustration(cv::Mat& canvas, const cv::Rect& area, RandomSequence& ra
       cv::fillConvexPoly(part, triangle, color, cv::LINE_AA);
     }
   }
-  add_noise(part, 12.0, std::max(2, area.width / 16), std::max(2, area.width / 16), random);
+  add_noise(part, 12.0, {std::max(2, area.width / 16), std::max(2, area.width / 16)}, random);
 }
 
 void draw_barcode(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {

@@ -16,8 +16,8 @@ using Color = cv::Scalar;
 
 [[nodiscard]] cv::Mat blank_canvas(int width, int height, const Color& color);
 
-/// Adds tileable smooth noise of lattice constant (cell_x, cell_y) [px] and peak `amplitude` [grey levels].
-void add_noise(cv::Mat& canvas, double amplitude, int cell_x, int cell_y, RandomSequence& random);
+/// Adds tileable smooth noise of lattice constant `cell` [px] and peak `amplitude` [grey levels].
+void add_noise(cv::Mat& canvas, double amplitude, const cv::Size& cell, RandomSequence& random);
 
 /// Adds noise at three scales, `cell`, `cell` / 4 and `cell` / 16; the amplitude halves with each scale.
 void add_rough_noise(cv::Mat& canvas, double amplitude, int cell, RandomSequence& random);
@@ -30,8 +30,14 @@ void fill_rect(cv::Mat& canvas, const cv::Rect& area, const Color& color);
 /// One line of random words, at most as wide as `area`; the letters fill its height.
 void draw_words(cv::Mat& canvas, const cv::Rect& area, const Color& ink, RandomSequence& random);
 
-/// Lines of small text: ragged right, with paragraphs. @param line_px line spacing
-void draw_print(cv::Mat& canvas, const cv::Rect& area, int line_px, const Color& ink, RandomSequence& random);
+/// Small text.
+struct PrintStyle {
+  int line_px = 10;  ///< line spacing
+  Color ink;
+};
+
+/// Lines of small text: ragged right, with paragraphs.
+void draw_print(cv::Mat& canvas, const cv::Rect& area, const PrintStyle& style, RandomSequence& random);
 
 /// An abstract illustration: sky and ground, disks, triangles, bars.
 void draw_illustration(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random);

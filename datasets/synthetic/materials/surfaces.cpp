@@ -14,8 +14,15 @@ Color darker(const Color& color, double factor) {
   return {color[0] * factor, color[1] * factor, color[2] * factor};
 }
 
+struct Specks {
+  int count = 0;
+  int largest_px = 1;
+  double contrast = 0.0;  ///< [gray levels]
+};
+
 /// Random specks (knots, stains, fibers) that add corners to surfaces with little texture.
-void add_specks(cv::Mat& canvas, int count, int largest_px, double contrast, RandomSequence& random) {
+void add_specks(cv::Mat& canvas, const Specks& specks, RandomSequence& random) {
+  const auto& [count, largest_px, contrast] = specks;
   for (int i = 0; i < count; ++i) {
     const cv::Point at(random.index(canvas.cols), random.index(canvas.rows));
     const double change = random.uniform(-contrast, contrast);
@@ -37,7 +44,8 @@ void draw_sheet(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
   if (illustration_px > 0)
     draw_illustration(canvas, {inner.x, inner.y + title_px + 4, inner.width, illustration_px - 4}, random);
   const int top = inner.y + title_px + illustration_px + 4;
-  draw_print(canvas, {inner.x, top, inner.width, inner.y + inner.height - top}, 9, Color(50, 50, 55), random);
+  draw_print(canvas, {inner.x, top, inner.width, inner.y + inner.height - top}, {9, Color(50, 50, 55)},
+             random);
 }
 
 void draw_spine(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
@@ -66,8 +74,8 @@ void draw_package(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random)
   draw_illustration(canvas,
                     {area.x + pad, area.y + area.height * 4 / 10, area.width - 2 * pad, area.height * 3 / 10},
                     random);
-  draw_print(canvas, {area.x + pad, area.y + area.height * 3 / 4, area.width / 2, area.height / 5}, 8,
-             Color(25, 25, 25), random);
+  draw_print(canvas, {area.x + pad, area.y + area.height * 3 / 4, area.width / 2, area.height / 5},
+             {8, Color(25, 25, 25)}, random);
   draw_barcode(canvas,
                {area.x + area.width * 2 / 3, area.y + area.height * 3 / 4, area.width / 4, area.height / 6},
                random);
@@ -83,7 +91,7 @@ void draw_window_frame(cv::Mat& canvas, const cv::Rect& area, RandomSequence& ra
   if (random.chance(0.3)) {
     draw_illustration(canvas, text, random);
   } else {
-    draw_print(canvas, text, 10, ink, random);
+    draw_print(canvas, text, {10, ink}, random);
   }
 }
 
@@ -100,7 +108,7 @@ cv::Mat paint_carpet(const Color& base, RandomSequence& random) {
   cv::Mat canvas = blank_canvas(kTiledSide, kTiledSide, base);
   add_rough_noise(canvas, 22.0, 128, random);
   add_grain(canvas, 12.0, random);
-  add_specks(canvas, 2500, 5, 45.0, random);
+  add_specks(canvas, {2500, 5, 45.0}, random);
   for (int line = 0; line < kTiledSide; line += kTiledSide / 4) {  // seams of the carpet tiles
     fill_rect(canvas, {line, 0, 3, kTiledSide}, darker(base, 0.75));
     fill_rect(canvas, {0, line, kTiledSide, 3}, darker(base, 0.75));
@@ -110,28 +118,28 @@ cv::Mat paint_carpet(const Color& base, RandomSequence& random) {
 
 cv::Mat paint_wood(const Color& base, RandomSequence& random) {
   cv::Mat canvas = blank_canvas(kTiledSide, kTiledSide, base);
-  add_noise(canvas, 14.0, 256, 64, random);
-  add_noise(canvas, 18.0, 256, 16, random);
-  add_noise(canvas, 16.0, 128, 4, random);
-  add_noise(canvas, 10.0, 64, 2, random);
-  add_specks(canvas, 120, 9, 50.0, random);
+  add_noise(canvas, 14.0, {256, 64}, random);
+  add_noise(canvas, 18.0, {256, 16}, random);
+  add_noise(canvas, 16.0, {128, 4}, random);
+  add_noise(canvas, 10.0, {64, 2}, random);
+  add_specks(canvas, {120, 9, 50.0}, random);
   return canvas;
 }
 
 cv::Mat paint_fabric(const Color& base, RandomSequence& random) {
   cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, base);
   add_rough_noise(canvas, 14.0, 64, random);
-  add_noise(canvas, 12.0, 4, 16, random);
-  add_noise(canvas, 12.0, 16, 4, random);
+  add_noise(canvas, 12.0, {4, 16}, random);
+  add_noise(canvas, 12.0, {16, 4}, random);
   return canvas;
 }
 
 cv::Mat paint_plaster(const Color& base, RandomSequence& random) {
   cv::Mat canvas = blank_canvas(kTiledSide, kTiledSide, base);
   add_rough_noise(canvas, 7.0, 256, random);
-  add_noise(canvas, 5.0, 8, 8, random);
+  add_noise(canvas, 5.0, {8, 8}, random);
   add_grain(canvas, 2.5, random);
-  add_specks(canvas, 420, 8, 38.0, random);
+  add_specks(canvas, {420, 8, 38.0}, random);
   return canvas;
 }
 
@@ -146,7 +154,7 @@ cv::Mat paint_tiles(const Color& base, int count, RandomSequence& random) {
   }
   add_rough_noise(canvas, 10.0, 64, random);
   add_grain(canvas, 5.0, random);
-  add_specks(canvas, 1600, 5, 40.0, random);
+  add_specks(canvas, {1600, 5, 40.0}, random);
   return canvas;
 }
 
@@ -154,7 +162,7 @@ cv::Mat paint_ceiling(RandomSequence& random) {
   const Color base(205, 205, 200);
   cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, base);
   add_rough_noise(canvas, 6.0, 128, random);
-  add_specks(canvas, 900, 3, 60.0, random);
+  add_specks(canvas, {900, 3, 60.0}, random);
   fill_rect(canvas, {0, 0, 8, kObjectSide}, Color(165, 165, 165));
   fill_rect(canvas, {0, 0, kObjectSide, 8}, Color(165, 165, 165));
   return canvas;
@@ -168,9 +176,9 @@ cv::Mat paint_poster(RandomSequence& random) {
   draw_words(canvas, {24, 84, 300, 26}, ink, random);
   draw_illustration(canvas, {24, 124, 288, 210}, random);
   fill_rect(canvas, {326, 124, 162, 210}, Color(235, 235, 230));
-  draw_print(canvas, {332, 130, 150, 200}, 12, Color(30, 30, 40), random);
+  draw_print(canvas, {332, 130, 150, 200}, {12, Color(30, 30, 40)}, random);
   fill_rect(canvas, {24, 346, 464, 148}, Color(238, 238, 232));
-  draw_print(canvas, {32, 352, 210, 138}, 11, Color(30, 30, 40), random);
+  draw_print(canvas, {32, 352, 210, 138}, {11, Color(30, 30, 40)}, random);
   draw_illustration(canvas, {262, 356, 216, 128}, random);
   return canvas;
 }
@@ -197,7 +205,7 @@ cv::Mat paint_paper(RandomSequence& random) {
 
 cv::Mat paint_screen(RandomSequence& random) {
   cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, random_color(random, 110.0, 0.6));
-  add_noise(canvas, 20.0, 128, 128, random);
+  add_noise(canvas, 20.0, {128, 128}, random);
   for (int i = 0; i < 3; ++i) {
     const int width = 200 + random.index(160), height = 180 + random.index(180);
     draw_window_frame(canvas,
@@ -238,7 +246,7 @@ cv::Mat paint_door(const Color& base, RandomSequence& random) {
 cv::Mat paint_window(RandomSequence& random) {
   cv::Mat canvas = blank_canvas(kObjectSide, kObjectSide, Color(215, 225, 240));
   draw_illustration(canvas, {0, kObjectSide / 3, kObjectSide, kObjectSide * 2 / 3}, random);
-  add_noise(canvas, 18.0, 32, 32, random);
+  add_noise(canvas, 18.0, {32, 32}, random);
   for (int line = 0; line <= kObjectSide; line += kObjectSide / 2) {
     fill_rect(canvas, {std::min(line, kObjectSide - 16) - (line > 0 ? 8 : 0), 0, 16, kObjectSide},
               Color(240, 240, 240));
@@ -253,7 +261,7 @@ cv::Mat paint_carton(RandomSequence& random) {
   add_rough_noise(canvas, 10.0, 64, random);
   fill_rect(canvas, {kObjectSide / 2 - 24, 0, 48, kObjectSide}, Color(190, 160, 115));
   fill_rect(canvas, {40, 60, 170, 120}, Color(238, 238, 232));
-  draw_print(canvas, {48, 66, 150, 70}, 14, Color(30, 30, 30), random);
+  draw_print(canvas, {48, 66, 150, 70}, {14, Color(30, 30, 30)}, random);
   draw_barcode(canvas, {60, 140, 120, 34}, random);
   draw_words(canvas, {300, 330, 200, 60}, Color(70, 45, 30), random);
   return canvas;

@@ -129,9 +129,10 @@ Eigen::Quaterniond camera_attitude(double yaw, double pitch, double roll) {
          Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()) * Eigen::Quaterniond(R_level_c);
 }
 
-PathSpline hand_path(HandMotion motion, const Viewpoint& view, const Pose& T_b_c, std::uint64_t seed,
-                     double from_s, double to_s) {
-  RandomSequence random(random_key(seed, RandomStream::kMotion, static_cast<std::uint64_t>(motion)));
+PathSpline hand_path(HandMotion motion, const Viewpoint& view, const PathRequest& request) {
+  const Pose& T_b_c = request.T_b_c;
+  const double from_s = request.from_s, to_s = request.to_s;
+  RandomSequence random(random_key(request.seed, RandomStream::kMotion, static_cast<std::uint64_t>(motion)));
   const MotionSize size = size_of(motion);
   const std::array<Channel, 3> translation = make_channels(size.translation, random);
   const std::array<Channel, 3> rotation = make_channels(size.rotation, random);

@@ -23,10 +23,9 @@ struct Viewpoint {
 /// y, pitch positive downwards, roll positive clockwise as seen from behind the camera.
 [[nodiscard]] Eigen::Quaterniond camera_attitude(double yaw, double pitch, double roll);
 
-/// Path of the body that carries the camera, over [from_s, to_s]. Mean speeds as listed for the TUM
+/// Path of the body that carries the camera. Mean speeds as listed for the TUM
 /// sequences: xyz 0.2-0.3 m/s, rpy 20 deg/s (peaks 40-50), halfsphere 0.2 m/s and 18 deg/s, static 0.01 m/s.
 /// Amplitudes ramp from 40 % to 100 % over the first two seconds, for a moving but gentle start.
-[[nodiscard]] PathSpline hand_path(HandMotion motion, const Viewpoint& view, const Pose& T_b_c,
-                                   std::uint64_t seed, double from_s, double to_s);
+[[nodiscard]] PathSpline hand_path(HandMotion motion, const Viewpoint& view, const PathRequest& request);
 
 }  // namespace stillpoint::synth

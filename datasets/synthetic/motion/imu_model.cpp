@@ -17,10 +17,15 @@ Eigen::Vector3d normal3(RandomSequence& random) {
   return {x, y, z};
 }
 
+struct ReadingTimes {
+  Timestamp first_stamp;  ///< of path time `from_s`
+  double from_s, to_s;
+};
+
 template <class Ideal>
 std::vector<datasets::VectorSample> simulate_readings(const Ideal& ideal, const AxisNoise& noise,
-                                                      Timestamp first_stamp, double from_s, double to_s,
-                                                      RandomSequence random) {
+                                                      const ReadingTimes& times, RandomSequence random) {
+  const auto& [first_stamp, from_s, to_s] = times;
   const double step_s = 1.0 / noise.rate_hz;
   const double white =
       noise.density * std::sqrt(noise.rate_hz);  // per-sample standard deviation: density / sqrt(dt)
@@ -38,18 +43,17 @@ std::vector<datasets::VectorSample> simulate_readings(const Ideal& ideal, const 
 
 }  // namespace
 
-ImuRecord simulate_imu(const PathSpline& path, const ImuSensor& sensor, Timestamp epoch, double from_s,
-                       double to_s, std::uint64_t seed) {
-  const Timestamp first_stamp = after(epoch, from_s + sensor.time_offset_s);
+ImuRecord simulate_imu(const PathSpline& path, const ImuSensor& sensor, const ImuInterval& interval) {
+  const Timestamp first_stamp = after(interval.epoch, interval.from_s + sensor.time_offset_s);
+  const ReadingTimes times{first_stamp, interval.from_s, interval.to_s};
   const ImuNoise& noise = sensor.noise;
   const AxisNoise gyro{sensor.gyro_rate_hz, noise.gyro_noise, noise.gyro_walk, sensor.gyro_bias, 0.28};
   const AxisNoise accel{sensor.accel_rate_hz, noise.accel_noise, noise.accel_walk, sensor.accel_bias, 0.325};
   ImuRecord record;
-  record.gyro = simulate_readings([&](double t_s) { return path.at(t_s).rate_b; }, gyro, first_stamp, from_s,
-                                  to_s, RandomSequence(random_key(seed, RandomStream::kGyro)));
-  record.accel =
-      simulate_readings([&](double t_s) { return specific_force(path.at(t_s)); }, accel, first_stamp, from_s,
-                        to_s, RandomSequence(random_key(seed, RandomStream::kAccel)));
+  record.gyro = simulate_readings([&](double t_s) { return path.at(t_s).rate_b; }, gyro, times,
+                                  RandomSequence(random_key(interval.seed, RandomStream::kGyro)));
+  record.accel = simulate_readings([&](double t_s) { return specific_force(path.at(t_s)); }, accel, times,
+                                   RandomSequence(random_key(interval.seed, RandomStream::kAccel)));
   return record;
 }
 

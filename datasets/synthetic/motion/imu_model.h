@@ -33,9 +33,15 @@ struct ImuRecord {
   std::vector<datasets::VectorSample> accel;  ///< [m/s^2]
 };
 
-/// Samples over [from_s, to_s] in path time; gyroscope and accelerometer have separate rates and phases.
-/// @param epoch timestamp of path time 0
-[[nodiscard]] ImuRecord simulate_imu(const PathSpline& path, const ImuSensor& sensor, Timestamp epoch,
-                                     double from_s, double to_s, std::uint64_t seed);
+struct ImuInterval {
+  Timestamp epoch;      ///< timestamp of path time 0
+  double from_s = 0.0;  ///< in path time
+  double to_s = 0.0;
+  std::uint64_t seed = 1;
+};
+
+/// Samples over an interval; gyroscope and accelerometer have separate rates and phases.
+[[nodiscard]] ImuRecord simulate_imu(const PathSpline& path, const ImuSensor& sensor,
+                                     const ImuInterval& interval);
 
 }  // namespace stillpoint::synth

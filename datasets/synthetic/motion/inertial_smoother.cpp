@@ -55,10 +55,19 @@ void add_smoothness(BandedLeastSquares& system, int count, int dimension, int co
   }
 }
 
-/// One row per quaternion number for the condition  sum_k (value_k * I + coupling * weight_k) c_k = target.
-void add_quaternion_rows(BandedLeastSquares& system, int first, const std::array<double, 6>& scalar,
-                         const std::array<double, 6>& coupled, const Eigen::Matrix4d& coupling,
-                         const Eigen::Vector4d& target, double weight) {
+/// sum_k (scalar_k * I + coupling * coupled_k) c_k = target, c_k: the quaternion of knot first + k.
+struct QuaternionCondition {
+  int first;
+  std::array<double, 6> scalar;
+  std::array<double, 6> coupled;
+  Eigen::Matrix4d coupling;
+  Eigen::Vector4d target;
+  double weight;
+};
+
+/// One row per quaternion number.
+void add_quaternion_rows(BandedLeastSquares& system, const QuaternionCondition& condition) {
+  const auto& [first, scalar, coupled, coupling, target, weight] = condition;
   for (int r = 0; r < 4; ++r) {
     std::array<double, 24> row{};
     for (std::size_t k = 0; k < 6; ++k) {
@@ -90,17 +99,17 @@ std::vector<Eigen::Vector4d> fit_attitudes(const Problem& problem, const Eigen::
     if (q.dot(previous) < 0.0) q = -q;
     previous = q;
     const Knots::Span span = knots.span_at(seconds_between(problem.epoch, pose.t));
-    add_quaternion_rows(system, span.first, quintic_weights(span.u, 0), {}, Eigen::Matrix4d::Zero(), q,
-                        pose_weight);
+    add_quaternion_rows(
+        system, {span.first, quintic_weights(span.u, 0), {}, Eigen::Matrix4d::Zero(), q, pose_weight});
   }
   const double gyro_weight = std::pow(2.0 / problem.config.gyro_sigma, 2);
   for (const ImuSample& sample : problem.imu) {
     const Knots::Span span = knots.span_at(seconds_between(problem.epoch, sample.t));
     std::array<double, 6> rate = quintic_weights(span.u, 1);
     for (double& weight : rate) weight /= knots.interval_s;
-    add_quaternion_rows(system, span.first, rate, quintic_weights(span.u, 0),
-                        -0.5 * right_product(sample.gyro_b - gyro_bias), Eigen::Vector4d::Zero(),
-                        gyro_weight);
+    add_quaternion_rows(
+        system, {span.first, rate, quintic_weights(span.u, 0),
+                 -0.5 * right_product(sample.gyro_b - gyro_bias), Eigen::Vector4d::Zero(), gyro_weight});
   }
   add_smoothness(system, knots.count, 4, 1);
   const Eigen::MatrixXd solution = system.solve();
@@ -196,10 +205,9 @@ SmoothedMotion with_residuals(const Problem& problem, PathSpline path, const Eig
 
 }  // namespace
 
-SmoothedMotion smooth_motion(std::span<const StampedPose> poses, std::span<const ImuSample> imu,
-                             Timestamp epoch, double from_s, double to_s, const SmootherConfig& config) {
-  const Knots knots = knots_over(from_s, to_s, config.knot_interval_s);
-  const Problem problem{poses, imu, epoch, knots, config};
+SmoothedMotion smooth_motion(const MotionSamples& samples, const SmootherConfig& config) {
+  const Knots knots = knots_over(samples.from_s, samples.to_s, config.knot_interval_s);
+  const Problem problem{samples.poses, samples.imu, samples.epoch, knots, config};
   const std::vector<Eigen::Vector3d> zero_positions(static_cast<std::size_t>(knots.count),
                                                     Eigen::Vector3d::Zero());
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();

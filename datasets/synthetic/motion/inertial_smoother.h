@@ -39,10 +39,14 @@ struct SmoothedMotion {
   double accel_residual = 0.0;     ///< [m/s^2]
 };
 
-/// @param poses T_w_b of the IMU over [from_s, to_s] after the epoch; a small margin at both ends helps
-/// @param imu   samples over the same interval
-[[nodiscard]] SmoothedMotion smooth_motion(std::span<const StampedPose> poses, std::span<const ImuSample> imu,
-                                           Timestamp epoch, double from_s, double to_s,
-                                           const SmootherConfig& config = {});
+struct MotionSamples {
+  std::span<const StampedPose> poses;  ///< T_w_b of the IMU
+  std::span<const ImuSample> imu;
+  Timestamp epoch;
+  double from_s = 0.0;  ///< interval after the epoch that both cover; a small margin at both ends helps
+  double to_s = 0.0;
+};
+
+[[nodiscard]] SmoothedMotion smooth_motion(const MotionSamples& samples, const SmootherConfig& config = {});
 
 }  // namespace stillpoint::synth

@@ -75,4 +75,12 @@ template <class PoseFunction>
   return {start_s, interval_s, std::move(positions), std::move(attitudes)};
 }
 
+/// Parameters of a simulated path of the body that carries a camera.
+struct PathRequest {
+  Pose T_b_c;              ///< camera in the body frame
+  std::uint64_t seed = 1;  ///< of all random choices
+  double from_s = 0.0;     ///< first and last path time
+  double to_s = 0.0;
+};
+
 }  // namespace stillpoint::synth

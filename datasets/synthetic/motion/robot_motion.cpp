@@ -66,9 +66,10 @@ class Vibration {
 
 }  // namespace
 
-PathSpline robot_path(const RobotRoute& route, const Pose& T_b_c, std::uint64_t seed, double from_s,
-                      double to_s) {
-  RandomSequence random(random_key(seed, RandomStream::kMotion, 100));
+PathSpline robot_path(const RobotRoute& route, const PathRequest& request) {
+  const Pose& T_b_c = request.T_b_c;
+  const double from_s = request.from_s, to_s = request.to_s;
+  RandomSequence random(random_key(request.seed, RandomStream::kMotion, 100));
   const ClosedRoute closed_route(route.corners, route.turn_radius_m);
   const double lead_s = 6.0 * kSmoothing_s;  // margin for the control points beyond both ends
   const std::vector<double> distances =

@@ -19,9 +19,8 @@ struct RobotRoute {
   double camera_height_m = 1.1;
 };
 
-/// Path of the body that carries the camera, over [from_s, to_s]. The seed determines the start (within the
+/// Path of the body that carries the camera. The seed determines the start (within the
 /// first 2 m of the route) and the vibration. Wheel vibration: 0.4 mm and 0.1 degree at 7-17 Hz.
-[[nodiscard]] PathSpline robot_path(const RobotRoute& route, const Pose& T_b_c, std::uint64_t seed,
-                                    double from_s, double to_s);
+[[nodiscard]] PathSpline robot_path(const RobotRoute& route, const PathRequest& request);
 
 }  // namespace stillpoint::synth

@@ -37,8 +37,14 @@ Eigen::Vector3f random_lamp_point(const Lamp& lamp, RandomSequence& random) {
   return lamp.center + Eigen::Vector3f(x * lamp.half_x, y * lamp.half_y, -0.02F);
 }
 
-float lamp_light(const World& world, const RayTracer& tracer, const Eigen::Vector3f& point,
-                 const Eigen::Vector3f& normal, RandomSequence& random) {
+struct SurfacePoint {
+  Eigen::Vector3f point;
+  Eigen::Vector3f normal;
+};
+
+float lamp_light(const World& world, const RayTracer& tracer, const SurfacePoint& surface,
+                 RandomSequence& random) {
+  const auto& [point, normal] = surface;
   float sum = 0.0F;
   for (const Lamp& lamp : world.lamps) {
     if ((lamp.center - point).squaredNorm() > kFarLamp_m * kFarLamp_m) continue;
@@ -70,14 +76,17 @@ int node_count(float length) {
   return std::clamp(static_cast<int>(std::ceil(length / kNodeDistance_m)) + 1, 2, kMaxNodes);
 }
 
-float node_light(const World& world, const RayTracer& tracer, const Quad& quad, float u, float v,
-                 RandomSequence& random) {
+/// The point of a quad at the lightmap node (u, v).
+SurfacePoint node_at(const Quad& quad, float u, float v) {
   const float inner_u = kInset + u * (1.0F - 2.0F * kInset), inner_v = kInset + v * (1.0F - 2.0F * kInset);
   const float lift = std::min(kLift_m, kLiftRatio * std::min(quad.edge_u.norm(), quad.edge_v.norm()));
-  const Eigen::Vector3f point =
-      quad.origin + inner_u * quad.edge_u + inner_v * quad.edge_v + lift * quad.normal;
-  return lamp_light(world, tracer, point, quad.normal, random) +
-         world.ambient * (0.25F + 0.75F * openness(tracer, point, quad.normal, random));
+  return {quad.origin + inner_u * quad.edge_u + inner_v * quad.edge_v + lift * quad.normal, quad.normal};
+}
+
+float node_light(const World& world, const RayTracer& tracer, const SurfacePoint& node,
+                 RandomSequence& random) {
+  return lamp_light(world, tracer, node, random) +
+         world.ambient * (0.25F + 0.75F * openness(tracer, node.point, node.normal, random));
 }
 
 }  // namespace
@@ -117,7 +126,7 @@ void bake_light(World& world, const RayTracer& tracer, std::uint64_t seed) {
       for (int column = 0; column < quad.light_columns; ++column) {
         const float u = static_cast<float>(column) / static_cast<float>(quad.light_columns - 1);
         const float v = static_cast<float>(row) / static_cast<float>(quad.light_rows - 1);
-        world.light.push_back(quad.emissive ? 1.0F : node_light(world, tracer, quad, u, v, random));
+        world.light.push_back(quad.emissive ? 1.0F : node_light(world, tracer, node_at(quad, u, v), random));
       }
     }
   }

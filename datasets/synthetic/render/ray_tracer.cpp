@@ -29,9 +29,15 @@ RTCScene scene_of(RTCDevice device, RTCGeometry geometry, RTCBuildQuality qualit
   return scene;
 }
 
+struct BufferKind {
+  RTCBufferType type;
+  unsigned slot;
+  RTCFormat format;
+};
+
 template <class Element>
-Element* new_buffer(RTCGeometry geometry, RTCBufferType type, unsigned slot, RTCFormat format,
-                    std::size_t count) {
+Element* new_buffer(RTCGeometry geometry, const BufferKind& kind, std::size_t count) {
+  const auto& [type, slot, format] = kind;
   return static_cast<Element*>(rtcSetNewGeometryBuffer(geometry, type, slot, format, sizeof(Element),
                                                        std::max<std::size_t>(count, 1)));
 }
@@ -39,9 +45,9 @@ Element* new_buffer(RTCGeometry geometry, RTCBufferType type, unsigned slot, RTC
 RTCGeometry quads_of(RTCDevice device, const World& world) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
   const std::size_t count = world.quads.size();
-  auto* corners = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 4 * count);
+  auto* corners = new_buffer<Vertex>(geometry, {RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3}, 4 * count);
   auto* indices =
-      new_buffer<std::array<std::uint32_t, 4>>(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, count);
+      new_buffer<std::array<std::uint32_t, 4>>(geometry, {RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4}, count);
   for (std::size_t i = 0; i < count; ++i) {
     const Quad& quad = world.quads[i];
     corners[4 * i] = vertex(quad.origin);
@@ -60,11 +66,11 @@ RTCGeometry triangles_of(RTCDevice device, const MovingMesh& mesh) {
   const std::vector<Eigen::Vector3f>* const ends[2] = {&mesh.start, &mesh.end};
   for (unsigned step = 0; step < 2; ++step) {
     auto* corners =
-        new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, mesh.start.size());
+        new_buffer<Vertex>(geometry, {RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3}, mesh.start.size());
     std::transform(ends[step]->begin(), ends[step]->end(), corners, vertex);
   }
-  auto* indices = new_buffer<std::array<std::uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                           RTC_FORMAT_UINT3, mesh.triangles.size());
+  auto* indices = new_buffer<std::array<std::uint32_t, 3>>(
+      geometry, {RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3}, mesh.triangles.size());
   std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices);
   return geometry;
 }

@@ -21,8 +21,8 @@ Vector3d Builder::to_world(const Vector3d& point) const { return T_w_local_ * po
 
 Vector3d Builder::rotate(const Vector3d& vector) const { return T_w_local_.q * vector; }
 
-void Builder::add_textured_quad(const Vector3d& corner, const Vector3d& right, const Vector3d& down,
-                                int texture, const TextureRegion& region) {
+void Builder::add_textured_quad(const Parallelogram& area, int texture, const TextureRegion& region) {
+  const auto& [corner, right, down] = area;
   const Texture& image = world_.textures[static_cast<std::size_t>(texture)];
   const double texels = region.width * image.width() * region.height * image.height();
   // right x up points to the viewer: the origin is the lower left corner and v grows upwards.
@@ -40,48 +40,47 @@ void Builder::add_textured_quad(const Vector3d& corner, const Vector3d& right, c
   world_.quads.push_back(quad);
 }
 
-void Builder::add_surface(const Vector3d& corner, const Vector3d& right, const Vector3d& down, int texture,
-                          double repeat_m) {
+void Builder::add_surface(const Parallelogram& area, int texture, double repeat_m) {
+  const auto& [corner, right, down] = area;
   // The texture offset depends on the position, so that equal surfaces look different.
   const double s = std::fmod(std::abs(3.17 * corner.x() + 1.31 * corner.y() + 0.77 * corner.z()), 1.0);
-  add_textured_quad(corner, right, down, texture,
-                    {s, 0.61 * s, right.norm() / repeat_m, down.norm() / repeat_m});
+  add_textured_quad(area, texture, {s, 0.61 * s, right.norm() / repeat_m, down.norm() / repeat_m});
 }
 
 void Builder::add_box(const Vector3d& low, const Vector3d& high, int texture, double repeat_m) {
   const Vector3d size = high - low;
   const Vector3d x(size.x(), 0.0, 0.0), y(0.0, size.y(), 0.0), z(0.0, 0.0, size.z());
-  add_surface(low + z, x, -z, texture, repeat_m);           // front, towards -y
-  add_surface(low + x + y + z, -x, -z, texture, repeat_m);  // back
-  add_surface(low + y + z, -y, -z, texture, repeat_m);      // left
-  add_surface(low + x + z, y, -z, texture, repeat_m);       // right
-  add_surface(low + y + z, x, -y, texture, repeat_m);       // top
-  add_surface(low, x, y, texture, repeat_m);                // bottom
+  add_surface({low + z, x, -z}, texture, repeat_m);           // front, towards -y
+  add_surface({low + x + y + z, -x, -z}, texture, repeat_m);  // back
+  add_surface({low + y + z, -y, -z}, texture, repeat_m);      // left
+  add_surface({low + x + z, y, -z}, texture, repeat_m);       // right
+  add_surface({low + y + z, x, -y}, texture, repeat_m);       // top
+  add_surface({low, x, y}, texture, repeat_m);                // bottom
 }
 
-void Builder::add_labeled_box(const Vector3d& low, const Vector3d& high, int front_texture,
-                              const TextureRegion& region, int side_texture) {
+void Builder::add_labeled_box(const Vector3d& low, const Vector3d& high, const Label& front,
+                              int side_texture) {
   const Vector3d size = high - low;
   const Vector3d x(size.x(), 0.0, 0.0), y(0.0, size.y(), 0.0), z(0.0, 0.0, size.z());
   constexpr double kRepeat_m = 0.5;
-  add_textured_quad(low + z, x, -z, front_texture, region);
-  add_surface(low + x + y + z, -x, -z, side_texture, kRepeat_m);
-  add_surface(low + y + z, -y, -z, side_texture, kRepeat_m);
-  add_surface(low + x + z, y, -z, side_texture, kRepeat_m);
-  add_surface(low + y + z, x, -y, side_texture, kRepeat_m);
+  add_textured_quad({low + z, x, -z}, front.texture, front.region);
+  add_surface({low + x + y + z, -x, -z}, side_texture, kRepeat_m);
+  add_surface({low + y + z, -y, -z}, side_texture, kRepeat_m);
+  add_surface({low + x + z, y, -z}, side_texture, kRepeat_m);
+  add_surface({low + y + z, x, -y}, side_texture, kRepeat_m);
 }
 
-void Builder::add_cylinder(const Vector3d& base, double radius, double height, int texture, double repeat_m,
-                           int sides) {
+void Builder::add_cylinder(const Cylinder& cylinder, int texture, double repeat_m) {
+  const auto& [base, radius, height, sides] = cylinder;
   const Vector3d up(0.0, 0.0, height);
-  const auto rim = [&](int i) {
-    const double angle = 2.0 * std::numbers::pi * i / sides;
-    return Vector3d(base + radius * Vector3d(std::cos(angle), std::sin(angle), 0.0));
+  const auto rim = [&cylinder](int i) {
+    const double angle = 2.0 * std::numbers::pi * i / cylinder.sides;
+    return Vector3d(cylinder.base + cylinder.radius * Vector3d(std::cos(angle), std::sin(angle), 0.0));
   };
   for (int i = 0; i < sides; ++i) {
     const double s = 2.0 * std::numbers::pi * radius * i / sides / repeat_m;
     const Vector3d side = rim(i + 1) - rim(i);
-    add_textured_quad(rim(i) + up, side, -up, texture, {s, 0.0, side.norm() / repeat_m, height / repeat_m});
+    add_textured_quad({rim(i) + up, side, -up}, texture, {s, 0.0, side.norm() / repeat_m, height / repeat_m});
   }
   // The lid: three rhombi form a regular hexagon, which leaves only slivers open at the rim.
   const Vector3d center = base + up;
@@ -89,19 +88,19 @@ void Builder::add_cylinder(const Vector3d& base, double radius, double height, i
     const double angle = 2.0 * std::numbers::pi * i / 3.0;
     const Vector3d first = radius * Vector3d(std::cos(angle), std::sin(angle), 0.0);
     const Vector3d second = Eigen::AngleAxisd(2.0 * std::numbers::pi / 3.0, Vector3d::UnitZ()) * first;
-    add_surface(center + second, first, -second, texture, repeat_m);
+    add_surface({center + second, first, -second}, texture, repeat_m);
   }
 }
 
-void Builder::add_lamp(const Vector3d& center, double size_x, double size_y, double power, int texture) {
+void Builder::add_lamp(const Vector3d& center, const Eigen::Vector2d& size, double power, int texture) {
   Lamp lamp;
   lamp.center = to_world(center).cast<float>();
-  lamp.half_x = static_cast<float>(0.5 * size_x);
-  lamp.half_y = static_cast<float>(0.5 * size_y);
+  lamp.half_x = static_cast<float>(0.5 * size.x());
+  lamp.half_y = static_cast<float>(0.5 * size.y());
   lamp.power = static_cast<float>(power);
   world_.lamps.push_back(lamp);
-  const Vector3d x(size_x, 0.0, 0.0), y(0.0, size_y, 0.0);
-  add_textured_quad(center - 0.5 * x - 0.5 * y, x, y, texture);
+  const Vector3d x(size.x(), 0.0, 0.0), y(0.0, size.y(), 0.0);
+  add_textured_quad({center - 0.5 * x - 0.5 * y, x, y}, texture);
   mark_last_emissive();
 }
 

@@ -48,6 +48,25 @@ struct World {
   float ambient = 0.25F;     ///< ambient irradiance before occlusion
 };
 
+/// A surface to add: its upper left corner and its edges.
+struct Parallelogram {
+  Eigen::Vector3d corner, right, down;
+};
+
+/// A region of a texture.
+struct Label {
+  TextureRegion region;
+  int texture = 0;
+};
+
+/// Approximated by a vertical prism of `sides` sides.
+struct Cylinder {
+  Eigen::Vector3d base;  ///< center of the lower disk
+  double radius = 0.0;
+  double height = 0.0;
+  int sides = 12;
+};
+
 /// Adds parallelograms to a world in a local frame: x right, y to the back, z up.
 class Builder {
  public:
@@ -59,30 +78,28 @@ class Builder {
   /// Sets the local frame of all following calls: at `position` in the world, rotated by `yaw` [rad] about z.
   void set_frame(const Eigen::Vector3d& position, double yaw);
 
-  /// Maps the upper left corner of the texture region to `corner`, its upper edge to +right and its left edge
-  /// to +down. The front is the side from which the texture is not mirrored.
-  void add_textured_quad(const Eigen::Vector3d& corner, const Eigen::Vector3d& right,
-                         const Eigen::Vector3d& down, int texture, const TextureRegion& region = {});
+  /// Maps the upper left corner of the texture region to the corner, its upper edge to +right and its left
+  /// edge to +down. The front is the side from which the texture is not mirrored.
+  void add_textured_quad(const Parallelogram& area, int texture, const TextureRegion& region = {});
 
   /// A surface whose texture repeats every `repeat_m` [m].
-  void add_surface(const Eigen::Vector3d& corner, const Eigen::Vector3d& right, const Eigen::Vector3d& down,
-                   int texture, double repeat_m);
+  void add_surface(const Parallelogram& area, int texture, double repeat_m);
 
   /// A closed box with the same tiled texture on all six sides.
   void add_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, int texture, double repeat_m);
 
-  /// A box whose front (towards -y) shows a texture region and whose other sides show `side_texture`.
-  void add_labeled_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, int front_texture,
-                       const TextureRegion& region, int side_texture);
+  /// A box whose front (towards -y) shows a label and whose other sides show `side_texture`.
+  void add_labeled_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Label& front,
+                       int side_texture);
 
-  /// A vertical prism of `sides` sides that approximates a cylinder, with a lid.
-  void add_cylinder(const Eigen::Vector3d& base, double radius, double height, int texture, double repeat_m,
-                    int sides = 12);
+  /// A cylinder with a lid.
+  void add_cylinder(const Cylinder& cylinder, int texture, double repeat_m);
 
   /// Marks the last added quad as emissive.
   void mark_last_emissive() { world_.quads.back().emissive = true; }
 
-  void add_lamp(const Eigen::Vector3d& center, double size_x, double size_y, double power, int texture);
+  /// @param size along x and y [m]
+  void add_lamp(const Eigen::Vector3d& center, const Eigen::Vector2d& size, double power, int texture);
 
  private:
   Eigen::Vector3d to_world(const Eigen::Vector3d& point) const;

@@ -23,17 +23,18 @@ std::vector<Wall> corridor_walls() {
 }
 
 /// Doors every few meters, and a few noticeboards, posters and bins.
-void furnish_wall(Builder& builder, const Wall& wall, const Palette& palette, RandomSequence& random) {
+void furnish_wall(const SceneContext& context, const Wall& wall) {
+  const auto& [builder, palette, random] = context;
   const Vector3d inward = wall.right.cross(Vector3d::UnitZ());
   double along = random.uniform(0.4, 1.0);
   while (along + 1.0 < wall.length) {
     if (random.chance(0.4)) {
-      hang(builder, wall, {along, 0.0}, {0.95, 2.05}, palette.door);
-      hang(builder, wall, {along + 1.1, 1.5}, {0.15, 0.2}, pick_random(palette.papers, random));
+      hang(builder, wall, {{along, 0.0}, {0.95, 2.05}}, palette.door);
+      hang(builder, wall, {{along + 1.1, 1.5}, {0.15, 0.2}}, pick_random(palette.papers, random));
     } else if (random.chance(0.35)) {
-      hang(builder, wall, {along, 1.1}, {1.4, 0.7}, pick_random(palette.noticeboards, random));
+      hang(builder, wall, {{along, 1.1}, {1.4, 0.7}}, pick_random(palette.noticeboards, random));
     } else if (random.chance(0.6)) {
-      hang(builder, wall, {along, 1.25}, {0.5, 0.7}, pick_random(palette.posters, random));
+      hang(builder, wall, {{along, 1.25}, {0.5, 0.7}}, pick_random(palette.posters, random));
     } else {
       add_bin(builder, {wall.lower_left + along * wall.right + 0.2 * inward, 0.0}, palette);
     }
@@ -68,14 +69,15 @@ Scene build_corridor(std::uint64_t seed) {
   Builder builder(scene.world);
   const Palette& palette = scene.palette = make_palette(builder, seed);
   RandomSequence random(random_key(seed, RandomStream::kScene));
+  const SceneContext context{builder, palette, random};
   const RoomStyle style{palette.tiles, palette.plaster, palette.ceiling, 1.6, 3.0, 1.6};
   const double inner = kFirstLeg_m - 2.0 * kHalfWidth_m;
   const Room first{{0.0, -kHalfWidth_m}, {inner, kHalfWidth_m}, kHeight_m};
   const Room second{{inner, -kHalfWidth_m}, {kFirstLeg_m, kSecondLeg_m}, kHeight_m};
-  for (const Room& leg : {first, second}) add_floor_and_ceiling(builder, leg, style, palette);
+  for (const Room& leg : {first, second}) add_floor_and_ceiling(context, leg, style);
   for (const Wall& wall : corridor_walls()) {
-    add_wall(builder, wall, kHeight_m, style, palette);
-    furnish_wall(builder, wall, palette, random);
+    add_wall(context, wall, kHeight_m, style);
+    furnish_wall(context, wall);
   }
   bake_light(scene.world, RayTracer(scene.world), seed);
   return scene;

@@ -13,14 +13,24 @@ using Eigen::Vector3d;
 
 constexpr double kDeskHeight = 0.73;
 
+/// A rectangle on a horizontal plane.
+struct Sheet {
+  double yaw = 0.0;
+  Vector3d center;
+  double width = 0.0;
+  double depth = 0.0;
+};
+
 /// A sheet or keyboard on a horizontal plane, rotated by `yaw` in the current frame.
-void lay_flat(Builder& builder, const Vector3d& center, double yaw, double width, double depth, int texture) {
+void lay_flat(Builder& builder, const Sheet& sheet, int texture) {
+  const auto& [yaw, center, width, depth] = sheet;
   const Vector3d right = width * Vector3d(std::cos(yaw), std::sin(yaw), 0.0);
   const Vector3d down = depth * Vector3d(std::sin(yaw), -std::cos(yaw), 0.0);
-  builder.add_textured_quad(center - 0.5 * right - 0.5 * down, right, down, texture);
+  builder.add_textured_quad({center - 0.5 * right - 0.5 * down, right, down}, texture);
 }
 
-void add_monitor(Builder& builder, const Vector3d& foot, const Palette& palette, RandomSequence& random) {
+void add_monitor(const SceneContext& context, const Vector3d& foot) {
+  const auto& [builder, palette, random] = context;
   constexpr double kHalfWidth = 0.27, kHeight = 0.34, kThickness = 0.04;
   builder.add_box(foot + Vector3d(-0.12, -0.09, 0.0), foot + Vector3d(0.12, 0.09, 0.015),
                   palette.dark_plastic, 0.3);
@@ -29,16 +39,19 @@ void add_monitor(Builder& builder, const Vector3d& foot, const Palette& palette,
   const Vector3d low = foot + Vector3d(-kHalfWidth, -kThickness, 0.12);
   builder.add_box(low, low + Vector3d(2.0 * kHalfWidth, kThickness, kHeight), palette.dark_plastic, 0.3);
   constexpr double kFrame = 0.018;
-  builder.add_textured_quad(low + Vector3d(kFrame, -0.002, kHeight - kFrame),
-                            {2.0 * (kHalfWidth - kFrame), 0.0, 0.0}, {0.0, 0.0, -(kHeight - 2.0 * kFrame)},
+  builder.add_textured_quad({low + Vector3d(kFrame, -0.002, kHeight - kFrame),
+                             {2.0 * (kHalfWidth - kFrame), 0.0, 0.0},
+                             {0.0, 0.0, -(kHeight - 2.0 * kFrame)}},
                             pick_random(palette.screens, random));
   builder.mark_last_emissive();
   // A label adds texture to the back of the monitor.
-  builder.add_textured_quad(low + Vector3d(kHalfWidth + 0.06, kThickness + 0.002, 0.24), {-0.12, 0.0, 0.0},
-                            {0.0, 0.0, -0.12}, pick_random(palette.papers, random));
+  builder.add_textured_quad(
+      {low + Vector3d(kHalfWidth + 0.06, kThickness + 0.002, 0.24), {-0.12, 0.0, 0.0}, {0.0, 0.0, -0.12}},
+      pick_random(palette.papers, random));
 }
 
-void add_book_pile(Builder& builder, const Vector3d& foot, const Palette& palette, RandomSequence& random) {
+void add_book_pile(const SceneContext& context, const Vector3d& foot) {
+  const auto& [builder, palette, random] = context;
   double z = 0.0;
   const int books = 2 + random.index(4);
   for (int i = 0; i < books; ++i) {
@@ -47,33 +60,34 @@ void add_book_pile(Builder& builder, const Vector3d& foot, const Palette& palett
     const Vector3d low = foot + Vector3d(shift - half, -0.08, z);
     const TextureRegion spine{random.index(kSpinesPerTexture) / 16.0, 0.0, 1.0 / kSpinesPerTexture, 1.0};
     builder.add_labeled_box(low, low + Vector3d(2.0 * half, 0.16, thickness),
-                            pick_random(palette.spines, random), spine,
+                            {spine, pick_random(palette.spines, random)},
                             pick_random(palette.plain_colors, random));
     z += thickness;
   }
 }
 
-void add_desk_clutter(Builder& builder, const Palette& palette, RandomSequence& random) {
+void add_desk_clutter(const SceneContext& context) {
+  const auto& [builder, palette, random] = context;
   const double z = kDeskHeight + 0.003;
-  lay_flat(builder, {random.uniform(-0.15, 0.1), -0.55, z + 0.012}, random.uniform(-0.1, 0.1), 0.44, 0.15,
+  lay_flat(builder, {random.uniform(-0.1, 0.1), {random.uniform(-0.15, 0.1), -0.55, z + 0.012}, 0.44, 0.15},
            palette.keyboards.front());
   for (int i = 0; i < 4; ++i) {
     const Vector3d at(random.uniform(-0.65, 0.65), random.uniform(-0.68, -0.25), z + 0.001 * i);
-    lay_flat(builder, at, random.uniform(-0.6, 0.6), 0.21, 0.297, pick_random(palette.papers, random));
+    lay_flat(builder, {random.uniform(-0.6, 0.6), at, 0.21, 0.297}, pick_random(palette.papers, random));
   }
-  add_book_pile(builder, {random.chance(0.5) ? -0.62 : 0.62, random.uniform(-0.4, -0.2), kDeskHeight},
-                palette, random);
-  builder.add_cylinder({random.uniform(0.3, 0.5), random.uniform(-0.6, -0.45), kDeskHeight}, 0.04, 0.1,
+  add_book_pile(context, {random.chance(0.5) ? -0.62 : 0.62, random.uniform(-0.4, -0.2), kDeskHeight});
+  builder.add_cylinder({{random.uniform(0.3, 0.5), random.uniform(-0.6, -0.45), kDeskHeight}, 0.04, 0.1},
                        pick_random(palette.plain_colors, random), 0.1);
   const Vector3d box(random.uniform(-0.6, -0.45), random.uniform(-0.62, -0.5), kDeskHeight);
-  builder.add_labeled_box(box, box + Vector3d(0.14, 0.09, 0.2), pick_random(palette.packages, random),
-                          {0.25 * random.index(4), 0.25 * random.index(4), 0.25, 0.25},
-                          pick_random(palette.plain_colors, random));
+  builder.add_labeled_box(
+      box, box + Vector3d(0.14, 0.09, 0.2),
+      {{0.25 * random.index(4), 0.25 * random.index(4), 0.25, 0.25}, pick_random(palette.packages, random)},
+      pick_random(palette.plain_colors, random));
 }
 
 /// One row of books from x = 0 to `width`.
-void add_book_row(Builder& builder, const Vector3d& start, double width, const Palette& palette,
-                  RandomSequence& random) {
+void add_book_row(const SceneContext& context, const Vector3d& start, double width) {
+  const auto& [builder, palette, random] = context;
   double x = 0.0;
   while (x < width - 0.08) {
     const double thickness = random.uniform(0.025, 0.06), height = random.uniform(0.2, 0.29);
@@ -83,15 +97,16 @@ void add_book_row(Builder& builder, const Vector3d& start, double width, const P
     }
     const Vector3d low = start + Vector3d(x, random.uniform(0.0, 0.05), 0.0);
     const TextureRegion spine{random.index(kSpinesPerTexture) / 16.0, 0.0, 1.0 / kSpinesPerTexture, 1.0};
-    builder.add_labeled_box(low, low + Vector3d(thickness, 0.2, height), pick_random(palette.spines, random),
-                            spine, pick_random(palette.plain_colors, random));
+    builder.add_labeled_box(low, low + Vector3d(thickness, 0.2, height),
+                            {spine, pick_random(palette.spines, random)},
+                            pick_random(palette.plain_colors, random));
     x += thickness + 0.001;
   }
 }
 
 /// One row of packages from x = 0 to `width`; each article is repeated one to three times.
-void add_goods_row(Builder& builder, const Vector3d& start, double width, double height,
-                   const Palette& palette, RandomSequence& random) {
+void add_goods_row(const SceneContext& context, const Vector3d& start, double width, double height) {
+  const auto& [builder, palette, random] = context;
   double x = 0.02;
   while (x < width - 0.3) {
     const double w = random.uniform(0.1, 0.24), h = random.uniform(0.6, 0.95) * height;
@@ -100,7 +115,7 @@ void add_goods_row(Builder& builder, const Vector3d& start, double width, double
     const int facings = 1 + random.index(3);
     for (int i = 0; i < facings && x < width - w; ++i, x += w + 0.012) {
       const Vector3d low = start + Vector3d(x, random.uniform(0.0, 0.06), 0.0);
-      builder.add_labeled_box(low, low + Vector3d(w, 0.3, h), front, region, side);
+      builder.add_labeled_box(low, low + Vector3d(w, 0.3, h), {region, front}, side);
     }
     x += random.uniform(0.0, 0.05);
   }
@@ -108,7 +123,8 @@ void add_goods_row(Builder& builder, const Vector3d& start, double width, double
 
 }  // namespace
 
-void add_desk(Builder& builder, const Placement& placement, const Palette& palette, RandomSequence& random) {
+void add_desk(const SceneContext& context, const Placement& placement) {
+  const auto& [builder, palette, random] = context;
   builder.set_frame(placement.position, placement.yaw);  // the desk top spans y = -0.8 to 0
   builder.add_box({-0.8, -0.8, kDeskHeight - 0.03}, {0.8, 0.0, kDeskHeight}, palette.oak, 1.2);
   for (const double x : {-0.76, 0.71}) {
@@ -117,25 +133,27 @@ void add_desk(Builder& builder, const Placement& placement, const Palette& palet
     }
   }
   builder.add_box({0.3, -0.7, 0.08}, {0.68, -0.12, 0.62}, palette.light_plastic, 0.6);
-  builder.add_labeled_box({-0.7, -0.6, 0.02}, {-0.5, -0.15, 0.45}, pick_random(palette.papers, random), {},
+  builder.add_labeled_box({-0.7, -0.6, 0.02}, {-0.5, -0.15, 0.45}, {{}, pick_random(palette.papers, random)},
                           palette.dark_plastic);
-  add_monitor(builder, {random.uniform(-0.1, 0.25), -0.22, kDeskHeight}, palette, random);
-  add_desk_clutter(builder, palette, random);
+  add_monitor(context, {random.uniform(-0.1, 0.25), -0.22, kDeskHeight});
+  add_desk_clutter(context);
 }
 
-void add_chair(Builder& builder, const Placement& placement, const Palette& palette, RandomSequence& random) {
+void add_chair(const SceneContext& context, const Placement& placement) {
+  const auto& [builder, palette, random] = context;
   builder.set_frame(placement.position, placement.yaw);  // front towards -y
   const int fabric = pick_random(palette.fabrics, random);
   builder.add_box({-0.24, -0.24, 0.42}, {0.24, 0.24, 0.49}, fabric, 0.4);
   builder.add_box({-0.22, 0.2, 0.55}, {0.22, 0.25, 1.0}, fabric, 0.4);
   builder.add_box({-0.03, 0.22, 0.42}, {0.03, 0.25, 0.6}, palette.dark_plastic, 0.3);
-  builder.add_cylinder({0.0, 0.0, 0.08}, 0.03, 0.34, palette.metal, 0.2, 8);
+  builder.add_cylinder({{0.0, 0.0, 0.08}, 0.03, 0.34, 8}, palette.metal, 0.2);
   builder.add_box({-0.28, -0.03, 0.05}, {0.28, 0.03, 0.09}, palette.dark_plastic, 0.3);
   builder.add_box({-0.03, -0.28, 0.045}, {0.03, 0.28, 0.085}, palette.dark_plastic, 0.3);
 }
 
-void add_bookshelf(Builder& builder, const Placement& placement, double width, const Palette& palette,
-                   RandomSequence& random) {
+void add_bookshelf(const SceneContext& context, const Placement& placement, double width) {
+  Builder& builder = context.builder;
+  const Palette& palette = context.palette;
   builder.set_frame(placement.position,
                     placement.yaw);  // spans x = 0 to width; front at y = 0, back at y = 0.3
   constexpr double kDepth = 0.3, kPanel = 0.025, kShelfHeight = 0.36;
@@ -147,12 +165,12 @@ void add_bookshelf(Builder& builder, const Placement& placement, double width, c
   for (int shelf = 0; shelf <= kShelves; ++shelf) {
     const double z = shelf * kShelfHeight;
     builder.add_box({0.0, 0.0, z}, {width, kDepth - 0.02, z + kPanel}, palette.walnut, 1.0);
-    if (shelf < kShelves) add_book_row(builder, {0.0, 0.03, z + kPanel}, width, palette, random);
+    if (shelf < kShelves) add_book_row(context, {0.0, 0.03, z + kPanel}, width);
   }
 }
 
-void add_market_shelf(Builder& builder, const Placement& placement, double length, const Palette& palette,
-                      RandomSequence& random) {
+void add_market_shelf(const SceneContext& context, const Placement& placement, double length) {
+  const auto& [builder, palette, random] = context;
   constexpr double kDepth = 0.45, kShelfHeight = 0.42;
   constexpr int kShelves = 4;
   const double height = kShelves * kShelfHeight + 0.15;
@@ -165,16 +183,16 @@ void add_market_shelf(Builder& builder, const Placement& placement, double lengt
       const double z = 0.12 + shelf * kShelfHeight;
       builder.add_box({left, -kDepth, z}, {-left, -0.02, z + 0.03}, palette.metal, 0.8);
       for (double x = left + 0.05; x + 0.09 < -left; x += random.uniform(0.25, 0.6)) {  // price tags
-        builder.add_textured_quad({x, -kDepth - 0.003, z + 0.035}, {0.08, 0.0, 0.0}, {0.0, 0.0, -0.045},
+        builder.add_textured_quad({{x, -kDepth - 0.003, z + 0.035}, {0.08, 0.0, 0.0}, {0.0, 0.0, -0.045}},
                                   pick_random(palette.papers, random));
       }
-      add_goods_row(builder, {left, -kDepth + 0.04, z + 0.03}, length, kShelfHeight - 0.05, palette, random);
+      add_goods_row(context, {left, -kDepth + 0.04, z + 0.03}, length, kShelfHeight - 0.05);
     }
   }
 }
 
-void add_carton_pile(Builder& builder, const Placement& placement, const Palette& palette,
-                     RandomSequence& random) {
+void add_carton_pile(const SceneContext& context, const Placement& placement) {
+  const auto& [builder, palette, random] = context;
   double z = 0.0;
   const int cartons = 1 + random.index(3);
   for (int i = 0; i < cartons; ++i) {
@@ -182,10 +200,10 @@ void add_carton_pile(Builder& builder, const Placement& placement, const Palette
     builder.set_frame(placement.position + Vector3d(0.0, 0.0, z), placement.yaw + random.uniform(-0.3, 0.3));
     for (const double turn : {0.0, 0.5, 1.0, 1.5}) {
       builder.set_frame(placement.position + Vector3d(0.0, 0.0, z), placement.yaw + turn * std::numbers::pi);
-      builder.add_textured_quad({-half, -half, height}, {2.0 * half, 0.0, 0.0}, {0.0, 0.0, -height},
+      builder.add_textured_quad({{-half, -half, height}, {2.0 * half, 0.0, 0.0}, {0.0, 0.0, -height}},
                                 palette.carton);
     }
-    builder.add_textured_quad({-half, half, height}, {2.0 * half, 0.0, 0.0}, {0.0, -2.0 * half, 0.0},
+    builder.add_textured_quad({{-half, half, height}, {2.0 * half, 0.0, 0.0}, {0.0, -2.0 * half, 0.0}},
                               palette.carton);
     z += height;
   }
@@ -193,7 +211,7 @@ void add_carton_pile(Builder& builder, const Placement& placement, const Palette
 
 void add_bin(Builder& builder, const Placement& placement, const Palette& palette) {
   builder.set_frame(placement.position, placement.yaw);
-  builder.add_cylinder(Vector3d::Zero(), 0.17, 0.4, palette.dark_plastic, 0.3, 16);
+  builder.add_cylinder({Vector3d::Zero(), 0.17, 0.4, 16}, palette.dark_plastic, 0.3);
 }
 
 }  // namespace stillpoint::synth

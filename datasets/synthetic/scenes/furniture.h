@@ -21,6 +21,13 @@ struct Palette {
 
 [[nodiscard]] Palette make_palette(Builder& builder, std::uint64_t seed);
 
+/// What the functions below add to, and draw from.
+struct SceneContext {
+  Builder& builder;
+  const Palette& palette;
+  RandomSequence& random;
+};
+
 /// One of `textures`, at random.
 [[nodiscard]] int pick_random(const std::vector<int>& textures, RandomSequence& random);
 
@@ -47,16 +54,19 @@ struct RoomStyle {
   double lamp_spacing = 2.6;    ///< distance between lamps [m]
   double lamp_power = 1.9;
 };
-void add_room(Builder& builder, const Room& room, const RoomStyle& style, const Palette& palette);
+void add_room(const SceneContext& context, const Room& room, const RoomStyle& style);
 /// Parts of a room, for non-rectangular floor plans.
-void add_floor_and_ceiling(Builder& builder, const Room& room, const RoomStyle& style,
-                           const Palette& palette);
-void add_wall(Builder& builder, const Wall& wall, double height, const RoomStyle& style,
-              const Palette& palette);
+void add_floor_and_ceiling(const SceneContext& context, const Room& room, const RoomStyle& style);
+void add_wall(const SceneContext& context, const Wall& wall, double height, const RoomStyle& style);
 
-/// Hangs a textured rectangle on a wall. @param at lower left corner: (distance along the wall, height) [m]
-void hang(Builder& builder, const Wall& wall, const Eigen::Vector2d& at, const Eigen::Vector2d& size,
-          int texture);
+/// A rectangle on a wall.
+struct WallArea {
+  Eigen::Vector2d at;  ///< lower left corner: (distance along the wall, height) [m]
+  Eigen::Vector2d size;
+};
+
+/// Hangs a textured rectangle on a wall.
+void hang(Builder& builder, const Wall& wall, const WallArea& area, int texture);
 
 /// Wall decoration: gaps are proportional to 1 / density; the row is `lift` [m] above eye level.
 struct Decoration {
@@ -65,23 +75,19 @@ struct Decoration {
 };
 
 /// Hangs a row of posters, noticeboards and sheets of paper.
-void decorate(Builder& builder, const Wall& wall, const Decoration& decoration, const Palette& palette,
-              RandomSequence& random);
+void decorate(const SceneContext& context, const Wall& wall, const Decoration& decoration);
 
 /// Pose of a piece of furniture on the floor; the front points to -y before the rotation by `yaw` [rad].
 struct Placement {
   Eigen::Vector3d position;
   double yaw = 0.0;
 };
-void add_desk(Builder& builder, const Placement& placement, const Palette& palette, RandomSequence& random);
-void add_chair(Builder& builder, const Placement& placement, const Palette& palette, RandomSequence& random);
-void add_bookshelf(Builder& builder, const Placement& placement, double width, const Palette& palette,
-                   RandomSequence& random);
+void add_desk(const SceneContext& context, const Placement& placement);
+void add_chair(const SceneContext& context, const Placement& placement);
+void add_bookshelf(const SceneContext& context, const Placement& placement, double width);
 /// A shelf with packages on both sides. @param length along x [m]
-void add_market_shelf(Builder& builder, const Placement& placement, double length, const Palette& palette,
-                      RandomSequence& random);
-void add_carton_pile(Builder& builder, const Placement& placement, const Palette& palette,
-                     RandomSequence& random);
+void add_market_shelf(const SceneContext& context, const Placement& placement, double length);
+void add_carton_pile(const SceneContext& context, const Placement& placement);
 void add_bin(Builder& builder, const Placement& placement, const Palette& palette);
 
 }  // namespace stillpoint::synth

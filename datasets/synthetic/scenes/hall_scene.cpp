@@ -32,25 +32,25 @@ bool is_free(std::span<const Vector3d> path, const Vector2d& position, double ra
   });
 }
 
-void furnish_walls(Builder& builder, const Room& room, const Palette& palette, RandomSequence& random) {
+void furnish_walls(const SceneContext& context, const Room& room) {
+  RandomSequence& random = context.random;
   for (const Wall& wall : room.walls()) {
-    for (double lift = -0.9; lift + 2.2 < room.height; lift += 1.05)
-      decorate(builder, wall, {1.0, lift}, palette, random);
+    for (double lift = -0.9; lift + 2.2 < room.height; lift += 1.05) decorate(context, wall, {1.0, lift});
     const Vector3d inward = wall.right.cross(Vector3d::UnitZ());
     const double yaw = std::atan2(wall.right.y(), wall.right.x());
     for (double along = 0.5; along + 1.6 < wall.length; along += random.uniform(2.2, 3.2)) {
       const Vector3d foot = wall.lower_left + along * wall.right + 0.33 * inward;
       if (random.chance(0.6)) {
-        add_bookshelf(builder, {foot, yaw}, 1.3, palette, random);
+        add_bookshelf(context, {foot, yaw}, 1.3);
       } else {
-        add_carton_pile(builder, {foot + 0.2 * inward, yaw}, palette, random);
+        add_carton_pile(context, {foot + 0.2 * inward, yaw});
       }
     }
   }
 }
 
-void furnish_floor(Builder& builder, const Room& room, std::span<const Vector3d> path, const Palette& palette,
-                   RandomSequence& random) {
+void furnish_floor(const SceneContext& context, const Room& room, std::span<const Vector3d> path) {
+  RandomSequence& random = context.random;
   constexpr double kSpacing_m = 2.1;
   for (double x = room.low.x() + 1.6; x < room.high.x() - 1.4; x += kSpacing_m) {
     for (double y = room.low.y() + 1.6; y < room.high.y() - 1.4; y += kSpacing_m) {
@@ -58,9 +58,9 @@ void furnish_floor(Builder& builder, const Room& room, std::span<const Vector3d>
       const Vector3d position(x, y, 0.0);
       const Vector3d center = position + Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Vector3d(0.0, -0.4, 0.0);
       if (random.chance(0.7) && is_free(path, center.head<2>(), 0.9, kFurnitureHeight_m)) {
-        add_desk(builder, {position, yaw}, palette, random);
+        add_desk(context, {position, yaw});
       } else if (is_free(path, position.head<2>(), 0.4, 1.0)) {
-        add_chair(builder, {position, random.uniform(0.0, 2.0 * kPi)}, palette, random);
+        add_chair(context, {position, random.uniform(0.0, 2.0 * kPi)});
       }
     }
   }
@@ -73,7 +73,7 @@ void add_ducts(Builder& builder, const Room& room, const Palette& palette) {
     builder.add_box({room.low.x() + 0.02, y, room.height - 0.25},
                     {room.high.x() - 0.02, y + 0.22, room.height - 0.05}, palette.paint, 1.0);
     for (double x = room.low.x() + 0.6; x < room.high.x() - 0.6; x += 1.3) {
-      builder.add_textured_quad({x, y - 0.004, room.height - 0.08}, {0.2, 0.0, 0.0}, {0.0, 0.0, -0.14},
+      builder.add_textured_quad({{x, y - 0.004, room.height - 0.08}, {0.2, 0.0, 0.0}, {0.0, 0.0, -0.14}},
                                 palette.papers[static_cast<std::size_t>(x + 100.0) % palette.papers.size()]);
     }
   }
@@ -94,9 +94,10 @@ Scene build_hall(std::uint64_t seed, std::span<const Vector3d> path) {
   Builder builder(scene.world);
   const Palette& palette = scene.palette = make_palette(builder, seed);
   RandomSequence random(random_key(seed, RandomStream::kScene));
-  add_room(builder, scene.room, {palette.carpet, palette.plaster, palette.ceiling}, palette);
-  furnish_walls(builder, scene.room, palette, random);
-  furnish_floor(builder, scene.room, path, palette, random);
+  const SceneContext context{builder, palette, random};
+  add_room(context, scene.room, {palette.carpet, palette.plaster, palette.ceiling});
+  furnish_walls(context, scene.room);
+  furnish_floor(context, scene.room, path);
   add_ducts(builder, scene.room, palette);
   bake_light(scene.world, RayTracer(scene.world), seed);
   return scene;

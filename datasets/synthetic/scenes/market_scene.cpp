@@ -12,33 +12,32 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kShelfLength_m = 9.0;
 constexpr double kAisle_m = 3.2;  // distance between shelf centers
 
-void add_shelves(Builder& builder, const Palette& palette, RandomSequence& random) {
+void add_shelves(const SceneContext& context) {
   for (int row = -2; row <= 2; ++row) {
     for (const double x : {-7.0, 7.0}) {
-      add_market_shelf(builder, {{x, row * kAisle_m, 0.0}, 0.0}, kShelfLength_m, palette, random);
+      add_market_shelf(context, {{x, row * kAisle_m, 0.0}, 0.0}, kShelfLength_m);
     }
   }
 }
 
 /// Signs above the aisles, and stacks of cartons.
-void add_signs_and_stacks(Builder& builder, const Palette& palette, RandomSequence& random) {
+void add_signs_and_stacks(const SceneContext& context) {
+  const auto& [builder, palette, random] = context;
   for (int row = -2; row <= 1; ++row) {
     for (const double x : {-10.5, -3.5, 3.5, 10.5}) {
       builder.set_frame({x, (row + 0.5) * kAisle_m, 2.6}, 0.5 * kPi);
       const int sign = pick_random(palette.posters, random);
-      builder.add_textured_quad({-0.5, -0.01, 0.5}, {1.0, 0.0, 0.0}, {0.0, 0.0, -0.5}, sign);
-      builder.add_textured_quad({0.5, 0.01, 0.5}, {-1.0, 0.0, 0.0}, {0.0, 0.0, -0.5}, sign);
+      builder.add_textured_quad({{-0.5, -0.01, 0.5}, {1.0, 0.0, 0.0}, {0.0, 0.0, -0.5}}, sign);
+      builder.add_textured_quad({{0.5, 0.01, 0.5}, {-1.0, 0.0, 0.0}, {0.0, 0.0, -0.5}}, sign);
     }
   }
   for (const double x : {-13.6, 13.6}) {
     for (double y = -8.5; y < 9.0; y += 2.4) {
-      add_carton_pile(builder, {{x + random.uniform(-0.2, 0.2), y, 0.0}, random.uniform(-0.4, 0.4)}, palette,
-                      random);
+      add_carton_pile(context, {{x + random.uniform(-0.2, 0.2), y, 0.0}, random.uniform(-0.4, 0.4)});
     }
   }
   for (const double y : {-4.0, 0.8, 4.3}) {
-    add_carton_pile(builder, {{random.uniform(-0.4, 0.4), y, 0.0}, random.uniform(-0.4, 0.4)}, palette,
-                    random);
+    add_carton_pile(context, {{random.uniform(-0.4, 0.4), y, 0.0}, random.uniform(-0.4, 0.4)});
   }
 }
 
@@ -79,14 +78,15 @@ Scene build_market(std::uint64_t seed) {
   Builder builder(scene.world);
   const Palette& palette = scene.palette = make_palette(builder, seed);
   RandomSequence random(random_key(seed, RandomStream::kScene));
+  const SceneContext context{builder, palette, random};
   RoomStyle style{palette.tiles, palette.paint, palette.ceiling, 1.6, 3.2, 6.0};
-  add_room(builder, scene.room, style, palette);
+  add_room(context, scene.room, style);
   for (const Wall& wall : scene.room.walls()) {
-    decorate(builder, wall, {0.7, 0.2}, palette, random);
-    decorate(builder, wall, {0.7, 1.4}, palette, random);
+    decorate(context, wall, {0.7, 0.2});
+    decorate(context, wall, {0.7, 1.4});
   }
-  add_shelves(builder, palette, random);
-  add_signs_and_stacks(builder, palette, random);
+  add_shelves(context);
+  add_signs_and_stacks(context);
   bake_light(scene.world, RayTracer(scene.world), seed);
   return scene;
 }

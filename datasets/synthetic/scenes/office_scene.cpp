@@ -14,39 +14,42 @@ constexpr double kPi = std::numbers::pi;
 const std::vector<Placement> kSeats{
     {{-0.62, -0.98, 0.0}, kPi + 0.3}, {{0.75, 1.2, 0.0}, -0.2}, {{-0.8, 1.25, 0.0}, 0.35}};
 
-void add_workplaces(Builder& builder, const Palette& palette, RandomSequence& random) {
+void add_workplaces(const SceneContext& context) {
+  const auto& [builder, palette, random] = context;
   for (const double x : {-0.82, 0.82}) {
-    add_desk(builder, {{x, 0.0, 0.0}, 0.0}, palette, random);
-    add_desk(builder, {{x, 0.04, 0.0}, kPi}, palette, random);
-    add_chair(builder, {{x + random.uniform(-0.2, 0.2), 1.25, 0.0}, random.uniform(-0.5, 0.5)}, palette,
-              random);
+    add_desk(context, {{x, 0.0, 0.0}, 0.0});
+    add_desk(context, {{x, 0.04, 0.0}, kPi});
+    add_chair(context, {{x + random.uniform(-0.2, 0.2), 1.25, 0.0}, random.uniform(-0.5, 0.5)});
   }
-  add_chair(builder, {{-1.1, -1.15, 0.0}, kPi + random.uniform(-0.6, 0.6)}, palette, random);
+  add_chair(context, {{-1.1, -1.15, 0.0}, kPi + random.uniform(-0.6, 0.6)});
   builder.set_frame(Vector3d::Zero(), 0.0);
   builder.add_box({-1.62, 0.0, 0.5}, {1.62, 0.04, 1.02}, palette.fabrics[1], 0.5);
 }
 
-void add_walls(Builder& builder, const Room& room, const Palette& palette, RandomSequence& random) {
+void add_walls(const SceneContext& context, const Room& room) {
+  Builder& builder = context.builder;
+  const Palette& palette = context.palette;
   const auto walls = room.walls();
-  for (std::size_t i : {0, 2, 3}) decorate(builder, walls[i], {}, palette, random);
+  for (std::size_t i : {0, 2, 3}) decorate(context, walls[i], {});
   for (const double along : {0.6, 2.6, 4.6})
-    hang(builder, walls[1], {along, 0.9}, {1.5, 1.5}, palette.window);
-  hang(builder, walls[2], {6.2, 0.0}, {1.0, 2.1}, palette.door);
+    hang(builder, walls[1], {{along, 0.9}, {1.5, 1.5}}, palette.window);
+  hang(builder, walls[2], {{6.2, 0.0}, {1.0, 2.1}}, palette.door);
 }
 
-void add_furniture_at_walls(Builder& builder, const Room& room, const Palette& palette,
-                            RandomSequence& random) {
+void add_furniture_at_walls(const SceneContext& context, const Room& room) {
+  Builder& builder = context.builder;
+  const Palette& palette = context.palette;
   const double north = room.high.y() - 0.32;
-  add_bookshelf(builder, {{-3.4, north, 0.0}, 0.0}, 1.2, palette, random);
-  add_bookshelf(builder, {{1.6, north, 0.0}, 0.0}, 1.6, palette, random);
-  add_bookshelf(builder, {{room.low.x() + 0.32, -1.2, 0.0}, kPi / 2.0}, 1.6, palette, random);
-  add_carton_pile(builder, {{-1.4, room.high.y() - 0.45, 0.0}, 0.2}, palette, random);
-  add_carton_pile(builder, {{3.3, -2.9, 0.0}, -0.3}, palette, random);
-  add_carton_pile(builder, {{3.5, 2.2, 0.0}, 0.5}, palette, random);
+  add_bookshelf(context, {{-3.4, north, 0.0}, 0.0}, 1.2);
+  add_bookshelf(context, {{1.6, north, 0.0}, 0.0}, 1.6);
+  add_bookshelf(context, {{room.low.x() + 0.32, -1.2, 0.0}, kPi / 2.0}, 1.6);
+  add_carton_pile(context, {{-1.4, room.high.y() - 0.45, 0.0}, 0.2});
+  add_carton_pile(context, {{3.3, -2.9, 0.0}, -0.3});
+  add_carton_pile(context, {{3.5, 2.2, 0.0}, 0.5});
   add_bin(builder, {{2.0, 0.5, 0.0}, 0.0}, palette);
   add_bin(builder, {{-2.1, -0.6, 0.0}, 0.0}, palette);
-  add_desk(builder, {{3.98, -0.2, 0.0}, -kPi / 2.0}, palette, random);
-  add_chair(builder, {{2.85, -0.2, 0.0}, kPi / 2.0 + 0.3}, palette, random);
+  add_desk(context, {{3.98, -0.2, 0.0}, -kPi / 2.0});
+  add_chair(context, {{2.85, -0.2, 0.0}, kPi / 2.0 + 0.3});
 }
 
 }  // namespace
@@ -68,10 +71,11 @@ Scene build_office(std::uint64_t seed) {
   Builder builder(scene.world);
   const Palette& palette = scene.palette = make_palette(builder, seed);
   RandomSequence random(random_key(seed, RandomStream::kScene));
-  add_room(builder, scene.room, {palette.carpet, palette.plaster, palette.ceiling}, palette);
-  add_walls(builder, scene.room, palette, random);
-  add_furniture_at_walls(builder, scene.room, palette, random);
-  add_workplaces(builder, palette, random);
+  const SceneContext context{builder, palette, random};
+  add_room(context, scene.room, {palette.carpet, palette.plaster, palette.ceiling});
+  add_walls(context, scene.room);
+  add_furniture_at_walls(context, scene.room);
+  add_workplaces(context);
   bake_light(scene.world, RayTracer(scene.world), seed);
   return scene;
 }

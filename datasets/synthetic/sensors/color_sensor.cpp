@@ -24,7 +24,8 @@ double exposure_gain(const ColorSensor& sensor, double t_s) {
 }
 
 cv::Mat simulate_color(const RenderedFrame& frame, const Camera& camera, const ColorSensor& sensor,
-                       double gain, std::uint64_t noise_key) {
+                       const FrameExposure& exposure) {
+  const auto& [gain, noise_key] = exposure;
   cv::Mat image(frame.height, frame.width, CV_8UC3);
   const auto read_variance = static_cast<float>(sensor.read_noise * sensor.read_noise);
   const auto shot_variance = static_cast<float>(sensor.shot_noise);

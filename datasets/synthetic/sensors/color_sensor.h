@@ -30,11 +30,15 @@ struct ColorSensor {
 /// Gain of the frame taken `t_s` seconds after the start.
 [[nodiscard]] double exposure_gain(const ColorSensor& sensor, double t_s);
 
+/// What differs from frame to frame.
+struct FrameExposure {
+  double gain = 1.0;  ///< scene gain times `exposure_gain`
+  std::uint64_t noise_key = 0;
+};
+
 /// Applies the sensor model.
-/// @param gain scene gain times `exposure_gain`
-/// @param noise_key random key of this frame
 /// @return CV_8UC3 (R, G, B); gamma 2
 [[nodiscard]] cv::Mat simulate_color(const RenderedFrame& frame, const Camera& camera,
-                                     const ColorSensor& sensor, double gain, std::uint64_t noise_key);
+                                     const ColorSensor& sensor, const FrameExposure& exposure);
 
 }  // namespace stillpoint::synth

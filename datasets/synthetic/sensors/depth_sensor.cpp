@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "datasets/synthetic/counter_random.h"
 
@@ -41,8 +42,11 @@ class SmoothNoise {
 bool differs(float a, float b) { return std::abs(a - b) > kJump * std::min(a, b); }
 
 /// Whether a 4-neighbor has a different depth.
-bool at_edge(const std::vector<float>& depth_m, int width, int height, int row, int column) {
-  const auto depth = [&](int y, int x) { return depth_m[static_cast<std::size_t>(y * width + x)]; };
+bool at_edge(const TrueDepth& image, int row, int column) {
+  const int width = image.width, height = image.height;
+  const auto depth = [&image](int y, int x) {
+    return image.depth_m[static_cast<std::size_t>(y * image.width + x)];
+  };
   const float here = depth(row, column);
   return (column > 0 && differs(depth(row, column - 1), here)) ||
          (column + 1 < width && differs(depth(row, column + 1), here)) ||
@@ -78,8 +82,8 @@ std::uint16_t depth_reading(double depth_m, double noise, const DepthSensor& sen
 
 }  // namespace
 
-cv::Mat simulate_depth(const std::vector<float>& depth_m, int width, int height, const DepthSensor& sensor,
-                       std::uint64_t noise_key) {
+cv::Mat simulate_depth(const TrueDepth& depth, const DepthSensor& sensor, std::uint64_t noise_key) {
+  const auto& [depth_m, width, height] = depth;
   cv::Mat image = cv::Mat::zeros(height, width, CV_16UC1);
   const SmoothNoise smooth(sensor.correlation_px, noise_key);
   const auto smooth_weight = static_cast<float>(sensor.correlated_fraction);
@@ -93,7 +97,7 @@ cv::Mat simulate_depth(const std::vector<float>& depth_m, int width, int height,
       const std::uint64_t bits = mix_bits(noise_key + pixel);
       const double chance =
           static_cast<double>(mix_bits(noise_key + kDropoutOffset + pixel) >> 11) * 0x1.0p-53;
-      if (chance < sensor.edge_dropout && at_edge(depth_m, width, height, row, column)) continue;
+      if (chance < sensor.edge_dropout && at_edge(depth, row, column)) continue;
       const float noise = smooth_weight * smooth.at(row, column) + white_weight * normal_from_bits(bits);
       image.at<std::uint16_t>(row, column) =
           depth_reading(static_cast<double>(depth_m[pixel]), static_cast<double>(noise), sensor);

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
-#include <vector>
+#include <span>
 
 namespace stillpoint::synth {
 
@@ -29,10 +29,15 @@ struct DepthSensor {
   double units_per_m = 1000.0;
 };
 
+struct TrueDepth {
+  std::span<const float> depth_m;  ///< row-major; 0 = no surface
+  int width = 0;
+  int height = 0;
+};
+
 /// Applies the sensor model.
-/// @param depth_m row-major; 0 = no surface
 /// @return CV_16UC1 in units of 1 / units_per_m; 0 = no measurement
-[[nodiscard]] cv::Mat simulate_depth(const std::vector<float>& depth_m, int width, int height,
-                                     const DepthSensor& sensor, std::uint64_t noise_key);
+[[nodiscard]] cv::Mat simulate_depth(const TrueDepth& depth, const DepthSensor& sensor,
+                                     std::uint64_t noise_key);
 
 }  // namespace stillpoint::synth

@@ -79,11 +79,10 @@ std::vector<Detection> true_detections(std::span<const VisibleObject> visible,
 }
 
 std::vector<std::vector<Detection>> simulate_detector(std::span<const std::vector<VisibleObject>> frames,
-                                                      const DetectorModel& model, int width, int height,
+                                                      const DetectorModel& model, const cv::Size& image,
                                                       std::uint64_t seed) {
   RandomSequence random(random_key(seed, RandomStream::kDetector));
   MissChain chain(model);
-  const cv::Size image(width, height);
   std::vector<std::vector<Detection>> reports;
   for (const std::vector<VisibleObject>& visible : frames) {
     std::vector<Detection>& report = reports.emplace_back();

@@ -38,7 +38,7 @@ struct VisibleObject {
 /// Output of a simulated person detector over a whole sequence.
 /// @param frames visible objects of each frame
 [[nodiscard]] std::vector<std::vector<Detection>> simulate_detector(
-    std::span<const std::vector<VisibleObject>> frames, const DetectorModel& model, int width, int height,
+    std::span<const std::vector<VisibleObject>> frames, const DetectorModel& model, const cv::Size& image,
     std::uint64_t seed);
 
 }  // namespace stillpoint::synth

@@ -12,21 +12,13 @@ constexpr double kTurnRadius_m = 0.5;
 constexpr double kHandheldClearance_m = 0.75;  // minimum distance to a hand-held camera
 constexpr double kRobotClearance_m = 1.2;
 
-/// Camera to keep clear of, and the time interval to simulate.
-struct WalkConstraints {
-  const std::function<Eigen::Vector2d(double t_s)>& camera_at;
-  double from_s, to_s;
-  double camera_clearance_m;
-};
-
-Walk make_walk(const std::vector<Eigen::Vector2d>& corners, WalkStyle style,
-               const WalkConstraints& constraints, std::uint64_t key) {
+Walk make_walk(const std::vector<Eigen::Vector2d>& corners, WalkStyle style, const CameraMotion& camera,
+               std::uint64_t key) {
   RandomSequence random(key);
   const ClosedRoute route(corners, kTurnRadius_m);
   style.start_m = random.uniform() * route.length_m();
   style.speed *= random.uniform(0.8, 1.2);
-  style.camera_clearance_m = constraints.camera_clearance_m;
-  return {route, style, constraints.camera_at, mix_bits(key), constraints.from_s, constraints.to_s};
+  return {route, style, camera, mix_bits(key)};
 }
 
 void require_positions(int requested, std::size_t available, const std::string& what,
@@ -38,9 +30,7 @@ void require_positions(int requested, std::size_t available, const std::string& 
 
 }  // namespace
 
-std::vector<Actor> populate_scene(const SynthRequest& request, Scene& scene,
-                                  const std::function<Eigen::Vector2d(double t_s)>& camera_at, double from_s,
-                                  double to_s) {
+std::vector<Actor> populate_scene(const SynthRequest& request, Scene& scene, const CameraMotion& camera) {
   require_positions(request.walkers, scene.walking_routes.size(), "walkers", "--people");
   require_positions(request.seated, scene.seats.size(), "seated", "--seated");
   require_positions(request.unknown_movers, scene.cart_routes.size(), "unknown_movers", "--unknown");
@@ -50,24 +40,23 @@ std::vector<Actor> populate_scene(const SynthRequest& request, Scene& scene,
   }
   Builder builder(scene.world);
   const bool office = request.preset.starts_with("walking");
-  const WalkConstraints constraints{camera_at, from_s, to_s,
-                                    office ? kHandheldClearance_m : kRobotClearance_m};
+  const double clearance_m = office ? kHandheldClearance_m : kRobotClearance_m;
   std::vector<Actor> actors;
   const auto key = [&] { return random_key(request.seed, RandomStream::kPeople, actors.size()); };
   const auto object = [&] { return static_cast<int>(actors.size()) + 1; };
+  const WalkStyle style{.speed = 0.9, .stops_per_minute = 7.0, .camera_clearance_m = clearance_m};
   for (int i = 0; i < request.walkers; ++i) {
     const auto& corners = scene.walking_routes[static_cast<std::size_t>(i) % scene.walking_routes.size()];
-    actors.push_back(make_walking_person(
-        builder, object(), make_walk(corners, {.speed = 0.9, .stops_per_minute = 7.0}, constraints, key()),
-        key()));
+    actors.push_back(make_walking_person(builder, object(), make_walk(corners, style, camera, key()), key()));
   }
   for (int i = 0; i < request.seated; ++i) {
     actors.push_back(make_seated_person(builder, object(), scene.seats[static_cast<std::size_t>(i)], key()));
   }
+  const WalkStyle cart_style{
+      .speed = 0.55, .stops_per_minute = 6.0, .stop_s = 3.0, .camera_clearance_m = clearance_m};
   for (int i = 0; i < request.unknown_movers; ++i) {
     const auto& corners = scene.cart_routes[static_cast<std::size_t>(i) % scene.cart_routes.size()];
-    const WalkStyle style{.speed = 0.55, .stops_per_minute = 6.0, .stop_s = 3.0};
-    const Walk walk = make_walk(corners, style, constraints, key());
+    const Walk walk = make_walk(corners, cart_style, camera, key());
     const bool chair = office && i % 2 == 0;
     actors.push_back(
         chair ? make_rolling_chair(scene.palette, datasets::kFirstUndetectableObject + i, walk, key())

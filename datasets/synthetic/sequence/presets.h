@@ -15,6 +15,20 @@
 #include "datasets/synthetic/sensors/depth_sensor.h"
 #include "datasets/synthetic/sensors/object_boxes.h"
 
+namespace stillpoint {
+
+/// In the namespace of `ImuNoise`, so that argument-dependent lookup finds it.
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, ImuNoise>
+void visit_fields(Visitor&& field, Config& noise) {
+  field("gyro_noise", noise.gyro_noise);
+  field("accel_noise", noise.accel_noise);
+  field("gyro_walk", noise.gyro_walk);
+  field("accel_walk", noise.accel_walk);
+}
+
+}  // namespace stillpoint
+
 namespace stillpoint::synth {
 
 enum class SequenceLayout { kOpenLoris, kTum };
@@ -73,14 +87,6 @@ void visit_fields(Visitor&& field, Config& sensor) {
   field("max_m", sensor.max_m);
   field("edge_dropout", sensor.edge_dropout);
   field("units_per_m", sensor.units_per_m);
-}
-template <class Visitor, class Config>
-requires std::is_same_v<std::remove_const_t<Config>, ImuNoise>
-void visit_fields(Visitor&& field, Config& noise) {
-  field("gyro_noise", noise.gyro_noise);
-  field("accel_noise", noise.accel_noise);
-  field("gyro_walk", noise.gyro_walk);
-  field("accel_walk", noise.accel_walk);
 }
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, ImuSensor>

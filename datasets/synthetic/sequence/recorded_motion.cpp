@@ -6,8 +6,9 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "datasets/io/fault_log.h"
-#include "datasets/io/trajectory_file.h"
+#include "core/base/fault_log.h"
+#include "datasets/io/imu_file.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::synth {
 namespace {
@@ -63,10 +64,10 @@ Pose virtual_camera_T_b_c(const Eigen::Vector3d& up_b) {
 }
 
 RecordedMotion load_recorded_motion(const SynthRequest& request) {
-  datasets::FaultLog faults;
-  const Trajectory truth = datasets::read_tum_trajectory(request.trajectory_file, "imu", faults);
+  FaultLog faults;
+  const Trajectory truth = eval::read_tum_ground_truth(request.trajectory_file, "imu", faults);
   const std::vector<ImuSample> imu =
-      datasets::read_imu_file(request.imu_file, datasets::TimeUnit::kNanoseconds, faults);
+      datasets::read_imu_file(request.imu_file, eval::TimeUnit::kNanoseconds, faults);
   const Timestamp common = std::max(truth.poses.front().t, imu.front().t);
   const Timestamp epoch = after(common, std::max(request.start_s, kRecordingMargin_s));
   const Timestamp from = after(epoch, -kRecordingMargin_s),
@@ -82,7 +83,7 @@ RecordedMotion load_recorded_motion(const SynthRequest& request) {
   }
   const std::vector<StampedPose> poses = between(truth.poses, from, to);
   const std::vector<ImuSample> readings = between(imu, from, to);
-  return {smooth_motion(poses, readings, epoch, -kRecordingMargin_s, request.seconds + kRecordingMargin_s),
+  return {smooth_motion({poses, readings, epoch, -kRecordingMargin_s, request.seconds + kRecordingMargin_s}),
           epoch, to_imu_record(readings), virtual_camera_T_b_c(mean_force(readings))};
 }
 

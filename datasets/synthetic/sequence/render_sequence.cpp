@@ -99,8 +99,9 @@ class SequenceRenderer {
     const double gain = setup_.scene.gain * exposure_gain(request_.color, seconds_between(times_.front(), t));
     const std::uint64_t color_key = random_key(request_.seed, RandomStream::kColorNoise, index);
     const std::uint64_t depth_key = random_key(request_.seed, RandomStream::kDepthNoise, index);
-    writer_.write_images(t, simulate_color(frame, setup_.rig.camera, request_.color, gain, color_key),
-                         simulate_depth(frame.depth_m, frame.width, frame.height, request_.depth, depth_key));
+    writer_.write_images(
+        t, simulate_color(frame, setup_.rig.camera, request_.color, {gain, color_key}),
+        simulate_depth({frame.depth_m, frame.width, frame.height}, request_.depth, depth_key));
     if (request_.labels) writer_.write_labels(t, label_image(frame), speed_image(frame));
     visible_[index] = visible_objects(frame);
   }
@@ -143,17 +144,23 @@ class SequenceRenderer {
   std::vector<std::vector<VisibleObject>> visible_;
 };
 
-void write_boxes(const SynthRequest& request, const SceneSetup& setup, const std::vector<Timestamp>& times,
-                 const std::vector<std::vector<VisibleObject>>& visible, const SequenceWriter& writer) {
+/// The boxes of all frames.
+struct SequenceBoxes {
+  std::vector<DetectionSet> truth;
+  std::vector<DetectionSet> detections;  ///< of the simulated detector
+};
+
+SequenceBoxes boxes_of(const SynthRequest& request, const SceneSetup& setup,
+                       const std::vector<Timestamp>& times,
+                       const std::vector<std::vector<VisibleObject>>& visible) {
   const auto reports =
-      simulate_detector(visible, request.detector, request.width, request.height, request.seed);
-  std::vector<DetectionSet> detections, truth;
+      simulate_detector(visible, request.detector, {request.width, request.height}, request.seed);
+  SequenceBoxes boxes;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    truth.push_back({times[i], DetectionState::kPresent, true_detections(visible[i], setup.actors)});
-    detections.push_back({times[i], DetectionState::kPresent, reports[i]});
+    boxes.truth.push_back({times[i], DetectionState::kPresent, true_detections(visible[i], setup.actors)});
+    boxes.detections.push_back({times[i], DetectionState::kPresent, reports[i]});
   }
-  writer.write_boxes("true_boxes.txt", truth);
-  writer.write_boxes("detections.txt", detections);
+  return boxes;
 }
 
 }  // namespace
@@ -170,7 +177,11 @@ bool render_sequence(const SynthRequest& request, const fs::path& folder, const 
   SequenceRenderer work(request, setup, times, writer);
   const auto render = [&work](int index) { work.render(static_cast<std::size_t>(index)); };
   if (!for_each_frame(static_cast<int>(times.size()), control, render)) return false;
-  if (!setup.actors.empty()) write_boxes(request, setup, times, work.visible(), writer);
+  if (!setup.actors.empty()) {
+    const SequenceBoxes boxes = boxes_of(request, setup, times, work.visible());
+    writer.write_boxes("true_boxes.txt", boxes.truth);
+    writer.write_boxes("detections.txt", boxes.detections);
+  }
   writer.write_lists(times);
   writer.write_request(request);
   writer.write_rig(setup.rig, request);

@@ -47,15 +47,15 @@ SceneSetup simulated_setup(const SynthRequest& request) {
   Scene scene = scene_of(request);
   const double last_s = last_path_time(request);
   const bool by_hand = request.preset.starts_with("walking");
-  PathSpline path = by_hand ? hand_path(hand_motion_of(request.preset), scene.viewpoint, rig.T_b_c,
-                                        request.seed, 0.0, last_s)
-                            : robot_path(scene.route, rig.T_b_c, request.seed, 0.0, last_s);
+  PathSpline path = by_hand ? hand_path(hand_motion_of(request.preset), scene.viewpoint,
+                                        {rig.T_b_c, request.seed, 0.0, last_s})
+                            : robot_path(scene.route, {rig.T_b_c, request.seed, 0.0, last_s});
   const Timestamp epoch{kEpoch_ns};
-  ImuRecord imu = simulate_imu(path, request.imu, epoch, 0.0, last_path_time(request), request.seed);
+  ImuRecord imu = simulate_imu(path, request.imu, {epoch, 0.0, last_path_time(request), request.seed});
   const auto camera_at = [&](double t_s) {
     return Eigen::Vector2d((path.pose_at(t_s) * rig.T_b_c).p.head<2>());
   };
-  std::vector<Actor> actors = populate_scene(request, scene, camera_at, 0.0, last_s);
+  std::vector<Actor> actors = populate_scene(request, scene, {camera_at, 0.0, last_s});
   return {std::move(scene), std::move(path), rig, epoch, kFirstFrame_s, std::move(imu), std::move(actors)};
 }
 

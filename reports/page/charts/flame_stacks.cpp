@@ -6,7 +6,8 @@
 
 namespace stillpoint::report {
 
-void add_stacks(StackTimes& times, std::string_view folded, const std::string& source) {
+StackTimes parse_stacks(std::string_view folded, const std::string& source) {
+  StackTimes times;
   eval::LineReader lines(folded);
   while (const std::optional<std::string_view> line = lines.next()) {
     if (line->empty()) continue;
@@ -18,6 +19,7 @@ void add_stacks(StackTimes& times, std::string_view folded, const std::string& s
                        "is not a folded stack; expected \"outer;inner nanoseconds\"");
     times[std::string(line->substr(0, space))] += *ns;
   }
+  return times;
 }
 
 }  // namespace stillpoint::report

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Sums folded stacks over runs, for a flame chart.
+/// Parses folded stacks, for a flame chart.
 #pragma once
 
 #include <map>
@@ -11,9 +11,9 @@ namespace stillpoint::report {
 /// Stack "outer;inner" -> self time of the innermost entry [ns].
 using StackTimes = std::map<std::string, double>;
 
-/// Adds the lines "outer;inner ns" of a file.
+/// Sums the lines "outer;inner ns" of a file by stack.
 /// @param source name of the text in error messages
 /// @throws InputError with the number of the first invalid line
-void add_stacks(StackTimes& times, std::string_view folded, const std::string& source);
+[[nodiscard]] StackTimes parse_stacks(std::string_view folded, const std::string& source);
 
 }  // namespace stillpoint::report

@@ -55,21 +55,21 @@ std::string base_variant(std::span<const bench::StoredRun> runs) {
 }
 
 std::string heat_map_html(std::span<const bench::StoredRun> all, const std::string& base,
-                          const std::string& metric) {
+                          const bench::MetricDescriptor& metric) {
   const std::vector<bench::StoredRun> runs = comparable(all);
   if (distinct(runs, system_label).size() < 2) return "";
   const std::vector<std::string> sequences =
       distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
   std::string text = fmt::format(
       "<div class=\"table\"><table class=\"heat\"><caption>Change of {} against {}, median of pairs and its "
-      "95 % interval; hatched: not significant (one pair only, or the interval contains 0)</caption>\n"
+      "95 % interval; hatched: not significant (one pair only, or the interval contains 0). {}</caption>\n"
       "<thead><tr><th scope=\"col\">variant</th>"
       "<th scope=\"col\">all</th>",
-      escape_html(metric), escape_html(base));
+      metric.id, escape_html(base), bench::tooltip(metric));
   for (const std::string& sequence : sequences)
     text += "<th scope=\"col\">" + escape_html(sequence) + "</th>";
   text += "</tr></thead><tbody>";
-  const std::vector<bench::AblationRow> rows = bench::ablation(runs, base, metric);
+  const std::vector<bench::AblationRow> rows = bench::ablation(runs, base, std::string(metric.id));
   for (const std::string& variant : distinct(runs, system_label)) {
     if (variant == base) continue;
     text += "\n<tr><th scope=\"row\">" + escape_html(variant) + "</th>";

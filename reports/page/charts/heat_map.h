@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "bench/model/stored_run.h"
+#include "bench/model/metrics.h"
 
 namespace stillpoint::report {
 
@@ -16,6 +16,6 @@ namespace stillpoint::report {
 /// Relative changes of a metric with their intervals, paired by sequence and seed; warm colors are worse.
 /// Empty with fewer than two variants.
 [[nodiscard]] std::string heat_map_html(std::span<const bench::StoredRun> runs, const std::string& base,
-                                        const std::string& metric);
+                                        const bench::MetricDescriptor& metric);
 
 }  // namespace stillpoint::report

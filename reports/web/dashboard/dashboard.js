@@ -2,9 +2,8 @@
 // History view: one subject at a time, with its accuracy and cost in one chart and one chart per metric.
 "use strict";
 (function (page) {
-  const { commits, plans, hosts, subjects, series, shifts } = page.index;
+  const { commits, plans, hosts, subjects, series, shifts, preferred, tooltips } = page.index;
   const byId = (id) => document.getElementById(id);
-  const byMetric = { accuracy: ["ate_rmse_m", "correct_rate", "failed_runs"], cost: ["process_cpu_s", "state_optimization", "peak_memory_mb"] };
   const state = { subject: -1, commit: null, charts: null, open: -1, moving: false };
 
   const seriesOf = (subject) => series.map((one, i) => i).filter((i) => series[i].subject === subject);
@@ -33,7 +32,7 @@
     const place = byId("readout");
     place.replaceChildren();
     const shown = state.commit === null ? commits.length - 1 : state.commit, commit = commits[shown];
-    const add = (label, text) => { const part = page.element("span"); part.append(page.element("b", {}, label + " "), text); place.append(part); };
+    const add = (label, text) => { const part = page.element("span", { title: tooltips[label] || "" }); part.append(page.element("b", {}, label + " "), text); place.append(part); };
     add("commit", page.element("a", { href: commit.page }, commit.label));
     add("time", commit.time);
     for (const index of seriesOf(state.subject)) {
@@ -60,7 +59,7 @@
   function chosen(family) {
     const list = byId(family), own = seriesOf(state.subject).filter((i) => series[i].family === family);
     const names = own.map((i) => series[i].metric);
-    const wanted = [list.value, ...byMetric[family]].find((name) => names.includes(name)) || names[0];
+    const wanted = [list.value, ...preferred[family]].find((name) => names.includes(name)) || names[0];
     fill(list, own.map((i) => [series[i].metric, series[i].metric]), wanted);
     return own.find((i) => series[i].metric === wanted);
   }

@@ -115,7 +115,7 @@ TEST(CommitHistory, CountsFailedRunsAndOmitsTheirValues) {
   const Store store(
       store_of(folder, {{"a", 0.1, manifest_of("A")}, {"a", 9.0, "", {.repetition = 2}, Outcome::kCrashed}}));
   const CommitHistory history = commit_history(store);
-  EXPECT_EQ(series_of(history, kFailedRuns).values, std::vector<double>{0.5});
+  EXPECT_EQ(series_of(history, std::string(metric_id::kFailedRuns)).values, std::vector<double>{0.5});
   EXPECT_EQ(series_of(history, "ate_rmse_m").values, std::vector<double>{0.1});
 }
 

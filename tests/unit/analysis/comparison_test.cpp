@@ -15,8 +15,10 @@ MetricChange change_of(double median, double half_width, std::size_t pairs = 10)
       .adjusted_interval = {median - half_width, median + half_width}};
 }
 
-constexpr MetricRule kError{.name = "error", .margin = 0.05};
-constexpr MetricRule kRate{.name = "rate", .larger_is_better = true, .margin = 0.05};
+constexpr MetricDescriptor kError{
+    .id = "error", .direction = MetricDirection::kSmallerIsBetter, .gate = MetricGate{.margin = 0.05}};
+constexpr MetricDescriptor kRate{
+    .id = "rate", .direction = MetricDirection::kLargerIsBetter, .gate = MetricGate{.margin = 0.05}};
 
 TEST(Classify, RequiresMarginAndSignificance) {
   EXPECT_EQ(classify(change_of(0.10, 0.05), kError, true), ChangeClass::kWorse);
@@ -41,9 +43,9 @@ TEST(Classify, IsInconclusiveForFewPairsOfANonRepeatableMetric) {
 }
 
 TEST(Classify, IgnoresDifferencesBelowTheFloor) {
-  MetricRule rule = kError;
-  rule.floor = 0.2;  // the medians differ by 0.1
-  EXPECT_EQ(classify(change_of(0.10, 0.05), rule, true), ChangeClass::kSame);
+  MetricDescriptor metric = kError;
+  metric.gate->floor = 0.2;  // the medians differ by 0.1
+  EXPECT_EQ(classify(change_of(0.10, 0.05), metric, true), ChangeClass::kSame);
 }
 
 StoredRun run_of(const std::string& sequence, double ate, const std::string& trajectory) {

@@ -47,15 +47,15 @@ TEST(HistoryChanges, IgnoresChangesBelowTheMarginOrTheFloor) {
   EXPECT_TRUE(history_changes(cost_history({0.05, 0.055}), {}).shifts.empty());  // 5 us, floor 10 us
 }
 
-TEST(HistoryChanges, AMetricWithoutRuleHasNeutralChanges) {
+TEST(HistoryChanges, AMetricWithoutGateHasNeutralChanges) {
   CommitHistory history = cost_history({4.0, 4.4});
-  history.series.front().rule.reset();
+  history.series.front().gated = nullptr;
   EXPECT_EQ(states_of(history_changes(history, {})), States{ChangeState::kNeutral});
 }
 
 TEST(HistoryChanges, AccountForTheDirectionOfTheMetric) {
   CommitHistory history = cost_history({0.8, 0.9});
-  history.series.front().rule = metric_rule("correct_rate");
+  history.series.front().gated = gated_metric("correct_rate");
   EXPECT_EQ(states_of(history_changes(history, {})), States{ChangeState::kImproved});
 }
 
@@ -84,7 +84,8 @@ TEST(HistoryChanges, AnAcceptanceAppliesToMatchingShiftsOnly) {
 }
 
 TEST(HistoryChanges, ANewFailureIsOpenWithoutATest) {
-  const CommitHistory history = history_of(kFailedRuns, {{0.0, 0.0, 0.5, 0.5}, {0.5, 0.5}, {0.5, 0.0}});
+  const CommitHistory history =
+      history_of(std::string(metric_id::kFailedRuns), {{0.0, 0.0, 0.5, 0.5}, {0.5, 0.5}, {0.5, 0.0}});
   const HistoryChanges changes = history_changes(history, {});
   ASSERT_EQ(changes.shifts.size(), 1u);  // the second series always failed, the third one is fixed
   EXPECT_EQ(changes.shifts.front().before, 1u);

@@ -19,7 +19,7 @@ inline CommitHistory history_of(const std::string& metric,
     series.subject.sequence = std::string("s").append(std::to_string(history.series.size()));
     series.subject.variant = "vo";
     series.metric = metric;
-    series.rule = metric_rule(metric);
+    series.gated = gated_metric(metric);
     for (std::size_t i = 0; i < values.size(); ++i) {
       series.commits.push_back(i);
       if (i == history.commits.size())

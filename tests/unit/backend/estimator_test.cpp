@@ -36,7 +36,7 @@ SimulatedRun simulate(const SimulatedMotion& motion, const BackendConfig& backen
   for (int i = 0; i < static_cast<int>(seconds * kRate_hz); ++i) {
     const double t = 0.1 + i / kRate_hz;
     for (; next < imu.size() && to_seconds(imu[next].t) < t + 0.05; ++next) estimator.add_imu(imu[next]);
-    const OdometryUpdate update = process_frame(estimator, motion.frame(i, t));
+    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
     if (update.status != OdometryStatus::kTracking) continue;
     const Pose truth = SimulatedMotion::state(t + motion.time_offset_s).T_w_b;
     if (!T_first) {

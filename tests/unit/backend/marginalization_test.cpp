@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/marginalization/marginalization.h"
+#include "core/backend/marginalization/frame_marginalizer.h"
 
 #include <gtest/gtest.h>
 
 #include "core/backend/solvers/window_solver.h"
-#include "core/backend/start/initializer.h"
+#include "core/backend/start/initial_prior.h"
 #include "core/backend/window/landmark_tracks.h"
 #include "tests/support/window_world.h"
 
@@ -13,10 +13,14 @@ namespace {
 
 constexpr double kFocal_px = 500.0;
 
+LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config) {
+  return make_window_solver(config.solver)->marginalize_oldest(window, config, kFocal_px, {});
+}
+
 TEST(Marginalization, ExactDataGiveAZeroResidual) {
   Window window = visual_window(5, 30);
   window.prior = initial_prior(window, InitializerConfig{});
-  const LinearPrior prior = marginalize_oldest(window, {}, kFocal_px);
+  const LinearPrior prior = marginalize_oldest(window, {});
   EXPECT_EQ(prior.blocks.size(), 4u);  // poses 1..4, now 0..3
   EXPECT_EQ(prior.blocks.front().frame, 0);
   EXPECT_LT(prior.residual.norm(), 1e-6);
@@ -28,11 +32,11 @@ TEST(Marginalization, ThePriorPullsADisplacedFrameBack) {
   BackendConfig config;
   config.depth.usage = DepthUsage::kWeighted;
   window.prior = initial_prior(window, config.initializer);
-  window.prior = marginalize_oldest(window, config, kFocal_px);
+  window.prior = marginalize_oldest(window, config);
   remove_oldest_frame(window);
   window.landmarks.clear();  // the prior alone must constrain the poses
   for (WindowFrame& frame : window.frames) frame.state.T_w_b.p += Eigen::Vector3d(0.01, -0.02, 0.015);
-  ASSERT_TRUE(solve_window(window, config, kFocal_px).usable);
+  ASSERT_TRUE(make_window_solver(config.solver)->solve(window, config, kFocal_px).usable);
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     EXPECT_LT((window.frames[i].state.T_w_b.p - truth.frames[i + 1].state.T_w_b.p).norm(), 1e-6);
   }
@@ -45,7 +49,7 @@ TEST(Marginalization, AnUnconnectedFrameLeavesAnEmptyPrior) {
   for (const WindowSolverKind kind : {WindowSolverKind::kCeres, WindowSolverKind::kSchur}) {
     BackendConfig config;
     config.solver = kind;
-    EXPECT_TRUE(marginalize_oldest(window, config, kFocal_px).empty());
+    EXPECT_TRUE(marginalize_oldest(window, config).empty());
   }
 }
 
@@ -60,8 +64,7 @@ TEST(Marginalization, RemovingAFrameFromAPriorPreservesTheMarginalsOfTheOthers) 
   prior.jacobian.topRightCorner<6, 6>() = -Eigen::MatrixXd::Identity(6, 6);
   prior.jacobian.bottomRightCorner<6, 6>().setIdentity();
   prior.residual = Eigen::VectorXd::Zero(12);
-  LinearPrior remaining = prior;
-  FrameMarginalizer().remove(1, remaining);
+  const LinearPrior remaining = FrameMarginalizer().remove(1, prior);
   ASSERT_EQ(remaining.blocks.size(), 1u);
   const Eigen::MatrixXd information = remaining.jacobian.transpose() * remaining.jacobian;
   // variances add: 1 + 1 = 2, so the information is 1/2

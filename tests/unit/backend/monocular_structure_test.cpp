@@ -19,6 +19,10 @@ BackendConfig monocular() {
   return config;
 }
 
+std::optional<Window> reconstruct(const Window& window, const BackendConfig& config) {
+  return reconstruct_window(window, config, 500.0, *make_window_solver(config.solver));
+}
+
 double frame_time(int frame) { return 0.5 + 0.1 * frame; }
 
 /// Tracks and inertial samples, but neither poses nor depths.
@@ -59,15 +63,14 @@ double largest_error(const Window& structure) {
 }
 
 TEST(MonocularStructure, ReconstructsExactTracksUpToScale) {
-  const std::optional<Window> structure =
-      reconstruct_window(window_before_initialization({}), monocular(), 500.0);
+  const std::optional<Window> structure = reconstruct(window_before_initialization({}), monocular());
   ASSERT_TRUE(structure);
   EXPECT_LT(largest_error(*structure), 1e-4);
 }
 
 TEST(MonocularStructure, IsRobustToPixelNoise) {
   const std::optional<Window> structure =
-      reconstruct_window(window_before_initialization({.pixel_noise_px = 0.5}), monocular(), 500.0);
+      reconstruct(window_before_initialization({.pixel_noise_px = 0.5}), monocular());
   ASSERT_TRUE(structure);
   // 0.5 px at 3 m are 3 mm, averaged over about 100 points; the path is about 0.5 m long.
   EXPECT_LT(largest_error(*structure), 0.02);
@@ -76,19 +79,19 @@ TEST(MonocularStructure, IsRobustToPixelNoise) {
 TEST(MonocularStructure, FailsWithoutParallax) {
   BackendConfig config = monocular();
   config.initializer.min_parallax_px = 200.0;  // 0.5 m at depths of 2-5 m gives 50-125 px
-  EXPECT_FALSE(reconstruct_window(window_before_initialization({}), config, 500.0));
+  EXPECT_FALSE(reconstruct(window_before_initialization({}), config));
 }
 
 TEST(MonocularStructure, FailsWithoutInertialSamples) {
   Window window = window_before_initialization({});
   window.frames[3].from_previous.reset();
-  EXPECT_FALSE(reconstruct_window(window, monocular(), 500.0));
+  EXPECT_FALSE(reconstruct(window, monocular()));
 }
 
 TEST(MonocularStructure, IgnoresDynamicLandmarks) {
   Window window = window_before_initialization({});
   for (Landmark& landmark : window.landmarks) landmark.dynamic = true;
-  EXPECT_FALSE(reconstruct_window(window, monocular(), 500.0));
+  EXPECT_FALSE(reconstruct(window, monocular()));
 }
 
 }  // namespace

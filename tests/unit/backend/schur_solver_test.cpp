@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/backend/marginalization/marginalization.h"
 #include "core/backend/marginalization/normal_equations.h"
+#include "core/backend/solvers/ceres_solver.h"
 #include "tests/support/simulated_window.h"
 
 namespace stillpoint {
@@ -52,25 +52,26 @@ INSTANTIATE_TEST_SUITE_P(Windows, SchurSolverCase, testing::ValuesIn(kCases),
                          [](const auto& tested) { return tested.param.name; });
 
 /// Normal equations of the Ceres cost functions, landmarks eliminated.
-NormalEquations reference_system(const Window& window, const BackendConfig& config, ParameterBlocks& blocks) {
+NormalEquations reference_system(const Window& window, const BackendConfig& config,
+                                 const ParameterBlocks& blocks) {
   NormalEquations equations(static_cast<int>(window.frames.size()));
   ResidualBuilder builder(window, config, kSimulatedFocal_px);
-  std::vector<Residual> group;
-  builder.add_prior(group);
-  builder.add_calibration(group);
-  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame, group);
-  equations.add(group, blocks, false);
+  builder.add_prior();
+  builder.add_calibration();
+  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
+  equations.add(builder.residuals(), blocks, false);
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     if (!is_usable(window.landmarks[i])) continue;
-    group.clear();
-    builder.add_landmark(static_cast<int>(i), group);
-    equations.add(group, blocks, has_constant_depth(window.landmarks[i], config));
+    builder.clear();
+    builder.add_landmark(static_cast<int>(i));
+    equations.add(builder.residuals(), blocks, has_constant_depth(window.landmarks[i], config));
   }
   return equations;
 }
 
 /// Same, by the terms of the Schur solver.
-ReducedSystem reduced_system(const Window& window, const BackendConfig& config, ParameterBlocks& blocks) {
+ReducedSystem reduced_system(const Window& window, const BackendConfig& config,
+                             const ParameterBlocks& blocks) {
   VisualTerms visual;
   PriorTerm prior;
   PriorTerm calibration;
@@ -118,7 +119,7 @@ ColumnPairs matching_columns(const Window& window, const ReducedLayout& reduced)
 TEST_P(SchurSolverCase, NormalEquationsEqualThoseOfTheCostFunctions) {
   const Window window = GetParam().window();
   const BackendConfig& config = GetParam().options.config;
-  ParameterBlocks blocks(window);
+  const ParameterBlocks blocks(window);
   const NormalEquations reference = reference_system(window, config, blocks);
   const ReducedSystem reduced = reduced_system(window, config, blocks);
   const ColumnPairs columns = matching_columns(window, reduced.layout);
@@ -135,12 +136,11 @@ TEST_P(SchurSolverCase, NormalEquationsEqualThoseOfTheCostFunctions) {
 }
 
 TEST_P(SchurSolverCase, ReachesTheCostOfCeres) {
-  BackendConfig config = GetParam().options.config;
+  const BackendConfig& config = GetParam().options.config;
   Window by_schur = GetParam().window();
   Window by_ceres = by_schur;
-  const SolveReport schur = solve_window(by_schur, config, kSimulatedFocal_px);
-  config.solver = WindowSolverKind::kCeres;
-  const SolveReport ceres = solve_window(by_ceres, config, kSimulatedFocal_px);
+  const SolveReport schur = SchurSolver().solve(by_schur, config, kSimulatedFocal_px);
+  const SolveReport ceres = CeresSolver().solve(by_ceres, config, kSimulatedFocal_px);
   ASSERT_TRUE(schur.usable && ceres.usable);
   EXPECT_EQ(schur.landmarks, ceres.landmarks);
   EXPECT_EQ(schur.depth_landmarks, ceres.depth_landmarks);
@@ -154,10 +154,9 @@ TEST_P(SchurSolverCase, ReachesTheCostOfCeres) {
 
 TEST_P(SchurSolverCase, MarginalizationYieldsTheSameInformation) {
   const Window window = GetParam().window();
-  BackendConfig config = GetParam().options.config;
-  const LinearPrior root = marginalize_oldest(window, config, kSimulatedFocal_px);
-  config.solver = WindowSolverKind::kCeres;
-  const LinearPrior reference = marginalize_oldest(window, config, kSimulatedFocal_px);
+  const BackendConfig& config = GetParam().options.config;
+  const LinearPrior root = SchurSolver().marginalize_oldest(window, config, kSimulatedFocal_px, {});
+  const LinearPrior reference = CeresSolver().marginalize_oldest(window, config, kSimulatedFocal_px, {});
   ASSERT_EQ(root.blocks.size(), reference.blocks.size());
   for (std::size_t i = 0; i < root.blocks.size(); ++i) {
     EXPECT_EQ(root.blocks[i].kind, reference.blocks[i].kind);

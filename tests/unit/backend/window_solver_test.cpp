@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/backend/start/initializer.h"
+#include "core/backend/start/initial_prior.h"
 #include "tests/support/window_world.h"
 
 namespace stillpoint {
@@ -34,7 +34,7 @@ TEST(WindowSolver, ALandmarkBeyondInfinityDoesNotAffectTheOthers) {
   for (int i = 1; i <= window.newest(); ++i) {
     window.frames[static_cast<std::size_t>(i)].state.T_w_b.p += Eigen::Vector3d(0.01, -0.02, 0.015);
   }
-  ASSERT_TRUE(solve_window(window, config, kFocal_px).usable);
+  ASSERT_TRUE(make_window_solver(config.solver)->solve(window, config, kFocal_px).usable);
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     EXPECT_LT((window.frames[i].state.T_w_b.p - truth.frames[i].state.T_w_b.p).norm(), 1e-4);
   }

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/io/image_io.h"
-#include "datasets/sensor_stream.h"
+#include "datasets/open_sequence.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/sequence_folders.h"
 
@@ -99,7 +99,7 @@ TEST(BadSequence, DepthWithoutMatchingColorTimesIsAnError) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
   folder.write("depth.txt", "7.0 depth/1.005000.png\n");
-  expect_rejected(folder, {"depth.txt", "within 20 ms"});
+  expect_rejected(folder, {"depth.txt", "less than 20 ms"});
 }
 
 TEST(BadSequence, UnreadableCalibrationIsAnError) {

@@ -35,7 +35,7 @@ TEST(ImuFile, FaultyRowErrorsNameTheLine) {
   const auto read = [&](const std::string& text) {
     return [&folder, text] {
       FaultLog strict;
-      static_cast<void>(read_imu_file(folder.write("imu.csv", text), TimeUnit::kNanoseconds, strict));
+      static_cast<void>(read_imu_file(folder.write("imu.csv", text), eval::TimeUnit::kNanoseconds, strict));
     };
   };
   expect_input_error(read("#t\n"), {"imu.csv", "contains no samples"});
@@ -43,7 +43,7 @@ TEST(ImuFile, FaultyRowErrorsNameTheLine) {
   expect_input_error(read("2,0,0,0,0,0,9\n2,0,0,0,0,0,9\n"), {"imu.csv:2", "repeats"});
   expect_input_error(read("2,0,nan,0,0,0,9\n"), {"imu.csv:1", "not finite"});
   expect_input_error(read("2,0,0,0,0,0\n"), {"imu.csv:1", "6 field(s)"});
-  expect_input_error(read("2.5,0,0,0,0,0,9\n"), {"imu.csv:1", "integer time in nanoseconds"});
+  expect_input_error(read("2.5,0,0,0,0,0,9\n"), {"imu.csv:1", "integer number of nanoseconds"});
 }
 
 TEST(ImuFile, ACollectingLogSkipsFaultyRowsOnly) {
@@ -51,7 +51,7 @@ TEST(ImuFile, ACollectingLogSkipsFaultyRowsOnly) {
   FaultLog faults(FaultLog::Mode::kCollect);
   const auto samples =
       read_imu_file(folder.write("imu.csv", "1,0,0,0,0,0,9\n3,0,0,0,0,0,inf\n2,0,0,0,0,0,9\n"),
-                    TimeUnit::kNanoseconds, faults);
+                    eval::TimeUnit::kNanoseconds, faults);
   EXPECT_EQ(samples.size(), 2U);
   EXPECT_EQ(faults.messages().size(), 1U);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "datasets/open_sequence.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "datasets/io/image_io.h"
-#include "datasets/sequence_content.h"
+#include "datasets/read_sequence.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/sequence_folders.h"
 #include "tests/support/test_data.h"
@@ -215,7 +215,7 @@ TEST(OpenSequence, UnknownFormatErrorListsTheSupportedFormats) {
                      {"not a sequence of a supported format", "rgb.txt", "mav0"});
   expect_input_error(
       [&] { static_cast<void>(open_sequence(folder.path(), {.format = "kitti", .rig_file = {}})); },
-      {"kitti", "tum, openloris, euroc, 7scenes, folder"});
+      {"kitti", sequence_format_names()});
   expect_input_error([&] { static_cast<void>(open_sequence(folder.path() / "absent")); }, {"no such folder"});
 }
 

@@ -19,8 +19,7 @@ Detection detection(double x_min, double y_min, double x_max, double y_max) {
 }
 
 TEST(UsableBoxes, KeepsBoxesInsideTheImage) {
-  DetectorCounters counters;
-  const auto boxes = usable_boxes({detection(0, 0, 99, 79)}, kImageSize, counters);
+  const auto [boxes, counters] = usable_boxes({detection(0, 0, 99, 79)}, kImageSize);
   ASSERT_EQ(boxes.size(), 1U);
   EXPECT_EQ(boxes[0].box.x_max, 99.0);
   EXPECT_EQ(counters.boxes, 1);
@@ -29,8 +28,7 @@ TEST(UsableBoxes, KeepsBoxesInsideTheImage) {
 }
 
 TEST(UsableBoxes, ClipsAndCountsBoxesThatExceedTheImage) {
-  DetectorCounters counters;
-  const auto boxes = usable_boxes({detection(-20, 10, 50, 500)}, kImageSize, counters);
+  const auto [boxes, counters] = usable_boxes({detection(-20, 10, 50, 500)}, kImageSize);
   ASSERT_EQ(boxes.size(), 1U);
   EXPECT_EQ(boxes[0].box, (Box{.x_min = 0, .y_min = 10, .x_max = 50, .y_max = 79}));
   EXPECT_EQ(counters.clipped, 1);
@@ -38,10 +36,9 @@ TEST(UsableBoxes, ClipsAndCountsBoxesThatExceedTheImage) {
 
 TEST(UsableBoxes, RejectsAndCountsInvalidBoxes) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  DetectorCounters counters;
-  const auto boxes = usable_boxes({detection(50, 10, 20, 40), detection(150, 10, 200, 40),
-                                   detection(10, 10, 10, 40), detection(10, kNan, 20, 40)},
-                                  kImageSize, counters);
+  const auto [boxes, counters] = usable_boxes({detection(50, 10, 20, 40), detection(150, 10, 200, 40),
+                                               detection(10, 10, 10, 40), detection(10, kNan, 20, 40)},
+                                              kImageSize);
   EXPECT_TRUE(boxes.empty());
   EXPECT_EQ(counters.rejected, 4);
   EXPECT_EQ(counters.boxes, 0);

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "core/detector/network_detector.h"
-#include "datasets/sensor_stream.h"
+#include "datasets/open_sequence.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_data.h"

@@ -27,6 +27,18 @@ TEST(AssociateTum, MatchesPosesThatBecomeNeighborsWhenTheInnerPairIsRemoved) {
   EXPECT_EQ(pairs, (std::vector<IndexPair>{{1, 0}, {0, 1}}));
 }
 
+TEST(AssociateTum, PrefersTheClosestPairToTheOrderOfTime) {
+  // 33 is nearer to 30 (3 ms) than 20 is (10 ms), so 20 is matched with 5; in order of time it would be 30.
+  const auto pairs = associate_tum(at_milliseconds({20, 33}), at_milliseconds({5, 30}));
+  EXPECT_EQ(pairs, (std::vector<IndexPair>{{0, 0}, {1, 1}}));
+}
+
+TEST(AssociateTum, AcceptsStampsWithoutPoses) {
+  const std::vector<Timestamp> gt{{20'000'000}, {30'000'000}};
+  const std::vector<Timestamp> est{{29'000'000}};
+  EXPECT_EQ(associate_tum(gt, est), (std::vector<IndexPair>{{1, 0}}));
+}
+
 TEST(AssociateTum, ExcludesADifferenceEqualToTheLimit) {
   EXPECT_TRUE(associate_tum(at_milliseconds({0}), at_milliseconds({20})).empty());
   EXPECT_EQ(associate_tum(at_milliseconds({1}), at_milliseconds({20})).size(), 1u);
@@ -38,8 +50,8 @@ TEST(AssociateTum, AddsTheOffsetToTheEstimate) {
 }
 
 TEST(AssociateTum, ReturnsNoPairsForEmptyInput) {
-  EXPECT_TRUE(associate_tum({}, {}).empty());
-  EXPECT_TRUE(associate_tum({}, at_milliseconds({1})).empty());
+  EXPECT_TRUE(associate_tum(Trajectory{}, Trajectory{}).empty());
+  EXPECT_TRUE(associate_tum(Trajectory{}, at_milliseconds({1})).empty());
 }
 
 TEST(AssociateInterpolated, ReturnsTheFractionOfTheIntervalAndSkipsGaps) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "eval/trajectory/frames.h"
+#include "eval/trajectory/alignment.h"
 #include "tests/support/smooth_path.h"
 
 namespace stillpoint::eval {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "eval/io/any_trajectory.h"
-#include "eval/io/euroc_file.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
 #include "eval/metrics/nees.h"
@@ -40,14 +39,14 @@ TEST(Formats, SevenScenesFolderIsReadBackAsWritten) {
   }
   const TemporaryFolder folder;
   write_seven_scenes(path, folder.path());
-  expect_same(read_trajectory({.path = folder.path(), .format = "", .times = ""}).trajectory, path);
+  expect_same(read_trajectory({.path = folder.path()}).trajectory, path);
 }
 
 TEST(Formats, AreDetectedFromTheContent) {
-  EXPECT_EQ(detect_format(format_tum(kPath)), "tum");
-  EXPECT_EQ(detect_format(format_euroc(kPath)), "euroc");
-  EXPECT_EQ(detect_format(format_kitti(kPath).poses), "kitti");
-  EXPECT_EQ(detect_format("scene: home\nseq: 1\n"), "openloris");
+  EXPECT_EQ(detect_format(format_tum(kPath)), TrajectoryFormat::kTum);
+  EXPECT_EQ(detect_format(format_euroc(kPath)), TrajectoryFormat::kEuroc);
+  EXPECT_EQ(detect_format(format_kitti(kPath).poses), TrajectoryFormat::kKitti);
+  EXPECT_EQ(detect_format("scene: home\nseq: 1\n"), TrajectoryFormat::kOpenloris);
 }
 
 TEST(Openloris, DropsRepeatedPosesUnlessTheyAreRequested) {
@@ -76,8 +75,7 @@ TEST(Formats, ReportTheLineOfAMalformedRow) {
   expect_input_error([] { static_cast<void>(parse_openloris("1 0 0 0 0 0 0 1\n", "o")); }, {"o:1", "seq"});
   expect_input_error([] { static_cast<void>(parse_openloris("seq: 1\nseq: 1\n", "o")); },
                      {"o:2", "duplicate"});
-  expect_input_error([] { static_cast<void>(read_trajectory({.path = "/none", .format = "", .times = ""})); },
-                     {"/none", "opened"});
+  expect_input_error([] { static_cast<void>(read_trajectory({.path = "/none"})); }, {"/none", "opened"});
 }
 
 TEST(Nees, IsTheSquaredErrorNormalizedByTheCovariance) {

@@ -8,7 +8,7 @@
 
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
-#include "eval/trajectory/frames.h"
+#include "eval/trajectory/alignment.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -86,8 +86,8 @@ TEST(Rpe, MeasuresAConstantDriftPerSecond) {
 
 TEST(Score, IsNotAvailableWithoutPosesExceptForAZeroCorrectRate) {
   const Score lost = score(curved_path(), {}, {.expected_times = {Timestamp{0}, Timestamp{1}}});
-  EXPECT_FALSE(lost.ate_rmse_m);
-  EXPECT_FALSE(lost.rpe_trans_rmse_m_per_s);
+  EXPECT_FALSE(lost.ate);
+  EXPECT_FALSE(lost.rpe);
   EXPECT_FALSE(lost.first_pose_s);
   EXPECT_EQ(lost.correct_rate, 0.0);
   EXPECT_EQ(lost.coverage, 0.0);
@@ -95,7 +95,7 @@ TEST(Score, IsNotAvailableWithoutPosesExceptForAZeroCorrectRate) {
 
 TEST(Score, HasOnlyCoverageWithoutGroundTruth) {
   const Score without_gt = score({}, curved_path(), {.expected_times = {Timestamp{0}}});
-  EXPECT_FALSE(without_gt.ate_rmse_m);
+  EXPECT_FALSE(without_gt.ate);
   EXPECT_FALSE(without_gt.correct_rate);
   EXPECT_EQ(without_gt.coverage, 1.0);
   EXPECT_EQ(without_gt.first_pose_s, 0.0);
@@ -103,8 +103,8 @@ TEST(Score, HasOnlyCoverageWithoutGroundTruth) {
 
 TEST(Score, IsPerfectForTheGroundTruthItself) {
   const Score perfect = score(curved_path(), curved_path());
-  EXPECT_NEAR(*perfect.ate_rmse_m, 0.0, 1e-12);
-  EXPECT_NEAR(*perfect.rpe_trans_rmse_m_per_s, 0.0, 1e-12);
+  EXPECT_NEAR(perfect.ate->translation_m.rmse, 0.0, 1e-12);
+  EXPECT_NEAR(perfect.rpe->translation_m.rmse, 0.0, 1e-12);
   EXPECT_NEAR(*perfect.correct_rate, 1.0, 1e-12);
   EXPECT_FALSE(perfect.coverage);
 }

@@ -7,6 +7,8 @@
 
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -21,6 +23,12 @@ std::string message_of(std::string_view text) {
 }
 
 TEST(ParseStamp, IsExactToTheNanosecond) {
+  // As a double, 1560000000.123456789 would be off by up to 120 ns.
+  EXPECT_EQ(parse_stamp("1560000000.123456789")->ns, 1560000000123456789);
+  EXPECT_EQ(parse_stamp("1700000000.00130010")->ns, 1700000000001300100);
+  EXPECT_EQ(parse_stamp(".5")->ns, 500000000);
+  EXPECT_EQ(parse_stamp("25e-1")->ns, 2500000000);
+  EXPECT_EQ(parse_stamp("0")->ns, 0);
   EXPECT_EQ(parse_stamp("1305031098.6659")->ns, 1305031098665900000);
   EXPECT_EQ(parse_stamp("0.000000001")->ns, 1);
   EXPECT_EQ(parse_stamp("-1.5")->ns, -1500000000);
@@ -36,8 +44,8 @@ TEST(ParseStamp, RoundsBeyondNineDecimals) {
 }
 
 TEST(ParseStamp, RejectsMalformedStamps) {
-  for (const char* text :
-       {"", "-", ".", "nan", "inf", "1.2.3", "1e", "1e999", "12a", "1305031098665900000"}) {
+  for (const char* text : {"", "-", ".", "nan", "inf", "1.2.3", "1e", "1e999", "12a", "1 2", "9300000000",
+                           "1305031098665900000"}) {
     EXPECT_FALSE(parse_stamp(text)) << text;
   }
 }
@@ -69,14 +77,49 @@ TEST(ParseTum, ReportsTheLineOfAMalformedRow) {
   EXPECT_EQ(message_of(good + "2 0 0 0 0 0 1\n"),
             "a.txt:2: a pose needs 8 numbers, found 7; expected \"t tx ty tz qx qy qz qw\"");
   EXPECT_EQ(message_of(good + "2 0 x 0 0 0 0 1\n"), "a.txt:2: \"x\" is not a number");
-  EXPECT_EQ(
-      message_of(good + "1 0 0 0 0 0 0 1\n"),
-      "a.txt:2: stamp 1.000000000 s does not increase; the previous one is 1.000000000 s; sort the file and "
-      "remove duplicate stamps");
+  EXPECT_EQ(message_of(good + "1 0 0 0 0 0 0 1\n"),
+            "a.txt:2: stamp 1.000000000 s repeats that of the previous row; remove one of the two");
   EXPECT_EQ(
       message_of("1403636579763555584 0 0 0 0 0 0 1\n"),
       "a.txt:1: stamp \"1403636579763555584\" exceeds 292 years; is it in nanoseconds instead of seconds?");
   EXPECT_EQ(message_of("# nothing\n"), "a.txt: no poses found; expected rows \"t tx ty tz qx qy qz qw\"");
+}
+
+TEST(ReadTumGroundTruth, RejectsRowsThatAnEstimateMaySkip) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& text) {
+    return [&folder, text] {
+      FaultLog strict;
+      static_cast<void>(read_tum_ground_truth(folder.write("gt.txt", text), "camera", strict));
+    };
+  };
+  expect_input_error(read("1 nan 0 0 0 0 0 1\n"), {"gt.txt:1", "\"nan\" is not finite"});
+  expect_input_error(read("1 0 0 0 0 0 0 0\n"), {"gt.txt:1", "quaternion has norm 0"});
+  expect_input_error(read("1 0 0 0 0 0 0 1.02\n"), {"gt.txt:1", "expected 1"});
+  expect_input_error(read("# nothing\n"), {"gt.txt", "no poses found"});
+}
+
+TEST(ReadTumGroundTruth, ACollectingLogSkipsFaultyRowsOnly) {
+  const TemporaryFolder folder;
+  FaultLog faults(FaultLog::Mode::kCollect);
+  const Trajectory truth = read_tum_ground_truth(
+      folder.write("gt.txt", "1 0 0 0 0 0 0 1\n2 inf 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n"),
+      "camera", faults);
+  EXPECT_EQ(truth.frame, "camera");
+  EXPECT_EQ(truth.poses.size(), 2u);
+  ASSERT_EQ(faults.messages().size(), 2u);
+  EXPECT_NE(faults.messages()[0].find("gt.txt:2"), std::string::npos);
+  EXPECT_NE(faults.messages()[1].find("gt.txt:3"), std::string::npos);
+}
+
+TEST(ReadEurocGroundTruth, ReadsNanosecondsAndTheScalarPartFirst) {
+  const TemporaryFolder folder;
+  FaultLog strict;
+  const Trajectory truth =
+      read_euroc_ground_truth(folder.write("data.csv", "#t\n5,1,2,3,0,1,0,0,9,9\n"), "body", strict);
+  ASSERT_EQ(truth.poses.size(), 1u);
+  EXPECT_EQ(truth.poses[0].t.ns, 5);
+  EXPECT_EQ(truth.poses[0].T_w_f.q.x(), 1.0);
 }
 
 TEST(WriteTum, WritesNineDecimalsThatAreReadBackUnchanged) {

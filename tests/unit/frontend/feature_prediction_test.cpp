@@ -36,7 +36,7 @@ MotionPrior moving_prior() {
 }
 
 Eigen::Vector2d predict_one(const Track& track, TrackerPrediction kind) {
-  const cv::Point2f pixel = predict_pixels({&track, 1}, moving_prior(), kind, distorted_camera()).front();
+  const cv::Point2f pixel = predict_pixels({&track, 1}, {moving_prior(), kind}, distorted_camera()).front();
   return {pixel.x, pixel.y};
 }
 
@@ -68,7 +68,7 @@ TEST(FeaturePrediction, APointPredictedBehindTheCameraKeepsItsPixel) {
   MotionPrior turned = moving_prior();
   turned.T_ccur_cprev.q = exp_so3({0.0, 3.0, 0.0});
   const cv::Point2f pixel =
-      predict_pixels({&track, 1}, turned, TrackerPrediction::kRotation, distorted_camera()).front();
+      predict_pixels({&track, 1}, {turned, TrackerPrediction::kRotation}, distorted_camera()).front();
   EXPECT_EQ(pixel, cv::Point2f(100.5F, 50.25F));
 }
 

@@ -15,7 +15,8 @@ namespace stillpoint {
 namespace {
 
 constexpr double kDistance = 2.0;  // [m] of the plane
-constexpr bool kDetect = true;
+constexpr TrackingOptions kDetect{.detect = true};
+constexpr TrackingOptions kTrackOnly{.detect = false};
 
 const Pose kSmallMotion{exp_so3({0.002, -0.003, 0.004}), {0.01, -0.005, 0.02}};  // 1 to 4 px
 const Pose kLargeRotation{exp_so3({0.0, 0.1, 0.0}), Eigen::Vector3d::Zero()};    // 500 px * 0.1 rad = 50 px
@@ -32,7 +33,7 @@ int count_tracked(const FrontendConfig& config, const Pose& motion, const Motion
   const TexturedPlane plane = test_plane();
   FeatureTracker tracker(config, test_camera());
   const TrackedFrame first = tracker.track(plane.frame_at(Pose{}, 0), {}, kDetect);
-  const TrackedFrame second = tracker.track(plane.frame_at(motion, 1), prior, !kDetect);
+  const TrackedFrame second = tracker.track(plane.frame_at(motion, 1), prior, kTrackOnly);
   int correct = 0;
   for (const TrackedFeature& feature : second.features) {
     const Eigen::Vector2d expected =
@@ -87,14 +88,14 @@ TEST(FeatureTracker, FirstFrameReturnsNewFeaturesWithoutVelocity) {
 
 TEST(FeatureTracker, DetectsNothingWithoutTheDetectFlag) {
   FeatureTracker tracker({}, test_camera());
-  EXPECT_TRUE(tracker.track(test_plane().frame_at(Pose{}, 0), {}, !kDetect).features.empty());
+  EXPECT_TRUE(tracker.track(test_plane().frame_at(Pose{}, 0), {}, kTrackOnly).features.empty());
 }
 
 TEST(FeatureTracker, TracksKnownMotionWithSubpixelAccuracy) {
   const TexturedPlane plane = test_plane();
   FeatureTracker tracker({}, test_camera());
   const TrackedFrame first = tracker.track(plane.frame_at(Pose{}, 0), {}, kDetect);
-  const TrackedFrame second = tracker.track(plane.frame_at(kSmallMotion, 1), {}, !kDetect);
+  const TrackedFrame second = tracker.track(plane.frame_at(kSmallMotion, 1), {}, kTrackOnly);
   ASSERT_GT(second.features.size(), first.features.size() * 9 / 10);
   std::vector<double> errors;
   for (const TrackedFeature& feature : second.features) {
@@ -273,7 +274,7 @@ int count_static_features_left(bool reject_static_only) {
   for (const TrackedFeature& feature : tracker.track(before, {}, kDetect).features) {
     (feature.pixel.x() < kEdge ? dynamic_ids : static_ids).push_back(feature.id);
   }
-  const TrackedFrame found = tracker.track(after, {}, kDetect, dynamic_ids);
+  const TrackedFrame found = tracker.track(after, {}, {.dynamic_ids = dynamic_ids});
   return static_cast<int>(std::ranges::count_if(found.features, [&](const TrackedFeature& feature) {
     return std::ranges::binary_search(static_ids, feature.id);
   }));

@@ -25,11 +25,16 @@ Views shifted_views(int shift_px, int levels) {
   return views;
 }
 
+KltResult track(const Views& views, const std::vector<cv::Point2f>& points) {
+  return track_points_klt({.from = views.from, .to = views.to, .points = points, .initial_guesses = points},
+                          {});
+}
+
 const std::vector<cv::Point2f> kPoints = {{100.0F, 60.0F}, {160.0F, 120.0F}, {220.0F, 180.0F}};
 
 TEST(Klt, FindsWholePixelShiftsExactly) {
   const Views views = shifted_views(3, 2);
-  const KltResult result = track_points_klt(views.from, views.to, kPoints, kPoints, {});
+  const KltResult result = track(views, kPoints);
   for (std::size_t i = 0; i < kPoints.size(); ++i) {
     EXPECT_TRUE(result.found[i]);
     EXPECT_LT(cv::norm(result.pixels[i] - (kPoints[i] - cv::Point2f(3.0F, 0.0F))), 0.05);
@@ -38,16 +43,18 @@ TEST(Klt, FindsWholePixelShiftsExactly) {
 
 TEST(Klt, ForwardBackwardCheckKeepsOnlyConsistentMatches) {
   const Views views = shifted_views(3, 2);
-  KltResult forward = track_points_klt(views.from, views.to, kPoints, kPoints, {});
+  KltResult forward = track(views, kPoints);
   forward.pixels[1] += cv::Point2f(40.0F, 0.0F);  // a wrong match
-  const KltResult backward = track_points_klt(views.to, views.from, forward.pixels, kPoints, {.levels = 1});
+  const KltResult backward = track_points_klt(
+      {.from = views.to, .to = views.from, .points = forward.pixels, .initial_guesses = kPoints, .levels = 1},
+      {});
   const KltResult checked = forward_backward_check(kPoints, forward, backward, 0.5);
   EXPECT_EQ(checked.found, (std::vector<std::uint8_t>{1, 0, 1}));
 }
 
 TEST(Klt, AcceptsAnEmptyPointList) {
   const Views views = shifted_views(0, 2);
-  EXPECT_TRUE(track_points_klt(views.from, views.to, {}, {}, {}).pixels.empty());
+  EXPECT_TRUE(track(views, {}).pixels.empty());
 }
 
 TEST(Klt, RebuildingReusesTheAllocation) {

@@ -27,7 +27,12 @@ ImagePyramid pyramid_of(const cv::Mat& gray) {
 
 KltResult track(const cv::Mat& from, const cv::Mat& to, const std::vector<cv::Point2f>& points,
                 const std::vector<cv::Point2f>& initial_guesses) {
-  return track_points_patch(pyramid_of(from), pyramid_of(to), points, initial_guesses, kLevels, {});
+  return track_points_patch({.from = pyramid_of(from),
+                             .to = pyramid_of(to),
+                             .points = points,
+                             .initial_guesses = initial_guesses,
+                             .levels = kLevels},
+                            {});
 }
 
 /// View of a texture, shifted by `shift_px` to the left.
@@ -44,9 +49,9 @@ TEST(PatchTracker, FindsWholePixelShiftsExactly) {
   }
 }
 
-TEST(PatchTracker, IsInvariantToBcorrectness) {
-  const cv::Mat bcorrecter = view(2) + 15.0;
-  const KltResult result = track(view(0), bcorrecter, kPoints, kPoints);
+TEST(PatchTracker, IsInvariantToBrightness) {
+  const cv::Mat brighter = view(2) + 15.0;
+  const KltResult result = track(view(0), brighter, kPoints, kPoints);
   for (std::size_t i = 0; i < kPoints.size(); ++i) {
     EXPECT_TRUE(result.found[i]);
     EXPECT_LT(cv::norm(result.pixels[i] - (kPoints[i] - cv::Point2f(2.0F, 0.0F))), 0.02);
@@ -85,6 +90,15 @@ struct KnownFlow {
   std::vector<cv::Point2f> points;
   std::vector<cv::Point2f> truth;
   std::vector<cv::Point2f> initial_guesses;  // error of 1.5 px in varying directions
+
+  [[nodiscard]] TrackingRequest request(const ImagePyramid& from_pyramid,
+                                        const ImagePyramid& to_pyramid) const {
+    return {.from = from_pyramid,
+            .to = to_pyramid,
+            .points = points,
+            .initial_guesses = initial_guesses,
+            .levels = kLevels};
+  }
 };
 
 KnownFlow known_flow() {
@@ -138,9 +152,8 @@ TEST(PatchTracker, IsAtLeastAsAccurateAsOpenCvOnAKnownFlow) {
   ImagePyramid to;
   from.rebuild(flow.from, kWindowPx, kLevels);
   to.rebuild(flow.to, kWindowPx, kLevels);
-  const Quality opencv = quality(track_points_klt(from, to, flow.points, flow.initial_guesses, {}), flow);
-  const Quality patch =
-      quality(track_points_patch(from, to, flow.points, flow.initial_guesses, kLevels, {}), flow);
+  const Quality opencv = quality(track_points_klt(flow.request(from, to), {}), flow);
+  const Quality patch = quality(track_points_patch(flow.request(from, to), {}), flow);
   RecordProperty("opencv_median_px", std::to_string(opencv.median_px));
   RecordProperty("patch_median_px", std::to_string(patch.median_px));
   EXPECT_LE(patch.median_px, opencv.median_px);
@@ -151,9 +164,8 @@ TEST(PatchTracker, AllInstructionSetsGiveIdenticalResults) {
   const KnownFlow flow = known_flow();
   const ImagePyramid from = pyramid_of(flow.from);
   const ImagePyramid to = pyramid_of(flow.to);
-  const KltResult best = track_points_patch(from, to, flow.points, flow.initial_guesses, kLevels, {});
-  const KltResult portable =
-      track_points_patch(from, to, flow.points, flow.initial_guesses, kLevels, {}, PatchTarget::kPortable);
+  const KltResult best = track_points_patch(flow.request(from, to), {});
+  const KltResult portable = track_points_patch(flow.request(from, to), {}, PatchTarget::kPortable);
   EXPECT_EQ(best.pixels, portable.pixels);
   EXPECT_EQ(best.found, portable.found);
 }

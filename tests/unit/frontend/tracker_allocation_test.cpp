@@ -40,7 +40,7 @@ TEST(FeatureTracker, SteadyStateIsAllocationFree) {
     for (Frame frame : frames) {
       frame.id = frame_id++;
       frame.t = Timestamp{33'000'000 * frame.id};
-      tracked = tracker.track(frame, {}, true, {}, std::move(tracked));
+      tracked = tracker.track(frame, {}, {}, std::move(tracked));
       detected += tracked.detected;
     }
     return detected;

@@ -10,9 +10,8 @@ BenchRow succeeded_row() {
   BenchRow row;
   row.sequence = "desk";
   row.variant = "vo";
-  row.status = "ok";
-  row.ate_rmse_m = 0.0123456;
-  row.coverage = 0.5;
+  row.outcome = Outcome::kOk;
+  row.metrics = {{"ate_rmse_m", 0.0123456}, {"coverage", 0.5}};
   row.mean_ms[static_cast<std::size_t>(Module::kFeatureTracking)] = 1.234;
   return row;
 }
@@ -21,7 +20,7 @@ BenchRow failed_row() {
   BenchRow row;
   row.sequence = "desk";
   row.variant = "longer_name";
-  row.status = "failed";
+  row.outcome = Outcome::kCrashed;
   row.reason = "terminated by signal 11";
   return row;
 }
@@ -30,15 +29,15 @@ TEST(BenchTable, AlignsColumnsAndShowsMissingNumbersAsNotAvailable) {
   const std::vector<BenchRow> rows = {succeeded_row(), failed_row()};
   EXPECT_EQ(
       markdown_table(rows),
-      "| sequence | variant     | status |  ATE m | T.RPE m/s | R.RPE deg/s |  CR | coverage | first pose s "
+      "| sequence | variant     | status  |  ATE m | T.RPE m/s | R.RPE deg/s |  CR | coverage | first pose s "
       "| track ms |\n"
-      "|----------|-------------|--------|-------:|----------:|------------:|----:|---------:|-------------:"
+      "|----------|-------------|---------|-------:|----------:|------------:|----:|---------:|-------------:"
       "|---------:|\n"
-      "| desk     | vo          | ok     | 0.0123 |       n/a |         n/a | n/a |    0.500 |          n/a "
+      "| desk     | vo          | ok      | 0.0123 |       n/a |         n/a | n/a |   0.5000 |          n/a "
       "|     1.23 |\n"
-      "| desk     | longer_name | failed |    n/a |       n/a |         n/a | n/a |      n/a |          n/a "
+      "| desk     | longer_name | crashed |    n/a |       n/a |         n/a | n/a |      n/a |          n/a "
       "|      n/a |\n"
-      "\ndesk longer_name failed: terminated by signal 11\n");
+      "\ndesk longer_name crashed: terminated by signal 11\n");
 }
 
 TEST(BenchTable, JsonHasFullPrecisionAndNulls) {

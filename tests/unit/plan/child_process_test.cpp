@@ -90,9 +90,8 @@ TEST(MachineLoad, CountsAllColumnsButIdleAndIowaitAsBusy) {
 }
 
 TEST(MachineLoad, DetectsLoadFromOtherProcesses) {
-  std::vector<Metric> metrics;
-  append_load(metrics, {.busy = 0, .total = 0}, {.busy = 60, .total = 200},
-              0.1);  // 10 ticks of the process itself
+  const std::vector<Metric> metrics = load_metrics({.busy = 0, .total = 0}, {.busy = 60, .total = 200},
+                                                   0.1);  // 10 ticks of the process itself
   ASSERT_EQ(metrics.size(), 2u);
   EXPECT_NEAR(metrics[0].value, 0.25, 1e-12);
   EXPECT_EQ(metrics[1].value, 0.0);

@@ -59,7 +59,7 @@ TEST(Dashboard, ConsistsOfIndexRegressionsAndAPageForEachCommit) {
   ASSERT_EQ(files.size(), 5u);
   const Json regressions = Json::parse(text_of(files, "regressions.json"));
   ASSERT_EQ(regressions["open"].size(), 1u);
-  EXPECT_EQ(regressions["open"][0]["metric"], bench::kFailedRuns);
+  EXPECT_EQ(regressions["open"][0]["metric"], bench::metric_id::kFailedRuns);
   EXPECT_EQ(regressions["open"][0]["last_commit_before"], "first");
   EXPECT_EQ(regressions["open"][0]["first_commit_after"], "b");
   EXPECT_NE(text_of(files, "regressions.md").find("| failed\\_runs | first..b | 1 |"), std::string::npos);
@@ -127,7 +127,7 @@ bench::CommitHistory stepping_history() {
                               .plans = {},
                               .metric = "window_solve",
                               .unit = "ms",
-                              .rule = bench::metric_rule("ms"),
+                              .gated = bench::gated_metric("ms"),
                               .commits = {0, 2},
                               .values = {1.0, 2.0},
                               .runs = {1, 1}};

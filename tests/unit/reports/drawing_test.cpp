@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/io/image_io.h"
-#include "reports/drawing/raster_drawing.h"
-#include "reports/drawing/svg_drawing.h"
+#include "reports/drawing/drawing.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::report {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "reports/text/openloris_table.h"
+#include "reports/text/evaluation_table.h"
 
 namespace stillpoint::report {
 namespace {

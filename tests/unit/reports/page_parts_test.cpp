@@ -36,16 +36,14 @@ bench::RunOutcome scaled_run(double scale) {
   return outcome;
 }
 
-TEST(FlameStacks, AreSummedOverFiles) {
-  StackTimes times;
-  add_stacks(times, "tracking;klt 5\ntracking 2\n", "a");
-  add_stacks(times, "tracking;klt 7\n", "b");
+TEST(FlameStacks, AreSummedByStack) {
+  const StackTimes times = parse_stacks("tracking;klt 5\ntracking 2\ntracking;klt 7\n", "a");
   EXPECT_EQ(times, (StackTimes{{"tracking", 2.0}, {"tracking;klt", 12.0}}));
 }
 
 TEST(FlameStacks, RejectInvalidLines) {
-  StackTimes times;
-  expect_input_error([&] { add_stacks(times, "a 1\nb;c\n", "stacks of run 7"); }, {"stacks of run 7", "2"});
+  expect_input_error([&] { static_cast<void>(parse_stacks("a 1\nb;c\n", "stacks of run 7")); },
+                     {"stacks of run 7", "2"});
 }
 
 TEST(SegmentFigures, ErrorIsRelativeToTheSegmentLength) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/page/report_page.h"
+#include "bench/model/metrics.h"
 
 #include <cmath>
 #include <limits>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/model/metrics.h"
 #include "bench/store/store_writer.h"
 #include "reports/page/charts/run_series.h"
 #include "reports/page/series_text.h"
@@ -115,6 +117,16 @@ TEST(ReportPage, HandlesTrajectoriesWithoutPosesAndWithASingleOne) {
   }
   const bench::Store store(folder.path() / "s");
   EXPECT_NE(report_html(store, report_subject(store, "")).find(">failed<"), std::string::npos);
+}
+
+TEST(ReportPage, ExplainsItsMetrics) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const bench::Store store(folder.path() / "s");
+  const std::string page = report_html(store, report_subject(store, ""));
+  const std::string text = bench::tooltip_of("ate_rmse_m");
+  EXPECT_NE(page.find("<th scope=\"col\" title=\"" + text + "\">a [m]</th>"), std::string::npos);
+  EXPECT_NE(page.find("<dt>ate_rmse_m</dt><dd>" + text + "</dd>"), std::string::npos);
 }
 
 TEST(ReportPage, HasNoExternalReferences) {

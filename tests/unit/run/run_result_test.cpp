@@ -46,9 +46,9 @@ OdometryRun perfect_run(const datasets::SequenceInfo& info, int frames) {
 TEST(RunResult, IsScoredAgainstTheGroundTruthOfTheCamera) {
   const datasets::SequenceInfo info = straight_sequence();
   const RunResult result = score_run(info, perfect_run(info, kFrames));
-  EXPECT_EQ(result.status, RunStatus::kOk);
-  EXPECT_NEAR(result.score.ate_rmse_m.value(), 0.0, 1e-9);
-  EXPECT_NEAR(result.score.rpe_trans_rmse_m_per_s.value(), 0.0, 1e-9);
+  EXPECT_EQ(result.outcome, Outcome::kOk);
+  EXPECT_NEAR(result.score.ate.value().translation_m.rmse, 0.0, 1e-9);
+  EXPECT_NEAR(result.score.rpe.value().translation_m.rmse, 0.0, 1e-9);
   EXPECT_DOUBLE_EQ(result.score.coverage.value(), 1.0);
   EXPECT_NEAR(result.score.correct_rate.value(), 1.0, 1e-9);
 }
@@ -58,7 +58,7 @@ TEST(RunResult, OfAnInterruptedRunIsMarkedAndScoredOnProcessedFrames) {
   OdometryRun run = perfect_run(info, 30);
   run.summary.interrupted = true;
   const RunResult result = score_run(info, std::move(run));
-  EXPECT_EQ(result.status, RunStatus::kInterrupted);
+  EXPECT_EQ(result.outcome, Outcome::kInterrupted);
   EXPECT_EQ(result.failure, "interrupted after 30 of 60 frames");
   EXPECT_DOUBLE_EQ(result.score.coverage.value(), 1.0);
   EXPECT_NEAR(result.score.correct_rate.value(), 1.0, 1e-9);
@@ -71,9 +71,9 @@ TEST(RunResult, OfARunWithoutPosesIsFailedWithAReason) {
   run.frames_planned = kFrames;
   run.summary.frames = kFrames;
   const RunResult result = score_run(info, std::move(run));
-  EXPECT_EQ(result.status, RunStatus::kFailed);
+  EXPECT_EQ(result.outcome, Outcome::kLost);
   EXPECT_FALSE(result.failure.empty());
-  EXPECT_FALSE(result.score.ate_rmse_m.has_value());
+  EXPECT_FALSE(result.score.ate.has_value());
 }
 
 TEST(RunResult, IsConvertedFromJsonToMetricsAndCosts) {
@@ -83,7 +83,10 @@ TEST(RunResult, IsConvertedFromJsonToMetricsAndCosts) {
   run.timings.add(Module::kWindowSolve, {.ns = 2'500'000, .calls = 1});
   run.timings.add(Module::kTrackingThread, {.ns = 1'500'000, .calls = 1});
   const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, std::move(run))));
-  const StoredRun read{.metrics = score_metrics(json), .costs = module_costs(json["timings"])};
+  const StoredRun read{.metrics = stored_metrics(json), .costs = module_costs(json["timings"])};
+  EXPECT_EQ(json["status"], "ok");
+  EXPECT_EQ(json["frames"], kFrames);
+  EXPECT_EQ(metric_value(read, "frames"), kFrames);
   EXPECT_DOUBLE_EQ(metric_value(read, "coverage").value(), 0.75);      // 45 of 60
   EXPECT_NEAR(metric_value(read, "first_pose_s").value(), 1.5, 1e-9);  // 15 frames of 0.1 s
   EXPECT_FALSE(metric_value(read, "no_such_number").has_value());

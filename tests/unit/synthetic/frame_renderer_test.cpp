@@ -29,7 +29,7 @@ struct DotWorld {
     texture_image(cv::Rect(140, 100, 4, 4)).setTo(cv::Scalar(255, 255, 255));
     Builder builder(world);
     const int texture = builder.add_texture(texture_image);
-    builder.add_textured_quad({3.0, 4.0, 4.0}, {0.0, -8.0, 0.0}, {0.0, 0.0, -8.0}, texture);
+    builder.add_textured_quad({{3.0, 4.0, 4.0}, {0.0, -8.0, 0.0}, {0.0, 0.0, -8.0}}, texture);
     // The center of the white square is at (142, 102) of 256 texels, from the upper left corner.
     dot = {3.0, 4.0 - 8.0 * 142.0 / 256.0, 4.0 - 8.0 * 102.0 / 256.0};
     world.ambient = 1.0F;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kDegree = 0.017453292519943295;
 
 PathSpline path_of(HandMotion motion, double to_s) {
-  return hand_path(motion, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, Pose{}, 3, 0.0, to_s);
+  return hand_path(motion, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, {Pose{}, 3, 0.0, to_s});
 }
 
 ImuSensor ideal_sensor() {
@@ -28,7 +28,7 @@ ImuSensor ideal_sensor() {
 TEST(ImuModel, IdealSamplesIntegrateToTheGroundTruth) {
   for (const HandMotion motion : {HandMotion::kXyz, HandMotion::kRpy, HandMotion::kHalfsphere}) {
     const PathSpline path = path_of(motion, 3.0);
-    const ImuRecord record = simulate_imu(path, ideal_sensor(), Timestamp{0}, 1.0, 2.1, 1);
+    const ImuRecord record = simulate_imu(path, ideal_sensor(), {Timestamp{0}, 1.0, 2.1, 1});
     const double start_s = to_seconds(record.gyro.front().t);
     BodyMotion state = path.at(start_s);
     Pose pose = state.T_w_b;
@@ -54,7 +54,7 @@ TEST(ImuModel, IdealSamplesIntegrateToTheGroundTruth) {
 
 TEST(ImuModel, AccelerometerSamplesMatchThePathAtTheirTimestamps) {
   const PathSpline path = path_of(HandMotion::kXyz, 2.0);
-  const ImuRecord record = simulate_imu(path, ideal_sensor(), Timestamp{5000000000}, 0.5, 1.5, 1);
+  const ImuRecord record = simulate_imu(path, ideal_sensor(), {Timestamp{5000000000}, 0.5, 1.5, 1});
   for (const datasets::VectorSample& sample : record.accel) {
     const double t_s = to_seconds(sample.t) - 5.0;
     EXPECT_LT((sample.value - specific_force(path.at(t_s))).norm(), 1e-6);
@@ -65,8 +65,8 @@ TEST(ImuModel, WhiteNoiseHasTheConfiguredDensity) {
   ImuSensor noisy = ideal_sensor();
   noisy.noise.gyro_noise = 1e-3;
   const PathSpline path = path_of(HandMotion::kStatic, 12.0);
-  const ImuRecord clean = simulate_imu(path, ideal_sensor(), Timestamp{0}, 0.0, 10.0, 1);
-  const ImuRecord record = simulate_imu(path, noisy, Timestamp{0}, 0.0, 10.0, 1);
+  const ImuRecord clean = simulate_imu(path, ideal_sensor(), {Timestamp{0}, 0.0, 10.0, 1});
+  const ImuRecord record = simulate_imu(path, noisy, {Timestamp{0}, 0.0, 10.0, 1});
   double squares = 0.0;
   for (std::size_t i = 0; i < record.gyro.size(); ++i)
     squares += (record.gyro[i].value - clean.gyro[i].value).squaredNorm();
@@ -82,7 +82,7 @@ TEST(ImuModel, BiasRandomWalkHasTheConfiguredDensity) {
   double squares = 0.0;
   constexpr int kRuns = 100;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-    const ImuRecord record = simulate_imu(path, walking, Timestamp{0}, 0.0, 4.1, seed);
+    const ImuRecord record = simulate_imu(path, walking, {Timestamp{0}, 0.0, 4.1, seed});
     const Eigen::Vector3d ideal = specific_force(path.at(to_seconds(record.accel[40].t)));
     squares += (record.accel[40].value - ideal).squaredNorm();
   }
@@ -95,8 +95,8 @@ TEST(ImuModel, TimeOffsetShiftsOnlyTheTimestamps) {
   ImuSensor late = ideal_sensor();
   late.time_offset_s = 0.01;
   const PathSpline path = path_of(HandMotion::kXyz, 2.0);
-  const ImuRecord record = simulate_imu(path, ideal_sensor(), Timestamp{0}, 0.5, 1.0, 1);
-  const ImuRecord shifted = simulate_imu(path, late, Timestamp{0}, 0.5, 1.0, 1);
+  const ImuRecord record = simulate_imu(path, ideal_sensor(), {Timestamp{0}, 0.5, 1.0, 1});
+  const ImuRecord shifted = simulate_imu(path, late, {Timestamp{0}, 0.5, 1.0, 1});
   EXPECT_EQ(shifted.gyro[9].t.ns - record.gyro[9].t.ns, 10000000);
   EXPECT_EQ(shifted.gyro[9].value, record.gyro[9].value);
 }

@@ -36,7 +36,7 @@ struct Recording {
 /// IMU with biases.
 Recording jittery_recording(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {
   Recording recording{
-      hand_path(HandMotion::kRpy, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, Pose{}, 5, 0.0, 6.0), {}, {}};
+      hand_path(HandMotion::kRpy, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, {Pose{}, 5, 0.0, 6.0}), {}, {}};
   RandomSequence random(1);
   const auto noise3 = [&random] {
     return Eigen::Vector3d(random.normal(), random.normal(), random.normal());
@@ -60,7 +60,7 @@ Recording jittery_recording(const Eigen::Vector3d& gyro_bias, const Eigen::Vecto
 TEST(InertialSmoother, EstimatesPathAndBiasesMoreAccuratelyThanTheInputNoise) {
   const Eigen::Vector3d gyro_bias(0.02, -0.05, 0.08), accel_bias(0.1, -0.05, 0.08);
   const Recording recording = jittery_recording(gyro_bias, accel_bias);
-  const SmoothedMotion motion = smooth_motion(recording.poses, recording.imu, Timestamp{0}, 0.0, 6.0);
+  const SmoothedMotion motion = smooth_motion({recording.poses, recording.imu, Timestamp{0}, 0.0, 6.0});
   EXPECT_LT((motion.gyro_bias - gyro_bias).norm(), 0.002);
   EXPECT_LT((motion.accel_bias - accel_bias).norm(), 0.05);
   for (double t_s = 0.5; t_s < 5.5; t_s += 0.1) {  // includes the gap

@@ -32,7 +32,7 @@ std::vector<std::vector<VisibleObject>> one_person(int frames, int object) {
 TEST(SimulatedDetector, MissesTheConfiguredFractionInBursts) {
   const DetectorModel model{.miss_rate = 0.15, .burst_frames = 4.0, .false_positive_rate = 0.0};
   constexpr int kFrames = 40000;
-  const auto reports = simulate_detector(one_person(kFrames, 1), model, 640, 480, 9);
+  const auto reports = simulate_detector(one_person(kFrames, 1), model, {640, 480}, 9);
   int missed = 0, bursts = 0;
   bool before = false;
   for (const auto& report : reports) {
@@ -47,7 +47,7 @@ TEST(SimulatedDetector, MissesTheConfiguredFractionInBursts) {
 
 TEST(SimulatedDetector, EdgeJitterScalesWithTheBoxSize) {
   const DetectorModel model{.miss_rate = 0.0, .jitter_ratio = 0.02, .false_positive_rate = 0.0};
-  const auto reports = simulate_detector(one_person(5000, 1), model, 640, 480, 9);
+  const auto reports = simulate_detector(one_person(5000, 1), model, {640, 480}, 9);
   double squares = 0.0;
   for (const auto& report : reports) squares += std::pow(report.front().box.y_min - 50.0, 2);
   EXPECT_NEAR(std::sqrt(squares / 5000.0), 0.02 * 200.0, 0.15);  // 1 % standard error
@@ -56,7 +56,7 @@ TEST(SimulatedDetector, EdgeJitterScalesWithTheBoxSize) {
 TEST(SimulatedDetector, NeverReportsUnknownClasses) {
   const DetectorModel model{.miss_rate = 0.0, .false_positive_rate = 0.0};
   for (const auto& report :
-       simulate_detector(one_person(50, datasets::kFirstUndetectableObject), model, 640, 480, 9)) {
+       simulate_detector(one_person(50, datasets::kFirstUndetectableObject), model, {640, 480}, 9)) {
     EXPECT_TRUE(report.empty());
   }
 }
@@ -65,7 +65,7 @@ TEST(SimulatedDetector, ReportsFalsePositivesAtTheConfiguredRate) {
   const DetectorModel model{.false_positive_rate = 0.1};
   const std::vector<std::vector<VisibleObject>> empty(10000);
   std::size_t boxes = 0;
-  for (const auto& report : simulate_detector(empty, model, 640, 480, 9)) boxes += report.size();
+  for (const auto& report : simulate_detector(empty, model, {640, 480}, 9)) boxes += report.size();
   EXPECT_NEAR(static_cast<double>(boxes), 1000.0, 100.0);  // binomial: sigma 30
 }
 

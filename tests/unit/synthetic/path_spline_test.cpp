@@ -12,7 +12,7 @@ namespace {
 constexpr double kStep_s = 1e-4;
 
 PathSpline rolling_path() {
-  return hand_path(HandMotion::kRpy, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, Pose{}, 7, 0.0, 5.0);
+  return hand_path(HandMotion::kRpy, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, {Pose{}, 7, 0.0, 5.0});
 }
 
 TEST(PathSpline, WeightsReproduceConstants) {

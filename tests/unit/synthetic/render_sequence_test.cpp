@@ -12,7 +12,7 @@
 
 #include "core/base/error.h"
 #include "datasets/io/image_io.h"
-#include "datasets/sensor_stream.h"
+#include "datasets/open_sequence.h"
 
 namespace stillpoint::synth {
 namespace {

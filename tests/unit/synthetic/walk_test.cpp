@@ -36,16 +36,14 @@ TEST(ClosedRoute, PositionAndHeadingAreContinuous) {
 
 TEST(Walk, KeepsClearOfAStaticCamera) {
   const Vector2d camera(4.0, 2.0);  // on the route
-  const Walk walk(
-      ClosedRoute(kSquare, 0.5), {.speed = 1.0, .camera_clearance_m = 1.0}, [&](double) { return camera; }, 3,
-      0.0, 60.0);
+  const Walk walk(ClosedRoute(kSquare, 0.5), {.speed = 1.0, .camera_clearance_m = 1.0},
+                  {[&](double) { return camera; }, 0.0, 60.0}, 3);
   for (double t_s = 0.0; t_s < 60.0; t_s += 0.1) EXPECT_GT((walk.at(t_s).position - camera).norm(), 0.5);
 }
 
 TEST(Walk, AlternatesBetweenStoppingAndWalking) {
-  const Walk walk(
-      ClosedRoute(kSquare, 0.5), {.speed = 1.0, .stops_per_minute = 10.0},
-      [](double) { return Vector2d(99.0, 99.0); }, 3, 0.0, 60.0);
+  const Walk walk(ClosedRoute(kSquare, 0.5), {.speed = 1.0, .stops_per_minute = 10.0},
+                  {[](double) { return Vector2d(99.0, 99.0); }, 0.0, 60.0}, 3);
   int still = 0, moving = 0;
   for (double t_s = 0.0; t_s < 60.0; t_s += 0.1) ++(walk.at(t_s).pace < 0.05 ? still : moving);
   EXPECT_GT(still, 30);
@@ -55,8 +53,8 @@ TEST(Walk, AlternatesBetweenStoppingAndWalking) {
 TEST(Person, WalksUprightWithFeetOnTheFloor) {
   World world;
   Builder builder(world);
-  const Walk walk(
-      ClosedRoute(kSquare, 0.5), {.speed = 1.0}, [](double) { return Vector2d(99.0, 99.0); }, 3, 0.0, 10.0);
+  const Walk walk(ClosedRoute(kSquare, 0.5), {.speed = 1.0},
+                  {[](double) { return Vector2d(99.0, 99.0); }, 0.0, 10.0}, 3);
   const Actor walker = make_walking_person(builder, 1, walk, 4);
   for (double t_s = 0.5; t_s < 9.0; t_s += 0.37) {
     const MoverFrame frame = assemble_movers(std::span(&walker, 1), t_s, t_s + 0.01);
@@ -74,7 +72,7 @@ TEST(Person, WalksUprightWithFeetOnTheFloor) {
 
 TEST(RobotPath, KeepsTheConfiguredSpeedAndLimitsTheTurnRate) {
   const RobotRoute route{{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}, {0.0, 10.0}}, 1.0, 0.7, 0.6, 1.1};
-  const PathSpline path = robot_path(route, Pose{}, 1, 0.0, 40.0);
+  const PathSpline path = robot_path(route, {Pose{}, 1, 0.0, 40.0});
   double fastest_turn = 0.0;
   for (double t_s = 0.5; t_s < 40.0; t_s += 0.05) {
     const BodyMotion motion = path.at(t_s);

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The list of metrics and the functions that compute them.
+#include "bench/model/metrics.h"
+
+namespace stillpoint::bench {
+namespace {
+
+using Value = std::optional<double>;
+
+constexpr double kMaxQuietLoad = 0.05;  // more disturbs times measurably
+
+const eval::Score* score_of(const Measurements& m) { return m.scored ? &m.scored->score : nullptr; }
+
+Value ate(const Measurements& m) {
+  const eval::Score* score = score_of(m);
+  return score != nullptr && score->ate ? Value(score->ate->translation_m.rmse) : std::nullopt;
+}
+
+Value rpe(const Measurements& m, eval::Statistics eval::RpeResult::*errors) {
+  const eval::Score* score = score_of(m);
+  if (score == nullptr || !score->rpe) return std::nullopt;
+  return ((*score->rpe).*errors).rmse / score->rpe_delta_s;
+}
+Value rpe_translation(const Measurements& m) { return rpe(m, &eval::RpeResult::translation_m); }
+Value rpe_rotation(const Measurements& m) { return rpe(m, &eval::RpeResult::rotation_deg); }
+
+template <Value eval::Score::*kMember>
+Value member(const Measurements& m) {
+  const eval::Score* score = score_of(m);
+  return score != nullptr ? score->*kMember : std::nullopt;
+}
+
+template <auto kMember>
+Value count(const Measurements& m) {
+  return m.counts ? Value(static_cast<double>((*m.counts).*kMember)) : std::nullopt;
+}
+
+Value process_wall(const Measurements& m) { return m.process ? Value(m.process->wall_s) : std::nullopt; }
+Value process_cpu(const Measurements& m) { return m.process ? Value(m.process->cpu_s) : std::nullopt; }
+Value peak_memory(const Measurements& m) {
+  return m.process ? Value(static_cast<double>(m.process->peak_memory_bytes) / 1048576.0) : std::nullopt;
+}
+
+Value other_load(const Measurements& m) { return m.other_load; }
+Value quiet(const Measurements& m) {
+  return m.other_load ? Value(*m.other_load < kMaxQuietLoad ? 1.0 : 0.0) : std::nullopt;
+}
+
+Value instructions(const Measurements& m) {
+  if (m.instructions.empty()) return std::nullopt;
+  double sum = 0.0;
+  for (const auto& [stage, executed] : m.instructions)
+    sum += static_cast<double>(executed);  // exact below 2^53
+  return sum;
+}
+Value stage_instructions(const Measurements& m, std::string_view stage) {
+  const auto found = m.instructions.find(stage);
+  return found == m.instructions.end() ? std::nullopt : Value(static_cast<double>(found->second));
+}
+
+using enum MetricDirection;
+using enum MetricSource;
+using enum MetricFamily;
+
+constexpr MetricProtocol kAteProtocol{"ate", "compat:tum, 0.02 s, one-to-one, rigid alignment"};
+constexpr MetricProtocol kRpeProtocol{"rpe", "compat:tum, fixed delta of 1 s, all pairs"};
+constexpr MetricProtocol kCorrectProtocol{metric_id::kCorrectRate,
+                                          "openloris, 1 m, 30 deg, over the time of the ground truth"};
+constexpr MetricProtocol kCoverageProtocol{metric_id::kCoverage, "fraction of frames with a pose"};
+constexpr MetricProtocol kProcessProtocol{"", "wait4"};
+constexpr MetricProtocol kInstructionProtocol{"", "valgrind callgrind, sequential, one thread"};
+
+// Accuracy margin: the smallest practically relevant change. Cost margin: the smallest change that ten to
+// twenty pairs can resolve on a shared machine. Floor: the precision of the ground truth.
+constexpr MetricDescriptor kMetrics[] = {
+    {.id = metric_id::kAte,
+     .label = "ATE",
+     .title = "Absolute trajectory error (ATE), RMSE",
+     .description = "Root mean square distance between estimated and true positions after rigid alignment",
+     .unit = "m",
+     .direction = kSmallerIsBetter,
+     .protocol = kAteProtocol,
+     .gate = MetricGate{kAccuracy, 0.05, 2e-4},
+     .value = ate},
+    {.id = metric_id::kRpeTranslation,
+     .label = "T.RPE",
+     .title = "Translational relative pose error (RPE) over 1 s, RMSE",
+     .description = "Root mean square translation error of the estimated motion over 1 s",
+     .unit = "m/s",
+     .direction = kSmallerIsBetter,
+     .protocol = kRpeProtocol,
+     .gate = MetricGate{kAccuracy, 0.05, 2e-4},
+     .value = rpe_translation},
+    {.id = metric_id::kRpeRotation,
+     .label = "R.RPE",
+     .title = "Rotational relative pose error (RPE) over 1 s, RMSE",
+     .description = "Root mean square rotation error of the estimated motion over 1 s",
+     .unit = "deg/s",
+     .direction = kSmallerIsBetter,
+     .protocol = kRpeProtocol,
+     .gate = MetricGate{kAccuracy, 0.05, 5e-3},
+     .value = rpe_rotation},
+    {.id = metric_id::kCorrectRate,
+     .label = "CR",
+     .title = "Correct rate",
+     .description = "Fraction of the time of the sequence with a pose within 1 m and 30 degrees of the truth",
+     .direction = kLargerIsBetter,
+     .protocol = kCorrectProtocol,
+     .gate = MetricGate{kAccuracy, 0.01, 0.0},
+     .value = member<&eval::Score::correct_rate>},
+    {.id = metric_id::kCoverage,
+     .label = "coverage",
+     .title = "Coverage: fraction of the frames with a pose",
+     .description = "Fraction of the frames of the sequence for which the system reported a pose",
+     .direction = kLargerIsBetter,
+     .protocol = kCoverageProtocol,
+     .gate = MetricGate{kAccuracy, 0.01, 0.0},
+     .value = member<&eval::Score::coverage>},
+    {.id = metric_id::kFirstPose,
+     .label = "first pose",
+     .title = "Time until the first pose",
+     .description = "Time from the first frame to the first reported pose",
+     .unit = "s",
+     .direction = kSmallerIsBetter,
+     .decimals = 3,
+     .value = member<&eval::Score::first_pose_s>},
+    {.id = "resets",
+     .label = "resets",
+     .title = "Estimator resets",
+     .description = "Number of times that the estimator failed and started again",
+     .direction = kSmallerIsBetter,
+     .decimals = 0,
+     .source = kRun,
+     .value = count<&RunCounts::resets>},
+    {.id = "frames",
+     .label = "frames",
+     .description = "Number of processed frames",
+     .decimals = 0,
+     .source = kRun,
+     .value = count<&RunCounts::frames>},
+    {.id = "poses",
+     .label = "poses",
+     .description = "Number of reported poses",
+     .decimals = 0,
+     .source = kRun,
+     .value = count<&RunCounts::poses>},
+    {.id = metric_id::kWallTime,
+     .label = "wall time",
+     .description = "Time from the request of the first frame to the last pose",
+     .unit = "s",
+     .decimals = 2,
+     .source = kRun,
+     .value = count<&RunCounts::wall_s>},
+    {.id = "process_cpu_s",
+     .label = "CPU time",
+     .title = "CPU time per run",
+     .description = "User and system time of all threads of the process",
+     .unit = "s",
+     .direction = kSmallerIsBetter,
+     .decimals = 2,
+     .source = kProcess,
+     .protocol = kProcessProtocol,
+     .gate = MetricGate{kCost, 0.03, 0.02, false},
+     .value = process_cpu},
+    {.id = "process_wall_s",
+     .label = "process time",
+     .description = "Time from start to end of the process",
+     .unit = "s",
+     .decimals = 2,
+     .source = kProcess,
+     .protocol = kProcessProtocol,
+     .value = process_wall},
+    {.id = "peak_memory_mb",
+     .label = "peak memory",
+     .title = "Peak memory per run",
+     .description = "Largest resident memory of the process",
+     .unit = "MB",
+     .direction = kSmallerIsBetter,
+     .decimals = 1,
+     .source = kProcess,
+     .protocol = kProcessProtocol,
+     .gate = MetricGate{kCost, 0.05, 2.0, false},
+     .value = peak_memory},
+    // Counted, not timed: no measurement noise, but they also change with the compiler or a library update.
+    {.id = "instructions",
+     .label = "instructions",
+     .description = "Executed instructions of all stages of the odometry",
+     .direction = kSmallerIsBetter,
+     .decimals = 0,
+     .source = kInstructions,
+     .protocol = kInstructionProtocol,
+     .gate = MetricGate{kCost, 0.01, 0.0},
+     .value = instructions},
+    {.id = "instructions_tracking",
+     .label = "instructions, tracking",
+     .description = "Executed instructions of feature tracking",
+     .direction = kSmallerIsBetter,
+     .decimals = 0,
+     .source = kInstructions,
+     .protocol = kInstructionProtocol,
+     .gate = MetricGate{kCost, 0.01, 0.0},
+     .value = [](const Measurements& m) { return stage_instructions(m, "tracking"); }},
+    {.id = "instructions_detection",
+     .label = "instructions, detection",
+     .description = "Executed instructions of object detection",
+     .direction = kSmallerIsBetter,
+     .decimals = 0,
+     .source = kInstructions,
+     .protocol = kInstructionProtocol,
+     .gate = MetricGate{kCost, 0.01, 1e6},
+     .value = [](const Measurements& m) { return stage_instructions(m, "detection"); }},
+    {.id = "instructions_optimization",
+     .label = "instructions, optimization",
+     .description = "Executed instructions of state optimization",
+     .direction = kSmallerIsBetter,
+     .decimals = 0,
+     .source = kInstructions,
+     .protocol = kInstructionProtocol,
+     .gate = MetricGate{kCost, 0.01, 0.0},
+     .value = [](const Measurements& m) { return stage_instructions(m, "optimization"); }},
+    {.id = metric_id::kOtherLoad,
+     .label = "other load",
+     .description = "Fraction of the CPU time of the machine that other processes used during the run",
+     .source = kMachine,
+     .protocol = {"", "/proc/stat"},
+     .value = other_load},
+    {.id = metric_id::kQuiet,
+     .label = "quiet",
+     .description = "1 if other processes used less than 5 % of the CPU during the run, else 0",
+     .decimals = 0,
+     .source = kMachine,
+     .protocol = {"", "other_load below 0.05"},
+     .value = quiet},
+    {.id = metric_id::kAteRotation,
+     .label = "ATE, rotation",
+     .description = "Root mean square rotation between estimated and true orientations after alignment",
+     .unit = "deg",
+     .source = kProtocol},
+    {.id = metric_id::kRpeTranslationPerDelta,
+     .label = "T.RPE",
+     .description =
+         "Root mean square translation error of the estimated motion over the interval of the protocol",
+     .unit = "m",
+     .source = kProtocol},
+    {.id = metric_id::kRpeRotationPerDelta,
+     .label = "R.RPE",
+     .description =
+         "Root mean square rotation error of the estimated motion over the interval of the protocol",
+     .unit = "deg",
+     .source = kProtocol},
+    {.id = metric_id::kDrift,
+     .label = "drift",
+     .description = "Translation error over segments of the trajectory, relative to their length",
+     .unit = "%",
+     .source = kProtocol},
+    {.id = metric_id::kModuleTime,
+     .label = "module time",
+     .description = "Mean time of a module per call, or of a thread per frame",
+     .unit = "ms",
+     .direction = kSmallerIsBetter,
+     .source = kStore,
+     .gate = MetricGate{kCost, 0.03, 0.01, false}},
+    {.id = metric_id::kFailedRuns,
+     .label = "failed runs",
+     .description = "Fraction of the runs that did not succeed",
+     .direction = kSmallerIsBetter,
+     .source = kStore,
+     .gate = MetricGate{}},
+};
+
+}  // namespace
+
+std::span<const MetricDescriptor> all_metrics() { return kMetrics; }
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The list of metrics. Result files, stores, tables, reports, the dashboard and comparisons take names,
+/// units, margins and descriptions from it. A new metric is one entry of the list in metric_list.cpp and the
+/// function that computes its value.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/model/stored_run.h"
+#include "core/types/trajectory.h"
+#include "eval/score.h"
+
+namespace stillpoint::bench {
+
+/// Ids that the code refers to by name; all other ids occur only in the list.
+namespace metric_id {
+inline constexpr std::string_view kAte = "ate_rmse_m";
+inline constexpr std::string_view kAteRotation = "ate_rmse_deg";
+inline constexpr std::string_view kRpeTranslation = "rpe_trans_rmse_m_per_s";
+inline constexpr std::string_view kRpeRotation = "rpe_rot_rmse_deg_per_s";
+inline constexpr std::string_view kRpeTranslationPerDelta = "rpe_rmse_m";
+inline constexpr std::string_view kRpeRotationPerDelta = "rpe_rmse_deg";
+inline constexpr std::string_view kCorrectRate = "correct_rate";
+inline constexpr std::string_view kCoverage = "coverage";
+inline constexpr std::string_view kFirstPose = "first_pose_s";
+inline constexpr std::string_view kDrift = "drift_percent";
+inline constexpr std::string_view kWallTime = "wall_s";
+inline constexpr std::string_view kOtherLoad = "other_load";
+inline constexpr std::string_view kQuiet = "quiet";
+inline constexpr std::string_view kModuleTime = "ms";  ///< of each module; stored under the module's name
+inline constexpr std::string_view kFailedRuns = "failed_runs";
+}  // namespace metric_id
+
+/// A trajectory, its ground truth in the same coordinate frame, and their score.
+struct ScoredTrajectory {
+  const Trajectory& gt;
+  const Trajectory& est;
+  const eval::Score& score;
+};
+
+/// Counts of a run of the odometry.
+struct RunCounts {
+  std::size_t frames = 0;  ///< processed
+  std::size_t poses = 0;
+  int resets = 0;
+  double wall_s = 0.0;
+};
+
+/// Resources used by the process of a run.
+struct ProcessCost {
+  double wall_s = 0.0;
+  double cpu_s = 0.0;  ///< user and system time of all threads
+  std::int64_t peak_memory_bytes = 0;
+};
+
+/// What metrics are computed from. Its parts are measured at different places; those that were not measured
+/// are empty.
+struct Measurements {
+  std::optional<ScoredTrajectory> scored;
+  std::optional<RunCounts> counts;
+  std::optional<ProcessCost> process;
+  std::optional<double> other_load;                                 ///< CPU load by other processes, 0 to 1
+  std::map<std::string, std::int64_t, std::less<>> instructions{};  ///< executed, by stage of the odometry
+};
+
+enum class MetricSource {
+  kTrajectory,    ///< estimate and ground truth: in result.json, a column of result tables
+  kRun,           ///< counts of the run: in result.json
+  kProcess,       ///< the process of the run, measured by its parent
+  kMachine,       ///< the machine during a timing run
+  kInstructions,  ///< execution under valgrind
+  kProtocol,      ///< evaluation protocols of a plan, stored as "PROTOCOL/ID"
+  kStore,         ///< derived from stored runs
+};
+
+enum class MetricDirection { kNone, kSmallerIsBetter, kLargerIsBetter };
+
+enum class MetricFamily {
+  kAccuracy,  ///< equal if the trajectories are bit-equal
+  kCost,      ///< varies between runs
+};
+
+/// Smallest relevant change in a comparison of two builds.
+struct MetricGate {
+  MetricFamily family = MetricFamily::kAccuracy;
+  double margin = 0.0;     ///< relative
+  double floor = 0.0;      ///< absolute, in the unit of the metric
+  bool repeatable = true;  ///< the same program gives the same value in each run
+};
+
+struct MetricProtocol {
+  std::string_view key;   ///< in "protocols" of result.json; empty if it is not listed there
+  std::string_view text;  ///< how the metric is measured; empty if there is one way only
+};
+
+struct MetricDescriptor {
+  std::string_view id;           ///< in files and stores: lower-case words and the unit
+  std::string_view label;        ///< table head, without the unit
+  std::string_view title;        ///< caption of its table in reports; empty: it has none
+  std::string_view description;  ///< one sentence for captions and tooltips
+  std::string_view unit;         ///< empty for ratios and counts
+  MetricDirection direction = MetricDirection::kNone;
+  int decimals = 4;  ///< in tables; 0 for counts
+  MetricSource source = MetricSource::kTrajectory;
+  MetricProtocol protocol{};
+  std::optional<MetricGate> gate{};  ///< nullopt: stored and shown, but not compared
+  /// nullopt without data. Null for `kProtocol` and `kStore`, whose values are computed there.
+  std::optional<double> (*value)(const Measurements&) = nullptr;
+};
+
+/// All metrics, the most important first.
+[[nodiscard]] std::span<const MetricDescriptor> all_metrics();
+
+/// Metrics of one source, in the order of the list.
+[[nodiscard]] std::vector<const MetricDescriptor*> metrics_of(MetricSource source);
+
+/// The metric that summarizes a run where there is space for only one: the first of the list.
+[[nodiscard]] const MetricDescriptor& headline_metric();
+
+/// @return null if the list does not contain it
+[[nodiscard]] const MetricDescriptor* find_metric(std::string_view id);
+
+/// As `find_metric`; also null if the metric is not compared.
+[[nodiscard]] const MetricDescriptor* gated_metric(std::string_view id);
+
+/// The id in the name of a stored metric, "PROTOCOL/ID" or "ID".
+[[nodiscard]] std::string_view without_protocol(std::string_view name);
+
+/// The value of each metric for which there is data.
+[[nodiscard]] std::vector<Metric> measured_metrics(const Measurements& measurements);
+
+/// Label, value and unit: "ATE 0.0123 m".
+[[nodiscard]] std::string value_text(const MetricDescriptor& metric, double value);
+
+/// Description with unit and preferred direction.
+[[nodiscard]] std::string tooltip(const MetricDescriptor& metric);
+
+/// Tooltip of a stored metric or of a timed module; empty if the name is neither.
+[[nodiscard]] std::string tooltip_of(std::string_view name);
+
+}  // namespace stillpoint::bench

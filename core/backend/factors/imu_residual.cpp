@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/factors/imu_residual.h"
+
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kP = ImuErrorIndex::kPosition;
+constexpr int kR = ImuErrorIndex::kRotation;
+constexpr int kV = ImuErrorIndex::kVelocity;
+constexpr int kBg = ImuErrorIndex::kGyroBias;
+constexpr int kBa = ImuErrorIndex::kAccelBias;
+
+using PoseJacobian = Eigen::Matrix<double, 15, 7, Eigen::RowMajor>;
+using SpeedBiasJacobian = Eigen::Matrix<double, 15, 9, Eigen::RowMajor>;
+
+/// Read-only view of the parameter blocks, and the terms shared by residual and Jacobians.
+struct States {
+  Eigen::Map<const Eigen::Vector3d> p_i, v_i, bg_i, ba_i, p_j, v_j, bg_j, ba_j;
+  Eigen::Quaterniond q_i, q_j;
+  Eigen::Matrix3d R_i_t;       ///< R_i transposed
+  Eigen::Vector3d delta_p_bi;  ///< R_i^T (p_j - p_i - v_i dt - g dt^2 / 2)
+  Eigen::Vector3d delta_v_bi;  ///< R_i^T (v_j - v_i - g dt)
+  Eigen::Vector3d rotation;    ///< r_q
+
+  States(double const* const* x, const Preintegration& imu, const Eigen::Vector3d& gravity_w)
+      : p_i(x[0]),
+        v_i(x[1]),
+        bg_i(x[1] + 3),
+        ba_i(x[1] + 6),
+        p_j(x[2]),
+        v_j(x[3]),
+        bg_j(x[3] + 3),
+        ba_j(x[3] + 6),
+        q_i(x[0] + 3),
+        q_j(x[2] + 3),
+        R_i_t(q_i.toRotationMatrix().transpose()) {
+    const double dt = imu.duration_s();
+    delta_p_bi = R_i_t * (p_j - p_i - v_i * dt - 0.5 * gravity_w * dt * dt);
+    delta_v_bi = R_i_t * (v_j - v_i - gravity_w * dt);
+    rotation = log_so3(imu.delta_q(bg_i).conjugate() * (q_i.conjugate() * q_j));
+  }
+};
+
+PoseJacobian jacobian_pose_i(const States& s) {
+  PoseJacobian J = PoseJacobian::Zero();
+  J.block<3, 3>(kP, 0) = -s.R_i_t;
+  J.block<3, 3>(kP, 3) = skew(s.delta_p_bi);
+  J.block<3, 3>(kR, 3) = -right_jacobian_inverse(s.rotation) * (s.q_j.conjugate() * s.q_i).toRotationMatrix();
+  J.block<3, 3>(kV, 3) = skew(s.delta_v_bi);
+  return J;
+}
+
+SpeedBiasJacobian jacobian_speed_bias_i(const States& s, const Preintegration& imu) {
+  const Matrix15& D = imu.jacobian();
+  const Eigen::Matrix3d dq_dbg = D.block<3, 3>(kR, kBg);
+  const Eigen::Vector3d correction = dq_dbg * (s.bg_i - imu.gyro_bias());
+  SpeedBiasJacobian J = SpeedBiasJacobian::Zero();
+  J.block<3, 3>(kP, 0) = -s.R_i_t * imu.duration_s();
+  J.block<3, 3>(kP, 3) = -D.block<3, 3>(kP, kBg);
+  J.block<3, 3>(kP, 6) = -D.block<3, 3>(kP, kBa);
+  J.block<3, 3>(kR, 3) = -right_jacobian_inverse(s.rotation) * exp_so3(-s.rotation).toRotationMatrix() *
+                         right_jacobian(correction) * dq_dbg;
+  J.block<3, 3>(kV, 0) = -s.R_i_t;
+  J.block<3, 3>(kV, 3) = -D.block<3, 3>(kV, kBg);
+  J.block<3, 3>(kV, 6) = -D.block<3, 3>(kV, kBa);
+  J.block<3, 3>(kBg, 3).diagonal().setConstant(-1.0);
+  J.block<3, 3>(kBa, 6).diagonal().setConstant(-1.0);
+  return J;
+}
+
+PoseJacobian jacobian_pose_j(const States& s) {
+  PoseJacobian J = PoseJacobian::Zero();
+  J.block<3, 3>(kP, 0) = s.R_i_t;
+  J.block<3, 3>(kR, 3) = right_jacobian_inverse(s.rotation);
+  return J;
+}
+
+SpeedBiasJacobian jacobian_speed_bias_j(const States& s) {
+  SpeedBiasJacobian J = SpeedBiasJacobian::Zero();
+  J.block<3, 3>(kV, 0) = s.R_i_t;
+  J.block<3, 3>(kBg, 3).setIdentity();
+  J.block<3, 3>(kBa, 6).setIdentity();
+  return J;
+}
+
+}  // namespace
+
+void ImuResidual::evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  const Preintegration& imu = imu_;
+  const States s(parameters, imu, gravity_w_);
+  Vector15 r;
+  r.segment<3>(kP) = s.delta_p_bi - imu.delta_p(s.bg_i, s.ba_i);
+  r.segment<3>(kR) = s.rotation;
+  r.segment<3>(kV) = s.delta_v_bi - imu.delta_v(s.bg_i, s.ba_i);
+  r.segment<3>(kBg) = s.bg_j - s.bg_i;
+  r.segment<3>(kBa) = s.ba_j - s.ba_i;
+  const Matrix15& W = imu.sqrt_information();
+  Eigen::Map<Vector15>{residuals} = W * r;
+
+  if (jacobians == nullptr) return;
+  if (jacobians[0] != nullptr) Eigen::Map<PoseJacobian>{jacobians[0]} = W * jacobian_pose_i(s);
+  if (jacobians[1] != nullptr)
+    Eigen::Map<SpeedBiasJacobian>{jacobians[1]} = W * jacobian_speed_bias_i(s, imu);
+  if (jacobians[2] != nullptr) Eigen::Map<PoseJacobian>{jacobians[2]} = W * jacobian_pose_j(s);
+  if (jacobians[3] != nullptr) Eigen::Map<SpeedBiasJacobian>{jacobians[3]} = W * jacobian_speed_bias_j(s);
+}
+
+}  // namespace stillpoint

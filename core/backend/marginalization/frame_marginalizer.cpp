@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/marginalization/frame_marginalizer.h"
+
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace stillpoint {
+
+/// Splits blocks and columns of the prior into those of the frame and the others.
+void FrameMarginalizer::split(int frame, const LinearPrior& prior) {
+  const Eigen::Index rows = prior.jacobian.rows();
+  int marginalized = 0;
+  for (const PriorBlock& block : prior.blocks)
+    marginalized += block.frame == frame ? local_size(block.kind) : 0;
+  STILLPOINT_CHECK(rows <= kMaxRows && marginalized <= kMaxColumns);
+  marginalized_columns_.resize(rows, marginalized);
+  remaining_columns_.resize(rows, prior.jacobian.cols() - marginalized + 1);
+  result_.blocks.clear();
+  int from = 0, to_marginalized = 0, to_remaining = 0;
+  for (const PriorBlock& block : prior.blocks) {
+    const int size = local_size(block.kind);
+    if (block.frame == frame) {
+      marginalized_columns_.middleCols(to_marginalized, size) = prior.jacobian.middleCols(from, size);
+      to_marginalized += size;
+    } else {
+      remaining_columns_.middleCols(to_remaining, size) = prior.jacobian.middleCols(from, size);
+      to_remaining += size;
+      result_.blocks.push_back(block);
+      if (block.frame > frame) --result_.blocks.back().frame;
+    }
+    from += size;
+  }
+  remaining_columns_.col(to_remaining) = prior.residual;
+}
+
+LinearPrior FrameMarginalizer::remove(int frame, LinearPrior prior) {
+  split(frame, prior);
+  Eigen::Index rank = 0;
+  if (marginalized_columns_.cols() > 0) {
+    // After applying Q^T only the first `rank` rows depend on the marginalized columns.
+    qr_.compute(marginalized_columns_);
+    Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxRows + 1> workspace;
+    Eigen::Map<Eigen::MatrixXd>& rotated = remaining_columns_;
+    qr_.householderQ().adjoint().applyThisOnTheLeft(rotated, workspace);
+    rank = qr_.rank();
+  }
+  const Eigen::Index rows = remaining_columns_.rows() - rank;
+  result_.jacobian = remaining_columns_.bottomLeftCorner(rows, remaining_columns_.cols() - 1);
+  result_.residual = remaining_columns_.col(remaining_columns_.cols() - 1).tail(rows);
+  std::swap(prior, result_);
+  return prior;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/solvers/ceres_residuals.h"
+
+#include "core/backend/factors/imu_factor.h"
+#include "core/backend/factors/prior_factor.h"
+#include "core/backend/factors/reprojection_factor.h"
+
+namespace stillpoint {
+namespace {
+
+Residual prior_residual(const LinearPrior& prior) {
+  Residual residual{std::make_unique<PriorFactor>(prior), nullptr, {}, -1};
+  for (const PriorBlock& block : prior.blocks) residual.states.push_back({block.kind, block.frame});
+  return residual;
+}
+
+}  // namespace
+
+ResidualBuilder::ResidualBuilder(const Window& window, const BackendConfig& config, double focal_px)
+    : window_(window),
+      config_(config),
+      noise_(reprojection_noise(config, focal_px)),
+      loss_(std::make_unique<ceres::CauchyLoss>(config.cauchy_scale)) {
+  observation_model_.read(window);
+}
+
+void ResidualBuilder::add_landmark(int index) {
+  const Landmark& landmark = window_.landmarks[static_cast<std::size_t>(index)];
+  const Observation& host = landmark.observations.front();
+  if (uses_depth(host, config_)) {
+    residuals_.push_back({std::make_unique<HostDepthFactor>(1.0 / host.depth, noise_), nullptr, {}, index});
+  }
+
+  const Eigen::Vector3d position_w = observation_model_.position(landmark);
+  const TimedBearing in_host = observation_model_.at(landmark, landmark.host, position_w);
+  ReprojectionMeasurement m{
+      .bearing_i = in_host.bearing, .velocity_i = in_host.velocity, .exposure_i_s = in_host.exposure_s};
+  for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
+    const Observation& observation = landmark.observation_in(frame);
+    const TimedBearing timed = observation_model_.at(landmark, frame, position_w);
+    m.bearing_j = timed.bearing;
+    m.velocity_j = timed.velocity;
+    m.exposure_j_s = timed.exposure_s;
+    std::unique_ptr<ceres::CostFunction> cost;
+    if (uses_depth(observation, config_)) {
+      m.inverse_depth_j = 1.0 / observation.depth;
+      cost = std::make_unique<ReprojectionFactor<3>>(m, noise_);
+    } else {
+      cost = std::make_unique<ReprojectionFactor<2>>(m, noise_);
+    }
+    residuals_.push_back({std::move(cost),
+                          loss_.get(),
+                          {{BlockKind::kPose, landmark.host},
+                           {BlockKind::kPose, frame},
+                           {BlockKind::kExtrinsics},
+                           {BlockKind::kTimeOffset}},
+                          index});
+  }
+}
+
+void ResidualBuilder::add_imu(int frame) {
+  const std::optional<Preintegration>& imu = window_.frames[static_cast<std::size_t>(frame)].from_previous;
+  if (!window_.inertial || !imu) return;
+  residuals_.push_back({std::make_unique<ImuFactor>(*imu, window_.gravity_w),
+                        nullptr,
+                        {{BlockKind::kPose, frame - 1},
+                         {BlockKind::kSpeedBias, frame - 1},
+                         {BlockKind::kPose, frame},
+                         {BlockKind::kSpeedBias, frame}},
+                        -1});
+}
+
+void ResidualBuilder::add_prior() {
+  if (!window_.prior.empty()) residuals_.push_back(prior_residual(window_.prior));
+}
+
+void ResidualBuilder::add_calibration() {
+  if (!window_.calibration.empty()) residuals_.push_back(prior_residual(window_.calibration));
+}
+
+}  // namespace stillpoint

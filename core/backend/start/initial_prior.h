@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Priors of a window that starts: gauge, biases and calibration.
+#pragma once
+
+#include "core/backend/window/window.h"
+#include "core/config/backend_config.h"
+
+namespace stillpoint {
+
+/// Initial prior of a window: fixes the gauge at frame 0 (position and heading, or the whole pose without
+/// IMU) and constrains its biases by their configured uncertainty.
+[[nodiscard]] LinearPrior initial_prior(const Window& window, const InitializerConfig& config);
+
+/// Prior on extrinsics and time offset at their current values, with the configured uncertainty.
+[[nodiscard]] LinearPrior calibration_prior(const Window& window, const BackendConfig& config);
+
+/// Restores the gauge after a jump of the whole window. Without inertial data only the marginalization prior
+/// constrains the pose of the oldest frame in the world. If a solve moves it by more than 0.1 m or 0.02 rad,
+/// the prior is inconsistent, that is, it was linearized from a moving landmark. All poses are then
+/// transformed rigidly such that the oldest one is back at `oldest_T_w_b`, and the prior is reset to the
+/// initial one.
+/// @param oldest_T_w_b pose of the oldest frame before the solve
+/// @return whether there was a jump
+bool restore_gauge(const Pose& oldest_T_w_b, const InitializerConfig& config, Window& window);
+
+}  // namespace stillpoint

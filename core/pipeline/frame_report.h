@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Inputs and results of one frame, for dumps and videos.
+#pragma once
+
+#include <vector>
+
+#include "core/dynamic/semantic_mask.h"
+#include "core/types/dynamic_label.h"
+#include "core/types/frame.h"
+#include "core/types/odometry_update.h"
+#include "core/types/tracked_box.h"
+#include "core/types/tracked_frame.h"
+
+namespace stillpoint {
+
+/// Result of dynamic feature recognition for the newest frame.
+struct DynamicReport {
+  std::vector<TrackedBox> boxes;     ///< detected and predicted; without margin
+  SemanticMask mask;                 ///< the boxes with margin and depth thresholds
+  std::vector<DynamicLabel> labels;  ///< of all features, by ascending id
+
+  void clear() {
+    boxes.clear();
+    mask.clear();
+    labels.clear();
+  }
+};
+
+/// Valid during the call that it is passed to.
+struct FrameReport {
+  const Frame& frame;
+  const TrackedFrame& tracked;
+  const DynamicReport& dynamic;  ///< empty for a frame that does not enter the window
+  const OdometryUpdate& update;
+};
+
+}  // namespace stillpoint

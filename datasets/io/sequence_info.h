@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Contents of a sequence: metadata, ground truth, and the labels of rendered frames.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/timestamp.h"
+#include "core/types/detection.h"
+#include "core/types/frame.h"
+#include "core/types/imu_sample.h"
+#include "core/types/rig.h"
+#include "core/types/trajectory.h"
+
+namespace stillpoint::datasets {
+
+/// Ground-truth trajectory of one body-fixed frame f, and the pose of that frame relative to the camera.
+struct GroundTruth {
+  Trajectory trajectory;  ///< poses T_w_f, f = trajectory.frame; empty when the sequence has none
+  Pose T_c_f;             ///< pose of f in the camera frame: T_w_c = T_w_f * T_c_f.inverse()
+};
+
+/// Everything of a sequence but its images.
+struct SequenceInfo {
+  std::string name;  ///< the folder's name
+  std::filesystem::path folder;
+  std::string format;  ///< name of its format, see datasets/formats/formats.h
+  Rig rig;
+  std::vector<Timestamp> frame_times;  ///< one per frame, strictly increasing
+  std::vector<ImuSample> imu;          ///< strictly increasing in time; empty without an IMU
+  GroundTruth ground_truth;
+  std::vector<DetectionSet> detections;  ///< recorded boxes in order of time; empty when there are none
+  std::vector<DetectionSet> true_boxes;  ///< of all moving objects, in order of time; rendered sequences only
+  std::vector<std::string> notes;        ///< assumptions made by the reader, one sentence each, to be shown
+};
+
+/// Per-pixel ground truth of a rendered frame.
+struct MotionLabels {
+  cv::Mat
+      object;  ///< CV_8UC1: 0 = static scene, 1..127 = a person, 128.. = a moving object of no detector class
+  cv::Mat speed_cm_per_s;  ///< CV_8UC1: speed of the visible surface in the world frame; saturates at 255
+};
+constexpr int kFirstUndetectableObject = 128;
+
+}  // namespace stillpoint::datasets

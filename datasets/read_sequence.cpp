@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/read_sequence.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "datasets/formats/formats.h"
+#include "datasets/io/detections_file.h"
+#include "datasets/io/image_io.h"
+#include "datasets/io/rig_file.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+const SequenceFormat& find_format(const std::filesystem::path& folder, const std::string& requested) {
+  std::string signatures;
+  for (const SequenceFormat* const format : kSequenceFormats) {
+    if (requested.empty() ? format->recognize(folder) : format->name == requested) return *format;
+    signatures += "; " + std::string(format->name) + " has " + std::string(format->signature);
+  }
+  if (!requested.empty()) {
+    throw InputError("unknown format \"" + requested + "\"; expected one of: " + sequence_format_names());
+  }
+  throw InputError(folder.string(), "is not a sequence of a supported format" + signatures);
+}
+
+/// Absolute path of the folder without a trailing slash or dot, so that `filename()` is the sequence name.
+std::filesystem::path normalized_folder(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw InputError(folder.string(), "no such folder");
+  }
+  const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+/// Applies the requested rig file, or else the rig.toml of the folder if there is one.
+void override_rig(SequenceContent& content, const std::filesystem::path& requested) {
+  const std::filesystem::path local = content.info.folder / "rig.toml";
+  const std::filesystem::path file = requested.empty() && std::filesystem::exists(local) ? local : requested;
+  if (!file.empty()) {
+    const OverriddenRig overridden = apply_rig_file(file, content.info.rig);
+    content.info.rig = overridden.rig;
+    content.extrinsic_known |= overridden.has_extrinsic;
+    content.info.notes.push_back("calibration: overridden by " + file.string());
+  } else if (!content.assumed_calibration_note.empty()) {
+    content.info.notes.push_back(content.assumed_calibration_note);
+  }
+}
+
+void check_rig(const SequenceContent& content) {
+  const Camera& camera = content.info.rig.camera;
+  const std::string folder = content.info.folder.string();
+  if (camera.width <= 0 || camera.height <= 0 || camera.fx <= 0.0 || camera.fy <= 0.0) {
+    throw InputError(
+        folder,
+        "the camera calibration is missing; add a rig.toml with [camera] width, height, fx, fy, cx, cy");
+  }
+  if (content.info.rig.has_imu && !content.extrinsic_known) {
+    throw InputError(folder, "has IMU data but no camera-IMU extrinsic; add a rig.toml with [imu] T_b_c");
+  }
+}
+
+std::string span_text(Timestamp first, Timestamp last) {
+  return std::to_string(to_seconds(first)) + " to " + std::to_string(to_seconds(last)) + " s";
+}
+
+void require_overlap(const SequenceInfo& info, const std::string& stream, Timestamp first, Timestamp last) {
+  if (first <= info.frame_times.back() && last >= info.frame_times.front()) return;
+  throw InputError(info.folder.string(), stream + " covers " + span_text(first, last) + ", the images " +
+                                             span_text(info.frame_times.front(), info.frame_times.back()) +
+                                             ": no overlap in time; are they of the same recording?");
+}
+
+void check_overlap(const SequenceInfo& info, FaultLog& faults) {
+  const std::vector<StampedPose>& truth = info.ground_truth.trajectory.poses;
+  faults.guard([&] {
+    if (!info.imu.empty()) require_overlap(info, "the IMU", info.imu.front().t, info.imu.back().t);
+  });
+  faults.guard([&] {
+    if (!truth.empty()) require_overlap(info, "the ground truth", truth.front().t, truth.back().t);
+  });
+}
+
+void require_size(const std::filesystem::path& file, const cv::Mat& image, const Camera& camera) {
+  if (image.cols == camera.width && image.rows == camera.height) return;
+  throw InputError(file.string(), "is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
+                                      ", but the calibration is for " + std::to_string(camera.width) + "x" +
+                                      std::to_string(camera.height) + "; correct [camera] in rig.toml");
+}
+
+cv::Mat load_depth(const SequenceContent& content, const std::filesystem::path& file) {
+  cv::Mat depth = read_depth(file);
+  const Rig& rig = content.info.rig;
+  require_size(file, depth, content.depth_camera ? content.depth_camera->camera : rig.camera);
+  if (content.no_depth_value != 0) {
+    std::replace(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>(), content.no_depth_value,
+                 std::uint16_t{0});
+  }
+  if (!content.depth_camera) return depth;
+  return register_depth(depth, rig.depth_units_per_m, *content.depth_camera, rig.camera);
+}
+
+std::vector<DetectionSet> read_optional_boxes(const std::filesystem::path& file, FaultLog& faults) {
+  return std::filesystem::exists(file) ? read_detections(file, faults) : std::vector<DetectionSet>{};
+}
+
+}  // namespace
+
+SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOptions& options,
+                              FaultLog& faults) {
+  const std::filesystem::path root = normalized_folder(folder);
+  const SequenceFormat& format = find_format(root, options.format);
+  SequenceContent content = format.read(root, faults);
+  content.info.format = format.name;
+  content.info.detections = read_optional_boxes(root / "detections.txt", faults);
+  content.info.true_boxes = read_optional_boxes(root / "true_boxes.txt", faults);
+  override_rig(content, options.rig_file);
+  check_rig(content);
+  check_overlap(content.info, faults);
+  return content;
+}
+
+Frame decode_frame(const SequenceContent& content, std::size_t index) {
+  STILLPOINT_CHECK(index < content.frame_files.size());
+  const FrameFiles& files = content.frame_files[index];
+  const cv::Mat image = read_image(files.color);
+  require_size(files.color, image, content.info.rig.camera);
+  Frame frame;
+  frame.id = static_cast<std::int64_t>(index);
+  frame.t = content.info.frame_times[index];
+  frame.gray = to_gray(image);
+  if (image.channels() == 3) frame.color = image;
+  if (!files.depth.empty()) frame.depth = load_depth(content, files.depth);
+  frame.depth_units_per_m = content.info.rig.depth_units_per_m;
+  return frame;
+}
+
+}  // namespace stillpoint::datasets
