@@ -36,7 +36,8 @@ struct RunIdentity {
 enum class Outcome {
   kOk,
   kLost,         ///< processed all frames without any pose
-  kInterrupted,  ///< stopped on request; the results cover the processed frames
+  kInterrupted,  ///< stopped on request; the results cover the processed frames. Only in result.json, never
+                 ///< in stores
   kCrashed,      ///< terminated by a signal, or exited with an error
   kTimedOut,     ///< killed at its time limit
   kOutOfMemory,  ///< exceeded its memory limit

@@ -215,8 +215,8 @@ PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOpt
                     const PlanHooks& hooks) {
   std::vector<Outcome> repeated = {Outcome::kBadData};
   if (options.retry) {
-    repeated = {Outcome::kLost,     Outcome::kInterrupted, Outcome::kCrashed,
-                Outcome::kTimedOut, Outcome::kOutOfMemory, Outcome::kBadData};
+    repeated = {Outcome::kLost, Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory,
+                Outcome::kBadData};
   }
   writer.remove_runs(matrix.keys, repeated);
   writer.record_plan({.name = matrix.plan.name,

@@ -115,6 +115,8 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessResult& 
   try {
     const Json result = Json::parse(eval::read_text_file(result_file));
     outcome.outcome = outcome_of(result.at("status").get<std::string>());
+    // By another process: a worker releases the runs that it interrupts itself.
+    if (outcome.outcome == Outcome::kInterrupted) outcome.outcome = Outcome::kCrashed;
     if (result.at("failure").is_string()) outcome.detail = result.at("failure").get<std::string>();
     outcome.metrics = stored_metrics(result);
     outcome.costs = module_costs(result.at("timings"));
