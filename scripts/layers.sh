@@ -147,7 +147,7 @@ libraries=(
 threads=(
   'core/frontend/detect/thread_pool\.(h|cpp)'
   'core/pipeline/threaded_odometry\.(h|cpp)'
-  'core/pipeline/runners/(pipelined_runner|realtime_runner|pacing_clock)\.(h|cpp)'
+  'core/pipeline/runners/(realtime_runner|pacing_clock)\.(h|cpp)'
   'datasets/synthetic/sequence/render_sequence\.cpp'
   'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'
   'bench/record/host_info\.cpp'
