@@ -39,6 +39,6 @@ if ! command -v clang-tidy >/dev/null; then
   exit 1
 fi
 # clang reads no precompiled headers of g++ and does not know all of its warnings.
-cmake --preset release -B build/tidy -DSTILLPOINT_PRECOMPILE=OFF --log-level=WARNING >"$(log_file configure-tidy)" 2>&1 || show_failure configure-tidy
+cmake --preset dev -B build/tidy -DSTILLPOINT_PRECOMPILE=OFF --log-level=WARNING >"$(log_file configure-tidy)" 2>&1 || show_failure configure-tidy
 git diff --name-only --diff-filter=d -z "$base" -- 'core/*.cpp' 'datasets/*.cpp' 'eval/*.cpp' 'bench/*.cpp' 'reports/*.cpp' |
   xargs -0 --no-run-if-empty --max-args=4 --max-procs="$(nproc)" clang-tidy --quiet --warnings-as-errors='*' --extra-arg=-Wno-unknown-warning-option -p build/tidy

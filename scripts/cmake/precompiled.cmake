@@ -1,22 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Precompiled headers: parsing the standard library, Eigen and JSON takes longer than compiling most of our files. They
-# change no code: sources include what they use, and build with -DSTILLPOINT_PRECOMPILE=OFF as well.
+# Build time. Precompiled headers: parsing the standard library, Eigen and JSON takes longer than compiling most of our
+# files. Groups: several sources compiled as one, so that templates are instantiated once. Neither changes any code:
+# sources include what they use, and build with -DSTILLPOINT_PRECOMPILE=OFF and -DSTILLPOINT_UNITY=OFF as well.
 option(STILLPOINT_PRECOMPILE "precompile the headers of libraries" ON)
 
 set(stillpoint_headers_core <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem>
     <functional> <limits> <map> <memory> <optional> <span> <string> <string_view> <utility> <vector>)
 set(stillpoint_headers_bench ${stillpoint_headers_core} <fstream> <set> <sstream> <fmt/format.h> <nlohmann/json.hpp>
     <opencv2/core/mat.hpp>)
-set(stillpoint_headers_cli ${stillpoint_headers_bench} <spdlog/spdlog.h>)
+set(stillpoint_headers_output ${stillpoint_headers_bench})
 set(stillpoint_headers_test ${stillpoint_headers_core} <fstream> <sstream> <gtest/gtest.h>)
 set(stillpoint_libraries_core Eigen3::Eigen)
 set(stillpoint_libraries_bench Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json opencv_core)
-set(stillpoint_libraries_cli ${stillpoint_libraries_bench} spdlog::spdlog)
+set(stillpoint_libraries_output ${stillpoint_libraries_bench})
 set(stillpoint_libraries_test Eigen3::Eigen GTest::gtest)
 
-# stillpoint_precompile(TARGET SET): uses the headers of SET (core, bench, cli or test), which are compiled once for all
-# targets with the same options.
+# Sources that neither compute nor wait for the odometry: the command line, reports and tests. Optimizing them would
+# take a third of their compile time.
+set(stillpoint_options_output $<$<CONFIG:Release>:-O1>)
+set(stillpoint_options_test $<$<CONFIG:Release>:-O1>)
+
+# stillpoint_precompile(TARGET SET): uses the headers of SET (core, bench, output or test), which are compiled once for
+# all targets with the same options, and the options of SET.
 function(stillpoint_precompile target set)
+  target_compile_options(${target} PRIVATE ${stillpoint_options_${set}})
   if(NOT STILLPOINT_PRECOMPILE)
     return()
   endif()
@@ -26,16 +33,19 @@ function(stillpoint_precompile target set)
     file(CONFIGURE OUTPUT ${source} CONTENT "// Holds the precompiled headers.\n")
     add_library(${host} OBJECT ${source})
     target_link_libraries(${host} PRIVATE stillpoint_options stillpoint_warnings ${stillpoint_libraries_${set}})
+    target_compile_options(${host} PRIVATE ${stillpoint_options_${set}})
     target_precompile_headers(${host} PRIVATE ${stillpoint_headers_${set}})
   endif()
   target_precompile_headers(${target} REUSE_FROM ${host})
 endfunction()
 
-# stillpoint_group_json(TARGET): compiles the sources of TARGET that use JSON in groups of three, because each unit
-# instantiates the JSON library anew, which takes longer than the rest of such a file. A group contains files of one
-# folder only.
-function(stillpoint_group_json target)
-  if(NOT STILLPOINT_PRECOMPILE)
+# stillpoint_group(TARGET [EXCEPT regex]): compiles the sources of TARGET in groups of one folder. Left out are sources
+# with results that must not depend on it (inlining between sources lets the compiler fuse other products, which changes
+# last bits) and sources that use the same names for helpers, as readers of formats and tests do.
+option(STILLPOINT_UNITY "compile sources in groups: half the time from scratch, longer after a change of one file" OFF)
+function(stillpoint_group target)
+  cmake_parse_arguments(ARG "" "EXCEPT" "" ${ARGN})
+  if(NOT STILLPOINT_UNITY)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
@@ -43,11 +53,7 @@ function(stillpoint_group_json target)
   list(SORT sources)
   set(previous "")
   foreach(source IN LISTS sources)
-    if(NOT EXISTS ${source})
-      continue()
-    endif()
-    file(STRINGS ${source} uses REGEX "#include <nlohmann/json.hpp>")
-    if(NOT uses)
+    if(NOT EXISTS ${source} OR (ARG_EXCEPT AND source MATCHES "${ARG_EXCEPT}"))
       continue()
     endif()
     get_filename_component(folder ${source} DIRECTORY)
@@ -56,7 +62,7 @@ function(stillpoint_group_json target)
       set(previous ${folder})
     endif()
     file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${folder})
-    math(EXPR group "${count} / 3")
+    math(EXPR group "${count} / 12")
     math(EXPR count "${count} + 1")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${name}/${group})
   endforeach()
