@@ -4,24 +4,30 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
 
 #include "eval/metrics/statistics.h"
-#include "eval/statistics/random_index.h"
+#include "eval/statistics/rank_sum.h"
 
 namespace stillpoint::eval {
 namespace {
 
-std::optional<double> ratio_change(double before, double after) {
-  if (before == 0.0) return after == 0.0 ? std::optional(0.0) : std::nullopt;
-  return (after - before) / std::abs(before);
+bool all_positive(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
 }
 
-double resampled_median(std::span<const double> values, std::vector<double>& sample,
-                        std::mt19937_64& random) {
-  sample.resize(values.size());
-  std::generate(sample.begin(), sample.end(), [&] { return values[random_index(random, values.size())]; });
-  return *percentile(sample, 0.5);
+std::vector<double> logarithms(std::span<const double> values) {
+  std::vector<double> result;
+  for (const double value : values) result.push_back(std::log(value));
+  return result;
+}
+
+/// The change of the test's shift by a monotone function.
+template <typename Function>
+RelativeChange mapped(const RankSum& test, std::size_t count, const Function& map) {
+  RelativeChange change{
+      .count = count, .median = map(test.shift), .p_value = test.p_value, .interval = std::nullopt};
+  if (test.interval) change.interval = {.low = map(test.interval->low), .high = map(test.interval->high)};
+  return change;
 }
 
 /// Var(S) of the Mann-Kendall test: Kendall, Rank Correlation Methods, 1975, chapter 4.
@@ -48,45 +54,73 @@ double residuals_to_median(std::span<const double> values) {
   return sum;
 }
 
+double residuals_to_line(std::span<const double> values, const Trend& line) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    sum += std::abs(values[i] - line.intercept - line.slope * static_cast<double>(i));
+  return sum;
+}
+
+/// Slopes between all values.
+std::vector<double> pairwise_slopes(std::span<const double> values) {
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t k = i + 1; k < values.size(); ++k)
+      slopes.push_back((values[k] - values[i]) / static_cast<double>(k - i));
+  }
+  return slopes;
+}
+
+/// y_i - slope i.
+/// @param first index of the first value
+std::vector<double> without_slope(std::span<const double> values, double slope, std::size_t first) {
+  std::vector<double> flat;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    flat.push_back(values[i] - slope * static_cast<double>(first + i));
+  return flat;
+}
+
+/// Two levels of values without their common slope.
+struct TwoLevels {
+  double step = 0.0;
+  double residuals = 0.0;
+};
+
+TwoLevels two_levels(std::span<const double> before, std::span<const double> after, double slope) {
+  const std::vector<double> flat_before = without_slope(before, slope, 0);
+  const std::vector<double> flat_after = without_slope(after, slope, before.size());
+  return {.step = *percentile(flat_after, 0.5) - *percentile(flat_before, 0.5),
+          .residuals = residuals_to_median(flat_before) + residuals_to_median(flat_after)};
+}
+
 }  // namespace
 
 std::optional<RelativeChange> level_change(std::span<const double> before, std::span<const double> after,
-                                           const BootstrapOptions& options) {
+                                           double confidence) {
   if (before.empty() || after.empty()) return std::nullopt;
-  const std::optional<double> change = ratio_change(*percentile(before, 0.5), *percentile(after, 0.5));
-  if (!change) return std::nullopt;
-  std::mt19937_64 random(options.seed);
-  std::vector<double> sample;
-  std::vector<double> changes;
-  for (std::size_t i = 0; i < options.resamples; ++i) {
-    const double first = resampled_median(before, sample, random);
-    const double second = resampled_median(after, sample, random);
-    if (const std::optional<double> drawn = ratio_change(first, second)) changes.push_back(*drawn);
+  const std::size_t count = std::min(before.size(), after.size());
+  if (all_positive(before) && all_positive(after)) {
+    const RankSum test = *rank_sum(logarithms(before), logarithms(after), confidence);
+    return mapped(test, count, [](double x) { return std::expm1(x); });
   }
-  if (changes.empty()) changes.push_back(*change);
-  const double tail = 0.5 * (1.0 - options.confidence);
-  return RelativeChange{.count = std::min(before.size(), after.size()),
-                        .median = *change,
-                        .interval = {*percentile(changes, tail), *percentile(changes, 1.0 - tail)}};
+  const double level = std::abs(*percentile(before, 0.5));
+  if (level == 0.0 && *percentile(after, 0.5) != 0.0) return std::nullopt;
+  if (level == 0.0) return RelativeChange{.count = count};
+  return mapped(*rank_sum(before, after, confidence), count, [&](double shift) { return shift / level; });
 }
 
 std::optional<Trend> trend_of(std::span<const double> values) {
   constexpr std::size_t kMinValues = 4;
   if (values.size() < kMinValues) return std::nullopt;
-  std::vector<double> slopes;
   double signs = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     for (std::size_t k = i + 1; k < values.size(); ++k) {
       const double rise = values[k] - values[i];
-      slopes.push_back(rise / static_cast<double>(k - i));
       signs += rise > 0.0 ? 1.0 : (rise < 0.0 ? -1.0 : 0.0);
     }
   }
-  Trend trend{.slope = *percentile(slopes, 0.5), .intercept = 0.0, .p_value = 1.0};
-  std::vector<double> intercepts;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    intercepts.push_back(values[i] - trend.slope * static_cast<double>(i));
-  trend.intercept = *percentile(intercepts, 0.5);
+  Trend trend{.slope = *percentile(pairwise_slopes(values), 0.5), .intercept = 0.0, .p_value = 1.0};
+  trend.intercept = *percentile(without_slope(values, trend.slope, 0), 0.5);
   const double variance = mann_kendall_variance(values);
   const double corrected = std::max(std::abs(signs) - 1.0, 0.0);  // for continuity
   if (variance > 0.0) trend.p_value = std::erfc(corrected / std::sqrt(2.0 * variance));
@@ -95,9 +129,6 @@ std::optional<Trend> trend_of(std::span<const double> values) {
 
 bool linear_trend_fits_better(std::span<const double> values, const Trend& trend,
                               const std::vector<std::size_t>& changes) {
-  double to_line = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    to_line += std::abs(values[i] - trend.intercept - trend.slope * static_cast<double>(i));
   double to_levels = 0.0;
   std::size_t first = 0;
   for (const std::size_t change : changes) {
@@ -105,8 +136,31 @@ bool linear_trend_fits_better(std::span<const double> values, const Trend& trend
     first = change;
   }
   to_levels += residuals_to_median(values.subspan(first));
-  return bayesian_information_criterion(to_line, values.size(), 2) <
+  return bayesian_information_criterion(residuals_to_line(values, trend), values.size(), 2) <
          bayesian_information_criterion(to_levels, values.size(), 2 * changes.size() + 1);
+}
+
+double step_beside_trend(std::span<const double> before, std::span<const double> after) {
+  constexpr std::size_t kMinWindow = 10;
+  const double level_step = *percentile(after, 0.5) - *percentile(before, 0.5);
+  const std::size_t window = std::max(kMinWindow, std::min(before.size(), after.size()));
+  before = before.last(std::min(window, before.size()));
+  after = after.first(std::min(window, after.size()));
+  std::vector<double> values(before.begin(), before.end());
+  values.insert(values.end(), after.begin(), after.end());
+  const std::optional<Trend> line = trend_of(values);
+  if (!line) return level_step;
+  std::vector<double> slopes = pairwise_slopes(before);
+  const std::vector<double> slopes_after = pairwise_slopes(after);
+  slopes.insert(slopes.end(), slopes_after.begin(), slopes_after.end());
+  const TwoLevels sloped = two_levels(before, after, percentile(slopes, 0.5).value_or(0.0));
+  const double line_criterion =
+      bayesian_information_criterion(residuals_to_line(values, *line), values.size(), 2);
+  const double step_criterion =
+      bayesian_information_criterion(two_levels(before, after, 0.0).residuals, values.size(), 3);
+  const double sloped_criterion = bayesian_information_criterion(sloped.residuals, values.size(), 4);
+  if (step_criterion <= std::min(line_criterion, sloped_criterion)) return level_step;
+  return line_criterion <= sloped_criterion ? 0.0 : sloped.step;
 }
 
 }  // namespace stillpoint::eval

@@ -20,12 +20,15 @@
 
 namespace stillpoint::eval {
 
-/// (median(after) - median(before)) / |median(before)|, with a bootstrap interval that resamples both sides.
+/// Relative shift between two levels by the exact two-sample rank test (eval/statistics/rank_sum.h). If all
+/// values are positive, the test is made on their logarithms, and its estimate and interval are mapped by
+/// e^x - 1; otherwise they are divided by |median(before)|.
+/// @param before, after finite values
 /// @return nullopt if a side is empty, or if only the median of `before` is 0; `count` is the size of the
 /// smaller side
 [[nodiscard]] std::optional<RelativeChange> level_change(std::span<const double> before,
                                                          std::span<const double> after,
-                                                         const BootstrapOptions& options = {});
+                                                         double confidence = 0.95);
 
 /// Robust linear fit of a series over its index.
 struct Trend {
@@ -49,5 +52,20 @@ struct Trend {
 /// @param changes indices of the first value of each new level
 [[nodiscard]] bool linear_trend_fits_better(std::span<const double> values, const Trend& trend,
                                             const std::vector<std::size_t>& changes);
+
+/// Step between two adjacent segments that may share a trend. Of three models of the values around the
+/// boundary t, the one with the smallest criterion (BIC, as above) decides:
+///
+///   line           y_i = a + b i                   2 parameters: the step is 0
+///   step           y_i = a + c [i >= t]            3 parameters: c = median(after) - median(before)
+///   step and line  y_i = a + b i + c [i >= t]      4 parameters: b is the median slope within the segments,
+///   a and c
+///                                                  are medians of y_i - b i
+///
+/// Values far from t are excluded: of a longer segment, the models use as many values as the shorter one has,
+/// but at least 10.
+/// @param before, after not empty
+/// @return c, in the unit of the values
+[[nodiscard]] double step_beside_trend(std::span<const double> before, std::span<const double> after);
 
 }  // namespace stillpoint::eval

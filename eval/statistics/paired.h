@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Paired comparison of two variants that were measured under the same conditions.
-///
-/// Effect size: matched-pairs rank-biserial correlation (Kerby, Compr. Psychol. 3, 2014; ranks of Wilcoxon,
-/// Biometrics Bull. 1, 1945):
-///
-///   r = (sum of ranks of d_i > 0 - sum of ranks of d_i < 0) / (sum of all ranks)
-///
-/// d_i: difference of pair i, ranked by |d_i|; equal |d_i| share their mean rank, d_i = 0 has none.
+/// Paired comparison of two variants that were measured under the same conditions, by the exact signed-rank
+/// test (eval/statistics/signed_rank.h).
 #pragma once
 
 #include <optional>
 #include <span>
 
-#include "eval/statistics/bootstrap.h"
+#include "eval/statistics/median_interval.h"
+#include "eval/statistics/signed_rank.h"
 
 namespace stillpoint::eval {
 
@@ -22,27 +17,39 @@ struct Pair {
   double changed = 0.0;
 };
 
+/// changed - base, in the unit of the values.
 struct PairedDifference {
   std::size_t count = 0;
-  double median = 0.0;  ///< of changed - base, in the unit of the values
-  Interval interval;    ///< of the median
-  double effect = 0.0;  ///< r: 1 if every pair increased, -1 if every pair decreased
+  double median = 0.0;  ///< pseudomedian, to which the interval belongs
+  double p_value = 1.0;
+  std::optional<Interval> interval;  ///< nullopt if there are too few pairs
+  double effect = 0.0;  ///< `rank_biserial`: 1 if every pair increased, -1 if every pair decreased
 };
 
+/// @param pairs finite values
 /// @return nullopt without pairs
 [[nodiscard]] std::optional<PairedDifference> paired_difference(std::span<const Pair> pairs,
-                                                                const BootstrapOptions& options = {});
+                                                                double confidence = 0.95);
 
-/// Median of changed / base - 1, and its interval.
+/// changed / base - 1.
 struct RelativeChange {
   std::size_t count = 0;
-  double median = 0.0;
-  Interval interval;
+  double median = 0.0;  ///< pseudomedian, to which the interval belongs
+  double p_value = 1.0;
+  std::optional<Interval> interval;  ///< nullopt if there are too few values
 };
 
-/// Pairs with base 0 are excluded, unless both values are 0, which counts as no change.
+/// Relative change over pairs. If all values are positive, the test is made on x_i = ln(changed_i / base_i),
+/// and its estimate and interval are mapped by e^x - 1; then a factor of 2 and a factor of 1/2 compensate
+/// each other. Otherwise x_i = (changed_i - base_i) / |base_i|. Pairs with base 0 are excluded, unless both
+/// values are 0, which counts as no change.
+/// @param pairs finite values
 /// @return nullopt without usable pairs
 [[nodiscard]] std::optional<RelativeChange> relative_change(std::span<const Pair> pairs,
-                                                            const BootstrapOptions& options = {});
+                                                            double confidence = 0.95);
+
+/// Whether the data exclude "no change": there is an interval, and it lies on one side of 0.
+[[nodiscard]] bool is_significant(const PairedDifference& difference);
+[[nodiscard]] bool is_significant(const RelativeChange& change);
 
 }  // namespace stillpoint::eval

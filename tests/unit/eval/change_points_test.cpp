@@ -63,16 +63,25 @@ TEST(ChangePoints, DoNotDependOnUnitOrOffset) {
   EXPECT_EQ(changes.front().p_value, changes_scaled.front().p_value);
 }
 
-TEST(LevelChange, IsTheRelativeChangeOfTheMediansWithItsInterval) {
-  // Medians 2 and 3: 3 / 2 - 1. Resampled changes lie between 2 / 3 - 1 and 4 / 1 - 1.
+TEST(LevelChange, IsTheMedianRatioOfAllPairsOfValues) {
+  // Ratios of (4, 8) to (1, 2): 4, 8, 2, 4. Four values do not support an interval.
   const std::optional<RelativeChange> change =
-      level_change(std::vector<double>{1, 2, 3}, std::vector<double>{2, 3, 4});
+      level_change(std::vector<double>{1, 2}, std::vector<double>{4, 8});
   ASSERT_TRUE(change);
-  EXPECT_DOUBLE_EQ(change->median, 0.5);
-  EXPECT_EQ(change->count, 3u);
-  EXPECT_GE(change->interval.low, 2.0 / 3.0 - 1.0);
-  EXPECT_LE(change->interval.high, 3.0);
-  EXPECT_LT(change->interval.low, change->interval.high);
+  EXPECT_NEAR(change->median, 3.0, 1e-12);
+  EXPECT_EQ(change->count, 2u);
+  EXPECT_FALSE(change->interval);
+}
+
+TEST(LevelChange, HasAnIntervalFromFourAndFourValuesOn) {
+  // p = 2 / C(8, 4) = 0.0286; the interval spans the ratios 10 / 4 and 40 / 1.
+  const std::optional<RelativeChange> change =
+      level_change(std::vector<double>{1, 2, 3, 4}, std::vector<double>{10, 20, 30, 40});
+  EXPECT_NEAR(change->p_value, 2.0 / 70.0, 1e-12);
+  ASSERT_TRUE(change->interval);
+  EXPECT_NEAR(change->interval->low, 1.5, 1e-12);
+  EXPECT_NEAR(change->interval->high, 39.0, 1e-12);
+  EXPECT_FALSE(level_change(std::vector<double>{1, 2, 3}, std::vector<double>{10, 20, 30})->interval);
 }
 
 TEST(LevelChange, IsNotAvailableFromZeroOrWithoutValues) {

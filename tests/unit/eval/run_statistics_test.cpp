@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "eval/statistics/paired.h"
@@ -25,26 +24,10 @@ TEST(Spread, HasTheMedianTheQuartilesAndTheWorstValue) {
 
 TEST(Spread, IsNotAvailableWithoutValues) { EXPECT_FALSE(spread({})); }
 
-TEST(MedianInterval, HasZeroWidthForEqualValues) {
-  const std::vector<double> values(8, 2.5);
-  EXPECT_EQ(median_interval(values)->low, 2.5);
-  EXPECT_EQ(median_interval(values)->high, 2.5);
-}
-
-TEST(MedianInterval, CoversTheTrueMedianWithItsConfidence) {
-  // 400 samples of 25 normal numbers; the true median is 0. The standard deviation of a coverage of 0.95 is
-  // sqrt(0.95 * 0.05 / 400) = 0.011. The tolerance is about 4 of these plus the small bias of the percentile
-  // interval.
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> normal;
-  int covered = 0;
-  for (int i = 0; i < 400; ++i) {
-    std::vector<double> values(25);
-    for (double& value : values) value = normal(random);
-    const Interval interval = *median_interval(values, {.resamples = 400});
-    covered += interval.low <= 0.0 && 0.0 <= interval.high ? 1 : 0;
-  }
-  EXPECT_NEAR(covered / 400.0, 0.95, 0.05);
+TEST(Spread, HasNoIntervalForFewerThanSixValues) {
+  EXPECT_FALSE(spread(std::vector<double>{1.0})->median_interval);
+  EXPECT_FALSE(spread(std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0})->median_interval);
+  EXPECT_TRUE(spread(std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0, 6.0})->median_interval);
 }
 
 TEST(PairedDifference, HasEffectOneWhenEveryPairIncreases) {
@@ -67,9 +50,38 @@ TEST(PairedDifference, AssignsTheMeanRankToTies) {
   EXPECT_NEAR(paired_difference(pairs)->effect, 0.5, 1e-12);
 }
 
-TEST(RelativeChange, IsTheMedianRatioMinusOne) {
-  const std::vector<Pair> pairs = {{10.0, 10.5}, {20.0, 22.0}, {4.0, 4.4}};  // 5 %, 10 %, 10 %
-  EXPECT_NEAR(relative_change(pairs)->median, 0.1, 1e-12);
+TEST(PairedDifference, IsSignificantOnlyFromSixPairsOn) {
+  // All pairs increase: p = 2 / 2^n, which is 0.0625 for 5 pairs and 0.03125 for 6.
+  std::vector<Pair> pairs;
+  for (int i = 1; i <= 5; ++i) pairs.push_back({1.0, 1.0 + 0.1 * i});
+  EXPECT_FALSE(is_significant(*paired_difference(pairs)));
+  EXPECT_FALSE(is_significant(*relative_change(pairs)));
+  EXPECT_DOUBLE_EQ(paired_difference(pairs)->p_value, 0.0625);
+  pairs.push_back({1.0, 1.6});
+  EXPECT_TRUE(is_significant(*paired_difference(pairs)));
+  EXPECT_TRUE(is_significant(*relative_change(pairs)));
+  EXPECT_DOUBLE_EQ(relative_change(pairs)->p_value, 0.03125);
+}
+
+TEST(RelativeChange, IsThePseudomedianRatioMinusOne) {
+  // Ratios 2, 8, 2; means of two logarithms base 2: 1, 2, 1, 3, 2, 1; their median is 1.5: 2^1.5 - 1.
+  const std::vector<Pair> pairs = {{10.0, 20.0}, {3.0, 24.0}, {5.0, 10.0}};
+  EXPECT_NEAR(relative_change(pairs)->median, std::pow(2.0, 1.5) - 1.0, 1e-12);
+}
+
+TEST(RelativeChange, IsZeroIfAFactorAndItsInverseCompensate) {
+  const std::vector<Pair> pairs = {{10.0, 20.0}, {20.0, 10.0}};
+  EXPECT_NEAR(relative_change(pairs)->median, 0.0, 1e-12);
+}
+
+TEST(RelativeChange, HasTheSignOfTheDifferenceForNegativeValues) {
+  const std::vector<Pair> pairs = {{-2.0, -1.0}};  // increases by half of |-2|
+  EXPECT_DOUBLE_EQ(relative_change(pairs)->median, 0.5);
+}
+
+TEST(RelativeChange, OfAValueThatBecomesZeroIsMinusOne) {
+  const std::vector<Pair> pairs = {{4.0, 0.0}};
+  EXPECT_DOUBLE_EQ(relative_change(pairs)->median, -1.0);
 }
 
 TEST(RelativeChange, ExcludesPairsWithBaseZero) {
