@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/mix_bits.h"
+
 namespace stillpoint::synth {
 
 /// Independent random streams; draws of one stream do not affect the others. The values are part of the keys.
@@ -19,15 +21,8 @@ enum class RandomStream : std::uint64_t {
   kScene,
   kPeople,
   kDetector,
+  kFaults,
 };
-
-/// Finalizer of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits look independent.
-[[nodiscard]] constexpr std::uint64_t mix_bits(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15ULL;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
 
 /// Key of one stream of one seed; `index` selects a substream (a frame, a person, a texture).
 [[nodiscard]] constexpr std::uint64_t random_key(std::uint64_t seed, RandomStream stream,

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/faults/faulty_stream.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "datasets/faults/detection_faults.h"
+#include "datasets/faults/image_faults.h"
+#include "datasets/faults/imu_faults.h"
+#include "datasets/synthetic/counter_random.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+bool is_dropped(const SensorFault& fault, double elapsed_s, std::size_t index) {
+  if (fault.kind != FaultKind::kDropped || !fault.is_active(elapsed_s)) return false;
+  return synth::RandomSequence(synth::random_key(fault.seed, synth::RandomStream::kFaults, index))
+      .chance(fault.amount);
+}
+
+class FaultyStream final : public SensorStream {
+ public:
+  FaultyStream(std::unique_ptr<SensorStream> stream, std::vector<SensorFault> faults)
+      : stream_(std::move(stream)), faults_(std::move(faults)), info_(stream_->info()) {
+    start_ = info_.frame_times.front();
+    keep_frames();
+    const cv::Size image(info_.rig.camera.width, info_.rig.camera.height);
+    for (const SensorFault& fault : faults_) {
+      const FaultTarget target = descriptor_of(fault.kind).target;
+      if (target == FaultTarget::kImu) info_.imu = samples_with_fault(std::move(info_.imu), fault, start_);
+      if (target == FaultTarget::kDetections) {
+        info_.detections = detections_with_fault(std::move(info_.detections), fault, start_, image);
+      }
+      info_.notes.push_back("injected fault: " + fault_text(fault));
+    }
+  }
+
+  [[nodiscard]] const SequenceInfo& info() const override { return info_; }
+
+  [[nodiscard]] Frame load_frame(std::size_t index) const override {
+    const std::size_t source = frames_.at(index);
+    Frame frame = stream_->load_frame(source);
+    const double elapsed_s = seconds_between(start_, frame.t);
+    for (const SensorFault& fault : faults_) {
+      if (!fault.is_active(elapsed_s)) continue;
+      const FaultTarget target = descriptor_of(fault.kind).target;
+      if (target == FaultTarget::kImages || target == FaultTarget::kDepth)
+        frame = faulty(std::move(frame), fault, source);
+    }
+    frame.id = static_cast<std::int64_t>(index);
+    return frame;
+  }
+
+  [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t index) const override {
+    return stream_->load_labels(frames_.at(index));
+  }
+
+ private:
+  /// Lists the frames that are not dropped.
+  void keep_frames() {
+    info_.frame_times.clear();
+    const std::vector<Timestamp>& times = stream_->info().frame_times;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double elapsed_s = seconds_between(start_, times[i]);
+      if (std::any_of(faults_.begin(), faults_.end(),
+                      [&](const SensorFault& fault) { return is_dropped(fault, elapsed_s, i); })) {
+        continue;
+      }
+      frames_.push_back(i);
+      info_.frame_times.push_back(times[i]);
+    }
+    if (frames_.empty()) throw InputError("--fault", "all frames are dropped");
+  }
+
+  [[nodiscard]] Frame faulty(Frame frame, const SensorFault& fault, std::size_t source) const {
+    switch (fault.kind) {
+      case FaultKind::kDropped:
+        return frame;
+      case FaultKind::kFrozen: {
+        const Frame frozen = stream_->load_frame(last_frame_before(fault, frame.t));
+        frame.gray = frozen.gray;
+        frame.color = frozen.color;
+        frame.depth = frozen.depth;
+        return frame;
+      }
+      case FaultKind::kDepthPrevious:
+        if (source > 0) frame.depth = stream_->load_frame(source - 1).depth;
+        return frame;
+      default:
+        return frame_with_fault(std::move(frame), fault, source);
+    }
+  }
+
+  /// Index of the last frame before the current interval of the fault; 0 if there is none.
+  [[nodiscard]] std::size_t last_frame_before(const SensorFault& fault, Timestamp t) const {
+    const double onset_s = fault.onset_s(seconds_between(start_, t));
+    const std::vector<Timestamp>& times = stream_->info().frame_times;
+    const auto first_active = std::partition_point(times.begin(), times.end(), [&](Timestamp stamp) {
+      return seconds_between(start_, stamp) < onset_s;
+    });
+    return first_active == times.begin() ? 0 : static_cast<std::size_t>(first_active - times.begin() - 1);
+  }
+
+  std::unique_ptr<SensorStream> stream_;
+  std::vector<SensorFault> faults_;
+  SequenceInfo info_;
+  Timestamp start_;
+  std::vector<std::size_t> frames_;  ///< source index of each remaining frame
+};
+
+void require_target(const SensorFault& fault, const SequenceInfo& info) {
+  const FaultDescriptor& descriptor = descriptor_of(fault.kind);
+  const auto reject = [&](const char* problem) {
+    throw InputError(fmt::format("fault \"{}\"", descriptor.name), info.folder.string() + problem);
+  };
+  if (descriptor.target == FaultTarget::kImu && info.imu.empty()) reject(" has no inertial data");
+  if (descriptor.target == FaultTarget::kDetections && info.detections.empty())
+    reject(" has no recorded boxes; write them with `stillpoint detect`");
+}
+
+}  // namespace
+
+std::vector<FaultInterval> fault_intervals(const SensorFault& fault, Timestamp first, Timestamp last) {
+  std::vector<FaultInterval> intervals;
+  for (double start_s = fault.start_s; after(first, start_s) <= last; start_s += fault.every_s) {
+    intervals.push_back({.begin = after(first, start_s), .end = after(first, start_s + fault.duration_s)});
+    if (fault.every_s <= 0.0) break;
+  }
+  return intervals;
+}
+
+std::unique_ptr<SensorStream> with_faults(std::unique_ptr<SensorStream> stream,
+                                          std::vector<SensorFault> faults) {
+  if (faults.empty()) return stream;
+  for (const SensorFault& fault : faults) require_target(fault, stream->info());
+  return std::make_unique<FaultyStream>(std::move(stream), std::move(faults));
+}
+
+}  // namespace stillpoint::datasets

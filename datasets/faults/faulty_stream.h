@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A sequence with injected sensor faults.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "datasets/faults/sensor_fault.h"
+#include "datasets/sensor_stream.h"
+
+namespace stillpoint::datasets {
+
+/// A fault is active during [begin, end).
+struct FaultInterval {
+  Timestamp begin;
+  Timestamp end;
+};
+
+/// The intervals of a fault between the first frame and `last`.
+[[nodiscard]] std::vector<FaultInterval> fault_intervals(const SensorFault& fault, Timestamp first,
+                                                         Timestamp last);
+
+/// The stream as damaged sensors would have recorded it: the faults are applied in their order. Ground truth
+/// and labels stay those of the undisturbed sequence. The result is a function of stream and faults only.
+/// @param stream with at least one frame
+/// @throws InputError for faults of data that the stream does not have (IMU, depth, recorded boxes)
+[[nodiscard]] std::unique_ptr<SensorStream> with_faults(std::unique_ptr<SensorStream> stream,
+                                                        std::vector<SensorFault> faults);
+
+}  // namespace stillpoint::datasets
