@@ -7,62 +7,15 @@
 #include <set>
 #include <tuple>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
+#include "bench/analysis/run_groups.h"
+#include "bench/analysis/run_origin.h"
 #include "core/base/error.h"
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kOwnSystem = "stillpoint";
-constexpr const char* kUnknownHost = "unknown machine";
-
-/// Commit, time and machine of a run, from its manifest.
-struct Origin {
-  std::string commit;
-  std::string time;  ///< empty if not in the manifest
-  std::string host;
-};
-
-std::string text_at(const Json& json, const char* part, const char* name) {
-  const auto found = json.find(part);
-  if (found == json.end() || !found->is_object()) return "";
-  const auto value = found->find(name);
-  return value != found->end() && value->is_string() ? value->get<std::string>() : "";
-}
-
-std::string host_class(const Json& manifest) {
-  const std::string cpu = text_at(manifest, "host", "cpu");
-  if (cpu.empty()) return kUnknownHost;
-  const auto count = manifest.at("host").find("logical_cpus");
-  if (count == manifest.at("host").end() || !count->is_number_unsigned()) return cpu;
-  return fmt::format("{}, {} processors", cpu, count->get<unsigned>());
-}
-
-/// @param previous origin of the previous run, used for a run that was interrupted before it wrote a manifest
-Origin origin_of(const Store& store, const StoredRun& run, const Origin& previous) {
-  const std::string& build = run.identity.build;
-  const Json manifest = Json::parse(store.manifest(run), nullptr, false);
-  if (!manifest.is_object()) return {build, "", previous.host.empty() ? kUnknownHost : previous.host};
-  const std::string git_commit = text_at(manifest, "build", "git_commit");
-  const std::string changes = text_at(manifest, "build", "git_changes");
-  const bool is_known = !git_commit.empty() && git_commit != "unknown";
-  // Programs run by the gate are identified by content hash; the history uses their commit.
-  const std::string commit = is_known ? git_commit + (changes.empty() ? "" : "+" + changes) : build;
-  return {commit, text_at(manifest, "build", "git_time"), host_class(manifest)};
-}
-
-/// Key that is equal for runs of the same plan entry at different commits: excludes the build, and the config
-/// hash, since defaults may change with the build.
-std::string planned_key(RunIdentity identity) {
-  identity.build.clear();
-  identity.config_hash.clear();
-  return run_key(identity);
-}
 
 std::map<std::string, std::set<std::string>> plans_by_run(const Store& store,
                                                           const std::vector<StoredRun>& runs) {
@@ -97,7 +50,7 @@ class HistoryBuilder {
  public:
   explicit HistoryBuilder(std::map<std::string, std::set<std::string>> plans) : plans_(std::move(plans)) {}
 
-  void add(const StoredRun& run, const Origin& origin) {
+  void add(const StoredRun& run, const RunOrigin& origin) {
     note_time(run, origin);
     const RunIdentity& identity = run.identity;
     const HistorySubject subject{identity.sequence,    identity.variant, identity.axis,  identity.axis_value,
@@ -133,7 +86,7 @@ class HistoryBuilder {
  private:
   using Key = std::pair<HistorySubject, std::string>;
 
-  void note_time(const StoredRun& run, const Origin& origin) {
+  void note_time(const StoredRun& run, const RunOrigin& origin) {
     const auto [entry, is_new] = times_.insert({origin.commit, {origin.time, run.started, run.id}});
     CommitTime& time = entry->second;
     if (time.committed.empty()) time.committed = origin.time;
@@ -184,11 +137,8 @@ class HistoryBuilder {
 CommitHistory commit_history(const Store& store) {
   const std::vector<StoredRun> runs = store.runs({.system = kOwnSystem});
   HistoryBuilder builder(plans_by_run(store, runs));
-  Origin origin;
-  for (const StoredRun& run : runs) {
-    origin = origin_of(store, run, origin);
-    builder.add(run, origin);
-  }
+  const std::vector<RunOrigin> origins = run_origins(store, runs);
+  for (std::size_t i = 0; i < runs.size(); ++i) builder.add(runs[i], origins[i]);
   return builder.build();
 }
 

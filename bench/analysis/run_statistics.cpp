@@ -2,6 +2,7 @@
 #include "bench/analysis/run_statistics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
@@ -9,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/model/metrics.h"
+#include "bench/model/replicates.h"
 #include "core/base/error.h"
 #include "eval/metrics/statistics.h"
 
@@ -18,8 +21,40 @@ namespace {
 using Point =
     std::tuple<std::string, std::string, std::string, double>;  // sequence, variant, axis, its value
 
+/// A sweep over perturbations of the input gives replicates, not points of a curve.
 Point point_of(const RunIdentity& identity) {
+  if (identity.axis == kPerturbationKey) return {identity.sequence, identity.variant, "", 0.0};
   return {identity.sequence, identity.variant, identity.axis, identity.axis_value};
+}
+
+/// The value of a successful run; nullopt also if it is not finite.
+std::optional<double> value_of(const StoredRun& run, const std::string& metric) {
+  const std::optional<double> value = run.outcome == Outcome::kOk ? metric_value(run, metric) : std::nullopt;
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+/// Values of one spread, with their seeds.
+using SeedValues = std::vector<std::pair<std::int64_t, double>>;
+
+/// Without the repetitions that are no replicates: equal values of a deterministic metric with equal seeds.
+std::vector<double> replicates(SeedValues values, const std::string& metric) {
+  const MetricDescriptor* gated = gated_metric(without_protocol(metric));
+  if (gated != nullptr && gated->gate->repeatable) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+  }
+  std::vector<double> result;
+  for (const auto& [seed, value] : values) result.push_back(value);
+  return result;
+}
+
+/// Summary of the values; the worst one is the smallest if larger is better.
+std::optional<eval::Spread> spread_of(const std::vector<double>& values, const std::string& metric) {
+  std::optional<eval::Spread> spread = eval::spread(values);
+  const MetricDescriptor* descriptor = find_metric(without_protocol(metric));
+  const bool is_reversed = descriptor != nullptr && descriptor->direction == MetricDirection::kLargerIsBetter;
+  if (spread && is_reversed) spread->worst = *std::min_element(values.begin(), values.end());
+  return spread;
 }
 
 /// Unit of pairing between variants.
@@ -40,8 +75,7 @@ SubjectTable subjects_of(std::span<const StoredRun> runs, const std::string& var
     const RunIdentity& identity = run.identity;
     if (identity.variant != variant) continue;
     SubjectRuns& subject = table[{identity.sequence, identity.seed, identity.axis, identity.axis_value}];
-    const std::optional<double> value = metric_value(run, metric);
-    if (run.outcome == Outcome::kOk && value) {
+    if (const std::optional<double> value = value_of(run, metric)) {
       subject.values.push_back(*value);
     } else {
       ++subject.failed;
@@ -87,25 +121,24 @@ std::vector<std::string> split_cells(const std::string& line) {
 
 std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::string& metric) {
   std::vector<RunSpread> rows;
-  std::vector<std::vector<double>> values;
+  std::vector<SeedValues> values;
   std::map<Point, std::size_t> index;
   for (const StoredRun& run : runs) {
     const RunIdentity& identity = run.identity;
     const auto [entry, is_new] = index.insert({point_of(identity), rows.size()});
     if (is_new) {
-      rows.push_back({.sequence = identity.sequence,
-                      .variant = identity.variant,
-                      .axis = identity.axis,
-                      .axis_value = identity.axis_value});
+      const auto& [sequence, variant, axis, axis_value] = entry->first;
+      rows.push_back({.sequence = sequence, .variant = variant, .axis = axis, .axis_value = axis_value});
       values.emplace_back();
     }
     RunSpread& row = rows[entry->second];
     ++row.runs;
     row.failed += run.outcome == Outcome::kOk ? 0 : 1;
-    const std::optional<double> value = metric_value(run, metric);
-    if (run.outcome == Outcome::kOk && value) values[entry->second].push_back(*value);
+    if (const std::optional<double> value = value_of(run, metric))
+      values[entry->second].emplace_back(identity.seed, *value);
   }
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].spread = eval::spread(values[i]);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    rows[i].spread = spread_of(replicates(values[i], metric), metric);
   return rows;
 }
 

@@ -20,9 +20,13 @@ struct RunSpread {
   double axis_value = 0.0;
   std::size_t runs = 0;
   std::size_t failed = 0;              ///< runs that did not succeed
-  std::optional<eval::Spread> spread;  ///< over successful runs
+  std::optional<eval::Spread> spread;  ///< over replicates of successful runs; `worst`
+                                       ///< respects the direction of the metric
 };
 
+/// Repetitions of a deterministic metric that have equal seeds and equal values count as one replicate. Runs
+/// without a finite value have no part in the spread.
+/// @param runs   that may be pooled, e.g. of one `RunGroup`
 /// @param metric metric name, e.g. "ate_rmse_m"
 /// @return in the order of first appearance
 [[nodiscard]] std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::string& metric);
@@ -37,6 +41,7 @@ struct AblationRow {
   std::optional<eval::RelativeChange> change;
 };
 
+/// @param runs that may be pooled, e.g. of one `RunGroup`
 /// @param base name of the reference variant
 /// @return for each other variant one row over all sequences, followed by one row per sequence
 /// @throws InputError if there is no run of `base`; the message lists the existing variants

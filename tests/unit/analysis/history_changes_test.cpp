@@ -33,8 +33,10 @@ TEST(HistoryChanges, APersistentCostIncreaseIsOpenWithCommitRangeAndSize) {
   EXPECT_EQ(shift.before, 29u);
   EXPECT_EQ(shift.after, 30u);
   EXPECT_NEAR(shift.change->median, 0.10, 0.01);  // medians of 30 values with 1 % noise: 0.2 % each
-  EXPECT_LT(shift.change->interval.low, 0.10);
-  EXPECT_GT(shift.change->interval.high, 0.09);
+  // The difference of two means of 30 values with 1 % noise has a standard deviation of 0.28 %: the limits lie
+  // about 2 of these from the estimate, and the estimate within 3 of them from the true change.
+  EXPECT_NEAR(shift.change->interval->low, 0.10 - 0.0056, 0.0084);
+  EXPECT_NEAR(shift.change->interval->high, 0.10 + 0.0056, 0.0084);
 }
 
 TEST(HistoryChanges, AFixedRegressionIsResolved) {
@@ -112,7 +114,7 @@ TEST(HistoryChanges, AreDeterministic) {
   ASSERT_EQ(first.shifts.size(), second.shifts.size());
   for (std::size_t i = 0; i < first.shifts.size(); ++i) {
     EXPECT_EQ(first.shifts[i].p_value, second.shifts[i].p_value);
-    EXPECT_EQ(first.shifts[i].change->interval.low, second.shifts[i].change->interval.low);
+    EXPECT_EQ(first.shifts[i].change->interval->low, second.shifts[i].change->interval->low);
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/analysis/run_statistics.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "bench/store/store_writer.h"
@@ -35,15 +37,50 @@ TEST(RunSpreads, CountFailuresAndUseTheMedianOfSuccessfulRuns) {
   EXPECT_EQ(rows[1].spread->median, 9.0);
 }
 
+TEST(RunSpreads, CountEqualRepetitionsOfADeterministicMetricOnce) {
+  std::vector<StoredRun> runs;
+  for (int repetition = 1; repetition <= 6; ++repetition) {
+    runs.push_back(run_of("vo", "a", 1, 1.0));
+    runs.back().identity.repetition = repetition;
+    runs.back().metrics.push_back({"process_cpu_s", "", "s", 10.0});
+  }
+  EXPECT_EQ(run_spreads(runs, "ate_rmse_m")[0].spread->count, 1u);
+  EXPECT_EQ(run_spreads(runs, "process_cpu_s")[0].spread->count, 6u);  // a cost is measured in each run
+  runs.back().metrics[0].value = 1.5;                                  // not deterministic
+  EXPECT_EQ(run_spreads(runs, "ate_rmse_m")[0].spread->count, 2u);
+}
+
+TEST(RunSpreads, HaveNoIntervalForFewerThanSixReplicates) {
+  std::vector<StoredRun> runs;
+  for (int seed = 1; seed <= 5; ++seed) runs.push_back(run_of("vo", "a", seed, 0.1 * seed));
+  EXPECT_FALSE(run_spreads(runs, "ate_rmse_m")[0].spread->median_interval);
+  runs.push_back(run_of("vo", "a", 6, 0.6));
+  EXPECT_TRUE(run_spreads(runs, "ate_rmse_m")[0].spread->median_interval);
+}
+
+TEST(RunSpreads, TheWorstValueIsTheSmallestIfLargerIsBetter) {
+  std::vector<StoredRun> runs = {run_of("vo", "a", 1, 1.0), run_of("vo", "a", 2, 2.0)};
+  for (StoredRun& run : runs)
+    run.metrics = {{"correct_rate", "", "", 0.5 * static_cast<double>(run.identity.seed)}};
+  EXPECT_EQ(run_spreads(runs, "correct_rate")[0].spread->worst, 0.5);
+}
+
+TEST(RunSpreads, OmitValuesThatAreNotFinite) {
+  const std::vector<StoredRun> runs = {run_of("vo", "a", 1, 1.0),
+                                       run_of("vo", "a", 2, std::numeric_limits<double>::infinity())};
+  EXPECT_EQ(run_spreads(runs, "ate_rmse_m")[0].spread->count, 1u);
+}
+
 TEST(Ablation, PairsBySequenceAndSeed) {
-  // Differences of "wo" to "full": a1 +1, a2 +2, b1 +9; over all the median is 2, on a it is 1.5.
+  // Differences of "wo" to "full": a1 +1, a2 +2, b1 +9; over all, the means of two are 1, 1.5, 2, 5, 5.5, 9,
+  // and their median 3.5; on a it is 1.5.
   const std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("full", "a", 2, 2.0),
                                        run_of("full", "b", 1, 1.0), run_of("wo", "b", 1, 10.0),
                                        run_of("wo", "a", 2, 4.0),   run_of("wo", "a", 1, 2.0)};
   const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].sequence, "");
-  EXPECT_EQ(rows[0].difference->median, 2.0);
+  EXPECT_EQ(rows[0].difference->median, 3.5);
   EXPECT_EQ(rows[0].difference->effect, 1.0);
   EXPECT_EQ(rows[1].sequence, "a");
   EXPECT_EQ(rows[1].difference->median, 1.5);

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/analysis/run_groups.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/analysis/run_origin.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr const char* kOwnSystem = "stillpoint";
+constexpr const char* kAllBuilds = "all";
+constexpr std::size_t kMaxListed = 8;
+
+/// A run, and where it comes from.
+struct OriginRun {
+  StoredRun run;
+  RunOrigin origin;
+};
+
+std::vector<OriginRun> with_origins(const Store& store, std::span<const StoredRun> runs) {
+  const std::vector<StoredRun> all = store.runs();
+  const std::vector<RunOrigin> origins = run_origins(store, all);
+  std::map<std::int64_t, std::size_t> index;
+  for (std::size_t i = 0; i < all.size(); ++i) index[all[i].id] = i;
+  std::vector<OriginRun> result;
+  for (const StoredRun& run : runs) result.push_back({run, origins[index.at(run.id)]});
+  return result;
+}
+
+/// Builds of Stillpoint, the newest first.
+std::vector<std::string> builds_of(std::span<const StoredRun> runs) {
+  std::map<std::string, std::int64_t> first_run;
+  for (const StoredRun& run : runs) {
+    if (run.identity.system != kOwnSystem) continue;
+    const auto [entry, is_new] = first_run.insert({run.identity.build, run.id});
+    if (!is_new) entry->second = std::min(entry->second, run.id);
+  }
+  std::vector<std::pair<std::int64_t, std::string>> order;
+  for (const auto& [build, id] : first_run) order.emplace_back(id, build);
+  std::sort(order.rbegin(), order.rend());
+  std::vector<std::string> builds;
+  for (const auto& [id, build] : order) builds.push_back(build);
+  return builds;
+}
+
+std::string listed(std::vector<std::string> names) {
+  const std::size_t count = names.size();
+  if (count > kMaxListed) names.resize(kMaxListed);
+  return fmt::format("{}{}", fmt::join(names, ", "), count > kMaxListed ? ", ..." : "");
+}
+
+/// The build that a name or a prefix refers to.
+std::string chosen_build(const std::vector<std::string>& builds, const std::string& name) {
+  std::vector<std::string> found;
+  for (const std::string& build : builds) {
+    if (build == name) return build;
+    if (build.starts_with(name)) found.push_back(build);
+  }
+  if (found.size() == 1) return found.front();
+  const std::string problem = found.empty() ? "there is no run of build" : "several builds begin with";
+  throw InputError("--build", fmt::format("{} \"{}\"; existing builds, the newest first: {}", problem, name,
+                                          listed(found.empty() ? builds : found)));
+}
+
+std::string mode_text(const RunIdentity& identity) {
+  return identity.mode + ", " + identity.kind + (identity.cores.empty() ? "" : ", cores " + identity.cores);
+}
+
+/// Within which a variant has one config: build, machine, mode, system, variant, sweep axis, its value.
+using ConfigScope =
+    std::tuple<std::string, std::string, std::string, std::string, std::string, std::string, double>;
+
+ConfigScope scope_of(const OriginRun& entry) {
+  const RunIdentity& identity = entry.run.identity;
+  return {identity.build,   entry.origin.host, mode_text(identity), identity.system,
+          identity.variant, identity.axis,     identity.axis_value};
+}
+
+using NewestConfigs = std::map<ConfigScope, std::pair<std::int64_t, std::string>>;  // newest run, its config
+
+NewestConfigs newest_configs(const std::vector<OriginRun>& runs) {
+  NewestConfigs newest;
+  for (const OriginRun& entry : runs) {
+    auto& config = newest[scope_of(entry)];
+    if (!entry.origin.config.empty()) config = std::max(config, std::pair(entry.run.id, entry.origin.config));
+  }
+  return newest;
+}
+
+/// Sentences about runs of other builds and of older configs, by name and number of runs.
+std::vector<std::string> sentences_of(const std::map<std::string, std::size_t>& builds,
+                                      const std::map<std::string, std::size_t>& variants) {
+  const auto list = [](const std::map<std::string, std::size_t>& counts) {
+    std::vector<std::string> names;
+    for (const auto& [name, count] : counts)
+      names.push_back(fmt::format("{} ({} run{})", name, count, count == 1 ? "" : "s"));
+    return listed(names);
+  };
+  std::vector<std::string> sentences;
+  if (!builds.empty())
+    sentences.push_back("Left out, other builds: " + list(builds) + "; select one with --build, or all.");
+  if (!variants.empty())
+    sentences.push_back("Left out, older configs of the same variant: " + list(variants) +
+                        "; select the runs of one plan with --plan.");
+  return sentences;
+}
+
+/// The group of a run; a new one at the end if there is none.
+RunGroup& group_of(std::vector<RunGroup>& groups, const OriginRun& entry) {
+  const RunGroup key{.build = entry.run.identity.build,
+                     .machine = entry.origin.host,
+                     .mode = mode_text(entry.run.identity),
+                     .runs = {}};
+  const auto found = std::find_if(groups.begin(), groups.end(), [&](const RunGroup& group) {
+    return std::tie(group.build, group.machine, group.mode) == std::tie(key.build, key.machine, key.mode);
+  });
+  return found != groups.end() ? *found : groups.emplace_back(key);
+}
+
+}  // namespace
+
+std::string planned_key(RunIdentity identity) {
+  identity.build.clear();
+  identity.config_hash.clear();
+  return run_key(identity);
+}
+
+std::vector<StoredRun> runs_of_plan(const Store& store, const std::string& plan) {
+  std::set<std::string> keys;
+  std::set<std::string> planned;
+  std::set<std::string> builds;  // of which all runs are known
+  for (const StoredRun& run : store.plan_runs(plan)) {
+    keys.insert(run.key);
+    planned.insert(planned_key(run.identity));
+    builds.insert(run.identity.build);
+  }
+  std::vector<StoredRun> runs = store.runs();
+  std::erase_if(runs, [&](const StoredRun& run) {
+    if (builds.contains(run.identity.build)) return !keys.contains(run.key);
+    return !planned.contains(planned_key(run.identity));
+  });
+  return runs;
+}
+
+std::string newest_build(std::span<const StoredRun> runs) {
+  const std::vector<std::string> builds = builds_of(runs);
+  return builds.empty() ? "" : builds.front();
+}
+
+RunSelection select_runs(const Store& store, std::span<const StoredRun> runs, const std::string& build) {
+  const std::vector<std::string> builds = builds_of(runs);
+  const bool is_named = !build.empty() && build != kAllBuilds;
+  const std::string chosen = is_named ? chosen_build(builds, build) : newest_build(runs);
+  const std::vector<OriginRun> all = with_origins(store, runs);
+  const NewestConfigs newest = newest_configs(all);
+  std::map<std::string, std::size_t> other_builds;
+  std::map<std::string, std::size_t> older_configs;
+  RunSelection selection;
+  for (const OriginRun& entry : all) {
+    const RunIdentity& identity = entry.run.identity;
+    const bool is_external = identity.system != kOwnSystem && !is_named;
+    if (build != kAllBuilds && identity.build != chosen && !is_external) {
+      ++other_builds[identity.build];
+    } else if (!entry.origin.config.empty() && entry.origin.config != newest.at(scope_of(entry)).second) {
+      ++older_configs[identity.variant];
+    } else {
+      group_of(selection.groups, entry).runs.push_back(entry.run);
+    }
+  }
+  selection.left_out = sentences_of(other_builds, older_configs);
+  return selection;
+}
+
+}  // namespace stillpoint::bench

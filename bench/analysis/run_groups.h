@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Groups of runs that may be pooled in one statistic.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/store/store.h"
+
+namespace stillpoint::bench {
+
+/// Runs of one build on one machine in one mode. Each variant has one config at each point of a sweep, up to
+/// its seeds.
+struct RunGroup {
+  std::string build;
+  std::string machine;  ///< CPU model and count
+  std::string mode;     ///< mode, kind and processors: "sequential, timing, cores 0,1"
+  std::vector<StoredRun> runs;
+};
+
+struct RunSelection {
+  std::vector<RunGroup> groups;       ///< in the order of their first runs
+  std::vector<std::string> left_out;  ///< sentences about the runs that are in no group
+};
+
+/// Key that is equal for runs of the same plan entry with different builds: excludes the build, and the
+/// config hash, since defaults may change with the build.
+[[nodiscard]] std::string planned_key(RunIdentity identity);
+
+/// Runs of a plan with the build that executed it last, and those of the same plan entries with other builds,
+/// in the order of their start.
+/// @throws InputError if the store does not contain the plan; the message lists those that it contains
+[[nodiscard]] std::vector<StoredRun> runs_of_plan(const Store& store, const std::string& plan);
+
+/// The build whose first run is the latest; empty without runs of Stillpoint.
+[[nodiscard]] std::string newest_build(std::span<const StoredRun> runs);
+
+/// Divides runs into groups. If a variant was executed with several configs in one group, only its newest
+/// config is kept. Runs of external systems, whose builds are their own, are kept with the newest build and
+/// with all.
+/// @param runs  of `store`
+/// @param build a build or a unique prefix of one, "all", or empty for the newest one
+/// @throws InputError if there is no such build, or if the prefix is ambiguous; the message lists the builds
+[[nodiscard]] RunSelection select_runs(const Store& store, std::span<const StoredRun> runs,
+                                       const std::string& build);
+
+}  // namespace stillpoint::bench

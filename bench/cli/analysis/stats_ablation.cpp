@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/analysis/stats_ablation.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/plan/ablation_base.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+std::vector<std::string> variants_of(const std::vector<StoredRun>& runs) {
+  std::vector<std::string> variants;
+  for (const StoredRun& run : runs) {
+    const std::string& variant = run.identity.variant;
+    if (std::find(variants.begin(), variants.end(), variant) == variants.end()) variants.push_back(variant);
+  }
+  return variants;
+}
+
+/// Runs that may be pooled, and the bases of their variants.
+struct Ablation {
+  std::vector<StoredRun> runs;
+  std::vector<AblationGroup> bases;
+};
+
+/// The runs of a group that belong to a plan, with any build.
+std::vector<StoredRun> runs_in_plan(const Store& store, const RunGroup& group, const std::string& plan) {
+  std::set<std::int64_t> ids;
+  for (const StoredRun& run : runs_of_plan(store, plan)) ids.insert(run.id);
+  std::vector<StoredRun> runs = group.runs;
+  std::erase_if(runs, [&](const StoredRun& run) { return !ids.contains(run.id); });
+  return runs;
+}
+
+/// One ablation with a named base, else one for each plan that has a base.
+std::vector<Ablation> ablations_of(const Store& store, const RunGroup& group,
+                                   const StatsArguments& arguments) {
+  std::vector<std::string> variants = variants_of(group.runs);
+  if (!arguments.base.empty()) {
+    if (std::erase(variants, arguments.base) == 0 || variants.empty()) return {};
+    return {{group.runs, {{.base = arguments.base, .variants = variants}}}};
+  }
+  std::vector<Ablation> ablations;
+  for (const StoredPlan& plan : store.plans()) {
+    const std::optional<std::string> base = ablation_base_of(plan);
+    if (!base || (!arguments.plan.empty() && plan.name != arguments.plan)) continue;
+    std::vector<StoredRun> runs = runs_in_plan(store, group, plan.name);
+    std::vector<AblationGroup> bases = ablation_groups(*base, variants_of(runs));
+    if (!bases.empty()) ablations.push_back({std::move(runs), std::move(bases)});
+  }
+  return ablations;
+}
+
+std::string change_text(const eval::RelativeChange& change) {
+  const std::string interval =
+      change.interval
+          ? fmt::format("{:+.1f} to {:+.1f} %", 100.0 * change.interval->low, 100.0 * change.interval->high)
+          : "no interval";
+  return fmt::format("{:+.1f} % (n = {}, {})", 100.0 * change.median, change.count, interval);
+}
+
+std::vector<std::string> cells_of(const AblationRow& row, const std::string& base) {
+  const std::size_t count = row.difference ? row.difference->count : 0;
+  std::vector<std::string> cells = {base, row.variant, row.sequence.empty() ? "(all)" : row.sequence,
+                                    fmt::format("{}", count), fmt::format("{}", row.newly_failed)};
+  if (row.difference) {
+    cells.insert(
+        cells.end(),
+        {number_cell(row.difference->median), interval_cell(row.difference->interval, count),
+         fmt::format("{:+.2f}", row.difference->effect), row.change ? change_text(*row.change) : "n/a"});
+  } else {
+    cells.insert(cells.end(), 4, "n/a");
+  }
+  return cells;
+}
+
+/// The rows of one group, and n of each row.
+struct AblationTable {
+  report::TableRows rows;
+  std::set<std::size_t> counts;
+};
+
+AblationTable table_of(const std::vector<Ablation>& ablations, const std::string& metric) {
+  AblationTable table;
+  for (const Ablation& one : ablations) {
+    for (const AblationGroup& group : one.bases) {
+      for (const AblationRow& row : ablation(one.runs, group.base, metric)) {
+        const auto& variants = group.variants;
+        if (std::find(variants.begin(), variants.end(), row.variant) == variants.end()) continue;
+        table.rows.push_back(cells_of(row, group.base));
+        table.counts.insert(row.difference ? row.difference->count : 0);
+      }
+    }
+  }
+  return table;
+}
+
+[[noreturn]] void reject_base(const RunSelection& selection, const StatsArguments& arguments) {
+  std::vector<std::string> variants;
+  for (const RunGroup& group : selection.groups) {
+    for (const std::string& variant : variants_of(group.runs)) {
+      if (std::find(variants.begin(), variants.end(), variant) == variants.end()) variants.push_back(variant);
+    }
+  }
+  const bool is_known = std::find(variants.begin(), variants.end(), arguments.base) != variants.end();
+  std::string problem = "is required: no plan of these runs has the key ablation_base";
+  if (!arguments.base.empty())
+    problem = is_known ? "no other variant was executed with the same build, machine and mode"
+                       : "there is no run of variant \"" + arguments.base + "\"";
+  throw InputError("--base", fmt::format("{}; existing variants: {}", problem, fmt::join(variants, ", ")));
+}
+
+}  // namespace
+
+int stats_ablation(const StatsArguments& arguments) {
+  const Store store(arguments.store);
+  const RunSelection selection = chosen_runs(store, arguments);
+  require_metric(selection, arguments.metric);
+  std::vector<GroupRows> groups;
+  std::set<std::size_t> counts;
+  for (const RunGroup& group : selection.groups) {
+    AblationTable table = table_of(ablations_of(store, group, arguments), arguments.metric);
+    counts.merge(table.counts);
+    if (!table.rows.empty()) groups.push_back({.group = &group, .rows = std::move(table.rows)});
+  }
+  if (groups.empty()) reject_base(selection, arguments);
+  std::vector<std::string> notes = {
+      fmt::format(
+          "{}; paired by sequence and seed, repetitions reduced to their median; n: pairs; difference and "
+          "change: Hodges-Lehmann estimates; effect: matched-pairs rank-biserial correlation, 1 = all "
+          "pairs increased.",
+          arguments.metric),
+      interval_note("exact Wilcoxon signed-rank test", counts)};
+  notes.insert(notes.end(), selection.left_out.begin(), selection.left_out.end());
+  print_groups(
+      {"base", "variant", "sequence", "n", "newly failed", "difference", "95 % interval", "effect", "change"},
+      groups, notes, arguments);
+  return kExitOk;
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint stats`: selection of runs, number of values, and missing intervals.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bench/store/store_writer.h"
+#include "tests/support/program.h"
+#include "tests/support/rejection.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint {
+namespace {
+
+/// Variants "vo" and "wo" with an error of 0.01 m and 0.02 m, and `seeds` runs each, with two builds; the
+/// older build has ten times the error.
+class StatsCommand : public testing::Test {
+ protected:
+  void fill(int seeds,
+            const std::string& plan_text = "ablation_base = \"vo\"\nvariants = [\"vo\", \"wo\"]\n") {
+    bench::StoreWriter writer(file_);
+    bench::StoredPlan plan{.name = "p", .title = "", .text = plan_text, .run_keys = {}};
+    for (const std::string build : {"older", "newer"}) {
+      plan.run_keys.clear();
+      for (const std::string variant : {"vo", "wo"}) {
+        for (int seed = 1; seed <= seeds; ++seed)
+          plan.run_keys.push_back(add_run(
+              writer,
+              {.variant = variant, .sequence = "a", .config_hash = variant, .build = build, .seed = seed}));
+      }
+    }
+    writer.record_plan(plan);
+  }
+
+  static std::string add_run(bench::StoreWriter& writer, const bench::RunIdentity& identity) {
+    static_cast<void>(writer.acquire(identity));
+    const double ate = (identity.variant == "vo" ? 0.01 : 0.02) * (identity.build == "older" ? 10.0 : 1.0) +
+                       1e-4 * static_cast<double>(identity.seed);
+    writer.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", ate}, {"coverage", "", "", 1.0}}});
+    return bench::run_key(identity);
+  }
+
+  [[nodiscard]] ProgramResult stats(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "stats");
+    arguments.insert(arguments.end(), {"--store", file_.string()});
+    return run_program(arguments);
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.path() / "store.sqlite";
+};
+
+TEST_F(StatsCommand, SummarizesTheNewestBuildAndSaysWhatWasLeftOut) {
+  fill(3);
+  const ProgramResult result = stats({"summary"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  // Seeds 1 to 3: 0.0101, 0.0102, 0.0103.
+  EXPECT_NE(result.out.find("0.0102"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("0.1002"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("- (n = 3)"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("the smallest two-sided p of n = 3 is 0.25"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("build: newer"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("Left out, other builds: older (6 runs)"), std::string::npos) << result.out;
+}
+
+TEST_F(StatsCommand, ShowsAllBuildsInSeparateRows) {
+  fill(6);
+  const ProgramResult result = stats({"summary", "--build", "all", "--csv"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out.substr(0, result.out.find('\n')),
+            "build,machine,mode,sequence,variant,sweep,runs,failed,n,median,median 95 %,quartiles,worst");
+  EXPECT_NE(result.out.find("0.0101 to 0.0106"), std::string::npos) << result.out;  // all six values
+  EXPECT_NE(result.out.find("0.1001 to 0.1006"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("Left out"), std::string::npos);
+  EXPECT_NE(stats({"summary", "--build", "old"}).out.find("build: older"), std::string::npos);
+  expect_rejected(stats({"summary", "--build", "x"}), {"--build", "\"x\"", "newer, older"});
+}
+
+TEST_F(StatsCommand, AblationHasTheBaseOfThePlan) {
+  fill(6);
+  const ProgramResult result = stats({"ablation", "--csv"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  // Differences of 0.01 in all six pairs.
+  EXPECT_NE(result.out.find("vo,wo,(all),6,0,0.01,0.01 to 0.01,+1.00"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("older"), std::string::npos) << result.out;
+  const std::string reversed = stats({"ablation", "--csv", "--base", "wo"}).out;
+  EXPECT_NE(reversed.find("wo,vo,(all),6,0,-0.01,-0.01 to -0.01,-1.00"), std::string::npos) << reversed;
+}
+
+TEST_F(StatsCommand, AblationWithoutABaseListsTheVariants) {
+  fill(2, "variants = [\"vo\", \"wo\"]\n");
+  expect_rejected(stats({"ablation"}), {"--base", "ablation_base", "vo, wo"});
+  expect_rejected(stats({"ablation", "--base", "full"}), {"--base", "\"full\"", "vo, wo"});
+}
+
+TEST_F(StatsCommand, RejectsAMetricThatNoRunHas) {
+  fill(1);
+  for (const char* command : {"summary", "ablation", "sweep"})
+    expect_rejected(stats({command, "--metric", "covrage"}),
+                    {"--metric", "\"covrage\"", "coverage, ate_rmse_m"});
+}
+
+}  // namespace
+}  // namespace stillpoint
