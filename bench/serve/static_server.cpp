@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/serve/static_server.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -15,8 +16,11 @@ namespace {
 
 constexpr std::size_t kConnectionBytes = 32 * 1024;
 constexpr unsigned kConnections = 32;
-constexpr unsigned kTimeoutS = 10;
+constexpr unsigned kAccepted = 2 * kConnections;  // includes those that were shut down and not yet closed
+constexpr unsigned kTimeoutS = 5;
 constexpr int kLargestPort = 65535;
+constexpr std::size_t kPortDigits = 5;
+constexpr char kInvalidByte = '\x01';
 
 std::string content_type(const std::string& path) {
   if (path.ends_with(".html")) return "text/html; charset=utf-8";
@@ -24,8 +28,40 @@ std::string content_type(const std::string& path) {
   return "text/plain; charset=utf-8";
 }
 
-/// The host without its port.
-std::string host_name(const std::string& host) { return host.substr(0, host.rfind(':')); }
+/// The host without its port, which may be that of a tunnel; empty if the port is not a number.
+std::string host_name(const std::string& host) {
+  const std::size_t colon = host.find(':');
+  if (colon == std::string::npos) return host;
+  const std::string port = host.substr(colon + 1);
+  const bool is_port = !port.empty() && port.size() <= kPortDigits &&
+                       port.find_first_not_of("0123456789") == std::string::npos;
+  return is_port ? host.substr(0, colon) : "";
+}
+
+bool is_control(char letter) { return static_cast<unsigned char>(letter) < ' ' || letter == '\x7f'; }
+
+/// Callback of libmicrohttpd that decodes "%41". A decoded zero byte would end the path; it is replaced by
+/// another control character, which `respond` rejects.
+std::size_t unescape(void* /*unused*/, MHD_Connection* /*connection*/, char* text) {
+  const std::size_t length = MHD_http_unescape(text);
+  std::replace(text, text + length, '\0', kInvalidByte);
+  return length;
+}
+
+int socket_of(MHD_Connection* connection) {
+  return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+}
+
+/// Callback of libmicrohttpd for connections that begin or end.
+void on_connection(void* connections, MHD_Connection* connection, void** /*context*/,
+                   MHD_ConnectionNotificationCode code) {
+  auto& limit = *static_cast<ConnectionLimit*>(connections);
+  if (code == MHD_CONNECTION_NOTIFY_STARTED) {
+    limit.opened(socket_of(connection), ConnectionLimit::Clock::now());
+  } else {
+    limit.closed(socket_of(connection));
+  }
+}
 
 std::string host_of(MHD_Connection* connection) {
   const char* host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
@@ -69,17 +105,20 @@ sockaddr_in address_of(const ServerOptions& options) {
 }  // namespace
 
 StaticServer::StaticServer(const std::vector<OutputFile>& files, const ServerOptions& options)
-    : error_texts_({{MHD_HTTP_METHOD_NOT_ALLOWED, "only GET and HEAD are supported\n"},
+    : error_texts_({{MHD_HTTP_BAD_REQUEST, "the path contains control characters\n"},
+                    {MHD_HTTP_METHOD_NOT_ALLOWED, "only GET and HEAD are supported\n"},
                     {MHD_HTTP_FORBIDDEN, "the Host header does not match this server\n"},
                     {MHD_HTTP_NOT_FOUND, "page not found\n"}}),
       address_(options.address),
+      connections_(kConnections),
       daemon_(nullptr, MHD_stop_daemon) {
   for (const OutputFile& file : files) texts_["/" + file.name] = file.text;
   const sockaddr_in address = address_of(options);
   daemon_.reset(MHD_start_daemon(
       MHD_USE_AUTO_INTERNAL_THREAD, 0, nullptr, nullptr, on_request, this, MHD_OPTION_SOCK_ADDR, &address,
-      MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionBytes, MHD_OPTION_CONNECTION_LIMIT, kConnections,
-      MHD_OPTION_CONNECTION_TIMEOUT, kTimeoutS, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END));
+      MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionBytes, MHD_OPTION_CONNECTION_LIMIT, kAccepted,
+      MHD_OPTION_NOTIFY_CONNECTION, on_connection, &connections_, MHD_OPTION_UNESCAPE_CALLBACK, unescape,
+      nullptr, MHD_OPTION_CONNECTION_TIMEOUT, kTimeoutS, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END));
   if (daemon_ == nullptr) {
     throw InputError("--port", "cannot listen on " + options.address + ":" + std::to_string(options.port) +
                                    ": " + std::strerror(errno) +
@@ -101,6 +140,7 @@ StaticServer::Response StaticServer::respond(const std::string& method, const st
   const std::string name = host_name(host);
   const bool is_loopback = address_.starts_with("127.");
   if (is_loopback && name != "localhost" && name != address_) return error(MHD_HTTP_FORBIDDEN);
+  if (std::ranges::any_of(path, is_control)) return error(MHD_HTTP_BAD_REQUEST);
   const auto found = texts_.find(path.ends_with('/') ? path + "index.html" : path);
   if (found == texts_.end()) return error(MHD_HTTP_NOT_FOUND);
   return {MHD_HTTP_OK, &found->second, content_type(found->first)};

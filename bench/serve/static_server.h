@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/record/output_folder.h"
+#include "bench/serve/connection_limit.h"
 
 struct MHD_Daemon;
 
@@ -20,8 +21,9 @@ struct ServerOptions {
 };
 
 /// Serves GET and HEAD requests in one background thread until it is destroyed. At most 32 connections with
-/// 32 kB of memory each; larger requests are rejected, idle connections are closed after 10 s. On a loopback
-/// address the Host header must name this machine, which protects against DNS rebinding by other sites.
+/// 32 kB of memory each; larger requests are rejected. A connection serves one request; idle ones are closed
+/// after 5 s, and the oldest one when there are too many. On a loopback address the Host header must name
+/// this machine, which protects against DNS rebinding by other sites.
 class StaticServer {
  public:
   /// @param files names are request paths; "index.html" is served for its folder
@@ -47,6 +49,7 @@ class StaticServer {
   std::map<std::string, std::string> texts_;     ///< by path, e.g. "/index.html"
   std::map<unsigned, std::string> error_texts_;  ///< by HTTP status
   std::string address_;
+  ConnectionLimit connections_;  ///< used by the server thread
   std::unique_ptr<MHD_Daemon, void (*)(MHD_Daemon*)> daemon_;
 };
 
