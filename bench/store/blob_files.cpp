@@ -33,7 +33,10 @@ std::string compressed(std::string_view content) {
 }
 
 InputError damaged(const fs::path& file, const std::string& how) {
-  return {file.string(), how + "; `stillpoint store verify` lists what is damaged, import it from a copy"};
+  return {file.string(),
+          how +
+              "; merge the run from a copy of the store, or save the rest with `stillpoint store "
+              "salvage STORE OUT`"};
 }
 
 std::string decompressed(const std::string& packed, const fs::path& file) {

@@ -21,10 +21,10 @@ std::string remedy(int result) {
     case SQLITE_READONLY:
       return "it is read-only; give another file with --store, or make it writable";
     case SQLITE_CORRUPT:
-      return "it is damaged; check it with `stillpoint store verify`, and save what is readable with "
-             "`stillpoint store export`";
+      return "it is damaged; save what is readable with `stillpoint store salvage STORE OUT`";
     case SQLITE_NOTADB:
-      return "give the file of a store, or the name of a new one";
+      return "give the file of a store, or the name of a new one; if it was a store, save what is readable "
+             "with `stillpoint store salvage STORE OUT`";
     case SQLITE_BUSY:
       return "another process has been writing for a minute; retry later";
     default:

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
+#include "bench/store/run_transfer.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
 #include "bench/store/store_writer.h"
@@ -16,9 +14,6 @@ namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-constexpr int kExportVersion = 2;
 
 /// Runs a check of the database. @return one text per fault
 std::vector<std::string> faults_of(Statement check, const std::string& what) {
@@ -29,11 +24,34 @@ std::vector<std::string> faults_of(Statement check, const std::string& what) {
   return faults;
 }
 
+/// One text per metric without a finite value; 9e999 is the infinity of SQL.
+std::vector<std::string> infinite_metrics(const Database& database) {
+  std::vector<std::string> faults;
+  Statement rows = database.prepare(
+      "SELECT run.key, name FROM metric JOIN run ON run.id = metric.run WHERE abs(value) = 9e999");
+  while (rows.step())
+    faults.push_back("run " + rows.text(0) + ": metric \"" + rows.text(1) + "\" is infinite");
+  return faults;
+}
+
 std::set<std::string> referenced_files(const Database& database) {
   std::set<std::string> names;
   Statement rows = database.prepare("SELECT DISTINCT blob FROM attachment");
   while (rows.step()) names.insert(rows.text(0));
   return names;
+}
+
+/// One text per referenced file that cannot be read.
+std::vector<std::string> damaged_files(const Database& database, const BlobFiles& blobs) {
+  std::vector<std::string> faults;
+  for (const std::string& name : referenced_files(database)) {
+    try {
+      static_cast<void>(blobs.get(name));
+    } catch (const InputError& error) {
+      faults.emplace_back(error.what());
+    }
+  }
+  return faults;
 }
 
 RunOutcome outcome_from(const Store& store, const StoredRun& run) {
@@ -47,138 +65,26 @@ RunOutcome outcome_from(const Store& store, const StoredRun& run) {
   return outcome;
 }
 
-/// Adds one run unless the store already contains it. @return whether it was added
-bool add_run(StoreWriter& writer, const RunIdentity& identity, const RunOutcome& outcome) {
-  if (writer.acquire(identity) != RunLease::kGranted) return false;
-  writer.finish(identity, outcome);
-  return true;
-}
-
-Json identity_json(const RunIdentity& identity) {
-  return {{"system", identity.system},
-          {"variant", identity.variant},
-          {"sequence", identity.sequence},
-          {"sequence_id", identity.sequence_id},
-          {"config_hash", identity.config_hash},
-          {"build", identity.build},
-          {"mode", identity.mode},
-          {"kind", identity.kind},
-          {"cores", identity.cores},
-          {"seed", identity.seed},
-          {"repetition", identity.repetition},
-          {"axis", identity.axis},
-          {"axis_value", identity.axis_value}};
-}
-
-RunIdentity identity_of(const Json& json) {
-  return {.system = json.at("system"),
-          .variant = json.at("variant"),
-          .sequence = json.at("sequence"),
-          .sequence_id = json.at("sequence_id"),
-          .config_hash = json.at("config_hash"),
-          .build = json.at("build"),
-          .mode = json.at("mode"),
-          .kind = json.at("kind"),
-          .cores = json.at("cores"),
-          .seed = json.at("seed"),
-          .repetition = json.at("repetition"),
-          .axis = json.at("axis"),
-          .axis_value = json.at("axis_value")};
-}
-
-Json acceptance_json(const Acceptance& acceptance) {
-  return {{"commit", acceptance.commit},   {"metric", acceptance.metric},
-          {"variant", acceptance.variant}, {"sequence", acceptance.sequence},
-          {"reason", acceptance.reason},   {"accepted", acceptance.accepted}};
-}
-
-Acceptance acceptance_of(const Json& json) {
-  return {json.at("commit"),   json.at("metric"), json.at("variant"),
-          json.at("sequence"), json.at("reason"), json.at("accepted")};
-}
-
-Json run_json(const Store& store, const StoredRun& run, ExportExtent extent) {
-  Json json = {{"key", run.key},
-               {"identity", identity_json(run.identity)},
-               {"outcome", outcome_name(run.outcome)},
-               {"detail", run.detail},
-               {"started", run.started},
-               {"ended", run.ended}};
-  json["metrics"] = Json::array();
-  for (const Metric& metric : run.metrics) {
-    json["metrics"].push_back({{"name", metric.name},
-                               {"protocol", metric.protocol},
-                               {"unit", metric.unit},
-                               {"value", metric.value}});
-  }
-  json["costs"] = Json::array();
-  for (const ModuleCost& cost : run.costs) {
-    json["costs"].push_back({{"module", cost.module},
-                             {"per", cost.per},
-                             {"calls", cost.calls},
-                             {"mean_ms", cost.mean_ms},
-                             {"median_ms", cost.median_ms},
-                             {"p95_ms", cost.p95_ms},
-                             {"max_ms", cost.max_ms}});
-  }
-  const bool everything = extent == ExportExtent::kEverything;
-  json["attachments"] = Json::object();
-  for (const auto& [kind, blob] : run.blobs) {
-    if (everything) json["attachments"][kind] = store.attachment(run, kind);
-  }
-  json["manifest"] = everything ? store.manifest(run) : "";
-  return json;
-}
-
-RunOutcome outcome_of_json(const Json& json) {
-  RunOutcome outcome;
-  outcome.outcome = outcome_of(json.at("outcome").get<std::string>());
-  outcome.detail = json.at("detail");
-  for (const Json& metric : json.at("metrics")) {
-    const char* protocol = metric.contains("protocol") ? "protocol" : kOldProtocolName;
-    outcome.metrics.push_back(
-        {metric.at("name"), metric.at(protocol), metric.at("unit"), metric.at("value")});
-  }
-  for (const Json& cost : json.at("costs")) {
-    outcome.costs.push_back({cost.at("module"), cost.at("per"), cost.at("calls"), cost.at("mean_ms"),
-                             cost.at("median_ms"), cost.at("p95_ms"), cost.at("max_ms")});
-  }
-  for (const auto& [kind, content] : json.at("attachments").items())
-    outcome.attachments[current_kind(kind)] = content;
-  outcome.manifest = json.at("manifest");
-  return outcome;
-}
-
-/// Parses an exported text and calls `read` with it. @throws InputError for every fault of the text
-template <class Read>
-auto read_export(const std::string& text, const std::string& place, const Read& read) {
-  try {
-    const Json json = Json::parse(text);
-    if (json.at("stillpoint_store").get<int>() > kExportVersion)
-      throw InputError(place, "was written by a newer version; use that version");
-    return read(json);
-  } catch (const Json::exception& error) {
-    throw InputError(place, std::string("is not an exported store: ") + error.what());
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> verify_store(const fs::path& file) {
   const Database database(file, DatabaseAccess::kRead);
   require_readable_schema(database);
-  std::vector<std::string> faults = faults_of(database.prepare("PRAGMA integrity_check"), "database");
-  for (std::string& fault :
-       faults_of(database.prepare("PRAGMA foreign_key_check"), "row with a missing reference"))
-    faults.push_back(std::move(fault));
-  const BlobFiles blobs(files_folder(file) / "blobs");
-  for (const std::string& name : referenced_files(database)) {
+  std::vector<std::string> faults;
+  // A damaged page can end each check; the others are still executed.
+  const auto add = [&](const auto& check) {
     try {
-      static_cast<void>(blobs.get(name));
+      for (std::string& fault : check()) faults.push_back(std::move(fault));
     } catch (const InputError& error) {
       faults.emplace_back(error.what());
     }
-  }
+  };
+  add([&] { return faults_of(database.prepare("PRAGMA integrity_check"), "database"); });
+  add([&] {
+    return faults_of(database.prepare("PRAGMA foreign_key_check"), "row with a missing reference");
+  });
+  add([&] { return infinite_metrics(database); });
+  add([&] { return damaged_files(database, BlobFiles(files_folder(file) / "blobs")); });
   return faults;
 }
 
@@ -216,64 +122,6 @@ MergeReport merge_stores(const fs::path& from, const fs::path& into) {
   for (const StoredPlan& plan : source.plans()) writer.record_plan(plan);
   write_acceptances(into, source.acceptances());
   return report;
-}
-
-std::string export_store(const fs::path& file, ExportExtent extent) {
-  const Store store(file);
-  Json json;
-  json["stillpoint_store"] = kExportVersion;
-  json["plans"] = Json::array();
-  for (const StoredPlan& plan : store.plans()) {
-    json["plans"].push_back(
-        {{"name", plan.name}, {"title", plan.title}, {"text", plan.text}, {"run_keys", plan.run_keys}});
-  }
-  json["runs"] = Json::array();
-  for (const StoredRun& run : store.runs()) json["runs"].push_back(run_json(store, run, extent));
-  json["accepted"] = Json::array();
-  for (const Acceptance& acceptance : store.acceptances())
-    json["accepted"].push_back(acceptance_json(acceptance));
-  // Logs of programs may not be UTF-8; every other text is.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-MergeReport import_store(const std::string& text, const std::string& place, const fs::path& into) {
-  return read_export(text, place, [&](const Json& json) {
-    StoreWriter writer(into);
-    MergeReport report;
-    for (const Json& run : json.at("runs")) {
-      const bool is_added = add_run(writer, identity_of(run.at("identity")), outcome_of_json(run));
-      ++(is_added ? report.added : report.present);
-    }
-    for (const Json& plan : json.at("plans")) {
-      writer.record_plan({.name = plan.at("name"),
-                          .title = plan.at("title"),
-                          .text = plan.at("text"),
-                          .run_keys = plan.at("run_keys").get<std::vector<std::string>>()});
-    }
-    std::vector<Acceptance> acceptances;
-    for (const Json& accepted : json.value("accepted", Json::array()))
-      acceptances.push_back(acceptance_of(accepted));
-    write_acceptances(into, acceptances);
-    return report;
-  });
-}
-
-std::vector<StoredRun> exported_runs(const std::string& text, const std::string& place) {
-  return read_export(text, place, [](const Json& json) {
-    std::vector<StoredRun> runs;
-    for (const Json& run : json.at("runs")) {
-      const RunOutcome outcome = outcome_of_json(run);
-      runs.push_back({.key = run.at("key"),
-                      .identity = identity_of(run.at("identity")),
-                      .outcome = outcome.outcome,
-                      .detail = outcome.detail,
-                      .started = run.at("started"),
-                      .ended = run.at("ended"),
-                      .metrics = outcome.metrics,
-                      .costs = outcome.costs});
-    }
-    return runs;
-  });
 }
 
 }  // namespace stillpoint::bench

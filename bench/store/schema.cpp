@@ -11,8 +11,6 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::int64_t kApplicationId = 0x53746c70;  // "Stlp", identifies a store, also to `file`
-
 /// Migration step i leads from version i to i + 1. Published steps are never changed, so the older ones use
 /// the names of their time.
 constexpr std::array<const char*, 3> kSteps = {R"sql(

@@ -2,11 +2,15 @@
 /// The tables of a store, and the migration of older stores.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "bench/store/database.h"
 
 namespace stillpoint::bench {
+
+/// Application id in the header of each store, "Stlp"; identifies it also to the program `file`.
+inline constexpr std::int64_t kApplicationId = 0x53746c70;
 
 /// Newest schema version that this program supports.
 [[nodiscard]] int schema_version();

@@ -7,6 +7,7 @@
 #include "bench/model/counter_text.h"
 #include "bench/model/csv_rows.h"
 #include "bench/model/timing_text.h"
+#include "bench/store/run_rows.h"
 #include "bench/store/schema.h"
 #include "core/base/error.h"
 #include "eval/io/trajectory_file.h"
@@ -16,36 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRuns =
-    "SELECT id, key, system, variant, sequence, sequence_id, config_hash, build, mode, kind, cores, seed, "
-    "repetition, axis, axis_value, outcome, detail, started, ended, manifest FROM run "
+constexpr const char* kSelected =
     "WHERE state = 'ended' AND ?1 IN ('', system) AND ?2 IN ('', variant) AND ?3 IN ('', sequence) "
     "AND build >= ?4 AND substr(build, 1, length(?4)) = ?4 AND ?5 IN ('', kind) ORDER BY id";
-
-StoredRun run_of(const Statement& row) {
-  StoredRun run;
-  run.id = row.integer(0);
-  run.key = row.text(1);
-  run.identity = {.system = row.text(2),
-                  .variant = row.text(3),
-                  .sequence = row.text(4),
-                  .sequence_id = row.text(5),
-                  .config_hash = row.text(6),
-                  .build = row.text(7),
-                  .mode = row.text(8),
-                  .kind = row.text(9),
-                  .cores = row.text(10),
-                  .seed = row.integer(11),
-                  .repetition = row.integer(12),
-                  .axis = row.text(13),
-                  .axis_value = row.real(14)};
-  run.outcome = outcome_of(row.text(15));
-  run.detail = row.text(16);
-  run.started = row.text(17);
-  run.ended = row.text(18);
-  run.manifest_hash = row.text(19);
-  return run;
-}
 
 /// The runs with their rows of the tables that reference them; reads each table in one pass.
 std::vector<StoredRun> with_details(const Database& database, std::vector<StoredRun> runs) {
@@ -59,15 +33,12 @@ std::vector<StoredRun> with_details(const Database& database, std::vector<Stored
   Statement metrics = database.prepare("SELECT run, name, " + protocol +
                                        ", unit, value FROM metric ORDER BY run, name, " + protocol);
   while (metrics.step()) {
-    if (StoredRun* run = run_at(metrics))
-      run->metrics.push_back({metrics.text(1), metrics.text(2), metrics.text(3), metrics.real(4)});
+    if (StoredRun* run = run_at(metrics)) run->metrics.push_back(metric_of(metrics));
   }
-  Statement costs = database.prepare(
-      "SELECT run, module, per, calls, mean_ms, median_ms, p95_ms, max_ms FROM timing ORDER BY run, module");
+  Statement costs =
+      database.prepare(std::string("SELECT ") + kCostColumns + " FROM timing ORDER BY run, module");
   while (costs.step()) {
-    if (StoredRun* run = run_at(costs))
-      run->costs.push_back({costs.text(1), costs.text(2), costs.integer(3), costs.real(4), costs.real(5),
-                            costs.real(6), costs.real(7)});
+    if (StoredRun* run = run_at(costs)) run->costs.push_back(cost_of(costs));
   }
   Statement blobs = database.prepare("SELECT run, kind, blob FROM attachment ORDER BY run, kind");
   while (blobs.step()) {
@@ -97,7 +68,7 @@ Store::Store(const fs::path& file)
 std::vector<StoredRun> Store::runs(const RunFilter& filter) const {
   database_.execute("BEGIN");  // one snapshot of all tables
   std::vector<StoredRun> runs;
-  Statement rows = database_.prepare(kRuns);
+  Statement rows = database_.prepare(std::string("SELECT ") + kRunColumns + " FROM run " + kSelected);
   rows.bind(filter.system).bind(filter.variant).bind(filter.sequence).bind(filter.build).bind(filter.kind);
   while (rows.step()) runs.push_back(run_of(rows));
   runs = with_details(database_, std::move(runs));

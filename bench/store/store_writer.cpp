@@ -28,8 +28,8 @@ Database open_for_writing(const fs::path& file) {
     std::string fault = check.text(0);
     std::ranges::replace(fault, '\n', ' ');
     throw InputError(file.string(), "is damaged (" + fault +
-                                        "); save what is readable with `stillpoint store export`, and "
-                                        "continue with a new store");
+                                        "); save what is readable with `stillpoint store salvage STORE OUT`, "
+                                        "and continue with OUT");
   }
   return database;
 }

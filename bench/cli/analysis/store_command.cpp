@@ -1,27 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <memory>
+#include <ranges>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/cli/analysis/store_subcommand.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/model/metrics.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/output_guard.h"
 #include "bench/store/maintenance.h"
+#include "bench/store/salvage.h"
 #include "bench/store/store.h"
+#include "bench/store/store_export.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
 namespace {
 
+constexpr std::size_t kListedCandidates = 5;
+
 struct StoreArguments {
   std::string store = "build/bench/store.sqlite";
   std::string run;
   std::string file;
   bool numbers = false;
+  bool force = false;
 };
 
 int list(const StoreArguments& arguments) {
@@ -44,9 +52,18 @@ int list(const StoreArguments& arguments) {
 }
 
 /// @param key complete key or a prefix of it
+/// @throws InputError if no run or several runs have the prefix
 StoredRun find_run(const Store& store, const std::string& key) {
-  for (const StoredRun& run : store.runs()) {
-    if (run.key.starts_with(key)) return run;
+  std::vector<StoredRun> found = store.runs();
+  std::erase_if(found, [&](const StoredRun& run) { return !run.key.starts_with(key); });
+  if (found.size() == 1) return found.front();
+  if (found.size() > 1) {
+    std::vector<std::string> candidates;
+    for (const StoredRun& run : found | std::views::take(kListedCandidates))
+      candidates.push_back(fmt::format("{} ({} {})", run.key, run.identity.sequence, run.identity.variant));
+    throw InputError("run \"" + key + "\"", fmt::format("is the beginning of {} keys; use a longer one: {}{}",
+                                                        found.size(), fmt::join(candidates, ", "),
+                                                        found.size() > kListedCandidates ? ", ..." : ""));
   }
   throw InputError("run \"" + key + "\"",
                    "not found in " + store.file().string() + "; see `stillpoint store list`");
@@ -86,6 +103,9 @@ int extract(const StoreArguments& arguments) {
   const StoredRun run = find_run(store, arguments.run);
   std::vector<OutputFile> files = {{"manifest.json", store.manifest(run)}};
   for (const auto& [kind, blob] : run.blobs) files.push_back({file_name(kind), store.attachment(run, kind)});
+  OutputLayout layout{.names = {}, .marks = {{"manifest.json"}}};
+  for (const OutputFile& file : files) layout.names.push_back(file.name);
+  require_safe_folder(arguments.file, layout, {});
   write_files(arguments.file, files);
   for (const OutputFile& file : files)
     std::cout << (std::filesystem::path(arguments.file) / file.name).string() << '\n';
@@ -116,15 +136,26 @@ int merge(const StoreArguments& arguments) {
 }
 
 int export_to(const StoreArguments& arguments) {
-  const std::filesystem::path file = std::filesystem::absolute(arguments.file);
+  const OutputRules rules{
+      .inputs = {arguments.store}, .force = arguments.force, .beginning = exported_beginning()};
+  require_safe_output(arguments.file, rules);
   const ExportExtent extent = arguments.numbers ? ExportExtent::kNumbers : ExportExtent::kEverything;
-  write_files(file.parent_path(), {{file.filename().string(), export_store(arguments.store, extent)}});
+  write_output(arguments.file, export_store(arguments.store, extent), rules);
   return kExitOk;
 }
 
 int import_from(const StoreArguments& arguments) {
   print_merge(import_store(eval::read_text_file(arguments.file), arguments.file, arguments.store));
   return kExitOk;
+}
+
+int salvage(const StoreArguments& arguments) {
+  const SalvageReport report = salvage_store(arguments.store, arguments.file);
+  for (const auto& [table, rows] : report.saved) std::cout << fmt::format("saved {:<12} {}\n", table, rows);
+  for (const std::string& loss : report.losses) std::cout << "lost: " << loss << '\n';
+  std::cout << (report.losses.empty() ? "nothing is lost\n"
+                                      : fmt::format("{} losses\n", report.losses.size()));
+  return report.losses.empty() ? kExitOk : kExitFindings;
 }
 
 /// Subcommands that inspect single runs.
@@ -166,13 +197,21 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
       store_subcommand({.name = "export",
                         .summary = "Write the store as one JSON file",
                         .example = "store export runs.json",
-                        .options = {{"FILE", "Output file", &arguments->file}, without_blobs}},
+                        .options = {{"FILE", "Output file", &arguments->file},
+                                    without_blobs,
+                                    {"--force", "Replace an existing export", &arguments->force}}},
                        arguments, export_to),
       store_subcommand({.name = "import",
                         .summary = "Add the runs of an exported JSON file",
                         .example = "store import runs.json",
                         .options = {{"FILE", "Input file", &arguments->file}}},
-                       arguments, import_from)};
+                       arguments, import_from),
+      {.name = "salvage",
+       .summary = "Copy what is readable of a damaged store into a new one; exit code 1 if something is lost",
+       .example = "store salvage damaged.sqlite new.sqlite",
+       .options = {{"STORE", "The damaged store; it is not changed", &arguments->store},
+                   {"OUT", "The new store; must not exist", &arguments->file}},
+       .action = [arguments] { return salvage(*arguments); }}};
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
 
+#include "bench/store/store_export.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
@@ -69,6 +71,29 @@ TEST(StoreMaintenance, MergeAddsMissingRuns) {
   ASSERT_EQ(merged.runs().size(), 3u);
   EXPECT_EQ(merged.attachment(merged.runs({.variant = "a"}).front(), "log"), "log of a");
   expect_input_error([&] { merge_stores(into, into); }, {"is the same store"});
+}
+
+TEST(StoreMaintenance, AnInfiniteMetricIsAnErrorAndSurvivesExportAndImport) {
+  const TemporaryFolder folder;
+  const fs::path from = folder.path() / "from.sqlite";
+  {
+    StoreWriter writer(from);
+    static_cast<void>(writer.acquire(identity_of("a")));
+    const double infinity = std::numeric_limits<double>::infinity();
+    writer.finish(identity_of("a"), {.outcome = Outcome::kOk,
+                                     .metrics = {{"up", "r", "m", infinity}, {"down", "r", "m", -infinity}},
+                                     .costs = {},
+                                     .attachments = {},
+                                     .manifest = "{}"});
+  }
+  const std::vector<std::string> faults = verify_store(from);
+  ASSERT_EQ(faults.size(), 2u);
+  EXPECT_NE(faults.front().find("metric \"down\" is infinite"), std::string::npos) << faults.front();
+  const fs::path into = folder.path() / "into.sqlite";
+  EXPECT_EQ(import_store(export_store(from), "runs.json", into).added, 1u);
+  const StoredRun run = Store(into).runs().front();
+  EXPECT_EQ(metric_value(run, "up"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(metric_value(run, "down"), -std::numeric_limits<double>::infinity());
 }
 
 TEST(StoreMaintenance, ExportAndImportPreserveEverything) {

@@ -9,6 +9,7 @@
 
 #include "bench/model/content_hash.h"
 #include "bench/store/maintenance.h"
+#include "bench/store/store_export.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/temporary_folder.h"
 

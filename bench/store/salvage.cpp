@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/salvage.h"
+
+#include <optional>
+#include <set>
+
+#include <unistd.h>
+
+#include "bench/store/acceptance.h"
+#include "bench/store/damaged_database.h"
+#include "bench/store/run_rows.h"
+#include "bench/store/run_transfer.h"
+#include "bench/store/schema.h"
+#include "bench/store/store.h"
+#include "bench/store/store_writer.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Reads a damaged store, counts the rows and notes what is lost.
+class Salvage {
+ public:
+  Salvage(const DamagedDatabase& source, const fs::path& store)
+      : source_(source),
+        blobs_(files_folder(store) / "blobs"),
+        protocol_(protocol_column(source.database())) {
+    if (source.has_replaced_header())
+      report_.losses.emplace_back("the list of tables is damaged: assumed the tables of a new store");
+  }
+
+  [[nodiscard]] std::set<std::int64_t> run_ids();
+  void copy_run(std::int64_t id, StoreWriter& target);
+  [[nodiscard]] std::vector<StoredPlan> plans();
+  [[nodiscard]] std::vector<Acceptance> acceptances();
+  [[nodiscard]] const SalvageReport& report() const { return report_; }
+
+ private:
+  [[nodiscard]] std::optional<StoredRun> run_at(std::int64_t id);
+  [[nodiscard]] RunOutcome outcome_of_run(const StoredRun& run);
+  [[nodiscard]] std::vector<Metric> metrics_of(const StoredRun& run);
+  [[nodiscard]] std::vector<ModuleCost> costs_of(const StoredRun& run);
+  [[nodiscard]] std::map<std::string, std::string> blobs_of(const StoredRun& run);
+  [[nodiscard]] std::string manifest_of(const StoredRun& run);
+  [[nodiscard]] std::string name_of(std::int64_t id) const;
+
+  const DamagedDatabase& source_;
+  BlobFiles blobs_;
+  std::string protocol_;
+  std::map<std::int64_t, std::string> keys_;  ///< from the index of table run
+  SalvageReport report_;
+};
+
+std::string of_run(std::int64_t id) { return " WHERE run = " + std::to_string(id); }
+
+/// The identifiers in all tables and indices that mention runs, so that lost rows are noticed.
+std::set<std::int64_t> Salvage::run_ids() {
+  std::set<std::int64_t> ids;
+  const auto add = [&](const Statement& row) { ids.insert(row.integer(0)); };
+  source_.for_each_row("SELECT id FROM run NOT INDEXED", {"id"}, add);
+  source_.for_each_row("SELECT id FROM run INDEXED BY run_by_subject",
+                       {"sequence", "variant", "seed", "repetition"}, add);
+  source_.for_each_row("SELECT id, key FROM run INDEXED BY sqlite_autoindex_run_1", {"key"},
+                       [&](const Statement& row) {
+                         add(row);
+                         keys_[row.integer(0)] = row.text(1);
+                       });
+  source_.for_each_row("SELECT run FROM metric", {"run", "name", protocol_}, add);
+  source_.for_each_row("SELECT run FROM timing", {"run", "module"}, add);
+  source_.for_each_row("SELECT run FROM attachment", {"run", "kind"}, add);
+  return ids;
+}
+
+std::string Salvage::name_of(std::int64_t id) const {
+  const auto key = keys_.find(id);
+  return "run " + (key == keys_.end() ? "number " + std::to_string(id) : key->second);
+}
+
+/// Nothing for a run that is not completed, or whose row is lost.
+std::optional<StoredRun> Salvage::run_at(std::int64_t id) {
+  try {
+    Statement row =
+        source_.database().prepare(std::string("SELECT ") + kRunColumns +
+                                   ", state FROM run NOT INDEXED WHERE id = " + std::to_string(id));
+    if (row.step()) return row.text(20) == "ended" ? std::optional(run_of(row)) : std::nullopt;
+  } catch (const InputError&) {
+    // a damaged page, or a row with impossible values
+  }
+  report_.losses.push_back(name_of(id) + " is lost");
+  return std::nullopt;
+}
+
+std::vector<Metric> Salvage::metrics_of(const StoredRun& run) {
+  std::map<std::pair<std::string, std::string>, Metric> metrics;
+  const bool complete =
+      source_.for_each_row("SELECT run, name, " + protocol_ + ", unit, value FROM metric" + of_run(run.id),
+                           {"name", protocol_}, [&](const Statement& row) {
+                             metrics[{row.text(1), row.text(2)}] = metric_of(row);
+                           });
+  if (!complete) report_.losses.push_back(name_of(run.id) + ": metrics are lost");
+  report_.saved["metric"] += metrics.size();
+  std::vector<Metric> list;
+  for (const auto& [name, metric] : metrics) list.push_back(metric);
+  return list;
+}
+
+std::vector<ModuleCost> Salvage::costs_of(const StoredRun& run) {
+  std::map<std::string, ModuleCost> costs;
+  const bool complete =
+      source_.for_each_row(std::string("SELECT ") + kCostColumns + " FROM timing" + of_run(run.id),
+                           {"module"}, [&](const Statement& row) { costs[row.text(1)] = cost_of(row); });
+  if (!complete) report_.losses.push_back(name_of(run.id) + ": times of modules are lost");
+  report_.saved["timing"] += costs.size();
+  std::vector<ModuleCost> list;
+  for (const auto& [module, cost] : costs) list.push_back(cost);
+  return list;
+}
+
+std::map<std::string, std::string> Salvage::blobs_of(const StoredRun& run) {
+  std::map<std::string, std::string> names;
+  const bool complete =
+      source_.for_each_row("SELECT kind, blob FROM attachment" + of_run(run.id), {"kind"},
+                           [&](const Statement& row) { names[current_kind(row.text(0))] = row.text(1); });
+  if (!complete) report_.losses.push_back(name_of(run.id) + ": names of files are lost");
+  std::map<std::string, std::string> contents;
+  for (const auto& [kind, name] : names) {
+    try {
+      contents[kind] = blobs_.get(name);
+      ++report_.saved["file"];
+    } catch (const InputError&) {
+      report_.losses.push_back(name_of(run.id) + ": file " + kind + " (" + name + ") is missing or damaged");
+    }
+  }
+  return contents;
+}
+
+std::string Salvage::manifest_of(const StoredRun& run) {
+  if (run.manifest_hash.empty()) return "";
+  try {
+    Statement row = source_.database().prepare("SELECT json FROM manifest WHERE hash = ?");
+    row.bind(run.manifest_hash);
+    if (row.step() && blob_name(row.text(0)) == run.manifest_hash) return row.text(0);
+  } catch (const InputError&) {
+    // a damaged page
+  }
+  report_.losses.push_back(name_of(run.id) + ": manifest is lost");
+  return "";
+}
+
+RunOutcome Salvage::outcome_of_run(const StoredRun& run) {
+  RunOutcome outcome{.outcome = run.outcome, .detail = run.detail};
+  const std::size_t losses = report_.losses.size();
+  outcome.metrics = metrics_of(run);
+  outcome.costs = costs_of(run);
+  outcome.attachments = blobs_of(run);
+  outcome.manifest = manifest_of(run);
+  if (report_.losses.size() > losses)
+    outcome.detail += (outcome.detail.empty() ? "" : "; ") + std::string("salvaged, not complete");
+  return outcome;
+}
+
+void Salvage::copy_run(std::int64_t id, StoreWriter& target) {
+  const std::optional<StoredRun> run = run_at(id);
+  if (!run) return;
+  keys_[id] = run->key;
+  if (add_run(target, run->identity, outcome_of_run(*run))) ++report_.saved["run"];
+}
+
+std::vector<StoredPlan> Salvage::plans() {
+  std::map<std::string, StoredPlan> plans;
+  const bool all_plans =
+      source_.for_each_row("SELECT name, title, text FROM plan", {"name"}, [&](const Statement& row) {
+        plans[row.text(0)] = {row.text(0), row.text(1), row.text(2), {}};
+      });
+  std::map<std::string, std::map<std::int64_t, std::string>> entries;
+  const bool all_entries =
+      source_.for_each_row("SELECT plan, position, run_key FROM plan_entry", {"plan", "position"},
+                           [&](const Statement& row) { entries[row.text(0)][row.integer(1)] = row.text(2); });
+  if (!all_plans) report_.losses.emplace_back("plans are lost");
+  if (!all_entries) report_.losses.emplace_back("keys of the runs of plans are lost");
+  std::vector<StoredPlan> list;
+  for (auto& [name, plan] : plans) {
+    for (const auto& [position, key] : entries[name]) plan.run_keys.push_back(key);
+    list.push_back(plan);
+  }
+  report_.saved["plan"] = list.size();
+  return list;
+}
+
+std::vector<Acceptance> Salvage::acceptances() {
+  std::vector<Acceptance> list;
+  const bool has_table =
+      source_.database().integer("SELECT count(*) FROM sqlite_master WHERE name = 'acceptance'") > 0;
+  // The type is checked as the root page is only assumed if the list of tables is lost.
+  const bool complete =
+      !has_table ||
+      source_.for_each_row(
+          "SELECT build, metric, variant, sequence, reason, accepted FROM acceptance WHERE typeof(build) = "
+          "'text'",
+          {"build", "metric", "variant", "sequence"}, [&](const Statement& row) {
+            list.push_back({row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5)});
+          });
+  if (!complete) report_.losses.emplace_back("acceptances are lost");
+  report_.saved["acceptance"] = list.size();
+  return list;
+}
+
+}  // namespace
+
+SalvageReport salvage_store(const fs::path& from, const fs::path& into) {
+  if (fs::exists(into)) throw InputError(into.string(), "already exists; choose a new name");
+  const DamagedDatabase source(from, into.string() + ".salvage-" + std::to_string(getpid()));
+  Salvage salvage(source, from);
+  const std::set<std::int64_t> ids = salvage.run_ids();
+  const std::vector<StoredPlan> plans = salvage.plans();
+  if (ids.empty() && plans.empty())
+    throw InputError(from.string(),
+                     "contains nothing that can be read; it is no store, or completely damaged");
+  {
+    StoreWriter target(into);
+    for (const std::int64_t id : ids) salvage.copy_run(id, target);
+    for (const StoredPlan& plan : plans) target.record_plan(plan);
+  }
+  write_acceptances(into, salvage.acceptances());
+  return salvage.report();
+}
+
+}  // namespace stillpoint::bench

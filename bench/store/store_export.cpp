@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/store/store_export.h"
+
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/model/json_problem.h"
+#include "bench/store/schema.h"
+#include "bench/store/store.h"
+#include "bench/store/store_writer.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kExportVersion = 2;
+constexpr const char* kVersionKey = "stillpoint_store";
+
+Json identity_json(const RunIdentity& identity) {
+  return {{"system", identity.system},
+          {"variant", identity.variant},
+          {"sequence", identity.sequence},
+          {"sequence_id", identity.sequence_id},
+          {"config_hash", identity.config_hash},
+          {"build", identity.build},
+          {"mode", identity.mode},
+          {"kind", identity.kind},
+          {"cores", identity.cores},
+          {"seed", identity.seed},
+          {"repetition", identity.repetition},
+          {"axis", identity.axis},
+          {"axis_value", identity.axis_value}};
+}
+
+RunIdentity identity_of(const Json& json) {
+  return {.system = json.at("system"),
+          .variant = json.at("variant"),
+          .sequence = json.at("sequence"),
+          .sequence_id = json.at("sequence_id"),
+          .config_hash = json.at("config_hash"),
+          .build = json.at("build"),
+          .mode = json.at("mode"),
+          .kind = json.at("kind"),
+          .cores = json.at("cores"),
+          .seed = json.at("seed"),
+          .repetition = json.at("repetition"),
+          .axis = json.at("axis"),
+          .axis_value = json.at("axis_value")};
+}
+
+Json acceptance_json(const Acceptance& acceptance) {
+  return {{"commit", acceptance.commit},   {"metric", acceptance.metric},
+          {"variant", acceptance.variant}, {"sequence", acceptance.sequence},
+          {"reason", acceptance.reason},   {"accepted", acceptance.accepted}};
+}
+
+Acceptance acceptance_of(const Json& json) {
+  return {json.at("commit"),   json.at("metric"), json.at("variant"),
+          json.at("sequence"), json.at("reason"), json.at("accepted")};
+}
+
+/// JSON has no infinity: the value is null, and the mark "not_finite" names it.
+Json metric_json(const Metric& metric) {
+  Json json = {
+      {"name", metric.name}, {"protocol", metric.protocol}, {"unit", metric.unit}, {"value", metric.value}};
+  if (!std::isfinite(metric.value)) {
+    json["value"] = nullptr;
+    json["not_finite"] = metric.value > 0.0 ? "inf" : "-inf";
+  }
+  return json;
+}
+
+double metric_value_of(const Json& metric) {
+  const Json& value = metric.at("value");
+  // Older versions wrote the null without the mark.
+  if (value.is_null() && metric.value("not_finite", "inf") == "-inf")
+    return -std::numeric_limits<double>::infinity();
+  return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
+}
+
+Json run_json(const Store& store, const StoredRun& run, ExportExtent extent) {
+  Json json = {{"key", run.key},
+               {"identity", identity_json(run.identity)},
+               {"outcome", outcome_name(run.outcome)},
+               {"detail", run.detail},
+               {"started", run.started},
+               {"ended", run.ended}};
+  json["metrics"] = Json::array();
+  for (const Metric& metric : run.metrics) json["metrics"].push_back(metric_json(metric));
+  json["costs"] = Json::array();
+  for (const ModuleCost& cost : run.costs) {
+    json["costs"].push_back({{"module", cost.module},
+                             {"per", cost.per},
+                             {"calls", cost.calls},
+                             {"mean_ms", cost.mean_ms},
+                             {"median_ms", cost.median_ms},
+                             {"p95_ms", cost.p95_ms},
+                             {"max_ms", cost.max_ms}});
+  }
+  const bool everything = extent == ExportExtent::kEverything;
+  json["attachments"] = Json::object();
+  for (const auto& [kind, blob] : run.blobs) {
+    if (everything) json["attachments"][kind] = store.attachment(run, kind);
+  }
+  json["manifest"] = everything ? store.manifest(run) : "";
+  return json;
+}
+
+RunOutcome outcome_of_json(const Json& json) {
+  RunOutcome outcome;
+  outcome.outcome = outcome_of(json.at("outcome").get<std::string>());
+  outcome.detail = json.at("detail");
+  for (const Json& metric : json.at("metrics")) {
+    const char* protocol = metric.contains("protocol") ? "protocol" : kOldProtocolName;
+    outcome.metrics.push_back(
+        {metric.at("name"), metric.at(protocol), metric.at("unit"), metric_value_of(metric)});
+  }
+  for (const Json& cost : json.at("costs")) {
+    outcome.costs.push_back({cost.at("module"), cost.at("per"), cost.at("calls"), cost.at("mean_ms"),
+                             cost.at("median_ms"), cost.at("p95_ms"), cost.at("max_ms")});
+  }
+  for (const auto& [kind, content] : json.at("attachments").items())
+    outcome.attachments[current_kind(kind)] = content;
+  outcome.manifest = json.at("manifest");
+  return outcome;
+}
+
+/// Parses an exported text and calls `read` with it. @throws InputError for every fault of the text
+template <class Read>
+auto read_export(const std::string& text, const std::string& place, const Read& read) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at(kVersionKey).get<int>() > kExportVersion)
+      throw InputError(place, "was written by a newer version; use that version");
+    return read(json);
+  } catch (const Json::exception& error) {
+    throw InputError(place, "is not an exported store: " + json_problem(error));
+  }
+}
+
+}  // namespace
+
+std::string exported_beginning() { return std::string("{\n \"") + kVersionKey + "\""; }
+
+std::string export_store(const fs::path& file, ExportExtent extent) {
+  const Store store(file);
+  Json json;
+  json[kVersionKey] = kExportVersion;
+  json["plans"] = Json::array();
+  for (const StoredPlan& plan : store.plans()) {
+    json["plans"].push_back(
+        {{"name", plan.name}, {"title", plan.title}, {"text", plan.text}, {"run_keys", plan.run_keys}});
+  }
+  json["runs"] = Json::array();
+  for (const StoredRun& run : store.runs()) json["runs"].push_back(run_json(store, run, extent));
+  json["accepted"] = Json::array();
+  for (const Acceptance& acceptance : store.acceptances())
+    json["accepted"].push_back(acceptance_json(acceptance));
+  // Logs of programs may not be UTF-8; every other text is.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+MergeReport import_store(const std::string& text, const std::string& place, const fs::path& into) {
+  return read_export(text, place, [&](const Json& json) {
+    StoreWriter writer(into);
+    MergeReport report;
+    for (const Json& run : json.at("runs")) {
+      const bool is_added = add_run(writer, identity_of(run.at("identity")), outcome_of_json(run));
+      ++(is_added ? report.added : report.present);
+    }
+    for (const Json& plan : json.at("plans")) {
+      writer.record_plan({.name = plan.at("name"),
+                          .title = plan.at("title"),
+                          .text = plan.at("text"),
+                          .run_keys = plan.at("run_keys").get<std::vector<std::string>>()});
+    }
+    std::vector<Acceptance> acceptances;
+    for (const Json& accepted : json.value("accepted", Json::array()))
+      acceptances.push_back(acceptance_of(accepted));
+    write_acceptances(into, acceptances);
+    return report;
+  });
+}
+
+std::vector<StoredRun> exported_runs(const std::string& text, const std::string& place) {
+  return read_export(text, place, [](const Json& json) {
+    std::vector<StoredRun> runs;
+    for (const Json& run : json.at("runs")) {
+      const RunOutcome outcome = outcome_of_json(run);
+      runs.push_back({.key = run.at("key"),
+                      .identity = identity_of(run.at("identity")),
+                      .outcome = outcome.outcome,
+                      .detail = outcome.detail,
+                      .started = run.at("started"),
+                      .ended = run.at("ended"),
+                      .metrics = outcome.metrics,
+                      .costs = outcome.costs});
+    }
+    return runs;
+  });
+}
+
+}  // namespace stillpoint::bench
