@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 InputError cannot_make(const fs::path& folder, const std::error_code& error) {
-  return {folder.string(), "cannot be created: " + error.message() + "; choose another folder with --out"};
+  return {folder.string(), "cannot be created: " + error.message() + "; choose another output folder"};
 }
 
 void make_folder(const fs::path& folder) {
@@ -45,7 +45,7 @@ class TemporaryFiles {
     if (stream) return;
     const std::string cause = errno == 0 ? "write error" : std::strerror(errno);
     throw InputError((folder_ / file.name).string(),
-                     "cannot be written: " + cause + "; free space or choose another folder with --out");
+                     "cannot be written: " + cause + "; free space or choose another output folder");
   }
 
   void rename_all() {

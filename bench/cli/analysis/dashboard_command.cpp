@@ -8,6 +8,7 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/output_guard.h"
 #include "bench/store/store.h"
 #include "core/base/error.h"
 #include "reports/dashboard/dashboard.h"
@@ -27,6 +28,10 @@ struct DashboardArguments {
 int dashboard(const DashboardArguments& arguments) {
   if (arguments.out.empty()) throw InputError("--out", "is required: the output folder of index.html");
   const fs::path out = arguments.out;
+  require_safe_folder(out,
+                      {.names = {"index.html", "regressions.md", "regressions.json", "commits"},
+                       .marks = {{"index.html", "regressions.md"}}},
+                      {arguments.store});
   require_writable(out);
   const std::vector<OutputFile> files = report::dashboard_files(Store(arguments.store));
   std::map<fs::path, std::vector<OutputFile>> by_folder;

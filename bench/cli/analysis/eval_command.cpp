@@ -11,13 +11,14 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/enum_option.h"
+#include "bench/record/output_guard.h"
 #include "bench/record/result_values.h"
 #include "core/base/error.h"
 #include "eval/compare/conventions.h"
 #include "eval/compare/time_offset.h"
 #include "eval/io/any_trajectory.h"
-#include "eval/io/text_reader.h"
-#include "reports/drawing/drawing.h"
+#include "eval/trajectory/overlap.h"
+#include "reports/drawing/drawing_file.h"
 #include "reports/drawing/trajectory_plot.h"
 #include "reports/text/evaluation_json.h"
 #include "reports/text/evaluation_table.h"
@@ -26,6 +27,8 @@ namespace stillpoint::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr double kPlotPixelsPerUnit = 1.5;  // of PNG files
 
 struct EvalArguments {
   std::string ground_truth;
@@ -47,14 +50,14 @@ struct EvalArguments {
   bool markdown = false;
   std::string plot;
   std::string per_pose;
+  bool force = false;
 };
 
 eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
-  if (!(arguments.rpe_delta > 0.0)) throw InputError("--rpe-delta", "must be above 0");
   eval::ProtocolOptions options;
   if (!arguments.alignment.empty())
     options.alignment = enum_of<eval::Alignment>("--align", arguments.alignment);
-  options.align_first_n = static_cast<std::size_t>(std::max(arguments.align_first, 0));
+  options.align_first_n = static_cast<std::size_t>(arguments.align_first);
   if (arguments.max_difference_s > 0.0) options.max_difference_s = arguments.max_difference_s;
   options.rpe_delta = arguments.rpe_delta;
   options.rpe_unit = enum_of<eval::RpeUnit>("--rpe-unit", arguments.rpe_unit);
@@ -62,14 +65,24 @@ eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   return options;
 }
 
-Trajectory load(const EvalArguments& arguments, const std::string& path) {
+/// Reads a trajectory; its skipped and sorted rows are logged.
+eval::LoadedTrajectory load(const EvalArguments& arguments, const std::string& path) {
   eval::TrajectorySource source{.path = path, .times = arguments.times, .sequence = arguments.sequence};
   if (!arguments.format.empty())
     source.format = enum_of<eval::TrajectoryFormat>("--format", arguments.format);
   eval::LoadedTrajectory loaded = eval::read_trajectory(source);
-  if (loaded.skipped_rows > 0)
-    spdlog::warn("{}: skipped {} rows that are not a pose", path, loaded.skipped_rows);
-  return std::move(loaded.trajectory);
+  for (const std::string& repair : eval::repair_texts(loaded.repairs)) spdlog::warn("{}: {}", path, repair);
+  return loaded;
+}
+
+/// @throws InputError if no protocol found two poses to compare
+void require_matches(const report::EvaluatedRun& run) {
+  for (const eval::Evaluation& evaluation : run.evaluations) {
+    if (evaluation.pairs > 0) return;
+  }
+  throw InputError(run.name, "fewer than two poses have a ground-truth pose close enough in time (" +
+                                 run.evaluations.front().protocol +
+                                 "); correct its stamps with --offset, or use a larger --max-difference");
 }
 
 /// The file name, or the complete path if several files have the same name.
@@ -97,12 +110,17 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, c
   const eval::ProtocolOptions options = protocol_options(arguments);
   std::vector<report::EvaluatedRun> runs;
   for (const std::string& path : arguments.estimates) {
-    report::EvaluatedRun run{
-        .name = display_name(path, arguments.estimates), .est = load(arguments, path), .evaluations = {}};
+    eval::LoadedTrajectory loaded = load(arguments, path);
+    report::EvaluatedRun run{.name = display_name(path, arguments.estimates),
+                             .est = std::move(loaded.trajectory),
+                             .repairs = loaded.repairs,
+                             .evaluations = {}};
+    eval::require_overlap(gt, run.est, arguments.offset_s, path);
     const eval::EvaluationInput input{gt, run.est, options};
     for (const std::string& protocol : arguments.protocols)
       run.evaluations.push_back(eval::evaluate(protocol, input));
     if (arguments.protocols.empty()) run.evaluations = evaluate_by_default(input, run.name);
+    if (!arguments.find_offset) require_matches(run);
     runs.push_back(std::move(run));
   }
   return runs;
@@ -121,15 +139,21 @@ eval::Comparison compare(const Trajectory& gt, const std::vector<report::Evaluat
   return eval::compare_runs(gt, named);
 }
 
+Json rows_json(const eval::RowRepairs& rows) {
+  return {{"skipped", rows.skipped}, {"repeated_stamps", rows.repeated}, {"reordered", rows.reordered}};
+}
+
 /// The document of a single estimate has the keys of a result.json at its top level.
-Json document(const EvalArguments& arguments, const Trajectory& gt,
+Json document(const EvalArguments& arguments, const eval::LoadedTrajectory& truth,
               const std::vector<report::EvaluatedRun>& runs) {
+  const Trajectory& gt = truth.trajectory;
   Json list = Json::array();
   for (const report::EvaluatedRun& run : runs) {
     const eval::ScoreOptions options{.offset_s = arguments.offset_s, .expected_times = {}};
     const eval::Score score = eval::score(gt, run.est, options);
     Json json = metric_members({.scored = ScoredTrajectory{.gt = gt, .est = run.est, .score = score}});
     json["estimate"] = run.name;
+    json["rows"] = {{"ground_truth", rows_json(truth.repairs)}, {"estimate", rows_json(run.repairs)}};
     json["warnings"] = warnings_about(gt, run);
     for (const eval::Evaluation& evaluation : run.evaluations)
       json["evaluations"].push_back(report::evaluation_json(evaluation));
@@ -162,17 +186,20 @@ void print_tables(const EvalArguments& arguments, const Trajectory& gt,
   }
 }
 
-void write_plot(const std::filesystem::path& file, const Trajectory& gt,
-                const std::vector<report::EvaluatedRun>& runs) {
+report::Drawing plot_of(const Trajectory& gt, const std::vector<report::EvaluatedRun>& runs) {
   std::vector<report::PlottedRun> plotted;
   for (const report::EvaluatedRun& run : runs)
     plotted.push_back({run.name, &run.est, &run.evaluations.front()});
-  const report::Drawing drawing = report::trajectory_plot(gt, plotted);
-  if (file.extension() == ".png") {
-    report::write_drawing_png(file, drawing, 1.5);
-  } else {
-    eval::write_text_file(file, report::svg_text(drawing));
-  }
+  return report::trajectory_plot(gt, plotted);
+}
+
+/// What --plot and --per-pose must not overwrite.
+OutputRules output_rules(const EvalArguments& arguments) {
+  OutputRules rules{.inputs = {arguments.ground_truth, arguments.times},
+                    .force = arguments.force,
+                    .beginning = report::per_pose_header()};
+  rules.inputs.insert(rules.inputs.end(), arguments.estimates.begin(), arguments.estimates.end());
+  return rules;
 }
 
 void print_offsets(const Trajectory& gt, const std::vector<report::EvaluatedRun>& runs) {
@@ -188,16 +215,21 @@ int evaluate_files(const EvalArguments& arguments) {
   if (arguments.ground_truth.empty() || arguments.estimates.empty()) {
     throw InputError("command line", "eval requires a ground truth and an estimate; try --help");
   }
-  const Trajectory gt = load(arguments, arguments.ground_truth);
+  const OutputRules rules = output_rules(arguments);
+  if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules);
+  if (!arguments.per_pose.empty()) require_safe_output(arguments.per_pose, rules);
+  const eval::LoadedTrajectory truth = load(arguments, arguments.ground_truth);
+  const Trajectory& gt = truth.trajectory;
   const std::vector<report::EvaluatedRun> runs = evaluate_all(arguments, gt);
   if (arguments.json) {
-    std::cout << document(arguments, gt, runs).dump(2) << '\n';
+    std::cout << document(arguments, truth, runs).dump(2) << '\n';
   } else {
     print_tables(arguments, gt, runs);
   }
   if (arguments.find_offset) print_offsets(gt, runs);
-  if (!arguments.plot.empty()) write_plot(arguments.plot, gt, runs);
-  if (!arguments.per_pose.empty()) eval::write_text_file(arguments.per_pose, report::per_pose_csv(runs));
+  if (!arguments.plot.empty())
+    report::write_drawing(arguments.plot, plot_of(gt, runs), kPlotPixelsPerUnit, rules);
+  if (!arguments.per_pose.empty()) write_output(arguments.per_pose, report::per_pose_csv(runs), rules);
   return kExitOk;
 }
 
@@ -208,24 +240,29 @@ std::vector<Option> options_of(EvalArguments& a) {
       {"--protocol",
        "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
        "repeated",
-       &a.protocols, "--recipe"},
+       &a.protocols,
+       {},
+       "--recipe"},
       {"--align", "Override the alignment of the protocol: " + enum_list<eval::Alignment>(), &a.alignment},
-      {"--align-first", "Align with the first N matches only", &a.align_first},
-      {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta},
+      {"--align-first", "Align with the first N matches only", &a.align_first, {1, 1e9}},
+      {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta, {1e-6, 1e6}},
       {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
-      {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s},
+      {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s, {-1e9, 1e9}},
       {"--find-offset", "Estimate the time offset and print it, without applying it", &a.find_offset},
-      {"--max-difference", "Override the maximum time difference of matched poses of the protocol [s]",
-       &a.max_difference_s},
+      {"--max-difference",
+       "Override the maximum time difference of matched poses of the protocol [s]",
+       &a.max_difference_s,
+       {1e-9, 1e6}},
       {"--format", "Trajectory format: " + enum_list<eval::TrajectoryFormat>() + " [detected]", &a.format},
       {"--times", "File of time stamps of a KITTI trajectory", &a.times},
-      {"--seq", "Sequence number in an OpenLORIS file", &a.sequence},
+      {"--seq", "Sequence number in an OpenLORIS file", &a.sequence, {0, 1e9}},
       {"--explain", "Print a description of each protocol", &a.explain},
       {"--json", "Print JSON with full precision", &a.json},
       {"--csv", "Print CSV", &a.csv},
       {"--markdown", "Print Markdown", &a.markdown},
       {"--plot", "Write a plot of trajectories and errors (.svg or .png)", &a.plot},
-      {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose}};
+      {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
+      {"--force", "Replace existing files of --plot and --per-pose", &a.force}};
 }
 
 }  // namespace

@@ -9,15 +9,16 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "core/base/error.h"
-#include "eval/io/text_reader.h"
 #include "eval/openloris/benchmark.h"
-#include "reports/drawing/drawing.h"
+#include "reports/drawing/drawing_file.h"
 #include "reports/drawing/openloris_figure.h"
 #include "reports/text/evaluation_json.h"
 #include "reports/text/evaluation_table.h"
 
 namespace stillpoint::bench {
 namespace {
+
+constexpr const char* kFigureExtensions[] = {".svg", ".png"};
 
 struct OpenlorisArguments {
   std::string results;
@@ -28,17 +29,22 @@ struct OpenlorisArguments {
   bool json = false;
   bool csv = false;
   bool markdown = false;
+  bool force = false;
 };
 
-void write_figure(const std::string& base, const eval::OpenlorisBenchmark& benchmark) {
+void write_figure(const OpenlorisArguments& arguments, const eval::OpenlorisBenchmark& benchmark) {
   const report::Drawing drawing = report::openloris_figure(benchmark);
-  eval::write_text_file(base + ".svg", report::svg_text(drawing));
-  report::write_drawing_png(base + ".png", drawing, 1.0);
+  for (const char* extension : kFigureExtensions)
+    report::write_drawing(arguments.figure + extension, drawing, 1.0, {.force = arguments.force});
 }
 
 int evaluate_folder(const OpenlorisArguments& arguments) {
   if (arguments.ground_truth.empty()) {
     throw InputError("--ground-truth", "is required: the folder with gt_<scene>_1.txt");
+  }
+  for (const char* extension : kFigureExtensions) {
+    if (!arguments.figure.empty())
+      report::require_drawing_file(arguments.figure + extension, {.force = arguments.force});
   }
   const eval::OpenlorisEvaluation evaluation =
       eval::evaluate_openloris(arguments.results, arguments.ground_truth,
@@ -54,7 +60,7 @@ int evaluate_folder(const OpenlorisArguments& arguments) {
                                                           : report::TableStyle::kText;
     std::cout << report::openloris_table(evaluation.benchmark, style);
   }
-  if (!arguments.figure.empty()) write_figure(arguments.figure, evaluation.benchmark);
+  if (!arguments.figure.empty()) write_figure(arguments, evaluation.benchmark);
   return kExitOk;
 }
 
@@ -70,6 +76,7 @@ Command eval_openloris_command() {
       .options = {{"RESULTS", "Folder with one folder per system", &a.results},
                   {"--ground-truth", "Folder with gt_<scene>_1.txt", &a.ground_truth},
                   {"--figure", "Write the figure of the paper as BASE.svg and BASE.png", &a.figure},
+                  {"--force", "Replace existing files of --figure", &a.force},
                   {"--lifelong",
                    "Count poses as correct within 1, 3 or 5 m (by scene) and 30 deg [any pose is correct]",
                    &a.lifelong},

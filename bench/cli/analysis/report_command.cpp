@@ -3,10 +3,12 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/output_guard.h"
 #include "core/base/error.h"
 #include "reports/page/report_page.h"
 
@@ -24,6 +26,8 @@ struct ReportArguments {
 int write_report(const ReportArguments& arguments) {
   if (arguments.out.empty()) throw InputError("--out", "is required: the output folder of index.html");
   const fs::path out = arguments.out;
+  require_safe_folder(out, {.names = {"index.html", "tables"}, .marks = {{"index.html", "tables"}}},
+                      {arguments.store});
   require_writable(out);
   const Store store(arguments.store);
   const report::ReportSubject subject = report::report_subject(store, arguments.plan);
@@ -37,7 +41,8 @@ int write_report(const ReportArguments& arguments) {
   std::cout << fmt::format("{} runs; wrote {} ({:.1f} MB) and {} files in {}\n", subject.runs.size(),
                            (out / "index.html").string(), static_cast<double>(page.size()) / 1e6,
                            tables.size(), (out / "tables").string());
-  return kExitOk;
+  for (const std::string& gap : subject.gaps) spdlog::warn("{}; the page lacks their content", gap);
+  return subject.gaps.empty() ? kExitOk : kExitFindings;
 }
 
 }  // namespace

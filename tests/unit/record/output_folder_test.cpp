@@ -64,7 +64,7 @@ TEST(OutputFolder, LeavesNoNewFilesOnAFullDisk) {
         [&] {
           write_files(folder.path(), {{"small", "new"}, {"large", std::string(1000, 'x')}});
         },
-        {"large: cannot be written: File too large", "--out"});
+        {"large: cannot be written: File too large", "output folder"});
   }
   EXPECT_EQ(text_of(folder.path() / "small"), "old");
   EXPECT_EQ(entries_in(folder.path()), 1u);
@@ -74,7 +74,7 @@ TEST(OutputFolder, RejectsAFolderThatCannotBeCreated) {
   const TemporaryFolder folder;
   const fs::path file = folder.write("file", "");
   expect_input_error([&] { require_writable(file / "below"); },
-                     {(file / "below").string() + ": cannot be created", "--out"});
+                     {(file / "below").string() + ": cannot be created", "output folder"});
 }
 
 TEST(OutputFolder, CheckLeavesNoFiles) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/run/run_dumps.h"
+
+#include "bench/record/output_folder.h"
+#include "core/base/error.h"
+#include "reports/drawing/cost_trend.h"
+#include "reports/drawing/drawing.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr const char* kLabelsFile = "labels.csv";
+constexpr const char* kCostFile = "cost.svg";
+constexpr const char* kImagesFolder = "images";
+
+std::string cost_svg(const OdometryRun& run) {
+  return report::svg_text(report::cost_plot(report::cost_trend(report::frame_costs(run))));
+}
+
+}  // namespace
+
+void require_known_dumps(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (name != "labels" && name != "cost")
+      throw InputError("--dump", "unknown value \"" + name + "\"; expected one of: labels, cost");
+  }
+}
+
+RunDumps::RunDumps(DumpRequest request, const datasets::SequenceInfo& info, const FrontendConfig& frontend)
+    : request_(std::move(request)) {
+  const report::AnnotationStyle style = report::annotation_style(frontend);
+  if (!request_.video.empty()) video_.emplace(request_.video, style, report::mean_rate_hz(info.frame_times));
+  if (request_.images > 0)
+    worst_frames_.emplace(request_.folder / kImagesFolder, request_.images, style, info);
+}
+
+template <class Action>
+bool RunDumps::attempt(const char* name, const Action& action) {
+  try {
+    action();
+    return true;
+  } catch (const std::runtime_error& error) {  // InputError and errors of the file system
+    failures_.push_back(std::string(name) + ": " + error.what());
+    return false;
+  }
+}
+
+void RunDumps::add(const FrameReport& report) {
+  if (request_.labels) labels_.add(report);
+  if (video_ && !attempt("--video", [&] { video_->add(report); })) video_.reset();
+  if (worst_frames_ && !attempt("--images", [&] { worst_frames_->add(report); })) worst_frames_.reset();
+}
+
+std::vector<std::string> RunDumps::finish(const OdometryRun* cost_run) {
+  if (video_) attempt("--video", [&] { video_->finish(); });
+  if (request_.labels)
+    attempt("--dump labels", [&] { write_files(request_.folder, {{kLabelsFile, labels_.text()}}); });
+  if (request_.cost && cost_run != nullptr)
+    attempt("--dump cost", [&] { write_files(request_.folder, {{kCostFile, cost_svg(*cost_run)}}); });
+  return failures_;
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Optional outputs of a run. None of their failures affects the run or its result.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/record/label_dump.h"
+#include "bench/run/odometry_run.h"
+#include "core/config/frontend_config.h"
+#include "datasets/sensor_stream.h"
+#include "reports/frames/run_video.h"
+#include "reports/frames/worst_frames.h"
+
+namespace stillpoint::bench {
+
+/// The requested outputs.
+struct DumpRequest {
+  std::filesystem::path folder;  ///< of the run: labels.csv, cost.svg, images/
+  bool labels = false;
+  bool cost = false;
+  std::filesystem::path video;  ///< folder; empty = none
+  std::size_t images = 0;       ///< number of annotated images of the worst frames
+};
+
+/// Values of --dump. @throws InputError for a name that is not one of them
+void require_known_dumps(const std::vector<std::string>& names);
+
+class RunDumps {
+ public:
+  /// Creates the folders, so that unusable ones are reported before the run.
+  /// @throws InputError if a folder cannot be created
+  RunDumps(DumpRequest request, const datasets::SequenceInfo& info, const FrontendConfig& frontend);
+
+  /// Whether `add` has to be called with the frames.
+  [[nodiscard]] bool needs_frames() const { return request_.labels || video_ || worst_frames_; }
+
+  /// Frames in order. An output that cannot be written ends; the others continue.
+  void add(const FrameReport& report);
+
+  /// Writes what is written at the end of the run. Call it after the result was written.
+  /// @param cost_run the run, for its processing times; null to omit them
+  /// @return failures of all outputs, one sentence each
+  [[nodiscard]] std::vector<std::string> finish(const OdometryRun* cost_run);
+
+ private:
+  /// Calls `action`. @return whether it succeeded
+  template <class Action>
+  bool attempt(const char* name, const Action& action);
+
+  DumpRequest request_;
+  LabelDump labels_;
+  std::optional<report::RunVideo> video_;
+  std::optional<report::WorstFrames> worst_frames_;
+  std::vector<std::string> failures_;
+};
+
+}  // namespace stillpoint::bench
