@@ -45,7 +45,7 @@ bool is_relevant(double before, double after, const MetricDescriptor* gated) {
 /// Whether the shift is relevant and its confidence interval excludes 0.
 bool is_significant(const LevelShift& shift, const MetricDescriptor* gated) {
   if (!is_relevant(shift.level_before, shift.level_after, gated)) return false;
-  return !shift.change || shift.change->interval.low > 0.0 || shift.change->interval.high < 0.0;
+  return !shift.change || eval::is_significant(*shift.change);
 }
 
 bool is_worse(double before, double after, const MetricDescriptor& gated) {
@@ -57,6 +57,17 @@ ChangeState state_of(const LevelShift& shift, const MetricDescriptor* gated, dou
   if (gated == nullptr) return ChangeState::kNeutral;
   if (!is_worse(shift.level_before, shift.level_after, *gated)) return ChangeState::kImproved;
   return is_worse(shift.level_before, newest, *gated) ? ChangeState::kOpen : ChangeState::kResolved;
+}
+
+/// Whether the levels around change point `i` differ by a relevant step, not only by a trend that they share.
+bool is_step(const AnalyzedSeries& analyzed, std::size_t i) {
+  const MetricDescriptor* gated = analyzed.series.gated;
+  if (gated == nullptr) return true;
+  const std::span<const double> before = analyzed.segment(i);
+  const std::span<const double> after = analyzed.segment(i + 1);
+  const double level = median_of(before);
+  const double step = eval::step_beside_trend(before, after);
+  return step * (median_of(after) - level) > 0.0 && is_relevant(level, level + step, gated);
 }
 
 std::vector<LevelShift> shifts_of(const AnalyzedSeries& analyzed, std::size_t index,
@@ -75,7 +86,7 @@ std::vector<LevelShift> shifts_of(const AnalyzedSeries& analyzed, std::size_t in
                      .p_value = points[i].p_value,
                      .state = ChangeState::kNeutral,
                      .reason = ""};
-    if (!is_significant(shift, analyzed.series.gated)) continue;
+    if (!is_significant(shift, analyzed.series.gated) || !is_step(analyzed, i)) continue;
     shift.state = state_of(shift, analyzed.series.gated, newest);
     shifts.push_back(shift);
   }
@@ -89,7 +100,12 @@ std::optional<MetricDrift> drift_of(const AnalyzedSeries& analyzed, std::size_t 
   const double end = trend->intercept + trend->slope * static_cast<double>(analyzed.values.size() - 1);
   if (trend->intercept == 0.0 || !is_relevant(trend->intercept, end, analyzed.series.gated))
     return std::nullopt;
-  if (!eval::linear_trend_fits_better(analyzed.values, *trend, analyzed.changes)) return std::nullopt;
+  // Many small steps are a drift as well: only relevant steps compete with the line.
+  std::vector<std::size_t> steps;
+  for (std::size_t i = 0; i < analyzed.changes.size(); ++i) {
+    if (is_step(analyzed, i)) steps.push_back(analyzed.changes[i]);
+  }
+  if (!eval::linear_trend_fits_better(analyzed.values, *trend, steps)) return std::nullopt;
   return MetricDrift{.series = index,
                      .first = analyzed.commit(0),
                      .last = analyzed.commit(analyzed.values.size() - 1),

@@ -71,26 +71,65 @@ std::vector<double> pairwise_slopes(std::span<const double> values) {
   return slopes;
 }
 
-/// y_i - slope i.
-/// @param first index of the first value
-std::vector<double> without_slope(std::span<const double> values, double slope, std::size_t first) {
+/// y_i - slope (first + i).
+std::vector<double> without_slope(std::span<const double> values, double slope, double first) {
   std::vector<double> flat;
   for (std::size_t i = 0; i < values.size(); ++i)
-    flat.push_back(values[i] - slope * static_cast<double>(first + i));
+    flat.push_back(values[i] - slope * (first + static_cast<double>(i)));
   return flat;
 }
 
-/// Two levels of values without their common slope.
-struct TwoLevels {
-  double step = 0.0;
-  double residuals = 0.0;
+/// Two adjacent segments.
+struct Segments {
+  std::span<const double> before;
+  std::span<const double> after;
+
+  [[nodiscard]] std::vector<double> values() const {
+    std::vector<double> all(before.begin(), before.end());
+    all.insert(all.end(), after.begin(), after.end());
+    return all;
+  }
+  /// The nearest `count` values on each side of the boundary.
+  [[nodiscard]] Segments near(std::size_t count) const {
+    return {before.last(std::min(count, before.size())), after.first(std::min(count, after.size()))};
+  }
+  /// Median slope within the segments; 0 if each has one value.
+  [[nodiscard]] double common_slope() const {
+    std::vector<double> slopes = pairwise_slopes(before);
+    const std::vector<double> slopes_after = pairwise_slopes(after);
+    slopes.insert(slopes.end(), slopes_after.begin(), slopes_after.end());
+    return percentile(slopes, 0.5).value_or(0.0);
+  }
 };
 
-TwoLevels two_levels(std::span<const double> before, std::span<const double> after, double slope) {
-  const std::vector<double> flat_before = without_slope(before, slope, 0);
-  const std::vector<double> flat_after = without_slope(after, slope, before.size());
-  return {.step = *percentile(flat_after, 0.5) - *percentile(flat_before, 0.5),
-          .residuals = residuals_to_median(flat_before) + residuals_to_median(flat_after)};
+/// Levels of both segments at the boundary.
+struct TwoLevels {
+  double step = 0.0;
+  double residuals = 0.0;  ///< sum of |r_i|
+};
+
+/// @param slope_before, slope_after trends that are removed
+TwoLevels two_levels(const Segments& segments, double slope_before, double slope_after) {
+  // Index 0 at the boundary, between the last value before and the first one after it.
+  const double first = 0.5 - static_cast<double>(segments.before.size());
+  const std::vector<double> before = without_slope(segments.before, slope_before, first);
+  const std::vector<double> after = without_slope(segments.after, slope_after, 0.5);
+  return {.step = *percentile(after, 0.5) - *percentile(before, 0.5),
+          .residuals = residuals_to_median(before) + residuals_to_median(after)};
+}
+
+/// Whether a line explains the values better than a step with or without a trend, see `step_beside_trend`.
+bool is_line(const Segments& segments) {
+  const std::vector<double> values = segments.values();
+  const std::optional<Trend> line = trend_of(values);
+  if (!line) return false;
+  const double slope = segments.common_slope();
+  const auto criterion = [&](double residuals, std::size_t parameters) {
+    return bayesian_information_criterion(residuals, values.size(), parameters);
+  };
+  return criterion(residuals_to_line(values, *line), 2) <
+         std::min(criterion(two_levels(segments, 0.0, 0.0).residuals, 6),
+                  criterion(two_levels(segments, slope, slope).residuals, 8));
 }
 
 }  // namespace
@@ -120,7 +159,7 @@ std::optional<Trend> trend_of(std::span<const double> values) {
     }
   }
   Trend trend{.slope = *percentile(pairwise_slopes(values), 0.5), .intercept = 0.0, .p_value = 1.0};
-  trend.intercept = *percentile(without_slope(values, trend.slope, 0), 0.5);
+  trend.intercept = *percentile(without_slope(values, trend.slope, 0.0), 0.5);
   const double variance = mann_kendall_variance(values);
   const double corrected = std::max(std::abs(signs) - 1.0, 0.0);  // for continuity
   if (variance > 0.0) trend.p_value = std::erfc(corrected / std::sqrt(2.0 * variance));
@@ -141,26 +180,24 @@ bool linear_trend_fits_better(std::span<const double> values, const Trend& trend
 }
 
 double step_beside_trend(std::span<const double> before, std::span<const double> after) {
-  constexpr std::size_t kMinWindow = 10;
-  const double level_step = *percentile(after, 0.5) - *percentile(before, 0.5);
-  const std::size_t window = std::max(kMinWindow, std::min(before.size(), after.size()));
-  before = before.last(std::min(window, before.size()));
-  after = after.first(std::min(window, after.size()));
-  std::vector<double> values(before.begin(), before.end());
-  values.insert(values.end(), after.begin(), after.end());
-  const std::optional<Trend> line = trend_of(values);
-  if (!line) return level_step;
-  std::vector<double> slopes = pairwise_slopes(before);
-  const std::vector<double> slopes_after = pairwise_slopes(after);
-  slopes.insert(slopes.end(), slopes_after.begin(), slopes_after.end());
-  const TwoLevels sloped = two_levels(before, after, percentile(slopes, 0.5).value_or(0.0));
-  const double line_criterion =
-      bayesian_information_criterion(residuals_to_line(values, *line), values.size(), 2);
-  const double step_criterion =
-      bayesian_information_criterion(two_levels(before, after, 0.0).residuals, values.size(), 3);
-  const double sloped_criterion = bayesian_information_criterion(sloped.residuals, values.size(), 4);
-  if (step_criterion <= std::min(line_criterion, sloped_criterion)) return level_step;
-  return line_criterion <= sloped_criterion ? 0.0 : sloped.step;
+  constexpr std::size_t kNear = 20;
+  constexpr std::size_t kMinForSlope = 7;  // with fewer values the slope of a segment says little
+  const Segments whole{before, after};
+  const Segments near = whole.near(kNear);
+  if (is_line(near)) return 0.0;
+  std::vector<double> steps = {two_levels(whole, 0.0, 0.0).step};
+  for (const Segments& segments : {whole, near}) {
+    const double slope = segments.common_slope();
+    steps.push_back(two_levels(segments, slope, slope).step);
+  }
+  if (std::min(near.before.size(), near.after.size()) >= kMinForSlope) {
+    const Segments only_before{near.before, {}};
+    const Segments only_after{near.after, {}};
+    steps.push_back(two_levels(near, only_before.common_slope(), only_after.common_slope()).step);
+  }
+  const auto [low, high] = std::minmax_element(steps.begin(), steps.end());
+  if (*low < 0.0 && *high > 0.0) return 0.0;
+  return *low >= 0.0 ? *low : *high;
 }
 
 }  // namespace stillpoint::eval
