@@ -4,18 +4,31 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "eval/metrics/statistics.h"
 
 namespace stillpoint::eval {
+namespace {
+
+/// Median interval of increasing stamps [s]; 0 for fewer than two.
+double median_interval_s(std::span<const Timestamp> stamps) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
+  return percentile(intervals, 0.5).value_or(0.0);
+}
+
+}  // namespace
 
 std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp> expected,
                                double tolerance_s) {
   if (expected.empty()) return std::nullopt;
+  const double max_difference_s = std::max(tolerance_s, 0.5 * median_interval_s(expected));
   std::size_t covered = 0;
   std::size_t e = 0;
   for (const Timestamp t : expected) {
-    while (e < est.poses.size() && seconds_between(est.poses[e].t, t) > tolerance_s) ++e;
+    while (e < est.poses.size() && seconds_between(est.poses[e].t, t) > max_difference_s) ++e;
     if (e == est.poses.size()) break;
-    if (seconds_between(t, est.poses[e].t) > tolerance_s) continue;
+    if (seconds_between(t, est.poses[e].t) > max_difference_s) continue;
     ++covered;
     ++e;
   }
@@ -24,7 +37,7 @@ std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp>
 
 std::optional<double> first_pose_seconds(const Trajectory& est, Timestamp start) {
   if (est.poses.empty()) return std::nullopt;
-  return seconds_between(start, est.poses.front().t);
+  return std::max(0.0, seconds_between(start, est.poses.front().t));
 }
 
 std::vector<TimeSpan> lost_spans(const Trajectory& est, const TimeSpan& whole, double max_hold_s) {

@@ -22,15 +22,18 @@
 
 namespace stillpoint::eval {
 
-/// Fraction of the expected time stamps that have a pose within `tolerance_s`; each pose counts once.
+/// Fraction of the frames that have a pose. A pose belongs to at most one frame and a frame to at most one
+/// pose, which are at most max(tolerance_s, d / 2) apart, d: median interval of the frames. Poses of a system
+/// that reports more often than there are frames, e.g. at 100 Hz, have no frame of their own and do not
+/// count.
 /// @param est poses with strictly increasing stamps
-/// @param expected strictly increasing, e.g. the frame times of the sequence
+/// @param expected frame times of the sequence, strictly increasing
 /// @param tolerance_s greater than the rounding of stamps in files
-/// @return nullopt if `expected` is empty
+/// @return in [0, 1]; nullopt if `expected` is empty
 [[nodiscard]] std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp> expected,
                                              double tolerance_s = 1e-3);
 
-/// Time from `start` to the first pose [s]; nullopt without a pose.
+/// Time from `start` to the first pose [s], 0 for a pose before `start`; nullopt without a pose.
 [[nodiscard]] std::optional<double> first_pose_seconds(const Trajectory& est, Timestamp start);
 
 struct TimeSpan {

@@ -28,6 +28,33 @@ TEST(Coverage, CountsAPoseForOneFrameOnly) {
   EXPECT_DOUBLE_EQ(*coverage(est, frames), 0.5);
 }
 
+std::vector<Timestamp> frames_at(double rate_hz, int count) {
+  std::vector<Timestamp> frames;
+  for (int i = 0; i < count; ++i) frames.push_back(from_seconds(i / rate_hz));
+  return frames;
+}
+
+TEST(Coverage, IsCompleteForASystemThatReportsMoreOftenThanThereAreFrames) {
+  // 30 Hz frames and poses at 100 Hz: only every third frame has a pose at exactly its time.
+  EXPECT_DOUBLE_EQ(*coverage(curved_path(0.0, 10.0, 0.01), frames_at(30.0, 300)), 1.0);
+  EXPECT_DOUBLE_EQ(*coverage(curved_path(5.0, 10.0, 0.01), frames_at(30.0, 300)), 0.5);  // lost for 5 s
+}
+
+TEST(Coverage, IsOneHalfForASystemThatReportsEverySecondFrame) {
+  EXPECT_DOUBLE_EQ(*coverage(curved_path(0.0, 10.0, 1.0 / 15.0), frames_at(30.0, 300)), 0.5);
+}
+
+TEST(Coverage, AFrameBesideALostOneDoesNotCoverBoth) {
+  Trajectory est = curved_path(0.0, 1.0, 0.1);
+  est.poses.erase(est.poses.begin() + 5);
+  EXPECT_DOUBLE_EQ(*coverage(est, frames_at(10.0, 11)), 10.0 / 11.0);
+}
+
+TEST(FirstPose, IsZeroIfASystemReportsAPoseBeforeTheFirstFrame) {
+  EXPECT_EQ(first_pose_seconds(curved_path(0.99, 2.0, 0.01), from_seconds(1.0)), 0.0);
+  EXPECT_NEAR(*first_pose_seconds(curved_path(1.25, 2.0, 0.01), from_seconds(1.0)), 0.25, 1e-9);
+}
+
 TEST(Coverage, IsNotAvailableWithoutExpectedFrames) { EXPECT_FALSE(coverage(curved_path(0, 1, 1), {})); }
 
 TEST(CorrectRate, CountsAPoseAsValidForOneSecondAtMost) {
