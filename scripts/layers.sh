@@ -74,6 +74,7 @@ row datasets/synthetic/actors $scene datasets/io datasets/synthetic/scenes
 row datasets/synthetic/sensors $scene core/types datasets/synthetic/actors
 row datasets/synthetic/sequence $scene core/types $trajectories datasets/io datasets/synthetic/scenes datasets/synthetic/actors \
   datasets/synthetic/sensors
+row datasets/faults core/base core/types datasets datasets/io datasets/synthetic datasets/synthetic/materials
 datasets="datasets datasets/io datasets/calibration datasets/formats datasets/synthetic/sequence"
 
 row core/examples $core $eval $datasets
@@ -83,7 +84,7 @@ row bench/model $messages eval eval/metrics eval/trajectory
 row bench/config core/base core/config bench/model
 row bench/store core/base core/types eval/io bench/model
 row bench/process core/base bench/model
-row bench/run $common core/pipeline/runners datasets datasets/synthetic/sequence eval eval/metrics eval/trajectory \
+row bench/run $common core/pipeline/runners datasets datasets/faults datasets/synthetic/sequence eval eval/metrics eval/trajectory \
   bench/model bench/config
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
@@ -101,22 +102,23 @@ row bench/micro $core tests/support
 # --- reports ---
 stored="core/base bench/model bench/store bench/analysis"
 row reports/tables $stored eval/statistics bench/systems
-row reports/drawing core/base core/types datasets/io eval/openloris eval/protocols eval/statistics bench/run reports/tables
+row reports/drawing core/base core/types datasets/io eval/openloris eval/protocols eval/statistics bench/run bench/record \
+  reports/tables
 row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
 row reports/page/charts $stored eval/io eval/metrics eval/openloris eval/protocols reports/tables
-row reports/page $stored bench/config bench/profile bench/record bench/systems reports/tables reports/drawing \
+row reports/page $stored bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/drawing \
   reports/page/charts
 row reports/dashboard $stored bench/record reports/tables reports/page
 
 # --- the program ---
-row bench/cli core/base bench/record
+row bench/cli core/base eval/io bench/config bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
-row bench/cli/run $execution datasets eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
+row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
-row bench/cli/data $execution core/detector datasets datasets/io datasets/synthetic/sequence bench/run bench/plan
+row bench/cli/data $execution core/detector datasets datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/store bench/systems bench/plan reports/tables reports/text reports/page
-row bench/cli/analysis $execution eval/io eval/compare eval/openloris bench/store bench/plan bench/analysis \
+row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/plan bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
@@ -127,7 +129,7 @@ libraries=(
   '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
   '<opencv2/core[./]  ^core/(types|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
-  '<opencv2/imgproc[./]  ^core/(frontend|dynamic|detector|loop)/|^datasets/synthetic/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
+  '<opencv2/imgproc[./]  ^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
   '<opencv2/calib3d[./]  ^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/relative_pose\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'
   '<opencv2/videoio[./]  ^reports/frames/video_file\.cpp$'

@@ -7,6 +7,7 @@
 
 #include "bench/record/output_folder.h"
 #include "bench/store/store.h"
+#include "reports/page/plan_ablations.h"
 #include "reports/tables/report_table.h"
 
 namespace stillpoint::report {
@@ -17,8 +18,10 @@ struct ReportSubject {
   std::vector<bench::StoredPlan> plans;      ///< the plans that the runs belong to
   std::vector<bench::StoredRun> runs;        ///< shown on the page
   std::vector<bench::StoredRun> other_runs;  ///< of other builds, for the comparison
+  std::vector<std::string> gaps;             ///< runs with missing or damaged files, one sentence each
   std::vector<std::string> published;        ///< names of published tables to compare with
   std::vector<ReportTable> paper;            ///< the paper's tables that plans of the page reproduce
+  PlanAblations ablations;                   ///< of `plans`, with the names that each plan uses
 };
 
 /// All plans of the store or a single one; of each plan the runs of the newest build.

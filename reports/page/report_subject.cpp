@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/store/readable_files.h"
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
 #include "reports/page/disambiguate_names.h"
@@ -95,10 +96,14 @@ ReportSubject report_subject(const bench::Store& store, const std::string& plan)
                      "contains no finished runs; create some with `stillpoint bench PLAN --store FILE`");
   subject = with_newest_build(std::move(subject));
   subject.paper = paper_tables(subject);
+  subject.ablations = plan_ablations(subject.plans, subject.runs);
   const NameChanges changes = disambiguate_names(subject.plans, subject.runs);
   subject.runs = renamed(std::move(subject.runs), changes);
   subject.other_runs = renamed(std::move(subject.other_runs), changes);
   subject.published = bench::published_names();
+  bench::ReadableRuns readable = bench::without_unreadable_files(store, std::move(subject.runs));
+  subject.runs = std::move(readable.runs);
+  subject.gaps = std::move(readable.gaps);
   return subject;
 }
 
