@@ -9,6 +9,9 @@
 #include <fmt/format.h>
 
 #include "bench/model/metrics.h"
+#include "bench/model/missing_boxes.h"
+#include "bench/model/protocol_difference.h"
+#include "bench/model/time_source.h"
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
@@ -66,11 +69,13 @@ BenchRow row_with_outcome(const std::vector<const StoredRun*>& runs, const std::
       row.reason = run->detail;
     }
   }
+  if (row.reason.empty()) row.reason = missing_boxes_note(runs);
   const std::optional<double> load = median_of(runs, metric_id::kOtherLoad);
   if (row.reason.empty() && median_of(runs, metric_id::kQuiet) == 0.0 && load) {
     row.reason =
         fmt::format("the machine was not idle: other processes used {:.0f} % of the CPU", 100.0 * *load);
   }
+  if (row.reason.empty()) row.reason = protocol_difference_note(runs, headline_metric().id);
   return row;
 }
 
@@ -85,6 +90,7 @@ BenchRow row_of(const Group& group, const std::string& unavailable_reason) {
                [](const StoredRun* run) { return run->outcome == Outcome::kOk; });
   row.runs = group.runs.size();
   row.succeeded_runs = succeeded.size();
+  for (const StoredRun* run : succeeded) row.time_source = std::max(row.time_source, time_source(*run));
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
     if (const std::optional<double> median = median_of(succeeded, metric->id))
       row.metrics[std::string(metric->id)] = *median;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/model/time_source.h"
 #include "bench/plan/plan_matrix.h"
 #include "bench/store/store.h"
 #include "core/base/module_timings.h"
@@ -27,6 +28,7 @@ struct BenchRow {
   std::size_t succeeded_runs = 0;  ///< executed with outcome "ok"
   std::map<std::string, double, std::less<>> metrics;  ///< by id, of `MetricSource::kTrajectory`
   std::array<std::optional<double>, kModuleCount> mean_ms;
+  TimeSource time_source = TimeSource::kUndisturbed;  ///< of `mean_ms`: the worst among the runs
 };
 
 /// "ok", the name of another outcome, "not run" or "skipped".

@@ -127,7 +127,19 @@ nlohmann::ordered_json row_json(const BenchRow& row) {
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory))
     json[std::string(metric->id)] = number_or_null(metric_of(row, *metric));
   json["mean_ms"] = timings;
+  if (!timings.empty()) json["mean_ms_note"] = time_source_note(row.time_source);
   return json;
+}
+
+/// Restriction of the times that the rows show; empty if there is none.
+std::string times_note(std::span<const BenchRow> rows) {
+  TimeSource worst = TimeSource::kUndisturbed;
+  for (const BenchRow& row : rows) {
+    const bool has_times = std::any_of(row.mean_ms.begin(), row.mean_ms.end(),
+                                       [](const std::optional<double>& ms) { return ms.has_value(); });
+    if (has_times) worst = std::max(worst, row.time_source);
+  }
+  return time_source_note(worst);
 }
 
 }  // namespace
@@ -143,6 +155,7 @@ std::string markdown_table(std::span<const BenchRow> rows) {
   const std::size_t text_columns = columns.text_columns();
   std::string text = line(lines.front(), widths, text_columns) + separator_line(widths, text_columns);
   for (std::size_t i = 1; i < lines.size(); ++i) text += line(lines[i], widths, text_columns);
+  if (const std::string note = times_note(rows); !note.empty()) text += "\nColumns in ms: " + note + "\n";
   for (const BenchRow& row : rows) {
     if (!row.reason.empty())
       text += fmt::format("\n{} {}{}{} {}: {}\n", row.sequence, row.variant, row.sweep.empty() ? "" : " ",

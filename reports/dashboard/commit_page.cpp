@@ -113,10 +113,16 @@ std::string shifts_html(const bench::CommitHistory& history, const bench::Histor
     if (shift.after == commit) rows += shift_row(history, shift);
   }
   if (rows.empty()) return "<p class=\"none\">No change points at this commit.</p>";
-  return html_table(
-      "shifts", "Medians over the commits before and after the change point, and the relative change",
-      {{"metric", true}, {"on", true}, {"before"}, {"after"}, {"change"}, {"95 % interval"}, {"state", true}},
-      rows);
+  return html_table("shifts",
+                    "Medians over the commits before and after the change point, and the relative change",
+                    {{"metric", true},
+                     {"on", true},
+                     {"before"},
+                     {"after"},
+                     {"change"},
+                     {"n, 95 % interval"},
+                     {"state", true}},
+                    rows);
 }
 
 /// Link to the page of another commit; all pages are in one folder.

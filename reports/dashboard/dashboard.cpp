@@ -65,7 +65,7 @@ std::string members_html(const bench::CommitHistory& history, const ShiftGroup& 
                      group.shifts.size() - 1, items, left);
 }
 
-std::string group_row(const bench::CommitHistory& history, const ShiftGroup& group) {
+std::string change_row(const bench::CommitHistory& history, const ShiftGroup& group) {
   const bench::LevelShift& largest = *group.shifts.front();
   const bench::HistorySeries& series = history.series[largest.series];
   return fmt::format(
@@ -84,7 +84,7 @@ std::string groups_html(const bench::CommitHistory& history, const bench::Histor
   const std::vector<ShiftGroup> groups = grouped_shifts(history, changes, state);
   if (groups.empty()) return "<p class=\"none\">" + none + "</p>";
   std::string rows;
-  for (const ShiftGroup& group : groups) rows += group_row(history, group);
+  for (const ShiftGroup& group : groups) rows += change_row(history, group);
   return html_table(bench::state_name(state) + "-changes", "",
                     {{"metric", true},
                      {"between commits", true},
@@ -93,7 +93,7 @@ std::string groups_html(const bench::CommitHistory& history, const bench::Histor
                      {"before"},
                      {"after"},
                      {"change"},
-                     {"95 % interval"},
+                     {"n, 95 % interval"},
                      {state == bench::ChangeState::kAccepted ? "reason" : "", true}},
                     rows);
 }

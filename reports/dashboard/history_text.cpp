@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "reports/tables/change_text.h"
 #include "reports/tables/escaping.h"
 
 namespace stillpoint::report {
@@ -50,13 +51,11 @@ std::string subject_label(const bench::HistorySubject& subject) {
 }
 
 std::string change_label(const bench::LevelShift& shift) {
-  return shift.change ? fmt::format("{:+.1f} %", 100.0 * shift.change->median) : "new";
+  return shift.change ? percent_text(shift.change->median) : "new";
 }
 
 std::string interval_label(const bench::LevelShift& shift) {
-  if (!shift.change) return "";
-  const eval::Interval& interval = shift.change->interval;
-  return fmt::format("{:+.1f} to {:+.1f} %", 100.0 * interval.low, 100.0 * interval.high);
+  return shift.change ? interval_text(*shift.change) : "";
 }
 
 std::string value_label(double value, const std::string& unit) {

@@ -17,7 +17,8 @@ namespace stillpoint::report {
 /// "+5.2 %", or "new" if there is no earlier level.
 [[nodiscard]] std::string change_label(const bench::LevelShift& shift);
 
-/// "+4.1 to +6.0 %", the 95 % interval; empty if there is none.
+/// "n = 8, +4.1 to +6.0 %", the 95 % interval, or "n = 3, no interval"; n: commits of the shorter level.
+/// Empty without a relative change.
 [[nodiscard]] std::string interval_label(const bench::LevelShift& shift);
 
 /// Four significant digits and the unit.

@@ -42,8 +42,9 @@ Json shift_json(const bench::CommitHistory& history, const bench::LevelShift& sh
   json["before"] = shift.level_before;
   json["after"] = shift.level_after;
   json["change"] = shift.change ? Json(shift.change->median) : Json(nullptr);
-  json["interval"] =
-      shift.change ? Json({shift.change->interval.low, shift.change->interval.high}) : Json(nullptr);
+  const std::optional<eval::Interval> interval = shift.change ? shift.change->interval : std::nullopt;
+  json["interval"] = interval ? Json({interval->low, interval->high}) : Json(nullptr);
+  json["n"] = shift.change ? Json(shift.change->count) : Json(nullptr);
   json["p_value"] = shift.p_value;
   return json;
 }
@@ -116,7 +117,8 @@ std::string regressions_markdown(const bench::CommitHistory& history, const benc
   std::string text = "No open regressions.\n";
   if (!groups.empty()) {
     text =
-        "| metric | between commits | series | largest change on | before, after | change | 95 % interval |\n"
+        "| metric | between commits | series | largest change on | before, after | change | n, 95 % interval "
+        "|\n"
         "|---|---|---:|---|---|---:|---|\n";
     for (const ShiftGroup& group : groups) text += group_row(history, group);
   }

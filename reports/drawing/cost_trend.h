@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/run/odometry_run.h"
-#include "eval/statistics/bootstrap.h"
+#include "eval/statistics/median_interval.h"
 #include "reports/drawing/drawing.h"
 
 namespace stillpoint::report {

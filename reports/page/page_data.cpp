@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/model/metrics.h"
+#include "bench/model/missing_boxes.h"
+#include "bench/model/protocol_difference.h"
 #include "bench/profile/timeline.h"
 #include "reports/page/charts/flame_stacks.h"
 #include "reports/page/charts/run_series.h"
@@ -16,6 +18,7 @@
 #include "reports/page/series_text.h"
 #include "reports/tables/escaping.h"
 #include "reports/tables/run_cells.h"
+#include "reports/tables/timing_runs.h"
 
 namespace stillpoint::report {
 namespace {
@@ -28,6 +31,19 @@ constexpr const char* kModulePrefix = "ms:";
 
 std::string dump_replacing_invalid_utf8(const Json& json) {
   return json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace);
+}
+
+/// Remarks on the metrics of a run.
+Json notes_json(const bench::StoredRun& run) {
+  Json notes = Json::array();
+  const std::vector<const bench::StoredRun*> runs = {&run};
+  for (const bench::MetricDescriptor* metric : bench::metrics_of(bench::MetricSource::kTrajectory)) {
+    if (const std::string note = bench::protocol_difference_note(runs, metric->id); !note.empty())
+      notes.push_back(clean_line(note));
+  }
+  if (const std::string note = bench::missing_boxes_note(runs); !note.empty())
+    notes.push_back(clean_line(note));
+  return notes;
 }
 
 Json run_json(const bench::StoredRun& run) {
@@ -52,6 +68,7 @@ Json run_json(const bench::StoredRun& run) {
         {clean_line(metric.name), metric.value, clean_line(metric.unit), clean_line(metric.protocol)});
   }
   json["metrics"] = metrics;
+  json["notes"] = notes_json(run);
   const auto truth = run.blobs.find("truth");
   json["truth"] = truth == run.blobs.end() ? Json(nullptr) : Json(truth->second);
   return json;
@@ -137,7 +154,7 @@ Json segments_json(const std::vector<SegmentFigure>& figures) {
       Json errors = Json::array();
       for (const std::optional<double>& error : curve.translation_percent)
         errors.push_back(error ? Json(*error) : Json(nullptr));
-      curves.push_back({{"label", clean_line(curve.label)}, {"errors", errors}});
+      curves.push_back({{"label", clean_line(curve.label)}, {"runs", curve.runs}, {"errors", errors}});
     }
     json.push_back(
         {{"sequence", clean_line(figure.sequence)}, {"lengths", figure.lengths_m}, {"curves", curves}});
@@ -176,7 +193,7 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
     entry["frames"] = series.t_s.size();
     entry["images"] = series.images.size();
     data.series.push_back(dump_replacing_invalid_utf8(series_json(series)));
-    if (is_timing_source(runs, run)) {
+    if (has_shown_times(runs, run)) {
       times = with_times(std::move(times), series, system_label(run.identity));
       if (const std::string folded = store.attachment(run, "stacks"); !folded.empty()) {
         flames[clean_line(system_label(run.identity))].add(parse_stacks(folded, "stacks of run " + run.key),

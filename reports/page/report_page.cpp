@@ -10,13 +10,13 @@
 #include "bench/model/metrics.h"
 #include "reports/drawing/drawing.h"
 #include "reports/drawing/openloris_figure.h"
-#include "reports/page/charts/heat_map.h"
 #include "reports/page/charts/openloris_runs.h"
 #include "reports/page/html_parts.h"
 #include "reports/page/page_data.h"
 #include "reports/page/summary.h"
 #include "reports/tables/escaping.h"
 #include "reports/tables/table_formats.h"
+#include "reports/tables/timing_runs.h"
 
 namespace stillpoint::report {
 namespace {
@@ -45,13 +45,12 @@ std::string summary_html(const ReportSubject& subject) {
   if (const std::string best = best_sentence(subject.runs); !best.empty()) sentences.push_back(best);
   if (const std::vector<bench::StoredRun> previous = previous_runs(subject); !previous.empty()) {
     const bench::Comparison comparison = bench::compare_runs(previous, subject.runs);
-    if (comparison.pairs > 0) {
-      for (const std::string& sentence : change_sentences(previous.front().identity.build, comparison))
-        sentences.push_back(sentence);
-    }
+    for (const std::string& sentence : change_sentences(previous.front().identity.build, comparison))
+      sentences.push_back(sentence);
   }
   std::string text;
   for (const std::string& sentence : sentences) text += "<li>" + escape_html(sentence) + "</li>";
+  for (const std::string& gap : subject.gaps) text += "<li class=\"gap\">" + escape_html(gap) + "</li>";
   return "<ul class=\"summary\">" + text + "</ul>";
 }
 
@@ -71,13 +70,23 @@ std::string tables_html(const std::vector<ReportTable>& tables, bool published) 
 }
 
 std::string heat_html(const ReportSubject& subject) {
-  const std::string base = base_variant(subject.runs);
   std::string text;
-  for (const bench::MetricDescriptor* metric : bench::metrics_of(bench::MetricSource::kTrajectory)) {
-    const bool is_error = metric->gate && metric->direction == bench::MetricDirection::kSmallerIsBetter;
-    if (is_error) text += heat_map_html(subject.runs, base, *metric);
+  for (const PlanAblation& ablation : subject.ablations.ablations) {
+    for (const bench::MetricDescriptor* metric : bench::metrics_of(bench::MetricSource::kTrajectory)) {
+      const bool is_error = metric->gate && metric->direction == bench::MetricDirection::kSmallerIsBetter;
+      if (is_error) text += heat_map_html(ablation, *metric);
+    }
   }
-  return text.empty() ? "<p class=\"none\">At least two variants are required for a comparison.</p>" : text;
+  for (const std::string& sentence : subject.ablations.missing)
+    text += "<p class=\"none\">" + escape_html(sentence) + "</p>\n";
+  return text.empty() ? "<p class=\"none\">No pair of runs has an error to compare.</p>" : text;
+}
+
+std::string timing_notes_html(const ReportSubject& subject) {
+  std::string text;
+  for (const std::string& sentence : time_source_sentences(subject.runs))
+    text += "<p class=\"none\">" + escape_html(sentence) + "</p>\n";
+  return text;
 }
 
 /// Explains every metric and module of the runs.
@@ -163,6 +172,7 @@ std::string report_html(const bench::Store& store, const ReportSubject& subject)
        {"heat", heat_html(subject)},
        {"published", tables_html(tables, true)},
        {"openloris", openloris_html(store, subject)},
+       {"timing_notes", data.module_boxes.empty() ? "" : timing_notes_html(subject)},
        {"boxes", box_plot_svg(data.module_boxes, "Time per frame and module", "ms")},
        {"plans", plans_html(store, subject)},
        {"licenses", licenses_html()},

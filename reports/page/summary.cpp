@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/model/metrics.h"
+#include "reports/tables/change_text.h"
 #include "reports/tables/run_cells.h"
 
 namespace stillpoint::report {
@@ -29,27 +30,31 @@ std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
   return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
 }
 
-/// Label with the smallest median error on a sequence; empty if fewer than two labels have one.
-std::string best_on(std::span<const bench::StoredRun> runs, const std::vector<std::string>& labels,
-                    const std::string& sequence) {
-  std::string best;
+/// Label with the smallest median error on a sequence.
+struct BestLabel {
+  std::string label;                ///< empty if fewer than two labels have an error
+  std::vector<std::size_t> counts;  ///< number of runs behind each compared median
+};
+
+BestLabel best_on(std::span<const bench::StoredRun> runs, const std::vector<std::string>& labels,
+                  const std::string& sequence) {
+  BestLabel best;
   double smallest = 0.0;
-  std::size_t candidates = 0;
   for (const std::string& label : labels) {
     const TableCell cell = metric_cell(runs_of(runs, label, sequence), bench::headline_metric().id);
     if (!cell.number) continue;
-    if (candidates++ == 0 || *cell.number < smallest) {
-      best = label;
+    if (best.counts.empty() || *cell.number < smallest) {
+      best.label = label;
       smallest = *cell.number;
     }
+    best.counts.push_back(cell.count);
   }
-  return candidates < 2 ? "" : best;
+  return best.counts.size() < 2 ? BestLabel{} : best;
 }
 
 std::string change_text(const bench::MetricChange& change) {
-  return fmt::format("{} of {} by {:+.1f} % ({:+.1f} to {:+.1f} %)", change.metric, change.subject,
-                     100.0 * change.change.median, 100.0 * change.change.interval.low,
-                     100.0 * change.change.interval.high);
+  return fmt::format("{} of {} by {} ({})", change.metric, change.subject, percent_text(change.change.median),
+                     interval_text(change.change));
 }
 
 }  // namespace
@@ -76,12 +81,14 @@ std::vector<std::string> outcome_sentences(std::span<const bench::StoredRun> run
 std::string best_sentence(std::span<const bench::StoredRun> runs) {
   const std::vector<std::string> labels = distinct(runs, system_label);
   std::map<std::string, std::size_t> wins;
+  std::vector<std::size_t> counts;
   std::size_t compared = 0;
   for (const std::string& sequence : sequences_of(runs)) {
-    const std::string best = best_on(runs, labels, sequence);
-    if (best.empty()) continue;
+    const BestLabel best = best_on(runs, labels, sequence);
+    if (best.label.empty()) continue;
     ++compared;
-    ++wins[best];
+    ++wins[best.label];
+    counts.insert(counts.end(), best.counts.begin(), best.counts.end());
   }
   if (compared == 0) return "";
   std::size_t most = 0;
@@ -91,16 +98,17 @@ std::string best_sentence(std::span<const bench::StoredRun> runs) {
     if (wins.contains(label) && wins.at(label) == most) winners.push_back(label);
   }
   const char* verb = winners.size() == 1 ? "has" : "each have";
-  return fmt::format("{} {} the smallest {} on {} of {} sequences.", fmt::join(winners, ", "), verb,
-                     bench::headline_metric().label, most, compared);
+  const auto [fewest, largest] = std::minmax_element(counts.begin(), counts.end());
+  return fmt::format(
+      "{} {} the smallest median {} on {} of {} sequences ({} runs; not a statement of significance).",
+      fmt::join(winners, ", "), verb, bench::headline_metric().label, most, compared,
+      count_text(*fewest, *largest));
 }
 
 std::vector<std::string> change_sentences(const std::string& base, const bench::Comparison& comparison) {
-  std::vector<std::string> sentences = {
-      fmt::format("Compared with build {}: {} ({} pairs of runs, {} with bit-equal trajectories, {} newly "
-                  "failed, {} newly succeeded).",
-                  base, change_class_name(comparison.result()), comparison.pairs, comparison.bit_equal,
-                  comparison.newly_failed, comparison.newly_succeeded)};
+  std::vector<std::string> sentences = {fmt::format("Compared with build {}: {}; {}.", base,
+                                                    change_class_name(comparison.result()),
+                                                    count_sentence(comparison))};
   for (const bench::ChangeClass wanted : {bench::ChangeClass::kWorse, bench::ChangeClass::kBetter}) {
     std::size_t listed = 0;
     for (const bench::MetricChange& change : comparison.changes) {

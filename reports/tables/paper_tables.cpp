@@ -8,6 +8,7 @@
 #include "bench/systems/published_table.h"
 #include "core/base/module_timings.h"
 #include "reports/tables/run_cells.h"
+#include "reports/tables/timing_runs.h"
 
 namespace stillpoint::report {
 namespace {
@@ -118,7 +119,10 @@ ReportTable accuracy_table(ReportTable table, std::span<const bench::StoredRun> 
       table.rows.push_back(row.source == "difference" ? std::move(row) : with_best_systems(std::move(row)));
     }
   }
-  table.notes.emplace_back("Bold: best of a row. Ours: median over runs. Difference: ours minus published.");
+  table.notes.emplace_back("Published rows, bold: best number of a row. Difference: ours minus published.");
+  table.notes.emplace_back("Rows \"ours\": medians over runs.");
+  if (std::string note = best_note(table, "row", false); !note.empty())
+    table.notes.push_back(std::move(note));
   table.notes.emplace_back(
       "Rendered sequences reproduce the motions of the recordings but not their images; results on them are "
       "not directly comparable with the published ones.");
@@ -194,10 +198,11 @@ ReportTable table3(std::span<const bench::StoredRun> runs) {
   for (const std::string& label : distinct(runs, system_label)) {
     TableRow& row = table.rows.emplace_back(TableRow{label, "ours", {}});
     for (const PaperModule& module : kModules)
-      row.cells.push_back(cost_cell(runs_of(runs, label, ""), module.name()));
+      row.cells.push_back(undisturbed_time_cell(timed_runs_of(runs, label), module.name()));
   }
   table.notes = {
       "* separate thread, averaged per frame; modules are averaged per call.",
+      "Ours: timing runs on an idle machine only.",
       "Dynamic Feature Recognition is the sum of recognition, missed detection compensation and moving "
       "consistency check.",
       "Published times are from other devices: only ratios between rows of one device are comparable, hence "

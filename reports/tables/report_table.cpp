@@ -21,6 +21,17 @@ std::string cell_state_name(CellState state) {
   return "";
 }
 
+std::string count_text(std::size_t least, std::size_t most) {
+  return least == most ? fmt::format("n = {}", least) : fmt::format("n = {} to {}", least, most);
+}
+
+std::string spread_text(const TableCell& cell, int decimals) {
+  const std::string count = count_text(cell.count, cell.count);
+  if (!cell.interval) return count + ", no interval";
+  return count +
+         fmt::format(", {:.{}f} to {:.{}f}", cell.interval->low, decimals, cell.interval->high, decimals);
+}
+
 std::string number_text(const TableColumn& column, const TableCell& cell) {
   if (cell.number) return fmt::format("{:.{}f}", *cell.number, column.decimals);
   return cell.state == CellState::kFailed ? "failed" : "-";
@@ -29,9 +40,7 @@ std::string number_text(const TableColumn& column, const TableCell& cell) {
 std::string cell_text(const TableColumn& column, const TableCell& cell, TableDetail detail) {
   const std::string number = number_text(column, cell);
   if (detail == TableDetail::kNumbers || cell.count == 0 || !cell.number) return number;
-  if (!cell.interval) return number + fmt::format(" (n {})", cell.count);
-  return number + fmt::format(" (n {}, {:.{}f} to {:.{}f})", cell.count, cell.interval->low, column.decimals,
-                              cell.interval->high, column.decimals);
+  return number + " (" + spread_text(cell, column.decimals) + ")";
 }
 
 std::vector<std::string> footnotes(const ReportTable& table) {
@@ -59,6 +68,21 @@ void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better) {
     if (!best || (larger_is_better ? *cell->number > *best : *cell->number < *best)) best = cell->number;
   }
   for (TableCell* cell : cells) cell->is_best = counts(*cell) && cell->number == best;
+}
+
+std::string best_note(const ReportTable& table, const std::string& group, bool larger_is_better) {
+  std::vector<std::size_t> counts;
+  bool is_marked = false;
+  for (const TableRow& row : table.rows) {
+    for (const TableCell& cell : row.cells) {
+      if (cell.number && cell.count > 0) counts.push_back(cell.count);
+      is_marked |= cell.is_best && cell.count > 0;
+    }
+  }
+  if (!is_marked) return "";
+  const auto [least, most] = std::minmax_element(counts.begin(), counts.end());
+  return fmt::format("Bold: {} median of a {} ({} runs); not a statement of significance.",
+                     larger_is_better ? "largest" : "smallest", group, count_text(*least, *most));
 }
 
 }  // namespace stillpoint::report

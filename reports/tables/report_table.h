@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/statistics/bootstrap.h"
+#include "eval/statistics/median_interval.h"
 
 namespace stillpoint::report {
 
@@ -32,13 +32,13 @@ enum class CellState {
 struct TableCell {
   std::optional<double> number;  ///< absent unless kOk or kPartial
   CellState state = CellState::kEmpty;
-  bool is_best = false;        ///< printed bold
-  bool is_suspicious = false;  ///< a published number that must not be used as a target
-  std::string note;            ///< footnote; equal texts share one footnote
-  std::size_t count = 0;       ///< number of runs; 0 for published numbers
-  std::optional<eval::Interval> interval;
-  std::vector<std::string> run_keys;  ///< keys of these runs
-  std::string protocol;               ///< evaluation protocol of the number
+  bool is_best = false;                    ///< printed bold
+  bool is_suspicious = false;              ///< a published number that must not be used as a target
+  std::string note;                        ///< footnote; equal texts share one footnote
+  std::size_t count = 0;                   ///< number of runs; 0 for published numbers
+  std::optional<eval::Interval> interval;  ///< of the median; absent if `count` is too small for one
+  std::vector<std::string> run_keys;       ///< keys of these runs
+  std::string protocol;                    ///< evaluation protocol of the number
 };
 
 struct TableRow {
@@ -62,6 +62,13 @@ enum class TableDetail {
   kSpread,  ///< also the number of runs and the interval of the median
 };
 
+/// "n = 3", or "n = 1 to 3" if the numbers of a table have different counts.
+[[nodiscard]] std::string count_text(std::size_t least, std::size_t most);
+
+/// A cell's number of runs and its interval, printed with `decimals`: "n = 8, 0.0400 to 0.0500" or "n = 3, no
+/// interval".
+[[nodiscard]] std::string spread_text(const TableCell& cell, int decimals);
+
 /// A cell's number as printed in every format; "failed" or "-" without a number.
 [[nodiscard]] std::string number_text(const TableColumn& column, const TableCell& cell);
 
@@ -74,7 +81,14 @@ enum class TableDetail {
 /// 1, 2, ... of a cell's footnote in `notes`; 0 for none.
 [[nodiscard]] std::size_t footnote_number(const std::vector<std::string>& notes, const TableCell& cell);
 
-/// Marks the best number among `cells`; ignores cells without a number and suspicious ones.
+/// Marks the best number among `cells`; ignores cells without a number and suspicious ones. A mark is no
+/// statement of significance, see `best_note`.
 void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better);
+
+/// Meaning of the marks of a table: "Bold: smallest median of a column (n = 1 to 3 runs); ...".
+/// @param group what the marked numbers are the best of, e.g. "column"
+/// @return empty if no measured number is marked
+[[nodiscard]] std::string best_note(const ReportTable& table, const std::string& group,
+                                    bool larger_is_better);
 
 }  // namespace stillpoint::report

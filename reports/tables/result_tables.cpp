@@ -5,6 +5,7 @@
 
 #include "bench/model/metrics.h"
 #include "reports/tables/run_cells.h"
+#include "reports/tables/timing_runs.h"
 
 namespace stillpoint::report {
 namespace {
@@ -24,14 +25,31 @@ std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
   return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
 }
 
-/// The table with the best number of each column marked.
+/// The table with the best number of each column marked, and what the marks mean.
 ReportTable with_best_in_columns(ReportTable table, bool larger_is_better) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     std::vector<TableCell*> cells;
     for (TableRow& row : table.rows) cells.push_back(&row.cells[i]);
     mark_best(cells, larger_is_better);
   }
+  if (std::string note = best_note(table, "column", larger_is_better); !note.empty())
+    table.notes.push_back(std::move(note));
   return table;
+}
+
+/// Whether other processes on the machine change a metric.
+bool is_time_of_process(const bench::MetricDescriptor& metric) {
+  return metric.source == bench::MetricSource::kProcess && metric.unit == "s";
+}
+
+/// A cell of the metric over the runs of a variant on a sequence; times of undisturbed timing runs, if
+/// possible.
+TableCell result_cell(const std::vector<const bench::StoredRun*>& runs,
+                      const bench::MetricDescriptor& metric) {
+  if (!is_time_of_process(metric)) return metric_cell(runs, metric.id);
+  const TimedRuns timed = timed_runs(runs);
+  TableCell cell = metric_cell(timed.runs, metric.id);
+  return cell.number ? with_note(std::move(cell), bench::time_source_note(timed.source)) : cell;
 }
 
 ReportTable metric_table(std::span<const bench::StoredRun> runs, const bench::MetricDescriptor& metric) {
@@ -50,10 +68,10 @@ ReportTable metric_table(std::span<const bench::StoredRun> runs, const bench::Me
   for (const std::string& label : labels_of(runs)) {
     TableRow row{.label = label, .source = "", .cells = {}};
     for (const std::string& sequence : sequences)
-      row.cells.push_back(metric_cell(runs_of(runs, label, sequence), table.name));
+      row.cells.push_back(result_cell(runs_of(runs, label, sequence), metric));
     table.rows.push_back(std::move(row));
   }
-  table.notes = {"Medians over the successful runs; bold: best of a column."};
+  table.notes = {"Medians over the successful runs."};
   // Costs depend on the machine and on what a system computes: no system is best.
   const bool has_best = metric.source == bench::MetricSource::kTrajectory;
   return has_best ? with_best_in_columns(std::move(table),
@@ -122,7 +140,7 @@ ReportTable cost_table(std::span<const bench::StoredRun> runs) {
   for (const std::string& label : labels_of(runs)) {
     TableRow row{.label = label, .source = "", .cells = {}};
     for (const std::string& module : modules)
-      row.cells.push_back(cost_cell(timed_runs_of(runs, label), module));
+      row.cells.push_back(time_cell(timed_runs_of(runs, label), module));
     table.rows.push_back(std::move(row));
   }
   table.notes = {"Modules are averaged per call, threads per frame; median over all runs of a variant."};
@@ -146,7 +164,7 @@ ReportTable published_comparison_table(std::span<const bench::StoredRun> runs,
   for (const std::string& label : labels_of(runs)) {
     TableRow row{.label = label, .source = "ours", .cells = {}};
     for (const std::string& column : columns) {
-      row.cells.push_back(is_cost ? cost_cell(timed_runs_of(runs, label), column)
+      row.cells.push_back(is_cost ? undisturbed_time_cell(timed_runs_of(runs, label), column)
                                   : metric_cell(runs_of(runs, label, column), published.metric));
     }
     table.rows.push_back(std::move(row));

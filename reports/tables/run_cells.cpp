@@ -5,6 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "bench/model/metrics.h"
+#include "bench/model/missing_boxes.h"
+#include "bench/model/protocol_difference.h"
+
 namespace stillpoint::report {
 namespace {
 
@@ -52,11 +56,16 @@ TableCell run_cell(const std::vector<const bench::StoredRun*>& runs, const RunNu
   if (summary) {
     cell.number = summary->median;
     cell.count = summary->count;
-    if (summary->count > 1) cell.interval = summary->median_interval;  // undefined for a single run
+    cell.interval = summary->median_interval;
     cell.state = failed > 0 ? CellState::kPartial : CellState::kOk;
   } else {
     cell.state = failed > 0 ? CellState::kFailed : CellState::kEmpty;
   }
+  return cell;
+}
+
+TableCell with_note(TableCell cell, const std::string& note) {
+  if (!note.empty()) cell.note += (cell.note.empty() ? "" : "; ") + note;
   return cell;
 }
 
@@ -68,7 +77,11 @@ TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::str
       if (candidate.name == metric && cell.protocol.empty()) cell.protocol = candidate.protocol;
     }
   }
-  return cell;
+  cell = with_note(std::move(cell), bench::protocol_difference_note(runs, metric));
+  const bench::MetricDescriptor* descriptor = bench::find_metric(metric);
+  const bool is_accuracy =
+      descriptor != nullptr && descriptor->source == bench::MetricSource::kTrajectory && cell.number;
+  return is_accuracy ? with_note(std::move(cell), bench::missing_boxes_note(runs)) : cell;
 }
 
 TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs, const std::string& module) {
@@ -88,21 +101,6 @@ std::vector<const bench::StoredRun*> runs_of(std::span<const bench::StoredRun> r
     if (matches_sequence && run.identity.axis.empty() && system_label(run.identity) == label)
       found.push_back(&run);
   }
-  return found;
-}
-
-bool is_timing_source(std::span<const bench::StoredRun> runs, const bench::StoredRun& run) {
-  const auto is_timed = [](const bench::StoredRun& other) { return other.identity.kind == "timing"; };
-  const std::string label = system_label(run.identity);
-  return is_timed(run) || std::none_of(runs.begin(), runs.end(), [&](const bench::StoredRun& other) {
-           return is_timed(other) && system_label(other.identity) == label;
-         });
-}
-
-std::vector<const bench::StoredRun*> timed_runs_of(std::span<const bench::StoredRun> runs,
-                                                   const std::string& label) {
-  std::vector<const bench::StoredRun*> found = runs_of(runs, label, "");
-  std::erase_if(found, [&](const bench::StoredRun* run) { return !is_timing_source(runs, *run); });
   return found;
 }
 

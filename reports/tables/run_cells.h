@@ -28,21 +28,17 @@ using RunNumber = std::function<std::optional<double>(const bench::StoredRun&)>;
 /// @param runs repetitions of one benchmark case; an empty list gives an empty cell
 [[nodiscard]] TableCell run_cell(const std::vector<const bench::StoredRun*>& runs, const RunNumber& number);
 
-/// `run_cell` over a metric, with its protocol.
+/// The cell with another remark in its footnote; an empty remark changes nothing.
+[[nodiscard]] TableCell with_note(TableCell cell, const std::string& note);
+
+/// `run_cell` over a metric, with its protocol, and footnotes where a strict protocol gives a very different
+/// value, or recorded boxes are missing.
 [[nodiscard]] TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs,
                                     std::string_view metric);
 
 /// `run_cell` over the mean time of a module.
 [[nodiscard]] TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs,
                                   const std::string& module);
-
-/// Whether the times of a run are used: only timing runs count if its label has any, because other runs may
-/// share the machine with parallel runs.
-[[nodiscard]] bool is_timing_source(std::span<const bench::StoredRun> runs, const bench::StoredRun& run);
-
-/// Runs of a label, outside sweeps, whose times are used (see `is_timing_source`).
-[[nodiscard]] std::vector<const bench::StoredRun*> timed_runs_of(std::span<const bench::StoredRun> runs,
-                                                                 const std::string& label);
 
 /// Runs of a label on a sequence, outside sweeps; an empty sequence matches all.
 [[nodiscard]] std::vector<const bench::StoredRun*> runs_of(std::span<const bench::StoredRun> runs,

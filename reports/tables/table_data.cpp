@@ -17,7 +17,7 @@ Json cell_json(const TableColumn& column, const TableCell& cell) {
   json["value"] = cell.number ? Json::parse(number_text(column, cell)) : Json(nullptr);
   json["exact"] = cell.number ? Json(*cell.number) : Json(nullptr);
   json["n"] = cell.count;
-  if (cell.interval) json["interval"] = {cell.interval->low, cell.interval->high};
+  json["interval"] = cell.interval ? Json({cell.interval->low, cell.interval->high}) : Json(nullptr);
   json["best"] = cell.is_best;
   if (cell.is_suspicious) json["suspicious"] = true;
   if (!cell.note.empty()) json["note"] = clean_line(cell.note);

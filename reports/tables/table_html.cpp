@@ -42,10 +42,8 @@ struct HtmlTable {
       text += fmt::format("<sup><a href=\"#{}-note-{}\">{}</a></sup>", escape_html(table.name), note,
                           note_letter(note));
     }
-    if (cell.interval && cell.count > 1) {
-      text += fmt::format("<span class=\"spread\">n {}<br>{:.{}f} to {:.{}f}</span>", cell.count,
-                          cell.interval->low, column.decimals, cell.interval->high, column.decimals);
-    }
+    if (cell.number && cell.count > 0)
+      text += "<span class=\"spread\">" + spread_text(cell, column.decimals) + "</span>";
     const std::string classes = cell_state_name(cell.state) + (cell.is_suspicious ? " suspicious" : "");
     return "<td" + attribute("class", classes) + attribute("title", tooltip(column, cell)) + ">" + text +
            "</td>";

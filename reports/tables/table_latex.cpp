@@ -8,8 +8,8 @@
 namespace stillpoint::report {
 namespace {
 
-std::string marked_cell(const TableColumn& column, const TableCell& cell, TableDetail detail,
-                        const std::vector<std::string>& notes) {
+std::string latex_cell(const TableColumn& column, const TableCell& cell, TableDetail detail,
+                       const std::vector<std::string>& notes) {
   std::string text = cell_text(column, cell, detail);
   if (text == "-") text = "--";
   if (cell.is_best) text = "\\textbf{" + text + "}";
@@ -67,7 +67,7 @@ std::string table_latex(const ReportTable& table, TableDetail detail) {
     text += escape_latex(row.label);
     if (lead == 2) text += " & " + escape_latex(row.source);
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
-      text += " & " + marked_cell(table.columns[i], row.cells[i], detail, notes);
+      text += " & " + latex_cell(table.columns[i], row.cells[i], detail, notes);
     }
     text += " \\\\\n";
   }

@@ -7,8 +7,8 @@
 namespace stillpoint::report {
 namespace {
 
-std::string marked_cell(const TableColumn& column, const TableCell& cell, TableDetail detail,
-                        const std::vector<std::string>& notes) {
+std::string markdown_cell(const TableColumn& column, const TableCell& cell, TableDetail detail,
+                          const std::vector<std::string>& notes) {
   std::string text = cell_text(column, cell, detail);
   if (cell.is_best) text = "**" + text + "**";
   const std::size_t note = footnote_number(notes, cell);
@@ -31,7 +31,7 @@ std::string table_markdown(const ReportTable& table, TableDetail detail) {
     cells.push_back(escape_markdown(row.label));
     if (has_sources(table)) cells.push_back(escape_markdown(row.source));
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
-      cells.push_back(marked_cell(table.columns[i], row.cells[i], detail, notes));
+      cells.push_back(markdown_cell(table.columns[i], row.cells[i], detail, notes));
     }
   }
   std::string text =

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/model/protocol_difference.h"
+#include "bench/model/time_source.h"
 #include "eval/metrics/statistics.h"
 #include "reports/tables/text_table.h"
 
@@ -19,6 +21,7 @@ struct Measured {
   std::vector<std::string> variants;
   std::vector<std::string> columns;
   std::map<std::pair<std::string, std::string>, std::vector<double>> values;
+  std::size_t disturbed = 0;  ///< runs that were omitted because other processes may have changed their times
 
   void add(const std::string& variant, const std::string& column, double value) {
     if (std::find(variants.begin(), variants.end(), variant) == variants.end()) variants.push_back(variant);
@@ -32,6 +35,9 @@ Measured measured(std::span<const bench::StoredRun> runs, const bench::Published
   for (const bench::StoredRun& run : runs) {
     if (run.outcome != bench::Outcome::kOk || !run.identity.axis.empty()) continue;
     if (published.metric == "mean_ms") {
+      const bool is_disturbed = bench::time_source(run) != bench::TimeSource::kUndisturbed;
+      table.disturbed += is_disturbed && !run.costs.empty() ? 1 : 0;
+      if (is_disturbed) continue;
       for (const bench::ModuleCost& cost : run.costs)
         table.add(run.identity.variant, cost.module, cost.mean_ms);
     } else if (const std::optional<double> value = bench::metric_value(run, published.metric)) {
@@ -74,13 +80,42 @@ std::vector<std::string> measured_cells(const Measured& table, const std::string
   return cells;
 }
 
+/// One line for each cell whose protocol differs much from a strict one of the same runs.
+std::string protocol_lines(std::span<const bench::StoredRun> runs, const Measured& table,
+                           const std::vector<std::string>& columns, const std::string& metric) {
+  std::string text;
+  for (const std::string& variant : table.variants) {
+    for (const std::string& sequence : columns) {
+      std::vector<const bench::StoredRun*> own;
+      for (const bench::StoredRun& run : runs) {
+        const bench::RunIdentity& identity = run.identity;
+        if (identity.variant == variant && identity.sequence == sequence && identity.axis.empty())
+          own.push_back(&run);
+      }
+      const std::string note = bench::protocol_difference_note(own, metric);
+      if (!note.empty()) text += fmt::format("- {} on {}: {}\n", variant, sequence, note);
+    }
+  }
+  return text;
+}
+
+std::string omission_sentence(std::size_t disturbed) {
+  if (disturbed == 0) return "";
+  return fmt::format(
+      "The times of {} run{} are not compared, because only timing runs on an idle machine give times: "
+      "execute a plan "
+      "with kind = \"timing\" into a new store while the machine is idle.",
+      disturbed, disturbed == 1 ? "" : "s");
+}
+
 }  // namespace
 
 std::string published_comparison(std::span<const bench::StoredRun> runs,
                                  const bench::PublishedTable& published) {
   const Measured table = measured(runs, published);
   const std::vector<std::string> columns = shared_columns(table, published);
-  if (columns.empty()) return "";
+  const std::string omitted = omission_sentence(table.disturbed);
+  if (columns.empty()) return omitted.empty() ? "" : published.title + ": " + omitted + "\n";
   TableRows rows = {{"system", "source"}};
   rows.front().insert(rows.front().end(), columns.begin(), columns.end());
   for (const std::string& variant : table.variants) rows.push_back(measured_cells(table, variant, columns));
@@ -98,6 +133,8 @@ std::string published_comparison(std::span<const bench::StoredRun> runs,
                                  published.unit, published.alignment);
   text += format_table(rows, TableStyle::kMarkdown) + "\n";
   for (const std::string& sentence : published.comparability) text += "- " + sentence + "\n";
+  if (!omitted.empty()) text += "- " + omitted + "\n";
+  text += protocol_lines(runs, table, columns, published.metric);
   text += notes;
   for (const std::string& source : sources)
     text += fmt::format("- {}: {}\n", source, published.sources.at(source));

@@ -11,7 +11,9 @@
 namespace stillpoint::report {
 
 /// A Markdown table with one column per sequence (or module): measured medians first, then the published rows
-/// that share a column, followed by sources, notes and limits of comparability. Empty without shared columns.
+/// that share a column, followed by sources, notes and limits of comparability. Times are those of
+/// undisturbed timing runs only. Empty without shared columns, except for a line that names the omitted
+/// times.
 [[nodiscard]] std::string published_comparison(std::span<const bench::StoredRun> runs,
                                                const bench::PublishedTable& published);
 

@@ -23,7 +23,9 @@
       [curves.values, ...curves.data], figure);
   }
 
-  const median = (numbers) => { const finite = numbers.filter((n) => n !== null).sort((a, b) => a - b); return finite.length ? finite[Math.floor((finite.length - 1) / 2)] : null; };
+  const finite = (numbers) => numbers.filter((n) => n !== null).sort((a, b) => a - b);
+  const median = (numbers) => { const n = numbers.length; return n ? (numbers[Math.floor((n - 1) / 2)] + numbers[Math.floor(n / 2)]) / 2 : null; };
+  const counts = (lists) => { const n = lists.map((list) => list.length), least = Math.min(...n), most = Math.max(...n); return " (n = " + (least === most ? least : least + " to " + most) + ")"; };
 
   // One chart per sweep axis, one line per variant and sequence. @return number of charts
   page.drawSweeps = function (place) {
@@ -35,14 +37,15 @@
       const runs = swept.filter((run) => run.sweep.axis === axis);
       const values = [...new Set(runs.map((run) => run.sweep.value))].sort((a, b) => a - b);
       const names = [...new Set(runs.map((run) => run.label + ", " + run.sequence))];
-      const data = names.map((name) => values.map((value) => median(runs.filter((run) => run.sweep.value === value && run.label + ", " + run.sequence === name).map(error))));
-      return { title: headline.label + " over " + axis, xLabel: axis, unit: headline.unit, values, names, data };
+      const points = names.map((name) => values.map((value) => finite(runs.filter((run) => run.sweep.value === value && run.label + ", " + run.sequence === name).map(error))));
+      return { title: headline.label + " over " + axis + ": median of the n successful runs at a value", xLabel: axis, unit: headline.unit, values,
+        names: names.map((name, i) => name + counts(points[i])), data: points.map((lists) => lists.map(median)) };
     }));
   };
 
   // One chart per sequence, one line per variant. @return number of charts
   page.drawSegments = function (place) {
     return drawAll(place, page.index.segments.map((figure) => ({ title: figure.sequence, xLabel: "segment length [m]", unit: "% of the length",
-      values: figure.lengths, names: figure.curves.map((curve) => curve.label), data: figure.curves.map((curve) => curve.errors) })));
+      values: figure.lengths, names: figure.curves.map((curve) => curve.label + " (n = " + curve.runs + ")"), data: figure.curves.map((curve) => curve.errors) })));
   };
 })(window.stillpoint);

@@ -65,7 +65,8 @@
     state.frame = null;
     state.worstAt = -1;
     byId("run").value = state.run;
-    byId("outcome").textContent = run.outcome === "ok" ? (series.frames ? "" : "The store has no frames of this run.") : run.outcome + ": " + run.detail;
+    const outcome = run.outcome === "ok" ? (series.frames ? "" : "The store has no frames of this run.") : run.outcome + ": " + run.detail;
+    byId("outcome").textContent = [outcome, ...run.notes].filter((text) => text).join(" ");
     showMetrics(run);
     byId("repeat-run").textContent = command(run);
     byId("manifest").textContent = JSON.stringify(page.index.manifests[run.manifest] || null, null, 2);

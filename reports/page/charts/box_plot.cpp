@@ -59,12 +59,12 @@ std::string ticks_svg(const LogAxis& axis, double height, const std::string& uni
 std::string box_svg(const PlotBox& box, const LogAxis& axis, double y) {
   const double middle = y + kRowHeight / 2.0;
   std::string text = fmt::format(
-      "<g><title>{} {}: median {:.3g}, quartiles {:.3g} to {:.3g}, 95 % {:.3g}, max "
+      "<g><title>{} {}: median {:.3g}, quartiles {:.3g} to {:.3g}, 95th percentile {:.3g}, max "
       "{:.3g}, {} frames</title>",
       escape_html(box.group), escape_html(box.label), box.median, box.q1, box.q3, box.p95, box.max,
       box.count);
-  text += fmt::format("<text class=\"name\" x=\"{}\" y=\"{:.1f}\">{}</text>", kLabelWidth - 8.0, middle + 4.0,
-                      escape_html(box.label));
+  text += fmt::format("<text class=\"name\" x=\"{}\" y=\"{:.1f}\">{} (n = {})</text>", kLabelWidth - 8.0,
+                      middle + 4.0, escape_html(box.label), box.count);
   text += fmt::format("<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", axis(box.p5),
                       axis(box.p95), middle, middle);
   text += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", axis(box.q1),

@@ -39,13 +39,15 @@ std::vector<std::optional<double>> errors_of(const Trajectory& truth, const Traj
 SegmentCurve curve_of(const bench::Store& store, const std::vector<const bench::StoredRun*>& runs,
                       const std::string& label, const std::vector<double>& lengths) {
   std::vector<std::vector<double>> errors(lengths.size());
+  SegmentCurve curve{.label = label, .runs = 0, .translation_percent = {}};
   for (const bench::StoredRun* run : runs) {
     const auto own = errors_of(store.truth(*run), store.trajectory(*run), lengths);
+    curve.runs +=
+        std::any_of(own.begin(), own.end(), [](const auto& error) { return error.has_value(); }) ? 1 : 0;
     for (std::size_t i = 0; i < lengths.size(); ++i) {
       if (own[i]) errors[i].push_back(*own[i]);
     }
   }
-  SegmentCurve curve{.label = label, .translation_percent = {}};
   for (const std::vector<double>& values : errors)
     curve.translation_percent.push_back(eval::percentile(values, 0.5));
   return curve;

@@ -13,6 +13,7 @@ namespace stillpoint::report {
 
 struct SegmentCurve {
   std::string label;
+  std::size_t runs = 0;  ///< with any error
   /// Per segment length: median over the variant's runs of each run's mean translational error [% of the
   /// length]; nullopt where no run has a segment of that length.
   std::vector<std::optional<double>> translation_percent;

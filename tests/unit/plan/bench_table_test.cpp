@@ -48,6 +48,16 @@ TEST(BenchTable, JsonHasFullPrecisionAndNulls) {
   EXPECT_NE(json.find("\"feature_tracking\": 1.234"), std::string::npos);
 }
 
+TEST(BenchTable, MarksTimesThatOtherProcessesMayHaveChanged) {
+  BenchRow row = succeeded_row();
+  row.time_source = TimeSource::kShared;
+  const std::vector<BenchRow> rows = {row};
+  EXPECT_NE(markdown_table(rows).find("\nColumns in ms: " + time_source_note(TimeSource::kShared)),
+            std::string::npos);
+  EXPECT_NE(json_table("title", rows).find("\"mean_ms_note\": \"times of runs that are no timing runs"),
+            std::string::npos);
+}
+
 TEST(BenchTable, ShowsTheNumberOfSucceededRuns) {
   BenchRow row = succeeded_row();
   row.runs = 5;

@@ -145,7 +145,10 @@ bench::LevelShift shift_of(double change, std::size_t after) {
           .after = after,
           .level_before = 1.0,
           .level_after = 1.0 + change,
-          .change = eval::RelativeChange{3, change, {change - 0.1, change + 0.1}},
+          .change = eval::RelativeChange{.count = 8,
+                                         .median = change,
+                                         .p_value = 0.001,
+                                         .interval = eval::Interval{change - 0.1, change + 0.1}},
           .p_value = 0.001,
           .state = bench::ChangeState::kOpen,
           .reason = ""};
@@ -154,7 +157,7 @@ bench::LevelShift shift_of(double change, std::size_t after) {
 TEST(CommitPage, ComparesAMetricWithItsPreviousMeasurement) {
   const std::string page = commit_html(stepping_history(), {.shifts = {shift_of(1.0, 2)}, .drifts = {}}, 2);
   EXPECT_NE(page.find("<td>1 ms</td><td>2 ms</td><td>+100.0 %</td></tr>"), std::string::npos);  // 2 / 1 - 1
-  EXPECT_NE(page.find("<td>+90.0 to +110.0 %</td>"), std::string::npos);
+  EXPECT_NE(page.find("<td>n = 8, +90.0 to +110.0 %</td>"), std::string::npos);
   EXPECT_NE(page.find("previous: bb"), std::string::npos);
 }
 
@@ -174,6 +177,18 @@ TEST(GroupedShifts, AreSortedByCommitThenByMagnitude) {
   ASSERT_EQ(groups[1].shifts.size(), 2u);
   EXPECT_EQ(groups[1].shifts.front()->change->median, -0.4);
   EXPECT_TRUE(grouped_shifts(stepping_history(), changes, bench::ChangeState::kResolved).empty());
+}
+
+TEST(HistoryText, AnIntervalHasItsNumberOfValuesAndIsAbsentIfTheyDoNotSupportOne) {
+  bench::LevelShift shift = shift_of(1.0, 2);
+  EXPECT_EQ(interval_label(shift), "n = 8, +90.0 to +110.0 %");
+  shift.change->count = 3;
+  shift.change->interval.reset();
+  EXPECT_EQ(interval_label(shift), "n = 3, no interval");
+  const Json json =
+      Json::parse(regressions_json(stepping_history(), {.shifts = {shift}, .drifts = {}}))["open"][0];
+  EXPECT_TRUE(json["interval"].is_null());
+  EXPECT_EQ(json["n"], 3);
 }
 
 TEST(HistoryText, ShortensCommitsAndDistinguishesSubjects) {

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "reports/text/comparison_report.h"
-
 namespace stillpoint::report {
 namespace {
 
@@ -48,32 +46,25 @@ TEST(PublishedComparison, IsEmptyWithoutSharedColumns) {
   EXPECT_EQ(published_comparison(std::vector<bench::StoredRun>{run_of("vo", "market", 0.01)}, table()), "");
 }
 
-bench::Comparison comparison() {
-  bench::MetricChange slower{.metric = "feature_tracking",
-                             .subject = "vo",
-                             .unit = "ms",
-                             .base_median = 10.0,
-                             .head_median = 10.5,
-                             .change = {.count = 20, .median = 0.05, .interval = {0.04, 0.06}},
-                             .adjusted_interval = {0.03, 0.07},
-                             .result = bench::ChangeClass::kWorse};
-  bench::MetricChange unclear = slower;
-  unclear.metric = "a<b";
-  unclear.result = bench::ChangeClass::kInconclusive;
-  return {.pairs = 20, .bit_equal = 20, .changes = {slower, unclear}};
+TEST(PublishedComparison, ComparesOnlyUndisturbedTimes) {
+  bench::PublishedTable times = table();
+  times.metric = "mean_ms";
+  times.rows = {{.system = "Quoted", .source = "A", .note = "", .values = {{"feature_tracking", 5.0}}}};
+  bench::StoredRun run = run_of("vo", "market", 0.01);
+  run.costs = {{"feature_tracking", "call", 10, 2.0, 2.0, 2.0, 2.0}};
+  const std::string omitted = published_comparison(std::vector{run}, times);
+  EXPECT_EQ(omitted.find("2.0000"), std::string::npos) << omitted;
+  EXPECT_NE(omitted.find("The times of 1 run are not compared"), std::string::npos) << omitted;
+  run.identity.kind = "timing";
+  const std::string compared = published_comparison(std::vector{run}, times);
+  EXPECT_NE(compared.find("| vo     | measured     | 2.0000"), std::string::npos) << compared;
 }
 
-TEST(ComparisonReport, StartsWithTheResult) {
-  const std::string text = comparison_markdown({"old", "new"}, comparison());
-  EXPECT_TRUE(text.starts_with("# new compared with old: worse\n")) << text;
-  EXPECT_NE(text.find("+5.0 %"), std::string::npos);
-  EXPECT_NE(text.find("+4.0 % to +6.0 %"), std::string::npos);
-}
-
-TEST(ComparisonReport, JunitReportsWorseAsFailureAndInconclusiveAsSkipped) {
-  const std::string text = comparison_junit({"old", "new"}, comparison());
-  EXPECT_NE(text.find("tests=\"3\" failures=\"1\" skipped=\"1\""), std::string::npos) << text;
-  EXPECT_NE(text.find("classname=\"a&lt;b\""), std::string::npos) << text;
+TEST(PublishedComparison, NamesAStrictProtocolThatDiffersByAFactorOfTwo) {
+  bench::StoredRun run = run_of("vo", "walking_xyz", 0.02);
+  run.metrics.push_back({"strict:se3/ate_rmse_m", "", "m", 0.05});
+  const std::string text = published_comparison(std::vector{run}, table());
+  EXPECT_NE(text.find("- vo on walking_xyz: ATE 0.0200 m by"), std::string::npos) << text;
 }
 
 }  // namespace

@@ -55,14 +55,62 @@ TEST(MetricTables, ExistIfEveryRunFailed) {
   ASSERT_EQ(metric_tables(runs).size(), 1u);
 }
 
-TEST(CostTable, PrefersTimingRuns) {
-  bench::StoredRun timed = run_of("a", "s", 1.0);
-  timed.identity.kind = "timing";
-  timed.costs.front().mean_ms = 1.0;
-  const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), timed, run_of("b", "s", 1.0)};
+bench::StoredRun timing_run(const std::string& variant, double ms, bool quiet) {
+  bench::StoredRun run = run_of(variant, "market", 1.0);
+  run.identity.kind = "timing";
+  run.costs.front().mean_ms = ms;
+  run.metrics.push_back({"quiet", "", "", quiet ? 1.0 : 0.0});
+  return run;
+}
+
+TEST(CostTable, PrefersUndisturbedTimingRunsAndMarksOtherTimes) {
+  const std::vector<bench::StoredRun> runs = {run_of("a", "market", 1.0), timing_run("a", 1.0, true),
+                                              timing_run("a", 9.0, false), run_of("b", "market", 1.0),
+                                              timing_run("c", 3.0, false)};
   const ReportTable table = cost_table(runs);
-  EXPECT_EQ(table.rows[0].cells[0].number, 1.0);  // not the median of 1 and 2 ms
+  EXPECT_EQ(table.rows[0].cells[0].number, 1.0);  // not the median of 1, 2 and 9 ms
+  EXPECT_EQ(table.rows[0].cells[0].note, "");
   EXPECT_EQ(table.rows[1].cells[0].number, 2.0);  // b has no timing runs
+  EXPECT_NE(table.rows[1].cells[0].note.find("no timing runs"), std::string::npos);
+  EXPECT_EQ(table.rows[2].cells[0].number, 3.0);
+  EXPECT_NE(table.rows[2].cells[0].note.find("idle machine"), std::string::npos);
+}
+
+TEST(CostTable, CountsFailedTimingRuns) {
+  bench::StoredRun failed = timing_run("a", 1.0, false);
+  failed.outcome = bench::Outcome::kCrashed;
+  const std::vector<bench::StoredRun> runs = {timing_run("a", 1.0, true), failed};
+  EXPECT_EQ(cost_table(runs).rows[0].cells[0].state, CellState::kPartial);
+}
+
+TEST(MetricTables, MarkTheCpuTimeOfRunsThatShareTheMachine) {
+  bench::StoredRun run = run_of("a", "s", 1.0);
+  run.metrics = {{"process_cpu_s", "wait4", "s", 2.0}};
+  const std::vector<ReportTable> tables = metric_tables(std::vector{run});
+  EXPECT_EQ(tables.back().name, "process_cpu_s");
+  EXPECT_NE(tables.back().rows[0].cells[0].note.find("kind = \"timing\""), std::string::npos);
+}
+
+TEST(MetricTables, SayWhatBoldMeansAndHowManyRunsItRestsOn) {
+  const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), run_of("a", "s", 3.0),
+                                              run_of("b", "s", 1.5)};
+  EXPECT_EQ(metric_tables(runs).front().notes.back(),
+            "Bold: smallest median of a column (n = 1 to 2 runs); not a statement of significance.");
+}
+
+TEST(MetricTables, ThreeRunsHaveNoInterval) {
+  const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), run_of("a", "s", 2.0),
+                                              run_of("a", "s", 3.0)};
+  const TableCell cell = metric_tables(runs).front().rows[0].cells[0];
+  EXPECT_EQ(cell.count, 3u);
+  EXPECT_FALSE(cell.interval);
+}
+
+TEST(MetricTables, NameAStrictProtocolThatDiffersByAFactorOfTwo) {
+  bench::StoredRun run = run_of("a", "s", 1.0);
+  run.metrics.push_back({"strict:se3/ate_rmse_m", "", "m", 2.5});
+  EXPECT_EQ(metric_tables(std::vector{run}).front().rows[0].cells[0].note,
+            "ATE 1.0000 m by compat:tum, ATE 2.5000 m by strict:se3");
 }
 
 TEST(PaperTables, AreSelectedByPlanName) {
@@ -119,11 +167,22 @@ TEST(PaperTables, TableIIFlagsTheIdenticalRowsAndNoOthers) {
 }
 
 TEST(PaperTables, TableIIIListsOurTimesBelowThePublishedOnes) {
-  const std::vector<bench::StoredRun> runs = {run_of("dynamic_vins", "market", 1.0)};
+  const std::vector<bench::StoredRun> runs = {timing_run("dynamic_vins", 2.0, true)};
   const ReportTable table = paper_table(PaperTable::kTable3, runs);
   EXPECT_EQ(cell_of(table, "Dynamic-VINS on Atlas200 DK", "published", 0).number, 15.535);
   EXPECT_EQ(cell_of(table, "VINS-Mono on Atlas200 DK", "published", 3).state, CellState::kEmpty);
   EXPECT_EQ(cell_of(table, "dynamic_vins", "ours", 0).number, 2.0);
+}
+
+TEST(PaperTables, TableIIIOmitsDisturbedTimesAndNamesTheRemedy) {
+  const std::vector<bench::StoredRun> runs = {run_of("dynamic_vins", "market", 1.0),
+                                              timing_run("stillpoint", 1.0, false)};
+  const ReportTable table = paper_table(PaperTable::kTable3, runs);
+  for (const char* label : {"dynamic_vins", "stillpoint"}) {
+    const TableCell& cell = cell_of(table, label, "ours", 0);
+    EXPECT_FALSE(cell.number) << label;
+    EXPECT_NE(cell.note.find("stillpoint bench table3_runtime"), std::string::npos) << label;
+  }
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ ReportTable small_table() {
                       .state = CellState::kPartial,
                       .is_best = true,
                       .note = "1 of 3 runs failed",
-                      .count = 2,
+                      .count = 8,
                       .interval = eval::Interval{0.04, 0.05}},
                      {.state = CellState::kFailed}}}},
           .notes = {"A note."}};
@@ -70,9 +70,23 @@ TEST(TableFormats, MarkdownMarksBestValuesAndFootnotes) {
 }
 
 TEST(TableFormats, SpreadIsShownOnRequest) {
-  EXPECT_NE(table_markdown(small_table(), TableDetail::kSpread).find("0.0486 (n 2, 0.0400 to 0.0500)"),
+  EXPECT_NE(table_markdown(small_table(), TableDetail::kSpread).find("0.0486 (n = 8, 0.0400 to 0.0500)"),
             std::string::npos);
-  EXPECT_EQ(table_markdown(small_table()).find("(n 2"), std::string::npos);
+  EXPECT_EQ(table_markdown(small_table()).find("(n ="), std::string::npos);
+}
+
+TEST(TableFormats, AMissingIntervalIsStatedWithTheNumberOfRuns) {
+  ReportTable table = small_table();
+  TableCell& cell = table.rows.front().cells.front();
+  cell.count = 3;
+  cell.interval.reset();
+  EXPECT_NE(table_markdown(table, TableDetail::kSpread).find("0.0486 (n = 3, no interval)"),
+            std::string::npos);
+  EXPECT_NE(table_html(table).find("<span class=\"spread\">n = 3, no interval</span>"), std::string::npos);
+  EXPECT_NE(table_csv(table).find(",0.0486,3,,,partial,"), std::string::npos);
+  const nlohmann::ordered_json json = table_json(table)["rows"][0]["cells"][0];
+  EXPECT_TRUE(json["interval"].is_null());
+  EXPECT_EQ(json["n"], 3);
 }
 
 TEST(TableFormats, LatexHasBooktabsAndGroups) {
@@ -87,7 +101,7 @@ TEST(TableFormats, LatexHasBooktabsAndGroups) {
 TEST(TableFormats, CsvHasOneLinePerCell) {
   EXPECT_EQ(table_csv(small_table()),
             "row,source,group,column,unit,value,n,low,high,state,note\n"
-            "xyz,ours,A,ATE,m,0.0486,2,0.0400,0.0500,partial,1 of 3 runs failed\n"
+            "xyz,ours,A,ATE,m,0.0486,8,0.0400,0.0500,partial,1 of 3 runs failed\n"
             "xyz,ours,B,ATE,m,,0,,,failed,\n");
 }
 

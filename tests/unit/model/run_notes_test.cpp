@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "bench/model/metrics.h"
+#include "bench/model/protocol_difference.h"
+#include "bench/model/time_source.h"
+
+namespace stillpoint::bench {
+namespace {
+
+StoredRun evaluated_run(double tum, double strict) {
+  StoredRun run;
+  run.metrics = {{"ate_rmse_m", "compat:tum, 0.02 s, one-to-one", "m", tum},
+                 {"strict:se3/ate_rmse_m", "Ground truth interpolated", "m", strict}};
+  return run;
+}
+
+std::string note_of(const std::vector<StoredRun>& runs) {
+  std::vector<const StoredRun*> pointers;
+  for (const StoredRun& run : runs) pointers.push_back(&run);
+  return protocol_difference_note(pointers, metric_id::kAte);
+}
+
+TEST(ProtocolDifference, NamesBothProtocolsAndValuesFromAFactorOfTwoOn) {
+  EXPECT_EQ(note_of({evaluated_run(0.01, 0.02)}), "ATE 0.0100 m by compat:tum, ATE 0.0200 m by strict:se3");
+  EXPECT_EQ(note_of({evaluated_run(0.04, 0.02)}), "ATE 0.0400 m by compat:tum, ATE 0.0200 m by strict:se3");
+  EXPECT_EQ(note_of({evaluated_run(0.01, 0.0199)}), "");
+}
+
+TEST(ProtocolDifference, IsNotHiddenByTheMedianOfTheOtherRuns) {
+  EXPECT_EQ(
+      note_of({evaluated_run(0.01, 0.01), evaluated_run(0.01, 0.05), evaluated_run(0.01, 0.01)}),
+      "ATE 0.0100 m by compat:tum, ATE 0.0100 m by strict:se3 (medians of 3 runs; differ by a factor of 2 or "
+      "more in 1)");
+}
+
+TEST(ProtocolDifference, IgnoresFailedRunsOtherMetricsAndDifferencesBelowThePrecision) {
+  StoredRun failed = evaluated_run(0.01, 0.05);
+  failed.outcome = Outcome::kLost;
+  StoredRun rotation = evaluated_run(0.01, 0.01);
+  rotation.metrics.push_back({"strict:se3/ate_rmse_deg", "", "deg", 5.0});
+  EXPECT_EQ(note_of({failed}), "");
+  EXPECT_EQ(note_of({rotation}), "");
+  EXPECT_EQ(note_of({evaluated_run(1e-5, 1e-4)}), "");  // the floor of the ATE is 0.2 mm
+  EXPECT_EQ(note_of({}), "");
+}
+
+TEST(TimeSource, DependsOnTheKindOfTheRunAndOnOtherLoad) {
+  StoredRun run;
+  EXPECT_EQ(time_source(run), TimeSource::kShared);
+  run.identity.kind = "timing";
+  EXPECT_EQ(time_source(run), TimeSource::kUndisturbed);
+  run.metrics = {{std::string(metric_id::kQuiet), "", "", 0.0}};
+  EXPECT_EQ(time_source(run), TimeSource::kBusy);
+  run.metrics.front().value = 1.0;
+  EXPECT_EQ(time_source(run), TimeSource::kUndisturbed);
+  EXPECT_EQ(time_source_note(TimeSource::kUndisturbed), "");
+  EXPECT_NE(time_source_note(TimeSource::kShared).find("kind = \"timing\""), std::string::npos);
+  EXPECT_NE(time_source_note(TimeSource::kBusy).find("idle machine"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace stillpoint::bench
