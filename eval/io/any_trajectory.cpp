@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "eval/io/bag_file.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
 #include "eval/io/text_reader.h"
@@ -25,7 +26,7 @@ LoadedTrajectory one_sequence(OpenlorisFile file, const TrajectorySource& source
     throw InputError(source.path.string(), "contains " + std::to_string(file.sequences.size()) +
                                                " sequences; select one with --seq");
   }
-  return {std::move(selected->second), file.skipped_rows};
+  return {std::move(selected->second), file.repairs};
 }
 
 }  // namespace
@@ -45,6 +46,7 @@ TrajectoryFormat detect_format(std::string_view text) {
 }
 
 LoadedTrajectory read_trajectory(const TrajectorySource& source) {
+  reject_bag(source.path, kExportTrajectory);
   std::error_code ignored;
   const bool is_folder = std::filesystem::is_directory(source.path, ignored);
   if (source.format == TrajectoryFormat::kSevenScenes || (!source.format && is_folder)) {

@@ -6,7 +6,6 @@
 #include <cctype>
 #include <charconv>
 #include <optional>
-#include <vector>
 
 #include "core/base/error.h"
 #include "eval/io/pose_row.h"
@@ -41,8 +40,16 @@ class OpenlorisParser {
   }
 
   [[nodiscard]] OpenlorisFile finish(const std::string& name) {
-    if (file_.sequences.empty()) {
+    if (builders_.empty()) {
       throw InputError(name, "no \"seq:\" line found; an OpenLORIS file has one before each sequence");
+    }
+    for (auto& [number, builder] : builders_) {
+      LoadedTrajectory loaded = builder.release();
+      file_.repairs.skipped += loaded.repairs.skipped;
+      file_.repairs.repeated += loaded.repairs.repeated;
+      file_.repairs.reordered += loaded.repairs.reordered;
+      loaded.trajectory.frame = file_.frame;
+      file_.sequences[number] = std::move(loaded.trajectory);
     }
     return std::move(file_);
   }
@@ -60,26 +67,23 @@ class OpenlorisParser {
     if (error != std::errc() || end != value.data() + value.size()) {
       throw row.error("sequence \"" + value + "\" is not a number");
     }
-    const auto [entry, is_new] = file_.sequences.try_emplace(number);
+    const auto [entry, is_new] = builders_.try_emplace(number);
     if (!is_new) throw row.error("duplicate sequence " + value + "; expected unique numbers");
-    poses_ = &entry->second.poses;
+    current_ = &entry->second;
   }
 
   void parse_pose_row(const TextRow& row) {
-    if (poses_ == nullptr) throw row.error("pose before the first \"seq:\" line");
+    if (current_ == nullptr) throw row.error("pose before the first \"seq:\" line");
     if (row.fields.size() < 1 + kPoseColumns) {
       throw row.error("a pose needs 8 numbers, found " + std::to_string(row.fields.size()) +
                       "; expected \"t tx ty tz qx qy qz qw\"");
     }
     const Timestamp t = row.time(0, TimeUnit::kSeconds);
     const std::optional<Pose> pose = parse_pose(row, {.first = row.fields.size() - kPoseColumns});
-    if (!pose) {
-      ++file_.skipped_rows;
-    } else if (repeated_ == RepeatedPoses::kDrop && repeats(row.fields.last(kPoseColumns))) {
+    if (pose && repeated_ == RepeatedPoses::kDrop && repeats(row.fields.last(kPoseColumns))) {
       ++file_.repeated_poses;
     } else {
-      if (!poses_->empty()) row.require_increasing(poses_->back().t, t);
-      poses_->push_back({t, *pose});
+      current_->add(row, t, pose);
     }
   }
 
@@ -95,7 +99,8 @@ class OpenlorisParser {
 
   RepeatedPoses repeated_;
   OpenlorisFile file_;
-  std::vector<StampedPose>* poses_ = nullptr;  ///< of the current sequence
+  std::map<int, TrajectoryBuilder> builders_;  ///< by number of the sequence
+  TrajectoryBuilder* current_ = nullptr;       ///< of the sequence of the last "seq:" line
   std::optional<std::array<double, kPoseColumns>> last_pose_;
 };
 
@@ -109,9 +114,7 @@ OpenlorisFile parse_openloris(std::string_view text, const std::string& name, Re
   OpenlorisParser parser(repeated);
   RowReader rows(text, name);
   while (const std::optional<TextRow> row = rows.next()) parser.parse_row(*row);
-  OpenlorisFile file = parser.finish(name);
-  for (auto& [number, sequence] : file.sequences) sequence.frame = file.frame;
-  return file;
+  return parser.finish(name);
 }
 
 std::string format_openloris(const OpenlorisFile& file) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/types/trajectory.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::eval {
 
@@ -16,7 +16,7 @@ struct OpenlorisFile {
   std::string scene;                    ///< "home", "cafe", ..., in lower case
   std::string frame;                    ///< body frame of the poses; "base_link" unless the file specifies it
   std::map<int, Trajectory> sequences;  ///< by number
-  std::size_t skipped_rows = 0;         ///< with NaN or a zero quaternion
+  RowRepairs repairs;                   ///< of all sequences
   std::size_t repeated_poses = 0;       ///< dropped poses equal to the previous one
 };
 
@@ -26,8 +26,8 @@ enum class RepeatedPoses { kDrop, kKeep };
 /// seven are the pose. Other header lines are ignored. A pose equal to that of the previous row is dropped by
 /// default, as in the OpenLORIS tools (their option -k keeps it), because systems repeat their last pose when
 /// tracking is lost.
-/// @throws InputError with file:line for a malformed row, a pose before the first `seq:`, or a duplicate
-/// sequence
+/// @throws InputError with file:line for a malformed row, a pose before the first `seq:`, a duplicate
+/// sequence, or a stamp out of order as in `read_tum`
 [[nodiscard]] OpenlorisFile read_openloris(const std::filesystem::path& file,
                                            RepeatedPoses repeated = RepeatedPoses::kDrop);
 

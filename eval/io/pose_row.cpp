@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/io/pose_row.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace stillpoint::eval {
 namespace {
 
-constexpr double kEstimateTolerance = 0.1;      // rounding to 3 decimals changes the norm by 0.1 % only
+constexpr double kNormTolerance = 0.1;          // rounding to 3 decimals changes the norm by 0.1 % only
 constexpr double kGroundTruthTolerance = 0.01;  // rounding to 4 decimals stays far below
 constexpr double kMaxCoordinate = 1e9;          // [m]; limits the loss of precision in sums of squares
 
@@ -27,7 +28,7 @@ std::optional<Pose> parse_pose(const TextRow& row, const PoseFields& fields) {
                                    : Eigen::Quaterniond(v[3], v[4], v[5], v[6]);
   const double norm = q.norm();
   if (may_skip && norm == 0.0) return std::nullopt;
-  if (std::abs(norm - 1.0) > (may_skip ? kEstimateTolerance : kGroundTruthTolerance)) {
+  if (std::abs(norm - 1.0) > (may_skip ? kNormTolerance : kGroundTruthTolerance)) {
     throw row.error("the quaternion has norm " + std::to_string(norm) +
                     ", expected 1; check the order of the columns");
   }
@@ -41,16 +42,35 @@ std::optional<Pose> parse_pose(const TextRow& row, const PoseFields& fields) {
 void TrajectoryBuilder::add(const TextRow& row, Timestamp t, const std::optional<Pose>& pose) {
   std::vector<StampedPose>& poses = loaded_.trajectory.poses;
   if (!pose) {
-    ++loaded_.skipped_rows;
-    return;
+    ++loaded_.repairs.skipped;
+  } else if (poses.empty() || t > poses.back().t) {
+    poses.push_back({t, *pose});
+  } else {
+    sort_in(row, {t, *pose});
   }
-  if (!poses.empty()) row.require_increasing(poses.back().t, t);
-  poses.push_back({t, *pose});
+}
+
+void TrajectoryBuilder::sort_in(const TextRow& row, const StampedPose& pose) {
+  std::vector<StampedPose>& poses = loaded_.trajectory.poses;
+  const double delay_s = seconds_between(pose.t, poses.back().t);
+  if (delay_s > kMaxDisorder_s) {
+    throw row.error("stamp " + format_stamp(pose.t) + " s is " + std::to_string(delay_s) +
+                    " s earlier than a row before; sort the file by time, or split it if it contains several "
+                    "runs");
+  }
+  const auto next = std::lower_bound(poses.begin(), poses.end(), pose.t,
+                                     [](const StampedPose& known, Timestamp t) { return known.t < t; });
+  if (next->t == pose.t) {
+    ++loaded_.repairs.repeated;
+  } else {
+    ++loaded_.repairs.reordered;
+    poses.insert(next, pose);
+  }
 }
 
 void TrajectoryBuilder::require_poses(const std::string& file) const {
   if (!loaded_.trajectory.poses.empty()) return;
-  throw InputError(file, loaded_.skipped_rows > 0
+  throw InputError(file, loaded_.repairs.skipped > 0
                              ? "no valid pose: all rows have NaN or a zero quaternion"
                              : "no poses found; expected rows \"t tx ty tz qx qy qz qw\"");
 }

@@ -36,10 +36,9 @@ struct PoseFields {
 /// Collects the poses of a file in order of time.
 class TrajectoryBuilder {
  public:
-  explicit TrajectoryBuilder(const std::string& frame = "") { loaded_.trajectory.frame = frame; }
-
-  /// Appends the pose of a row, or counts the row as skipped if it has none.
-  /// @throws InputError if the stamp does not increase
+  /// Adds the pose of a row. A row without a pose, and one with the stamp of an earlier row, is counted and
+  /// skipped; one that is up to `kMaxDisorder_s` earlier than the latest pose is counted and sorted in.
+  /// @throws InputError if it is even earlier
   void add(const TextRow& row, Timestamp t, const std::optional<Pose>& pose);
 
   /// @param file its name, for messages
@@ -49,6 +48,8 @@ class TrajectoryBuilder {
   [[nodiscard]] LoadedTrajectory release() { return std::move(loaded_); }
 
  private:
+  void sort_in(const TextRow& row, const StampedPose& pose);
+
   LoadedTrajectory loaded_;
 };
 

@@ -9,10 +9,13 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 
 namespace stillpoint::eval {
 namespace {
 
+constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";        // some editors write it at the start of a file
+constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30U;  // a day of IMU samples at 400 Hz has 3 GB
 constexpr int kStampDecimals = 9;
 constexpr int kMaxExponent = 64;
 
@@ -67,17 +70,20 @@ std::optional<Decimal> parse_decimal(std::string_view field) {
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    throw InputError(file.string(), "is a folder; expected a file");
-  }
+  require_regular_file(file);
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   if (!stream) throw InputError(file.string(), "cannot be opened; check the path and the permissions");
-  std::string text(static_cast<std::size_t>(stream.tellg()), '\0');
+  const auto size = static_cast<std::uint64_t>(stream.tellg());
+  if (size > kMaxBytes) throw InputError(file.string(), "is larger than 4 GB; expected a text file");
+  std::string text(size, '\0');
   stream.seekg(0);
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!stream)
     throw InputError(file.string(), "cannot be read completely; the file or the disk may be damaged");
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(file.string(),
+                     "is UTF-16 text; convert it to UTF-8, e.g. with `iconv -f UTF-16 -t UTF-8`");
+  if (text.starts_with(kUtf8Mark)) text.erase(0, kUtf8Mark.size());
   return text;
 }
 

@@ -11,8 +11,8 @@
 
 namespace stillpoint::eval {
 
-/// Contents of a file.
-/// @throws InputError if the file cannot be read
+/// Contents of a file, without a UTF-8 byte order mark at its start.
+/// @throws InputError if the file cannot be read or is UTF-16 text
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file);
 
 /// Writes `text` to `file` atomically: to a temporary file that is renamed when complete.

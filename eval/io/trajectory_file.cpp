@@ -41,13 +41,39 @@ LoadedTrajectory parse_rows(const NamedText& source, const RowFormat& format, Po
   return builder.release();
 }
 
-Trajectory read_ground_truth(const std::filesystem::path& file, const RowFormat& format, FaultLog& faults) {
-  const std::string text = read_text_file(file);
-  const std::string name = file.string();
-  return parse_rows({text, name}, format, PoseCheck::kGroundTruth, faults).trajectory;
+/// A ground-truth file.
+struct TruthFile {
+  const std::filesystem::path& path;
+  const RowFormat& format;
+  const std::string& frame;
+};
+
+LoadedTrajectory read_ground_truth(const TruthFile& file, FaultLog& faults) {
+  const std::string text = read_text_file(file.path);
+  const std::string name = file.path.string();
+  LoadedTrajectory loaded = parse_rows({text, name}, file.format, PoseCheck::kGroundTruth, faults);
+  loaded.trajectory.frame = file.frame;
+  return loaded;
 }
 
+std::string rows_text(std::size_t count) { return std::to_string(count) + (count == 1 ? " row" : " rows"); }
+
 }  // namespace
+
+std::vector<std::string> repair_texts(const RowRepairs& repairs) {
+  std::vector<std::string> texts;
+  if (repairs.skipped > 0) {
+    texts.push_back(rows_text(repairs.skipped) + " skipped: no valid pose (nan, or a zero quaternion)");
+  }
+  if (repairs.repeated > 0) {
+    texts.push_back(rows_text(repairs.repeated) +
+                    " skipped: the time stamp repeats that of an earlier row, which is used");
+  }
+  if (repairs.reordered > 0) {
+    texts.push_back(rows_text(repairs.reordered) + " sorted by time: earlier than a row before");
+  }
+  return texts;
+}
 
 LoadedTrajectory read_tum(const std::filesystem::path& file, const std::string& frame) {
   return parse_tum(read_text_file(file), file.string(), frame);
@@ -65,18 +91,14 @@ LoadedTrajectory parse_euroc(std::string_view text, const std::string& name) {
   return parse_rows({text, name}, kEuroc, PoseCheck::kEstimate, strict);
 }
 
-Trajectory read_tum_ground_truth(const std::filesystem::path& file, const std::string& frame,
-                                 FaultLog& faults) {
-  Trajectory trajectory = read_ground_truth(file, kTum, faults);
-  trajectory.frame = frame;
-  return trajectory;
+LoadedTrajectory read_tum_ground_truth(const std::filesystem::path& file, const std::string& frame,
+                                       FaultLog& faults) {
+  return read_ground_truth({file, kTum, frame}, faults);
 }
 
-Trajectory read_euroc_ground_truth(const std::filesystem::path& file, const std::string& frame,
-                                   FaultLog& faults) {
-  Trajectory trajectory = read_ground_truth(file, kEuroc, faults);
-  trajectory.frame = frame;
-  return trajectory;
+LoadedTrajectory read_euroc_ground_truth(const std::filesystem::path& file, const std::string& frame,
+                                         FaultLog& faults) {
+  return read_ground_truth({file, kEuroc, frame}, faults);
 }
 
 void write_tum(const Trajectory& trajectory, const std::filesystem::path& file) {

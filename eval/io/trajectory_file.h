@@ -10,23 +10,39 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/fault_log.h"
 #include "core/types/trajectory.h"
 
 namespace stillpoint::eval {
 
+/// Numbers of rows of a trajectory file that were skipped or moved. The ground truth of TUM fr2 and of EuRoC
+/// V1_02 repeats stamps; systems with several threads write poses out of order.
+struct RowRepairs {
+  std::size_t skipped = 0;    ///< without a pose: a value that is not finite, or the quaternion 0 0 0 0
+  std::size_t repeated = 0;   ///< with the stamp of an earlier row, which is used instead
+  std::size_t reordered = 0;  ///< up to `kMaxDisorder_s` earlier than a row before them; sorted by time
+};
+
+/// Rows that are further from their place by time are an error: the file may contain several runs.
+inline constexpr double kMaxDisorder_s = 1.0;
+
+/// One sentence for each kind of repair, without a full stop; empty if there are none.
+[[nodiscard]] std::vector<std::string> repair_texts(const RowRepairs& repairs);
+
 /// Contents of a trajectory file.
 struct LoadedTrajectory {
   Trajectory trajectory;
-  std::size_t skipped_rows = 0;  ///< rows with a value that is not finite or with the quaternion 0 0 0 0
+  RowRepairs repairs;
 };
 
-/// Reads an estimated trajectory; rows without a pose are skipped and counted.
+/// Reads an estimated trajectory. Rows without a pose and rows that repeat a stamp are skipped, rows that are
+/// slightly out of order are sorted; all are counted.
 /// @param file path of the file
 /// @param frame name of the body frame of the poses
-/// @throws InputError with file:line for a malformed row or a stamp that does not increase; with the file
-/// name if it is unreadable or has no poses
+/// @throws InputError with file:line for a malformed row or a stamp more than `kMaxDisorder_s` earlier than
+/// one before it; with the file name if it is unreadable or has no poses
 [[nodiscard]] LoadedTrajectory read_tum(const std::filesystem::path& file, const std::string& frame = "");
 
 /// The same for a text in memory.
@@ -42,10 +58,10 @@ struct LoadedTrajectory {
 /// @param file path of the file
 /// @param frame name of the body frame of the poses
 /// @param faults throws at the first fault, or collects the faults of all rows
-[[nodiscard]] Trajectory read_tum_ground_truth(const std::filesystem::path& file, const std::string& frame,
-                                               FaultLog& faults);
-[[nodiscard]] Trajectory read_euroc_ground_truth(const std::filesystem::path& file, const std::string& frame,
-                                                 FaultLog& faults);
+[[nodiscard]] LoadedTrajectory read_tum_ground_truth(const std::filesystem::path& file,
+                                                     const std::string& frame, FaultLog& faults);
+[[nodiscard]] LoadedTrajectory read_euroc_ground_truth(const std::filesystem::path& file,
+                                                       const std::string& frame, FaultLog& faults);
 
 /// Writes a TUM trajectory with 9 decimals and a header line with the names of the columns.
 /// @throws InputError if the file cannot be written

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/utf8_text.h"
 #include "eval/io/openloris_file.h"
 #include "eval/openloris/robot_frames.h"
 #include "eval/trajectory/alignment.h"
@@ -23,6 +24,7 @@ std::vector<fs::path> sorted_entries(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     entries.push_back(entry.path());
   if (error) throw InputError(folder.string(), "cannot list the folder");
+  for (const fs::path& entry : entries) require_utf8("file name", entry.filename().string());
   std::sort(entries.begin(), entries.end());
   return entries;
 }
@@ -42,6 +44,7 @@ class Evaluator {
       const fs::path file = ground_truth / ("gt_" + std::string(scene) + "_1.txt");
       if (!fs::exists(file)) continue;
       OpenlorisFile truth = read_openloris(file);
+      report_repairs(file, truth.repairs);
       std::map<int, double>& durations = evaluation_.benchmark.gt_durations_s[scene];
       for (const auto& [number, path] : truth.sequences) {
         if (path.poses.empty()) throw InputError(file.string(), "ground truth of a sequence has no poses");
@@ -55,6 +58,7 @@ class Evaluator {
   void add(const std::string& system, const fs::path& file) {
     const OpenlorisFile result =
         read_openloris(file, options_.keep_repeated_poses ? RepeatedPoses::kKeep : RepeatedPoses::kDrop);
+    report_repairs(file, result.repairs);
     const auto truth = truths_.find(result.scene);
     if (truth == truths_.end()) {
       scenes_without_truth_.insert(result.scene);
@@ -90,6 +94,11 @@ class Evaluator {
   }
 
  private:
+  void report_repairs(const fs::path& file, const RowRepairs& repairs) {
+    for (const std::string& text : repair_texts(repairs))
+      evaluation_.skipped.push_back(file.string() + ": " + text);
+  }
+
   [[nodiscard]] static std::map<int, Trajectory> truth_in_result_frame(const OpenlorisFile& truth,
                                                                        const OpenlorisFile& result) {
     const Pose T_base_gt = openloris_frame(result.scene, truth.frame);

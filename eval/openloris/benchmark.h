@@ -18,7 +18,7 @@ struct OpenlorisBenchmarkOptions {
 
 struct OpenlorisEvaluation {
   OpenlorisBenchmark benchmark;
-  std::vector<std::string> skipped;  ///< messages about results without ground truth
+  std::vector<std::string> skipped;  ///< messages about skipped results and rows
 };
 
 /// Scores every `*.txt` file in every subfolder of `results` against `gt_<scene>_1.txt` in `ground_truth`.

@@ -65,7 +65,7 @@ Pose virtual_camera_T_b_c(const Eigen::Vector3d& up_b) {
 
 RecordedMotion load_recorded_motion(const SynthRequest& request) {
   FaultLog faults;
-  const Trajectory truth = eval::read_tum_ground_truth(request.trajectory_file, "imu", faults);
+  const Trajectory truth = eval::read_tum_ground_truth(request.trajectory_file, "imu", faults).trajectory;
   const std::vector<ImuSample> imu =
       datasets::read_imu_file(request.imu_file, eval::TimeUnit::kNanoseconds, faults);
   const Timestamp common = std::max(truth.poses.front().t, imu.front().t);

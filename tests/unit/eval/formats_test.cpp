@@ -32,6 +32,27 @@ TEST(Formats, AreReadBackAsWritten) {
   expect_same(parse_openloris(format_openloris(file), "a").sequences.at(3), kPath);
 }
 
+TEST(Formats, SkipAByteOrderMarkAndNameUtf16) {
+  const TemporaryFolder folder;
+  const auto marked = folder.write("marked.tum", "\xEF\xBB\xBF" + format_tum(kPath));
+  expect_same(read_trajectory({.path = marked}).trajectory, kPath);
+  const auto wide = folder.write("wide.tum", std::string("\xFF\xFE"
+                                                         "1\0",
+                                                         4));
+  expect_input_error([&] { static_cast<void>(read_trajectory({.path = wide})); },
+                     {"wide.tum: is UTF-16 text"});
+}
+
+TEST(Formats, RejectsRosBagsAndSaysHowToExportThem) {
+  const TemporaryFolder folder;
+  folder.write("ros2/metadata.yaml", "");
+  folder.write("ros2/a_0.db3", "");
+  for (const auto& bag : {folder.write("a.bag", ""), folder.write("a.mcap", ""), folder.path() / "ros2"}) {
+    expect_input_error([&] { static_cast<void>(read_trajectory({.path = bag})); },
+                       {bag.string() + ": is a ROS bag", "evo_traj"});
+  }
+}
+
 TEST(Formats, SevenScenesFolderIsReadBackAsWritten) {
   Trajectory path;  // stamps at 30 Hz, which the format implies
   for (int i = 0; i < 5; ++i) {
@@ -61,8 +82,17 @@ TEST(Openloris, DropsRepeatedPosesUnlessTheyAreRequested) {
   EXPECT_EQ(dropped.sequences.at(1).poses.size(), 2u);
   EXPECT_EQ(dropped.sequences.at(2).poses.size(), 1u);
   EXPECT_EQ(dropped.repeated_poses, 2u);
-  EXPECT_EQ(dropped.skipped_rows, 1u);
+  EXPECT_EQ(dropped.repairs.skipped, 1u);
   EXPECT_EQ(parse_openloris(text, "a", RepeatedPoses::kKeep).sequences.at(2).poses.size(), 2u);
+}
+
+TEST(Openloris, CountsRepeatedStampsOverAllSequences) {
+  const OpenlorisFile file = parse_openloris(
+      "seq: 1\n1 0 0 0 0 0 0 1\n1 5 0 0 0 0 0 1\nseq: 2\n2 1 0 0 0 0 0 1\n1.9 2 0 0 0 0 0 1\n", "a");
+  EXPECT_EQ(file.sequences.at(1).poses.size(), 1u);
+  EXPECT_EQ(file.sequences.at(2).poses.size(), 2u);
+  EXPECT_EQ(file.repairs.repeated, 1u);
+  EXPECT_EQ(file.repairs.reordered, 1u);
 }
 
 TEST(Formats, ReportTheLineOfAMalformedRow) {
