@@ -8,9 +8,9 @@
 
 #include "bench/config/config_fields.h"
 #include "bench/model/content_hash.h"
+#include "bench/model/replicates.h"
 
 namespace stillpoint::bench {
-namespace {
 
 std::string toml_quoted(std::string_view text) {
   std::string result = "\"";
@@ -20,6 +20,8 @@ std::string toml_quoted(std::string_view text) {
   }
   return result + '"';
 }
+
+namespace {
 
 std::string quoted_list(std::span<const std::string_view> texts) {
   std::vector<std::string> elements;
@@ -84,7 +86,13 @@ std::string config_text(const OdometryConfig& config) {
   return text;
 }
 
-std::string config_hash(const OdometryConfig& config) { return hash_text(content_hash(config_text(config))); }
+std::string config_hash(const OdometryConfig& config) {
+  std::string text;
+  for (const auto& [key, value] : config_entries(config)) {
+    if (key != kPerturbationKey) text += key + " = " + value + "\n";
+  }
+  return perturbed_hash(hash_text(content_hash(text)), config.pipeline.perturbation_seed);
+}
 
 std::vector<ConfigEntry> config_difference(const OdometryConfig& parent, const OdometryConfig& changed) {
   const std::vector<ConfigEntry> before = config_entries(parent);

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/config/odometry_config.h"
 
 namespace stillpoint::bench {
+
+/// A TOML string: the text in double quotes, with backslashes before quotes and backslashes.
+[[nodiscard]] std::string toml_quoted(std::string_view text);
 
 /// One key and its value in TOML syntax.
 struct ConfigEntry {
@@ -22,7 +26,8 @@ struct ConfigEntry {
 /// The entries as TOML text with dotted keys, one per line.
 [[nodiscard]] std::string config_text(const OdometryConfig& config);
 
-/// Hash of all values of the config, as 16 hexadecimal digits.
+/// Hash of all values of the config, as 16 hexadecimal digits; with a perturbed input, its seed follows (see
+/// bench/model/replicates.h).
 [[nodiscard]] std::string config_hash(const OdometryConfig& config);
 
 /// The entries of `changed` whose values differ from those of `parent`.

@@ -35,6 +35,7 @@ OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& ri
     : config_(config.dynamic),
       pixel_sigma_px_(config.backend.pixel_sigma_px),
       camera_(rig.camera),
+      perturbation_(config.pipeline.perturbation_seed, rig.camera.focal_px()),
       estimator_(config.backend, config.imu, rig, config.seed),
       box_tracker_(config.dynamic),
       recognition_(config.dynamic),

@@ -12,6 +12,7 @@
 #include "core/dynamic/static_readmission.h"
 #include "core/pipeline/feedback.h"
 #include "core/pipeline/frame_report.h"
+#include "core/pipeline/input_perturbation.h"
 
 namespace stillpoint {
 
@@ -22,7 +23,7 @@ class OptimizationStage {
   OptimizationStage(const OdometryConfig& config, const Rig& rig);
 
   /// Samples in temporal order; samples up to the exposure of a frame must be added before the frame.
-  void add_imu(const ImuSample& sample) { estimator_.add_imu(sample); }
+  void add_imu(const ImuSample& sample) { estimator_.add_imu(perturbation_.of(sample)); }
 
   /// Processes a frame that enters the window.
   /// @param detections of the frame; ignored if the mask is off
@@ -50,6 +51,7 @@ class OptimizationStage {
   DynamicConfig config_;
   double pixel_sigma_px_;
   Camera camera_;
+  InputPerturbation perturbation_;
   Estimator estimator_;
   MissedDetectionCompensation box_tracker_;
   FeatureRecognition recognition_;

@@ -7,6 +7,7 @@ namespace stillpoint {
 
 TrackingStage::TrackingStage(const OdometryConfig& config, const Rig& rig)
     : uses_prediction_(config.frontend.prediction != TrackerPrediction::kNone),
+      perturbation_(config.pipeline.perturbation_seed, rig.camera.focal_px()),
       tracker_(config.frontend, rig.camera),
       imu_(config.imu.max_gap_s) {}
 
@@ -18,6 +19,7 @@ TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, cons
   drop_old_samples(motion, imu_);
   const TrackingOptions options{.detect = enters_window, .dynamic_ids = feedback.dynamic_ids};
   TrackedFrame tracked = tracker_.track(frame, prior, options, std::move(recycled));
+  perturbation_.perturb(tracked);
   last_frame_ = frame.t;
   return tracked;
 }

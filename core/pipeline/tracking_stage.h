@@ -7,6 +7,7 @@
 #include "core/config/odometry_config.h"
 #include "core/frontend/feature_tracker.h"
 #include "core/pipeline/feedback.h"
+#include "core/pipeline/input_perturbation.h"
 
 namespace stillpoint {
 
@@ -17,7 +18,7 @@ class TrackingStage {
   TrackingStage(const OdometryConfig& config, const Rig& rig);
 
   /// Samples in temporal order; samples up to the exposure of a frame must be added before the frame.
-  void add_imu(const ImuSample& sample) { imu_.add(sample); }
+  void add_imu(const ImuSample& sample) { imu_.add(perturbation_.of(sample)); }
 
   /// @param enters_window whether the frame enters the window; if so, lost features are replaced by new ones
   /// @param feedback      newest available feedback of the optimization stage
@@ -27,6 +28,7 @@ class TrackingStage {
 
  private:
   bool uses_prediction_;
+  InputPerturbation perturbation_;
   FeatureTracker tracker_;
   ImuBuffer imu_;
   std::optional<Timestamp> last_frame_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/config/apply_settings.h"
+#include "bench/model/replicates.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -22,6 +23,16 @@ TEST(ConfigText, HashChangesWithOneValue) {
   changed.seed = 2;
   EXPECT_NE(config_hash(changed), config_hash(OdometryConfig{}));
   EXPECT_EQ(config_hash(OdometryConfig{}), config_hash(OdometryConfig{}));
+}
+
+TEST(ConfigText, HashOfReplicatesDiffersInTheSeedOnly) {
+  OdometryConfig replicate;
+  replicate.pipeline.perturbation_seed = 3;
+  const std::string hash = config_hash(replicate);
+  EXPECT_EQ(hash, config_hash(OdometryConfig{}) + "-perturbed-3");
+  EXPECT_EQ(unperturbed_hash(hash), config_hash(OdometryConfig{}));
+  EXPECT_TRUE(is_perturbed(hash));
+  EXPECT_FALSE(is_perturbed(config_hash(OdometryConfig{})));
 }
 
 TEST(ConfigText, DifferenceNamesTheChangedKeysOnly) {

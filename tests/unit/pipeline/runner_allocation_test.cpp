@@ -31,10 +31,11 @@ TEST_P(RunnerIn, IsAllocationFreeInTheSteadyState) {
     frame.t = input.frame_times[index];
     return frame;
   };
-  const OdometryConfig config = bench::load_config(
-      {.base = "stillpoint",
-       .variant = "vo",
-       .settings = {"detector.kind=none", "pipeline.feedback_lag=1", "frontend.min_distance_px=10"}});
+  const OdometryConfig config =
+      bench::load_config({.base = "stillpoint",
+                          .variant = "vo",
+                          .settings = {"detector.kind=none", "pipeline.feedback_lag=1",
+                                       "frontend.min_distance_px=10", "pipeline.perturbation_seed=1"}});
   std::vector<std::size_t> counts;
   counts.reserve(kFrames);
   int lost = 0;

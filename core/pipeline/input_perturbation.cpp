@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/input_perturbation.h"
+
+#include "core/base/mix_bits.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kRelative = 1e-9;  // r
+
+enum class Stream : std::uint64_t { kGyro = 1, kFeature };
+
+/// Key of one stream at one time.
+std::uint64_t key_of(int seed, Stream stream, Timestamp t) {
+  const std::uint64_t stream_key =
+      mix_bits(static_cast<std::uint64_t>(seed) ^ (static_cast<std::uint64_t>(stream) << 56));
+  return mix_bits(stream_key + static_cast<std::uint64_t>(t.ns));
+}
+
+/// r u.
+double relative_change(std::uint64_t key, std::uint64_t counter) {
+  const double uniform = static_cast<double>(mix_bits(key + counter) >> 11) * 0x1.0p-53;  // in [0, 1)
+  return kRelative * (2.0 * uniform - 1.0);
+}
+
+}  // namespace
+
+ImuSample InputPerturbation::of(const ImuSample& sample) const {
+  if (seed_ == 0) return sample;
+  ImuSample perturbed = sample;
+  const std::uint64_t key = key_of(seed_, Stream::kGyro, sample.t);
+  for (std::uint64_t axis = 0; axis < 3; ++axis)
+    perturbed.gyro_b[static_cast<Eigen::Index>(axis)] *= 1.0 + relative_change(key, axis);
+  return perturbed;
+}
+
+void InputPerturbation::perturb(TrackedFrame& frame) const {
+  if (seed_ == 0) return;
+  const std::uint64_t key = key_of(seed_, Stream::kFeature, frame.t);
+  for (TrackedFeature& feature : frame.features) {
+    const std::uint64_t counter = 2 * static_cast<std::uint64_t>(feature.id);
+    const Eigen::Vector2d change(feature.pixel.x() * relative_change(key, counter),
+                                 feature.pixel.y() * relative_change(key, counter + 1));
+    feature.pixel += change;
+    feature.bearing += change / focal_px_;
+  }
+}
+
+}  // namespace stillpoint
