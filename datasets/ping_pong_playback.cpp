@@ -61,7 +61,8 @@ class PingPongStream final : public SensorStream {
              .frame_times = {},
              .imu = {},
              .ground_truth = {{source.ground_truth.trajectory.frame, {}}, source.ground_truth.T_c_f},
-             .notes = source.notes};
+             .notes = source.notes,
+             .warnings = source.warnings};
     info_.rig.has_imu = false;
     info_.notes.push_back("ping-pong playback: " + std::to_string(passes) +
                           " passes, alternately forwards and backwards, without IMU data");

@@ -2,12 +2,15 @@
 #include "datasets/read_sequence.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/utf8_text.h"
 #include "datasets/formats/formats.h"
 #include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
 #include "datasets/io/rig_file.h"
+#include "eval/io/bag_file.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -27,6 +30,7 @@ const SequenceFormat& find_format(const std::filesystem::path& folder, const std
 /// Absolute path of the folder without a trailing slash or dot, so that `filename()` is the sequence name.
 std::filesystem::path normalized_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
+  eval::reject_bag(folder, eval::kExportSequence);
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw InputError(folder.string(), "no such folder");
   }
@@ -43,22 +47,36 @@ void override_rig(SequenceContent& content, const std::filesystem::path& request
     content.info.rig = overridden.rig;
     content.extrinsic_known |= overridden.has_extrinsic;
     content.info.notes.push_back("calibration: overridden by " + file.string());
-  } else if (!content.assumed_calibration_note.empty()) {
-    content.info.notes.push_back(content.assumed_calibration_note);
   }
 }
 
+/// A valid line of a rig.toml: the camera of TUM freiburg3.
+constexpr std::string_view kExampleCamera =
+    "camera = { width = 640, height = 480, fx = 535.4, fy = 539.2, cx = 320.1, cy = 247.6 }";
+
 void check_rig(const SequenceContent& content) {
   const Camera& camera = content.info.rig.camera;
-  const std::string folder = content.info.folder.string();
+  const std::string rig_file = (content.info.folder / "rig.toml").string();
   if (camera.width <= 0 || camera.height <= 0 || camera.fx <= 0.0 || camera.fy <= 0.0) {
-    throw InputError(
-        folder,
-        "the camera calibration is missing; add a rig.toml with [camera] width, height, fx, fy, cx, cy");
+    throw InputError(rig_file, "the camera calibration is missing: " + content.missing_calibration +
+                                   "; write your values into this file, as in this example with those of "
+                                   "freiburg3: " +
+                                   std::string(kExampleCamera));
   }
   if (content.info.rig.has_imu && !content.extrinsic_known) {
-    throw InputError(folder, "has IMU data but no camera-IMU extrinsic; add a rig.toml with [imu] T_b_c");
+    throw InputError(
+        rig_file,
+        "the sequence has IMU data but no camera-IMU extrinsic; write the pose of your camera in "
+        "the IMU frame into this file, as in this example with the identity: imu = { T_b_c = "
+        "[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1] }");
   }
+}
+
+/// `content` with warnings about the repaired rows of the ground truth.
+SequenceContent with_warnings(SequenceContent content) {
+  for (const std::string& text : eval::repair_texts(content.truth_repairs))
+    content.info.warnings.push_back("ground truth: " + text);
+  return content;
 }
 
 std::string span_text(Timestamp first, Timestamp last) {
@@ -111,7 +129,8 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
                               FaultLog& faults) {
   const std::filesystem::path root = normalized_folder(folder);
   const SequenceFormat& format = find_format(root, options.format);
-  SequenceContent content = format.read(root, faults);
+  SequenceContent content = with_warnings(format.read(root, faults));
+  require_utf8("sequence name", content.info.name);
   content.info.format = format.name;
   content.info.detections = read_optional_boxes(root / "detections.txt", faults);
   content.info.true_boxes = read_optional_boxes(root / "true_boxes.txt", faults);

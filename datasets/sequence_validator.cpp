@@ -18,6 +18,7 @@ constexpr double kGapIntervals = 2.5;       ///< an interval longer than this ma
 constexpr double kMaxDepthOffset_s = 0.01;  ///< of the median; beyond, color and depth disagree during motion
 constexpr double kMinTruthCoverage = 0.95;  ///< fraction of the images that ground truth should cover
 constexpr double kMaxTruthDistance_s = 0.1;  ///< an image further in time from any true pose is not covered
+constexpr double kMaxBoxDistance_s = 0.016;  ///< default of detector.max_time_difference_s
 constexpr double kMinMeanAccel = 7.0;        ///< [m/s^2] range of the mean |a| of a hand-held or wheeled IMU;
 constexpr double kMaxMeanAccel = 13.0;       ///< a mean near 1 indicates the unit g, near 1000 the unit mg
 constexpr std::size_t kMaxFindingsShown = 5;  ///< per file
@@ -28,13 +29,11 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Splits the message of an InputError at its first ": " into location and text.
-Finding parse_finding(const std::string& message) {
+/// Splits a message, e.g. of an InputError, at its first ": " into location and text.
+Finding parse_finding(const std::string& message, Severity severity) {
   const std::size_t colon = message.find(": ");
-  if (colon == std::string::npos)
-    return Finding{.severity = Severity::kError, .location = {}, .text = message};
-  return Finding{
-      .severity = Severity::kError, .location = message.substr(0, colon), .text = message.substr(colon + 2)};
+  if (colon == std::string::npos) return {.severity = severity, .location = {}, .text = message};
+  return {.severity = severity, .location = message.substr(0, colon), .text = message.substr(colon + 2)};
 }
 
 Finding warning(const std::string& location, const std::string& text) {
@@ -115,12 +114,32 @@ CheckReport check_imu(const SequenceInfo& info) {
   return report;
 }
 
-/// Whether a ground-truth pose lies within `kMaxTruthDistance_s` of time `t`.
-bool is_covered(const std::vector<StampedPose>& poses, Timestamp t) {
-  const auto next = std::lower_bound(poses.begin(), poses.end(), t,
-                                     [](const StampedPose& pose, Timestamp time) { return pose.t < time; });
-  const bool by_next = next != poses.end() && seconds_between(t, next->t) <= kMaxTruthDistance_s;
-  return by_next || (next != poses.begin() && seconds_between(std::prev(next)->t, t) <= kMaxTruthDistance_s);
+/// Number of images with an item, in order of time, at most `max_distance_s` away.
+template <class Item>
+std::size_t covered_images(const SequenceInfo& info, const std::vector<Item>& items, double max_distance_s) {
+  const auto is_covered = [&](Timestamp t) {
+    const auto next = std::lower_bound(items.begin(), items.end(), t,
+                                       [](const Item& item, Timestamp time) { return item.t < time; });
+    const bool by_next = next != items.end() && seconds_between(t, next->t) <= max_distance_s;
+    return by_next || (next != items.begin() && seconds_between(std::prev(next)->t, t) <= max_distance_s);
+  };
+  return static_cast<std::size_t>(
+      std::count_if(info.frame_times.begin(), info.frame_times.end(), is_covered));
+}
+
+CheckReport check_detections(const SequenceInfo& info) {
+  CheckReport report;
+  if (info.detections.empty()) {
+    report.notes.emplace_back("no recorded boxes; record them with `stillpoint detect`");
+    return report;
+  }
+  report.notes.push_back(fmt::format("recorded detections for {} timestamps", info.detections.size()));
+  const std::size_t covered = covered_images(info, info.detections, kMaxBoxDistance_s);
+  if (covered < info.frame_times.size()) {
+    report.findings.push_back(
+        warning("detections", fmt::format("cover {} of {} images", covered, info.frame_times.size())));
+  }
+  return report;
 }
 
 CheckReport check_ground_truth(const SequenceInfo& info) {
@@ -130,8 +149,7 @@ CheckReport check_ground_truth(const SequenceInfo& info) {
     report.notes.emplace_back("no ground truth");
     return report;
   }
-  const auto covered = std::count_if(info.frame_times.begin(), info.frame_times.end(),
-                                     [&](Timestamp t) { return is_covered(poses, t); });
+  const std::size_t covered = covered_images(info, poses, kMaxTruthDistance_s);
   const double coverage = static_cast<double>(covered) / static_cast<double>(info.frame_times.size());
   report.notes.push_back(fmt::format("ground truth of \"{}\" covers {:.1f} % of the images",
                                      info.ground_truth.trajectory.frame, 100.0 * coverage));
@@ -173,7 +191,7 @@ CheckReport check_images(const SequenceContent& content, const CheckOptions& opt
         report.findings.push_back(warning(content.frame_files[i].depth.string(), "has no measured depth"));
       }
     } catch (const InputError& error) {
-      report.findings.push_back(parse_finding(error.what()));
+      report.findings.push_back(parse_finding(error.what(), Severity::kError));
     }
     if (options.progress) options.progress(i + 1, total);
   }
@@ -193,18 +211,17 @@ CheckReport check_sequence(const std::filesystem::path& folder, const CheckOptio
   report.name = info.name;
   report.format = info.format;
   report.notes = info.notes;
-  for (const std::string& message : faults.messages()) report.findings.push_back(parse_finding(message));
+  for (const std::string& message : faults.messages())
+    report.findings.push_back(parse_finding(message, Severity::kError));
+  for (const std::string& message : info.warnings)
+    report.findings.push_back(parse_finding(message, Severity::kWarning));
 
   const Timestamp origin = info.frame_times.front();
   std::vector<CheckReport> parts{
       summarize("images", info.frame_times, origin), summarize("imu", stamps(info.imu), origin),
       summarize("ground truth", stamps(info.ground_truth.trajectory.poses), origin)};
-  if (!info.detections.empty()) {
-    parts.emplace_back().notes.push_back(
-        fmt::format("recorded detections for {} timestamps", info.detections.size()));
-  }
-  append(parts, {check_depth_offset(content), check_imu(info), check_ground_truth(info),
-                 check_images(content, options)});
+  append(parts, {check_detections(info), check_depth_offset(content), check_imu(info),
+                 check_ground_truth(info), check_images(content, options)});
   for (const CheckReport& part : parts) report = joined(std::move(report), part);
   return report;
 }

@@ -55,7 +55,9 @@ struct CheckOptions {
 
 /// Reads all files of the folder, decodes every image, and reports all faults at once: faulty rows,
 /// timestamps out of order or repeated, gaps, streams that do not overlap the images in time, missing and
-/// undecodable images, depth images without valid pixels, accelerations that are not in m/s^2.
+/// undecodable images, images without recorded boxes where others have some, depth images without valid
+/// pixels, inertial data outside the range of sensors or in
+/// other units.
 /// @throws InputError if the folder cannot be read as a sequence at all
 [[nodiscard]] CheckReport check_sequence(const std::filesystem::path& folder,
                                          const CheckOptions& options = {});

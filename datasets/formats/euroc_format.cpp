@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// EuRoC MAV datasets (Burri et al., IJRR 2016), ASL folder layout: left camera and IMU.
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/formats/formats.h"
@@ -43,21 +44,24 @@ void add_images(const std::filesystem::path& camera_folder, SequenceContent& con
   }
 }
 
+/// `content` with the ground truth of its folder, if there is one.
 /// @param T_body_b pose of the IMU in the body frame of EuRoC
-void add_ground_truth(const std::filesystem::path& folder, const Pose& T_body_b, SequenceContent& content,
-                      FaultLog& faults) {
-  GroundTruth& truth = content.info.ground_truth;
+SequenceContent with_truth_of(SequenceContent content, const Pose& T_body_b, FaultLog& faults) {
+  const std::filesystem::path sensors = sensors_folder(content.info.folder);
   const Pose T_c_b = content.info.rig.T_b_c.inverse();
-  const std::filesystem::path estimate = sensors_folder(folder) / "state_groundtruth_estimate0";
+  const std::filesystem::path estimate = sensors / "state_groundtruth_estimate0";
   if (std::filesystem::exists(estimate / "data.csv")) {
-    truth.trajectory = eval::read_euroc_ground_truth(estimate / "data.csv", "body", faults);
-    truth.T_c_f = T_c_b * T_body_b.inverse() * SensorYaml(estimate / "sensor.yaml").pose("T_BS");
-    return;
+    content = with_ground_truth(std::move(content),
+                                eval::read_euroc_ground_truth(estimate / "data.csv", "body", faults));
+    content.info.ground_truth.T_c_f =
+        T_c_b * T_body_b.inverse() * SensorYaml(estimate / "sensor.yaml").pose("T_BS");
+    return content;
   }
-  const std::filesystem::path text = sensors_folder(folder).parent_path() / "groundtruth_tum.txt";
-  if (!std::filesystem::exists(text)) return;
-  truth.trajectory = eval::read_tum_ground_truth(text, "imu", faults);
-  truth.T_c_f = T_c_b;
+  const std::filesystem::path text = sensors.parent_path() / "groundtruth_tum.txt";
+  if (!std::filesystem::exists(text)) return content;
+  content = with_ground_truth(std::move(content), eval::read_tum_ground_truth(text, "imu", faults));
+  content.info.ground_truth.T_c_f = T_c_b;
+  return content;
 }
 
 SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
@@ -79,8 +83,7 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
                            .accel_noise = imu.number("accelerometer_noise_density"),
                            .gyro_walk = imu.number("gyroscope_random_walk"),
                            .accel_walk = imu.number("accelerometer_random_walk")};
-  add_ground_truth(folder, T_body_b, content, faults);
-  return content;
+  return with_truth_of(std::move(content), T_body_b, faults);
 }
 
 bool recognize(const std::filesystem::path& folder) {

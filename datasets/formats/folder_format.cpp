@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 #include "datasets/formats/formats.h"
 
 namespace stillpoint::datasets {
@@ -57,6 +58,7 @@ void add_images(SequenceContent& content) {
 
 /// Open3D's format: width, height, and the 3x3 `intrinsic_matrix` in column-major order.
 Camera read_camera(const std::filesystem::path& file) {
+  require_regular_file(file);
   std::ifstream in(file);
   const nlohmann::json root = nlohmann::json::parse(in, nullptr, false);
   try {
@@ -87,6 +89,8 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog&) {
     content.info.notes.push_back("calibration: " + file.filename().string());
     break;
   }
+  content.missing_calibration = "the folder has no JSON file with the camera";
+  content.info.notes.push_back("depth: 1000 raw units per meter, unless a rig.toml sets [depth] scale");
   content.info.notes.push_back("timestamps: file number / 30 s, as the images have none");
   return content;
 }

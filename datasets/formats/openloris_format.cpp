@@ -93,8 +93,8 @@ void add_imu(SequenceContent& content, FaultLog& faults) {
   const std::filesystem::path gyro_file = content.info.folder / "d400_gyroscope.txt";
   const std::filesystem::path accel_file = content.info.folder / "d400_accelerometer.txt";
   if (!std::filesystem::exists(gyro_file) && !std::filesystem::exists(accel_file)) return;
-  const std::vector<VectorSample> gyro = read_vector_file(gyro_file, faults);
-  const std::vector<VectorSample> accel = read_vector_file(accel_file, faults);
+  const std::vector<VectorSample> gyro = read_vector_file(gyro_file, kGyroscopeRange, faults);
+  const std::vector<VectorSample> accel = read_vector_file(accel_file, kAccelerometerRange, faults);
   content.info.imu = merge_onto_gyro(gyro, accel);
   content.info.rig.has_imu = true;
   faults.guard([&] {
@@ -112,8 +112,8 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
                         pair_images(folder / "color.txt", folder / "aligned_depth.txt", faults));
   add_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {
-    content.info.ground_truth.trajectory =
-        eval::read_tum_ground_truth(folder / "groundtruth.txt", kGroundTruthFrame, faults);
+    content = with_ground_truth(std::move(content), eval::read_tum_ground_truth(folder / "groundtruth.txt",
+                                                                                kGroundTruthFrame, faults));
   }
   const SensorYaml sensors(folder / "sensors.yaml");
   content.info.rig.camera = camera_of(sensors.child(kCamera));

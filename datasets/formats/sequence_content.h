@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/calibration/depth_registration.h"
 #include "datasets/io/sequence_info.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 
@@ -21,11 +23,20 @@ struct FrameFiles {
 
 struct SequenceContent {
   SequenceInfo info;
-  std::vector<FrameFiles> frame_files;   ///< one per info.frame_times
-  bool extrinsic_known = true;           ///< whether the format provides the camera-IMU extrinsic
-  std::string assumed_calibration_note;  ///< note for the user if no rig file replaces a default calibration
-  std::uint16_t no_depth_value = 0;      ///< raw value, besides 0, that means "not measured"
+  std::vector<FrameFiles> frame_files;      ///< one per info.frame_times
+  eval::RowRepairs truth_repairs;           ///< of the ground-truth file
+  bool extrinsic_known = true;              ///< whether the format provides the camera-IMU extrinsic
+  std::string missing_calibration;          ///< why the format does not know the camera, if it does not
+  std::uint16_t no_depth_value = 0;         ///< raw value, besides 0, that means "not measured"
   std::optional<DepthCamera> depth_camera;  ///< set if depth is not yet registered to the color camera
 };
+
+/// `content` with a ground-truth trajectory.
+[[nodiscard]] inline SequenceContent with_ground_truth(SequenceContent content,
+                                                       eval::LoadedTrajectory truth) {
+  content.info.ground_truth.trajectory = std::move(truth.trajectory);
+  content.truth_repairs = truth.repairs;
+  return content;
+}
 
 }  // namespace stillpoint::datasets

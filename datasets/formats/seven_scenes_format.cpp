@@ -89,7 +89,9 @@ void set_calibration(SequenceContent& content) {
   content.depth_camera = DepthCamera{.camera = kDepthCamera, .T_c_d = depth_to_color()};
   content.info.ground_truth.T_c_f = depth_to_color();
   content.info.notes.emplace_back(
-      "calibration: depth (585 px) is registered to the color camera (527.5 px, baseline 23 mm)");
+      "calibration: that of 7-Scenes; depth (585 px) is registered to the color camera (527.5 px, baseline "
+      "23 mm), "
+      "unless a rig.toml sets [camera]");
 }
 
 SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {

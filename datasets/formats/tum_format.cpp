@@ -64,9 +64,8 @@ void set_calibration(SequenceContent& content) {
     content.info.notes.push_back("calibration: published values of " + std::string(kinect.name));
     return;
   }
-  rig.camera = kinects().back().camera;
-  content.assumed_calibration_note =
-      "calibration: freiburg3 assumed, as the folder name contains none of freiburg1, freiburg2, freiburg3";
+  content.missing_calibration =
+      "the folder name contains none of freiburg1, freiburg2, freiburg3, whose cameras are known";
 }
 
 void add_imu(SequenceContent& content, FaultLog& faults) {
@@ -81,6 +80,8 @@ void add_imu(SequenceContent& content, FaultLog& faults) {
   }
   content.info.rig.has_imu = true;
   content.extrinsic_known = false;
+  content.info.notes.emplace_back(
+      "imu: default noise densities, unless a rig.toml sets [imu] gyro_noise etc.");
 }
 
 SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
@@ -91,8 +92,8 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   set_calibration(content);
   add_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {
-    content.info.ground_truth.trajectory =
-        eval::read_tum_ground_truth(folder / "groundtruth.txt", "camera", faults);
+    content = with_ground_truth(std::move(content),
+                                eval::read_tum_ground_truth(folder / "groundtruth.txt", "camera", faults));
   }
   return content;
 }

@@ -56,8 +56,12 @@ std::vector<DetectionSet> read_detections(const std::filesystem::path& file, Fau
   return sets;
 }
 
+std::string detections_header() {
+  return "# timestamp class score x_min y_min x_max y_max; only a timestamp: no detections\n";
+}
+
 std::string detections_text(std::span<const DetectionSet> sets) {
-  std::string text = "# timestamp class score x_min y_min x_max y_max; only a timestamp: no detections\n";
+  std::string text = detections_header();
   for (const DetectionSet& set : sets) {
     if (set.state != DetectionState::kPresent) continue;
     const std::string stamp = eval::format_stamp(set.t);

@@ -21,6 +21,9 @@ namespace stillpoint::datasets {
 /// range
 [[nodiscard]] std::vector<DetectionSet> read_detections(const std::filesystem::path& file, FaultLog& faults);
 
+/// First line of `detections_text`.
+[[nodiscard]] std::string detections_header();
+
 /// Inverse of `read_detections`: timestamps exact, edges rounded to 0.01 px, scores to 0.0001. Sets that are
 /// not `kPresent` are omitted.
 [[nodiscard]] std::string detections_text(std::span<const DetectionSet> sets);

@@ -1,13 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/io/imu_file.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <string>
 
 namespace stillpoint::datasets {
 namespace {
 
-Eigen::Vector3d vector_at(const eval::TextRow& row, std::size_t field) {
-  return {row.finite_number(field), row.finite_number(field + 1), row.finite_number(field + 2)};
+/// The three numbers from `field` on.
+Eigen::Vector3d vector_at(const eval::TextRow& row, std::size_t field, const SensorRange& range) {
+  Eigen::Vector3d vector;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const std::size_t index = field + static_cast<std::size_t>(axis);
+    vector[axis] = row.finite_number(index);
+    if (std::abs(vector[axis]) <= range.limit) continue;
+    throw row.error(
+        fmt::format("the {} {:g} exceeds {} {}, the range of such sensors; is it in {}? convert the file or "
+                    "remove the row",
+                    range.quantity, vector[axis], range.limit, range.unit, range.likely_unit));
+  }
+  return vector;
 }
 
 /// Reads one sample per row with `parse(row)` and checks the order of the timestamps.
@@ -34,13 +48,16 @@ std::vector<Sample> read_samples(const std::filesystem::path& file, FaultLog& fa
 std::vector<ImuSample> read_imu_file(const std::filesystem::path& file, eval::TimeUnit unit,
                                      FaultLog& faults) {
   return read_samples<ImuSample>(file, faults, [unit](const eval::TextRow& row) {
-    return ImuSample{.t = row.time(0, unit), .gyro_b = vector_at(row, 1), .accel_b = vector_at(row, 4)};
+    return ImuSample{.t = row.time(0, unit),
+                     .gyro_b = vector_at(row, 1, kGyroscopeRange),
+                     .accel_b = vector_at(row, 4, kAccelerometerRange)};
   });
 }
 
-std::vector<VectorSample> read_vector_file(const std::filesystem::path& file, FaultLog& faults) {
-  return read_samples<VectorSample>(file, faults, [](const eval::TextRow& row) {
-    return VectorSample{.t = row.time(0, eval::TimeUnit::kSeconds), .value = vector_at(row, 1)};
+std::vector<VectorSample> read_vector_file(const std::filesystem::path& file, const SensorRange& range,
+                                           FaultLog& faults) {
+  return read_samples<VectorSample>(file, faults, [&range](const eval::TextRow& row) {
+    return VectorSample{.t = row.time(0, eval::TimeUnit::kSeconds), .value = vector_at(row, 1, range)};
   });
 }
 
@@ -57,6 +74,7 @@ std::vector<ImuSample> merge_onto_gyro(std::span<const VectorSample> gyro,
     Eigen::Vector3d value = a.value;
     if (left + 1 < accel.size()) {
       const VectorSample& b = accel[left + 1];
+      if (a.t < sample.t && seconds_between(a.t, b.t) > kMaxAccelInterval_s) continue;
       const double weight = seconds_between(a.t, sample.t) / seconds_between(a.t, b.t);
       value = (1.0 - weight) * a.value + weight * b.value;
     }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/base/fault_log.h"
@@ -13,9 +14,23 @@
 
 namespace stillpoint::datasets {
 
+/// Largest absolute value of an axis that a sensor can output. Values beyond are faults of the file: a wrong
+/// unit or defective data.
+struct SensorRange {
+  double limit = 0.0;
+  std::string_view quantity;
+  std::string_view unit;
+  std::string_view likely_unit;  ///< of files with values beyond the limit
+};
+/// The largest full scale of inertial measurement units is 4000 deg/s = 70 rad/s.
+inline constexpr SensorRange kGyroscopeRange{100.0, "angular velocity", "rad/s", "deg/s"};
+/// 100 g; the full scale of inertial measurement units for navigation is at most 40 g.
+inline constexpr SensorRange kAccelerometerRange{1000.0, "acceleration", "m/s^2", "mg"};
+
 /// Reads rows `t wx wy wz ax ay az` [rad/s, m/s^2] (column order of EuRoC).
 /// @return strictly increasing in time, not empty
-/// @throws InputError if the file is missing, empty, unsorted, or a row is not seven finite numbers
+/// @throws InputError if the file is missing, empty, unsorted, or a row is not seven finite numbers within
+/// the ranges of the sensors
 [[nodiscard]] std::vector<ImuSample> read_imu_file(const std::filesystem::path& file, eval::TimeUnit unit,
                                                    FaultLog& faults);
 
@@ -26,10 +41,15 @@ struct VectorSample {
 };
 
 /// Reads rows `t x y z` with t in seconds; otherwise like `read_imu_file`.
-[[nodiscard]] std::vector<VectorSample> read_vector_file(const std::filesystem::path& file, FaultLog& faults);
+[[nodiscard]] std::vector<VectorSample> read_vector_file(const std::filesystem::path& file,
+                                                         const SensorRange& range, FaultLog& faults);
+
+/// Accelerometer samples that are further apart are not interpolated; see `merge_onto_gyro`.
+inline constexpr double kMaxAccelInterval_s = 0.05;
 
 /// One IMU sample for each gyroscope sample within the time span of `accel`; the acceleration is interpolated
-/// linearly between the two neighboring accelerometer samples.
+/// linearly between the two neighboring accelerometer samples. Gyroscope samples within an interval longer
+/// than `kMaxAccelInterval_s` are dropped, so that a gap of the accelerometer is one of the IMU.
 /// @param gyro, accel strictly increasing in time
 [[nodiscard]] std::vector<ImuSample> merge_onto_gyro(std::span<const VectorSample> gyro,
                                                      std::span<const VectorSample> accel);

@@ -69,6 +69,13 @@ class Section {
     throw InputError(file_, node.source().begin.line, "\"" + std::string(key) + "\" " + problem);
   }
 
+  [[noreturn]] void fail_missing(std::string_view key) const {
+    throw InputError(file_, table_->source().begin.line,
+                     "\"" + std::string(key) + "\" is missing; the format of the sequence does not know it");
+  }
+
+  [[nodiscard]] bool is_empty() const { return table_ == nullptr; }
+
  private:
   [[nodiscard]] double number_of(const toml::node& node, std::string_view key) const {
     const std::optional<double> value = node.value<double>();
@@ -110,6 +117,14 @@ CameraModel model_of(const Section& camera, CameraModel fallback) {
   camera.fail(*node, "model", "must be \"radial-tangential\" or \"kannala-brandt\"");
 }
 
+/// A camera that the format does not know must be given completely: 0 is no sensible default of a value.
+void require_complete(const Section& section, const Camera& known) {
+  if (section.is_empty() || known.width > 0 || known.fx > 0.0) return;
+  for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"}) {
+    if (section.find(key) == nullptr) section.fail_missing(key);
+  }
+}
+
 Camera override_camera(const Section& section, Camera camera) {
   section.allow_only({"width", "height", "fx", "fy", "cx", "cy", "model", "distortion", "rolling_shutter_s"});
   camera.width = section.image_size("width", camera.width);
@@ -141,6 +156,8 @@ Pose extrinsic_of(const Section& imu, const toml::node& node) {
 
 OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) {
   const toml::table root = parse(file);
+  if (root.empty())
+    throw InputError(file.string(), "is empty; add [camera], [imu] or [depth], or remove the file");
   Section(file.string(), &root).allow_only({"camera", "depth", "imu"});
   const Section camera = section(file.string(), root, "camera");
   const Section depth = section(file.string(), root, "depth");
@@ -162,6 +179,7 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
                                   .gyro_walk = imu.positive("gyro_walk", rig.imu_noise.gyro_walk),
                                   .accel_walk = imu.positive("accel_walk", rig.imu_noise.accel_walk)};
   result.rig.time_offset_s = imu.number("time_offset_s", rig.time_offset_s);
+  require_complete(camera, rig.camera);
   return result;
 }
 

@@ -19,7 +19,8 @@ struct OverriddenRig {
 ///   [depth]  scale                                                          (raw units per meter)
 ///   [imu]    T_b_c gyro_noise accel_noise gyro_walk accel_walk time_offset_s
 /// T_b_c is a 4x4 matrix in row-major order; the units of the others are those of `ImuNoise` and `Rig`.
-/// @throws InputError with file and line on an unknown key, a wrong type or a value out of range
+/// @throws InputError with file and line on an unknown key, a wrong type, a value out of range, or a missing
+/// value of a camera of which `rig` contains nothing
 [[nodiscard]] OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig);
 
 }  // namespace stillpoint::datasets

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 #include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {
@@ -15,9 +16,9 @@ namespace {
 
 /// The text of the file; the first line that OpenCV writes (`%YAML:1.0`) is blanked: it is not valid YAML.
 std::string read_text(const std::filesystem::path& file) {
+  require_regular_file(file);
   std::ifstream in(file, std::ios::binary);
-  std::error_code ignored;
-  if (!in || std::filesystem::is_directory(file, ignored)) {
+  if (!in) {
     throw InputError(file.string(), "cannot be opened; the calibration of the sequence is missing");
   }
   std::ostringstream content;

@@ -33,6 +33,7 @@ struct SequenceInfo {
   std::vector<DetectionSet> detections;  ///< recorded boxes in order of time; empty when there are none
   std::vector<DetectionSet> true_boxes;  ///< of all moving objects, in order of time; rendered sequences only
   std::vector<std::string> notes;        ///< assumptions made by the reader, one sentence each, to be shown
+  std::vector<std::string> warnings;     ///< repaired faults of the files, as "LOCATION: FAULT", to be shown
 };
 
 /// Per-pixel ground truth of a rendered frame.

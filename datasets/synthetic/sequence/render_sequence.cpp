@@ -144,17 +144,19 @@ class SequenceRenderer {
   std::vector<std::vector<VisibleObject>> visible_;
 };
 
-/// The boxes of all frames.
+/// One set per frame.
 struct SequenceBoxes {
   std::vector<DetectionSet> truth;
-  std::vector<DetectionSet> detections;  ///< of the simulated detector
+  std::vector<DetectionSet> detections;  ///< of the simulated detector; without boxes in a static scene
 };
 
 SequenceBoxes boxes_of(const SynthRequest& request, const SceneSetup& setup,
                        const std::vector<Timestamp>& times,
                        const std::vector<std::vector<VisibleObject>>& visible) {
-  const auto reports =
-      simulate_detector(visible, request.detector, {request.width, request.height}, request.seed);
+  std::vector<std::vector<Detection>> reports(times.size());
+  if (!setup.actors.empty()) {
+    reports = simulate_detector(visible, request.detector, {request.width, request.height}, request.seed);
+  }
   SequenceBoxes boxes;
   for (std::size_t i = 0; i < times.size(); ++i) {
     boxes.truth.push_back({times[i], DetectionState::kPresent, true_detections(visible[i], setup.actors)});
@@ -177,11 +179,9 @@ bool render_sequence(const SynthRequest& request, const fs::path& folder, const 
   SequenceRenderer work(request, setup, times, writer);
   const auto render = [&work](int index) { work.render(static_cast<std::size_t>(index)); };
   if (!for_each_frame(static_cast<int>(times.size()), control, render)) return false;
-  if (!setup.actors.empty()) {
-    const SequenceBoxes boxes = boxes_of(request, setup, times, work.visible());
-    writer.write_boxes("true_boxes.txt", boxes.truth);
-    writer.write_boxes("detections.txt", boxes.detections);
-  }
+  const SequenceBoxes boxes = boxes_of(request, setup, times, work.visible());
+  writer.write_boxes("true_boxes.txt", boxes.truth);
+  writer.write_boxes("detections.txt", boxes.detections);
   writer.write_lists(times);
   writer.write_request(request);
   writer.write_rig(setup.rig, request);

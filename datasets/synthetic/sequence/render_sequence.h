@@ -19,8 +19,9 @@ struct RenderControl {
 /// Writes the sequence into `folder`, which is created atomically when the sequence is complete. Besides the
 /// files of the layout:
 ///   request.toml    the request
-///   true_boxes.txt  bounding boxes of the visible pixels of each moving object (if the scene has any)
-///   detections.txt  output of a simulated person detector (if the scene has moving objects)
+///   true_boxes.txt  bounding boxes of the visible pixels of each moving object; only timestamps in a static
+///                   scene
+///   detections.txt  output of a simulated person detector; likewise
 ///   labels/         on request: one 8-bit instance mask per frame; 0 = static, 1..127 = a person, 128.. = a
 ///                   moving object of a class that the detector does not report
 ///   motion/         with the labels: world-frame speed of the visible surface [cm/s], 8 bits, saturated

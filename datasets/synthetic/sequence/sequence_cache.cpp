@@ -31,7 +31,8 @@ fs::path cached_sequence(const SynthRequest& request, const RenderControl& contr
   // The last path component is the name shown in tables: preset and seed. The key is the parent folder.
   const std::string name = request.preset + "_" + std::to_string(request.seed);
   const fs::path folder = cache_folder() / "synthetic" / request_key(request) / name;
-  if (fs::is_directory(folder)) return folder;
+  if (fs::exists(folder / "detections.txt")) return folder;
+  fs::remove_all(folder);  // static scenes that were rendered before version 0.3 have no boxes
   try {
     if (!render_sequence(request, folder, control)) return {};
   } catch (const InputError&) {

@@ -145,7 +145,7 @@ TEST(BadSequence, MissingCalibrationErrorSuggestsARigFile) {
   folder.write("camera.json", "{}");
   expect_rejected(folder, {"camera.json", "intrinsic_matrix"});
   std::filesystem::remove(folder.path() / "camera.json");
-  expect_rejected(folder, {"rig.toml"});
+  expect_rejected(folder, {"rig.toml", "no JSON file", "camera = { width = 640"});
 }
 
 TEST(BadSequence, FaultyRecordedBoxesAreAnError) {

@@ -30,6 +30,16 @@ TEST(MergeOntoGyro, InterpolatesLinearlyAndDropsSamplesOutsideTheTimeSpan) {
   EXPECT_TRUE(merge_onto_gyro(gyro, {}).empty());
 }
 
+TEST(MergeOntoGyro, DropsSamplesWithinAGapOfTheAccelerometer) {
+  const auto gyro = samples_ms({{0, 1}, {100, 2}, {500, 3}, {1000, 4}, {1040, 5}});
+  const auto accel = samples_ms({{0, 0}, {50, 1}, {1000, 2}, {1050, 3}});
+  const std::vector<ImuSample> merged = merge_onto_gyro(gyro, accel);
+  ASSERT_EQ(merged.size(), 3U);  // 100 and 500 ms lie between 50 and 1000 ms
+  EXPECT_EQ(merged[0].t, Timestamp{0});
+  EXPECT_EQ(merged[1].t, Timestamp{1'000'000'000});
+  EXPECT_TRUE(merged[2].accel_b.isApprox(Eigen::Vector3d(2.8, 5.6, 8.4)));
+}
+
 TEST(ImuFile, FaultyRowErrorsNameTheLine) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text) {
@@ -42,6 +52,10 @@ TEST(ImuFile, FaultyRowErrorsNameTheLine) {
   expect_input_error(read("2,0,0,0,0,0,9\n1,0,0,0,0,0,9\n"), {"imu.csv:2", "sort the file"});
   expect_input_error(read("2,0,0,0,0,0,9\n2,0,0,0,0,0,9\n"), {"imu.csv:2", "repeats"});
   expect_input_error(read("2,0,nan,0,0,0,9\n"), {"imu.csv:1", "not finite"});
+  expect_input_error(read("2,0,1e30,0,0,0,9\n"),
+                     {"imu.csv:1", "angular velocity 1e+30 exceeds 100 rad/s", "deg/s"});
+  expect_input_error(read("2,0,0,0,0,0,-1001\n"),
+                     {"imu.csv:1", "acceleration -1001 exceeds 1000 m/s^2", "mg"});
   expect_input_error(read("2,0,0,0,0,0\n"), {"imu.csv:1", "6 field(s)"});
   expect_input_error(read("2.5,0,0,0,0,0,9\n"), {"imu.csv:1", "integer number of nanoseconds"});
 }

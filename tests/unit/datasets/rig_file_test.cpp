@@ -94,6 +94,14 @@ TEST(RigFile, TypeAndRangeErrorsNameTheLine) {
   expect_rejected("camera = 3\n", {"rig.toml:1", "must be a table"});
 }
 
+TEST(RigFile, ACameraThatTheFormatDoesNotKnowMustBeComplete) {
+  expect_rejected("\n[camera]\nwidth = 640\nheight = 480\nfx = 500\nfy = 500\ncx = 320\n",
+                  {"rig.toml:2", "\"cy\" is missing"});
+  const TemporaryFolder folder;
+  const Rig known{.camera = {.width = 640, .height = 480, .fx = 500, .fy = 500, .cx = 320, .cy = 240}};
+  EXPECT_EQ(apply_rig_file(folder.write("rig.toml", "[camera]\nfx = 510\n"), known).rig.camera.cy, 240.0);
+}
+
 TEST(RigFile, InvalidTomlAndMissingFilesAreErrors) {
   expect_rejected("[camera\n", {"rig.toml:1"});
   expect_input_error([] { static_cast<void>(apply_rig_file("/nonexistent/rig.toml", Rig{})); },

@@ -65,10 +65,15 @@ TEST(TumFormat, SelectsThePublishedCalibrationByName) {
   EXPECT_EQ(tum_info("rgbd_dataset_freiburg3_walking_xyz").rig.camera.fy, 539.2);
 }
 
-TEST(TumFormat, NotesThatFreiburg3IsAssumed) {
-  const SequenceInfo info = tum_info("mine");
-  EXPECT_EQ(info.rig.camera.fx, 535.4);
-  EXPECT_TRUE(has_note(info, "freiburg3 assumed"));
+TEST(TumFormat, AnUnknownCameraIsAnErrorWithARigFileToPaste) {
+  const std::string rig =
+      "camera = { width = 640, height = 480, fx = 535.4, fy = 539.2, cx = 320.1, cy = 247.6 }";
+  expect_input_error([] { static_cast<void>(tum_info("mine")); },
+                     {"-mine/rig.toml", "none of freiburg1, freiburg2, freiburg3", "freiburg3: " + rig});
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  folder.write("rig.toml", rig + "\n");
+  EXPECT_EQ(open_sequence(folder.path())->info().rig.camera.cy, 247.6);
 }
 
 TEST(TumFormat, DropsColorImagesWithoutDepthAndNotesTheirNumber) {
@@ -86,9 +91,10 @@ TEST(TumFormat, ReadsAnImuIfTheRigFileHasTheExtrinsic) {
   write_tum_folder(folder);
   folder.write("imu.txt", "0.9 1 2 3 4 5 6\n1.2 1 2 3 4 5 6\n");
   expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); }, {"T_b_c"});
-  const auto rig = folder.write("other.toml",
-                                "[camera]\nwidth = 8\nheight = 6\nfx = 10\nfy = 10\n[imu]\n"
-                                "T_b_c = [1,0,0,0.5, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n");
+  const auto rig =
+      folder.write("other.toml",
+                   "[camera]\nwidth = 8\nheight = 6\nfx = 10\nfy = 10\ncx = 3.5\ncy = 2.5\n[imu]\n"
+                   "T_b_c = [1,0,0,0.5, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n");
   const auto stream = open_sequence(folder.path(), {.format = "tum", .rig_file = rig});
   EXPECT_TRUE(stream->info().rig.has_imu);
   EXPECT_EQ(stream->info().rig.T_b_c.p.x(), 0.5);

@@ -118,6 +118,53 @@ TEST(SequenceValidator, WarnsAboutTheUnitOfAccelerations) {
   EXPECT_EQ(count(check_sequence(folder.path()), "imu", "m/s^2"), 1U);
 }
 
+TEST(SequenceValidator, ReportsValuesThatNoSensorMeasures) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  folder.write("d400_gyroscope.txt", "99.9 0 0 0\n99.95 1e30 0 0\n100.0 0 0 0\n100.05 0 0 0\n100.1 0 0 0\n");
+  const CheckReport report = check_sequence(folder.path());
+  EXPECT_EQ(count(report, "d400_gyroscope.txt:2", "exceeds 100 rad/s"), 1U) << report_text(report);
+  EXPECT_EQ(report.exit_code(), 1);
+}
+
+TEST(SequenceValidator, ReportsAGapOfOneInertialSensor) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  std::string rows;
+  for (int i = 0; i <= 120; ++i) {
+    if (i < 30 || i > 70) rows += std::to_string(99.9 + i / 400.0) + " 0 -9.8 0\n";
+  }
+  folder.write("d400_accelerometer.txt", rows);
+  const CheckReport report = check_sequence(folder.path());
+  // The last sample before the gap is the 30th, 72.5 ms after 99.9 s; the gap is 42 samples of 2.5 ms long.
+  EXPECT_EQ(count(report, "imu", "1 gap(s) longer than 2.5 median intervals; the longest (0.105 s)"), 1U)
+      << report_text(report);
+}
+
+TEST(SequenceValidator, ReportsRepeatedStampsOfTheGroundTruth) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  std::string truth;
+  for (int i = 0; i <= 30; ++i) {
+    for (int copy = 0; copy < (i == 7 ? 3 : 1); ++copy)
+      truth += std::to_string(99.9 + 0.01 * i) + " 0 0 0 0 0 0 1\n";
+  }
+  folder.write("groundtruth.txt", truth);
+  const CheckReport report = check_sequence(folder.path());
+  ASSERT_EQ(report.findings.size(), 1U) << report_text(report);
+  EXPECT_EQ(report.findings[0].severity, Severity::kWarning);
+  EXPECT_EQ(count(report, "ground truth", "2 rows skipped: the time stamp repeats"), 1U);
+}
+
+TEST(SequenceValidator, ReportsImagesWithoutRecordedBoxes) {
+  const TemporaryFolder folder;
+  write_valid_sequence(folder);
+  folder.write("detections.txt", "100.0\n100.05\n100.08\n");  // the second image is at 100.04 s
+  EXPECT_EQ(check_sequence(folder.path()).findings.size(), 0U);
+  folder.write("detections.txt", "100.0\n100.08\n");
+  EXPECT_EQ(count(check_sequence(folder.path()), "detections", "cover 2 of 3 images"), 1U);
+}
+
 TEST(SequenceValidator, ReportsALargeTimeOffsetOfDepth) {
   const TemporaryFolder folder;
   write_tum_folder(folder);

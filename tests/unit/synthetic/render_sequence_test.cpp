@@ -127,6 +127,18 @@ TEST(RenderSequence, TrueBoxesEncloseTheLabels) {
   EXPECT_TRUE(fs::exists(folder / "detections.txt"));
 }
 
+TEST(RenderSequence, AStaticSceneHasASetWithoutBoxesForEachFrame) {
+  const fs::path folder = fresh_folder("static_boxes");
+  SynthRequest request = small_request("walking_xyz_empty");
+  request.detector.false_positive_rate = 1.0;
+  ASSERT_TRUE(render_sequence(request, folder));
+  const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(folder);
+  for (const auto* sets : {&stream->info().detections, &stream->info().true_boxes}) {
+    ASSERT_EQ(sets->size(), 6U);
+    for (const DetectionSet& set : *sets) EXPECT_TRUE(set.detections.empty());
+  }
+}
+
 TEST(RenderSequence, DroppedFramesAreMissingFromListsAndFolders) {
   const fs::path folder = fresh_folder("dropped");
   SynthRequest request = small_request("walking_static_empty");

@@ -39,6 +39,12 @@ TEST_F(SequenceCache, RendersEachRequestOnce) {
   EXPECT_EQ(first.filename(), "walking_xyz_empty_1");
 }
 
+TEST_F(SequenceCache, RendersASequenceWithoutBoxesAgain) {
+  const fs::path folder = cached_sequence(small_request());
+  fs::remove(folder / "detections.txt");
+  EXPECT_TRUE(fs::exists(cached_sequence(small_request()) / "detections.txt"));
+}
+
 TEST_F(SequenceCache, InterruptedRenderingIsNotCached) {
   EXPECT_TRUE(cached_sequence(small_request(), {.stop_requested = [] { return true; }}).empty());
   EXPECT_TRUE(fs::is_directory(cached_sequence(small_request())));
