@@ -35,6 +35,11 @@ Value count(const Measurements& m) {
   return m.counts ? Value(static_cast<double>((*m.counts).*kMember)) : std::nullopt;
 }
 
+Value frames_without_boxes(const Measurements& m) {
+  if (!m.counts || !m.counts->frames_without_boxes) return std::nullopt;
+  return static_cast<double>(*m.counts->frames_without_boxes);
+}
+
 Value process_wall(const Measurements& m) { return m.process ? Value(m.process->wall_s) : std::nullopt; }
 Value process_cpu(const Measurements& m) { return m.process ? Value(m.process->cpu_s) : std::nullopt; }
 Value peak_memory(const Measurements& m) {
@@ -132,12 +137,19 @@ constexpr MetricDescriptor kMetrics[] = {
      .decimals = 0,
      .source = kRun,
      .value = count<&RunCounts::resets>},
-    {.id = "frames",
+    {.id = metric_id::kFrames,
      .label = "frames",
      .description = "Number of processed frames",
      .decimals = 0,
      .source = kRun,
      .value = count<&RunCounts::frames>},
+    {.id = metric_id::kFramesWithoutBoxes,
+     .label = "frames without boxes",
+     .description = "Number of frames whose dynamic objects were not masked, as the recorded boxes lack them",
+     .direction = kSmallerIsBetter,
+     .decimals = 0,
+     .source = kRun,
+     .value = frames_without_boxes},
     {.id = "poses",
      .label = "poses",
      .description = "Number of reported poses",

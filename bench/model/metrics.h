@@ -31,6 +31,8 @@ inline constexpr std::string_view kCorrectRate = "correct_rate";
 inline constexpr std::string_view kCoverage = "coverage";
 inline constexpr std::string_view kFirstPose = "first_pose_s";
 inline constexpr std::string_view kDrift = "drift_percent";
+inline constexpr std::string_view kFrames = "frames";
+inline constexpr std::string_view kFramesWithoutBoxes = "frames_without_boxes";
 inline constexpr std::string_view kWallTime = "wall_s";
 inline constexpr std::string_view kOtherLoad = "other_load";
 inline constexpr std::string_view kQuiet = "quiet";
@@ -50,6 +52,7 @@ struct RunCounts {
   std::size_t frames = 0;  ///< processed
   std::size_t poses = 0;
   int resets = 0;
+  std::optional<std::int64_t> frames_without_boxes{};  ///< nullopt unless the run used recorded boxes
   double wall_s = 0.0;
 };
 

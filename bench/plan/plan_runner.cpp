@@ -8,6 +8,7 @@
 
 #include <poll.h>
 
+#include "bench/plan/plan_boxes.h"
 #include "bench/plan/run_outcome.h"
 #include "bench/process/machine_load.h"
 #include "bench/process/process_pool.h"
@@ -213,6 +214,7 @@ class PlanRunner {
 
 PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
                     const PlanHooks& hooks) {
+  require_recorded_boxes(matrix);
   std::vector<Outcome> repeated = {Outcome::kBadData};
   if (options.retry) {
     repeated = {Outcome::kLost, Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory,

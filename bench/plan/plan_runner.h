@@ -35,7 +35,8 @@ struct PlanReport {
 /// Executes every run of the matrix that is not completed yet, and stores each as soon as it ends. Runs with
 /// outcome "bad_data" are executed again. Several workers may execute the same plan: runs leased by another
 /// worker are waited for.
-/// @throws InputError if the store can no longer be written; completed runs remain stored
+/// @throws InputError if a recorded sequence lacks the boxes that a config uses, before the first run; or if
+/// the store can no longer be written, completed runs remain stored
 [[nodiscard]] PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
                                   const PlanHooks& hooks);
 

@@ -45,11 +45,24 @@ Json timing_json(const TimingSamples& samples, bool threads) {
   return table;
 }
 
+Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
+/// Fraction of the frames that the recorded boxes lack; nullopt without recorded boxes or frames.
+std::optional<double> fraction_without_boxes(const RunSummary& summary) {
+  const std::optional<std::int64_t>& unrecorded = summary.detector_counters.unrecorded;
+  if (!unrecorded || summary.frames == 0) return std::nullopt;
+  return static_cast<double>(*unrecorded) / static_cast<double>(summary.frames);
+}
+
 Json detector_json(const RunSummary& summary) {
   const DetectorCounters& counters = summary.detector_counters;
-  return {{"description", summary.detector}, {"processed", counters.processed},
-          {"skipped", counters.skipped},     {"boxes", counters.boxes},
-          {"clipped", counters.clipped},     {"rejected", counters.rejected}};
+  return {{"description", summary.detector},
+          {"processed", counters.processed},
+          {"skipped", counters.skipped},
+          {"boxes", counters.boxes},
+          {"clipped", counters.clipped},
+          {"rejected", counters.rejected},
+          {"fraction_without_boxes", number_or_null(fraction_without_boxes(summary))}};
 }
 
 Json realtime_json(const RunSummary& summary) {
@@ -62,8 +75,6 @@ Json realtime_json(const RunSummary& summary) {
           {"deadline_misses", report.deadline_misses()},
           {"latency_ms", {{"p50", latency(0.5)}, {"p95", latency(0.95)}, {"p99", latency(0.99)}}}};
 }
-
-Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 Json labels_json(const OdometryRun& run) {
   if (!run.label_score) return nullptr;
@@ -106,6 +117,7 @@ std::string result_json(const RunResult& result) {
   json["dynamic_labels"] = labels_json(result.run);
   json["realtime"] = realtime_json(summary);
   json["notes"] = result.notes;
+  json["warnings"] = result.warnings;
   json["timings"] = {{"unit", "ms"},
                      {"modules", timing_json(result.run.timings, false)},
                      {"threads", timing_json(result.run.timings, true)}};
@@ -123,6 +135,7 @@ std::string manifest_json(const RunManifest& manifest) {
       {"name", manifest.sequence},
       {"format", manifest.sequence_format},
       {"checksum", manifest.sequence_checksum.empty() ? Json(nullptr) : Json(manifest.sequence_checksum)}};
+  json["faults"] = manifest.faults;
   json["config"] = {{"base", manifest.base},
                     {"variant", manifest.variant},
                     {"hash", config_hash(manifest.config)},
@@ -172,9 +185,8 @@ std::string trajectory_text(const RunResult& result) {
   return result.outcome == Outcome::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
 }
 
-void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest,
-               std::vector<OutputFile> dumps) {
-  std::vector<OutputFile> files = std::move(dumps);
+void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest) {
+  std::vector<OutputFile> files;
   files.push_back({"trajectory.tum", trajectory_text(result)});
   files.push_back({"result.json", result_json(result)});
   files.push_back({"timings.csv", timings_csv(result.run)});

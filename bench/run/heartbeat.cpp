@@ -12,8 +12,21 @@
 
 namespace stillpoint::bench {
 
+namespace {
+
+/// @return the file, unless it contains something else than a heartbeat
+const std::filesystem::path& checked(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error) &&
+      std::filesystem::file_size(file, error) > sizeof(std::int64_t))
+    throw InputError(file.string(), "exists and is no heartbeat file; remove it or choose another name");
+  return file;
+}
+
+}  // namespace
+
 Heartbeat::Heartbeat(const std::filesystem::path& file)
-    : descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    : descriptor_(open(checked(file).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) {
     throw InputError(file.string(),
                      std::string("cannot be written: ") + std::strerror(errno) + "; check its folder");

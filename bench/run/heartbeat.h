@@ -13,7 +13,7 @@ inline constexpr const char* kHeartbeatFile = "heartbeat";
 
 class Heartbeat {
  public:
-  /// @throws InputError if the file cannot be created
+  /// @throws InputError if the file cannot be created, or exists with other content
   explicit Heartbeat(const std::filesystem::path& file);
   ~Heartbeat();
   Heartbeat(const Heartbeat&) = delete;

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "bench/run/frame_prefetcher.h"
+#include "bench/run/recorded_boxes.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -146,6 +147,7 @@ RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& wor
 
 OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                          const RunControl& control) {
+  require_recorded_boxes(spec.config, stream.info());
   RunRecorder recorder(stream, spec);
   FramePrefetcher prefetcher([&stream](std::size_t index) { return stream.load_frame(index); },
                              recorder.frames_planned(), spec.deterministic_counts ? 0 : kDecodedAhead);

@@ -2,11 +2,13 @@
 /// Runs the odometry over a sequence and records its output.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/model/stored_run.h"
@@ -17,6 +19,9 @@
 #include "datasets/sensor_stream.h"
 
 namespace stillpoint::bench {
+
+/// Names of the execution modes.
+inline constexpr std::array<std::string_view, 3> kRunModes = {"sequential", "pipelined", "realtime"};
 
 /// What to run.
 struct RunSpec {
@@ -53,7 +58,8 @@ struct OdometryRun {
 };
 
 /// @param control `on_update` may be empty
-/// @throws InputError for an unknown mode, a sequence without frames, and errors of the runner
+/// @throws InputError for an unknown mode, a sequence without frames or without the recorded boxes that the
+/// config uses, and errors of the runner
 [[nodiscard]] OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                                        const RunControl& control);
 

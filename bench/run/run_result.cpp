@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "eval/trajectory/alignment.h"
 
 namespace stillpoint::bench {
@@ -39,6 +41,24 @@ std::string failure_of(const OdometryRun& run) {
   }
 }
 
+/// Irregularities that the reader repaired, and those that the run encountered.
+std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const RunSummary& summary) {
+  std::vector<std::string> warnings = info.warnings;
+  if (summary.detector_counters.unrecorded.value_or(0) > 0) {
+    warnings.push_back(fmt::format("detections: {} of {} frames have no recorded boxes and were not masked",
+                                   *summary.detector_counters.unrecorded, summary.frames));
+  }
+  if (summary.imu_health.gaps > 0) {
+    warnings.push_back(
+        fmt::format("imu: {} gap(s) between samples are longer than imu.max_gap_s", summary.imu_health.gaps));
+  }
+  if (summary.imu_health.rejected_samples > 0) {
+    warnings.push_back(fmt::format("imu: {} sample(s) rejected: not finite, or not later than the one before",
+                                   summary.imu_health.rejected_samples));
+  }
+  return warnings;
+}
+
 }  // namespace
 
 Measurements measurements_of(const RunResult& result) {
@@ -47,6 +67,7 @@ Measurements measurements_of(const RunResult& result) {
           .counts = RunCounts{.frames = run.summary.frames,
                               .poses = run.trajectory.poses.size(),
                               .resets = run.summary.resets,
+                              .frames_without_boxes = run.summary.detector_counters.unrecorded,
                               .wall_s = run.wall_s}};
 }
 
@@ -60,6 +81,7 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run) {
   result.outcome = outcome_of(run);
   result.failure = failure_of(run);
   result.notes = info.notes;
+  result.warnings = warnings_of(info, run.summary);
   result.gt = camera_truth(info, options.expected_times);
   result.score = eval::score(result.gt, run.trajectory, options);
   result.run = std::move(run);

@@ -14,10 +14,11 @@ struct RunResult {
   std::string sequence;
   std::string variant;
   std::string mode;
-  Outcome outcome = Outcome::kOk;  ///< or kLost or kInterrupted
-  std::string failure;             ///< reason when not ok
-  std::vector<std::string> notes;  ///< assumptions of the sequence reader
-  Trajectory gt;                   ///< of the camera, over the processed frames
+  Outcome outcome = Outcome::kOk;     ///< or kLost or kInterrupted
+  std::string failure;                ///< reason when not ok
+  std::vector<std::string> notes;     ///< assumptions of the sequence reader
+  std::vector<std::string> warnings;  ///< irregularities of the data, as "LOCATION: FAULT"
+  Trajectory gt;                      ///< of the camera, over the processed frames
   eval::Score score;
   OdometryRun run;
 };

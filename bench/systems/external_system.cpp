@@ -6,6 +6,7 @@
 #include "bench/config/apply_settings.h"
 #include "bench/config/toml_source.h"
 #include "bench/model/content_hash.h"
+#include "bench/model/json_problem.h"
 #include "bench/record/host_info.h"
 #include "bench/record/result_values.h"
 #include "bench/run/run_result.h"
@@ -104,7 +105,10 @@ RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& 
   try {
     const std::string text = eval::read_text_file(file);
     OdometryRun run;
-    run.trajectory = eval::parse_tum(text, system_.trajectory, "camera").trajectory;
+    eval::LoadedTrajectory loaded = eval::parse_tum(text, system_.trajectory, "camera");
+    for (const std::string& repair : eval::repair_texts(loaded.repairs))
+      result.attachments["log"] += system_.trajectory + ": " + repair + "\n";
+    run.trajectory = std::move(loaded.trajectory);
     const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(request.sequence);
     run.summary.frames = stream->info().frame_times.size();
     const RunResult scored = score_run(stream->info(), run);
@@ -117,7 +121,7 @@ RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& 
   } catch (const InputError& error) {
     return failed(Outcome::kCrashed, error.what());
   } catch (const nlohmann::json::exception& error) {
-    return failed(Outcome::kCrashed, system_.timings + ": " + error.what());
+    return failed(Outcome::kCrashed, system_.timings + ": " + json_problem(error));
   }
   return result;
 }

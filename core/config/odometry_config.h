@@ -22,6 +22,11 @@ struct OdometryConfig {
   BackendConfig backend;
   PipelineConfig pipeline;
 };
+/// The detector that a run uses: none if there is no mask for its boxes.
+[[nodiscard]] inline DetectorKind used_detector(const OdometryConfig& config) {
+  return config.dynamic.mask == DynamicMask::kOff ? DetectorKind::kNone : config.detector.kind;
+}
+
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, OdometryConfig>
 void visit_fields(Visitor&& field, Config& config) {

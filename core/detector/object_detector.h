@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -15,11 +16,12 @@ namespace stillpoint {
 
 /// Statistics of a detector over a run.
 struct DetectorCounters {
-  std::int64_t processed = 0;  ///< frames with a result
-  std::int64_t skipped = 0;    ///< frames without: not scheduled, late, or not in the recording
-  std::int64_t boxes = 0;      ///< returned boxes
-  std::int64_t clipped = 0;    ///< returned boxes that were clipped to the image
-  std::int64_t rejected = 0;   ///< boxes that were inverted, not finite, or outside the image
+  std::int64_t processed = 0;              ///< frames with a result
+  std::int64_t skipped = 0;                ///< frames without: not scheduled, late, or not in the recording
+  std::int64_t boxes = 0;                  ///< returned boxes
+  std::int64_t clipped = 0;                ///< returned boxes that were clipped to the image
+  std::int64_t rejected = 0;               ///< boxes that were inverted, not finite, or outside the image
+  std::optional<std::int64_t> unrecorded;  ///< skipped frames that are not in the recording, if there is one
 
   void add(const DetectorCounters& other) {
     processed += other.processed;
@@ -27,6 +29,7 @@ struct DetectorCounters {
     boxes += other.boxes;
     clipped += other.clipped;
     rejected += other.rejected;
+    if (other.unrecorded) unrecorded = unrecorded.value_or(0) + *other.unrecorded;
   }
 };
 

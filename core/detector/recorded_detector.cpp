@@ -24,6 +24,7 @@ const DetectionSet* nearest(std::span<const DetectionSet> sets, Timestamp t) {
 RecordedDetector::RecordedDetector(std::span<const DetectionSet> sets, double max_time_difference_s)
     : sets_(sets), max_difference_s_(max_time_difference_s) {
   require_increasing(sets, "recorded detections");
+  counters_.unrecorded = 0;
 }
 
 DetectionSet RecordedDetector::detect(const Frame& frame) {
@@ -31,6 +32,7 @@ DetectionSet RecordedDetector::detect(const Frame& frame) {
   const bool fits = found != nullptr && std::abs(seconds_between(found->t, frame.t)) <= max_difference_s_;
   if (!fits || found->state != DetectionState::kPresent) {
     ++counters_.skipped;
+    if (!fits) ++*counters_.unrecorded;
     return {.t = frame.t, .state = fits ? found->state : DetectionState::kNone, .detections = {}};
   }
   UsableBoxes usable = usable_boxes(found->detections, frame.gray.size());

@@ -7,7 +7,7 @@ namespace stillpoint {
 
 std::unique_ptr<ObjectDetector> make_detector(const SensorInput& input, const OdometryConfig& config) {
   DetectorConfig detector = config.detector;
-  if (config.dynamic.mask == DynamicMask::kOff) detector.kind = DetectorKind::kNone;
+  detector.kind = used_detector(config);
   const bool simulated = detector.kind == DetectorKind::kSimulated;
   if (simulated && input.true_boxes.empty()) {
     throw InputError(

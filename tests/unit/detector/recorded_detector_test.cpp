@@ -50,6 +50,7 @@ TEST(RecordedDetector, ReturnsNoneOutsideTheTolerance) {
     EXPECT_EQ(detector.detect(blank_frame(id)).state, DetectionState::kNone) << id;
   }
   EXPECT_EQ(detector.counters().skipped, 3);
+  EXPECT_EQ(detector.counters().unrecorded, 3);
   EXPECT_EQ(detector.counters().processed, 0);
 }
 
@@ -70,6 +71,7 @@ TEST(RecordedDetector, ReturnsARecordedLateSet) {
   const std::vector sets = {DetectionSet{.t = blank_frame(0).t, .state = DetectionState::kLate}};
   RecordedDetector detector(sets, kTolerance_s);
   EXPECT_EQ(detector.detect(blank_frame(0)).state, DetectionState::kLate);
+  EXPECT_EQ(detector.counters().unrecorded, 0);
 }
 
 TEST(RecordedDetector, ClipsBoxesToTheImage) {

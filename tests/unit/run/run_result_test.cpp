@@ -76,6 +76,27 @@ TEST(RunResult, OfARunWithoutPosesIsFailedWithAReason) {
   EXPECT_FALSE(result.score.ate.has_value());
 }
 
+TEST(RunResult, WarnsOfRepairedFilesGapsAndMissingBoxes) {
+  datasets::SequenceInfo info = straight_sequence();
+  info.warnings = {"ground truth: repaired"};
+  OdometryRun run = perfect_run(info, kFrames);
+  run.summary.imu_health = {.rejected_samples = 2, .gaps = 1};
+  run.summary.detector_counters.unrecorded = 15;
+  const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, std::move(run))));
+  ASSERT_EQ(json["warnings"].size(), 4u);
+  EXPECT_EQ(json["warnings"][0], "ground truth: repaired");
+  EXPECT_EQ(json["frames_without_boxes"], 15);
+  EXPECT_DOUBLE_EQ(json["detector"]["fraction_without_boxes"], 0.25);  // 15 of 60
+}
+
+TEST(RunResult, WithoutRecordedBoxesDoesNotCountFramesWithoutThem) {
+  const datasets::SequenceInfo info = straight_sequence();
+  const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, perfect_run(info, kFrames))));
+  EXPECT_TRUE(json["frames_without_boxes"].is_null());
+  EXPECT_TRUE(json["detector"]["fraction_without_boxes"].is_null());
+  EXPECT_TRUE(json["warnings"].empty());
+}
+
 TEST(RunResult, IsConvertedFromJsonToMetricsAndCosts) {
   const datasets::SequenceInfo info = straight_sequence();
   OdometryRun run = perfect_run(info, kFrames);
