@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "bench/cli/number_range.h"
+
 namespace stillpoint::bench {
 
 /// Destination of an option's value; its type determines the accepted values. A bool is a flag without a
@@ -18,6 +20,7 @@ struct Option {
   std::string name;
   std::string help;
   OptionTarget target;
+  NumberRange range = {};         ///< of a number option
   std::string hidden_alias = {};  ///< former name of a vector option; accepted, not listed by --help
 };
 
@@ -36,7 +39,8 @@ struct Command {
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFindings = 1;       ///< completed, but the result is negative, e.g. a failed run
 inline constexpr int kExitBadInput = 2;       ///< invalid usage or input; one error line was printed
-inline constexpr int kExitInternal = 3;       ///< a bug in the program, or out of memory
+inline constexpr int kExitInconclusive = 3;   ///< completed, but the data do not allow a statement
+inline constexpr int kExitInternal = 70;      ///< a bug in the program, or out of memory; EX_SOFTWARE
 inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells report it
 
 /// @return exit code of the command; `kExitBadInput`, with one line on stderr, for invalid usage or

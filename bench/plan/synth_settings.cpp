@@ -11,6 +11,8 @@
 namespace stillpoint::bench {
 namespace {
 
+constexpr double kMaxMagnitude = 1e9;  // far above any sensible value; fits in an int
+
 /// Visits all fields and sets the one with the given key; collects all keys for the error message.
 class NumberSetter {
  public:
@@ -54,6 +56,8 @@ class NumberSetter {
 }  // namespace
 
 synth::SynthRequest with_number(synth::SynthRequest request, const std::string& key, double value) {
+  if (!(std::abs(value) <= kMaxMagnitude))
+    throw InputError("synth." + key, "must be a finite number below 1e9");
   NumberSetter setter(key, value);
   visit_fields(setter, request);
   if (!setter.found()) {

@@ -37,12 +37,13 @@ Command serve_command() {
   return {.name = "serve",
           .summary = "Serve the dashboard of a store over HTTP",
           .example = "serve build/bench/store.sqlite --port 8035",
-          .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
-                      {"--port", "Port to listen on; 0 = any free port [8035]", &arguments->server.port},
-                      {"--address",
-                       "IPv4 address to listen on; addresses other than loopback give other machines access "
-                       "[127.0.0.1]",
-                       &arguments->server.address}},
+          .options =
+              {{"STORE", "Store with the runs of several commits", &arguments->store},
+               {"--port", "Port to listen on; 0 = any free port [8035]", &arguments->server.port, {0, 65535}},
+               {"--address",
+                "IPv4 address to listen on; addresses other than loopback give other machines access "
+                "[127.0.0.1]",
+                &arguments->server.address}},
           .action = [arguments] { return serve(*arguments); }};
 }
 

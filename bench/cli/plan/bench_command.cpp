@@ -12,6 +12,7 @@
 #include "bench/plan/bench_table.h"
 #include "bench/plan/plan_runner.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/output_guard.h"
 #include "bench/systems/own_odometry.h"
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
@@ -82,15 +83,29 @@ void print_rows(const PlanMatrix& matrix, const std::vector<BenchRow>& rows, con
             << table << "\nwritten to " << (out / "table.md").string() << " and table.json\n";
 }
 
+/// @throws InputError if there is nothing to execute, as the table would be empty
+void require_available_run(const PlanMatrix& matrix) {
+  const auto is_available = [&](const PlannedRun& run) {
+    return matrix.sequences[run.sequence].unavailable_reason.empty();
+  };
+  if (std::ranges::any_of(matrix.runs, is_available)) return;
+  throw InputError(
+      matrix.plan.path,
+      "none of its sequences is available: " +
+          (matrix.sequences.empty() ? "no sequence matches" : matrix.sequences.front().unavailable_reason));
+}
+
 int run_bench(const BenchArguments& arguments) {
-  if (arguments.jobs < 1) throw InputError("--jobs", "must be at least 1");
   install_interrupt_handlers();
   const PlanMatrix matrix = expand_plan(load_plan(arguments.plan), build_name(), arguments.filters);
-  if (matrix.runs.empty())
+  if (matrix.runs.empty() && !arguments.filters.empty())
     throw InputError("--filter", "matches no run of the plan; see `stillpoint plan show`");
   if (arguments.dry_run) return dry_run(matrix, arguments.store);
+  require_available_run(matrix);
   const fs::path out =
       arguments.out.empty() ? fs::path("build/bench") / matrix.plan.name : fs::path(arguments.out);
+  require_safe_folder(out, {.names = {"table.md", "table.json"}, .marks = {{"table.md", "table.json"}}},
+                      {arguments.store});
   require_writable(out);
   PlanReport report;
   {
@@ -116,7 +131,7 @@ Command bench_command() {
       .options = {{"PLAN", "Plan: an embedded name (quick) or a TOML file", &arguments->plan},
                   {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
                   {"--out", "Output folder of the table [build/bench/PLAN]", &arguments->out},
-                  {"--jobs", "Number of concurrent accuracy runs", &arguments->jobs},
+                  {"--jobs", "Number of concurrent accuracy runs", &arguments->jobs, {1, 1000}},
                   {"--filter",
                    "Execute only runs whose sequence, variant or system matches this glob; may be repeated",
                    &arguments->filters},

@@ -12,6 +12,7 @@
 #include "bench/cli/interrupt.h"
 #include "bench/cli/plan/plan_progress.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/output_guard.h"
 #include "bench/systems/own_odometry.h"
 #include "core/base/error.h"
 #include "reports/page/report_page.h"
@@ -106,12 +107,25 @@ void write_tables(const Target& target, const std::vector<StoredRun>& runs, cons
   if (!tables.empty()) std::cout << "\n" << report::table_markdown(tables.front()) << "\n";
 }
 
+/// Checks the output folder. Targets may share a folder, so that each one has its own files.
+void require_safe_tables(const std::vector<Target>& targets, const fs::path& out, const fs::path& store) {
+  OutputLayout page{.names = {"index.html"}, .marks = {}};
+  for (const Target& target : kTargets) page.marks.push_back({std::string(target.name) + "_document.tex"});
+  require_safe_folder(out, page, {store});
+  for (const Target& target : targets) {
+    const std::string name = target.name;
+    const OutputLayout tables{.names = {name + ".tex", name + ".md", name + ".csv", name + ".json"},
+                              .marks = {{name + "_document.tex"}}};
+    require_safe_folder(out, tables, {store});
+  }
+}
+
 int reproduce(const ReproduceArguments& arguments) {
   if (arguments.real && arguments.synthetic)
     throw InputError("--real", "cannot be combined with --synthetic");
-  if (arguments.jobs < 1) throw InputError("--jobs", "must be at least 1");
   const std::vector<Target> targets = select_targets(arguments.target);
   const fs::path out = arguments.out;
+  require_safe_tables(targets, out, arguments.store);
   require_writable(out);
   install_interrupt_handlers();
   bool complete = true;
@@ -152,7 +166,10 @@ Command reproduce_command() {
                    &arguments->real},
                   {"--store", "Database of runs [build/bench/reproduce.sqlite]", &arguments->store},
                   {"--out", "Output folder of tables and the HTML report [build/reproduce]", &arguments->out},
-                  {"--jobs", "Number of concurrent accuracy runs [number of processors]", &arguments->jobs}},
+                  {"--jobs",
+                   "Number of concurrent accuracy runs [number of processors]",
+                   &arguments->jobs,
+                   {1, 1000}}},
       .action = [arguments] { return reproduce(*arguments); }};
 }
 
