@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/compare/common_support.h"
+#include "eval/io/trajectory_file.h"
 #include "eval/openloris/scene_score.h"
 #include "eval/protocols/protocol.h"
 #include "reports/tables/text_table.h"
@@ -16,6 +17,7 @@ namespace stillpoint::report {
 struct EvaluatedRun {
   std::string name;
   Trajectory est;
+  eval::RowRepairs repairs = {};  ///< of the file of the estimate
   std::vector<eval::Evaluation> evaluations;
 };
 
@@ -29,7 +31,10 @@ struct EvaluatedRun {
 /// its own.
 [[nodiscard]] std::string openloris_table(const eval::OpenlorisBenchmark& benchmark, TableStyle style);
 
-/// `run,protocol,t,translation_m,rotation_deg`, one row per matched pose.
+/// First line of `per_pose_csv`: `run,protocol,t,translation_m,rotation_deg`.
+[[nodiscard]] std::string per_pose_header();
+
+/// The header, and one row per matched pose.
 [[nodiscard]] std::string per_pose_csv(const std::vector<EvaluatedRun>& runs);
 
 /// Description of each protocol used: association, alignment, and what it ignores.

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
@@ -16,6 +17,7 @@ namespace {
 struct AddArguments {
   std::string name;
   std::string folder;
+  bool force = false;
 };
 
 int add(const AddArguments& arguments) {
@@ -24,7 +26,8 @@ int add(const AddArguments& arguments) {
                                     .folder = std::filesystem::canonical(arguments.folder),
                                     .checksum = sequence_checksum(arguments.folder),
                                     .format = stream->info().format};
-  register_sequence(registry_file(), sequence);
+  for (const std::string& warning : stream->info().warnings) spdlog::warn("{}", warning);
+  register_sequence(registry_file(), sequence, arguments.force ? Registration::kReplace : Registration::kNew);
   std::cout << fmt::format("registered {}: {} ({}, {} frames, checksum {})\n", sequence.name,
                            sequence.folder.string(), sequence.format, stream->info().frame_times.size(),
                            sequence.checksum);
@@ -42,12 +45,14 @@ int list() {
 
 Command add_command() {
   const auto arguments = std::make_shared<AddArguments>();
-  return {.name = "add",
-          .summary = "Register a recorded sequence under a name for plans; stores its current checksum",
-          .example = "data add cafe1 /data/openloris/cafe1-1",
-          .options = {{"NAME", "Name of the sequence in plans", &arguments->name},
-                      {"DIR", "Sequence folder", &arguments->folder}},
-          .action = [arguments] { return add(*arguments); }};
+  return {
+      .name = "add",
+      .summary = "Register a recorded sequence under a name for plans; stores its current checksum",
+      .example = "data add cafe1 /data/openloris/cafe1-1",
+      .options = {{"NAME", "Name of the sequence in plans", &arguments->name},
+                  {"DIR", "Sequence folder", &arguments->folder},
+                  {"--force", "Replace the registration of the name for another folder", &arguments->force}},
+      .action = [arguments] { return add(*arguments); }};
 }
 
 Command list_command() {
@@ -60,7 +65,7 @@ Command data_command() {
   return {.name = "data",
           .summary = "Create and inspect sequences",
           .example = "data synth walking_xyz --out build/walking_xyz",
-          .subcommands = {check_command(), synth_command(), add_command(), list_command()}};
+          .subcommands = {check_command(), synth_command(), add_command(), list_command(), faults_command()}};
 }
 
 }  // namespace stillpoint::bench

@@ -11,22 +11,23 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
+#include "bench/cli/run/run_dumps.h"
+#include "bench/cli/run/run_layout.h"
 #include "bench/config/config_file.h"
 #include "bench/model/metrics.h"
 #include "bench/model/utc_time.h"
-#include "bench/record/label_dump.h"
+#include "bench/plan/sequence_argument.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/output_guard.h"
 #include "bench/record/run_files.h"
 #include "bench/record/sequence_checksum.h"
 #include "bench/run/heartbeat.h"
+#include "bench/run/recorded_boxes.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
+#include "datasets/faults/faulty_stream.h"
 #include "datasets/open_sequence.h"
 #include "datasets/ping_pong_playback.h"
-#include "reports/drawing/cost_trend.h"
-#include "reports/drawing/drawing.h"
-#include "reports/frames/run_video.h"
-#include "reports/frames/worst_frames.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -39,6 +40,7 @@ struct RunArguments {
   std::string base = "stillpoint";
   std::vector<std::string> variants;
   std::vector<std::string> settings;
+  std::vector<std::string> faults;
   std::string mode = "sequential";
   std::string out;
   std::string format;
@@ -82,13 +84,16 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
 }
 
 /// Sets the output folder of each run: --out for a single run, else a subfolder. Checks that it is writable.
-std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const std::string& out,
-                                        const std::string& sequence) {
-  const fs::path root = out.empty() ? fs::path("build/runs") / sequence : fs::path(out);
-  const bool shared_root = out.empty() || runs.size() > 1;
+std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const RunArguments& arguments,
+                                        const datasets::SequenceInfo& info) {
+  const fs::path root = arguments.out.empty() ? fs::path("build/runs") / info.name : fs::path(arguments.out);
+  const bool shared_root = arguments.out.empty() || runs.size() > 1;
+  const std::vector<fs::path> inputs = {info.folder, arguments.rig};
   for (ConfiguredRun& run : runs) {
     if (!run.video.empty() && runs.size() > 1) run.video /= folder_name(run.variant);
     run.folder = shared_root ? root / folder_name(run.variant) : root;
+    require_safe_folder(run.folder, run_layout(), inputs);
+    if (!run.video.empty()) require_safe_folder(run.video, video_layout(), inputs);
     require_writable(run.folder);
   }
   return runs;
@@ -101,37 +106,20 @@ void log_update(const OdometryUpdate& update) {
   if (update.counters.reset) spdlog::warn("frame {}: tracking failed, estimator reset", update.frame_id);
 }
 
-/// The video requested by --video.
-std::optional<report::RunVideo> start_video(const datasets::SequenceInfo& info,
-                                            const ConfiguredRun& configured) {
-  if (configured.video.empty()) return std::nullopt;
-  return std::optional<report::RunVideo>(std::in_place, configured.video,
-                                         report::annotation_style(configured.spec.config.frontend),
-                                         report::mean_rate_hz(info.frame_times));
+DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& configured) {
+  const auto requested = [&](const char* dump) {
+    return std::ranges::find(arguments.dumps, dump) != arguments.dumps.end();
+  };
+  return {.folder = configured.folder,
+          .labels = requested("labels"),
+          .cost = requested("cost"),
+          .video = configured.video,
+          .images = static_cast<std::size_t>(arguments.images)};
 }
 
-/// The annotated frames requested by --images.
-std::optional<report::WorstFrames> start_worst_frames(const datasets::SequenceInfo& info,
-                                                      const RunArguments& arguments,
-                                                      const ConfiguredRun& configured) {
-  if (arguments.images == 0) return std::nullopt;
-  return std::optional<report::WorstFrames>(std::in_place, configured.folder / "images",
-                                            static_cast<std::size_t>(arguments.images),
-                                            report::annotation_style(configured.spec.config.frontend), info);
-}
-
-bool is_requested(const RunArguments& arguments, const std::string& dump) {
-  return std::ranges::find(arguments.dumps, dump) != arguments.dumps.end();
-}
-
-/// Result and additional output files of a run.
-struct Executed {
-  RunResult result;
-  std::vector<OutputFile> dumps;
-};
-
-Executed execute(const datasets::SensorStream& stream, const RunArguments& arguments,
-                 const ConfiguredRun& configured) {
+/// Executes a run, and passes its frames to the dumps.
+RunResult execute(const datasets::SensorStream& stream, const RunArguments& arguments,
+                  const ConfiguredRun& configured, RunDumps& dumps) {
   const std::size_t total = stream.info().frame_times.size();
   const std::optional<Heartbeat> heartbeat =
       arguments.heartbeat.empty() ? std::nullopt : std::make_optional<Heartbeat>(arguments.heartbeat);
@@ -141,29 +129,12 @@ Executed execute(const datasets::SensorStream& stream, const RunArguments& argum
     if (heartbeat) heartbeat->beat(update.frame_id);
     progress.update(static_cast<std::size_t>(update.frame_id) + 1);
   };
-  LabelDump labels;
   RunControl control{.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested};
-  const bool dump_labels = is_requested(arguments, "labels");
-  std::optional<report::RunVideo> video = start_video(stream.info(), configured);
-  std::optional<report::WorstFrames> worst_frames = start_worst_frames(stream.info(), arguments, configured);
-  if (dump_labels || video || worst_frames) {
-    control.on_frame = [&](const FrameReport& report) {
-      if (dump_labels) labels.add(report);
-      if (video) video->add(report);
-      if (worst_frames) worst_frames->add(report);
-    };
-  }
-  Executed run{.result = score_run(stream.info(), run_odometry(stream, configured.spec, control)),
-               .dumps = {}};
-  run.result.variant = configured.variant;
-  run.result.mode = configured.spec.mode;
-  if (video) video->finish();
-  if (dump_labels) run.dumps.push_back({"labels.csv", labels.text()});
-  if (is_requested(arguments, "cost") && !interrupt_requested()) {
-    const report::CostTrend trend = report::cost_trend(report::frame_costs(run.result.run));
-    run.dumps.push_back({"cost.svg", report::svg_text(report::cost_plot(trend))});
-  }
-  return run;
+  if (dumps.needs_frames()) control.on_frame = [&](const FrameReport& report) { dumps.add(report); };
+  RunResult result = score_run(stream.info(), run_odometry(stream, configured.spec, control));
+  result.variant = configured.variant;
+  result.mode = configured.spec.mode;
+  return result;
 }
 
 /// --sequence-id, or the checksum of the sequence.
@@ -172,9 +143,18 @@ std::string id_of(const datasets::SequenceInfo& info, const RunArguments& argume
   return arguments.sequence_id.empty() ? sequence_checksum(info.folder) : arguments.sequence_id;
 }
 
+std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
+  std::vector<datasets::SensorFault> faults;
+  for (const std::string& text : arguments.faults) faults.push_back(datasets::parse_fault(text));
+  return faults;
+}
+
 RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& arguments,
                         const ConfiguredRun& configured) {
+  std::vector<std::string> faults;
+  for (const datasets::SensorFault& fault : faults_of(arguments)) faults.push_back(fault_text(fault));
   return {.sequence = info.name,
+          .faults = faults,
           .sequence_format = info.format,
           .sequence_checksum = id_of(info, arguments),
           .base = arguments.base,
@@ -201,6 +181,7 @@ void print_result(const RunResult& result, const fs::path& folder) {
   for (const SkippedFrame& frame : result.run.summary.skipped) {
     spdlog::warn("frame {} skipped: {}", frame.index, frame.reason);
   }
+  for (const std::string& warning : result.warnings) spdlog::warn("{}", warning);
   if (!result.failure.empty()) spdlog::warn("{}", result.failure);
   std::cout << fmt::format("{} {}: {}, {} of {} frames, {}\n  {}\n", result.sequence, result.variant,
                            status_name(result.outcome), result.run.summary.frames, result.run.frames_planned,
@@ -222,32 +203,39 @@ std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments) {
     }
     progress->update(static_cast<std::size_t>(done));
   };
-  auto stream = find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
+  auto stream = find_sequence(resolve_sequence(arguments.sequence),
+                              {.format = arguments.format, .rig_file = arguments.rig},
                               {.progress = on_rendered, .stop_requested = interrupt_requested});
-  const bool single_pass = !stream || arguments.passes == 1;
-  return single_pass ? std::move(stream) : datasets::ping_pong_playback(std::move(stream), arguments.passes);
+  if (stream && arguments.passes > 1)
+    stream = datasets::ping_pong_playback(std::move(stream), arguments.passes);
+  return stream ? datasets::with_faults(std::move(stream), faults_of(arguments)) : nullptr;
+}
+
+/// Executes a run and writes its files, then its dumps. @return exit code
+int run_configured(const datasets::SensorStream& stream, const RunArguments& arguments,
+                   const ConfiguredRun& configured) {
+  RunDumps dumps(dump_request(arguments, configured), stream.info(), configured.spec.config.frontend);
+  const RunResult result = execute(stream, arguments, configured, dumps);
+  write_run(configured.folder, result, manifest_of(stream.info(), arguments, configured));
+  print_result(result, configured.folder);
+  const std::vector<std::string> failures = dumps.finish(interrupt_requested() ? nullptr : &result.run);
+  for (const std::string& failure : failures) spdlog::warn("{}", failure);
+  return std::max(exit_code(result.outcome), failures.empty() ? kExitOk : kExitFindings);
 }
 
 int run(const RunArguments& arguments) {
-  if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
-  if (arguments.images < 0) throw InputError("--images", "must not be negative; 0 means none");
-  for (const std::string& dump : arguments.dumps) {
-    if (dump == "labels" || dump == "cost") continue;
-    throw InputError("--dump", "unknown value \"" + dump + "\"; expected one of: labels, cost");
-  }
+  require_known_dumps(arguments.dumps);
   install_interrupt_handlers();
   const std::vector<ConfiguredRun> runs = plan_runs(arguments);
+  static_cast<void>(faults_of(arguments));  // reports errors before the sequence is rendered
   const std::unique_ptr<datasets::SensorStream> stream = open(arguments);
   if (!stream) return kExitInterrupted;
   for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
+  for (const ConfiguredRun& configured : runs) require_recorded_boxes(configured.spec.config, stream->info());
   int code = kExitOk;
-  for (const ConfiguredRun& configured : with_folders(runs, arguments.out, stream->info().name)) {
+  for (const ConfiguredRun& configured : with_folders(runs, arguments, stream->info())) {
     if (interrupt_requested()) return kExitInterrupted;
-    Executed run = execute(*stream, arguments, configured);
-    write_run(configured.folder, run.result, manifest_of(stream->info(), arguments, configured),
-              std::move(run.dumps));
-    print_result(run.result, configured.folder);
-    code = std::max(code, exit_code(run.result.outcome));
+    code = std::max(code, run_configured(*stream, arguments, configured));
   }
   return code;
 }
@@ -266,8 +254,13 @@ Command run_command() {
            {"--variant", "Overlays joined by +; may be repeated, each --variant is a separate run",
             &arguments->variants},
            {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+           {"--fault",
+            "Inject a sensor fault: KIND or KIND:key=value,... with the keys start, duration, every [s], "
+            "amount, "
+            "seed; may be repeated; kinds: `stillpoint data faults`",
+            &arguments->faults},
            {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
-           {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed},
+           {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed, {1e-3, 1e3}},
            {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
            {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
             &arguments->format},
@@ -276,16 +269,20 @@ Command run_command() {
             "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
             "processing time of each frame); may be repeated",
             &arguments->dumps},
-           {"--passes", "Number of passes, alternately forward and backward, without IMU data [1]",
-            &arguments->passes},
+           {"--passes",
+            "Number of passes, alternately forward and backward, without IMU data [1]",
+            &arguments->passes,
+            {1, 1000}},
            {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
-           {"--images", "Number of frames with the largest error growth to write as annotated images [0]",
-            &arguments->images},
+           {"--images",
+            "Number of frames with the largest error growth to write as annotated images [0]",
+            &arguments->images,
+            {0, 1e6}},
            {"--sequence-id",
             "Identifier for the manifest, instead of a checksum over all files of the sequence",
             &arguments->sequence_id},
            {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
-           {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames},
+           {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
            {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
             &arguments->deterministic_counts}},
       .action = [arguments] { return run(*arguments); }};
