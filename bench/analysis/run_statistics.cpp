@@ -7,9 +7,11 @@
 #include <set>
 #include <sstream>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "bench/analysis/paired_runs.h"
 #include "bench/model/metrics.h"
 #include "bench/model/replicates.h"
 #include "core/base/error.h"
@@ -33,19 +35,19 @@ std::optional<double> value_of(const StoredRun& run, const std::string& metric) 
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// Values of one spread, with their seeds.
-using SeedValues = std::vector<std::pair<std::int64_t, double>>;
-
-/// Without the repetitions that are no replicates: equal values of a deterministic metric with equal seeds.
-std::vector<double> replicates(SeedValues values, const std::string& metric) {
+/// Values of the runs that are replicates: a deterministic metric counts once for runs with the same result.
+std::vector<double> replicates(std::span<const StoredRun* const> runs, const std::string& metric) {
   const MetricDescriptor* gated = gated_metric(without_protocol(metric));
-  if (gated != nullptr && gated->gate->repeatable) {
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
+  const bool is_deterministic = gated != nullptr && gated->gate->repeatable;
+  std::set<std::pair<std::string, std::string>> results;
+  std::vector<double> values;
+  for (const StoredRun* run : runs) {
+    const std::optional<double> value = value_of(*run, metric);
+    if (!value) continue;
+    const bool is_new = results.insert({input_key(run->identity), fingerprint(*run)}).second;
+    if (is_new || !is_deterministic) values.push_back(*value);
   }
-  std::vector<double> result;
-  for (const auto& [seed, value] : values) result.push_back(value);
-  return result;
+  return values;
 }
 
 /// Summary of the values; the worst one is the smallest if larger is better.
@@ -119,9 +121,13 @@ std::vector<std::string> split_cells(const std::string& line) {
 
 }  // namespace
 
+std::optional<eval::Spread> metric_spread(std::span<const StoredRun* const> runs, const std::string& metric) {
+  return spread_of(replicates(runs, metric), metric);
+}
+
 std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::string& metric) {
   std::vector<RunSpread> rows;
-  std::vector<SeedValues> values;
+  std::vector<std::vector<const StoredRun*>> members;
   std::map<Point, std::size_t> index;
   for (const StoredRun& run : runs) {
     const RunIdentity& identity = run.identity;
@@ -129,16 +135,14 @@ std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::s
     if (is_new) {
       const auto& [sequence, variant, axis, axis_value] = entry->first;
       rows.push_back({.sequence = sequence, .variant = variant, .axis = axis, .axis_value = axis_value});
-      values.emplace_back();
+      members.emplace_back();
     }
     RunSpread& row = rows[entry->second];
     ++row.runs;
     row.failed += run.outcome == Outcome::kOk ? 0 : 1;
-    if (const std::optional<double> value = value_of(run, metric))
-      values[entry->second].emplace_back(identity.seed, *value);
+    members[entry->second].push_back(&run);
   }
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    rows[i].spread = spread_of(replicates(values[i], metric), metric);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].spread = metric_spread(members[i], metric);
   return rows;
 }
 

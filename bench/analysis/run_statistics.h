@@ -24,12 +24,17 @@ struct RunSpread {
                                        ///< respects the direction of the metric
 };
 
-/// Repetitions of a deterministic metric that have equal seeds and equal values count as one replicate. Runs
+/// For a deterministic metric, runs of one input with equal trajectories count as one replicate. Runs
 /// without a finite value have no part in the spread.
 /// @param runs   that may be pooled, e.g. of one `RunGroup`
 /// @param metric metric name, e.g. "ate_rmse_m"
 /// @return in the order of first appearance
 [[nodiscard]] std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::string& metric);
+
+/// Spread of a metric over runs of one variant on one sequence, at one point of a sweep, as in `run_spreads`.
+/// @return nullopt without a finite value
+[[nodiscard]] std::optional<eval::Spread> metric_spread(std::span<const StoredRun* const> runs,
+                                                        const std::string& metric);
 
 /// Difference between a variant and a base variant, paired by sequence, seed and point of a sweep.
 /// Repetitions are reduced to their median.

@@ -28,29 +28,37 @@ struct Ablation {
   std::vector<AblationGroup> bases;
 };
 
-/// The runs of a group that belong to a plan, with any build.
-std::vector<StoredRun> runs_in_plan(const Store& store, const RunGroup& group, const std::string& plan) {
-  std::set<std::int64_t> ids;
-  for (const StoredRun& run : runs_of_plan(store, plan)) ids.insert(run.id);
-  std::vector<StoredRun> runs = group.runs;
-  std::erase_if(runs, [&](const StoredRun& run) { return !ids.contains(run.id); });
-  return runs;
-}
+/// A plan that names a base, and its runs with any build.
+struct BasedPlan {
+  std::string base;
+  std::set<std::int64_t> runs;  ///< ids
+};
 
-/// One ablation with a named base, else one for each plan that has a base.
-std::vector<Ablation> ablations_of(const Store& store, const RunGroup& group,
-                                   const StatsArguments& arguments) {
-  std::vector<std::string> variants = variants_of(group.runs);
-  if (!arguments.base.empty()) {
-    if (std::erase(variants, arguments.base) == 0 || variants.empty()) return {};
-    return {{group.runs, {{.base = arguments.base, .variants = variants}}}};
-  }
-  std::vector<Ablation> ablations;
+std::vector<BasedPlan> plans_with_base(const Store& store, const StatsArguments& arguments) {
+  std::vector<BasedPlan> plans;
   for (const StoredPlan& plan : store.plans()) {
     const std::optional<std::string> base = ablation_base_of(plan);
     if (!base || (!arguments.plan.empty() && plan.name != arguments.plan)) continue;
-    std::vector<StoredRun> runs = runs_in_plan(store, group, plan.name);
-    std::vector<AblationGroup> bases = ablation_groups(*base, variants_of(runs));
+    plans.push_back({.base = *base, .runs = {}});
+    for (const StoredRun& run : runs_of_plan(store, plan.name)) plans.back().runs.insert(run.id);
+  }
+  return plans;
+}
+
+/// An ablation with the named base.
+std::vector<Ablation> ablation_of_base(const RunGroup& group, const std::string& base) {
+  std::vector<std::string> variants = variants_of(group.runs);
+  if (std::erase(variants, base) == 0 || variants.empty()) return {};
+  return {{group.runs, {{.base = base, .variants = variants}}}};
+}
+
+/// One ablation for each plan.
+std::vector<Ablation> ablations_of_plans(const RunGroup& group, const std::vector<BasedPlan>& plans) {
+  std::vector<Ablation> ablations;
+  for (const BasedPlan& plan : plans) {
+    std::vector<StoredRun> runs = group.runs;
+    std::erase_if(runs, [&](const StoredRun& run) { return !plan.runs.contains(run.id); });
+    std::vector<AblationGroup> bases = ablation_groups(plan.base, variants_of(runs));
     if (!bases.empty()) ablations.push_back({std::move(runs), std::move(bases)});
   }
   return ablations;
@@ -123,8 +131,12 @@ int stats_ablation(const StatsArguments& arguments) {
   require_metric(selection, arguments.metric);
   std::vector<GroupRows> groups;
   std::set<std::size_t> counts;
+  const std::vector<BasedPlan> plans =
+      arguments.base.empty() ? plans_with_base(store, arguments) : std::vector<BasedPlan>{};
   for (const RunGroup& group : selection.groups) {
-    AblationTable table = table_of(ablations_of(store, group, arguments), arguments.metric);
+    AblationTable table = table_of(
+        arguments.base.empty() ? ablations_of_plans(group, plans) : ablation_of_base(group, arguments.base),
+        arguments.metric);
     counts.merge(table.counts);
     if (!table.rows.empty()) groups.push_back({.group = &group, .rows = std::move(table.rows)});
   }
