@@ -17,6 +17,7 @@ namespace stillpoint::bench {
 /// What is necessary to reproduce a run, and to decide which results are comparable with it.
 struct RunManifest {
   std::string sequence;
+  std::vector<std::string> faults;  ///< injected sensor faults, as in `--fault`
   std::string sequence_format;
   std::string sequence_checksum;  ///< empty when the run was interrupted
   std::string base;
@@ -43,9 +44,8 @@ struct RunManifest {
 /// Text of trajectory.tum; that of an interrupted run starts with the comment "# partial".
 [[nodiscard]] std::string trajectory_text(const RunResult& result);
 
-/// Writes the files and the requested dumps: all of them, or none.
+/// Writes the files: all of them, or none.
 /// @throws InputError if the folder cannot be written
-void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest,
-               std::vector<OutputFile> dumps = {});
+void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest);
 
 }  // namespace stillpoint::bench

@@ -71,6 +71,11 @@ DamagedDatabase::DamagedDatabase(const fs::path& store, fs::path folder) : folde
   std::error_code error;
   if (!fs::create_directories(folder_, error))
     throw InputError(folder_.string(), "cannot be created; remove it or choose another output");
+  if (fs::space(folder_, error).available < fs::file_size(store) && !error) {
+    fs::remove_all(folder_, error);
+    throw InputError(store.string(), "is larger than the free space at " + folder_.string() +
+                                         ", where a copy of it is repaired; choose another output");
+  }
   const fs::path copy = folder_ / "store.sqlite";
   const fs::path log = store.string() + "-wal";
   try {

@@ -124,7 +124,7 @@ TEST(BadInput, UnwritableOutput) {
   const TemporaryFolder folder;
   const fs::path out = folder.write("file", "") / "out";
   expect_rejected(run_program({"run", rendered_sequence().string(), "--out", out.string()}), out,
-                  {out.string() + ": cannot be created", "--out"});
+                  {out.string() + ": cannot be created", "output folder"});
 }
 
 TEST(BadInput, FullDisk) {

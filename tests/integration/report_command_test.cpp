@@ -66,6 +66,77 @@ TEST(BenchCommand, StoresNoImagesOfTimingRuns) {
   EXPECT_EQ(image_count(run_of_plan(folder, "images = 2\nkind = \"timing\"\n")), 0u);
 }
 
+/// A store with two runs, and a file for each.
+fs::path store_with_files(const TemporaryFolder& folder) {
+  fs::path file = folder.path() / "s.sqlite";
+  bench::StoreWriter writer(file);
+  for (const char* variant : {"vo", "vio"}) {
+    const bench::RunIdentity identity{.variant = variant, .sequence = "a"};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity, {.metrics = {{"ate_rmse_m", "", "m", 0.5}},
+                             .attachments = {{"frames", std::string("frames of ") + variant}}});
+  }
+  return file;
+}
+
+TEST(ReportCommand, WritesThePageOfAStoreWithAMissingFileAndNamesTheGap) {
+  const TemporaryFolder folder;
+  const fs::path file = store_with_files(folder);
+  const bench::StoredRun run = bench::Store(file).runs().front();
+  fs::remove(bench::BlobFiles(bench::files_folder(file) / "blobs").file(run.blobs.at("frames")));
+  const ProgramResult result =
+      run_program({"report", file.string(), "--out", (folder.path() / "out").string()});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  const std::string gap = "run " + run.key + " (a, vo): missing or damaged files: frames";
+  EXPECT_NE(result.err.find("warning: " + gap), std::string::npos) << result.err;
+  std::ifstream page(folder.path() / "out" / "index.html");
+  const std::string text{std::istreambuf_iterator<char>(page), {}};
+  EXPECT_NE(text.find("<li class=\"gap\">" + gap), std::string::npos);
+}
+
+TEST(StoreSalvage, PrintsWhatIsSavedAndLost) {
+  const TemporaryFolder folder;
+  const fs::path file = store_with_files(folder);
+  const std::string out = (folder.path() / "new.sqlite").string();
+  const ProgramResult intact = run_program({"store", "salvage", file.string(), out});
+  EXPECT_EQ(intact.exit_code, 0) << intact.err;
+  EXPECT_NE(intact.out.find("nothing is lost"), std::string::npos) << intact.out;
+  EXPECT_EQ(run_program({"store", "salvage", file.string(), out}).exit_code, 2);  // exists
+  fs::remove_all(bench::files_folder(file) / "blobs");
+  const ProgramResult damaged = run_program({"store", "salvage", file.string(), out + "2"});
+  EXPECT_EQ(damaged.exit_code, 1) << damaged.err;
+  EXPECT_NE(damaged.out.find("2 losses"), std::string::npos) << damaged.out;
+}
+
+TEST(StoreExport, NeverReplacesTheStoreOrOtherFiles) {
+  const TemporaryFolder folder;
+  const std::string store = store_with_files(folder).string();
+  const std::string notes = folder.write("notes.json", "{}").string();
+  const auto exported = [&](const std::string& file, bool force) {
+    std::vector<std::string> arguments = {"store", "export", file, "--store", store};
+    if (force) arguments.emplace_back("--force");
+    return run_program(arguments).exit_code;
+  };
+  EXPECT_EQ(exported(store, true), 2);
+  EXPECT_EQ(exported(notes, true), 2);
+  const std::string file = (folder.path() / "export.json").string();
+  EXPECT_EQ(exported(file, false), 0);
+  EXPECT_EQ(exported(file, false), 2);
+  EXPECT_EQ(exported(file, true), 0);
+  EXPECT_EQ(bench::Store(store).runs().size(), 2u);
+}
+
+TEST(ReportCommand, DoesNotReplaceAForeignPage) {
+  const TemporaryFolder folder;
+  const std::string store = store_with_files(folder).string();
+  folder.write("site/index.html", "my site");
+  for (const char* command : {"report", "dashboard"}) {
+    const ProgramResult result = run_program({command, store, "--out", (folder.path() / "site").string()});
+    EXPECT_EQ(result.exit_code, 2) << command;
+    EXPECT_NE(result.err.find("index.html: exists, but not as part"), std::string::npos) << result.err;
+  }
+}
+
 TEST(ReportCommand, RejectsAMissingStore) {
   const TemporaryFolder folder;
   const ProgramResult result =

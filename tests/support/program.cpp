@@ -23,14 +23,14 @@ constexpr uid_t kNobody = 65534;
 constexpr const char* kProgram = STILLPOINT_BINARY_DIR "/stillpoint";
 
 void limit_files(std::uint64_t bytes) {
-  std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{bytes, bytes};
   setrlimit(RLIMIT_FSIZE, &limit);
 }
 
 [[noreturn]] void exec_program(std::vector<std::string> arguments, const ProgramOptions& options,
                                const std::string& out_file, int err_pipe) {
-  dup2(open(out_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+  const std::string& out = options.out_file.empty() ? out_file : options.out_file;
+  dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
   dup2(err_pipe, STDERR_FILENO);
   for (std::string setting : options.environment) {
     const std::size_t equals = setting.find('=');

@@ -19,6 +19,7 @@ struct ProgramResult {
 struct ProgramOptions {
   std::vector<std::string> environment;           ///< "NAME=value", added to the environment of the test
   std::optional<std::uint64_t> file_limit_bytes;  ///< maximum file size; simulates a full disk
+  std::string out_file;                           ///< receives stdout instead of the result; empty = result
   bool without_write_access = false;              ///< executes as "nobody" if the tests run as root
   std::string interrupt_after;                    ///< send SIGINT once stderr contains this
 };
