@@ -2,236 +2,199 @@
 #include "bench/analysis/comparison.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "eval/metrics/statistics.h"
+#include "bench/model/replicates.h"
 
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::size_t kMinPairs = 5;
-
-struct RunPair {
-  const StoredRun* base;
-  const StoredRun* head;
-};
-
-/// Key that is equal for paired runs: everything but the build.
-std::string pair_key(const RunIdentity& identity) {
-  RunIdentity any_build = identity;
-  any_build.build.clear();
-  any_build.config_hash.clear();  // defaults may change with the build
-  return run_key(any_build);
-}
-
-std::vector<RunPair> pairs_of(std::span<const StoredRun> base, std::span<const StoredRun> head) {
-  std::map<std::string, const StoredRun*> by_key;
-  for (const StoredRun& run : head) by_key[pair_key(run.identity)] = &run;
-  std::vector<RunPair> pairs;
-  for (const StoredRun& run : base) {
-    const auto found = by_key.find(pair_key(run.identity));
-    if (found != by_key.end()) pairs.push_back({&run, found->second});
-  }
-  return pairs;
-}
-
-bool both_ok(const RunPair& pair) {
-  return pair.base->outcome == Outcome::kOk && pair.head->outcome == Outcome::kOk;
-}
-
-bool is_bit_equal(const RunPair& pair) {
-  const auto base = pair.base->blobs.find("trajectory");
-  const auto head = pair.head->blobs.find("trajectory");
-  return base != pair.base->blobs.end() && head != pair.head->blobs.end() && base->second == head->second;
-}
-
-/// Paired values of one metric on one subject.
-struct Series {
-  const MetricDescriptor* metric = nullptr;  ///< with a gate
-  std::string unit;
-  bool repeatable = true;
-  std::vector<eval::Pair> pairs;
-};
-
-/// By (metric, subject).
-using SeriesTable = std::map<std::pair<std::string, std::string>, Series>;
-
-/// Repeatable metrics are tested per sequence; the others need all runs of a variant.
-std::string subject_of(const RunIdentity& identity, const MetricGate& gate) {
-  std::string subject = identity.variant;
-  if (!identity.axis.empty()) subject += fmt::format(" {} = {}", identity.axis, identity.axis_value);
-  return gate.repeatable ? subject + " on " + identity.sequence : subject;
-}
-
-SeriesTable metric_series(const std::vector<RunPair>& pairs, MetricFamily family) {
-  SeriesTable table;
-  for (const RunPair& pair : pairs) {
-    const RunIdentity& identity = pair.base->identity;
-    for (const Metric& stored : pair.base->metrics) {
-      const MetricDescriptor* metric = gated_metric(stored.name);
-      const std::optional<double> head = metric_value(*pair.head, stored.name);
-      if (metric == nullptr || metric->gate->family != family || !head) continue;
-      Series& series = table[{stored.name, subject_of(identity, *metric->gate)}];
-      series.metric = metric;
-      series.unit = stored.unit;
-      series.repeatable = metric->gate->repeatable && identity.mode != "realtime";
-      series.pairs.push_back({stored.value, *head});
-    }
-  }
-  return table;
-}
-
-SeriesTable module_series(const std::vector<RunPair>& pairs) {
-  const MetricDescriptor* metric = gated_metric(metric_id::kModuleTime);
-  SeriesTable table;
-  for (const RunPair& pair : pairs) {
-    for (const ModuleCost& cost : pair.base->costs) {
-      for (const ModuleCost& other : pair.head->costs) {
-        if (cost.module != other.module) continue;
-        Series& series = table[{cost.module, subject_of(pair.base->identity, *metric->gate)}];
-        series.metric = metric;
-        series.unit = std::string(metric->unit);
-        series.repeatable = metric->gate->repeatable;
-        series.pairs.push_back({cost.mean_ms, other.mean_ms});
-      }
-    }
-  }
-  return table;
-}
-
-std::optional<MetricChange> change_of(const std::pair<std::string, std::string>& name, const Series& series,
-                                      std::size_t family_size) {
-  const std::optional<eval::RelativeChange> change = eval::relative_change(series.pairs);
-  if (!change) return std::nullopt;
-  const double confidence =
-      1.0 - (1.0 - eval::BootstrapOptions{}.confidence) / static_cast<double>(family_size);
-  std::vector<double> base;
-  std::vector<double> head;
-  for (const eval::Pair& pair : series.pairs) {
-    base.push_back(pair.base);
-    head.push_back(pair.changed);
-  }
-  MetricChange metric_change{
-      .metric = name.first,
-      .subject = name.second,
-      .unit = series.unit,
-      .base_median = *eval::percentile(base, 0.5),
-      .head_median = *eval::percentile(head, 0.5),
-      .change = *change,
-      .adjusted_interval = eval::relative_change(series.pairs, {.confidence = confidence})->interval};
-  metric_change.result = classify(metric_change, *series.metric, series.repeatable);
-  return metric_change;
-}
-
-/// The interval multiplied by `sign`, 1 or -1.
-eval::Interval oriented(const eval::Interval& interval, double sign) {
-  return sign > 0.0 ? interval : eval::Interval{.low = -interval.high, .high = -interval.low};
-}
-
-std::vector<MetricChange> changes_of(const SeriesTable& table) {
-  std::vector<MetricChange> changes;
-  for (const auto& [name, series] : table) {
-    if (const std::optional<MetricChange> change = change_of(name, series, table.size()))
-      changes.push_back(*change);
-  }
-  return changes;
-}
-
 bool is_busy(const StoredRun& run) { return metric_value(run, metric_id::kQuiet) == 0.0; }
 
+std::string failure_text(const StoredRun& run, const char* side) {
+  std::string text = fmt::format("{} on {}, {}: {}", run.identity.variant, run.identity.sequence, side,
+                                 outcome_name(run.outcome));
+  return run.detail.empty() ? text : text + ", " + run.detail;
+}
+
 /// A comparison with the counts of outcomes, without changes.
-Comparison counted_outcomes(const std::vector<RunPair>& pairs) {
-  Comparison comparison{.pairs = pairs.size()};
+Comparison counted_outcomes(const PairedRuns& runs) {
+  Comparison comparison{.pairs = runs.pairs.size()};
+  comparison.only_in_base = runs.only_in_base.size();
+  comparison.only_in_head = runs.only_in_head.size();
   std::size_t busy = 0;
-  for (const RunPair& pair : pairs) {
+  for (const RunPair& pair : runs.pairs) {
     const bool base_ok = pair.base->outcome == Outcome::kOk;
     const bool head_ok = pair.head->outcome == Outcome::kOk;
+    comparison.compared += base_ok && head_ok ? 1 : 0;
+    comparison.base_failed += base_ok ? 0 : 1;
+    comparison.head_failed += head_ok ? 0 : 1;
     comparison.newly_failed += base_ok && !head_ok ? 1 : 0;
     comparison.newly_succeeded += !base_ok && head_ok ? 1 : 0;
-    comparison.bit_equal += both_ok(pair) && is_bit_equal(pair) ? 1 : 0;
+    comparison.bit_equal += base_ok && head_ok && is_bit_equal(pair) ? 1 : 0;
     busy += is_busy(*pair.base) || is_busy(*pair.head) ? 1 : 0;
+    if (!comparison.first_failure.empty()) continue;
+    if (!head_ok) comparison.first_failure = failure_text(*pair.head, "head");
+    if (!base_ok) comparison.first_failure = failure_text(*pair.base, "base");
   }
-  if (busy > 0) {
-    comparison.notes.push_back(fmt::format("the machine was busy during {} of {} pairs", busy, pairs.size()));
-  }
+  if (busy > 0)
+    comparison.notes.push_back(
+        fmt::format("the machine was busy during {} of {} pairs", busy, comparison.pairs));
   return comparison;
+}
+
+std::vector<double> smallest_p_values(const std::vector<MetricSeries>& list) {
+  std::vector<double> values;
+  for (const MetricSeries& series : list) {
+    if (series.decides && is_tested(series)) values.push_back(smallest_p_of(series));
+  }
+  return values;
+}
+
+/// Adds a pooled series for each metric and variant that has too few pairs on a sequence.
+std::vector<MetricSeries> with_pooled(std::vector<MetricSeries> accuracy, const TestFamily& family) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < accuracy.size(); ++i)
+    groups[{accuracy[i].metric, accuracy[i].variant}].push_back(i);
+  for (const auto& [name, members] : groups) {
+    if (members.size() < 2) continue;
+    std::vector<const MetricSeries*> parts;
+    bool too_few = false;
+    for (const std::size_t i : members) {
+      parts.push_back(&accuracy[i]);
+      if (!is_tested(accuracy[i]) || smallest_p_of(accuracy[i]) <= family.level) continue;
+      accuracy[i].decides = false;
+      too_few = true;
+    }
+    if (too_few) accuracy.push_back(pooled(parts));
+  }
+  return accuracy;
+}
+
+/// One sentence on the metrics without a relative change.
+std::vector<std::string> notes_on_zeros(const std::vector<MetricSeries>& all,
+                                        const std::vector<MetricChange>& changes) {
+  if (all.size() == changes.size()) return {};
+  return {
+      fmt::format("{} metrics are 0 or not finite in all runs of base: they have no relative change and were "
+                  "not compared",
+                  all.size() - changes.size())};
+}
+
+/// One sentence for each number of pairs that is too small for the inconclusive changes.
+std::vector<std::string> notes_on_pairs(const Comparison& comparison) {
+  std::map<std::tuple<ChangeTest, std::size_t, double, std::size_t>, std::size_t> counts;
+  for (const MetricChange& change : comparison.changes) {
+    if (change.needed > 0 && change.result == ChangeClass::kInconclusive)
+      ++counts[{change.test, change.change.count, change.smallest_p, change.needed}];
+  }
+  std::vector<std::string> notes;
+  for (const auto& [too_few, metrics] : counts) {
+    const auto& [test, count, smallest_p, needed] = too_few;
+    const char* noun = test == ChangeTest::kReplicates ? "replicate" : "pair";
+    notes.push_back(fmt::format(
+        "{} {}{} cannot go below p = {:.2g}, but {} tests at once require p <= {:.2g}: {} change{} remain{} "
+        "inconclusive; run with --pairs {}, or store {} seeds or perturbations of each sequence",
+        count, noun, count == 1 ? "" : "s", smallest_p, comparison.family.tests, comparison.family.level,
+        metrics, metrics == 1 ? "" : "s", metrics == 1 ? "s" : "", needed, needed));
+  }
+  return notes;
+}
+
+/// Runs whose repetition is odd or even, numbered such that repetitions 2k - 1 and 2k are paired.
+std::vector<StoredRun> half_of(std::span<const StoredRun> runs, std::int64_t parity) {
+  std::vector<StoredRun> half;
+  for (const StoredRun& run : runs) {
+    if (run.identity.repetition % 2 != parity) continue;
+    half.push_back(run);
+    RunIdentity& identity = half.back().identity;
+    identity.repetition = (identity.repetition + 1) / 2;
+    identity.config_hash = unperturbed_hash(identity.config_hash);
+  }
+  return half;
+}
+
+bool is_significant(const MetricChange& change) {
+  return change.result == ChangeClass::kWorse || change.result == ChangeClass::kBetter;
 }
 
 }  // namespace
 
-std::string change_class_name(ChangeClass change_class) {
-  switch (change_class) {
-    case ChangeClass::kSame:
-      return "same";
-    case ChangeClass::kBetter:
-      return "better";
-    case ChangeClass::kInconclusive:
-      return "inconclusive";
-    case ChangeClass::kWorse:
-      return "worse";
-  }
-  return "";
-}
-
-ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric, bool repeatable) {
-  const MetricGate& gate = *metric.gate;
-  if (std::abs(change.head_median - change.base_median) < gate.floor) return ChangeClass::kSame;
-  const double sign =
-      metric.direction == MetricDirection::kLargerIsBetter ? -1.0 : 1.0;  // so that positive is worse
-  const double median = sign * change.change.median;
-  const eval::Interval interval = oriented(change.change.interval, sign);
-  const eval::Interval adjusted_interval = oriented(change.adjusted_interval, sign);
-  const bool is_equal = interval.low == 0.0 && interval.high == 0.0;
-  if (!repeatable && change.change.count < kMinPairs && !is_equal) return ChangeClass::kInconclusive;
-  if (adjusted_interval.low > 0.0 && median >= gate.margin) return ChangeClass::kWorse;
-  if (adjusted_interval.high < 0.0 && median <= -gate.margin) return ChangeClass::kBetter;
-  const bool is_same = interval.low >= -gate.margin && interval.high <= gate.margin;
-  return is_same ? ChangeClass::kSame : ChangeClass::kInconclusive;
-}
+bool Comparison::has_result() const { return bit_equal > 0 || !changes.empty(); }
 
 ChangeClass Comparison::result() const {
-  if (pairs == 0) return ChangeClass::kInconclusive;
   if (newly_failed > 0) return ChangeClass::kWorse;
+  if (pairs > 0 && base_failed == pairs && head_failed == pairs) return ChangeClass::kError;
+  if (!has_result()) return ChangeClass::kInconclusive;
   ChangeClass worst = newly_succeeded > 0 ? ChangeClass::kBetter : ChangeClass::kSame;
-  for (const MetricChange& change : changes) worst = std::max(worst, change.result);
+  for (const MetricChange& change : changes) {
+    if (change.decides) worst = std::max(worst, change.result);
+  }
   return worst;
 }
 
+std::string count_sentence(const Comparison& comparison) {
+  std::string text = fmt::format(
+      "{} pair{} of runs: {} compared ({} with bit-equal trajectories), {} failed at base, {} at head ({} "
+      "newly "
+      "failed, {} newly succeeded)",
+      comparison.pairs, comparison.pairs == 1 ? "" : "s", comparison.compared, comparison.bit_equal,
+      comparison.base_failed, comparison.head_failed, comparison.newly_failed, comparison.newly_succeeded);
+  if (comparison.only_in_base + comparison.only_in_head > 0)
+    text += fmt::format("; {} runs of base and {} of head have no counterpart", comparison.only_in_base,
+                        comparison.only_in_head);
+  return text;
+}
+
 Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head) {
-  std::vector<RunPair> pairs = pairs_of(base, head);
-  Comparison comparison = counted_outcomes(pairs);
-  std::erase_if(pairs, [](const RunPair& pair) { return !both_ok(pair); });
-  const bool accuracy_is_equal = !pairs.empty() && comparison.bit_equal == pairs.size();
-  if (!accuracy_is_equal) comparison.changes = changes_of(metric_series(pairs, MetricFamily::kAccuracy));
-  SeriesTable costs = metric_series(pairs, MetricFamily::kCost);
-  costs.merge(module_series(pairs));
-  const std::vector<MetricChange> cost_changes = changes_of(costs);
+  const PairedRuns runs = paired_runs(base, head);
+  Comparison comparison = counted_outcomes(runs);
+  const bool accuracy_is_equal = comparison.compared > 0 && comparison.bit_equal == comparison.compared;
+  const std::vector<MetricSeries> costs = cost_series(runs);
+  std::vector<MetricSeries> accuracy;
+  if (!accuracy_is_equal) accuracy = accuracy_series(runs);
+  std::vector<MetricSeries> all = accuracy;
+  all.insert(all.end(), costs.begin(), costs.end());
+  accuracy = with_pooled(std::move(accuracy), test_family(smallest_p_values(all)));
+  all = accuracy;
+  all.insert(all.end(), costs.begin(), costs.end());
+  comparison.family = test_family(smallest_p_values(all));
+  comparison.changes = changes_of(accuracy, comparison.family);
+  const std::vector<MetricChange> cost_changes = changes_of(costs, comparison.family);
   comparison.changes.insert(comparison.changes.end(), cost_changes.begin(), cost_changes.end());
+  for (std::string& note : notes_on_zeros(all, comparison.changes))
+    comparison.notes.push_back(std::move(note));
   if (accuracy_is_equal)
     comparison.notes.emplace_back("all trajectories are bit-equal: accuracy was not tested");
+  for (std::string& note : notes_on_pairs(comparison)) comparison.notes.push_back(std::move(note));
   return comparison;
 }
 
-Comparison with_control(Comparison comparison, const Comparison& control) {
-  comparison.control = control.changes;
+std::vector<MetricChange> control_changes(std::span<const StoredRun> base) {
+  const std::vector<StoredRun> odd = half_of(base, 1);
+  const std::vector<StoredRun> even = half_of(base, 0);
+  const PairedRuns runs = paired_runs(odd, even);
+  std::vector<MetricSeries> list = accuracy_series(runs);
+  for (MetricSeries& series : cost_series(runs)) list.push_back(std::move(series));
+  return changes_of(list, {.tests = 1});
+}
+
+Comparison with_control(Comparison comparison, std::vector<MetricChange> control) {
   for (MetricChange& change : comparison.changes) {
-    for (const MetricChange& control_change : control.changes) {
-      const bool is_significant =
-          control_change.result == ChangeClass::kWorse || control_change.result == ChangeClass::kBetter;
-      if (control_change.metric != change.metric || control_change.subject != change.subject ||
-          !is_significant)
+    for (const MetricChange& other : control) {
+      if (other.metric != change.metric || other.subject != change.subject || !is_significant(other) ||
+          !is_significant(change))
         continue;
       change.result = ChangeClass::kInconclusive;
       comparison.notes.push_back(fmt::format("{} of {} changed by {:+.1f} % between runs of base alone",
-                                             change.metric, change.subject,
-                                             100.0 * control_change.change.median));
+                                             change.metric, change.subject, 100.0 * other.change.median));
     }
   }
+  comparison.control = std::move(control);
   return comparison;
 }
 

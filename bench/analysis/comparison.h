@@ -6,62 +6,58 @@
 #include <string>
 #include <vector>
 
-#include "bench/model/metrics.h"
-#include "eval/statistics/paired.h"
+#include "bench/analysis/metric_change.h"
+#include "bench/analysis/test_family.h"
+#include "bench/model/stored_run.h"
 
 namespace stillpoint::bench {
 
-enum class ChangeClass { kSame, kBetter, kInconclusive, kWorse };
-
-/// "same", "better", "inconclusive" or "worse".
-[[nodiscard]] std::string change_class_name(ChangeClass change_class);
-
-/// Change of one metric on one subject.
-struct MetricChange {
-  std::string metric;   ///< metric name, or name of the timed module
-  std::string subject;  ///< variant, and sequence if tested per sequence
-  std::string unit;
-  double base_median = 0.0;
-  double head_median = 0.0;
-  eval::RelativeChange change;  ///< with 95 % confidence interval
-  /// Confidence interval at 1 - 0.05 / n, with n tested metrics of the family (Bonferroni correction).
-  eval::Interval adjusted_interval;
-  ChangeClass result = ChangeClass::kSame;
-};
-
 struct Comparison {
   std::size_t pairs = 0;            ///< runs present in both base and head
-  std::size_t bit_equal = 0;        ///< pairs with bit-equal trajectories
+  std::size_t compared = 0;         ///< pairs that succeeded on both sides
+  std::size_t bit_equal = 0;        ///< compared pairs with bit-equal trajectories
+  std::size_t base_failed = 0;      ///< pairs that failed at base
+  std::size_t head_failed = 0;      ///< pairs that failed at head
   std::size_t newly_failed = 0;     ///< succeeded at base, but not at head
   std::size_t newly_succeeded = 0;  ///< the reverse
+  std::size_t only_in_base = 0;     ///< runs without counterpart
+  std::size_t only_in_head = 0;
+  std::string first_failure;  ///< "vo on walking_xyz, base: crashed, terminated by signal 11"; empty without
+  TestFamily family;
   std::vector<MetricChange> changes;
   std::vector<MetricChange> control;  ///< base compared with itself; empty if not run
   std::vector<std::string> notes;     ///< remarks, one sentence each
 
-  /// The worst class over all metrics; kWorse if any run newly failed, kInconclusive without pairs.
+  /// Whether there is a pair of succeeded runs with a metric in common, or with equal trajectories.
+  [[nodiscard]] bool has_result() const;
+  /// kWorse if any run newly failed; kError if all runs of all pairs failed; kInconclusive without a result;
+  /// else the worst class over all metrics that decide.
   [[nodiscard]] ChangeClass result() const;
 };
 
-/// Classifies a change by its confidence intervals. With the median relative change m (positive = worse), its
-/// 95 % interval [l, u], the Bonferroni-adjusted interval [L, U], and the margin and floor of the metric:
-///
-///   kSame          |median difference| < floor, or -margin <= l and u <= margin
-///   kWorse         L > 0 and m >= margin
-///   kBetter        U < 0 and m <= -margin
-///   kInconclusive  otherwise, or fewer than 5 pairs of a metric that is not repeatable
-///
-/// @param metric with a gate
-/// @param repeatable whether the same program gives the same value in each run
-[[nodiscard]] ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric,
-                                   bool repeatable);
+/// "12 pairs of runs: 10 compared (4 with bit-equal trajectories), 0 failed at base, 2 at head (2 newly
+/// failed, 0 newly succeeded)", and the runs without counterpart if there are any.
+[[nodiscard]] std::string count_sentence(const Comparison& comparison);
 
-/// Compares runs that differ only in their build. Accuracy and instruction counts are tested per sequence, so
-/// that a regression on one sequence is not masked by others; times and memory are tested per variant over
-/// all sequences. Accuracy is not tested if all trajectories are bit-equal.
+/// Compares runs that differ only in their build. The tests are exact, and corrected for their number
+/// (bench/analysis/test_family.h).
+///
+/// Accuracy is tested per variant and sequence, so that a regression on one sequence is not masked by others.
+/// The runs of a deterministic program do not scatter, but a different rounding may change a decision and
+/// with it the error by several percent. A change is therefore tested against replicates with perturbed input
+/// (bench/model/replicates.h) or other seeds; repetitions with equal trajectories count once. Where the
+/// replicates of a sequence are too few for the test, the pairs of all sequences of the variant are pooled,
+/// and the changes of the single sequences are reported as inconclusive.
+///
+/// Times and memory are tested per variant over all sequences. Accuracy is not tested if all trajectories are
+/// bit-equal.
 [[nodiscard]] Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head);
 
-/// Adds the comparison of base with itself as a control. A cost with a significant change in the control is
-/// set to inconclusive.
-[[nodiscard]] Comparison with_control(Comparison comparison, const Comparison& control);
+/// Control: base compared with itself, repetition 2k with 2k - 1, which have different perturbations. Not
+/// corrected for the number of tests, so that it detects small disturbances of the machine.
+[[nodiscard]] std::vector<MetricChange> control_changes(std::span<const StoredRun> base);
+
+/// Adds the control. A significant change is set to inconclusive if the metric also changed in the control.
+[[nodiscard]] Comparison with_control(Comparison comparison, std::vector<MetricChange> control);
 
 }  // namespace stillpoint::bench

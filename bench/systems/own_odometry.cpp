@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/model/json_problem.h"
 #include "bench/profile/instruction_count.h"
 #include "bench/record/build_info.h"
 #include "bench/record/result_values.h"
@@ -44,7 +45,8 @@ RunOutcome without_result(const ProcessResult& process) {
                                                    : Outcome::kCrashed;
   outcome.detail = process.exit_code == kBadInput
                        ? message_of(process)
-                       : "exited with code " + std::to_string(process.exit_code) + ": " + message_of(process);
+                       : "exited with code " + std::to_string(process.exit_code) +
+                             " without writing result.json: " + message_of(process);
   return outcome;
 }
 
@@ -122,7 +124,7 @@ RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessResult& 
     outcome.costs = module_costs(result.at("timings"));
     outcome.manifest = without_start_time(eval::read_text_file(request.work / "manifest.json"));
   } catch (const Json::exception& error) {
-    throw InputError(result_file.string(), std::string("is not a result file: ") + error.what());
+    throw InputError(result_file.string(), "is not a result file: " + json_problem(error));
   }
   outcome.attachments = read_attachments(request.work);
   return counts_instructions(request) ? with_instruction_counts(std::move(outcome), request.work) : outcome;

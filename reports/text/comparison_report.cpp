@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/text/comparison_report.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +16,40 @@ using Json = nlohmann::ordered_json;
 
 std::string percent(double ratio) { return fmt::format("{:+.1f} %", 100.0 * ratio); }
 
+std::string interval_text(const bench::MetricChange& change) {
+  if (change.test == bench::ChangeTest::kExact) return "exact";
+  const std::optional<eval::Interval>& interval = change.change.interval;
+  if (!interval) return fmt::format("- (n = {})", change.change.count);
+  return percent(interval->low) + " to " + percent(interval->high);
+}
+
+const char* test_name(bench::ChangeTest test) {
+  switch (test) {
+    case bench::ChangeTest::kExact:
+      return "exact";
+    case bench::ChangeTest::kPairs:
+      return "signed_rank";
+    case bench::ChangeTest::kReplicates:
+      return "rank_sum";
+  }
+  return "";
+}
+
+Json interval_json(const std::optional<eval::Interval>& interval) {
+  return interval ? Json({interval->low, interval->high}) : Json(nullptr);
+}
+
+std::string p_text(const bench::MetricChange& change) {
+  return change.test == bench::ChangeTest::kExact ? "exact" : fmt::format("{:.2g}", change.change.p_value);
+}
+
+/// A change that is larger than the margin, but not significant, is said to be one.
+std::string result_text(const bench::MetricChange& change) {
+  const std::string name = change_class_name(change.result);
+  const bool is_unproven = change.changed && change.result == bench::ChangeClass::kInconclusive;
+  return is_unproven ? "changed, " + name : name;
+}
+
 std::vector<std::string> cells_of(const bench::MetricChange& change) {
   return {change.metric,
           change.subject,
@@ -21,25 +57,33 @@ std::vector<std::string> cells_of(const bench::MetricChange& change) {
           fmt::format("{:.4g} {}", change.base_median, change.unit),
           fmt::format("{:.4g} {}", change.head_median, change.unit),
           percent(change.change.median),
-          percent(change.change.interval.low) + " to " + percent(change.change.interval.high),
-          change_class_name(change.result)};
+          interval_text(change),
+          p_text(change),
+          result_text(change)};
 }
 
 std::string change_table(const std::vector<bench::MetricChange>& changes) {
-  TableRows rows = {{"metric", "variant", "pairs", "base", "head", "change", "95 % interval", "result"}};
+  TableRows rows = {{"metric", "variant", "n", "base", "head", "change", "95 % interval", "p", "result"}};
   for (const bench::MetricChange& change : changes) rows.push_back(cells_of(change));
   return format_table(rows, TableStyle::kMarkdown);
 }
 
 Json change_json(const bench::MetricChange& change) {
+  const bool is_exact = change.test == bench::ChangeTest::kExact;
   return {{"metric", change.metric},
           {"subject", change.subject},
           {"unit", change.unit},
-          {"pairs", change.change.count},
+          {"n", change.change.count},
           {"base_median", change.base_median},
           {"head_median", change.head_median},
           {"change", change.change.median},
-          {"interval", {change.change.interval.low, change.change.interval.high}},
+          {"changed", change.changed},
+          {"test", test_name(change.test)},
+          {"p", is_exact ? Json(nullptr) : Json(change.change.p_value)},
+          {"interval", interval_json(change.change.interval)},
+          {"adjusted_interval", interval_json(change.adjusted_interval)},
+          {"needed_pairs", change.needed == 0 ? Json(nullptr) : Json(change.needed)},
+          {"decides", change.decides},
           {"result", change_class_name(change.result)}};
 }
 
@@ -56,19 +100,47 @@ struct TestCase {
   std::string message;
 };
 
+/// The JUnit element of a result; empty for a passed test.
+std::string element_of(bench::ChangeClass result) {
+  if (result == bench::ChangeClass::kError) return "error";
+  if (result == bench::ChangeClass::kWorse) return "failure";
+  return result == bench::ChangeClass::kInconclusive ? "skipped" : "";
+}
+
 std::string test_case(const TestCase& test) {
   const std::string open = fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escape_html(test.group),
                                        escape_html(test.name));
-  switch (test.result) {
-    case bench::ChangeClass::kWorse:
-      return open +
-             fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", escape_html(test.message));
-    case bench::ChangeClass::kInconclusive:
-      return open +
-             fmt::format(">\n    <skipped message=\"{}\"/>\n  </testcase>\n", escape_html(test.message));
-    default:
-      return open + "/>\n";
+  const std::string element = element_of(test.result);
+  if (element.empty()) return open + "/>\n";
+  return open +
+         fmt::format(">\n    <{} message=\"{}\"/>\n  </testcase>\n", element, escape_html(test.message));
+}
+
+/// Whether runs were compared, and whether any failed.
+std::vector<TestCase> tests_of_runs(const bench::Comparison& comparison) {
+  using enum bench::ChangeClass;
+  const bool both_failed = comparison.base_failed > comparison.newly_succeeded;
+  const std::string counts = count_sentence(comparison);
+  return {{"runs", "runs are compared", comparison.has_result() ? kSame : kError, counts},
+          {"runs", "no newly failed runs", comparison.newly_failed > 0 ? kWorse : kSame, counts},
+          {"runs", "no runs that fail on both sides", both_failed ? kInconclusive : kSame,
+           counts + "; the first failure: " + comparison.first_failure}};
+}
+
+std::vector<TestCase> tests_of(const bench::Comparison& comparison) {
+  std::vector<TestCase> tests = tests_of_runs(comparison);
+  for (const bench::MetricChange& change : comparison.changes) {
+    tests.push_back(
+        {change.metric, change.subject, change.result,
+         fmt::format("{:.4g} to {:.4g} {}: {}, n = {}, p = {}", change.base_median, change.head_median,
+                     change.unit, percent(change.change.median), change.change.count, p_text(change))});
   }
+  return tests;
+}
+
+std::size_t count_of(const std::vector<TestCase>& tests, bench::ChangeClass result) {
+  return static_cast<std::size_t>(
+      std::count_if(tests.begin(), tests.end(), [&](const TestCase& test) { return test.result == result; }));
 }
 
 }  // namespace
@@ -76,10 +148,15 @@ std::string test_case(const TestCase& test) {
 std::string comparison_markdown(const ComparisonTitle& title, const bench::Comparison& comparison) {
   std::string text = fmt::format("# {} compared with {}: {}\n\n", title.head, title.base,
                                  change_class_name(comparison.result()));
-  text += fmt::format(
-      "{} pairs of runs, {} with bit-equal trajectories; {} newly failed, {} newly succeeded.\n\n",
-      comparison.pairs, comparison.bit_equal, comparison.newly_failed, comparison.newly_succeeded);
-  if (!comparison.changes.empty()) text += change_table(comparison.changes);
+  text += count_sentence(comparison) + ".\n\n";
+  if (!comparison.first_failure.empty()) text += "First failure: " + comparison.first_failure + ".\n\n";
+  if (!comparison.has_result()) text += "Nothing was compared: no pair has a metric on both sides.\n";
+  if (!comparison.changes.empty()) {
+    text += change_table(comparison.changes);
+    text += fmt::format(
+        "\n{} metrics differ and are tested; a change is significant if p <= {:.2g} (5 % in all).\n",
+        comparison.family.tests, comparison.family.level);
+  }
   for (const std::string& note : comparison.notes) text += "\nNote: " + note + ".\n";
   if (comparison.control.empty()) return text;
   return text + "\n## Control: base compared with itself\n\n" + change_table(comparison.control);
@@ -87,14 +164,22 @@ std::string comparison_markdown(const ComparisonTitle& title, const bench::Compa
 
 std::string comparison_json(const ComparisonTitle& title, const bench::Comparison& comparison) {
   Json json;
-  json["schema"] = 1;
+  json["schema"] = 2;
   json["base"] = title.base;
   json["head"] = title.head;
   json["result"] = change_class_name(comparison.result());
   json["pairs"] = comparison.pairs;
+  json["compared"] = comparison.compared;
   json["bit_equal"] = comparison.bit_equal;
+  json["base_failed"] = comparison.base_failed;
+  json["head_failed"] = comparison.head_failed;
   json["newly_failed"] = comparison.newly_failed;
   json["newly_succeeded"] = comparison.newly_succeeded;
+  json["only_in_base"] = comparison.only_in_base;
+  json["only_in_head"] = comparison.only_in_head;
+  json["first_failure"] = comparison.first_failure.empty() ? Json(nullptr) : Json(comparison.first_failure);
+  json["tests"] = comparison.family.tests;
+  json["level"] = comparison.family.level;
   json["changes"] = changes_json(comparison.changes);
   json["control"] = changes_json(comparison.control);
   json["notes"] = comparison.notes;
@@ -102,29 +187,15 @@ std::string comparison_json(const ComparisonTitle& title, const bench::Compariso
 }
 
 std::string comparison_junit(const ComparisonTitle& title, const bench::Comparison& comparison) {
-  std::vector<TestCase> tests = {
-      {"runs", "no newly failed runs",
-       comparison.newly_failed > 0 ? bench::ChangeClass::kWorse : bench::ChangeClass::kSame,
-       fmt::format("{} of {} runs succeeded at base and failed at head", comparison.newly_failed,
-                   comparison.pairs)}};
-  for (const bench::MetricChange& change : comparison.changes) {
-    tests.push_back({change.metric, change.subject, change.result,
-                     fmt::format("{:.4g} to {:.4g} {}: {}", change.base_median, change.head_median,
-                                 change.unit, percent(change.change.median))});
-  }
-  std::size_t failures = 0;
-  std::size_t skipped = 0;
+  const std::vector<TestCase> tests = tests_of(comparison);
   std::string body;
-  for (const TestCase& test : tests) {
-    failures += test.result == bench::ChangeClass::kWorse ? 1 : 0;
-    skipped += test.result == bench::ChangeClass::kInconclusive ? 1 : 0;
-    body += test_case(test);
-  }
+  for (const TestCase& test : tests) body += test_case(test);
+  using enum bench::ChangeClass;
   return fmt::format(
              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"{}\" tests=\"{}\" "
-             "failures=\"{}\" "
-             "skipped=\"{}\">\n",
-             escape_html("compare " + title.base + " " + title.head), tests.size(), failures, skipped) +
+             "failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n",
+             escape_html("compare " + title.base + " " + title.head), tests.size(), count_of(tests, kWorse),
+             count_of(tests, kError), count_of(tests, kInconclusive)) +
          body + "</testsuite>\n";
 }
 

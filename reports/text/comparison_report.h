@@ -18,7 +18,8 @@ struct ComparisonTitle {
                                               const bench::Comparison& comparison);
 [[nodiscard]] std::string comparison_json(const ComparisonTitle& title, const bench::Comparison& comparison);
 
-/// One test case per metric; "worse" is a failure, "inconclusive" is reported as skipped.
+/// One test case per metric; "worse" is a failure, "inconclusive" is reported as skipped. A comparison
+/// without a result is an error.
 [[nodiscard]] std::string comparison_junit(const ComparisonTitle& title, const bench::Comparison& comparison);
 
 }  // namespace stillpoint::report

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "tests/support/fake_sequence.h"
 #include "tests/support/program.h"
@@ -29,6 +30,7 @@ std::string write_program(const TemporaryFolder& folder, const std::string& name
 struct CompareResult {
   int exit_code = 0;
   std::string out;
+  std::string err;
   nlohmann::json json;
 };
 
@@ -41,17 +43,25 @@ class CompareFixture {
                           "variants = [\"stillpoint\"]\n[recorded]\nsequences = [\"freiburg1_*\"]\n");
   }
 
+  /// @param pairs 0: as many as the plan needs
   [[nodiscard]] CompareResult compare(const std::string& base, const std::string& head, int pairs) const {
     const fs::path out = folder_.path() / "out";
     ProgramOptions options;
     options.environment = {"STILLPOINT_DATA=" + folder_.path().string(),
                            "STILLPOINT_REGISTRY=" + (folder_.path() / "none.json").string()};
-    const ProgramResult result =
-        run_program({"compare", base, head, "--plan", plan_.string(), "--pairs", std::to_string(pairs),
-                     "--store", store().string(), "--out", out.string()},
-                    options);
+    std::vector<std::string> arguments = {
+        "compare", base, head, "--plan", plan_.string(), "--store", store().string(), "--out", out.string()};
+    if (pairs > 0) arguments.insert(arguments.end(), {"--pairs", std::to_string(pairs)});
+    const ProgramResult result = run_program(arguments, options);
     EXPECT_TRUE(fs::exists(out / "compare.json")) << result.err;
-    return {result.exit_code, result.out, nlohmann::json::parse(std::ifstream(out / "compare.json"))};
+    return {result.exit_code, result.out, result.err,
+            nlohmann::json::parse(std::ifstream(out / "compare.json"))};
+  }
+
+  [[nodiscard]] std::string junit() const {
+    std::ostringstream text;
+    text << std::ifstream(folder_.path() / "out" / "compare.xml").rdbuf();
+    return text.str();
   }
 
   [[nodiscard]] const TemporaryFolder& folder() const { return folder_; }
@@ -88,14 +98,40 @@ TEST(CompareCommand, DetectsATenPercentLargerErrorOnOneSequence) {
   const CompareFixture fixture;
   const std::string base = write_program(fixture.folder(), "base", "");
   const std::string head = write_program(fixture.folder(), "head", "--worse freiburg1_fast 1.1");
-  const CompareResult result = fixture.compare(base, head, 3);
+  const CompareResult result = fixture.compare(base, head, 6);
   EXPECT_EQ(result.exit_code, 1) << result.out;
   EXPECT_EQ(change_class(result.json, "ate_rmse_m", "freiburg1_fast"), "worse") << result.out;
   EXPECT_EQ(change_class(result.json, "ate_rmse_m", "freiburg1_slow"), "same") << result.out;
-  const std::ifstream file(fixture.folder().path() / "out" / "compare.xml");
-  std::ostringstream junit;
-  junit << file.rdbuf();
-  EXPECT_NE(junit.str().find("<failure message="), std::string::npos);
+  EXPECT_NE(fixture.junit().find("<failure message="), std::string::npos);
+}
+
+TEST(CompareCommand, ALargerErrorInOneReplicateIsInconclusive) {
+  const CompareFixture fixture;
+  const std::string base = write_program(fixture.folder(), "base", "");
+  const std::string head = write_program(fixture.folder(), "head", "--worse freiburg1_fast 1.1");
+  const CompareResult result = fixture.compare(base, head, 1);
+  EXPECT_EQ(result.exit_code, 3) << result.out;
+  EXPECT_EQ(change_class(result.json, "ate_rmse_m", "freiburg1_fast"), "inconclusive") << result.out;
+  EXPECT_NE(result.out.find("run with --pairs "), std::string::npos) << result.out;
+}
+
+TEST(CompareCommand, RepetitionsOfAProgramWithoutPerturbationAreOneReplicate) {
+  const CompareFixture fixture;
+  const std::string base = write_program(fixture.folder(), "base", "--unperturbed");
+  const std::string head = write_program(fixture.folder(), "head", "--worse freiburg1_fast 1.1");
+  const CompareResult result = fixture.compare(base, head, 6);
+  EXPECT_NE(result.exit_code, 1) << result.out;
+  EXPECT_EQ(result.json["compared"], 12);
+  EXPECT_NE(result.out.find("does not accept pipeline.perturbation_seed"), std::string::npos) << result.out;
+}
+
+TEST(CompareCommand, ExecutesAsManyPairsAsThePlanNeeds) {
+  const CompareFixture fixture;
+  const std::string base = write_program(fixture.folder(), "base", "");
+  const CompareResult result = fixture.compare(base, base, 0);
+  // 5 * 2 + 14 = 24 tests: 2 / C(14, 7) = 5.8e-4 is below 0.05 / 24 = 2.1e-3, 2 / C(12, 6) = 2.2e-3 is not.
+  EXPECT_EQ(result.json["pairs"], 2 * 7) << result.out;
+  EXPECT_EQ(result.json["bit_equal"], 2 * 7);
 }
 
 TEST(CompareCommand, ReportsNoRegressionInTwentyComparisonsOfEqualPrograms) {
@@ -127,7 +163,40 @@ TEST(CompareCommand, ANewlyFailedRunIsARegression) {
   const std::string head = write_program(fixture.folder(), "head", "--crash-after 5");
   const CompareResult result = fixture.compare(base, head, 1);
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.json["newly_failed"], 4);  // two sequences, base and head twice each
+  EXPECT_EQ(result.json["newly_failed"], 2);  // two sequences
+  EXPECT_EQ(result.json["head_failed"], 2);
+  EXPECT_EQ(result.json["compared"], 0);
+  EXPECT_NE(fixture.junit().find("failures=\"1\" errors=\"1\""), std::string::npos) << fixture.junit();
+}
+
+TEST(CompareCommand, ProgramsThatWriteNoResultAreAnError) {
+  const CompareFixture fixture;
+  const CompareResult result = fixture.compare("/bin/true", "/bin/true", 1);
+  EXPECT_EQ(result.exit_code, 2) << result.out;
+  EXPECT_NE(result.err.find("all 2 pairs of runs failed on both sides; the first failure: stillpoint on"),
+            std::string::npos)
+      << result.err;
+  EXPECT_NE(result.err.find("without writing result.json"), std::string::npos) << result.err;
+  EXPECT_EQ(result.json["result"], "error");
+  EXPECT_NE(fixture.junit().find("<error message="), std::string::npos) << fixture.junit();
+}
+
+TEST(CompareCommand, BuildsWithoutCommonRunsAreInconclusive) {
+  const CompareFixture fixture;
+  const std::string base = write_program(fixture.folder(), "base", "");
+  static_cast<void>(fixture.compare(base, base, 1));
+  fixture.folder().write("other.json", R"({"stillpoint_store": 2, "plans": [], "runs": [], "accepted": []})");
+  const ProgramResult result =
+      run_program({"compare", fixture.store().string(), (fixture.folder().path() / "other.json").string()});
+  EXPECT_EQ(result.exit_code, 3) << result.out << result.err;
+  EXPECT_NE(result.out.find("0 pairs of runs"), std::string::npos) << result.out;
+}
+
+TEST(CompareCommand, RejectsAProgramAndAStore) {
+  const CompareFixture fixture;
+  const ProgramResult result = run_program({"compare", "/bin/true", fixture.folder().path() / "none"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("is not a program, but /bin/true is"), std::string::npos) << result.err;
 }
 
 TEST(CompareCommand, RejectsAMissingStore) {
@@ -135,7 +204,7 @@ TEST(CompareCommand, RejectsAMissingStore) {
   const ProgramResult result =
       run_program({"compare", "abc", "def", "--store", (folder.path() / "no").string()});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("there is no such store"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("abc: is neither a store nor"), std::string::npos) << result.err;
 }
 
 }  // namespace

@@ -55,5 +55,7 @@ for code in 1 2; do
 done
 set_exit_code compare 3
 [[ "$(run_script gate.sh HEAD gate)" == 0 ]] || fail "an inconclusive comparison fails gate.sh"
+echo '<testcase><error message="0 pairs of runs"/></testcase>' >gate/compare.xml
+[[ "$(run_script gate.sh HEAD gate)" == 2 ]] || fail "a comparison of nothing does not fail gate.sh"
 [[ "$(git worktree list | wc -l)" == 1 ]] || fail "gate.sh does not remove its work tree"
 finish

@@ -9,6 +9,9 @@
 //   --hang             never terminates
 //   --fill MB          allocates this amount of memory and never terminates
 //   --log FILE         appends a line on success
+//   --unperturbed      rejects the config key pipeline.perturbation_seed, as an old version. Without it, the
+//   error of
+//                      a perturbed run differs by about 1 %
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -18,6 +21,7 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -38,11 +42,16 @@ struct Options {
   std::string worse_sequence, slow_module;
   double worse = 1.0, slow = 1.0, noise = 0.02;
   std::string seed = "1";
+  int perturbation_seed = 0;
+  bool unperturbed = false;
+  bool shows_config = false;
   long crash_after = -1;
   bool hang = false;
   std::size_t fill_mb = 0;
   std::string log;
 };
+
+constexpr std::string_view kPerturbation = "pipeline.perturbation_seed=";
 
 Options parse(const std::vector<std::string>& words) {
   Options options;
@@ -61,7 +70,14 @@ Options parse(const std::vector<std::string>& words) {
       options.slow = std::stod(next());
     }
     if (word == "--noise") options.noise = std::stod(next());
-    if (word == "--set") options.seed = next();
+    if (word == "config") options.shows_config = true;
+    if (word == "--unperturbed") options.unperturbed = true;
+    if (word == "--set") {
+      const std::string setting = next();
+      const bool is_perturbation = setting.starts_with(kPerturbation);
+      if (is_perturbation) options.perturbation_seed = std::stoi(setting.substr(kPerturbation.size()));
+      if (!is_perturbation) options.seed = setting;
+    }
     if (word == "--crash-after") options.crash_after = std::stol(next());
     if (word == "--hang") options.hang = true;
     if (word == "--fill") options.fill_mb = std::stoul(next());
@@ -73,7 +89,10 @@ Options parse(const std::vector<std::string>& words) {
 /// The true trajectory plus a sinusoidal error, which alignment cannot remove: the ATE is proportional to it.
 Trajectory replay(const Trajectory& truth, const Options& options) {
   const bool is_worse = fs::path(options.sequence).filename() == options.worse_sequence;
-  const double amplitude = options.error_m * (is_worse ? options.worse : 1.0);
+  std::mt19937_64 random(static_cast<std::uint64_t>(options.perturbation_seed));
+  const double perturbation =
+      options.perturbation_seed == 0 ? 0.0 : std::normal_distribution<double>(0.0, 0.01)(random);
+  const double amplitude = options.error_m * (is_worse ? options.worse : 1.0) * (1.0 + perturbation);
   Trajectory path = truth;
   for (std::size_t i = 0; i < path.poses.size(); ++i) {
     path.poses[i].T_w_f.p.z() += amplitude * std::sin(0.5 * static_cast<double>(i));
@@ -105,6 +124,8 @@ void write_result(const eval::Score& score, const Options& options) {
 }
 
 int run(const Options& options) {
+  if (options.unperturbed && options.perturbation_seed != 0) return 2;
+  if (options.shows_config) return 0;
   while (options.hang) pause();
   const std::vector<char> filled(options.fill_mb << 20, 'x');
   while (!filled.empty() && filled[filled.size() / 2] == 'x') pause();

@@ -2,20 +2,24 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "bench/analysis/comparison.h"
+#include "bench/analysis/test_family.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
+#include "bench/model/replicates.h"
 #include "bench/plan/paired_plan.h"
 #include "bench/plan/plan_runner.h"
 #include "bench/record/output_folder.h"
-#include "bench/store/maintenance.h"
+#include "bench/record/output_guard.h"
 #include "bench/store/store.h"
+#include "bench/store/store_export.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 #include "reports/text/comparison_report.h"
@@ -25,19 +29,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kExitInconclusive = 3;
-
 struct CompareArguments {
   std::string base;
   std::string head;
   std::string store = "build/bench/store.sqlite";
   std::string plan = "quick";
-  int pairs = 10;
+  int pairs = 0;  ///< 0: as many as the plan needs
   std::string out;
 };
 
 /// Tests for the SQLite file header.
 bool is_store(const std::string& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return false;  // a pipe would block
   std::ifstream stream(file, std::ios::binary);
   std::string header(15, '\0');
   return stream.read(header.data(), static_cast<std::streamsize>(header.size())) &&
@@ -63,30 +67,49 @@ std::vector<StoredRun> runs_of_build(const Store& store, std::string build, cons
 
 /// @param location BASE or HEAD: store, exported store, STORE@COMMIT, or commit in the store of --store
 std::vector<StoredRun> stored_runs(const std::string& location, const std::string& default_store) {
-  if (is_export(location)) return exported_runs(eval::read_text_file(location), location);
+  if (is_export(location)) {
+    std::vector<StoredRun> runs = exported_runs(eval::read_text_file(location), location);
+    const std::string build = runs.empty() ? "" : runs.back().identity.build;
+    std::erase_if(runs, [&](const StoredRun& run) { return run.identity.build != build; });
+    return runs;
+  }
   if (is_store(location)) return runs_of_build(Store(location), "", location);
   const std::size_t at = location.rfind('@');
   if (at != std::string::npos) {
     return runs_of_build(Store(location.substr(0, at)), location.substr(at + 1), location);
   }
+  std::error_code ignored;
+  if (fs::exists(location, ignored) || !fs::exists(default_store, ignored)) {
+    throw InputError(location, "is neither a store nor an exported store (.json) nor a commit in the store " +
+                                   default_store);
+  }
   return runs_of_build(Store(default_store), location, location);
 }
 
-/// Control comparison of base with itself: repetitions 2k against repetitions 2k - 1.
-Comparison control_of(const std::vector<StoredRun>& base) {
-  std::vector<StoredRun> odd;
-  std::vector<StoredRun> even;
-  for (const StoredRun& run : base) {
-    std::vector<StoredRun>& half = run.identity.repetition % 2 == 1 ? odd : even;
-    half.push_back(run);
-    half.back().identity.repetition = (run.identity.repetition + 1) / 2;
+/// The runs of a build that belong to a plan; the store may contain those of other comparisons.
+std::vector<StoredRun> planned_runs(const Store& store, const PlanMatrix& matrix, const std::string& build) {
+  const std::set<std::string> keys(matrix.keys.begin(), matrix.keys.end());
+  std::vector<StoredRun> runs = store.runs({.build = build});
+  std::erase_if(runs, [&](const StoredRun& run) { return !keys.contains(run.key); });
+  return runs;
+}
+
+int default_pairs(const PlanMatrix& runs) {
+  std::vector<RunIdentity> identities;
+  for (const PlannedRun& run : runs.runs) {
+    if (runs.sequences[run.sequence].unavailable_reason.empty()) identities.push_back(run.identity);
   }
-  return compare_runs(odd, even);
+  return static_cast<int>(pairs_for_plan(identities));
 }
 
 Comparison compare_programs(const CompareArguments& arguments) {
-  const ProgramPair programs{fs::canonical(arguments.base), fs::canonical(arguments.head)};
-  const PlanMatrix matrix = paired_plan(load_plan(arguments.plan), programs, arguments.pairs);
+  ProgramPair programs{fs::canonical(arguments.base), fs::canonical(arguments.head)};
+  programs.perturbed = accept_perturbation(programs);
+  PlanMatrix runs = single_runs(load_plan(arguments.plan));
+  const int pairs = arguments.pairs > 0 ? arguments.pairs : default_pairs(runs);
+  const PlanMatrix matrix = paired_plan(std::move(runs), programs, pairs);
+  spdlog::info("{} pairs of each of {} runs", pairs,
+               matrix.runs.size() / (2 * static_cast<std::size_t>(pairs)));
   const PlanHooks hooks{.on_step = [](const std::string& step) { spdlog::debug("{}", step); },
                         .stop_requested = interrupt_requested};
   {
@@ -95,8 +118,29 @@ Comparison compare_programs(const CompareArguments& arguments) {
       throw InputError("compare", "interrupted; run the same command again to continue");
   }
   const Store store(arguments.store);
-  const std::vector<StoredRun> base = store.runs({.build = programs.base_build()});
-  return with_control(compare_runs(base, store.runs({.build = programs.head_build()})), control_of(base));
+  const std::vector<StoredRun> base = planned_runs(store, matrix, programs.base_build());
+  const std::vector<StoredRun> head = planned_runs(store, matrix, programs.head_build());
+  Comparison comparison = with_control(compare_runs(base, head), control_changes(base));
+  if (!programs.perturbed)
+    comparison.notes.push_back(
+        fmt::format("a program does not accept {}: repetitions of a deterministic program are one replicate",
+                    kPerturbationKey));
+  return comparison;
+}
+
+Comparison compare_stored(const CompareArguments& arguments) {
+  const std::vector<StoredRun> base = stored_runs(arguments.base, arguments.store);
+  const std::vector<StoredRun> head = stored_runs(arguments.head, arguments.store);
+  return compare_runs(base, head);
+}
+
+/// @throws InputError if only one of them is a program
+bool are_programs(const std::string& base, const std::string& head) {
+  const auto executable = [](const std::string& file) { return !is_store(file) && is_program(file); };
+  if (executable(base) == executable(head)) return executable(base);
+  throw InputError(executable(base) ? head : base,
+                   fmt::format("is not a program, but {} is; compare two programs or two stores",
+                               executable(base) ? base : head));
 }
 
 int exit_code(ChangeClass result) {
@@ -105,12 +149,13 @@ int exit_code(ChangeClass result) {
 }
 
 int compare(const CompareArguments& arguments) {
-  if (arguments.pairs < 1) throw InputError("--pairs", "must be at least 1");
+  if (!arguments.out.empty()) {
+    const std::vector<std::string> files = {"compare.md", "compare.json", "compare.xml"};
+    require_safe_folder(arguments.out, {.names = files, .marks = {files}}, {arguments.base, arguments.head});
+  }
   install_interrupt_handlers();
-  const bool programs = !is_store(arguments.base) && is_program(arguments.base) && is_program(arguments.head);
-  const Comparison comparison = programs ? compare_programs(arguments)
-                                         : compare_runs(stored_runs(arguments.base, arguments.store),
-                                                        stored_runs(arguments.head, arguments.store));
+  const Comparison comparison =
+      are_programs(arguments.base, arguments.head) ? compare_programs(arguments) : compare_stored(arguments);
   const report::ComparisonTitle title{arguments.base, arguments.head};
   const std::string markdown = report::comparison_markdown(title, comparison);
   std::cout << markdown;
@@ -118,6 +163,11 @@ int compare(const CompareArguments& arguments) {
     write_files(arguments.out, {{"compare.md", markdown},
                                 {"compare.json", report::comparison_json(title, comparison)},
                                 {"compare.xml", report::comparison_junit(title, comparison)}});
+  }
+  if (comparison.result() == ChangeClass::kError) {
+    throw InputError("compare",
+                     fmt::format("all {} pairs of runs failed on both sides; the first failure: {}",
+                                 comparison.pairs, comparison.first_failure));
   }
   return exit_code(comparison.result());
 }
@@ -132,13 +182,18 @@ Command compare_command() {
       .example = "compare build/base/stillpoint build/release/stillpoint --plan quick --out build/compare",
       .options =
           {{"BASE",
-            "A store, an exported store (.json), STORE@COMMIT, a commit in --store, or a program to execute",
+            "A store or exported store (.json), of which the newest build is used, STORE@COMMIT, a commit in "
+            "--store, or a program to execute",
             &arguments->base},
            {"HEAD", "As BASE", &arguments->head},
            {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
            {"--plan", "Plan that the programs execute [quick]", &arguments->plan},
-           {"--pairs", "Number of base-head pairs, executed in the order base, head, head, base [10]",
-            &arguments->pairs},
+           {"--pairs",
+            "Number of base-head pairs of each run, executed in the order base, head, head, base [as many as "
+            "the "
+            "tests of the plan need; 8 for the rendered sequences of quick]",
+            &arguments->pairs,
+            {1, 1000}},
            {"--out", "Output folder of compare.md, compare.json and compare.xml (JUnit)", &arguments->out}},
       .action = [arguments] { return compare(*arguments); }};
 }

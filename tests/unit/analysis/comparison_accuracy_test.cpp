@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Accuracy in comparisons: replicates, and pooling over sequences.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "bench/analysis/comparison.h"
+#include "tests/support/compared_runs.h"
+
+namespace stillpoint::bench {
+namespace {
+
+/// Error of a replicate: chaotic decisions change it by some percent.
+double scattered(double error, std::mt19937_64& random) {
+  return error * std::exp(std::normal_distribution<double>(0.0, 0.05)(random));
+}
+
+struct Sides {
+  std::vector<StoredRun> base;
+  std::vector<StoredRun> head;
+};
+
+/// Replicates on one sequence, whose error changes by a factor at head.
+Sides replicates(int count, double factor, const std::string& sequence = "a") {
+  std::mt19937_64 random(1);
+  Sides sides;
+  for (int i = 1; i <= count; ++i) {
+    sides.base.push_back(compared_run(sequence, scattered(0.01, random), i));
+    sides.head.push_back(compared_run(sequence, scattered(0.01 * factor, random), i, "head"));
+  }
+  return sides;
+}
+
+const MetricChange& change_on(const Comparison& comparison, const std::string& subject) {
+  for (const MetricChange& change : comparison.changes) {
+    if (change.metric == "ate_rmse_m" && change.subject == subject) return change;
+  }
+  throw std::runtime_error("no change on " + subject);
+}
+
+bool has_note(const Comparison& comparison, const std::string& words) {
+  return std::any_of(comparison.notes.begin(), comparison.notes.end(),
+                     [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+TEST(ComparisonAccuracy, AChangeOfOneReplicateIsNotWorseHoweverLarge) {
+  const Sides sides{{compared_run("a", 0.01, 1)}, {compared_run("a", 0.02, 1, "head")}};
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  const MetricChange& change = change_on(comparison, "vo on a");
+  EXPECT_EQ(change.result, ChangeClass::kInconclusive);
+  EXPECT_TRUE(change.changed);
+  EXPECT_NEAR(change.change.median, 1.0, 1e-12);
+  EXPECT_FALSE(change.change.interval.has_value());
+  // One test: 4 replicates per side reach 2 / 70 = 0.029.
+  EXPECT_EQ(change.needed, 4u);
+  EXPECT_TRUE(has_note(comparison, "1 replicate cannot go below p = 1, ")) << comparison.notes.front();
+  EXPECT_TRUE(has_note(comparison, "run with --pairs 4")) << comparison.notes.front();
+  EXPECT_EQ(comparison.result(), ChangeClass::kInconclusive);
+}
+
+TEST(ComparisonAccuracy, AChangeBelowTheMarginIsTheSame) {
+  const Sides sides{{compared_run("a", 0.01, 1)}, {compared_run("a", 0.01 * 1.04, 1, "head")}};
+  EXPECT_EQ(compare_runs(sides.base, sides.head).result(), ChangeClass::kSame);
+}
+
+TEST(ComparisonAccuracy, RepetitionsOfADeterministicProgramAreOneReplicate) {
+  Sides sides = replicates(12, 1.0);
+  for (StoredRun& run : sides.base) run.blobs["trajectory"] = "t1";
+  for (StoredRun& run : sides.head) run.blobs["trajectory"] = "t2";
+  for (StoredRun& run : sides.base) run.metrics.front().value = 0.01;
+  for (StoredRun& run : sides.head) run.metrics.front().value = 0.02;
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  EXPECT_EQ(change_on(comparison, "vo on a").change.count, 1u);
+  EXPECT_EQ(comparison.result(), ChangeClass::kInconclusive);
+}
+
+TEST(ComparisonAccuracy, AChangeOf20PercentOverPerturbationsIsDetected) {
+  const Sides worse = replicates(6, 1.2);
+  const Comparison comparison = compare_runs(worse.base, worse.head);
+  EXPECT_EQ(change_on(comparison, "vo on a").result, ChangeClass::kWorse);
+  EXPECT_EQ(change_on(comparison, "vo on a").test, ChangeTest::kReplicates);
+  EXPECT_EQ(comparison.result(), ChangeClass::kWorse);
+  const Sides better = replicates(6, 0.8);
+  EXPECT_EQ(compare_runs(better.base, better.head).result(), ChangeClass::kBetter);
+}
+
+TEST(ComparisonAccuracy, AChangeOf20PercentOverSeedsIsDetected) {
+  Sides sides = replicates(6, 1.2);
+  for (std::vector<StoredRun>* side : {&sides.base, &sides.head}) {
+    for (StoredRun& run : *side) {
+      RunIdentity& identity = run.identity;
+      identity.seed = std::exchange(identity.repetition, 1);
+      identity.sequence_id += std::to_string(identity.seed);
+      identity.config_hash = std::to_string(identity.seed);
+      run.metrics.front().value *=
+          static_cast<double>(identity.seed);  // the scenes are not equally difficult
+    }
+  }
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  EXPECT_EQ(change_on(comparison, "vo on a").test, ChangeTest::kPairs);
+  EXPECT_EQ(change_on(comparison, "vo on a").change.count, 6u);
+  EXPECT_EQ(comparison.result(), ChangeClass::kWorse);
+}
+
+TEST(ComparisonAccuracy, DoesNotMaskARegressionOnOneSequence) {
+  Sides sides = replicates(8, 0.5);
+  const Sides worse = replicates(8, 1.2, "b");
+  sides.base.insert(sides.base.end(), worse.base.begin(), worse.base.end());
+  sides.head.insert(sides.head.end(), worse.head.begin(), worse.head.end());
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  EXPECT_EQ(change_on(comparison, "vo on a").result, ChangeClass::kBetter);
+  EXPECT_EQ(change_on(comparison, "vo on b").result, ChangeClass::kWorse);
+  EXPECT_EQ(comparison.result(), ChangeClass::kWorse);
+}
+
+/// One run on each of 12 sequences.
+Sides one_run_each(double factor) {
+  std::mt19937_64 random(1);
+  Sides sides;
+  for (int i = 0; i < 12; ++i) {
+    const std::string sequence = "s" + std::to_string(i);
+    const double error = 0.01 * (i + 1);
+    sides.base.push_back(compared_run(sequence, scattered(error, random), 1));
+    sides.head.push_back(compared_run(sequence, scattered(error * factor, random), 1, "head"));
+  }
+  return sides;
+}
+
+TEST(ComparisonAccuracy, SingleRunsArePooledOverTheSequencesOfTheVariant) {
+  const Sides worse = one_run_each(1.2);
+  const Comparison comparison = compare_runs(worse.base, worse.head);
+  const MetricChange& pool = change_on(comparison, "vo on all sequences");
+  EXPECT_EQ(pool.change.count, 12u);
+  EXPECT_EQ(pool.result, ChangeClass::kWorse);
+  EXPECT_EQ(comparison.result(), ChangeClass::kWorse);
+  for (const MetricChange& change : comparison.changes) {
+    EXPECT_TRUE(change.decides || change.result != ChangeClass::kWorse) << change.subject;
+  }
+}
+
+TEST(ComparisonAccuracy, AChangeOnOneSequenceIsSaidButDoesNotDecide) {
+  Sides sides = one_run_each(1.0);
+  for (std::size_t i = 0; i < 12; ++i)
+    sides.head[i].metrics.front().value = sides.base[i].metrics.front().value * 1.001;
+  sides.head[3].metrics.front().value *= 1.3;
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  EXPECT_TRUE(change_on(comparison, "vo on s3").changed);
+  EXPECT_EQ(change_on(comparison, "vo on s3").result, ChangeClass::kInconclusive);
+  EXPECT_EQ(change_on(comparison, "vo on all sequences").result, ChangeClass::kSame);
+  EXPECT_EQ(comparison.result(), ChangeClass::kSame);
+}
+
+TEST(ComparisonAccuracy, PerturbedRunsOfBaseAloneExtendTheReference) {
+  Sides sides = replicates(40, 1.0);
+  sides.head = {compared_run("a", 0.02, 1, "head")};
+  // Outside the spread of 40 runs of base: p = 2 / 41.
+  EXPECT_EQ(compare_runs(sides.base, sides.head).result(), ChangeClass::kWorse);
+  sides.head = {compared_run("a", sides.base[5].metrics.front().value * 1.001, 1, "head")};
+  EXPECT_NE(compare_runs(sides.base, sides.head).result(), ChangeClass::kWorse);
+}
+
+TEST(ComparisonAccuracy, ComparesABaselineWithoutTrajectories) {
+  Sides sides{{compared_run("a", 0.01, 1)}, {compared_run("a", 0.01, 1, "head")}};
+  for (StoredRun* run : {&sides.base.front(), &sides.head.front()}) {
+    run->blobs.clear();
+    run->identity.kind = "instructions";
+    run->metrics.push_back({"instructions", "", "", 1e9});
+  }
+  EXPECT_EQ(compare_runs(sides.base, sides.head).result(), ChangeClass::kSame);
+  sides.head.front().metrics.back().value = 1.02e9;
+  EXPECT_EQ(compare_runs(sides.base, sides.head).result(), ChangeClass::kWorse);
+}
+
+}  // namespace
+}  // namespace stillpoint::bench
