@@ -29,7 +29,7 @@ int detected_steps(const std::string& metric, double level, double step, double 
     if (shifts.size() != 1 || shifts.front().state != ChangeState::kOpen) continue;
     const std::size_t after = shifts.front().after;
     const bool near = after + kMaxDelay >= kCommitsBeforeStep && after <= kCommitsBeforeStep + kMaxDelay;
-    const eval::Interval interval = shifts.front().change->interval;
+    const eval::Interval interval = *shifts.front().change->interval;
     detected += near && interval.low <= step + 2.0 * noise && interval.high >= step - 2.0 * noise ? 1 : 0;
   }
   std::cout << metric << ", step of " << 100.0 * step << " %, noise of " << 100.0 * noise

@@ -33,8 +33,8 @@ TEST(HistoryChanges, APersistentCostIncreaseIsOpenWithCommitRangeAndSize) {
   EXPECT_EQ(shift.before, 29u);
   EXPECT_EQ(shift.after, 30u);
   EXPECT_NEAR(shift.change->median, 0.10, 0.01);  // medians of 30 values with 1 % noise: 0.2 % each
-  // The difference of two means of 30 values with 1 % noise has a standard deviation of 0.28 %: the limits lie
-  // about 2 of these from the estimate, and the estimate within 3 of them from the true change.
+  // The difference of two means of 30 values with 1 % noise has a standard deviation of 0.28 %: the limits
+  // lie about 2 of these from the estimate, and the estimate within 3 of them from the true change.
   EXPECT_NEAR(shift.change->interval->low, 0.10 - 0.0056, 0.0084);
   EXPECT_NEAR(shift.change->interval->high, 0.10 + 0.0056, 0.0084);
 }
