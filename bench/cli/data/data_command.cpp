@@ -27,6 +27,9 @@ int add(const AddArguments& arguments) {
                                     .checksum = sequence_checksum(arguments.folder),
                                     .format = stream->info().format};
   for (const std::string& warning : stream->info().warnings) spdlog::warn("{}", warning);
+  if (stream->info().detections.empty())
+    spdlog::info(
+        "no recorded boxes (detections.txt); `stillpoint detect` records them, but changes the checksum");
   register_sequence(registry_file(), sequence, arguments.force ? Registration::kReplace : Registration::kNew);
   std::cout << fmt::format("registered {}: {} ({}, {} frames, checksum {})\n", sequence.name,
                            sequence.folder.string(), sequence.format, stream->info().frame_times.size(),
