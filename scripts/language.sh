@@ -46,7 +46,7 @@ allowed=(
   'sys/bus/i2c/drivers|sensor drivers'
   '"Nobody inspects|"nobody"'
   # keys of rendering requests and one preset, which are part of the identity of rendered sequences in stores
-  '"((dropped|depth\.correlated|correlated|detector\.miss|miss|jitter|false)_share|flight)"|synth\.dropped_share|[Pp]reset `?flight|preset \\"flight|`flight`|; flight"'
+  '"((dropped|depth\.correlated|correlated|detector\.miss|miss|jitter|false)_share|flight)"|synth\.dropped_share|[Pp]reset `?flight|preset \\"flight|`flight`|synth flight |; flight"'
   '^CHANGELOG\.md:[0-9]+:\|.*->'
 )
 files() {

@@ -3,17 +3,24 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <new>
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "bench/cli/command_words.h"
 #include "bench/record/build_info.h"
 #include "core/base/error.h"
+#include "core/base/utf8_text.h"
 
 namespace stillpoint::bench {
 namespace {
+
+constexpr const char* kVerboseHelp = "Log each frame";
 
 /// Registers `alias` as an unlisted spelling of a vector option. CLI11 processes options in their order of
 /// declaration, so the values of the alias follow those of the option.
@@ -33,6 +40,9 @@ void add_option(CLI::App& app, const Option& option, bool optional) {
     } else {
       added = app.add_option(option.name, *target, option.help);
     }
+    if constexpr (std::is_same_v<decltype(target), int*> || std::is_same_v<decltype(target), double*>) {
+      added->check([range = option.range](const std::string& value) { return range_problem(value, range); });
+    }
     const bool positional = option.name.front() != '-';
     if (positional && !optional) added->required();
     if constexpr (std::is_same_v<decltype(target), std::vector<std::string>*>) {
@@ -43,21 +53,14 @@ void add_option(CLI::App& app, const Option& option, bool optional) {
   std::visit(add, option.target);
 }
 
-void add_command(CLI::App& parent, const Command& command) {
+/// @param verbose target of the flag -v, which every command accepts
+void add_command(CLI::App& parent, const Command& command, bool& verbose) {
   CLI::App* app = parent.add_subcommand(command.name, command.summary);
+  app->add_flag("-v,--verbose", verbose, kVerboseHelp);
   app->footer("Example:\n  stillpoint " + command.example);
   for (const Option& option : command.options) add_option(*app, option, !command.subcommands.empty());
-  for (const Command& subcommand : command.subcommands) add_command(*app, subcommand);
+  for (const Command& subcommand : command.subcommands) add_command(*app, subcommand, verbose);
   if (!command.subcommands.empty() && !command.action) app->require_subcommand(1);
-}
-
-/// The innermost command of a parsed command line.
-const Command& selected_command(const CLI::App& app, const std::vector<Command>& commands) {
-  const CLI::App* selected = app.get_subcommands().front();
-  const auto command = std::find_if(commands.begin(), commands.end(), [&](const Command& candidate) {
-    return candidate.name == selected->get_name();
-  });
-  return selected->get_subcommands().empty() ? *command : selected_command(*selected, command->subcommands);
 }
 
 void log_to_stderr(bool verbose) {
@@ -67,36 +70,75 @@ void log_to_stderr(bool verbose) {
   spdlog::set_default_logger(logger);
 }
 
-/// Prints help or version to stdout and returns 0; any other parse result is a usage error.
-int finish_parsing(const CLI::App& app, const CLI::ParseError& error) {
+/// A command line that is checked by name.
+struct CommandLine {
+  std::vector<std::string> words;
+  std::vector<std::string> names;  ///< of the selected command and subcommand
+};
+
+/// Prints help or version to stdout and returns 0.
+/// @throws InputError for any other parse result, as it is a usage error
+int finish_parsing(const CLI::App& app, const CLI::ParseError& error, const CommandLine& line,
+                   const std::vector<Command>& commands) {
   if (error.get_exit_code() == 0) return app.exit(error);
+  const std::vector<std::string> remaining = app.remaining(true);
+  const auto option = std::ranges::find_if(
+      remaining, [](const std::string& word) { return word.size() > 1 && word.starts_with('-'); });
   std::string message = error.what();
-  for (char& letter : message) letter = letter == '\n' ? ' ' : letter;
-  std::cerr << "stillpoint: error: command line: " << message << "; try --help\n";
-  return kExitBadInput;
+  std::ranges::replace(message, '\n', ' ');
+  if (option != remaining.end()) message = unknown_option(*option, find_command(line.names, commands));
+  throw InputError("command line", message + "; try --help");
+}
+
+int parse_and_execute(const CommandLine& line, const std::vector<Command>& commands) {
+  CLI::App app("RGB-D inertial odometry for dynamic scenes, and its benchmark harness", "stillpoint");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", build_info().version + " (" + build_info().git_commit + ")");
+  bool verbose = false;
+  app.add_flag("-v,--verbose", verbose, kVerboseHelp);
+  for (const Command& command : commands) add_command(app, command, verbose);
+  try {
+    app.parse(std::vector<std::string>(line.words.rbegin(), line.words.rend()));  // CLI11 expects this order
+  } catch (const CLI::ParseError& error) {
+    return finish_parsing(app, error, line, commands);
+  }
+  log_to_stderr(verbose);
+  return find_command(line.names, commands)->action();
+}
+
+/// The text with control characters and invalid UTF-8 as `\xNN`, so that all of it is visible; line breaks of
+/// messages with several lines remain.
+std::string printable(std::string_view text) {
+  std::string result;
+  for (const char letter : escaped_utf8(text)) {
+    const auto code = static_cast<unsigned char>(letter);
+    const bool is_control = (code < 0x20 && letter != '\n') || code == 0x7f;
+    result += is_control ? fmt::format("\\x{:02x}", code) : std::string(1, letter);
+  }
+  return result;
+}
+
+int print_error(const std::string& message, int exit_code) {
+  std::cerr << "stillpoint: error: " << printable(message) << '\n';
+  return exit_code;
 }
 
 }  // namespace
 
 int run_command_line(int argc, char** argv, const std::vector<Command>& commands) {
-  CLI::App app("RGB-D inertial odometry for dynamic scenes, and its benchmark harness", "stillpoint");
-  app.require_subcommand(1);
-  app.set_version_flag("--version", build_info().version + " (" + build_info().git_commit + ")");
-  bool verbose = false;
-  app.add_flag("-v,--verbose", verbose, "Log each frame");
-  app.parse_complete_callback([&verbose] { log_to_stderr(verbose); });
-  for (const Command& command : commands) add_command(app, command);
   try {
-    app.parse(argc, argv);
-    return selected_command(app, commands).action();
-  } catch (const CLI::ParseError& error) {
-    return finish_parsing(app, error);
+    for (int i = 1; i < argc; ++i) require_utf8("argument", argv[i]);
+    CommandLine line{.words = without_help_word({argv + 1, argv + argc}), .names = {}};
+    line.names = selected_names(line.words, commands);
+    return parse_and_execute(line, commands);
   } catch (const InputError& error) {
-    std::cerr << "stillpoint: error: " << error.what() << '\n';
-    return kExitBadInput;
+    return print_error(error.what(), kExitBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return print_error(error.path1().string() + ": " + error.code().message(), kExitBadInput);
+  } catch (const std::bad_alloc&) {
+    return print_error("out of memory (bad_alloc)", kExitInternal);
   } catch (const std::exception& error) {
-    std::cerr << "stillpoint: error: " << error.what() << '\n';
-    return kExitInternal;
+    return print_error(std::string("internal error: ") + error.what() + "; please report it", kExitInternal);
   }
 }
 

@@ -61,6 +61,8 @@ struct Assign {
 
   void operator()(std::vector<int>* member) const {
     member->clear();
+    const auto* texts = std::get_if<std::vector<std::string>>(&setting.value);
+    if (texts != nullptr && texts->empty()) return;  // [] has no type
     for (const double number : value_as<std::vector<double>>(setting, "a list of integers")) {
       if (number != std::floor(number)) throw bad_value(setting, "must be a list of integers");
       member->push_back(static_cast<int>(number_within(number, setting, bounds)));

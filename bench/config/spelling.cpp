@@ -6,8 +6,23 @@
 
 namespace stillpoint::bench {
 namespace {
+
 constexpr double kWrongLetter = 1.0;
 constexpr double kOmittedLetter = 0.1;
+
+/// Whether the text is the path of a file or folder, for which a name would be no remedy.
+bool is_file_path(std::string_view typed) {
+  return typed.starts_with('/') || typed.starts_with("./") || typed.starts_with("../") ||
+         typed.starts_with('~');
+}
+
+/// Whether at most half of the typed letters are wrong.
+bool resembles(std::string_view typed, std::string_view name) {
+  const double omitted = name.size() > typed.size() ? static_cast<double>(name.size() - typed.size()) : 0.0;
+  const double wrong = spelling_distance(typed, name) - kOmittedLetter * omitted;
+  return wrong <= 0.5 * kWrongLetter * static_cast<double>(typed.size());
+}
+
 }  // namespace
 
 double spelling_distance(std::string_view typed, std::string_view name) {
@@ -28,10 +43,12 @@ double spelling_distance(std::string_view typed, std::string_view name) {
 }
 
 std::string suggestion(std::string_view typed, std::span<const std::string> names) {
+  if (is_file_path(typed)) return "";
   const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
     return spelling_distance(typed, a) < spelling_distance(typed, b);
   });
-  return nearest == names.end() ? std::string() : "; did you mean \"" + *nearest + "\"?";
+  if (nearest == names.end() || !resembles(typed, *nearest)) return "";
+  return "; did you mean \"" + *nearest + "\"?";
 }
 
 }  // namespace stillpoint::bench

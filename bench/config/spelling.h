@@ -12,7 +12,8 @@ namespace stillpoint::bench {
 /// 0.1, so that abbreviations (`mcc`) and keys without their section (`usage`) match the full name.
 [[nodiscard]] double spelling_distance(std::string_view typed, std::string_view name);
 
-/// `; did you mean "..."?` with the nearest of `names`; empty if there is none.
+/// `; did you mean "..."?` with the nearest of `names`; empty if none of them resembles the typed text, i.e.
+/// more than half of its letters are wrong, and for paths of files ("/data", "./data").
 [[nodiscard]] std::string suggestion(std::string_view typed, std::span<const std::string> names);
 
 }  // namespace stillpoint::bench

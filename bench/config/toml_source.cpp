@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/config/toml_source.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
-#include <sstream>
 
 #include "bench/config/embedded_files.h"
 #include "bench/config/spelling.h"
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 
 namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxBytes = 16U << 20U;
+constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";  // some editors write it at the start of a file
 
 /// Folder of a kind of files, and its name in messages.
 struct KindInfo {
@@ -38,13 +43,19 @@ KindInfo info_of(TomlKind kind) {
 }
 
 TomlSource read_file(const fs::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!fs::is_regular_file(path) || !file) {
-    throw InputError(path.string(), "cannot be read; specify the path of an existing TOML file");
+  require_regular_file(path);
+  std::error_code error;
+  if (fs::file_size(path, error) > kMaxBytes && !error) {
+    throw InputError(path.string(), "is larger than 16 MB; specify the path of a TOML file");
   }
-  return {path.string(), text.str(), false};
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path.string(), "cannot be read; specify the path of an existing TOML file");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(path.string(),
+                     "is UTF-16 text; convert it to UTF-8, e.g. with `iconv -f UTF-16 -t UTF-8`");
+  const bool has_mark = text.starts_with(kUtf8Mark);
+  return {path.string(), has_mark ? text.substr(kUtf8Mark.size()) : text, false};
 }
 
 std::optional<TomlSource> embedded_at(const std::string& path) {
@@ -77,7 +88,10 @@ TomlSource find_toml(const std::string& name, TomlKind kind) {
   for (const std::string& candidate : known) {
     if (name_matches(name, candidate)) return *embedded_at(info_of(kind).folder + candidate + ".toml");
   }
-  throw InputError("unknown " + info_of(kind).name + " \"" + name + "\"" + suggestion(name, known));
+  std::error_code ignored;
+  const bool is_file = fs::exists(name, ignored);
+  throw InputError("unknown " + info_of(kind).name + " \"" + name + "\"" +
+                   (is_file ? "; the name of a file must end in .toml" : suggestion(name, known)));
 }
 
 TomlSource find_parent(const TomlSource& child, const std::string& parent) {

@@ -6,16 +6,14 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "bench/config/apply_settings.h"
-#include "bench/config/config_file.h"
-#include "bench/config/spelling.h"
+#include "bench/config/config_text.h"
 #include "bench/config/toml_source.h"
-#include "bench/plan/synth_settings.h"
-#include "bench/systems/published_table.h"
+#include "bench/plan/plan_validation.h"
 #include "core/base/error.h"
-#include "eval/protocols/protocol.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -29,9 +27,15 @@ std::string toml_text(const SettingValue& value) {
     std::string operator()(bool flag) const { return flag ? "true" : "false"; }
     std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }
     std::string operator()(double number) const { return fmt::format("{}", number); }
-    std::string operator()(const std::string& text) const { return "\"" + text + "\""; }
-    std::string operator()(const std::vector<std::string>&) const { return "[]"; }
-    std::string operator()(const std::vector<double>&) const { return "[]"; }
+    std::string operator()(const std::string& text) const { return toml_quoted(text); }
+    std::string operator()(const std::vector<std::string>& texts) const {
+      std::vector<std::string> elements;
+      for (const std::string& text : texts) elements.push_back(toml_quoted(text));
+      return fmt::format("[{}]", fmt::join(elements, ", "));
+    }
+    std::string operator()(const std::vector<double>& numbers) const {
+      return fmt::format("[{}]", fmt::join(numbers, ", "));
+    }
   };
   return std::visit(Printer{}, value);
 }
@@ -70,50 +74,6 @@ BenchPlan parse_plan(const std::vector<Setting>& settings) {
   return with_settings(std::move(plan), own_settings);
 }
 
-/// Loads every config once, so that errors are reported before the first run.
-void require_configs(const BenchPlan& plan, const std::vector<std::string>& variants) {
-  for (const std::string& variant : variants) {
-    static_cast<void>(load_config({plan.base, variant, plan.config_settings}));
-    for (const SweepAxis& axis : plan.sweep) {
-      if (axis.key.starts_with(kSynthPrefix)) continue;
-      for (const double value : axis.values) {
-        std::vector<std::string> settings = plan.config_settings;
-        settings.push_back(fmt::format("{}={}", axis.key, value));
-        static_cast<void>(load_config({plan.base, variant, settings}));
-      }
-    }
-  }
-}
-
-void require_renderings(const BenchPlan& plan) {
-  synth::SynthRequest request;
-  for (const SweepAxis& setting : plan.synth_settings) {
-    request = with_number(request, setting.key, setting.values.front());
-  }
-  for (const SweepAxis& axis : plan.sweep) {
-    if (!axis.key.starts_with(kSynthPrefix)) continue;
-    for (const double value : axis.values) {
-      static_cast<void>(with_number(request, axis.key.substr(kSynthPrefix.size()), value));
-    }
-  }
-}
-
-void require_protocols(const std::vector<std::string>& names) {
-  std::vector<std::string> known;
-  for (const eval::Protocol& protocol : eval::protocols()) known.emplace_back(protocol.name);
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw InputError("unknown protocol \"" + name + "\"" + suggestion(name, known));
-  }
-}
-
-/// External systems always process whole sequences, and cannot run under callgrind.
-void require_supported_by_systems(const BenchPlan& plan) {
-  if (plan.systems.empty() || (plan.max_frames == 0 && plan.kind != RunKind::kInstructions)) return;
-  throw InputError("plan \"" + plan.name + "\"",
-                   "max_frames and kind = \"instructions\" do not support external systems; remove systems");
-}
-
 int parse_processor(std::string_view text, const std::string& cores) {
   int number = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -143,18 +103,15 @@ std::vector<int> parse_cpu_list(const std::string& cores) {
 
 BenchPlan load_plan(const std::string& name) {
   const TomlSource source = find_toml(name, TomlKind::kPlan);
-  BenchPlan plan = parse_plan(parse_settings(source.text, source.path));
+  const std::vector<Setting> settings = parse_settings(source.text, source.path);
+  BenchPlan plan = parse_plan(settings);
   plan.name = std::filesystem::path(source.path).stem().string();
+  plan.path = source.path;
+  for (const Setting& setting : settings)
+    plan.places[setting.key] = fmt::format("{}:{}", setting.file, setting.line);
   plan.text = source.text;
   if (plan.title.empty()) plan.title = plan.name;
-  require_configs(plan, plan.variants);
-  require_configs(plan, plan.rendered.variants);
-  require_configs(plan, plan.recorded.variants);
-  require_renderings(plan);
-  require_supported_by_systems(plan);
-  require_protocols(plan.protocols);
-  static_cast<void>(parse_cpu_list(plan.cores));
-  for (const std::string& table : plan.table.published) static_cast<void>(load_published(table));
+  validate_plan(plan);
   return plan;
 }
 

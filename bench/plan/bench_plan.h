@@ -2,6 +2,7 @@
 /// A benchmark plan: sequences x variants x seeds x repetitions, and the layout of the result table.
 #pragma once
 
+#include <map>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -37,7 +38,8 @@ void visit_fields(Visitor&& field, Config& config) {
 
 /// Recorded sequences.
 struct RecordedGroup {
-  std::vector<std::string> sequences;  ///< registered names, folders in the data folder, or globs over both
+  std::vector<std::string> sequences;  ///< registered names, names in the data folder, globs over both, or
+                                       ///< paths of folders (with a slash)
   std::vector<std::string> variants;   ///< replaces `BenchPlan::variants` if not empty
   bool required = true;                ///< false: sequences that are not available are skipped
 };
@@ -67,6 +69,7 @@ struct BenchPlan {
   std::string title;
   std::string base = "stillpoint";    ///< config to which the variants are applied
   std::vector<std::string> variants;  ///< of this odometry
+  std::string ablation_base;          ///< the variant that the others are compared with; empty: no ablation
   std::vector<std::string> systems;   ///< external systems: files, see bench/systems/external_system.h
   std::vector<int> seeds = {1};       ///< for rendering and for the odometry
   int repetitions = 1;
@@ -87,8 +90,10 @@ struct BenchPlan {
   std::vector<SweepAxis> synth_settings;     ///< one value each, applied to every rendered sequence
   std::vector<SweepAxis> sweep;
   // Origin of the plan.
-  std::string name;  ///< file name without extension
-  std::string text;  ///< content of the file
+  std::string name;                           ///< file name without extension
+  std::string text;                           ///< content of the file
+  std::string path;                           ///< of the file, as shown in messages
+  std::map<std::string, std::string> places;  ///< "file:line" of each key that is set
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, BenchPlan>
@@ -96,6 +101,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("title", config.title);
   field("base", config.base);
   field("variants", config.variants);
+  field("ablation_base", config.ablation_base);
   field("systems", config.systems);
   field("seeds", config.seeds, 0, 1000000000);
   field("repetitions", config.repetitions, 1, 10000);

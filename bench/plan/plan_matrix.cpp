@@ -7,6 +7,8 @@
 #include <fnmatch.h>
 
 #include "bench/config/config_text.h"
+#include "bench/plan/plan_place.h"
+#include "bench/plan/plan_validation.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -35,7 +37,9 @@ class PlanExpander {
     for (const std::string& preset : matching_presets(plan.rendered.sequences)) {
       for (const int seed : plan.seeds) add_rendered(preset, seed);
     }
-    for (const PlanSequence& sequence : recorded_sequences(plan.recorded)) {
+    const std::vector<PlanSequence> recorded =
+        at_place(plan, "recorded.sequences", [&] { return recorded_sequences(plan.recorded); });
+    for (const PlanSequence& sequence : recorded) {
       matrix_.sequences.push_back(sequence);
       for (const int seed : plan.seeds) add_recorded(seed);
     }
@@ -139,6 +143,7 @@ bool matches_all(const RunIdentity& identity, const std::vector<std::string>& fi
 PlanMatrix expand_plan(const BenchPlan& plan, const std::string& build,
                        const std::vector<std::string>& filters) {
   PlanMatrix matrix = PlanExpander(plan, build).expand();
+  require_runs(plan);
   for (const PlannedRun& run : matrix.runs) matrix.keys.push_back(run_key(run.identity));
   std::erase_if(matrix.runs, [&](const PlannedRun& run) { return !matches_all(run.identity, filters); });
   return matrix;

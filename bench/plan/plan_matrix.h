@@ -33,7 +33,8 @@ struct PlanMatrix {
 
 /// @param build recorded as the build of this odometry
 /// @param filters globs; a run is included if each of them matches its sequence, variant or system
-/// @throws InputError as `matching_presets` and `recorded_sequences`, and if a system file cannot be read
+/// @throws InputError as `matching_presets`, `recorded_sequences` and `require_runs`, and if a system file
+/// cannot be read
 [[nodiscard]] PlanMatrix expand_plan(const BenchPlan& plan, const std::string& build,
                                      const std::vector<std::string>& filters);
 

@@ -8,7 +8,6 @@
 #include <fnmatch.h>
 
 #include "bench/config/spelling.h"
-#include "bench/plan/sequence_registry.h"
 #include "bench/plan/synth_settings.h"
 #include "bench/record/sequence_checksum.h"
 #include "core/base/error.h"
@@ -32,7 +31,8 @@ bool matches(const std::string& pattern, const std::string& name) {
 std::map<std::string, RegisteredSequence> known_sequences() {
   std::map<std::string, RegisteredSequence> known;
   for (const RegisteredSequence& sequence : read_registry(registry_file())) known[sequence.name] = sequence;
-  if (!fs::is_directory(data_folder())) return known;
+  std::error_code ignored;
+  if (!fs::is_directory(data_folder(), ignored)) return known;
   for (const fs::directory_entry& entry : fs::directory_iterator(data_folder())) {
     const std::string name = entry.path().filename().string();
     if (entry.is_directory())
@@ -41,7 +41,8 @@ std::map<std::string, RegisteredSequence> known_sequences() {
   return known;
 }
 
-/// Verifies the checksum of a registered sequence.
+}  // namespace
+
 PlanSequence verified_sequence(const RegisteredSequence& registered) {
   if (!fs::is_directory(registered.folder)) {
     throw InputError("sequence \"" + registered.name + "\"",
@@ -59,6 +60,51 @@ PlanSequence verified_sequence(const RegisteredSequence& registered) {
           .rendering = {},
           .folder = registered.folder,
           .unavailable_reason = ""};
+}
+
+namespace {
+
+/// Whether a pattern of [recorded] is a path; names of sequences have no slash.
+bool is_path(const std::string& pattern) { return pattern.find('/') != std::string::npos; }
+
+/// A folder that is named by its path; relative to the working directory.
+RegisteredSequence sequence_at(const std::string& path) {
+  std::error_code error;
+  const fs::path folder = fs::canonical(path, error);
+  if (error || !fs::is_directory(folder, error)) {
+    throw InputError("sequence \"" + path + "\"",
+                     "is not a folder; correct the path, or register the sequence "
+                     "with `stillpoint data add NAME DIR`");
+  }
+  return {.name = folder.filename().string(), .folder = folder, .checksum = "", .format = ""};
+}
+
+/// The sequences that a pattern selects; empty if none.
+std::vector<RegisteredSequence> selected_by(const std::string& pattern,
+                                            const std::map<std::string, RegisteredSequence>& known) {
+  if (is_path(pattern) && !is_glob(pattern)) return {sequence_at(pattern)};
+  std::vector<RegisteredSequence> selected;
+  for (const auto& [name, sequence] : known) {
+    if (matches(pattern, name)) selected.push_back(sequence);
+  }
+  return selected;
+}
+
+/// Adds a sequence unless it is already in the list, e.g. because two globs match it.
+/// @throws InputError for another folder of the same name, as tables identify sequences by their names
+void add_distinct(std::vector<PlanSequence>& found, const RegisteredSequence& sequence) {
+  const auto same_name = std::ranges::find(found, sequence.name, &PlanSequence::name);
+  if (same_name == found.end()) {
+    found.push_back(verified_sequence(sequence));
+    return;
+  }
+  std::error_code ignored;
+  if (!fs::equivalent(same_name->folder, sequence.folder, ignored)) {
+    throw InputError("sequence \"" + sequence.name + "\"",
+                     "is the name of two folders, " + same_name->folder.string() + " and " +
+                         sequence.folder.string() +
+                         "; register one under another name with `stillpoint data add NAME DIR`");
+  }
 }
 
 [[noreturn]] void throw_unknown(const std::string& pattern,
@@ -82,10 +128,13 @@ std::vector<std::string> matching_presets(const std::vector<std::string>& patter
   std::vector<std::string> found;
   const std::vector<std::string> presets = synth::preset_names();
   for (const std::string& pattern : patterns) {
-    const std::size_t before = found.size();
-    std::copy_if(presets.begin(), presets.end(), std::back_inserter(found),
-                 [&](const std::string& name) { return matches(pattern, name); });
-    if (found.size() > before) continue;
+    bool is_known = false;
+    for (const std::string& name : presets) {
+      if (!matches(pattern, name)) continue;
+      is_known = true;
+      if (std::ranges::find(found, name) == found.end()) found.push_back(name);
+    }
+    if (is_known) continue;
     throw InputError("sequence \"" + pattern + "\"", "matches no preset" + suggestion(pattern, presets));
   }
   return found;
@@ -112,11 +161,9 @@ std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
   std::vector<PlanSequence> found;
   const std::map<std::string, RegisteredSequence> known = known_sequences();
   for (const std::string& pattern : group.sequences) {
-    const std::size_t before = found.size();
-    for (const auto& [name, sequence] : known) {
-      if (matches(pattern, name)) found.push_back(verified_sequence(sequence));
-    }
-    if (found.size() > before) continue;
+    const std::vector<RegisteredSequence> selected = selected_by(pattern, known);
+    for (const RegisteredSequence& sequence : selected) add_distinct(found, sequence);
+    if (!selected.empty()) continue;
     if (group.required) throw_unknown(pattern, known);
     if (is_glob(pattern)) continue;
     found.push_back(

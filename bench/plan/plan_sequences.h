@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/plan/bench_plan.h"
+#include "bench/plan/sequence_registry.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint::bench {
@@ -21,7 +22,7 @@ struct PlanSequence {
   std::string unavailable_reason;  ///< why a recorded sequence cannot be used; empty if it is available
 };
 
-/// Presets that match one of the names or globs, in the order of the patterns.
+/// Presets that match one of the names or globs, in the order of the patterns, each once.
 /// @throws InputError for a name or glob without a match
 [[nodiscard]] std::vector<std::string> matching_presets(const std::vector<std::string>& patterns);
 
@@ -31,9 +32,14 @@ struct PlanSequence {
                                              const SweepAxis& axis);
 
 /// The recorded sequences of a plan; reads all their files to compute checksums. Unavailable sequences get an
-/// `unavailable_reason` if the group is not required.
-/// @throws InputError if a required sequence is not available, or the files of a registered one have changed
+/// `unavailable_reason` if the group is not required. A sequence selected by several patterns occurs once.
+/// @throws InputError if a required sequence is not available, a folder given by its path does not exist, the
+/// files of a registered sequence have changed, or two folders have the same name
 [[nodiscard]] std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group);
+
+/// The sequence of a registration, after reading all its files to verify the checksum.
+/// @throws InputError if the folder does not exist, or its files have changed since the registration
+[[nodiscard]] PlanSequence verified_sequence(const RegisteredSequence& registered);
 
 /// Folder with the files of the sequence, rendered first if necessary; empty if the rendering was stopped.
 /// @throws InputError if it cannot be rendered or no longer exists

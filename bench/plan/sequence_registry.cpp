@@ -6,8 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/model/json_problem.h"
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
+#include "core/base/utf8_text.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
@@ -36,6 +38,15 @@ std::string registry_text(const std::vector<RegisteredSequence>& sequences) {
   return json.dump(2) + "\n";
 }
 
+/// @throws InputError if the name is that of another folder
+void require_unused(const std::vector<RegisteredSequence>& sequences, const RegisteredSequence& added) {
+  const auto known = std::ranges::find(sequences, added.name, &RegisteredSequence::name);
+  if (known == sequences.end() || known->folder == added.folder) return;
+  throw InputError("sequence name \"" + added.name + "\"",
+                   "is registered for " + known->folder.string() +
+                       "; choose another name, or replace the registration with --force");
+}
+
 }  // namespace
 
 fs::path registry_file() {
@@ -58,16 +69,18 @@ std::vector<RegisteredSequence> read_registry(const fs::path& file) {
                            .format = entry.at("format").get<std::string>()});
     }
   } catch (const Json::exception& error) {
-    throw InputError(file.string(),
-                     std::string("is not a valid sequence registry: ") + error.what() +
-                         "; remove it and register the sequences again with `stillpoint data add`");
+    throw InputError(file.string(), "is not a valid sequence registry: " + json_problem(error) +
+                                        "; remove it and register the sequences again with "
+                                        "`stillpoint data add`");
   }
   return sequences;
 }
 
-void register_sequence(const fs::path& file, const RegisteredSequence& sequence) {
+void register_sequence(const fs::path& file, const RegisteredSequence& sequence, Registration registration) {
   require_valid_name(sequence.name);
+  require_utf8("folder", sequence.folder.string());
   std::vector<RegisteredSequence> sequences = read_registry(file);
+  if (registration == Registration::kNew) require_unused(sequences, sequence);
   std::erase_if(sequences, [&](const RegisteredSequence& known) { return known.name == sequence.name; });
   sequences.push_back(sequence);
   std::sort(sequences.begin(), sequences.end(),

@@ -22,9 +22,13 @@ struct RegisteredSequence {
 /// @throws InputError if the file is malformed
 [[nodiscard]] std::vector<RegisteredSequence> read_registry(const std::filesystem::path& file);
 
-/// Adds a sequence, or replaces the one with the same name.
-/// @throws InputError if the name has other characters than letters, digits, '_', '-' and '.', or the file
-/// cannot be written
-void register_sequence(const std::filesystem::path& file, const RegisteredSequence& sequence);
+/// Whether a name that is registered for another folder may be registered again.
+enum class Registration { kNew, kReplace };
+
+/// Adds a sequence, or updates the one with the same name and folder.
+/// @throws InputError if the name has other characters than letters, digits, '_', '-' and '.', if it is
+/// registered for another folder and `registration` is `kNew`, or if the file cannot be written
+void register_sequence(const std::filesystem::path& file, const RegisteredSequence& sequence,
+                       Registration registration = Registration::kNew);
 
 }  // namespace stillpoint::bench

@@ -2,6 +2,7 @@
 #include "core/detector/network_detector.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/core/utility.hpp>
@@ -19,14 +20,26 @@ namespace fs = std::filesystem;
 
 constexpr double kPadding = 114.0;  ///< gray value of the letterbox, as in the training of YOLO
 
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{4} << 30U;
+constexpr std::uintmax_t kMaxTextBytes = 16U << 20U;
+
 void require_file(const std::string& key, const std::string& file) {
   if (file.empty()) throw InputError(key, "is not set; it must name a file of the network");
   if (!fs::is_regular_file(file))
     throw InputError(file, "is not a file; " + key + " must name a file of the network");
+  if (fs::file_size(file) > kMaxBytes)
+    throw InputError(file, "is larger than 4 GB; " + key + " must name a file of the network");
+}
+
+/// A text file of the network.
+void require_text_file(const std::string& key, const std::string& file) {
+  require_file(key, file);
+  if (fs::file_size(file) > kMaxTextBytes)
+    throw InputError(file, "is larger than 16 MB; " + key + " must name a text file of the network");
 }
 
 std::vector<std::string> read_names(const std::string& file) {
-  require_file("detector.names", file);
+  require_text_file("detector.names", file);
   std::ifstream in(file);
   std::vector<std::string> names;
   for (std::string line; std::getline(in, line);) {
@@ -96,13 +109,14 @@ std::string one_line(const cv::Exception& error) {
 cv::dnn::Net load(const DetectorConfig& config) {
   require_file("detector.weights", config.weights);
   const bool darknet = config.layout == NetworkLayout::kDarknet;
-  if (darknet) require_file("detector.cfg", config.cfg);
+  if (darknet) require_text_file("detector.cfg", config.cfg);
   const ScopedSilentOpencv silent;
   try {
     return darknet ? cv::dnn::readNetFromDarknet(config.cfg, config.weights)
                    : cv::dnn::readNetFromONNX(config.weights);
   } catch (const cv::Exception& error) {
-    throw InputError(config.weights, "is not a network that OpenCV can read (" + one_line(error) +
+    throw InputError(config.weights, "is not a network that OpenCV can read" +
+                                         (darknet ? " with " + config.cfg : "") + " (" + one_line(error) +
                                          "); check detector.weights, detector.cfg and detector.layout");
   }
 }

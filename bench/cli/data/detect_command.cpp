@@ -9,7 +9,9 @@
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
 #include "bench/config/config_file.h"
+#include "bench/plan/sequence_argument.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/output_guard.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "core/detector/object_detector.h"
@@ -29,6 +31,7 @@ struct DetectArguments {
   std::vector<std::string> settings;
   std::string format;
   int max_frames = 0;
+  bool force = false;
 };
 
 /// The config with the detection network of the options.
@@ -65,14 +68,18 @@ void print_summary(const ObjectDetector& detector, const fs::path& file) {
 
 int detect(const DetectArguments& arguments) {
   if (arguments.out.empty()) throw InputError("--out", "is required: the output file of the boxes");
-  if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
   const fs::path file = fs::absolute(arguments.out);
   const OdometryConfig config = config_of(arguments);
+  const OutputRules rules{.inputs = {config.detector.weights, config.detector.cfg, config.detector.names},
+                          .force = arguments.force,
+                          .beginning = datasets::detections_header()};
+  require_safe_output(file, rules);
+  const std::string sequence = resolve_sequence(arguments.sequence);
   install_interrupt_handlers();
   const std::unique_ptr<ObjectDetector> detector =
       make_object_detector(config.detector, {.dynamic_classes = config.dynamic.classes});
-  const std::unique_ptr<datasets::SensorStream> stream = find_sequence(
-      arguments.sequence, {.format = arguments.format}, {.stop_requested = interrupt_requested});
+  const std::unique_ptr<datasets::SensorStream> stream =
+      find_sequence(sequence, {.format = arguments.format}, {.stop_requested = interrupt_requested});
   if (!stream) return kExitInterrupted;
   require_writable(file.parent_path());
 
@@ -88,7 +95,7 @@ int detect(const DetectArguments& arguments) {
       progress.update(i + 1);
     }
   }
-  write_files(file.parent_path(), {{file.filename().string(), datasets::detections_text(sets)}});
+  write_output(file, datasets::detections_text(sets), rules);
   print_summary(*detector, file);
   return kExitOk;
 }
@@ -97,23 +104,25 @@ int detect(const DetectArguments& arguments) {
 
 Command detect_command() {
   const auto arguments = std::make_shared<DetectArguments>();
-  return {.name = "detect",
-          .summary = "Run a detection network on a sequence and record its boxes",
-          .example =
-              "detect my_sequence --weights yolo.weights --cfg yolo.cfg --names coco.names --out "
-              "my_sequence/detections.txt",
-          .options = {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
-                      {"--out", "Output file; `run` reads detections.txt of the sequence folder",
-                       &arguments->out},
-                      {"--weights", "Network file: Darknet .weights or .onnx [detector.weights]",
-                       &arguments->weights},
-                      {"--cfg", "Darknet network description [detector.cfg]", &arguments->cfg},
-                      {"--names", "Class names, one per line [detector.names]", &arguments->names},
-                      {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
-                      {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
-                      {"--format", "Sequence format [detected]", &arguments->format},
-                      {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames}},
-          .action = [arguments] { return detect(*arguments); }};
+  return {
+      .name = "detect",
+      .summary = "Run a detection network on a sequence and record its boxes",
+      .example =
+          "detect my_sequence --weights yolo.weights --cfg yolo.cfg --names coco.names --out "
+          "my_sequence/detections.txt",
+      .options = {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
+                  {"--out", "Output file; `run` reads detections.txt of the sequence folder",
+                   &arguments->out},
+                  {"--force", "Replace an existing file of detections", &arguments->force},
+                  {"--weights", "Network file: Darknet .weights or .onnx [detector.weights]",
+                   &arguments->weights},
+                  {"--cfg", "Darknet network description [detector.cfg]", &arguments->cfg},
+                  {"--names", "Class names, one per line [detector.names]", &arguments->names},
+                  {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+                  {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+                  {"--format", "Sequence format [detected]", &arguments->format},
+                  {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}}},
+      .action = [arguments] { return detect(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <fstream>
 #include <iostream>
 #include <memory>
 
@@ -13,14 +14,18 @@
 #include "bench/cli/run/profile_device.h"
 #include "bench/cli/run/profile_instructions.h"
 #include "bench/cli/run/profile_report.h"
+#include "bench/cli/run/run_layout.h"
 #include "bench/config/config_file.h"
 #include "bench/plan/bench_plan.h"
+#include "bench/plan/sequence_argument.h"
 #include "bench/profile/meters/process_usage.h"
 #include "bench/profile/profile_table.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/output_guard.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -139,20 +144,21 @@ DeviceRequest device_request(const ProfileArguments& arguments, const fs::path& 
 }
 
 int run_profile(const ProfileArguments& arguments) {
-  if (arguments.max_frames < 0) throw InputError("--max-frames", "must not be negative; 0 means all");
-  if (!(arguments.budget_ms > 0.0)) throw InputError("--frame-budget-ms", "must be above 0, e.g. 33");
-  if (!arguments.tegrastats.empty() && !fs::exists(arguments.tegrastats)) {
-    throw InputError(arguments.tegrastats,
-                     "does not exist; first start `tegrastats --logfile` with this file");
+  if (!arguments.tegrastats.empty()) {
+    require_regular_file(arguments.tegrastats);
+    if (!std::ifstream(arguments.tegrastats))
+      throw InputError(arguments.tegrastats,
+                       "cannot be read; first start `tegrastats --logfile` with this file");
   }
   if (!arguments.cores.empty()) pin_to(parse_cpu_list(arguments.cores));
   install_interrupt_handlers();
-  const auto stream =
-      find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
-                    {.progress = {}, .stop_requested = interrupt_requested});
+  const auto stream = find_sequence(resolve_sequence(arguments.sequence),
+                                    {.format = arguments.format, .rig_file = arguments.rig},
+                                    {.progress = {}, .stop_requested = interrupt_requested});
   if (!stream) return kExitInterrupted;
   const std::string& name = stream->info().name;
   const fs::path folder = arguments.out.empty() ? fs::path("build/profile") / name : fs::path(arguments.out);
+  require_safe_folder(folder, profile_layout(), {stream->info().folder, arguments.rig, arguments.tegrastats});
   require_writable(folder);
   if (!arguments.device.empty()) {
     return profile_on_device(*stream, device_request(arguments, folder));
@@ -188,21 +194,27 @@ Command profile_command() {
                   {"--variant", "Overlays joined by +", &arguments->variant},
                   {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
                   {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
-                  {"--frame-budget-ms", "Frames that take longer are counted as deadline misses [ms]",
-                   &arguments->budget_ms},
+                  {"--frame-budget-ms",
+                   "Frames that take longer are counted as deadline misses [ms]",
+                   &arguments->budget_ms,
+                   {1e-3, 1e6}},
                   {"--cores", "CPU affinity, e.g. 0,1 [all]", &arguments->cores},
                   {"--out", "Output folder of profile.json, trace.json and stacks.folded [build/profile/SEQ]",
                    &arguments->out},
                   {"--format", "Sequence format [detected]", &arguments->format},
                   {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
-                  {"--max-frames", "Maximum number of frames; 0 = all, or 30 with --instructions",
-                   &arguments->max_frames},
+                  {"--max-frames",
+                   "Maximum number of frames; 0 = all, or 30 with --instructions",
+                   &arguments->max_frames,
+                   {0, 1e9}},
                   {"--device",
                    "Simulate this target device on a virtual clock: dropped frames, latency, accuracy (name "
                    "or file)",
                    &arguments->device},
-                  {"--speed", "Playback speed in realtime mode and with --device; 1 = as recorded",
-                   &arguments->speed},
+                  {"--speed",
+                   "Playback speed in realtime mode and with --device; 1 = as recorded",
+                   &arguments->speed,
+                   {1e-3, 1e3}},
                   {"--tegrastats", "Log file of a running tegrastats, for the energy of Jetson devices",
                    &arguments->tegrastats},
                   {"--instructions", "Count instructions with callgrind instead of measuring times",

@@ -53,6 +53,13 @@ TEST(ConfigFile, RejectsInvalidToml) {
   EXPECT_TRUE(error_of("seed = 1\nseed = ").starts_with("mine.toml:2: invalid TOML: "));
 }
 
+TEST(ConfigFile, SkipsAByteOrderMarkAndNamesUtf16) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("mine.toml", "\xEF\xBB\xBFseed = 7").string();
+  EXPECT_EQ(load_config({.base = file, .variant = "", .settings = {}}).seed, 7);
+  EXPECT_TRUE(error_of(std::string("\xFF\xFEs\0", 4)).starts_with("mine.toml: is UTF-16 text; convert it"));
+}
+
 TEST(ConfigFile, RejectsAnUnsupportedType) {
   EXPECT_TRUE(
       error_of("seed = 2020-01-01").starts_with("mine.toml:1: \"seed\" has the unsupported type date"));

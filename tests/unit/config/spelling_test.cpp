@@ -23,5 +23,13 @@ TEST(Spelling, FindsTheFullNameOfAnAbbreviation) {
 
 TEST(Spelling, SuggestsNothingWithoutNames) { EXPECT_EQ(suggestion("x", {}), ""); }
 
+TEST(Spelling, SuggestsNothingForPathsAndForTextThatResemblesNoName) {
+  const std::vector<std::string> names = {"walking_static", "walking_xyz", "market"};
+  EXPECT_EQ(suggestion("/nonexist", names), "");
+  EXPECT_EQ(suggestion("./walking_xyz", names), "");
+  EXPECT_EQ(suggestion("qqqq", names), "");
+  EXPECT_EQ(suggestion("markt", names), "; did you mean \"market\"?");
+}
+
 }  // namespace
 }  // namespace stillpoint::bench

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/plan/sequence_argument.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "bench/config/spelling.h"
+#include "bench/plan/plan_sequences.h"
+#include "core/base/error.h"
+#include "datasets/synthetic/sequence/presets.h"
+#include "eval/io/bag_file.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void throw_unknown(const std::string& argument,
+                                const std::vector<RegisteredSequence>& registry) {
+  const std::string place = "sequence \"" + argument + "\"";
+  std::error_code ignored;
+  if (fs::exists(argument, ignored)) {
+    throw InputError(place, "is a file; specify the folder of the sequence");
+  }
+  std::vector<std::string> names = synth::preset_names();
+  for (const RegisteredSequence& known : registry) names.push_back(known.name);
+  throw InputError(
+      place, "is neither a folder nor a preset nor a registered sequence" + suggestion(argument, names));
+}
+
+}  // namespace
+
+std::string resolve_sequence(const std::string& argument) {
+  std::error_code ignored;
+  eval::reject_bag(argument, eval::kExportSequence);
+  if (fs::is_directory(argument, ignored)) return argument;
+  const std::vector<std::string> presets = synth::preset_names();
+  const bool is_preset = std::ranges::find(presets, argument) != presets.end();
+  const std::vector<RegisteredSequence> registry = read_registry(registry_file());
+  const auto registered = std::ranges::find(registry, argument, &RegisteredSequence::name);
+  if (registered == registry.end()) {
+    if (!is_preset) throw_unknown(argument, registry);
+    return argument;
+  }
+  if (is_preset) {
+    throw InputError(
+        "sequence \"" + argument + "\"",
+        "is a preset and a registered sequence; specify its folder: " + registered->folder.string() +
+            ", or the one printed by `stillpoint data synth " + argument + "`");
+  }
+  return verified_sequence(*registered).folder.string();
+}
+
+}  // namespace stillpoint::bench
