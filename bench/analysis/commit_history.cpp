@@ -15,8 +15,6 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr const char* kOwnSystem = "stillpoint";
-
 std::map<std::string, std::set<std::string>> plans_by_run(const Store& store,
                                                           const std::vector<StoredRun>& runs) {
   std::map<std::string, std::string> planned;

@@ -54,7 +54,7 @@ class DistinctRuns {
 };
 
 /// The paired runs of one variant on one sequence.
-struct SubjectRuns {
+struct PairedSubject {
   std::vector<RunPair> pairs;  ///< with different fingerprints on at least one side
   std::set<Input> inputs;
   std::set<std::tuple<Input, std::string, std::string>> fingerprints;
@@ -81,7 +81,7 @@ struct SubjectRuns {
   }
 };
 
-MetricSeries series_of(const Metric& stored, const SubjectRuns& runs) {
+MetricSeries series_of(const Metric& stored, const PairedSubject& runs) {
   const RunIdentity& identity = runs.pairs.front().base->identity;
   MetricSeries series{.metric = stored.name,
                       .subject = subject_of(identity),
@@ -148,7 +148,7 @@ std::vector<double> sorted(std::vector<double> values) {
 }  // namespace
 
 std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
-  std::map<std::string, SubjectRuns> subjects;
+  std::map<std::string, PairedSubject> subjects;
   for (const RunPair& pair : runs.pairs) {
     if (both_succeeded(pair)) subjects[subject_of(pair.base->identity)].add(pair);
   }

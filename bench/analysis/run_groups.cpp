@@ -15,7 +15,6 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr const char* kOwnSystem = "stillpoint";
 constexpr const char* kAllBuilds = "all";
 constexpr std::size_t kMaxListed = 8;
 

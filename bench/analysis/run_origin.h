@@ -10,6 +10,9 @@
 
 namespace stillpoint::bench {
 
+/// `RunIdentity::system` of this odometry.
+inline constexpr const char* kOwnSystem = "stillpoint";
+
 struct RunOrigin {
   std::string commit;  ///< git commit, with "+" and a hash of uncommitted changes if any; else the build name
   std::string time;    ///< UTC commit time; empty if not in the manifest
