@@ -2,6 +2,7 @@
 /// Trend of the processing time per frame over a long run.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,12 +24,13 @@ struct FrameCost {
 /// Least-squares line y = a + b t through the medians (t_i, y_i) of n time windows of equal length:
 ///   b = S_ty / S_tt,  a = mean(y) - b mean(t),
 ///   S_tt = sum (t_i - mean(t))^2,  S_ty = sum (t_i - mean(t)) (y_i - mean(y)).
-/// The 95 % interval of b is b +- 1.96 sqrt(sum (y_i - a - b t_i)^2 / (n - 2) / S_tt).
+/// The 95 % interval of b is b +- q sqrt(sum (y_i - a - b t_i)^2 / (n - 2) / S_tt), q: 97.5 % quantile of
+/// Student's t with n - 2 degrees of freedom.
 struct CostTrend {
-  std::vector<FrameCost> medians;  ///< at the center of each window
-  double start_ms = 0.0;           ///< a
-  double slope_ms_per_min = 0.0;   ///< 60 b
-  eval::Interval slope_interval;   ///< 95 % [ms/min]
+  std::vector<FrameCost> medians;                ///< at the center of each window
+  double start_ms = 0.0;                         ///< a
+  double slope_ms_per_min = 0.0;                 ///< 60 b
+  std::optional<eval::Interval> slope_interval;  ///< 95 % [ms/min]; nullopt for n < 5
 };
 
 /// @param costs    by rising time

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
+#include "bench/analysis/run_groups.h"
 #include "bench/store/readable_files.h"
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
@@ -33,22 +33,10 @@ std::string title_of(const bench::Store& store, const std::vector<bench::StoredP
   return title.empty() ? "Runs of " + store.file().filename().string() : title;
 }
 
-/// The build whose first run is the latest; numbers of different builds are never combined.
-std::string newest_build(const std::vector<bench::StoredRun>& runs) {
-  std::map<std::string, std::int64_t> first_run;
-  for (const bench::StoredRun& run : runs) {
-    if (run.identity.system != kOwnSystem) continue;
-    const auto [entry, is_new] = first_run.insert({run.identity.build, run.id});
-    if (!is_new) entry->second = std::min(entry->second, run.id);
-  }
-  const auto newest = std::max_element(first_run.begin(), first_run.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return newest == first_run.end() ? "" : newest->first;
-}
-
 /// The subject with runs of older Stillpoint builds moved to `other_runs`; runs of other systems stay.
+/// Numbers of different builds are never combined.
 ReportSubject with_newest_build(ReportSubject subject) {
-  const std::string newest = newest_build(subject.runs);
+  const std::string newest = bench::newest_build(subject.runs);
   const auto is_older = [&](const bench::StoredRun& run) {
     return run.identity.system == kOwnSystem && run.identity.build != newest;
   };

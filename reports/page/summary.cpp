@@ -100,7 +100,7 @@ std::string best_sentence(std::span<const bench::StoredRun> runs) {
   const char* verb = winners.size() == 1 ? "has" : "each have";
   const auto [fewest, largest] = std::minmax_element(counts.begin(), counts.end());
   return fmt::format(
-      "{} {} the smallest median {} on {} of {} sequences ({} runs; not a statement of significance).",
+      "{} {} the smallest median {} on {} of {} sequences ({}; not a statement of significance).",
       fmt::join(winners, ", "), verb, bench::headline_metric().label, most, compared,
       count_text(*fewest, *largest));
 }

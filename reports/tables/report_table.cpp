@@ -81,7 +81,7 @@ std::string best_note(const ReportTable& table, const std::string& group, bool l
   }
   if (!is_marked) return "";
   const auto [least, most] = std::minmax_element(counts.begin(), counts.end());
-  return fmt::format("Bold: {} median of a {} ({} runs); not a statement of significance.",
+  return fmt::format("Bold: {} median of a {}, {}; not a statement of significance.",
                      larger_is_better ? "largest" : "smallest", group, count_text(*least, *most));
 }
 

@@ -85,7 +85,7 @@ enum class TableDetail {
 /// statement of significance, see `best_note`.
 void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better);
 
-/// Meaning of the marks of a table: "Bold: smallest median of a column (n = 1 to 3 runs); ...".
+/// Meaning of the marks of a table: "Bold: smallest median of a column, n = 1 to 3; ...".
 /// @param group what the marked numbers are the best of, e.g. "column"
 /// @return empty if no measured number is marked
 [[nodiscard]] std::string best_note(const ReportTable& table, const std::string& group,

@@ -71,7 +71,7 @@ ReportTable metric_table(std::span<const bench::StoredRun> runs, const bench::Me
       row.cells.push_back(result_cell(runs_of(runs, label, sequence), metric));
     table.rows.push_back(std::move(row));
   }
-  table.notes = {"Medians over the successful runs."};
+  table.notes = {"Medians over n successful runs; equal repetitions of a deterministic run count once."};
   // Costs depend on the machine and on what a system computes: no system is best.
   const bool has_best = metric.source == bench::MetricSource::kTrajectory;
   return has_best ? with_best_in_columns(std::move(table),

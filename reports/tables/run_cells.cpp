@@ -2,9 +2,11 @@
 #include "reports/tables/run_cells.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
+#include "bench/analysis/run_statistics.h"
 #include "bench/model/metrics.h"
 #include "bench/model/missing_boxes.h"
 #include "bench/model/protocol_difference.h"
@@ -17,6 +19,17 @@ std::string failure_note(std::size_t failed, std::size_t all, const bench::Store
   std::string note = fmt::format("{} of {} runs failed: {}", failed, all, bench::outcome_name(first.outcome));
   if (!first.detail.empty()) note += " (" + first.detail + ")";
   return note;
+}
+
+/// "1 of 3 runs has an infinite value"; empty if all are finite.
+std::string infinite_note(const std::vector<const bench::StoredRun*>& runs, std::string_view metric) {
+  const auto count = std::count_if(runs.begin(), runs.end(), [&](const bench::StoredRun* run) {
+    const std::optional<double> value = bench::metric_value(*run, metric);
+    return run->outcome == bench::Outcome::kOk && value && !std::isfinite(*value);
+  });
+  return count == 0 ? ""
+                    : fmt::format("{} of {} runs {} an infinite value, which is excluded", count, runs.size(),
+                                  count == 1 ? "has" : "have");
 }
 
 }  // namespace
@@ -70,8 +83,16 @@ TableCell with_note(TableCell cell, const std::string& note) {
 }
 
 TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::string_view metric) {
-  TableCell cell =
-      run_cell(runs, [&](const bench::StoredRun& run) { return bench::metric_value(run, metric); });
+  TableCell cell = run_cell(runs, [&](const bench::StoredRun& run) {
+    const std::optional<double> value = bench::metric_value(run, metric);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+  });
+  if (const std::optional<eval::Spread> spread = bench::metric_spread(runs, std::string(metric))) {
+    cell.number = spread->median;
+    cell.count = spread->count;
+    cell.interval = spread->median_interval;
+  }
+  cell = with_note(std::move(cell), infinite_note(runs, metric));
   for (const bench::StoredRun* run : runs) {
     for (const bench::Metric& candidate : run->metrics) {
       if (candidate.name == metric && cell.protocol.empty()) cell.protocol = candidate.protocol;

@@ -31,8 +31,8 @@ using RunNumber = std::function<std::optional<double>(const bench::StoredRun&)>;
 /// The cell with another remark in its footnote; an empty remark changes nothing.
 [[nodiscard]] TableCell with_note(TableCell cell, const std::string& note);
 
-/// `run_cell` over a metric, with its protocol, and footnotes where a strict protocol gives a very different
-/// value, or recorded boxes are missing.
+/// `run_cell` over the replicates of a metric (see `bench::metric_spread`), with its protocol, and footnotes
+/// where a strict protocol gives a very different value, recorded boxes are missing, or a value is infinite.
 [[nodiscard]] TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs,
                                     std::string_view metric);
 

@@ -42,7 +42,7 @@
     table.append(head);
     for (const [metric, value, unit, protocol] of run.metrics) {
       const row = page.element("tr");
-      row.append(page.element("th", { scope: "row", title: page.index.tooltips[metric] || "" }, metric), page.element("td", {}, Number(value.toPrecision(6)).toString()),
+      row.append(page.element("th", { scope: "row", title: page.index.tooltips[metric] || "" }, metric), page.element("td", {}, value === null ? "not finite" : Number(value.toPrecision(6)).toString()),
         page.element("td", {}, unit), page.element("td", {}, protocol));
       table.append(row);
     }

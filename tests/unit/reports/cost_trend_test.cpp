@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/drawing/cost_trend.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -26,7 +28,28 @@ TEST(CostTrend, SlopeIgnoresDelayedFrames) {
   // is that of second 6: every median lies one second after the window's center, 0.01 ms above the line.
   EXPECT_NEAR(trend.slope_ms_per_min, 0.6, 1e-9);
   EXPECT_NEAR(trend.start_ms, 2.0 + 0.6 * 1.0 / 60.0, 1e-9);
-  EXPECT_NEAR(trend.slope_interval.high - trend.slope_interval.low, 0.0, 1e-6);
+  EXPECT_NEAR(trend.slope_interval->high - trend.slope_interval->low, 0.0, 1e-6);
+}
+
+/// One cost per window of 10 s.
+CostTrend trend_of_windows(const std::vector<double>& ms) {
+  std::vector<FrameCost> all;
+  for (std::size_t i = 0; i < ms.size(); ++i) all.push_back({10.0 * static_cast<double>(i) + 5.0, ms[i]});
+  return cost_trend(all);
+}
+
+TEST(CostTrend, IntervalAccountsForTheNumberOfWindows) {
+  // Residuals 1, -1, 0, -1, 1 have no slope: their sum of squares is 4, S_tt = 100 (4 + 1 + 1 + 4) = 1000,
+  // and the quantile for 3 degrees of freedom is 3.182 (tables of Student's t), not 1.96.
+  const CostTrend trend = trend_of_windows({6.0, 4.0, 5.0, 4.0, 6.0});
+  EXPECT_NEAR(trend.slope_interval->high, 60.0 * 3.182 * std::sqrt(4.0 / 3.0 / 1000.0), 0.01);
+}
+
+TEST(CostTrend, HasNoIntervalForFewerThanFiveWindows) {
+  const CostTrend trend = trend_of_windows({6.0, 4.0, 5.0, 4.0});
+  EXPECT_FALSE(trend.slope_interval);
+  const std::string svg = svg_text(cost_plot(trend));
+  EXPECT_NE(svg.find("n = 4, no interval"), std::string::npos) << svg;
 }
 
 TEST(CostTrend, RejectsRunsThatAreTooShort) {

@@ -199,7 +199,7 @@ TEST(Summary, NamesFailedRunsAndTheBestVariant) {
   EXPECT_EQ(sentences[1], "c on s: lost, no frame has a pose.");
   EXPECT_EQ(
       best_sentence(runs),
-      "b has the smallest median ATE on 1 of 1 sequences (n = 1 runs; not a statement of significance).");
+      "b has the smallest median ATE on 1 of 1 sequences (n = 1; not a statement of significance).");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/tables/result_tables.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "reports/tables/paper_tables.h"
@@ -95,7 +97,7 @@ TEST(MetricTables, SayWhatBoldMeansAndHowManyRunsItRestsOn) {
   const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), run_of("a", "s", 3.0),
                                               run_of("b", "s", 1.5)};
   EXPECT_EQ(metric_tables(runs).front().notes.back(),
-            "Bold: smallest median of a column (n = 1 to 2 runs); not a statement of significance.");
+            "Bold: smallest median of a column, n = 1 to 2; not a statement of significance.");
 }
 
 TEST(MetricTables, ThreeRunsHaveNoInterval) {
@@ -104,6 +106,22 @@ TEST(MetricTables, ThreeRunsHaveNoInterval) {
   const TableCell cell = metric_tables(runs).front().rows[0].cells[0];
   EXPECT_EQ(cell.count, 3u);
   EXPECT_FALSE(cell.interval);
+}
+
+TEST(MetricTables, CountEqualRepetitionsOnce) {
+  const std::vector<bench::StoredRun> runs(8, run_of("a", "s", 1.0));
+  const TableCell cell = metric_tables(runs).front().rows[0].cells[0];
+  EXPECT_EQ(cell.count, 1u);
+  EXPECT_FALSE(cell.interval);
+  EXPECT_EQ(cell.run_keys.size(), 8u);
+}
+
+TEST(MetricTables, ExcludeInfiniteValuesAndSaySo) {
+  const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0),
+                                              run_of("a", "s", std::numeric_limits<double>::infinity())};
+  const TableCell cell = metric_tables(runs).front().rows[0].cells[0];
+  EXPECT_EQ(cell.number, 1.0);
+  EXPECT_EQ(cell.note, "1 of 2 runs has an infinite value, which is excluded");
 }
 
 TEST(MetricTables, NameAStrictProtocolThatDiffersByAFactorOfTwo) {
