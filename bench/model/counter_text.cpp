@@ -8,7 +8,7 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::string_view kHeader =
+constexpr std::string_view kCounterHeader =
     "frame,t_ns,status,tracked_features,window_landmarks,depth_landmarks,dynamic_features,solver_iterations,"
     "keyframe,reset";
 
@@ -29,7 +29,7 @@ FrameCounters frame_of(const CsvRows& rows, std::string_view text) {
 }  // namespace
 
 std::string counter_text(std::span<const FrameCounters> frames) {
-  std::string text = std::string(kHeader) + "\n";
+  std::string text = std::string(kCounterHeader) + "\n";
   for (const FrameCounters& frame : frames) {
     text +=
         fmt::format("{},{},{},{},{},{},{},{},{:d},{:d}\n", frame.frame, frame.t_ns, frame.status,
@@ -41,7 +41,7 @@ std::string counter_text(std::span<const FrameCounters> frames) {
 
 std::vector<FrameCounters> parse_counters(std::string_view text, const std::string& place) {
   std::vector<FrameCounters> frames;
-  CsvRows rows{.place = place, .header = kHeader};
+  CsvRows rows{.place = place, .header = kCounterHeader};
   rows.for_each_row(text, [&](std::string_view row) { frames.push_back(frame_of(rows, row)); });
   return frames;
 }

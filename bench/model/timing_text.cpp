@@ -8,7 +8,7 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::string_view kHeader = "frame,module,ns,calls";
+constexpr std::string_view kTimingHeader = "frame,module,ns,calls";
 
 TimingSample sample_of(const CsvRows& rows, std::string_view text) {
   TimingSample sample;
@@ -22,7 +22,7 @@ TimingSample sample_of(const CsvRows& rows, std::string_view text) {
 }  // namespace
 
 std::string timing_text(std::span<const TimingSample> samples) {
-  std::string text = std::string(kHeader) + "\n";
+  std::string text = std::string(kTimingHeader) + "\n";
   for (const TimingSample& sample : samples) {
     text += fmt::format("{},{},{},{}\n", sample.frame, sample.module, sample.ns, sample.calls);
   }
@@ -31,7 +31,7 @@ std::string timing_text(std::span<const TimingSample> samples) {
 
 std::vector<TimingSample> parse_timings(std::string_view text, const std::string& place) {
   std::vector<TimingSample> samples;
-  CsvRows rows{.place = place, .header = kHeader};
+  CsvRows rows{.place = place, .header = kTimingHeader};
   rows.for_each_row(text, [&](std::string_view row) { samples.push_back(sample_of(rows, row)); });
   return samples;
 }

@@ -11,7 +11,7 @@
 namespace stillpoint::eval {
 namespace {
 
-constexpr std::size_t kMinMatches = 10;
+constexpr std::size_t kMinOffsetMatches = 10;
 constexpr double kGoldenSection = 0.6180339887498949;
 constexpr std::size_t kSearchPoses = 2000;  // limits the run time; sufficient for a constant offset
 
@@ -35,8 +35,8 @@ std::optional<TimeOffset> find_time_offset(const Trajectory& gt, const Trajector
                                            const TimeOffsetOptions& options) {
   const Trajectory sampled = subsampled(est);
   const std::size_t matches_at_zero = strict_matches(gt, sampled).size();
-  if (matches_at_zero < kMinMatches) return std::nullopt;
-  const std::size_t min_matches = std::max(kMinMatches, matches_at_zero / 2);
+  if (matches_at_zero < kMinOffsetMatches) return std::nullopt;
+  const std::size_t min_matches = std::max(kMinOffsetMatches, matches_at_zero / 2);
   const auto error = [&](double offset_s) { return ate_at(gt, sampled, offset_s, min_matches); };
   TimeOffset best{0.0, error(0.0), error(0.0)};
   const int steps = static_cast<int>(std::ceil(options.max_offset_s / options.coarse_step_s));
