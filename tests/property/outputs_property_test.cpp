@@ -10,8 +10,8 @@
 #include "reports/dashboard/dashboard.h"
 #include "reports/page/report_page.h"
 #include "reports/text/comparison_report.h"
+#include "tests/property/stats_rows.h"
 #include "tests/property/stored_case.h"
-#include "tests/support/program.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {
@@ -33,43 +33,6 @@ struct StoredCase {
   PlantedStore planted;
   std::vector<StoredRun> newest;
 };
-
-/// Cells of a line of CSV; quotes are removed.
-std::vector<std::string> csv_cells(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool is_quoted = false;
-  for (const char letter : line) {
-    if (letter == '"') {
-      is_quoted = !is_quoted;
-    } else if (letter == ',' && !is_quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += letter;
-    }
-  }
-  return cells;
-}
-
-/// Rows of `stillpoint stats COMMAND --csv` by column name.
-std::vector<std::map<std::string, std::string>> stats_rows(const std::string& command,
-                                                           const std::filesystem::path& file) {
-  const ProgramResult result = run_program({"stats", command, "--csv", "--store", file.string()});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  std::istringstream lines(result.out);
-  std::string line;
-  std::getline(lines, line);
-  const std::vector<std::string> names = csv_cells(line);
-  std::vector<std::map<std::string, std::string>> rows;
-  while (std::getline(lines, line)) {
-    const std::vector<std::string> cells = csv_cells(line);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (i == 0) rows.emplace_back();
-      rows.back()[names[i]] = cells.at(i);
-    }
-  }
-  EXPECT_FALSE(rows.empty()) << result.out;
-  return rows;
-}
 
 void expect_summary(const StoredCase& stored) {
   for (const auto& row : stats_rows("summary", stored.file)) {
@@ -168,9 +131,9 @@ std::size_t occurrences(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// Comparison of the last two builds: Markdown, JSON and JUnit agree with the planted effect.
+/// Comparison of the last two builds: Markdown, JSON, JUnit and the page agree with the planted effect.
 /// @return whether a class is wrong
-bool expect_comparison(const StoredCase& stored) {
+bool expect_comparison(const StoredCase& stored, const std::string& page) {
   const Store store(stored.file);
   const auto& builds = stored.planted.builds;
   const std::vector<StoredRun> base = store.runs({.build = builds[builds.size() - 2]});
@@ -198,6 +161,9 @@ bool expect_comparison(const StoredCase& stored) {
   EXPECT_EQ(occurrences(junit, "<failure"), failures) << junit;
   EXPECT_EQ(occurrences(junit, "<error"), comparison.has_result() ? 0U : 1U) << junit;
   EXPECT_NE(markdown.find(": " + json.at("result").get<std::string>() + "\n"), std::string::npos) << markdown;
+  const std::string sentence = fmt::format("Compared with build {}: {}; {} pair", builds[builds.size() - 2],
+                                           json.at("result").get<std::string>(), stored.newest.size());
+  EXPECT_NE(page.find(sentence), std::string::npos) << sentence;
   return is_any_wrong;
 }
 
@@ -228,9 +194,10 @@ TEST(Outputs, StateWhatWasPlanted) {
     certain += is_certain ? 1 : 0;
     const Store store(stored.file);
     const report::ReportSubject subject = report::report_subject(store, "");
-    expect_page(stored, report::report_html(store, subject), is_certain);
+    const std::string page = report::report_html(store, subject);
+    expect_page(stored, page, is_certain);
     expect_tables(stored, subject);
-    if (stored.planted.builds.size() > 1) classes.add(expect_comparison(stored));
+    if (stored.planted.builds.size() > 1) classes.add(expect_comparison(stored, page));
     expect_dashboard(stored.file);
   }
   EXPECT_LE(differences.made, differences.limit(0.05));
