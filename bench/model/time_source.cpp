@@ -16,12 +16,10 @@ std::string time_source_note(TimeSource source) {
       return "";
     case TimeSource::kBusy:
       return "times of timing runs while other processes used at least 5 % of the CPU: indicative only; "
-             "repeat "
-             "the runs on an idle machine";
+             "repeat the runs on an idle machine";
     case TimeSource::kShared:
       return "times of runs that are no timing runs and may have shared the machine: indicative only; "
-             "execute a "
-             "plan with kind = \"timing\"";
+             "execute a plan with kind = \"timing\"";
   }
   return "";
 }

@@ -46,9 +46,8 @@ PlanAblations plan_ablations(std::span<const bench::StoredPlan> plans,
   PlanAblations result;
   if (plans.empty())
     result.missing = {
-        "There is no ablation, because the runs belong to no plan that names a base variant; `stillpoint "
-        "stats "
-        "ablation --base VARIANT` compares with any variant."};
+        "There is no ablation, because the runs belong to no plan that names a base variant; "
+        "`stillpoint stats ablation --base VARIANT` compares with any variant."};
   for (const bench::StoredPlan& plan : plans) {
     const std::string start = "Plan " + plan.name + " has no ablation: ";
     const std::optional<std::string> base = bench::ablation_base_of(plan);

@@ -103,8 +103,7 @@ std::string omission_sentence(std::size_t disturbed) {
   if (disturbed == 0) return "";
   return fmt::format(
       "The times of {} run{} are not compared, because only timing runs on an idle machine give times: "
-      "execute a plan "
-      "with kind = \"timing\" into a new store while the machine is idle.",
+      "execute a plan with kind = \"timing\" into a new store while the machine is idle.",
       disturbed, disturbed == 1 ? "" : "s");
 }
 
