@@ -93,7 +93,7 @@ row bench/record $common core/pipeline/runners eval eval/io eval/metrics bench/m
   bench/profile
 row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record
-row bench/plan core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
+row bench/plan core/base datasets datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/serve core/base bench/record

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -65,6 +66,9 @@ struct SweepAxis {
   std::vector<double> values;
 };
 
+/// Name of an undisturbed run in `BenchPlan::faults`.
+inline constexpr std::string_view kNoFault = "none";
+
 struct BenchPlan {
   std::string title;
   std::string base = "stillpoint";    ///< config to which the variants are applied
@@ -76,10 +80,12 @@ struct BenchPlan {
   int max_frames = 0;  ///< process only the first frames of each sequence; 0 = all
   std::string mode = "sequential";
   RunKind kind = RunKind::kAccuracy;
-  std::string cores;                   ///< CPU affinity of the runs, e.g. "0,1"; empty = all processors
-  int warm_up = 0;                     ///< discarded runs before the first timing run of a sequence
-  double time_limit_s = 3600.0;        ///< per run
-  int memory_limit_mb = 0;             ///< per run; 0 = none
+  std::string cores;             ///< CPU affinity of the runs, e.g. "0,1"; empty = all processors
+  int warm_up = 0;               ///< discarded runs before the first timing run of a sequence
+  double time_limit_s = 3600.0;  ///< per run
+  int memory_limit_mb = 0;       ///< per run; 0 = none
+  /// Sensor faults, one run each: "none", or as `stillpoint run --fault`; empty = only "none".
+  std::vector<std::string> faults;
   std::vector<std::string> protocols;  ///< additional evaluation protocols, e.g. "strict:se3"
   int images = 20;  ///< annotated images of the worst frames per accuracy run; see `stillpoint run --images`
   RenderedGroup rendered;
@@ -112,6 +118,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("warm_up", config.warm_up, 0, 100);
   field("time_limit_s", config.time_limit_s, 0.1, 1e6);
   field("memory_limit_mb", config.memory_limit_mb, 0, 1000000000);
+  field("faults", config.faults);
   field("protocols", config.protocols);
   field("images", config.images, 0, 1000);
   field("rendered", config.rendered);

@@ -9,6 +9,7 @@
 #include "bench/config/config_text.h"
 #include "bench/plan/plan_place.h"
 #include "bench/plan/plan_validation.h"
+#include "datasets/faults/sensor_fault.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -30,6 +31,7 @@ class PlanExpander {
       for (const double value : axis.values) sweep_points_.push_back({axis.key, {value}});
     }
     if (sweep_points_.empty()) sweep_points_.push_back({});
+    if (matrix_.plan.faults.empty()) matrix_.plan.faults.emplace_back(kNoFault);
   }
 
   PlanMatrix expand() && {
@@ -71,7 +73,9 @@ class PlanExpander {
         group_variants.empty() ? matrix_.plan.variants : group_variants;
     for (int repetition = 1; repetition <= matrix_.plan.repetitions; ++repetition) {
       RunIdentity identity = identity_of(seed, repetition, point);
-      for (const std::string& variant : variants) add_own(identity, variant);
+      for (const std::string& fault : matrix_.plan.faults) {
+        for (const std::string& variant : variants) add_own(identity, variant, fault);
+      }
       const bool is_config_point = !point.key.empty() && !point.key.starts_with("synth.");
       for (std::size_t i = 0; i < matrix_.systems.size() && !is_config_point; ++i) add_external(identity, i);
     }
@@ -95,7 +99,15 @@ class PlanExpander {
     return matrix_.plan.max_frames == 0 ? "" : fmt::format("-first-{}", matrix_.plan.max_frames);
   }
 
-  void add_own(RunIdentity identity, const std::string& variant) {
+  /// A sequence with a fault is a different sequence: it has its own name and id, so that runs with different
+  /// faults are neither paired nor averaged.
+  void add_own(RunIdentity identity, const std::string& variant, const std::string& fault) {
+    std::string injected;
+    if (fault != kNoFault) {
+      injected = fault_text(datasets::parse_fault(fault));
+      identity.sequence += " + " + fault;
+      identity.sequence_id += "-" + injected;
+    }
     std::vector<std::string> settings = matrix_.plan.config_settings;
     settings.push_back(fmt::format("seed={}", identity.seed));
     if (!identity.axis.empty() && !identity.axis.starts_with("synth.")) {
@@ -109,6 +121,7 @@ class PlanExpander {
                             .identity = std::move(identity),
                             .config = std::move(config),
                             .max_frames = matrix_.plan.max_frames,
+                            .fault = std::move(injected),
                             .system = 0});
   }
 
@@ -121,6 +134,7 @@ class PlanExpander {
     matrix_.runs.push_back({.sequence = matrix_.sequences.size() - 1,
                             .identity = std::move(identity),
                             .config = {},
+                            .fault = {},
                             .system = system});
   }
 

@@ -19,6 +19,7 @@ struct PlannedRun {
   RunIdentity identity;
   ConfigRequest config;           ///< of a run of this odometry
   int max_frames = 0;             ///< of a run of this odometry; 0 = all
+  std::string fault;              ///< injected sensor fault, canonical; empty = none
   std::size_t system = 0;         ///< index into `PlanMatrix::systems`, of a run of an external system
   std::filesystem::path program;  ///< executable of this odometry; empty = the current executable
 };

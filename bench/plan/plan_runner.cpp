@@ -139,6 +139,7 @@ class PlanRunner {
     return {.identity = planned.identity,
             .config = planned.config,
             .max_frames = planned.max_frames,
+            .fault = planned.fault,
             .program = planned.program,
             .sequence = folder,
             .work = writer_.work_folder(identity_of(run)),

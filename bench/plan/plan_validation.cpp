@@ -16,6 +16,7 @@
 #include "bench/run/odometry_run.h"
 #include "bench/systems/external_system.h"
 #include "bench/systems/published_table.h"
+#include "datasets/faults/sensor_fault.h"
 #include "eval/protocols/protocol.h"
 
 namespace stillpoint::bench {
@@ -95,6 +96,14 @@ void require_supported_by_systems(const BenchPlan& plan) {
                    "max_frames and kind = \"instructions\" do not support external systems; remove systems");
 }
 
+void require_faults(const BenchPlan& plan) {
+  for (const std::string& fault : plan.faults) {
+    if (fault != kNoFault) static_cast<void>(datasets::parse_fault(fault));
+  }
+  if (!plan.faults.empty() && !plan.systems.empty())
+    throw InputError("faults are injected into runs of this odometry only; remove systems");
+}
+
 /// Runs with equal keys are executed once; a value that is listed twice would only look like a repetition.
 template <class Value>
 void require_distinct(const BenchPlan& plan, const std::string& key, const std::vector<Value>& values) {
@@ -111,6 +120,7 @@ void require_distinct_lists(const BenchPlan& plan) {
   require_distinct(plan, "rendered.variants", plan.rendered.variants);
   require_distinct(plan, "recorded.variants", plan.recorded.variants);
   require_distinct(plan, "systems", plan.systems);
+  require_distinct(plan, "faults", plan.faults);
   require_distinct(plan, "protocols", plan.protocols);
   for (const SweepAxis& axis : plan.sweep) require_distinct(plan, "sweep." + axis.key, axis.values);
 }
@@ -137,6 +147,7 @@ void validate_plan(const BenchPlan& plan) {
   require_mode(plan);
   require_supported_by_systems(plan);
   at_place(plan, "ablation_base", [&] { require_ablation_base(plan); });
+  at_place(plan, "faults", [&] { require_faults(plan); });
   at_place(plan, "protocols", [&] { require_protocols(plan.protocols); });
   at_place(plan, "cores", [&] { static_cast<void>(parse_cpu_list(plan.cores)); });
   at_place(plan, "rendered.sequences", [&] { static_cast<void>(matching_presets(plan.rendered.sequences)); });

@@ -15,6 +15,7 @@ struct RunRequest {
   RunIdentity identity;
   ConfigRequest config;            ///< of this odometry
   int max_frames = 0;              ///< of this odometry; 0 = all
+  std::string fault;               ///< sensor fault to inject, for this odometry; empty = none
   std::filesystem::path program;   ///< executable of this odometry; empty = the current executable
   std::filesystem::path sequence;  ///< folder
   std::filesystem::path work;      ///< exclusive output folder of the run

@@ -78,6 +78,23 @@ TEST(PlanMatrix, MaxFramesChangesTheSequenceId) {
   EXPECT_NE(run_key(part.identity), run_key(whole.identity));
 }
 
+TEST(PlanMatrix, ASequenceWithAFaultIsADifferentSequence) {
+  const TemporaryFolder folder;
+  const BenchPlan plan = plan_of(folder,
+                                 "variants = [\"vo\"]\nfaults = [\"none\", \"blank:start=3,duration=1\"]\n"
+                                 "[rendered]\nsequences = [\"walking_xyz\"]");
+  const PlanMatrix matrix = expand_plan(plan, "abc", {});
+  ASSERT_EQ(matrix.runs.size(), 2u);
+  EXPECT_EQ(matrix.sequences.size(), 1u);  // rendered once
+  EXPECT_EQ(matrix.runs[0].fault, "");
+  EXPECT_EQ(matrix.runs[1].fault, "blank:start=3,duration=1,amount=0,seed=1");
+  EXPECT_EQ(matrix.runs[1].identity.sequence,
+            matrix.runs[0].identity.sequence + " + blank:start=3,duration=1");
+  EXPECT_NE(matrix.runs[1].identity.sequence_id, matrix.runs[0].identity.sequence_id);
+  expect_fault("variants = [\"vo\"]\nfaults = [\"blnk\"]\n[rendered]\nsequences = [\"walking_xyz\"]",
+               {"plan.toml:2", "\"blnk\" is no kind of fault"});
+}
+
 TEST(PlanMatrix, IncludesOnlyRunsThatMatchAllFilters) {
   const TemporaryFolder folder;
   const BenchPlan plan = plan_of(folder,
