@@ -40,11 +40,13 @@ row core/backend/marginalization $common $window core/backend/solvers
 backend="$window core/backend/solvers core/backend/start core/backend/marginalization"
 row core/backend $common $backend
 row core/loop $common core/backend/factors
+row core/pipeline/stages $common core/imu core/frontend core/dynamic core/detector core/loop core/backend \
+  core/backend/start core/backend/window
 row core/pipeline $common core/imu core/frontend core/dynamic core/detector core/loop core/backend core/backend/start \
-  core/backend/window
-row core/pipeline/runners $common core/detector core/pipeline
+  core/backend/window core/pipeline/stages
+row core/pipeline/runners $common core/detector core/pipeline core/pipeline/stages
 core="$common core/imu core/frontend $frontend core/dynamic core/detector core/backend $backend core/loop core/pipeline
-  core/pipeline/runners"
+  core/pipeline/stages core/pipeline/runners"
 
 # --- eval: no odometry, no datasets ---
 row eval/io $messages
@@ -97,7 +99,7 @@ row bench/plan core/base datasets datasets/faults datasets/synthetic/sequence ev
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/serve core/base bench/record
-row bench/micro $core tests/support
+row bench/micro $core tests/support tests/support/simulated
 
 # --- reports ---
 stored="core/base bench/model bench/store bench/analysis"

@@ -4,7 +4,7 @@
 
 #include "core/backend/marginalization/frame_marginalizer.h"
 #include "core/backend/solvers/window_solver.h"
-#include "tests/support/simulated_window.h"
+#include "tests/support/simulated/simulated_window.h"
 
 namespace stillpoint {
 namespace {

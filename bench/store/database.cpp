@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -55,6 +56,7 @@ sqlite3* open_file(const fs::path& file, DatabaseAccess access) {
     throw InputError(file.string(),
                      "there is no such store; create one with `stillpoint bench PLAN --store FILE`");
   }
+  require_regular_file(file);  // SQLite would create its log beside a device
   sqlite3* connection = nullptr;
   const int result =
       access == DatabaseAccess::kRead

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/store/salvage.h"
 
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -78,18 +79,31 @@ std::string Salvage::name_of(std::int64_t id) const {
   return "run " + (key == keys_.end() ? "number " + std::to_string(id) : key->second);
 }
 
-/// Nothing for a run that is not completed, or whose row is lost.
+/// Nothing for a run that is not completed, or whose row is lost. The key is a hash of the identity, so that
+/// it reveals altered rows.
 std::optional<StoredRun> Salvage::run_at(std::int64_t id) {
   try {
     Statement row =
         source_.database().prepare(std::string("SELECT ") + kRunColumns +
                                    ", state FROM run NOT INDEXED WHERE id = " + std::to_string(id));
-    if (row.step()) return row.text(20) == "ended" ? std::optional(run_of(row)) : std::nullopt;
+    if (row.step()) {
+      if (row.text(20) == "running") return std::nullopt;
+      StoredRun run = run_of(row);
+      if (run.key == run_key(run.identity)) return run;
+    }
   } catch (const InputError&) {
     // a damaged page, or a row with impossible values
   }
   report_.losses.push_back(name_of(id) + " is lost");
   return std::nullopt;
+}
+
+bool is_valid(const Metric& metric) { return !metric.name.empty() && !std::isnan(metric.value); }
+
+bool is_valid(const ModuleCost& cost) {
+  const bool is_number = std::isfinite(cost.mean_ms) && std::isfinite(cost.median_ms) &&
+                         std::isfinite(cost.p95_ms) && std::isfinite(cost.max_ms);
+  return is_number && (cost.per == "call" || cost.per == "frame");
 }
 
 std::vector<Metric> Salvage::metrics_of(const StoredRun& run) {
@@ -99,7 +113,8 @@ std::vector<Metric> Salvage::metrics_of(const StoredRun& run) {
                            {"name", protocol_}, [&](const Statement& row) {
                              metrics[{row.text(1), row.text(2)}] = metric_of(row);
                            });
-  if (!complete) report_.losses.push_back(name_of(run.id) + ": metrics are lost");
+  const bool valid = std::erase_if(metrics, [](const auto& entry) { return !is_valid(entry.second); }) == 0;
+  if (!complete || !valid) report_.losses.push_back(name_of(run.id) + ": metrics are lost");
   report_.saved["metric"] += metrics.size();
   std::vector<Metric> list;
   for (const auto& [name, metric] : metrics) list.push_back(metric);
@@ -111,7 +126,8 @@ std::vector<ModuleCost> Salvage::costs_of(const StoredRun& run) {
   const bool complete =
       source_.for_each_row(std::string("SELECT ") + kCostColumns + " FROM timing" + of_run(run.id),
                            {"module"}, [&](const Statement& row) { costs[row.text(1)] = cost_of(row); });
-  if (!complete) report_.losses.push_back(name_of(run.id) + ": times of modules are lost");
+  const bool valid = std::erase_if(costs, [](const auto& entry) { return !is_valid(entry.second); }) == 0;
+  if (!complete || !valid) report_.losses.push_back(name_of(run.id) + ": times of modules are lost");
   report_.saved["timing"] += costs.size();
   std::vector<ModuleCost> list;
   for (const auto& [module, cost] : costs) list.push_back(cost);

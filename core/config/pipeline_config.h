@@ -14,8 +14,8 @@ struct PipelineConfig {
   int feedback_lag = 0;
   double detection_max_age_s = 0.1;  ///< mode `realtime`: older boxes are discarded as late
   /// Seed of a numerically negligible perturbation of gyro samples and feature positions, see
-  /// core/pipeline/input_perturbation.h; 0 = none. Runs with different seeds are replicates, which show how
-  /// much of a change of the result is due to rounding.
+  /// core/pipeline/stages/input_perturbation.h; 0 = none. Runs with different seeds are replicates, which
+  /// show how much of a change of the result is due to rounding.
   int perturbation_seed = 0;
 };
 template <class Visitor, class Config>

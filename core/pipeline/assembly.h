@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "core/detector/object_detector.h"
-#include "core/pipeline/optimization_stage.h"
 #include "core/pipeline/sensor_input.h"
-#include "core/pipeline/tracking_stage.h"
+#include "core/pipeline/stages/optimization_stage.h"
+#include "core/pipeline/stages/tracking_stage.h"
 #include "core/pipeline/window_rate.h"
 
 namespace stillpoint {

@@ -6,10 +6,10 @@
 
 #include "core/pipeline/frame_order.h"
 #include "core/pipeline/imu_queue.h"
-#include "core/pipeline/optimization_stage.h"
-#include "core/pipeline/stage_messages.h"
+#include "core/pipeline/stages/optimization_stage.h"
+#include "core/pipeline/stages/stage_messages.h"
+#include "core/pipeline/stages/tracking_stage.h"
 #include "core/pipeline/state_predictor.h"
-#include "core/pipeline/tracking_stage.h"
 #include "core/pipeline/window_rate.h"
 
 namespace stillpoint {

@@ -19,7 +19,7 @@
 
 namespace stillpoint {
 
-struct DynamicReport;  // core/pipeline/frame_report.h
+struct DynamicReport;  // core/pipeline/stages/frame_report.h
 
 /// Single-threaded odometry; see threaded_odometry.h for one that does the work on threads of its own. One
 /// thread at a time may use an object, including its const functions.

@@ -10,13 +10,13 @@
 #include "core/base/bounded_channel.h"
 #include "core/base/thread_name.h"
 #include "core/pipeline/frame_order.h"
-#include "core/pipeline/frame_report.h"
 #include "core/pipeline/imu_inbox.h"
-#include "core/pipeline/optimize_frame.h"
-#include "core/pipeline/stage_messages.h"
+#include "core/pipeline/stages/frame_report.h"
+#include "core/pipeline/stages/optimize_frame.h"
+#include "core/pipeline/stages/stage_messages.h"
+#include "core/pipeline/stages/tracking_stage.h"
 #include "core/pipeline/state_predictor.h"
 #include "core/pipeline/thread_errors.h"
-#include "core/pipeline/tracking_stage.h"
 #include "core/pipeline/window_rate.h"
 
 namespace stillpoint {

@@ -23,7 +23,7 @@
 
 namespace stillpoint {
 
-struct FrameReport;  // core/pipeline/frame_report.h
+struct FrameReport;  // core/pipeline/stages/frame_report.h
 
 /// What `ThreadedOdometry::add_frame` does if the queue of frames is full.
 enum class FullQueuePolicy { kBlock, kDropOldest };

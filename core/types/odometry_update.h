@@ -28,7 +28,7 @@ struct OdometryCounters {
   bool reset = false;  ///< a failure was detected in this frame; the estimator reinitializes
 };
 
-/// Hashes of the modules' state after a frame, see core/pipeline/state_hash.h.
+/// Hashes of the modules' state after a frame, see core/pipeline/stages/state_hash.h.
 struct StateHashes {
   std::uint64_t tracking = 0;      ///< features
   std::uint64_t dynamic = 0;       ///< labels

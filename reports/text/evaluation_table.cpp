@@ -75,8 +75,10 @@ std::string openloris_table(const eval::OpenlorisBenchmark& benchmark, TableStyl
   return format_table(rows, style);
 }
 
+std::string per_pose_header() { return "run,protocol,t,translation_m,rotation_deg\n"; }
+
 std::string per_pose_csv(const std::vector<EvaluatedRun>& runs) {
-  std::string text = "run,protocol,t,translation_m,rotation_deg\n";
+  std::string text = per_pose_header();
   for (const EvaluatedRun& run : runs) {
     for (const eval::Evaluation& evaluation : run.evaluations) {
       for (const eval::PoseError& error : evaluation.per_pose) {

@@ -10,7 +10,7 @@
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
 #include "eval/io/trajectory_file.h"
-#include "tests/support/smooth_path.h"
+#include "tests/support/simulated/smooth_path.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 

@@ -9,7 +9,7 @@
 
 #include "tests/support/program.h"
 #include "tests/support/rejection.h"
-#include "tests/support/rendered_sequence.h"
+#include "tests/support/sequences/rendered_sequence.h"
 
 namespace stillpoint {
 namespace {

@@ -10,7 +10,7 @@
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
 #include "tests/support/rejection.h"
-#include "tests/support/replay_bench.h"
+#include "tests/support/sequences/replay_bench.h"
 
 namespace stillpoint {
 namespace {

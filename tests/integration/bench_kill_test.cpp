@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "bench/store/store.h"
-#include "tests/support/replay_bench.h"
+#include "tests/support/sequences/replay_bench.h"
 
 namespace stillpoint {
 namespace {

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/support/fake_sequence.h"
 #include "tests/support/program.h"
+#include "tests/support/sequences/fake_sequence.h"
 
 namespace stillpoint {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "datasets/io/detections_file.h"
 #include "tests/support/program.h"
-#include "tests/support/rendered_sequence.h"
+#include "tests/support/sequences/rendered_sequence.h"
 #include "tests/support/tiny_onnx.h"
 
 namespace stillpoint {

@@ -8,7 +8,7 @@
 #include "eval/io/openloris_file.h"
 #include "eval/io/trajectory_file.h"
 #include "tests/support/program.h"
-#include "tests/support/smooth_path.h"
+#include "tests/support/simulated/smooth_path.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint {

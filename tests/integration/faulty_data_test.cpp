@@ -11,8 +11,8 @@
 #include "eval/io/trajectory_file.h"
 #include "tests/support/program.h"
 #include "tests/support/rejection.h"
-#include "tests/support/rendered_sequence.h"
-#include "tests/support/smooth_path.h"
+#include "tests/support/sequences/rendered_sequence.h"
+#include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint {
 namespace {

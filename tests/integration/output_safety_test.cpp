@@ -12,8 +12,8 @@
 #include "eval/io/openloris_file.h"
 #include "eval/io/trajectory_file.h"
 #include "tests/support/rejection.h"
-#include "tests/support/rendered_sequence.h"
-#include "tests/support/smooth_path.h"
+#include "tests/support/sequences/rendered_sequence.h"
+#include "tests/support/simulated/smooth_path.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.h"
-#include "tests/support/rendered_sequence.h"
+#include "tests/support/sequences/rendered_sequence.h"
 #include "tests/support/trace_rules.h"
 
 namespace stillpoint {
@@ -37,7 +37,7 @@ json module_of(const json& profile, const std::string& name) {
 
 TEST(ProfileCommand, TimesEveryFrame) {
   const TemporaryFolder folder;
-  const ProgramResult result = profile(folder, {"--frame-budget-ms", "1e-6"});
+  const ProgramResult result = profile(folder, {"--frame-budget-ms", "0.001"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("tracking_thread"), std::string::npos) << result.out;
   const json profiled = read_json(folder.path() / "profile.json");

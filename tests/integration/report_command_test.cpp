@@ -6,7 +6,7 @@
 
 #include "bench/store/store_writer.h"
 #include "tests/support/program.h"
-#include "tests/support/rendered_sequence.h"
+#include "tests/support/sequences/rendered_sequence.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint {
@@ -124,6 +124,20 @@ TEST(StoreExport, NeverReplacesTheStoreOrOtherFiles) {
   EXPECT_EQ(exported(file, false), 2);
   EXPECT_EQ(exported(file, true), 0);
   EXPECT_EQ(bench::Store(store).runs().size(), 2u);
+}
+
+TEST(StoreExtract, DoesNotReplaceForeignFiles) {
+  const TemporaryFolder folder;
+  const std::string store = store_with_files(folder).string();
+  const std::string key = bench::Store(store).runs().front().key;
+  folder.write("mine/manifest.json", "{}");
+  const auto extract = [&](const std::string& name) {
+    return run_program({"store", "extract", key, (folder.path() / name).string(), "--store", store})
+        .exit_code;
+  };
+  EXPECT_EQ(extract("mine"), 2);
+  EXPECT_EQ(extract("new"), 0);
+  EXPECT_EQ(extract("new"), 0);  // an earlier output of the same run
 }
 
 TEST(ReportCommand, DoesNotReplaceAForeignPage) {

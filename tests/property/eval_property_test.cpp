@@ -8,7 +8,7 @@
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
 #include "eval/metrics/strict_rpe.h"
-#include "tests/support/smooth_path.h"
+#include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint::eval {
 namespace {

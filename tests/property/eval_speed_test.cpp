@@ -9,7 +9,7 @@
 #include "eval/io/trajectory_file.h"
 #include "eval/protocols/protocol.h"
 #include "eval/score.h"
-#include "tests/support/smooth_path.h"
+#include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint::eval {
 namespace {

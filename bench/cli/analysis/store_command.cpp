@@ -103,9 +103,9 @@ int extract(const StoreArguments& arguments) {
   const StoredRun run = find_run(store, arguments.run);
   std::vector<OutputFile> files = {{"manifest.json", store.manifest(run)}};
   for (const auto& [kind, blob] : run.blobs) files.push_back({file_name(kind), store.attachment(run, kind)});
-  OutputLayout layout{.names = {}, .marks = {{"manifest.json"}}};
-  for (const OutputFile& file : files) layout.names.push_back(file.name);
-  require_safe_folder(arguments.file, layout, {});
+  std::vector<std::string> names;
+  for (const OutputFile& file : files) names.push_back(file.name);
+  require_safe_folder(arguments.file, {.names = names, .marks = {names}}, {});
   write_files(arguments.file, files);
   for (const OutputFile& file : files)
     std::cout << (std::filesystem::path(arguments.file) / file.name).string() << '\n';

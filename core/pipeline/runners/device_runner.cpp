@@ -6,9 +6,9 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/assembly.h"
-#include "core/pipeline/optimize_frame.h"
 #include "core/pipeline/runners/device_cores.h"
 #include "core/pipeline/runners/runner_parts.h"
+#include "core/pipeline/stages/optimize_frame.h"
 
 namespace stillpoint {
 namespace {

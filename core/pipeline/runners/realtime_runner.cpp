@@ -6,10 +6,10 @@
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
 #include "core/pipeline/assembly.h"
-#include "core/pipeline/optimize_frame.h"
 #include "core/pipeline/runners/newest_detections.h"
 #include "core/pipeline/runners/pacing_clock.h"
 #include "core/pipeline/runners/runner_parts.h"
+#include "core/pipeline/stages/optimize_frame.h"
 #include "core/pipeline/thread_errors.h"
 
 namespace stillpoint {

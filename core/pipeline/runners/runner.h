@@ -10,9 +10,9 @@
 #include "core/base/channel_waits.h"
 #include "core/config/odometry_config.h"
 #include "core/detector/object_detector.h"
-#include "core/pipeline/frame_report.h"
 #include "core/pipeline/runners/device.h"
 #include "core/pipeline/sensor_input.h"
+#include "core/pipeline/stages/frame_report.h"
 #include "core/types/imu_health.h"
 
 namespace stillpoint {

@@ -7,7 +7,7 @@
 
 #include "core/pipeline/imu_queue.h"
 #include "core/pipeline/runners/runner.h"
-#include "core/pipeline/stage_messages.h"
+#include "core/pipeline/stages/stage_messages.h"
 
 namespace stillpoint {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/window_world.h"
+#include "tests/support/simulated/window_world.h"
 
 namespace stillpoint {
 namespace {

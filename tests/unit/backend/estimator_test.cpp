@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/process_frame.h"
-#include "tests/support/simulated_motion.h"
+#include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/imu/imu_buffer.h"
-#include "tests/support/simulated_motion.h"
+#include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
 namespace {

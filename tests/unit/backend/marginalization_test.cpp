@@ -6,7 +6,7 @@
 #include "core/backend/solvers/window_solver.h"
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/window/landmark_tracks.h"
-#include "tests/support/window_world.h"
+#include "tests/support/simulated/window_world.h"
 
 namespace stillpoint {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/backend/window/landmark_tracks.h"
 #include "core/imu/imu_buffer.h"
-#include "tests/support/simulated_motion.h"
+#include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "bench/profile/meters/allocation_counter.h"
 #include "core/backend/solvers/schur_solver.h"
-#include "tests/support/simulated_window.h"
+#include "tests/support/simulated/simulated_window.h"
 
 namespace stillpoint {
 namespace {

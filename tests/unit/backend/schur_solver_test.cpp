@@ -6,7 +6,7 @@
 
 #include "core/backend/marginalization/normal_equations.h"
 #include "core/backend/solvers/ceres_solver.h"
-#include "tests/support/simulated_window.h"
+#include "tests/support/simulated/simulated_window.h"
 
 namespace stillpoint {
 namespace {

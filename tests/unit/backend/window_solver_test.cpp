@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/backend/start/initial_prior.h"
-#include "tests/support/window_world.h"
+#include "tests/support/simulated/window_world.h"
 
 namespace stillpoint {
 namespace {

@@ -5,7 +5,7 @@
 #include "datasets/io/image_io.h"
 #include "datasets/open_sequence.h"
 #include "tests/support/expect_input_error.h"
-#include "tests/support/sequence_folders.h"
+#include "tests/support/sequences/sequence_folders.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "datasets/io/image_io.h"
 #include "tests/support/expect_input_error.h"
-#include "tests/support/sequence_folders.h"
+#include "tests/support/sequences/sequence_folders.h"
 #include "tests/support/test_data.h"
 
 namespace stillpoint::datasets {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/smooth_path.h"
+#include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint::eval {
 namespace {

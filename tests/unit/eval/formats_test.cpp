@@ -6,7 +6,7 @@
 #include "eval/io/openloris_file.h"
 #include "eval/metrics/nees.h"
 #include "tests/support/expect_input_error.h"
-#include "tests/support/smooth_path.h"
+#include "tests/support/simulated/smooth_path.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::eval {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_input_error.h"
-#include "tests/support/sliding_plane.h"
+#include "tests/support/simulated/sliding_plane.h"
 
 namespace stillpoint {
 namespace {

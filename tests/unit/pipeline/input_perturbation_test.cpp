@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pipeline/input_perturbation.h"
+#include "core/pipeline/stages/input_perturbation.h"
 
 #include <gtest/gtest.h>
 
 #include "core/pipeline/runners/runner.h"
-#include "tests/support/inertial_plane.h"
+#include "tests/support/simulated/inertial_plane.h"
 
 namespace stillpoint {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <limits>
 
-#include "core/pipeline/frame_report.h"
 #include "core/pipeline/runners/runner.h"
+#include "core/pipeline/stages/frame_report.h"
 #include "tests/support/expect_input_error.h"
-#include "tests/support/inertial_plane.h"
+#include "tests/support/simulated/inertial_plane.h"
 
 namespace stillpoint {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "bench/config/config_file.h"
 #include "bench/profile/meters/allocation_counter.h"
-#include "core/pipeline/optimization_stage.h"
-#include "tests/support/simulated_motion.h"
+#include "core/pipeline/stages/optimization_stage.h"
+#include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Labels in a simulated run with moving points, and their effect on the estimate.
-#include "core/pipeline/optimization_stage.h"
+#include "core/pipeline/stages/optimization_stage.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "tests/support/simulated_motion.h"
+#include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
 namespace {

@@ -7,7 +7,7 @@
 #include "bench/config/config_file.h"
 #include "bench/profile/meters/allocation_counter.h"
 #include "core/pipeline/runners/runner.h"
-#include "tests/support/sliding_plane.h"
+#include "tests/support/simulated/sliding_plane.h"
 
 namespace stillpoint {
 namespace {

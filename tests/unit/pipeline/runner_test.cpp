@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "tests/support/expect_input_error.h"
-#include "tests/support/sliding_plane.h"
-#include "tests/support/visual_config.h"
+#include "tests/support/simulated/sliding_plane.h"
+#include "tests/support/simulated/visual_config.h"
 
 namespace stillpoint {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/support/smooth_path.h"
+#include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint::report {
 namespace {

@@ -152,6 +152,23 @@ TEST(Salvage, NamesTheRunsWhoseRowsAreLost) {
   EXPECT_TRUE(Store(into).runs({.variant = "vo"}).back().identity.repetition == kRuns);
 }
 
+TEST(Salvage, OmitsRowsWithAlteredIdentitiesAndImpossibleValues) {
+  const TemporaryFolder folder;
+  const fs::path file = make_store(folder);
+  {
+    const Database database(file, DatabaseAccess::kWrite);
+    database.execute("PRAGMA ignore_check_constraints = ON");
+    database.execute("UPDATE run SET variant = 'vp' WHERE id = 1");
+    database.execute("UPDATE run SET state = 'endec' WHERE id = 2");
+    database.execute("UPDATE timing SET per = 'cbll' WHERE run = 3 AND module = 'solve'");
+  }
+  const SalvageReport report = salvage_store(file, folder.path() / "new.sqlite");
+  EXPECT_EQ(report.losses,
+            (std::vector<std::string>{"run " + run_key(identity_of(1)) + " is lost",
+                                      "run " + run_key(identity_of(3)) + ": times of modules are lost"}));
+  EXPECT_EQ(Store(folder.path() / "new.sqlite").runs().size(), static_cast<std::size_t>(kRuns - 1));
+}
+
 TEST(Salvage, NamesMissingAndDamagedFiles) {
   const TemporaryFolder folder;
   const fs::path file = make_store(folder);

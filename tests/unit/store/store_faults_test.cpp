@@ -43,6 +43,10 @@ TEST(StoreFaults, AFileOfAnotherKindIsRejected) {
   EXPECT_EQ(fs::file_size(file), 5000u);
 }
 
+TEST(StoreFaults, ADeviceIsRejected) {
+  expect_input_error([] { const StoreWriter writer("/dev/null"); }, {"/dev/null: is a device"});
+}
+
 TEST(StoreFaults, TheDatabaseOfAnotherProgramIsRejected) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "other.sqlite";

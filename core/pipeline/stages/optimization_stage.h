@@ -10,9 +10,9 @@
 #include "core/dynamic/feature_recognition.h"
 #include "core/dynamic/missed_detection.h"
 #include "core/dynamic/static_readmission.h"
-#include "core/pipeline/feedback.h"
-#include "core/pipeline/frame_report.h"
-#include "core/pipeline/input_perturbation.h"
+#include "core/pipeline/stages/feedback.h"
+#include "core/pipeline/stages/frame_report.h"
+#include "core/pipeline/stages/input_perturbation.h"
 
 namespace stillpoint {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pipeline/state_hash.h"
+#include "core/pipeline/stages/state_hash.h"
 
 #include <bit>
 

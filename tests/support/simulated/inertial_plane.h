@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/config/odometry_config.h"
-#include "tests/support/sliding_plane.h"
-#include "tests/support/visual_config.h"
+#include "tests/support/simulated/sliding_plane.h"
+#include "tests/support/simulated/visual_config.h"
 
 namespace stillpoint {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/fake_sequence.h"
 #include "tests/support/program.h"
+#include "tests/support/sequences/fake_sequence.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pipeline/tracking_stage.h"
+#include "core/pipeline/stages/tracking_stage.h"
 
 #include <utility>
 

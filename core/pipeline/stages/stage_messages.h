@@ -5,7 +5,7 @@
 #include <chrono>
 #include <optional>
 
-#include "core/pipeline/feedback.h"
+#include "core/pipeline/stages/feedback.h"
 #include "core/types/detection.h"
 #include "core/types/frame.h"
 #include "core/types/tracked_frame.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pipeline/optimization_stage.h"
+#include "core/pipeline/stages/optimization_stage.h"
 
 #include <span>
 #include <utility>
 
-#include "core/pipeline/consistency_view.h"
-#include "core/pipeline/state_hash.h"
+#include "core/pipeline/stages/consistency_view.h"
+#include "core/pipeline/stages/state_hash.h"
 
 namespace stillpoint {
 namespace {

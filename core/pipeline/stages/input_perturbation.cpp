@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pipeline/input_perturbation.h"
+#include "core/pipeline/stages/input_perturbation.h"
 
 #include "core/base/mix_bits.h"
 

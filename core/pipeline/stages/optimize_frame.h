@@ -2,8 +2,8 @@
 /// Last step of a frame: the optimization stage.
 #pragma once
 
-#include "core/pipeline/optimization_stage.h"
-#include "core/pipeline/stage_messages.h"
+#include "core/pipeline/stages/optimization_stage.h"
+#include "core/pipeline/stages/stage_messages.h"
 
 namespace stillpoint {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/sequence_folders.h"
+#include "tests/support/sequences/sequence_folders.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tests/support/process_frame.h"
-#include "tests/support/simulated_motion.h"
+#include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/rendered_sequence.h"
+#include "tests/support/sequences/rendered_sequence.h"
 
 #include "datasets/synthetic/sequence/render_sequence.h"
 
