@@ -83,20 +83,24 @@ row core/examples $core $eval $datasets
 
 # --- bench: each folder includes those above it ---
 row bench/model $messages eval eval/metrics eval/trajectory
+row bench/model/csv core/base bench/model
 row bench/config core/base core/config bench/model
-row bench/store core/base core/types eval/io bench/model
+row bench/store core/base core/types eval/io bench/model bench/model/csv
+row bench/store/maintenance core/base eval/io bench/model bench/store
 row bench/process core/base bench/model
 row bench/run $common core/pipeline/runners datasets datasets/faults datasets/synthetic/sequence eval eval/metrics eval/trajectory \
   bench/model bench/config
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
   bench/profile/meters
-row bench/record $common core/pipeline/runners eval eval/io eval/metrics bench/model bench/config bench/run \
+row bench/record $common core/pipeline/runners eval eval/io eval/metrics bench/model bench/model/csv bench/config bench/run \
   bench/profile
 row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record
 row bench/plan core/base datasets datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
+row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
+  bench/model bench/config bench/store bench/process bench/run bench/record bench/systems bench/plan
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/serve core/base bench/record
 row bench/micro $core tests/support tests/support/simulated
@@ -104,13 +108,14 @@ row bench/micro $core tests/support tests/support/simulated
 # --- reports ---
 stored="core/base bench/model bench/store bench/analysis"
 row reports/tables $stored eval/statistics bench/systems
+row reports/tables/formats $stored reports/tables
 row reports/drawing core/base core/types datasets/io eval/openloris eval/protocols eval/statistics bench/run bench/record \
   reports/tables
 row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
 row reports/page/charts $stored eval/io eval/metrics eval/openloris eval/protocols reports/tables
-row reports/page $stored bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/drawing \
-  reports/page/charts
+row reports/page $stored bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/tables/formats \
+  reports/drawing reports/page/charts
 row reports/dashboard $stored bench/record reports/tables reports/page
 
 # --- the program ---
@@ -119,8 +124,10 @@ execution="core/base bench/cli bench/model bench/config bench/record"
 row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector datasets datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
-row bench/cli/plan $execution bench/store bench/systems bench/plan reports/tables reports/text reports/page
-row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/plan bench/analysis \
+row bench/cli/plan $execution bench/store bench/systems bench/plan bench/plan/execution reports/tables \
+  reports/tables/formats reports/text reports/page
+row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/store/maintenance bench/plan \
+  bench/plan/execution bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides

@@ -8,8 +8,8 @@
 
 #include "bench/config/config_text.h"
 #include "bench/model/content_hash.h"
-#include "bench/model/counter_text.h"
-#include "bench/model/timing_text.h"
+#include "bench/model/csv/counter_text.h"
+#include "bench/model/csv/timing_text.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/result_values.h"

@@ -35,7 +35,7 @@ struct RunManifest {
 /// Text of manifest.json.
 [[nodiscard]] std::string manifest_json(const RunManifest& manifest);
 
-/// Text of timings.csv: time per frame and module of the odometry, see bench/model/timing_text.h.
+/// Text of timings.csv: time per frame and module of the odometry, see bench/model/csv/timing_text.h.
 [[nodiscard]] std::string timings_csv(const OdometryRun& run);
 
 /// Text of frames.csv: hash of each module's state after each frame.

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "bench/model/counter_text.h"
-#include "bench/model/csv_rows.h"
-#include "bench/model/timing_text.h"
+#include "bench/model/csv/counter_text.h"
+#include "bench/model/csv/csv_rows.h"
+#include "bench/model/csv/timing_text.h"
 #include "bench/store/run_rows.h"
 #include "bench/store/schema.h"
 #include "core/base/error.h"

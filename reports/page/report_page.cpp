@@ -15,7 +15,7 @@
 #include "reports/page/page_data.h"
 #include "reports/page/summary.h"
 #include "reports/tables/escaping.h"
-#include "reports/tables/table_formats.h"
+#include "reports/tables/formats/table_formats.h"
 #include "reports/tables/timing_runs.h"
 
 namespace stillpoint::report {

@@ -10,9 +10,9 @@
 #include "core/base/error.h"
 #include "reports/page/disambiguate_names.h"
 #include "reports/page/report_page.h"
+#include "reports/tables/formats/table_formats.h"
 #include "reports/tables/paper_tables.h"
 #include "reports/tables/result_tables.h"
-#include "reports/tables/table_formats.h"
 
 namespace stillpoint::report {
 namespace {

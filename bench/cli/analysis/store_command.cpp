@@ -12,10 +12,10 @@
 #include "bench/model/metrics.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/output_guard.h"
-#include "bench/store/maintenance.h"
-#include "bench/store/salvage.h"
+#include "bench/store/maintenance/maintenance.h"
+#include "bench/store/maintenance/salvage.h"
+#include "bench/store/maintenance/store_export.h"
 #include "bench/store/store.h"
-#include "bench/store/store_export.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 

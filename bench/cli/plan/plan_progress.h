@@ -2,7 +2,7 @@
 /// Console progress output of plans.
 #pragma once
 
-#include "bench/plan/plan_runner.h"
+#include "bench/plan/execution/plan_runner.h"
 
 namespace stillpoint::bench {
 

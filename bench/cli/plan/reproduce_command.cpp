@@ -16,9 +16,9 @@
 #include "bench/systems/own_odometry.h"
 #include "core/base/error.h"
 #include "reports/page/report_page.h"
+#include "reports/tables/formats/table_formats.h"
 #include "reports/tables/paper_tables.h"
 #include "reports/tables/result_tables.h"
-#include "reports/tables/table_formats.h"
 
 namespace stillpoint::bench {
 namespace {

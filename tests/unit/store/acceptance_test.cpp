@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/store/maintenance.h"
-#include "bench/store/store_export.h"
+#include "bench/store/maintenance/maintenance.h"
+#include "bench/store/maintenance/store_export.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/maintenance.h"
+#include "bench/store/maintenance/maintenance.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <limits>
 
-#include "bench/store/store_export.h"
+#include "bench/store/maintenance/store_export.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A store with damaged pages: what is readable is saved, and what is lost is named.
-#include "bench/store/salvage.h"
+#include "bench/store/maintenance/salvage.h"
 
 #include <algorithm>
 #include <fstream>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/store/acceptance.h"
-#include "bench/store/maintenance.h"
+#include "bench/store/maintenance/maintenance.h"
 #include "bench/store/readable_files.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"

@@ -8,8 +8,8 @@
 #include <iterator>
 
 #include "bench/model/content_hash.h"
-#include "bench/store/maintenance.h"
-#include "bench/store/store_export.h"
+#include "bench/store/maintenance/maintenance.h"
+#include "bench/store/maintenance/store_export.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/temporary_folder.h"
 

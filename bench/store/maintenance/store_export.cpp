@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/store_export.h"
+#include "bench/store/maintenance/store_export.h"
 
 #include <cmath>
 #include <limits>

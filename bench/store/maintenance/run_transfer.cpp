@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/run_transfer.h"
+#include "bench/store/maintenance/run_transfer.h"
 
 namespace stillpoint::bench {
 

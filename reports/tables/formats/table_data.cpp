@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/tables/escaping.h"
-#include "reports/tables/table_formats.h"
+#include "reports/tables/formats/table_formats.h"
 
 namespace stillpoint::report {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/run_outcome.h"
+#include "bench/plan/execution/run_outcome.h"
 
 #include <cstring>
 #include <fstream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/paired_plan.h"
+#include "bench/plan/execution/paired_plan.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "bench/plan/bench_row.h"
+#include "bench/plan/execution/bench_row.h"
 
 namespace stillpoint::bench {
 

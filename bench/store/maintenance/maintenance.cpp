@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/maintenance.h"
+#include "bench/store/maintenance/maintenance.h"
 
 #include <algorithm>
 #include <set>
 
-#include "bench/store/run_transfer.h"
+#include "bench/store/maintenance/run_transfer.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
 #include "bench/store/store_writer.h"

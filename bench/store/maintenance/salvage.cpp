@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/salvage.h"
+#include "bench/store/maintenance/salvage.h"
 
 #include <cmath>
 #include <optional>
@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "bench/store/acceptance.h"
-#include "bench/store/damaged_database.h"
+#include "bench/store/maintenance/damaged_database.h"
+#include "bench/store/maintenance/run_transfer.h"
 #include "bench/store/run_rows.h"
-#include "bench/store/run_transfer.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
 #include "bench/store/store_writer.h"

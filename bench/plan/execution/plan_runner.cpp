@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/plan_runner.h"
+#include "bench/plan/execution/plan_runner.h"
 
 #include <algorithm>
 #include <deque>
@@ -8,8 +8,8 @@
 
 #include <poll.h>
 
-#include "bench/plan/plan_boxes.h"
-#include "bench/plan/run_outcome.h"
+#include "bench/plan/execution/plan_boxes.h"
+#include "bench/plan/execution/run_outcome.h"
 #include "bench/process/machine_load.h"
 #include "bench/process/process_pool.h"
 #include "bench/systems/external_system.h"

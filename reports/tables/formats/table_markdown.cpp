@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/tables/escaping.h"
-#include "reports/tables/table_formats.h"
-#include "reports/tables/table_head.h"
+#include "reports/tables/formats/table_formats.h"
+#include "reports/tables/formats/table_head.h"
 #include "reports/tables/text_table.h"
 
 namespace stillpoint::report {

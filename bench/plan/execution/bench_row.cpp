@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/bench_row.h"
+#include "bench/plan/execution/bench_row.h"
 
 #include <algorithm>
 #include <map>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/model/counter_text.h"
+#include "bench/model/csv/counter_text.h"
 
 #include <fmt/format.h>
 
-#include "bench/model/csv_rows.h"
+#include "bench/model/csv/csv_rows.h"
 
 namespace stillpoint::bench {
 namespace {

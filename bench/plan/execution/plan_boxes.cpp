@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/plan_boxes.h"
+#include "bench/plan/execution/plan_boxes.h"
 
 #include "bench/run/recorded_boxes.h"
 #include "core/base/error.h"

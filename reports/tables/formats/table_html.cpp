@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "reports/tables/escaping.h"
-#include "reports/tables/table_formats.h"
-#include "reports/tables/table_head.h"
+#include "reports/tables/formats/table_formats.h"
+#include "reports/tables/formats/table_head.h"
 
 namespace stillpoint::report {
 namespace {

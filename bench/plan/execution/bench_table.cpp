@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/bench_table.h"
+#include "bench/plan/execution/bench_table.h"
 
 #include <algorithm>
 #include <vector>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/store/run_transfer.h"
+#include "bench/store/maintenance/run_transfer.h"
 
 namespace stillpoint::bench {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/damaged_database.h"
+#include "bench/store/maintenance/damaged_database.h"
 
 #include <fstream>
 
