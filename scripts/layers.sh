@@ -144,6 +144,7 @@ libraries=(
   '<opencv2/videoio[./]  ^reports/frames/video_file\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
   '<(sqlite3|zstd)    ^bench/store/'
+  '<cairo            ^reports/drawing/pdf_drawing\.cpp$'
   '<microhttpd        ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
   '<spdlog/           ^bench/cli/'

@@ -16,7 +16,7 @@ packages=(
   libopenimageio-dev openimageio-tools
   libembree-dev libtbb-dev
   libfmt-dev libspdlog-dev libcli11-dev
-  nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev libmicrohttpd-dev
+  nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev libmicrohttpd-dev libcairo2-dev
   libgtest-dev libbenchmark-dev
   universal-ctags
 )

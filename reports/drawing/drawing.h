@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Vector drawing as a list of marks, written as SVG or PNG.
+/// Vector drawing as a list of marks, written as SVG, PDF or PNG.
 #pragma once
 
 #include <filesystem>
@@ -56,6 +56,9 @@ struct Drawing {
 
 /// A self-contained SVG 1.1 document. Coordinates have 2 decimals, so that equal drawings give equal bytes.
 [[nodiscard]] std::string svg_text(const Drawing& drawing);
+
+/// A PDF document of one page; one unit of the drawing is 1/72 inch. Equal drawings give equal bytes.
+[[nodiscard]] std::string pdf_text(const Drawing& drawing);
 
 /// Writes a PNG of `scale` pixels per unit of the drawing, antialiased.
 /// @throws InputError if the file cannot be written

@@ -6,25 +6,36 @@
 namespace stillpoint::report {
 namespace {
 
-constexpr const char* kPngBeginning = "\x89PNG";
+/// A file format of drawings.
+struct DrawingFormat {
+  const char* extension;
+  const char* beginning;                ///< of its files
+  std::string (*text)(const Drawing&);  ///< null: an image, see write_drawing_png
+};
+constexpr DrawingFormat kFormats[] = {
+    {".svg", "<svg", svg_text}, {".pdf", "%PDF", pdf_text}, {".png", "\x89PNG", nullptr}};
 
-bool is_png(const std::filesystem::path& file) { return file.extension() == ".png"; }
+const DrawingFormat& format_of(const std::filesystem::path& file) {
+  for (const DrawingFormat& format : kFormats) {
+    if (file.extension() == format.extension) return format;
+  }
+  throw InputError(file.string(), "has no extension of a drawing; use one of: .svg, .pdf, .png");
+}
 
 }  // namespace
 
 void require_drawing_file(const std::filesystem::path& file, bench::OutputRules rules) {
-  if (!is_png(file) && file.extension() != ".svg")
-    throw InputError(file.string(), "has no extension of a drawing; use one of: .svg, .png");
-  rules.beginning = is_png(file) ? kPngBeginning : "<svg";
+  rules.beginning = format_of(file).beginning;
   bench::require_safe_output(file, rules);
 }
 
 void write_drawing(const std::filesystem::path& file, const Drawing& drawing, double scale,
                    bench::OutputRules rules) {
   require_drawing_file(file, rules);
-  if (is_png(file)) return write_drawing_png(file, drawing, scale);
-  rules.beginning = "<svg";
-  bench::write_output(file, svg_text(drawing), rules);
+  const DrawingFormat& format = format_of(file);
+  if (format.text == nullptr) return write_drawing_png(file, drawing, scale);
+  rules.beginning = format.beginning;
+  bench::write_output(file, format.text(drawing), rules);
 }
 
 }  // namespace stillpoint::report

@@ -42,7 +42,7 @@ struct PathFiles {
 TEST(EvalOutput, NeverOverwritesItsInputs) {
   const PathFiles files;
   const std::string svg = files.folder.write("gt.svg", files.text).string();
-  expect_rejected(files.eval({"--plot", files.gt, "--force"}), {"gt.txt", ".svg, .png"});
+  expect_rejected(files.eval({"--plot", files.gt, "--force"}), {"gt.txt", ".svg, .pdf, .png"});
   expect_rejected(run_program({"eval", svg, files.est, "--plot", svg, "--force"}), {"gt.svg: is an input"});
   expect_rejected(files.eval({"--per-pose", files.gt, "--force"}), {"gt.txt: is an input"});
   expect_rejected(files.eval({"--per-pose", files.est, "--force"}), {"est.txt: is an input"});

@@ -260,7 +260,7 @@ std::vector<Option> options_of(EvalArguments& a) {
       {"--json", "Print JSON with full precision", &a.json},
       {"--csv", "Print CSV", &a.csv},
       {"--markdown", "Print Markdown", &a.markdown},
-      {"--plot", "Write a plot of trajectories and errors (.svg or .png)", &a.plot},
+      {"--plot", "Write a plot of trajectories and errors (.svg, .pdf or .png)", &a.plot},
       {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
       {"--force", "Replace existing files of --plot and --per-pose", &a.force}};
 }

@@ -23,6 +23,15 @@ TEST(SvgText, ContainsEveryMarkAndEscapesText) {
   EXPECT_NE(svg.find("text-anchor=\"middle\" fill=\"#000000\">a &lt; b &amp; c</text>"), std::string::npos);
 }
 
+TEST(PdfText, IsOnePageOfTheSizeOfTheDrawing) {
+  const std::string pdf = pdf_text(kDrawing);
+  EXPECT_TRUE(pdf.starts_with("%PDF-"));
+  EXPECT_TRUE(pdf.ends_with("%%EOF\n"));
+  EXPECT_NE(pdf.find("/MediaBox [ 0 0 40 20 ]"), std::string::npos);
+  EXPECT_NE(pdf.find("/Count 1"), std::string::npos);
+  EXPECT_EQ(pdf, pdf_text(kDrawing));
+}
+
 TEST(WriteDrawingPng, DrawsMarksAtTheirPositions) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "drawing.png";
