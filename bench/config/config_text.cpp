@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/config/config_fields.h"
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 
 namespace stillpoint::bench {
 namespace {

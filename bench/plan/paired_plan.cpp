@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/plan/paired_plan.h"
 
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_text.h"
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 #include "bench/model/counter_text.h"
 #include "bench/model/timing_text.h"
 #include "bench/profile/timeline.h"

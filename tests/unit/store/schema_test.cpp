@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 #include "bench/store/maintenance.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/temporary_folder.h"
