@@ -4,16 +4,19 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "datasets/cache/frame_cache_options.h"
 #include "datasets/sensor_stream.h"
 
 namespace stillpoint::datasets {
 
 /// How to open a folder; empty fields are detected automatically.
 struct OpenOptions {
-  std::string format;              ///< one of `sequence_format_names`
-  std::filesystem::path rig_file;  ///< a rig.toml that overrides the calibration of the format
+  std::string format;                            ///< one of `sequence_format_names`
+  std::filesystem::path rig_file;                ///< a rig.toml that overrides the calibration of the format
+  std::optional<FrameCacheOptions> frame_cache;  ///< keep decoded frames on disk
 };
 
 /// Opens a sequence folder; its format is detected from the files in it.

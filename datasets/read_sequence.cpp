@@ -89,6 +89,15 @@ void require_size(const std::filesystem::path& file, const cv::Mat& image, const
                                       std::to_string(camera.height) + "; correct [camera] in rig.toml");
 }
 
+/// The gray or color image of a frame.
+cv::Mat read_color_file(const SequenceContent& content, std::size_t index) {
+  STILLPOINT_CHECK(index < content.frame_files.size());
+  const std::filesystem::path& file = content.frame_files[index].color;
+  cv::Mat image = read_image(file);
+  require_size(file, image, content.info.rig.camera);
+  return image;
+}
+
 cv::Mat load_depth(const SequenceContent& content, const std::filesystem::path& file) {
   cv::Mat depth = read_depth(file);
   const Rig& rig = content.info.rig;
@@ -121,11 +130,14 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   return content;
 }
 
+cv::Mat decode_color(const SequenceContent& content, std::size_t index) {
+  const cv::Mat image = read_color_file(content, index);
+  return image.channels() == 3 ? image : cv::Mat();
+}
+
 Frame decode_frame(const SequenceContent& content, std::size_t index) {
-  STILLPOINT_CHECK(index < content.frame_files.size());
+  const cv::Mat image = read_color_file(content, index);
   const FrameFiles& files = content.frame_files[index];
-  const cv::Mat image = read_image(files.color);
-  require_size(files.color, image, content.info.rig.camera);
   Frame frame;
   frame.id = static_cast<std::int64_t>(index);
   frame.t = content.info.frame_times[index];

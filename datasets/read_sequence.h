@@ -16,7 +16,12 @@ namespace stillpoint::datasets {
 [[nodiscard]] SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOptions& options,
                                             FaultLog& faults);
 
-/// Decodes frame `index`; see `SensorStream::load_frame`.
+/// Decodes frame `index`, with its color image; see `SensorStream::load_frame`. A change of the decoded gray or depth
+/// values requires another `kDecodingVersion`.
 [[nodiscard]] Frame decode_frame(const SequenceContent& content, std::size_t index);
+
+/// Decodes the color image of frame `index`; empty if it is gray.
+/// @throws InputError as `decode_frame`
+[[nodiscard]] cv::Mat decode_color(const SequenceContent& content, std::size_t index);
 
 }  // namespace stillpoint::datasets

@@ -62,7 +62,8 @@ trajectories="eval/io eval/trajectory"
 row datasets/io $messages $trajectories
 row datasets/calibration $messages datasets/io
 row datasets/formats $messages $trajectories datasets/io datasets/calibration
-row datasets $messages $trajectories datasets/io datasets/calibration datasets/formats
+row datasets/cache $messages datasets/io datasets/calibration datasets/formats
+row datasets $messages $trajectories datasets/io datasets/calibration datasets/formats datasets/cache
 row datasets/synthetic core/base core/geometry
 row datasets/synthetic/materials core/base datasets/synthetic
 row datasets/synthetic/motion $messages $trajectories datasets/io datasets/synthetic
@@ -83,7 +84,7 @@ row bench/model $messages eval eval/metrics eval/trajectory
 row bench/config core/base core/config bench/model
 row bench/store core/base core/types eval/io bench/model
 row bench/process core/base bench/model
-row bench/run $common core/pipeline/runners datasets datasets/synthetic/sequence eval eval/metrics eval/trajectory \
+row bench/run $common core/pipeline/runners datasets datasets/cache datasets/synthetic/sequence eval eval/metrics eval/trajectory \
   bench/model bench/config
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
@@ -114,7 +115,7 @@ row bench/cli core/base bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
 row bench/cli/run $execution datasets eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
-row bench/cli/data $execution core/detector datasets datasets/io datasets/synthetic/sequence bench/run bench/plan
+row bench/cli/data $execution core/detector datasets datasets/cache datasets/io datasets/synthetic/sequence bench/run bench/plan
 row bench/cli/plan $execution bench/store bench/systems bench/plan reports/tables reports/text reports/page
 row bench/cli/analysis $execution eval/io eval/compare eval/openloris bench/store bench/plan bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
@@ -122,6 +123,7 @@ row bench/cli/analysis $execution eval/io eval/compare eval/openloris bench/stor
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_io\.cpp$'
+  '<blosc            ^datasets/cache/frame_codec\.cpp$'
   '<embree3/          ^datasets/synthetic/render/'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'

@@ -142,13 +142,30 @@ RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& wor
   return std::async(std::launch::async, work).get();
 }
 
+/// A network and videos use the color image of every frame: it is decoded with the frame.
+bool needs_color(const RunSpec& spec) {
+  return spec.decode_color || spec.config.detector.kind == DetectorKind::kNetwork;
+}
+
+/// Number of frames to decode ahead; 0: frames are decoded by the thread that requests them.
+std::size_t frames_ahead(const datasets::SensorStream& stream, const RunSpec& spec) {
+  const bool fast = stream.frames_are_cached() && !needs_color(spec);
+  return spec.deterministic_counts || (spec.mode == "realtime" && fast) ? 0 : kDecodedAhead;
+}
+
+Frame load_frame(const datasets::SensorStream& stream, const RunSpec& spec, std::size_t index) {
+  Frame frame = stream.load_frame(index);
+  if (needs_color(spec)) frame.color = color_image(frame);
+  return frame;
+}
+
 }  // namespace
 
 OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                          const RunControl& control) {
   RunRecorder recorder(stream, spec);
-  FramePrefetcher prefetcher([&stream](std::size_t index) { return stream.load_frame(index); },
-                             recorder.frames_planned(), spec.deterministic_counts ? 0 : kDecodedAhead);
+  FramePrefetcher prefetcher([&](std::size_t index) { return load_frame(stream, spec, index); },
+                             recorder.frames_planned(), frames_ahead(stream, spec));
   const auto on_update = [&](const OdometryUpdate& update) {
     recorder.add(update);
     if (control.on_update) control.on_update(update);

@@ -25,6 +25,7 @@ struct RunSpec {
   double speed = 1.0;                 ///< clock rate of "realtime" and of a device
   std::optional<DeviceModel> device;  ///< simulate the timing of that device; `mode` must be "sequential"
   std::size_t max_frames = 0;         ///< frames from the start; 0 = all
+  bool decode_color = false;          ///< the color image of every frame will be used, e.g. for a video
   bool keep_spans = false;            ///< record time spans, for timelines
   bool deterministic_counts = false;  ///< without prefetching and on a thread with a separate heap, for
                                       ///< reproducible instruction counts

@@ -161,6 +161,11 @@ cv::Mat to_gray(const cv::Mat& image) {
   return gray;
 }
 
+std::string image_decoder_version() {
+  return "OpenImageIO " + std::to_string(OIIO::openimageio_version()) + " " +
+         std::string(OIIO::get_string_attribute("library_list"));
+}
+
 void write_png(const std::filesystem::path& file, const cv::Mat& image) {
   disable_oiio_threads();
   OIIO::ImageSpec spec = spec_of(image);

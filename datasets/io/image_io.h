@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <string>
 
 namespace stillpoint::datasets {
 
@@ -22,6 +23,9 @@ namespace stillpoint::datasets {
 /// Luma of an RGB image (ITU-R BT.601 weights, rounded); a gray image is returned unchanged.
 /// @param image CV_8UC3 (R, G, B) or CV_8UC1
 [[nodiscard]] cv::Mat to_gray(const cv::Mat& image);
+
+/// Names and versions of the libraries that decode images. Lossy formats may decode differently with others.
+[[nodiscard]] std::string image_decoder_version();
 
 /// Writes a PNG, compressed for speed rather than size.
 /// @param image CV_8UC1, CV_8UC3 (R, G, B) or CV_16UC1, not empty

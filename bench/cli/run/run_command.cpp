@@ -11,6 +11,7 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
+#include "bench/cli/run/open_with_progress.h"
 #include "bench/config/config_file.h"
 #include "bench/model/metrics.h"
 #include "bench/model/utc_time.h"
@@ -18,8 +19,8 @@
 #include "bench/record/output_folder.h"
 #include "bench/record/run_files.h"
 #include "bench/record/sequence_checksum.h"
+#include "bench/run/frame_cache_settings.h"
 #include "bench/run/heartbeat.h"
-#include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
 #include "datasets/ping_pong_playback.h"
@@ -47,6 +48,7 @@ struct RunArguments {
   std::string sequence_id;
   int max_frames = 0;
   bool deterministic_counts = false;
+  bool no_frame_cache = false;
   double speed = 1.0;
   std::vector<std::string> dumps;
   int passes = 1;
@@ -73,6 +75,7 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
                              .mode = arguments.mode,
                              .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames),
+                             .decode_color = !arguments.video.empty(),
                              .keep_spans = true,
                              .deterministic_counts = arguments.deterministic_counts},
                     .folder = {},
@@ -212,18 +215,19 @@ int exit_code(Outcome outcome) {
   return outcome == Outcome::kLost ? kExitFindings : kExitOk;
 }
 
+/// Repeated passes use all frames; instruction counts must not depend on earlier runs.
+std::optional<datasets::FrameCacheOptions> cache_options(const RunArguments& arguments) {
+  if (arguments.no_frame_cache || arguments.deterministic_counts) return std::nullopt;
+  const int frames = arguments.passes == 1 ? arguments.max_frames : 0;
+  return frame_cache_options(static_cast<std::size_t>(frames),
+                             [](const std::string& text) { spdlog::warn("{}", text); });
+}
+
 /// Opens the sequence; renders it first if necessary. @return null if interrupted
 std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments) {
-  std::unique_ptr<ProgressLine> progress;
-  const auto on_rendered = [&](int done, int total) {
-    if (!progress) {
-      progress = std::make_unique<ProgressLine>("rendering " + arguments.sequence,
-                                                static_cast<std::size_t>(total), "frames");
-    }
-    progress->update(static_cast<std::size_t>(done));
-  };
-  auto stream = find_sequence(arguments.sequence, {.format = arguments.format, .rig_file = arguments.rig},
-                              {.progress = on_rendered, .stop_requested = interrupt_requested});
+  auto stream = open_with_progress(arguments.sequence, {.format = arguments.format,
+                                                        .rig_file = arguments.rig,
+                                                        .frame_cache = cache_options(arguments)});
   const bool single_pass = !stream || arguments.passes == 1;
   return single_pass ? std::move(stream) : datasets::ping_pong_playback(std::move(stream), arguments.passes);
 }
@@ -286,6 +290,8 @@ Command run_command() {
             &arguments->sequence_id},
            {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
            {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames},
+           {"--no-frame-cache", "Decode the images of all frames again, and do not keep them",
+            &arguments->no_frame_cache},
            {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
             &arguments->deterministic_counts}},
       .action = [arguments] { return run(*arguments); }};
