@@ -14,17 +14,18 @@ namespace {
 /// Decodes the image files of a folder on demand.
 class FolderStream : public SensorStream {
  public:
-  FolderStream(SequenceContent content, const std::optional<FrameCacheOptions>& cache)
-      : content_(std::move(content)) {
-    if (!cache) return;
+  FolderStream(SequenceContent content, const OpenOptions& options)
+      : content_(std::move(content)),
+        color_(options.defer_color ? ColorDecoding::kDeferred : ColorDecoding::kWithFrame) {
+    if (!options.frame_cache) return;
     cache_ = std::make_unique<FrameCache>(
-        content_, *cache,
-        FrameDecoder{.frame = [this](std::size_t index) { return decode_frame(content_, index); },
+        content_, *options.frame_cache,
+        FrameDecoder{.frame = [this](std::size_t index) { return decode_frame(content_, index, color_); },
                      .color = [this](std::size_t index) { return decode_color(content_, index); }});
   }
   [[nodiscard]] const SequenceInfo& info() const override { return content_.info; }
   [[nodiscard]] Frame load_frame(std::size_t index) const override {
-    return cache_ ? cache_->load(index) : decode_frame(content_, index);
+    return cache_ ? cache_->load(index) : decode_frame(content_, index, color_);
   }
   [[nodiscard]] bool frames_are_cached() const override { return cache_ && cache_->complete(); }
   [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t index) const override {
@@ -39,6 +40,7 @@ class FolderStream : public SensorStream {
 
  private:
   SequenceContent content_;
+  ColorDecoding color_;
   std::unique_ptr<FrameCache> cache_;  ///< null without a cache
 };
 
@@ -54,7 +56,7 @@ std::string sequence_format_names() {
 
 std::unique_ptr<SensorStream> open_sequence(const std::filesystem::path& folder, const OpenOptions& options) {
   FaultLog strict;
-  return std::make_unique<FolderStream>(read_sequence(folder, options, strict), options.frame_cache);
+  return std::make_unique<FolderStream>(read_sequence(folder, options, strict), options);
 }
 
 }  // namespace stillpoint::datasets

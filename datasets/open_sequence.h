@@ -14,8 +14,9 @@ namespace stillpoint::datasets {
 
 /// How to open a folder; empty fields are detected automatically.
 struct OpenOptions {
-  std::string format;                            ///< one of `sequence_format_names`
-  std::filesystem::path rig_file;                ///< a rig.toml that overrides the calibration of the format
+  std::string format;              ///< one of `sequence_format_names`
+  std::filesystem::path rig_file;  ///< a rig.toml that overrides the calibration of the format
+  bool defer_color = false;        ///< decode color images only when they are used, see `color_image`
   std::optional<FrameCacheOptions> frame_cache;  ///< keep decoded frames on disk
 };
 

@@ -124,6 +124,7 @@ row bench/cli/analysis $execution eval/io eval/compare eval/openloris bench/stor
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_io\.cpp$'
   '<blosc            ^datasets/cache/frame_codec\.cpp$'
+  '<libdeflate       ^datasets/io/png_decoder\.cpp$'
   '<embree3/          ^datasets/synthetic/render/'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'

@@ -142,11 +142,6 @@ RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& wor
   return std::async(std::launch::async, work).get();
 }
 
-/// A network and videos use the color image of every frame: it is decoded with the frame.
-bool needs_color(const RunSpec& spec) {
-  return spec.decode_color || spec.config.detector.kind == DetectorKind::kNetwork;
-}
-
 /// Number of frames to decode ahead; 0: frames are decoded by the thread that requests them.
 std::size_t frames_ahead(const datasets::SensorStream& stream, const RunSpec& spec) {
   const bool fast = stream.frames_are_cached() && !needs_color(spec);
@@ -160,6 +155,10 @@ Frame load_frame(const datasets::SensorStream& stream, const RunSpec& spec, std:
 }
 
 }  // namespace
+
+bool needs_color(const RunSpec& spec) {
+  return spec.decode_color || spec.config.detector.kind == DetectorKind::kNetwork;
+}
 
 OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                          const RunControl& control) {

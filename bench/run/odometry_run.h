@@ -53,6 +53,10 @@ struct OdometryRun {
   double wall_s = 0.0;                   ///< from the request of the first frame to the last update
 };
 
+/// Whether the color image of every frame is used, by a network or a video; it is decoded with the frame
+/// then.
+[[nodiscard]] bool needs_color(const RunSpec& spec);
+
 /// @param control `on_update` may be empty
 /// @throws InputError for an unknown mode, a sequence without frames, and errors of the runner
 [[nodiscard]] OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,

@@ -9,6 +9,7 @@
 
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
+#include "datasets/io/file_bytes.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -19,17 +20,9 @@ constexpr std::string_view kTitle = "# stillpoint digests 1: folder; digest size
 constexpr std::int64_t kTimeResolution_ns = 100'000'000;  ///< ext4 and xfs: 4 to 10 ms
 constexpr std::size_t kHashDigits = 16;
 
-std::optional<std::string> read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  std::ostringstream text;
-  text << in.rdbuf();
-  return in.bad() ? std::nullopt : std::make_optional(std::move(text).str());
-}
-
 /// The lines of an index file; its last line is the checksum of the others. Empty if the file is damaged.
 std::string checked_lines(const fs::path& index_file) {
-  std::string text = read_text(index_file).value_or("");
+  std::string text = file_bytes(index_file).value_or("");
   if (text.size() < kHashDigits || !text.starts_with(kTitle)) return {};
   const std::string checksum = text.substr(text.size() - kHashDigits);
   text.resize(text.size() - kHashDigits);
@@ -58,7 +51,7 @@ void write_text(const fs::path& file, const std::string& text) {
 std::optional<FileDigest> digest_of_file(const fs::path& file) {
   const std::optional<FileState> before = file_state(file);
   if (!before) return FileDigest{};
-  const std::optional<std::string> bytes = read_text(file);
+  const std::optional<std::string> bytes = file_bytes(file);
   if (!bytes || file_state(file) != before) return std::nullopt;
   return FileDigest{.state = *before, .digest = content_hash(*bytes)};
 }

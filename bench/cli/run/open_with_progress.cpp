@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/cli/run/open_with_progress.h"
 
+#include <spdlog/spdlog.h>
+
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
+#include "bench/run/frame_cache_settings.h"
 #include "bench/run/sequence_source.h"
 
 namespace stillpoint::bench {
@@ -18,6 +21,12 @@ std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& na
     progress->update(static_cast<std::size_t>(done));
   };
   return find_sequence(name, options, {.progress = on_rendered, .stop_requested = interrupt_requested});
+}
+
+std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames) {
+  if (!enabled) return std::nullopt;
+  return frame_cache_options(static_cast<std::size_t>(max_frames),
+                             [](const std::string& text) { spdlog::warn("{}", text); });
 }
 
 }  // namespace stillpoint::bench

@@ -19,7 +19,6 @@
 #include "bench/record/output_folder.h"
 #include "bench/record/run_files.h"
 #include "bench/record/sequence_checksum.h"
-#include "bench/run/frame_cache_settings.h"
 #include "bench/run/heartbeat.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
@@ -215,19 +214,17 @@ int exit_code(Outcome outcome) {
   return outcome == Outcome::kLost ? kExitFindings : kExitOk;
 }
 
-/// Repeated passes use all frames; instruction counts must not depend on earlier runs.
-std::optional<datasets::FrameCacheOptions> cache_options(const RunArguments& arguments) {
-  if (arguments.no_frame_cache || arguments.deterministic_counts) return std::nullopt;
-  const int frames = arguments.passes == 1 ? arguments.max_frames : 0;
-  return frame_cache_options(static_cast<std::size_t>(frames),
-                             [](const std::string& text) { spdlog::warn("{}", text); });
-}
-
 /// Opens the sequence; renders it first if necessary. @return null if interrupted
-std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments) {
-  auto stream = open_with_progress(arguments.sequence, {.format = arguments.format,
-                                                        .rig_file = arguments.rig,
-                                                        .frame_cache = cache_options(arguments)});
+std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
+                                             const std::vector<ConfiguredRun>& runs) {
+  // Instruction counts must not depend on earlier runs; several passes use all frames.
+  const bool cached = !arguments.no_frame_cache && !arguments.deterministic_counts;
+  const int frames = arguments.passes == 1 ? arguments.max_frames : 0;
+  auto stream = open_with_progress(
+      arguments.sequence, {.format = arguments.format,
+                           .rig_file = arguments.rig,
+                           .defer_color = std::ranges::none_of(runs, needs_color, &ConfiguredRun::spec),
+                           .frame_cache = logged_frame_cache(cached, frames)});
   const bool single_pass = !stream || arguments.passes == 1;
   return single_pass ? std::move(stream) : datasets::ping_pong_playback(std::move(stream), arguments.passes);
 }
@@ -241,7 +238,7 @@ int run(const RunArguments& arguments) {
   }
   install_interrupt_handlers();
   const std::vector<ConfiguredRun> runs = plan_runs(arguments);
-  const std::unique_ptr<datasets::SensorStream> stream = open(arguments);
+  const std::unique_ptr<datasets::SensorStream> stream = open(arguments, runs);
   if (!stream) return kExitInterrupted;
   for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
   int code = kExitOk;
@@ -290,8 +287,7 @@ Command run_command() {
             &arguments->sequence_id},
            {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
            {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames},
-           {"--no-frame-cache", "Decode the images of all frames again, and do not keep them",
-            &arguments->no_frame_cache},
+           {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
            {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
             &arguments->deterministic_counts}},
       .action = [arguments] { return run(*arguments); }};
