@@ -21,7 +21,8 @@ constexpr const char* kLimitFile = "limit.txt";
 fs::path frame_cache_folder() { return synth::cache_folder() / "frames"; }
 
 std::uint64_t frame_cache_limit(const fs::path& folder) {
-  if (const char* const text = std::getenv(kVariable)) return datasets::size_from_text(kVariable, text);
+  const char* const set = std::getenv(kVariable);
+  if (set != nullptr && *set != '\0') return datasets::size_from_text(kVariable, set);
   std::ifstream in(folder / kLimitFile);
   std::string text;
   return std::getline(in, text) ? datasets::size_from_text((folder / kLimitFile).string(), text)

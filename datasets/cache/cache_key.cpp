@@ -63,4 +63,8 @@ std::uint64_t cache_key(const SequenceContent& content, std::span<const FrameDig
   return bits.hash(content_hash(image_decoder_version()));
 }
 
+std::filesystem::path frame_file(const std::filesystem::path& cache, std::uint64_t key) {
+  return cache / (hash_text(key) + kFrameFileExtension);
+}
+
 }  // namespace stillpoint::datasets

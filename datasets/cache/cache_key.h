@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 
 #include "datasets/formats/sequence_content.h"
@@ -23,5 +24,8 @@ constexpr std::uint64_t kDecodingVersion = 1;
 /// decoder and file format. Frame times and inertial data are not part of it: they are read from the sequence
 /// in every run.
 [[nodiscard]] std::uint64_t cache_key(const SequenceContent& content, std::span<const FrameDigest> frames);
+
+/// The cache file of a key.
+[[nodiscard]] std::filesystem::path frame_file(const std::filesystem::path& cache, std::uint64_t key);
 
 }  // namespace stillpoint::datasets

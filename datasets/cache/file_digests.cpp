@@ -107,4 +107,8 @@ std::optional<fs::path> folder_of_digests(const fs::path& index_file) {
   return folder;
 }
 
+fs::path digests_file(const fs::path& cache, const fs::path& sequence) {
+  return cache / (hash_text(content_hash(fs::canonical(sequence).string())) + kDigestsExtension);
+}
+
 }  // namespace stillpoint::datasets

@@ -57,6 +57,10 @@ class FileDigests {
 /// The sequence folder that an index file belongs to; nullopt if the file is damaged.
 [[nodiscard]] std::optional<std::filesystem::path> folder_of_digests(const std::filesystem::path& index_file);
 
+/// The index file of a sequence folder in the folder of the cache.
+[[nodiscard]] std::filesystem::path digests_file(const std::filesystem::path& cache,
+                                                 const std::filesystem::path& sequence);
+
 constexpr const char* kDigestsExtension = ".digests";
 constexpr const char* kUnfinishedExtension = ".new";  ///< while an index file is written
 

@@ -5,7 +5,6 @@
 #include <system_error>
 #include <utility>
 
-#include "core/base/content_hash.h"
 #include "core/base/error.h"
 #include "datasets/cache/frame_codec.h"
 
@@ -19,10 +18,9 @@ std::size_t frames_to_cache(const SequenceContent& content, const FrameCacheOpti
   return options.max_frames == 0 ? all : std::min(all, options.max_frames);
 }
 
-/// Name of the files that belong to a sequence folder, without extension.
-fs::path folder_name(const fs::path& cache, const fs::path& sequence) {
-  return cache / hash_text(content_hash(fs::canonical(sequence).string()));
-}
+/// Files that may be read to complete the digests: those that were written just before the digests were
+/// saved, or that a user touched.
+constexpr int kMaxDigestedFiles = 16;
 
 bool has_expected_images(const Frame& frame, const Camera& camera) {
   const cv::Size size(camera.width, camera.height);
@@ -53,15 +51,8 @@ FrameCache::FrameCache(const SequenceContent& content, FrameCacheOptions options
 
 void FrameCache::open() {
   fs::create_directories(options_.folder);
-  const fs::path name = folder_name(options_.folder, content_.info.folder);
-  digests_.emplace(content_.info.folder, name.string() + kDigestsExtension);
-  for (const FrameFiles& files : content_.frame_files) {
-    const std::optional<std::uint64_t> color = digests_->find(files.color);
-    const std::optional<std::uint64_t> depth =
-        files.depth.empty() ? kNoFileDigest : digests_->find(files.depth);
-    if (!color || !depth) break;
-    frame_digests_.push_back({.color = *color, .depth = *depth});
-  }
+  digests_.emplace(content_.info.folder, digests_file(options_.folder, content_.info.folder));
+  frame_digests_ = known_digests();
   const std::size_t all = content_.frame_files.size();
   reader_ = open_file(all);
   if (reader_) frames_ = all;
@@ -71,11 +62,34 @@ void FrameCache::open() {
   writing_ = frames_ > 0;
 }
 
+/// The digests of the frames from the first on, as far as they are remembered.
+std::vector<FrameDigest> FrameCache::known_digests() {
+  int digested = 0;
+  const auto digest_of = [&](const fs::path& file) -> std::optional<std::uint64_t> {
+    std::optional<std::uint64_t> known = file.empty() ? kNoFileDigest : digests_->find(file);
+    if (known || digested == kMaxDigestedFiles) return known;
+    const std::optional<FileDigest> digest = digest_of_file(file);
+    if (!digest) return std::nullopt;
+    ++digested;
+    digests_->add(file, *digest);
+    return digest->digest;
+  };
+  std::vector<FrameDigest> frames;
+  for (const FrameFiles& files : content_.frame_files) {
+    const std::optional<std::uint64_t> color = digest_of(files.color);
+    const std::optional<std::uint64_t> depth = color ? digest_of(files.depth) : std::nullopt;
+    if (!depth) break;
+    frames.push_back({.color = *color, .depth = *depth});
+  }
+  if (digested > 0) digests_->save();
+  return frames;
+}
+
 /// The file of the first `frames` frames, if their digests are known and it exists.
 FrameCache::Reader FrameCache::open_file(std::size_t frames) {
   if (frame_digests_.size() < frames) return nullptr;
   const std::uint64_t key = cache_key(content_, std::span(frame_digests_).first(frames));
-  const fs::path file = options_.folder / (hash_text(key) + kFrameFileExtension);
+  const fs::path file = frame_file(options_.folder, key);
   if (!fs::exists(file)) return nullptr;
   try {
     auto reader = std::make_shared<const FrameFileReader>(file);
@@ -185,8 +199,8 @@ void FrameCache::append(std::size_t index, const std::optional<PackedFrame>& fra
 /// Null if another process writes the frames of the same folder.
 std::unique_ptr<FrameFileWriter> FrameCache::create_writer() {
   remove_abandoned_files(options_.folder);
-  const fs::path name = folder_name(options_.folder, content_.info.folder);
-  const fs::path partial = name.string() + "-" + std::to_string(frames_) + kPartialExtension;
+  fs::path partial = digests_file(options_.folder, content_.info.folder);
+  partial.replace_extension("-" + std::to_string(frames_) + kPartialExtension);
   const Camera& camera = content_.info.rig.camera;
   space_ = CacheSpace(options_);
   return FrameFileWriter::create(
@@ -196,7 +210,7 @@ std::unique_ptr<FrameFileWriter> FrameCache::create_writer() {
 
 void FrameCache::finish() {
   const std::uint64_t key = cache_key(content_, std::span(frame_digests_).first(frames_));
-  const fs::path file = options_.folder / (hash_text(key) + kFrameFileExtension);
+  const fs::path file = frame_file(options_.folder, key);
   writer_->finish(file);
   writing_ = false;
   digests_->save();

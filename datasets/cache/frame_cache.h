@@ -51,6 +51,7 @@ class FrameCache {
   using Reader = std::shared_ptr<const FrameFileReader>;
 
   void open();
+  [[nodiscard]] std::vector<FrameDigest> known_digests();
   [[nodiscard]] Reader open_file(std::size_t frames);
   [[nodiscard]] Reader reader() const;
   [[nodiscard]] std::optional<Frame> find(std::size_t index);

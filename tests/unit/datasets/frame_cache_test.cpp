@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/cache/frame_cache.h"
+#include "datasets/cache/frame_cache_fill.h"
 
 #include <gtest/gtest.h>
 
@@ -228,6 +229,35 @@ TEST_F(FrameCacheTest, PruningKeepsAFileThatIsBeingWritten) {
   ASSERT_NE(writer, nullptr);
   prune_cache(cache(), 0);
   EXPECT_TRUE(fs::exists(cache() / "0123-6.partial"));
+}
+
+TEST_F(FrameCacheTest, ARenderedSequenceIsWrittenWithoutDecoding) {
+  FrameCacheFill fill(options(), "a");
+  for (int i = kCachedFrames - 1; i >= 0; --i) {
+    const auto seed = 100 + static_cast<std::uint64_t>(i);
+    fill.add(static_cast<std::size_t>(i), noise_image<std::uint8_t>(CV_8UC3, seed),
+             noise_image<std::uint16_t>(CV_16UC1, seed));
+  }
+  FaultLog strict;
+  fill.finish(read_sequence(noise_sequence(path("a"), 1), {}, strict));
+  CachedSequence sequence(path("a"), options());
+  EXPECT_TRUE(sequence.loads_all());
+  EXPECT_EQ(sequence.decoded, 0);
+}
+
+TEST_F(FrameCacheTest, AnIncompleteRenderingLeavesNoFile) {
+  {
+    FrameCacheFill fill(options(), "a");
+    fill.add(0, noise_image<std::uint8_t>(CV_8UC3, 1), noise_image<std::uint16_t>(CV_16UC1, 1));
+  }
+  EXPECT_TRUE(fs::is_empty(cache()));
+}
+
+TEST_F(FrameCacheTest, AFewFilesWithoutDigestsAreReadAtOpening) {
+  const fs::path folder = cached("a");
+  fs::remove(cache_files(cache(), ".digests").front());
+  CachedSequence sequence(folder, options());
+  EXPECT_TRUE(sequence.cache.complete());
 }
 
 TEST(CacheSize, IsReadInDecimalUnits) {
