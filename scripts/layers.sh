@@ -89,7 +89,7 @@ row bench/run $common core/pipeline/runners datasets datasets/cache datasets/syn
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
   bench/profile/meters
-row bench/record $common core/pipeline/runners eval eval/io eval/metrics bench/model bench/config bench/run \
+row bench/record $common core/pipeline/runners datasets/cache eval eval/io eval/metrics bench/model bench/config bench/run \
   bench/profile
 row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record

@@ -20,6 +20,14 @@ constexpr const char* kLimitFile = "limit.txt";
 
 fs::path frame_cache_folder() { return synth::cache_folder() / "frames"; }
 
+fs::path checksum_folder() {
+  try {
+    return synth::cache_folder() / "checksums";
+  } catch (const InputError&) {  // without a home folder; the checksum is computed in every run
+    return {};
+  }
+}
+
 std::uint64_t frame_cache_limit(const fs::path& folder) {
   const char* const set = std::getenv(kVariable);
   if (set != nullptr && *set != '\0') return datasets::size_from_text(kVariable, set);

@@ -17,6 +17,9 @@ namespace stillpoint::bench {
 /// @throws InputError if no variable determines a folder
 [[nodiscard]] std::filesystem::path frame_cache_folder();
 
+/// Folder of remembered checksums of sequences; empty if no variable determines a folder.
+[[nodiscard]] std::filesystem::path checksum_folder();
+
 /// $STILLPOINT_CACHE_SIZE, else the limit stored in the folder, else the default [bytes]. 0 = no frame cache.
 /// @throws InputError if either is not a size
 [[nodiscard]] std::uint64_t frame_cache_limit(const std::filesystem::path& folder);

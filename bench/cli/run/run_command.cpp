@@ -17,8 +17,9 @@
 #include "bench/model/utc_time.h"
 #include "bench/record/label_dump.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/remembered_checksum.h"
 #include "bench/record/run_files.h"
-#include "bench/record/sequence_checksum.h"
+#include "bench/run/frame_cache_settings.h"
 #include "bench/run/heartbeat.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
@@ -171,7 +172,8 @@ Executed execute(const datasets::SensorStream& stream, const RunArguments& argum
 /// --sequence-id, or the checksum of the sequence.
 std::string id_of(const datasets::SequenceInfo& info, const RunArguments& arguments) {
   if (interrupt_requested()) return "";
-  return arguments.sequence_id.empty() ? sequence_checksum(info.folder) : arguments.sequence_id;
+  return arguments.sequence_id.empty() ? remembered_checksum(info.folder, checksum_folder())
+                                       : arguments.sequence_id;
 }
 
 RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& arguments,
