@@ -13,6 +13,8 @@ namespace {
 
 /// Capacity of the buffer of decoded frames.
 constexpr std::size_t kDecodedAhead = 8;
+/// The same for cached frames: they are loaded faster than they are used, so the buffer is always full.
+constexpr std::size_t kCachedAhead = 3;
 
 std::size_t frames_to_run(const datasets::SequenceInfo& info, std::size_t max_frames) {
   if (info.frame_times.empty()) {
@@ -145,7 +147,8 @@ RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& wor
 /// Number of frames to decode ahead; 0: frames are decoded by the thread that requests them.
 std::size_t frames_ahead(const datasets::SensorStream& stream, const RunSpec& spec) {
   const bool fast = stream.frames_are_cached() && !needs_color(spec);
-  return spec.deterministic_counts || (spec.mode == "realtime" && fast) ? 0 : kDecodedAhead;
+  if (spec.deterministic_counts || (spec.mode == "realtime" && fast)) return 0;
+  return fast ? kCachedAhead : kDecodedAhead;
 }
 
 Frame load_frame(const datasets::SensorStream& stream, const RunSpec& spec, std::size_t index) {

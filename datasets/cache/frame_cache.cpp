@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "datasets/cache/frame_codec.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -26,12 +25,6 @@ bool has_expected_images(const Frame& frame, const Camera& camera) {
   const cv::Size size(camera.width, camera.height);
   return frame.gray.type() == CV_8UC1 && frame.gray.size() == size &&
          (frame.depth.empty() || (frame.depth.type() == CV_16UC1 && frame.depth.size() == size));
-}
-
-PackedFrame pack(const Frame& frame) {
-  return {.has_color = !frame.color.empty() || frame.decode_color,
-          .gray = pack_gray(frame.gray),
-          .depth = frame.depth.empty() ? std::string() : pack_depth(frame.depth)};
 }
 
 }  // namespace
@@ -122,7 +115,7 @@ Frame FrameCache::load(std::size_t index) {
     store(index, std::nullopt, digest);
     throw;
   }
-  if (has_expected_images(frame, content_.info.rig.camera)) store(index, pack(frame), digest);
+  if (has_expected_images(frame, content_.info.rig.camera)) store(index, pack_frame(frame), digest);
   return frame;
 }
 
@@ -131,9 +124,9 @@ std::optional<Frame> FrameCache::find(std::size_t index) {
   if (!file || !file->contains(index)) return std::nullopt;
   const std::optional<PackedFrame> packed = file->read(index);
   const cv::Size size(file->info().width, file->info().height);
-  const std::optional<cv::Mat> gray = packed ? unpack_gray(packed->gray, size) : std::nullopt;
-  const bool has_depth = packed && !packed->depth.empty();
-  const std::optional<cv::Mat> depth = has_depth ? unpack_depth(packed->depth, size) : std::nullopt;
+  const std::optional<cv::Mat> gray = packed ? unpack_gray(packed->gray(), size) : std::nullopt;
+  const bool has_depth = packed && !packed->depth().empty();
+  const std::optional<cv::Mat> depth = has_depth ? unpack_depth(packed->depth(), size) : std::nullopt;
   if (!gray || has_depth != depth.has_value()) {
     repair(*file);
     return std::nullopt;
@@ -192,7 +185,7 @@ void FrameCache::store(std::size_t index, const std::optional<PackedFrame>& fram
 void FrameCache::append(std::size_t index, const std::optional<PackedFrame>& frame) {
   if (!frame) return writer_->append_unreadable(index);
   // All frames of a sequence have about the same size.
-  if (writer_->frames() == 0) space_.expect((frame->gray.size() + frame->depth.size()) * frames_);
+  if (writer_->frames() == 0) space_.expect(frame->images.size() * frames_);
   writer_->append(index, *frame);
 }
 

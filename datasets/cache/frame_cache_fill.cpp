@@ -9,7 +9,6 @@
 #include "core/base/error.h"
 #include "datasets/cache/cache_key.h"
 #include "datasets/cache/file_digests.h"
-#include "datasets/cache/frame_codec.h"
 #include "datasets/io/image_io.h"
 
 namespace stillpoint::datasets {
@@ -37,7 +36,11 @@ FrameCacheFill::FrameCacheFill(FrameCacheOptions options, std::string sequence)
     : options_(std::move(options)), sequence_(std::move(sequence)), space_(options_) {}
 
 void FrameCacheFill::add(std::size_t index, const cv::Mat& color, const cv::Mat& depth) {
-  const PackedFrame packed{.has_color = true, .gray = pack_gray(to_gray(color)), .depth = pack_depth(depth)};
+  Frame frame;
+  frame.gray = to_gray(color);
+  frame.color = color;
+  frame.depth = depth;
+  const PackedFrame packed = pack_frame(frame);
   const std::scoped_lock lock(mutex_);
   if (stopped_) return;
   try {

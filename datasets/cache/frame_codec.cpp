@@ -4,6 +4,7 @@
 #include <blosc.h>
 
 #include <cstdint>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -39,6 +40,15 @@ std::optional<cv::Mat> decompress(std::string_view packed, cv::Size size, int ty
 cv::Mat continuous(const cv::Mat& image) { return image.isContinuous() ? image : image.clone(); }
 
 }  // namespace
+
+PackedFrame pack_frame(const Frame& frame) {
+  std::string images = pack_gray(frame.gray);
+  const std::size_t gray_bytes = images.size();
+  if (!frame.depth.empty()) images += pack_depth(frame.depth);
+  return {.has_color = !frame.color.empty() || frame.decode_color,
+          .images = std::move(images),
+          .gray_bytes = gray_bytes};
+}
 
 std::string pack_gray(const cv::Mat& gray) {
   STILLPOINT_CHECK(gray.type() == CV_8UC1 && !gray.empty());

@@ -17,12 +17,29 @@
 /// separated. Both frames together: 0.65 and 0.63 times the size of the PNG files.
 #pragma once
 
+#include <cstddef>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "core/types/frame.h"
+
 namespace stillpoint::datasets {
+
+/// The images of one frame, compressed.
+struct PackedFrame {
+  bool has_color = false;      ///< whether the source image is in color
+  std::string images;          ///< gray, then depth
+  std::size_t gray_bytes = 0;  ///< of `images`
+
+  [[nodiscard]] std::string_view gray() const { return std::string_view(images).substr(0, gray_bytes); }
+  /// Empty without depth.
+  [[nodiscard]] std::string_view depth() const { return std::string_view(images).substr(gray_bytes); }
+};
+
+/// @param frame with a gray image; its color image is not kept
+[[nodiscard]] PackedFrame pack_frame(const Frame& frame);
 
 /// @param gray CV_8UC1, not empty
 [[nodiscard]] std::string pack_gray(const cv::Mat& gray);

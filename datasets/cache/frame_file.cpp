@@ -155,17 +155,18 @@ std::optional<PackedFrame> FrameFileReader::read(std::size_t index) const {
   STILLPOINT_CHECK(contains(index));
   const BlockPlace place = index_[index];
   if (place.bytes < sizeof(BlockHeader)) return std::nullopt;
-  const std::optional<std::string> bytes = read_at(descriptor_, place);
-  if (!bytes) return std::nullopt;
-  const auto header = struct_of<BlockHeader>(*bytes);
-  const std::string_view images = std::string_view(*bytes).substr(sizeof header);
+  const std::optional<std::string> start =
+      read_at(descriptor_, {.offset = place.offset, .bytes = sizeof(BlockHeader)});
+  std::optional<std::string> images = read_at(descriptor_, {.offset = place.offset + sizeof(BlockHeader),
+                                                            .bytes = place.bytes - sizeof(BlockHeader)});
+  if (!start || !images) return std::nullopt;
+  const auto header = struct_of<BlockHeader>(*start);
   const bool valid = header.frame == index &&
-                     std::uint64_t{header.gray_bytes} + header.depth_bytes == images.size() &&
-                     header.checksum == checksum_of(header, images);
+                     std::uint64_t{header.gray_bytes} + header.depth_bytes == images->size() &&
+                     header.checksum == checksum_of(header, *images);
   if (!valid) return std::nullopt;
-  return PackedFrame{.has_color = header.has_color != 0,
-                     .gray = std::string(images.substr(0, header.gray_bytes)),
-                     .depth = std::string(images.substr(header.gray_bytes))};
+  return PackedFrame{
+      .has_color = header.has_color != 0, .images = std::move(*images), .gray_bytes = header.gray_bytes};
 }
 
 void FrameFileReader::mark_used() const {
@@ -231,12 +232,12 @@ void FrameFileWriter::record(std::size_t index, BlockPlace place) {
 void FrameFileWriter::append(std::size_t index, const PackedFrame& frame) {
   BlockHeader header{.frame = static_cast<std::uint32_t>(index),
                      .has_color = frame.has_color ? 1U : 0U,
-                     .gray_bytes = static_cast<std::uint32_t>(frame.gray.size()),
-                     .depth_bytes = static_cast<std::uint32_t>(frame.depth.size())};
-  const std::string images = frame.gray + frame.depth;
-  header.checksum = checksum_of(header, images);
+                     .gray_bytes = static_cast<std::uint32_t>(frame.gray().size()),
+                     .depth_bytes = static_cast<std::uint32_t>(frame.depth().size())};
+  header.checksum = checksum_of(header, frame.images);
   const std::uint64_t offset = end_;
-  write(bytes_of(header) + images);
+  write(bytes_of(header));
+  write(frame.images);
   record(index, {.offset = offset, .bytes = end_ - offset});
 }
 

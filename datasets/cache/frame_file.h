@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "datasets/cache/file_descriptor.h"
+#include "datasets/cache/frame_codec.h"
 
 namespace stillpoint::datasets {
 
@@ -32,13 +33,6 @@ struct FrameFileInfo {
   std::string sequence;  ///< name; shortened to 107 bytes
   int width = 0;
   int height = 0;
-};
-
-/// One frame; see frame_codec.h.
-struct PackedFrame {
-  bool has_color = false;  ///< whether the source image is in color
-  std::string gray;
-  std::string depth;  ///< empty without depth
 };
 
 /// Where a block is; 0 bytes: the frame could not be decoded when the file was written.
