@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "datasets/cache/frame_cache.h"
 #include "datasets/formats/formats.h"
 #include "datasets/io/image_io.h"
 #include "datasets/read_sequence.h"
@@ -13,9 +14,20 @@ namespace {
 /// Decodes the image files of a folder on demand.
 class FolderStream : public SensorStream {
  public:
-  explicit FolderStream(SequenceContent content) : content_(std::move(content)) {}
+  FolderStream(SequenceContent content, const OpenOptions& options)
+      : content_(std::move(content)),
+        color_(options.defer_color ? ColorDecoding::kDeferred : ColorDecoding::kWithFrame) {
+    if (!options.frame_cache) return;
+    cache_ = std::make_unique<FrameCache>(
+        content_, *options.frame_cache,
+        FrameDecoder{.frame = [this](std::size_t index) { return decode_frame(content_, index, color_); },
+                     .color = [this](std::size_t index) { return decode_color(content_, index); }});
+  }
   [[nodiscard]] const SequenceInfo& info() const override { return content_.info; }
-  [[nodiscard]] Frame load_frame(std::size_t index) const override { return decode_frame(content_, index); }
+  [[nodiscard]] Frame load_frame(std::size_t index) const override {
+    return cache_ ? cache_->load(index) : decode_frame(content_, index, color_);
+  }
+  [[nodiscard]] bool frames_are_cached() const override { return cache_ && cache_->complete(); }
   [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t index) const override {
     const std::filesystem::path& folder = content_.info.folder;
     const std::filesystem::path name = content_.frame_files[index].color.filename();
@@ -28,6 +40,8 @@ class FolderStream : public SensorStream {
 
  private:
   SequenceContent content_;
+  ColorDecoding color_;
+  std::unique_ptr<FrameCache> cache_;  ///< null without a cache
 };
 
 }  // namespace
@@ -42,7 +56,7 @@ std::string sequence_format_names() {
 
 std::unique_ptr<SensorStream> open_sequence(const std::filesystem::path& folder, const OpenOptions& options) {
   FaultLog strict;
-  return std::make_unique<FolderStream>(read_sequence(folder, options, strict));
+  return std::make_unique<FolderStream>(read_sequence(folder, options, strict), options);
 }
 
 }  // namespace stillpoint::datasets

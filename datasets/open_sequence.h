@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "datasets/cache/frame_cache_options.h"
 #include "datasets/sensor_stream.h"
 
 namespace stillpoint::datasets {
@@ -14,6 +16,8 @@ namespace stillpoint::datasets {
 struct OpenOptions {
   std::string format;              ///< one of `sequence_format_names`
   std::filesystem::path rig_file;  ///< a rig.toml that overrides the calibration of the format
+  bool defer_color = false;        ///< decode color images only when they are used, see `color_image`
+  std::optional<FrameCacheOptions> frame_cache;  ///< keep decoded frames on disk
 };
 
 /// Opens a sequence folder; its format is detected from the files in it.

@@ -80,6 +80,8 @@ class PingPongStream final : public SensorStream {
     return frame;
   }
 
+  [[nodiscard]] bool frames_are_cached() const override { return stream_->frames_are_cached(); }
+
   [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t index) const override {
     return stream_->load_labels(frames_[index]);
   }

@@ -140,16 +140,30 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   return content;
 }
 
-Frame decode_frame(const SequenceContent& content, std::size_t index) {
+cv::Mat decode_color(const SequenceContent& content, std::size_t index) {
+  STILLPOINT_CHECK(index < content.frame_files.size());
+  const std::filesystem::path& file = content.frame_files[index].color;
+  const cv::Mat image = read_image(file);
+  require_size(file, image, content.info.rig.camera);
+  return image.channels() == 3 ? image : cv::Mat();
+}
+
+Frame decode_frame(const SequenceContent& content, std::size_t index, ColorDecoding color) {
   STILLPOINT_CHECK(index < content.frame_files.size());
   const FrameFiles& files = content.frame_files[index];
-  const cv::Mat image = read_image(files.color);
-  require_size(files.color, image, content.info.rig.camera);
   Frame frame;
   frame.id = static_cast<std::int64_t>(index);
   frame.t = content.info.frame_times[index];
-  frame.gray = to_gray(image);
-  if (image.channels() == 3) frame.color = image;
+  if (color == ColorDecoding::kDeferred) {
+    const GrayImage gray = read_gray(files.color);
+    frame.gray = gray.image;
+    if (gray.is_color) frame.decode_color = [&content, index] { return decode_color(content, index); };
+  } else {
+    const cv::Mat image = read_image(files.color);
+    frame.gray = to_gray(image);
+    if (image.channels() == 3) frame.color = image;
+  }
+  require_size(files.color, frame.gray, content.info.rig.camera);
   if (!files.depth.empty()) frame.depth = load_depth(content, files.depth);
   frame.depth_units_per_m = content.info.rig.depth_units_per_m;
   return frame;

@@ -79,7 +79,8 @@ void write_tum_images(const SensorStream& stream, const fs::path& folder) {
   for (std::size_t i = 0; i < stream.info().frame_times.size(); ++i) {
     const Frame frame = stream.load_frame(i);
     const std::string stamp = eval::format_stamp(frame.t);
-    write_png(folder / "rgb" / (stamp + ".png"), frame.color.empty() ? frame.gray : frame.color);
+    const cv::Mat color = color_image(frame);
+    write_png(folder / "rgb" / (stamp + ".png"), color.empty() ? frame.gray : color);
     colors += fmt::format("{0} rgb/{0}.png\n", stamp);
     if (frame.depth.empty()) continue;
     write_png(folder / "depth" / (stamp + ".png"), frame.depth);

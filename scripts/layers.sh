@@ -64,7 +64,8 @@ trajectories="eval/io eval/trajectory"
 row datasets/io $messages $trajectories
 row datasets/calibration $messages datasets/io
 row datasets/formats $messages $trajectories datasets/io datasets/calibration
-row datasets $messages $trajectories datasets/io datasets/calibration datasets/formats
+row datasets/cache $messages datasets/io datasets/calibration datasets/formats
+row datasets $messages $trajectories datasets/io datasets/calibration datasets/formats datasets/cache
 row datasets/synthetic core/base core/geometry
 row datasets/synthetic/materials core/base datasets/synthetic
 row datasets/synthetic/motion $messages $trajectories datasets/io datasets/synthetic
@@ -88,12 +89,12 @@ row bench/config core/base core/config bench/model
 row bench/store core/base core/types eval/io bench/model bench/model/csv
 row bench/store/maintenance core/base eval/io bench/model bench/store
 row bench/process core/base bench/model
-row bench/run $common core/pipeline/runners datasets datasets/faults datasets/synthetic/sequence eval eval/metrics eval/trajectory \
+row bench/run $common core/pipeline/runners datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/metrics eval/trajectory \
   bench/model bench/config
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
   bench/profile/meters
-row bench/record $common core/pipeline/runners eval eval/io eval/metrics bench/model bench/model/csv bench/config bench/run \
+row bench/record $common core/pipeline/runners datasets/cache eval eval/io eval/metrics bench/model bench/model/csv bench/config bench/run \
   bench/profile
 row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record
@@ -123,7 +124,7 @@ row bench/cli core/base eval/io bench/config bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
 row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
-row bench/cli/data $execution core/detector datasets datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
+row bench/cli/data $execution core/detector datasets datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/store bench/systems bench/plan bench/plan/execution reports/tables \
   reports/tables/formats reports/text reports/page
 row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/store/maintenance bench/plan \
@@ -133,6 +134,8 @@ row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/open
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_io\.cpp$'
+  '<blosc            ^datasets/cache/frame_codec\.cpp$'
+  '<libdeflate       ^datasets/io/png_decoder\.cpp$'
   '<embree3/          ^datasets/synthetic/render/'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/model/content_hash.h"
 #include "bench/model/replicates.h"
+#include "core/base/content_hash.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -24,6 +24,7 @@ namespace stillpoint::bench {
 [[nodiscard]] Command reproduce_command();    ///< `stillpoint reproduce`: tables of the paper
 [[nodiscard]] Command config_command();       ///< `stillpoint config`: resolved configs and the key reference
 [[nodiscard]] Command data_command();         ///< `stillpoint data`: create and inspect sequences
+[[nodiscard]] Command cache_command();        ///< `stillpoint data cache`: decoded frames on disk
 [[nodiscard]] Command check_command();        ///< `stillpoint data check`: validate a sequence
 [[nodiscard]] Command faults_command();       ///< `stillpoint data faults`: list injectable sensor faults
 [[nodiscard]] Command detect_command();       ///< `stillpoint detect`: record boxes of a detection network

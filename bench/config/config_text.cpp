@@ -7,8 +7,8 @@
 #include <fmt/ranges.h>
 
 #include "bench/config/config_fields.h"
-#include "bench/model/content_hash.h"
 #include "bench/model/replicates.h"
+#include "core/base/content_hash.h"
 
 namespace stillpoint::bench {
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {

@@ -10,9 +10,10 @@
 #include "bench/config/spelling.h"
 #include "bench/plan/synth_settings.h"
 #include "bench/record/sequence_checksum.h"
+#include "bench/run/frame_cache_settings.h"
+#include "bench/run/rendered_sequence.h"
 #include "core/base/error.h"
 #include "datasets/synthetic/sequence/request_text.h"
-#include "datasets/synthetic/sequence/sequence_cache.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -178,7 +179,7 @@ std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
 }
 
 fs::path sequence_folder(const PlanSequence& sequence, const synth::RenderControl& control) {
-  if (sequence.rendering) return synth::cached_sequence(*sequence.rendering, control);
+  if (sequence.rendering) return rendered_sequence(*sequence.rendering, control, frame_cache_options(0, {}));
   if (fs::is_directory(sequence.folder)) return sequence.folder;
   throw InputError(sequence.folder.string(),
                    "no longer exists; restore the sequence and run the command again");

@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_text.h"
-#include "bench/model/content_hash.h"
 #include "bench/model/csv/counter_text.h"
 #include "bench/model/csv/timing_text.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/result_values.h"
+#include "core/base/content_hash.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/statistics.h"
 

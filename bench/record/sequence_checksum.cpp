@@ -5,7 +5,7 @@
 #include <fstream>
 #include <vector>
 
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {

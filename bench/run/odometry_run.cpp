@@ -14,6 +14,8 @@ namespace {
 
 /// Capacity of the buffer of decoded frames.
 constexpr std::size_t kDecodedAhead = 8;
+/// The same for cached frames: they are loaded faster than they are used, so the buffer is always full.
+constexpr std::size_t kCachedAhead = 3;
 
 std::size_t frames_to_run(const datasets::SequenceInfo& info, std::size_t max_frames) {
   if (info.frame_times.empty()) {
@@ -143,14 +145,31 @@ RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& wor
   return std::async(std::launch::async, work).get();
 }
 
+/// Number of frames to decode ahead; 0: frames are decoded by the thread that requests them.
+std::size_t frames_ahead(const datasets::SensorStream& stream, const RunSpec& spec) {
+  const bool fast = stream.frames_are_cached() && !needs_color(spec);
+  if (spec.deterministic_counts || (spec.mode == "realtime" && fast)) return 0;
+  return fast ? kCachedAhead : kDecodedAhead;
+}
+
+Frame load_frame(const datasets::SensorStream& stream, const RunSpec& spec, std::size_t index) {
+  Frame frame = stream.load_frame(index);
+  if (needs_color(spec)) frame.color = color_image(frame);
+  return frame;
+}
+
 }  // namespace
+
+bool needs_color(const RunSpec& spec) {
+  return spec.decode_color || spec.config.detector.kind == DetectorKind::kNetwork;
+}
 
 OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                          const RunControl& control) {
   require_recorded_boxes(spec.config, stream.info());
   RunRecorder recorder(stream, spec);
-  FramePrefetcher prefetcher([&stream](std::size_t index) { return stream.load_frame(index); },
-                             recorder.frames_planned(), spec.deterministic_counts ? 0 : kDecodedAhead);
+  FramePrefetcher prefetcher([&](std::size_t index) { return load_frame(stream, spec, index); },
+                             recorder.frames_planned(), frames_ahead(stream, spec));
   const auto on_update = [&](const OdometryUpdate& update) {
     recorder.add(update);
     if (control.on_update) control.on_update(update);

@@ -30,6 +30,7 @@ struct RunSpec {
   double speed = 1.0;                 ///< clock rate of "realtime" and of a device
   std::optional<DeviceModel> device;  ///< simulate the timing of that device; `mode` must be "sequential"
   std::size_t max_frames = 0;         ///< frames from the start; 0 = all
+  bool decode_color = false;          ///< the color image of every frame will be used, e.g. for a video
   bool keep_spans = false;            ///< record time spans, for timelines
   bool deterministic_counts = false;  ///< without prefetching and on a thread with a separate heap, for
                                       ///< reproducible instruction counts
@@ -56,6 +57,10 @@ struct OdometryRun {
   std::chrono::nanoseconds recording{};  ///< time spent on recording this
   double wall_s = 0.0;                   ///< from the request of the first frame to the last update
 };
+
+/// Whether the color image of every frame is used, by a network or a video; it is decoded with the frame
+/// then.
+[[nodiscard]] bool needs_color(const RunSpec& spec);
 
 /// @param control `on_update` may be empty
 /// @throws InputError for an unknown mode, a sequence without frames or without the recorded boxes that the

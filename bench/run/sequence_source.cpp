@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "bench/config/spelling.h"
+#include "bench/run/rendered_sequence.h"
 #include "core/base/error.h"
-#include "datasets/synthetic/sequence/sequence_cache.h"
 
 namespace stillpoint::bench {
 
@@ -18,7 +18,8 @@ std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
     throw InputError("sequence \"" + name + "\"",
                      "is neither a folder nor a preset" + suggestion(name, presets));
   }
-  const std::filesystem::path folder = synth::cached_sequence(synth::preset_request(name), control);
+  const std::filesystem::path folder =
+      rendered_sequence(synth::preset_request(name), control, options.frame_cache);
   return folder.empty() ? nullptr : datasets::open_sequence(folder, options);
 }
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <zstd.h>
 
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {

@@ -5,11 +5,11 @@
 
 #include "bench/config/apply_settings.h"
 #include "bench/config/toml_source.h"
-#include "bench/model/content_hash.h"
 #include "bench/model/json_problem.h"
 #include "bench/record/host_info.h"
 #include "bench/record/result_values.h"
 #include "bench/run/run_result.h"
+#include "core/base/content_hash.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"

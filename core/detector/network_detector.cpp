@@ -151,7 +151,7 @@ InputScale input_scale(cv::Size image, const DetectorConfig& config) {
 }
 
 cv::Mat make_blob(const Frame& frame, const InputScale& scale, const DetectorConfig& config) {
-  cv::Mat color = frame.color;
+  cv::Mat color = color_image(frame);
   if (color.empty()) cv::cvtColor(frame.gray, color, cv::COLOR_GRAY2RGB);
   const cv::Size size(std::min(cvRound(color.cols * scale.x), config.input_px),
                       std::min(cvRound(color.rows * scale.y), config.input_px));

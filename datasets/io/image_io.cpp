@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "core/base/error.h"
+#include "datasets/io/file_bytes.h"
+#include "datasets/io/luma.h"
+#include "datasets/io/png_decoder.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -81,6 +85,14 @@ cv::Mat read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, 
   return pixels;
 }
 
+/// nullopt if the file is no PNG of a common kind with this depth; OpenImageIO reads it, or describes the
+/// fault.
+std::optional<DecodedPng> decode_fast(const std::filesystem::path& file, PngPixels pixels, int depth) {
+  const std::optional<std::string> bytes = file_bytes(file);
+  const std::optional<DecodedPng> png = bytes ? decode_png(*bytes, pixels) : std::nullopt;
+  return png && png->image.depth() == depth ? png : std::nullopt;
+}
+
 OIIO::ImageSpec spec_of(const cv::Mat& image) {
   const bool supported = image.type() == CV_8UC1 || image.type() == CV_8UC3 || image.type() == CV_16UC1;
   STILLPOINT_CHECK(supported && !image.empty());
@@ -125,6 +137,7 @@ void write_atomically(const std::filesystem::path& file, const Bytes& bytes) {
 }  // namespace
 
 cv::Mat read_image(const std::filesystem::path& file) {
+  if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored, CV_8U)) return png->image;
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.format != OIIO::TypeDesc(OIIO::TypeDesc::UINT8)) {
@@ -134,7 +147,17 @@ cv::Mat read_image(const std::filesystem::path& file) {
   return read_pixels(file, *input, spec.nchannels < 3 ? 1 : 3, OIIO::TypeDesc::UINT8);
 }
 
+GrayImage read_gray(const std::filesystem::path& file) {
+  if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kGray, CV_8U)) {
+    return {.image = png->image, .is_color = png->is_color};
+  }
+  const cv::Mat image = read_image(file);
+  return {.image = to_gray(image), .is_color = image.channels() == 3};
+}
+
 cv::Mat read_depth(const std::filesystem::path& file) {
+  if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored, CV_16U))
+    return png->image;
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.format != OIIO::TypeDesc(OIIO::TypeDesc::UINT16) || spec.nchannels != 1) {
@@ -151,14 +174,18 @@ cv::Mat to_gray(const cv::Mat& image) {
   cv::Mat gray(image.size(), CV_8UC1);
   for (int row = 0; row < image.rows; ++row) {
     const cv::Vec3b* const rgb = image.ptr<cv::Vec3b>(row);
-    std::uint8_t* const luma = gray.ptr<std::uint8_t>(row);
+    std::uint8_t* const out = gray.ptr<std::uint8_t>(row);
     for (int column = 0; column < image.cols; ++column) {
-      const cv::Vec3b& pixel = rgb[column];  // 0.299, 0.587, 0.114 in 1/2^14
-      luma[column] =
-          static_cast<std::uint8_t>((4899 * pixel[0] + 9617 * pixel[1] + 1868 * pixel[2] + 8192) >> 14);
+      const cv::Vec3b& pixel = rgb[column];
+      out[column] = luma(pixel[0], pixel[1], pixel[2]);
     }
   }
   return gray;
+}
+
+std::string image_decoder_version() {
+  return "OpenImageIO " + std::to_string(OIIO::openimageio_version()) + " " +
+         std::string(OIIO::get_string_attribute("library_list"));
 }
 
 void write_png(const std::filesystem::path& file, const cv::Mat& image) {

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <string>
 
 namespace stillpoint::datasets {
 
@@ -14,14 +15,26 @@ namespace stillpoint::datasets {
 /// @throws InputError if the file is missing, truncated, undecodable, or has another bit depth
 [[nodiscard]] cv::Mat read_image(const std::filesystem::path& file);
 
+struct GrayImage {
+  cv::Mat image;          ///< CV_8UC1
+  bool is_color = false;  ///< whether the file is in color
+};
+
+/// `to_gray(read_image(file))`, in less time.
+/// @throws InputError as `read_image`
+[[nodiscard]] GrayImage read_gray(const std::filesystem::path& file);
+
 /// Decodes a depth image: one channel of 16 bits.
 /// @return CV_16UC1, the raw values
 /// @throws InputError as above
 [[nodiscard]] cv::Mat read_depth(const std::filesystem::path& file);
 
-/// Luma of an RGB image (ITU-R BT.601 weights, rounded); a gray image is returned unchanged.
+/// Luma of an RGB image, see luma.h; a gray image is returned unchanged.
 /// @param image CV_8UC3 (R, G, B) or CV_8UC1
 [[nodiscard]] cv::Mat to_gray(const cv::Mat& image);
+
+/// Names and versions of the libraries that decode images. Lossy formats may decode differently with others.
+[[nodiscard]] std::string image_decoder_version();
 
 /// Writes a PNG, compressed for speed rather than size.
 /// @param image CV_8UC1, CV_8UC3 (R, G, B) or CV_16UC1, not empty

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/model/content_hash.h"
 #include "bench/model/metrics.h"
+#include "core/base/content_hash.h"
 #include "core/base/module_timings.h"
 #include "reports/dashboard/history_text.h"
 #include "reports/tables/escaping.h"
@@ -104,7 +104,7 @@ std::string commit_file(const bench::Commit& commit) {
   for (const char letter : commit.name.substr(0, 12)) {
     if (std::isalnum(static_cast<unsigned char>(letter)) != 0) name += letter;
   }
-  return "commits/" + name + "-" + bench::hash_text(bench::content_hash(commit.name)) + ".html";
+  return "commits/" + name + "-" + hash_text(content_hash(commit.name)) + ".html";
 }
 
 std::vector<bench::HistorySubject> subjects_of(const bench::CommitHistory& history) {

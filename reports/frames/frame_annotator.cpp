@@ -30,7 +30,8 @@ cv::Point fixed(const cv::Point2d& pixel) {
 }
 
 cv::Mat canvas_of(const Frame& frame) {
-  if (!frame.color.empty()) return frame.color.clone();
+  const cv::Mat color = color_image(frame);
+  if (!color.empty()) return color.clone();
   cv::Mat canvas;
   cv::cvtColor(frame.gray, canvas, cv::COLOR_GRAY2RGB);
   return canvas;

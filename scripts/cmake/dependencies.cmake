@@ -23,6 +23,8 @@ find_package(benchmark 1.7 REQUIRED)
 # Not find_package: Debian's OpenImageIO config file fails without openimageio-tools.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
+pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate>=1.14)
+pkg_check_modules(BLOSC REQUIRED IMPORTED_TARGET blosc>=1.21)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd>=1.5)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo>=1.16)
 pkg_check_modules(MICROHTTPD REQUIRED IMPORTED_TARGET libmicrohttpd>=0.9.75)

@@ -32,6 +32,7 @@ void limit_files(std::uint64_t bytes) {
   const std::string& out = options.out_file.empty() ? out_file : options.out_file;
   dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
   dup2(err_pipe, STDERR_FILENO);
+  setenv("STILLPOINT_CACHE_SIZE", "0", 0);  // tests leave nothing in the user's cache
   for (std::string setting : options.environment) {
     const std::size_t equals = setting.find('=');
     setenv(setting.substr(0, equals).c_str(), setting.substr(equals + 1).c_str(), 1);

@@ -68,7 +68,8 @@ Command data_command() {
   return {.name = "data",
           .summary = "Create and inspect sequences",
           .example = "data synth walking_xyz --out build/walking_xyz",
-          .subcommands = {check_command(), synth_command(), add_command(), list_command(), faults_command()}};
+          .subcommands = {check_command(), synth_command(), add_command(), list_command(), cache_command(),
+                          faults_command()}};
 }
 
 }  // namespace stillpoint::bench

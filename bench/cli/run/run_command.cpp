@@ -11,6 +11,7 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
+#include "bench/cli/run/open_with_progress.h"
 #include "bench/cli/run/run_dumps.h"
 #include "bench/cli/run/run_layout.h"
 #include "bench/config/config_file.h"
@@ -19,11 +20,11 @@
 #include "bench/plan/sequence_argument.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/output_guard.h"
+#include "bench/record/remembered_checksum.h"
 #include "bench/record/run_files.h"
-#include "bench/record/sequence_checksum.h"
+#include "bench/run/frame_cache_settings.h"
 #include "bench/run/heartbeat.h"
 #include "bench/run/recorded_boxes.h"
-#include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "datasets/faults/faulty_stream.h"
 #include "datasets/open_sequence.h"
@@ -49,6 +50,7 @@ struct RunArguments {
   std::string sequence_id;
   int max_frames = 0;
   bool deterministic_counts = false;
+  bool no_frame_cache = false;
   double speed = 1.0;
   std::vector<std::string> dumps;
   int passes = 1;
@@ -75,6 +77,7 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
                              .mode = arguments.mode,
                              .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames),
+                             .decode_color = !arguments.video.empty(),
                              .keep_spans = true,
                              .deterministic_counts = arguments.deterministic_counts},
                     .folder = {},
@@ -140,7 +143,8 @@ RunResult execute(const datasets::SensorStream& stream, const RunArguments& argu
 /// --sequence-id, or the checksum of the sequence.
 std::string id_of(const datasets::SequenceInfo& info, const RunArguments& arguments) {
   if (interrupt_requested()) return "";
-  return arguments.sequence_id.empty() ? sequence_checksum(info.folder) : arguments.sequence_id;
+  return arguments.sequence_id.empty() ? remembered_checksum(info.folder, checksum_folder())
+                                       : arguments.sequence_id;
 }
 
 std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
@@ -194,18 +198,17 @@ int exit_code(Outcome outcome) {
 }
 
 /// Opens the sequence; renders it first if necessary. @return null if interrupted
-std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments) {
-  std::unique_ptr<ProgressLine> progress;
-  const auto on_rendered = [&](int done, int total) {
-    if (!progress) {
-      progress = std::make_unique<ProgressLine>("rendering " + arguments.sequence,
-                                                static_cast<std::size_t>(total), "frames");
-    }
-    progress->update(static_cast<std::size_t>(done));
-  };
-  auto stream = find_sequence(resolve_sequence(arguments.sequence),
-                              {.format = arguments.format, .rig_file = arguments.rig},
-                              {.progress = on_rendered, .stop_requested = interrupt_requested});
+std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
+                                             const std::vector<ConfiguredRun>& runs) {
+  // Instruction counts must not depend on earlier runs; several passes use all frames.
+  const bool cached = !arguments.no_frame_cache && !arguments.deterministic_counts;
+  const int frames = arguments.passes == 1 ? arguments.max_frames : 0;
+  auto stream =
+      open_with_progress(resolve_sequence(arguments.sequence),
+                         {.format = arguments.format,
+                          .rig_file = arguments.rig,
+                          .defer_color = std::ranges::none_of(runs, needs_color, &ConfiguredRun::spec),
+                          .frame_cache = logged_frame_cache(cached, frames)});
   if (stream && arguments.passes > 1)
     stream = datasets::ping_pong_playback(std::move(stream), arguments.passes);
   return stream ? datasets::with_faults(std::move(stream), faults_of(arguments)) : nullptr;
@@ -228,7 +231,7 @@ int run(const RunArguments& arguments) {
   install_interrupt_handlers();
   const std::vector<ConfiguredRun> runs = plan_runs(arguments);
   static_cast<void>(faults_of(arguments));  // reports errors before the sequence is rendered
-  const std::unique_ptr<datasets::SensorStream> stream = open(arguments);
+  const std::unique_ptr<datasets::SensorStream> stream = open(arguments, runs);
   if (!stream) return kExitInterrupted;
   for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
   for (const ConfiguredRun& configured : runs) require_recorded_boxes(configured.spec.config, stream->info());
@@ -283,6 +286,7 @@ Command run_command() {
             &arguments->sequence_id},
            {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
            {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
+           {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
            {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
             &arguments->deterministic_counts}},
       .action = [arguments] { return run(*arguments); }};

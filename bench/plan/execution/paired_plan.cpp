@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "bench/config/config_text.h"
-#include "bench/model/content_hash.h"
 #include "bench/model/replicates.h"
 #include "bench/process/child_process.h"
+#include "core/base/content_hash.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {

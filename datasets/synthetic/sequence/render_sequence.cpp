@@ -93,15 +93,17 @@ class SequenceRenderer {
         visible_(times.size()) {}
 
   /// Thread-safe for different frames.
-  void render(std::size_t index) {
+  void render(std::size_t index, const RenderControl& control) {
     const Timestamp t = times_[index];
     const RenderedFrame frame = render_ideal_frame(t);
     const double gain = setup_.scene.gain * exposure_gain(request_.color, seconds_between(times_.front(), t));
     const std::uint64_t color_key = random_key(request_.seed, RandomStream::kColorNoise, index);
     const std::uint64_t depth_key = random_key(request_.seed, RandomStream::kDepthNoise, index);
-    writer_.write_images(
-        t, simulate_color(frame, setup_.rig.camera, request_.color, {gain, color_key}),
-        simulate_depth({frame.depth_m, frame.width, frame.height}, request_.depth, depth_key));
+    const cv::Mat color = simulate_color(frame, setup_.rig.camera, request_.color, {gain, color_key});
+    const cv::Mat depth =
+        simulate_depth({frame.depth_m, frame.width, frame.height}, request_.depth, depth_key);
+    writer_.write_images(t, color, depth);
+    if (control.on_images) control.on_images(index, color, depth);
     if (request_.labels) writer_.write_labels(t, label_image(frame), speed_image(frame));
     visible_[index] = visible_objects(frame);
   }
@@ -177,7 +179,7 @@ bool render_sequence(const SynthRequest& request, const fs::path& folder, const 
   TemporaryFolder partial(folder.string() + ".partial-" + std::to_string(::getpid()));
   const SequenceWriter writer(partial.path(), request.layout, request.labels);
   SequenceRenderer work(request, setup, times, writer);
-  const auto render = [&work](int index) { work.render(static_cast<std::size_t>(index)); };
+  const auto render = [&](int index) { work.render(static_cast<std::size_t>(index), control); };
   if (!for_each_frame(static_cast<int>(times.size()), control, render)) return false;
   const SequenceBoxes boxes = boxes_of(request, setup, times, work.visible());
   writer.write_boxes("true_boxes.txt", boxes.truth);

@@ -2,8 +2,10 @@
 /// Renders a whole sequence into a folder with multiple threads.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <opencv2/core/mat.hpp>
 
 #include "datasets/synthetic/sequence/presets.h"
 
@@ -13,6 +15,8 @@ namespace stillpoint::synth {
 struct RenderControl {
   std::function<void(int done, int total)> progress = {};  ///< called after each frame, serialized
   std::function<bool()> stop_requested = {};               ///< called before each frame, from any thread
+  /// Called with the images of each frame, from any thread.
+  std::function<void(std::size_t index, const cv::Mat& color, const cv::Mat& depth)> on_images = {};
   int threads = 0;  ///< 0 = hardware concurrency; does not affect the result
 };
 

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "bench/model/content_hash.h"
 #include "bench/store/maintenance/maintenance.h"
 #include "bench/store/maintenance/store_export.h"
 #include "bench/store/store_writer.h"
+#include "core/base/content_hash.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 
 #include <gtest/gtest.h>
 
-namespace stillpoint::bench {
+namespace stillpoint {
 namespace {
 
 // Published values of XXH64 with seed 0: the empty text, one shorter than a word, one longer than a stripe.
@@ -18,4 +18,4 @@ TEST(ContentHash, DependsOnTheSeed) { EXPECT_NE(content_hash("abc", 1), content_
 TEST(ContentHash, IsPrintedWithLeadingZeros) { EXPECT_EQ(hash_text(0xAB), "00000000000000ab"); }
 
 }  // namespace
-}  // namespace stillpoint::bench
+}  // namespace stillpoint

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/model/content_hash.h"
+#include "core/base/content_hash.h"
 
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cstring>
 
-#include <fmt/format.h>
-
-namespace stillpoint::bench {
+namespace stillpoint {
 namespace {
 
 // Primes of the XXH64 specification.
@@ -68,6 +67,11 @@ std::uint64_t content_hash(std::string_view bytes, std::uint64_t seed) {
   return hash ^ (hash >> 32);
 }
 
-std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+std::string hash_text(std::uint64_t hash) {
+  std::array<char, 16> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), hash, 16);
+  const std::string text(digits.data(), end);
+  return std::string(digits.size() - text.size(), '0') + text;
+}
 
-}  // namespace stillpoint::bench
+}  // namespace stillpoint

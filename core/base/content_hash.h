@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace stillpoint::bench {
+namespace stillpoint {
 
 /// @param seed hash of the preceding content, to chain several contents
 [[nodiscard]] std::uint64_t content_hash(std::string_view bytes, std::uint64_t seed = 0);
@@ -14,4 +14,4 @@ namespace stillpoint::bench {
 /// Sixteen hexadecimal digits.
 [[nodiscard]] std::string hash_text(std::uint64_t hash);
 
-}  // namespace stillpoint::bench
+}  // namespace stillpoint

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/run/open_with_progress.h"
+
+#include <spdlog/spdlog.h>
+
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress.h"
+#include "bench/run/frame_cache_settings.h"
+#include "bench/run/sequence_source.h"
+
+namespace stillpoint::bench {
+
+std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& name,
+                                                           const datasets::OpenOptions& options) {
+  std::unique_ptr<ProgressLine> progress;
+  const auto on_rendered = [&](int done, int total) {
+    if (!progress) {
+      progress =
+          std::make_unique<ProgressLine>("rendering " + name, static_cast<std::size_t>(total), "frames");
+    }
+    progress->update(static_cast<std::size_t>(done));
+  };
+  return find_sequence(name, options, {.progress = on_rendered, .stop_requested = interrupt_requested});
+}
+
+std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames) {
+  if (!enabled) return std::nullopt;
+  return frame_cache_options(static_cast<std::size_t>(max_frames),
+                             [](const std::string& text) { spdlog::warn("{}", text); });
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Checksum of a sequence folder without reading all of its files in every run.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace stillpoint::bench {
+
+/// `sequence_checksum(folder)`. It is remembered in `cache`, with the names, sizes, modification times and
+/// inodes of all files, and computed again if any of these differs. A cache that cannot be read or written
+/// has no effect.
+/// @param cache folder, created if necessary; empty: nothing is remembered
+/// @throws InputError as `sequence_checksum`
+[[nodiscard]] std::string remembered_checksum(const std::filesystem::path& folder,
+                                              const std::filesystem::path& cache);
+
+}  // namespace stillpoint::bench
