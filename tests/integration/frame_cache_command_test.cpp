@@ -10,7 +10,7 @@
 #include <sys/resource.h>
 
 #include "tests/support/program.h"
-#include "tests/support/rendered_sequence.h"
+#include "tests/support/sequences/rendered_sequence.h"
 
 namespace stillpoint {
 namespace {
