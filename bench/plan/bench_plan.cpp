@@ -13,13 +13,13 @@
 #include "bench/config/config_text.h"
 #include "bench/config/toml_source.h"
 #include "bench/plan/plan_validation.h"
+#include "bench/plan/synth_settings.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
 namespace {
 
 constexpr std::string_view kConfigPrefix = "config.";
-constexpr std::string_view kSynthPrefix = "synth.";
 constexpr std::string_view kSweepPrefix = "sweep.";
 
 std::string toml_text(const SettingValue& value) {

@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kSynthPrefixLength = 6;  // "synth."
-
 bool is_glob(const std::string& pattern) { return pattern.find_first_of("*?[") != std::string::npos; }
 
 bool matches(const std::string& pattern, const std::string& name) {
@@ -150,7 +148,7 @@ PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset,
     request = with_number(request, setting.key, setting.values.front());
   }
   if (!axis.key.empty())
-    request = with_number(request, axis.key.substr(kSynthPrefixLength), axis.values.front());
+    request = with_number(request, axis.key.substr(kSynthPrefix.size()), axis.values.front());
   return {.name = preset,
           .id = "synth-" + synth::request_key(request),
           .rendering = request,

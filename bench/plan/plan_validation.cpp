@@ -22,7 +22,6 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::string_view kSynthPrefix = "synth.";
 constexpr double kMaxWhole = 9e15;  // below 2^53: exact as an integer
 
 /// @param place of the setting in the plan, for messages

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "datasets/synthetic/sequence/presets.h"
 
 namespace stillpoint::bench {
+
+/// Beginning of the keys of plans that belong to a rendering request.
+inline constexpr std::string_view kSynthPrefix = "synth.";
 
 /// Returns the request with one numeric field changed.
 /// @param key dotted, e.g. "walkers", "depth.noise_per_m", "imu.gyro_bias"

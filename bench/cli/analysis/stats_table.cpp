@@ -17,7 +17,7 @@ namespace stillpoint::bench {
 namespace {
 
 constexpr std::size_t kMaxListed = 20;
-constexpr double kSignificance = 0.05;
+constexpr double kStatsSignificance = 0.05;
 
 /// What distinguishes groups.
 struct GroupColumn {
@@ -88,7 +88,7 @@ std::string interval_cell(const std::optional<eval::Interval>& interval, std::si
 }
 
 std::string interval_note(const std::string& test, const std::set<std::size_t>& counts) {
-  const std::size_t smallest = eval::smallest_count(kSignificance);
+  const std::size_t smallest = eval::smallest_count(kStatsSignificance);
   const std::string note = fmt::format("95 % intervals: {}, from n = {} on", test, smallest);
   const auto large = counts.lower_bound(smallest);
   if (large == counts.begin() || *std::prev(large) == 0) return note + ".";
