@@ -21,6 +21,13 @@ bool is_dropped(const SensorFault& fault, double elapsed_s, std::size_t index) {
       .chance(fault.amount);
 }
 
+/// The frame with its color image, to which a fault can be applied.
+Frame with_color(Frame frame) {
+  frame.color = color_image(frame);
+  frame.decode_color = nullptr;
+  return frame;
+}
+
 class FaultyStream final : public SensorStream {
  public:
   FaultyStream(std::unique_ptr<SensorStream> stream, std::vector<SensorFault> faults)
@@ -83,6 +90,7 @@ class FaultyStream final : public SensorStream {
         const Frame frozen = stream_->load_frame(last_frame_before(fault, frame.t));
         frame.gray = frozen.gray;
         frame.color = frozen.color;
+        frame.decode_color = frozen.decode_color;
         frame.depth = frozen.depth;
         return frame;
       }
@@ -90,6 +98,7 @@ class FaultyStream final : public SensorStream {
         if (source > 0) frame.depth = stream_->load_frame(source - 1).depth;
         return frame;
       default:
+        if (descriptor_of(fault.kind).target == FaultTarget::kImages) frame = with_color(std::move(frame));
         return frame_with_fault(std::move(frame), fault, source);
     }
   }

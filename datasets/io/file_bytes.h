@@ -16,7 +16,7 @@ namespace stillpoint::datasets {
 /// The content of a file; nullopt if it is missing, no regular file, cannot be read, or becomes shorter
 /// meanwhile.
 [[nodiscard]] inline std::optional<std::string> file_bytes(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // does not wait for pipes
   if (descriptor < 0) return std::nullopt;
   struct stat status {};
   const bool regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);

@@ -10,7 +10,7 @@
 
 #include <csignal>
 
-#include "tests/support/cached_sequence.h"
+#include "tests/support/sequences/cached_sequence.h"
 
 namespace stillpoint::datasets {
 namespace {

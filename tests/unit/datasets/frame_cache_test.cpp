@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/cached_sequence.h"
+#include "tests/support/sequences/cached_sequence.h"
 #include "tests/support/expect_input_error.h"
 
 namespace stillpoint::datasets {

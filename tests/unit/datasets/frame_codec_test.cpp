@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "tests/support/cached_sequence.h"
+#include "tests/support/sequences/cached_sequence.h"
 
 namespace stillpoint::datasets {
 namespace {

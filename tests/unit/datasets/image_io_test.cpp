@@ -2,6 +2,7 @@
 #include "datasets/io/image_io.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -88,6 +89,13 @@ TEST(ImageIo, TruncatedImagesAreErrors) {
   truncate_by_half(folder.path() / "b.png");
   expect_input_error([&] { static_cast<void>(read_image(folder.path() / "a.png")); }, {"a.png", "truncated"});
   expect_input_error([&] { static_cast<void>(read_depth(folder.path() / "b.png")); }, {"b.png", "truncated"});
+}
+
+TEST(ImageIo, ANamedPipeIsAnErrorAndNotWaitedFor) {
+  const TemporaryFolder folder;
+  const std::filesystem::path pipe = folder.path() / "image.png";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_input_error([&] { static_cast<void>(read_image(pipe)); }, {"image.png", "no such image"});
 }
 
 TEST(ImageIo, TextAndEmptyFilesAreErrors) {

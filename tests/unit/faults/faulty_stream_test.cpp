@@ -105,6 +105,31 @@ TEST(FaultyStream, BlanksFreezesAndRemovesDepth) {
   EXPECT_EQ(stream_with("depth_scaled:start=2,amount=2")->load_frame(25).depth.at<std::uint16_t>(0, 0), 2052);
 }
 
+TEST(FaultyStream, DeferredColorImagesHaveTheFaultsOfOtherColorImages) {
+  class Deferred final : public SensorStream {
+   public:
+    [[nodiscard]] const SequenceInfo& info() const override { return stream_.info(); }
+    [[nodiscard]] Frame load_frame(std::size_t index) const override {
+      Frame frame = stream_.load_frame(index);
+      frame.decode_color = [color = frame.color] { return color; };
+      frame.color = cv::Mat();
+      return frame;
+    }
+    [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t) const override { return std::nullopt; }
+
+   private:
+    NumberedStream stream_;
+  };
+  for (const FaultDescriptor& descriptor : fault_descriptors()) {
+    if (descriptor.kind == FaultKind::kDropped) continue;
+    if (descriptor.target != FaultTarget::kImages && descriptor.target != FaultTarget::kDepth) continue;
+    const std::string fault = std::string(descriptor.name) + ":start=2,duration=1";
+    const auto deferred = with_faults(std::make_unique<Deferred>(), {parse_fault(fault)});
+    EXPECT_TRUE(equal(color_image(deferred->load_frame(25)), stream_with(fault)->load_frame(25).color))
+        << fault;
+  }
+}
+
 TEST(FaultyStream, CoversTheRequestedFraction) {
   const Frame occluded = stream_with("occluder:start=2,amount=0.75")->load_frame(25);
   EXPECT_EQ(cv::countNonZero(occluded.depth == 450), kWidth * kHeight * 3 / 4);
