@@ -3,7 +3,9 @@
 
 #include <utility>
 
+#include "core/backend/failure_detection.h"
 #include "core/backend/start/depth_initialization.h"
+#include "core/backend/start/frozen_world.h"
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/start/initializer.h"
 #include "core/backend/start/monocular_structure.h"
@@ -15,11 +17,6 @@ namespace {
 
 /// Inlier threshold of camera localization.
 constexpr double kLocalizationInlier_px = 5.0;
-
-/// Failure detection limits. Qin et al. 2018, Sec. VI-E; values of the published code.
-constexpr double kMaxAccelBias = 2.5;  // [m/s^2]
-constexpr double kMaxGyroBias = 1.0;   // [rad/s]
-constexpr double kMaxJump_m = 5.0;     // between successive frames
 
 /// Largest bias change from the linearization point for which the first-order correction is used.
 constexpr double kRepropagateGyro = 0.01;  // [rad/s]
@@ -165,24 +162,25 @@ void Estimator::try_initialize_imu() {
   const std::optional<InertialAlignment> alignment =
       align_with_imu(*visual, imu_config_.gravity, backend_.initializer);
   if (!alignment) return;
-  apply_alignment(*alignment, window_.frames.front().state.T_w_b, *visual);
+  const Pose anchor = window_.frames.front().state.T_w_b;
+  if (backend_.gravity == GravityModel::kEstimated) {
+    apply_alignment_to_frozen_world(*alignment, anchor, *visual);
+  } else {
+    apply_alignment(*alignment, anchor, *visual);
+  }
   window_ = std::move(*visual);
   window_.prior = initial_prior(window_, backend_.initializer);
 }
 
-bool Estimator::has_failed(const NavState& before) const {
-  const NavState& now = window_.frames.back().state;
-  const bool finite = now.T_w_b.p.allFinite() && now.T_w_b.q.coeffs().allFinite() && now.v_w.allFinite();
-  return !finite || now.accel_bias.norm() > kMaxAccelBias || now.gyro_bias.norm() > kMaxGyroBias ||
-         (now.T_w_b.p - before.T_w_b.p).norm() > kMaxJump_m;
-}
-
 /// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
-void Estimator::restart() {
+/// @param gravity_w before the solve that failed; an estimated one is kept with its covariance
+void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   Window fresh;
   fresh.T_b_c = rig_.T_b_c;
   fresh.time_offset_s = rig_.time_offset_s;
-  fresh.gravity_w = window_.gravity_w;
+  fresh.gravity_w = gravity_w;
+  fresh.gravity_covariance =
+      window_.estimates_gravity() ? gravity_covariance(window_.prior) : window_.gravity_covariance;
   window_ = std::move(fresh);
   newest_.v_w.setZero();
   previous_ = newest_;
@@ -248,6 +246,7 @@ bool Estimator::refine() {
   try_initialize_imu();
   repropagate_preintegrations();
   const NavState before = newest_;
+  const Eigen::Vector3d gravity_before = window_.gravity_w;
   if (has_metric_scale()) {
     initialize_depths(backend_, rig_.camera.focal_px(), window_);
     const ScopedTimer solve_timer(update_.timings, Module::kWindowSolve);
@@ -263,9 +262,9 @@ bool Estimator::refine() {
     update_.counters.solver_iterations = report.iterations;
   }
   update_.counters.keyframe = keyframe_;
-  if (has_failed(before)) {
+  if (has_failed(before, window_.frames.back().state)) {
     update_.counters.reset = true;
-    restart();
+    restart(gravity_before);
     return false;
   }
   previous_ = newest_;
@@ -293,6 +292,9 @@ void Estimator::report(const NavState& state) {
   update_.T_w_c = state.T_w_b * window_.T_b_c;
   update_.status = status();
   update_.time_offset_s = window_.time_offset_s;
+  if (window_.gravity_covariance) {
+    update_.q_level_w = Eigen::Quaterniond::FromTwoVectors(window_.gravity_w, -Eigen::Vector3d::UnitZ());
+  }
 }
 
 }  // namespace stillpoint

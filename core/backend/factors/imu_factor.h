@@ -8,18 +8,21 @@
 
 namespace stillpoint {
 
-/// See ImuResidual.
-class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9> {
+/// See ImuResidual; a fifth parameter block is gravity.
+class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9, 3> {
  public:
   /// @param imu must outlive the factor; of positive duration
-  ImuFactor(const Preintegration& imu, const Eigen::Vector3d& gravity_w) : residual_(imu, gravity_w) {}
+  explicit ImuFactor(const Preintegration& imu) : imu_(imu) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    residual_.evaluate(parameters, residuals, jacobians);
+    const ImuResidual residual(imu_, Eigen::Vector3d(parameters[4]));
+    residual.evaluate(parameters, residuals, jacobians);
+    if (jacobians != nullptr && jacobians[4] != nullptr)
+      residual.evaluate_gravity_jacobian(parameters[0], jacobians[4]);
     return true;
   }
 
  private:
-  ImuResidual residual_;
+  const Preintegration& imu_;
 };
 
 }  // namespace stillpoint

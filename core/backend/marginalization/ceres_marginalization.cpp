@@ -49,8 +49,7 @@ LinearPrior CeresSolver::marginalize_oldest(const Window& window, const BackendC
     const int size = local_size(block.kind);
     if (equations.H.diagonal().segment(column, size).isZero(0.0)) continue;
     remaining = with_columns(std::move(remaining), column, size);
-    const Eigen::Map<const Eigen::VectorXd> now(blocks.at(block), global_size(block.kind));
-    prior.blocks.push_back({block.kind, block.frame - 1, now});
+    prior.blocks.push_back(prior_block_after_slide(block, blocks));
   }
   if (remaining.empty()) return prior;
   SquareRoot root = eliminate(equations.H, equations.b, marginalized, remaining);

@@ -38,7 +38,7 @@ Linearized linearize(const Residual& source, const ParameterBlocks& blocks) {
   }
   out.residual *= weight;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const int tangent = sizes[i] == 7 ? 6 : sizes[i];
+    const int tangent = i < source.states.size() ? local_size(source.states[i].kind) : 1;
     out.jacobians[i] = RowMajorMatrix(weight * out.jacobians[i].leftCols(tangent));
   }
   return out;

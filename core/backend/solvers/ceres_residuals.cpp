@@ -61,12 +61,13 @@ void ResidualBuilder::add_landmark(int index) {
 void ResidualBuilder::add_imu(int frame) {
   const std::optional<Preintegration>& imu = window_.frames[static_cast<std::size_t>(frame)].from_previous;
   if (!window_.inertial || !imu) return;
-  residuals_.push_back({std::make_unique<ImuFactor>(*imu, window_.gravity_w),
+  residuals_.push_back({std::make_unique<ImuFactor>(*imu),
                         nullptr,
                         {{BlockKind::kPose, frame - 1},
                          {BlockKind::kSpeedBias, frame - 1},
                          {BlockKind::kPose, frame},
-                         {BlockKind::kSpeedBias, frame}},
+                         {BlockKind::kSpeedBias, frame},
+                         {BlockKind::kGravity}},
                         -1});
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/backend/factors/gravity_direction.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -36,7 +37,7 @@ void SchurSolver::read(const Window& window, const BackendConfig& config, double
   prior_.read(window.prior);
   calibration_.read(window.calibration);
   layout_ = ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
-                          variable_calibration(window, config));
+                          variable_globals(window, config));
 }
 
 double SchurSolver::linearize(const Window& window) {
@@ -142,6 +143,11 @@ void SchurSolver::apply_step() {
   if (extrinsics >= 0) add_to_pose(step_.states, extrinsics, candidate_.extrinsics());
   const int time_offset = layout_.column({BlockKind::kTimeOffset});
   if (time_offset >= 0) *candidate_.time_offset() += step_.states[time_offset];
+  const int gravity = layout_.column({BlockKind::kGravity});
+  if (gravity >= 0) {
+    Eigen::Map<Eigen::Vector3d> g(candidate_.gravity());
+    g = rotate_gravity(g, step_.states.segment<2>(gravity));
+  }
   visual_.apply_step(step_.landmarks, candidate_);
 }
 

@@ -192,11 +192,11 @@ void VisualTerms::add_coupling(const VisualLandmark& landmark, int frame, const 
   const Eigen::Index to_column = landmark.column;
   coupling_.block<6, 1>(6 * frame, to_column).noalias() = to.J_pose_j.transpose() * relative;
   coupling_.block<6, 1>(6 * landmark.host, to_column).noalias() += to.J_pose_i.transpose() * relative;
-  if (layout.variable_calibration().extrinsics) {
+  if (layout.variable_globals().extrinsics) {
     const int extrinsics = layout.column({BlockKind::kExtrinsics}) - layout.first_pose();
     coupling_.block<6, 1>(extrinsics, to_column).noalias() += to.J_extrinsics.transpose() * relative;
   }
-  if (layout.variable_calibration().time_offset) {
+  if (layout.variable_globals().time_offset) {
     coupling_(layout.column({BlockKind::kTimeOffset}) - layout.first_pose(), to_column) += column[6];
   }
 }

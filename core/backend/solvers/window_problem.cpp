@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/window_problem.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace stillpoint {
@@ -22,7 +23,7 @@ Pose unpack_pose(const double* values) {
 
 void ParameterBlocks::assign(const Window& window) {
   frames_ = window.frames.size();
-  values_.resize(16 * frames_ + 8 + window.landmarks.size());
+  values_.resize(16 * frames_ + 11 + window.landmarks.size());
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     const NavState& state = window.frames[i].state;
     pack_pose(state.T_w_b, pose(i));
@@ -30,6 +31,7 @@ void ParameterBlocks::assign(const Window& window) {
   }
   pack_pose(window.T_b_c, extrinsics());
   *time_offset() = window.time_offset_s;
+  Eigen::Map<Eigen::Vector3d>{gravity()} = window.gravity_w;
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     *inverse_depth(i) = window.landmarks[i].inverse_depth;
   }
@@ -43,6 +45,8 @@ std::size_t ParameterBlocks::offset(BlockRef block) const {
       return 7 * frames_ + 9 * static_cast<std::size_t>(block.frame);
     case BlockKind::kExtrinsics:
       return 16 * frames_;
+    case BlockKind::kGravity:
+      return 16 * frames_ + 8;
     case BlockKind::kTimeOffset:
       break;
   }
@@ -60,6 +64,7 @@ void unpack(const ParameterBlocks& blocks, Window& window) {
   }
   window.T_b_c = unpack_pose(blocks.extrinsics());
   window.time_offset_s = *blocks.time_offset();
+  window.gravity_w = Eigen::Vector3d(blocks.gravity());
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     window.landmarks[i].inverse_depth = *blocks.inverse_depth(i);
   }
@@ -79,11 +84,14 @@ bool uses_depth(const Observation& observation, const BackendConfig& config) {
   return config.depth.usage == DepthUsage::kWeighted && observation.depth > 0.0;
 }
 
-VariableCalibration variable_calibration(const Window& window, const BackendConfig& config) {
+VariableGlobals variable_globals(const Window& window, const BackendConfig& config) {
   const bool moving = window.inertial && window.frames.back().state.v_w.norm() > kMinSpeedForCalibration;
   return {.extrinsics = config.estimate_extrinsics && moving,
-          .time_offset = config.estimate_time_offset && moving};
+          .time_offset = config.estimate_time_offset && moving,
+          .gravity = window.estimates_gravity()};
 }
+
+VariableGlobals marginalized_globals(const Window& window) { return {.gravity = window.estimates_gravity()}; }
 
 std::vector<BlockRef> candidate_blocks(const Window& window, std::vector<BlockRef> recycled) {
   std::vector<BlockRef> blocks = std::move(recycled);
@@ -91,7 +99,13 @@ std::vector<BlockRef> candidate_blocks(const Window& window, std::vector<BlockRe
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
   if (!window.inertial) return blocks;
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
+  if (marginalized_globals(window).gravity) blocks.push_back({BlockKind::kGravity});
   return blocks;
+}
+
+PriorBlock prior_block_after_slide(BlockRef block, const ParameterBlocks& blocks) {
+  return {block.kind, std::max(block.frame - 1, -1),
+          Eigen::Map<const BlockVector>(blocks.at(block), global_size(block.kind))};
 }
 
 }  // namespace stillpoint

@@ -7,8 +7,9 @@
 
 namespace stillpoint {
 
-/// Initial prior of a window: fixes the gauge at frame 0 (position and heading, or the whole pose without
-/// IMU) and constrains its biases by their configured uncertainty.
+/// Initial prior of a window: fixes the gauge at frame 0 and constrains its biases by their configured
+/// uncertainty. The gauge is the whole pose; with an IMU and constant gravity only position and heading. If
+/// gravity is estimated, it is constrained by `Window::gravity_covariance`.
 [[nodiscard]] LinearPrior initial_prior(const Window& window, const InitializerConfig& config);
 
 /// Prior on extrinsics and time offset at their current values, with the configured uncertainty.
