@@ -102,7 +102,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
     next.state = newest_;
     next.state.t = frame.t;
     window_.frames.push_back(next);
-    window_.prior = initial_prior(window_, backend_.initializer);
+    window_.prior = initial_prior(window_, backend_);
     window_.calibration = calibration_prior(window_, backend_);
     return;
   }
@@ -169,7 +169,7 @@ void Estimator::try_initialize_imu() {
     apply_alignment(*alignment, anchor, *visual);
   }
   window_ = std::move(*visual);
-  window_.prior = initial_prior(window_, backend_.initializer);
+  window_.prior = initial_prior(window_, backend_);
 }
 
 /// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
@@ -190,7 +190,7 @@ void Estimator::slide(bool keyframe) {
   if (!is_full()) return;
   if (!has_metric_scale()) {
     keyframe ? remove_oldest_frame(window_) : remove_second_newest_frame(window_);
-    window_.prior = initial_prior(window_, backend_.initializer);
+    window_.prior = initial_prior(window_, backend_);
   } else if (keyframe) {
     LinearPrior prior = solver_->marginalize_oldest(window_, pixel_noise_.applied_to(backend_),
                                                     rig_.camera.focal_px(), std::move(discarded_prior_));
@@ -201,7 +201,7 @@ void Estimator::slide(bool keyframe) {
     remove_second_newest_frame(window_);
   }
   // Nothing connected the removed frame to the others: fix the gauge at the new oldest frame.
-  if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_.initializer);
+  if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_);
 }
 
 OdometryStatus Estimator::status() const {
@@ -253,7 +253,7 @@ bool Estimator::refine() {
     const Pose oldest = window_.frames.front().state.T_w_b;
     const SolveReport report =
         solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
-    if (!window_.inertial) restore_gauge(oldest, backend_.initializer, window_);
+    if (!window_.inertial) restore_gauge(oldest, backend_, window_);
     if (backend_.reprojection_error_px > 0.0) {
       pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
     }

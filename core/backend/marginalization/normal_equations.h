@@ -42,7 +42,9 @@ struct NormalEquations {
 
   /// Adds the residuals of one landmark (or of none), linearized at `blocks`. Unless it is `fixed`, the
   /// inverse depth l of the landmark is eliminated: H -= H_xl H_xl^T / H_ll, b -= H_xl b_l / H_ll.
-  void add(const std::vector<Residual>& group, const ParameterBlocks& blocks, bool fixed);
+  /// @param information factor on the information of the residuals
+  void add(const std::vector<Residual>& group, const ParameterBlocks& blocks, bool fixed,
+           double information = 1.0);
 
   StateLayout layout;
   Eigen::MatrixXd H;

@@ -73,12 +73,13 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
                                             double focal_px, LinearPrior recycled) {
   blocks_.assign(window);
   visual_.read(window, config, focal_px, LandmarkSelection::kHostedByOldest);
-  system_.reset(
-      ReducedLayout(static_cast<int>(window.frames.size()), window.inertial, marginalized_globals(window)));
+  system_.reset(ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
+                              marginalized_globals(window, config)));
   prior_.read(window.prior);
   prior_.add_to(system_, blocks_);
-  if (window.newest() >= 1 && has_imu_term(window, 1)) add_imu_term(window, 1, blocks_, system_);
-  visual_.add_to(system_, blocks_);
+  const Linearization at = linearize_at(blocks_, window, config, point_);
+  if (window.newest() >= 1 && has_imu_term(window, 1)) add_imu_term(window, 1, at, system_);
+  visual_.add_to(system_, at);
   newton_.states = -system_.g;
   visual_.eliminate(0.0, system_.H, newton_.states);
 
@@ -88,15 +89,17 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
   const auto marginalized = static_cast<Eigen::Index>(columns_.size());
   LinearPrior prior = std::move(recycled);
   prior.blocks.clear();
-  prior_blocks_ = candidate_blocks(window, std::move(prior_blocks_));
+  prior_blocks_ = candidate_blocks(window, config, std::move(prior_blocks_));
   for (const BlockRef block : prior_blocks_) {
     const int size = local_size(block.kind);
     if (system_.H.diagonal().segment(system_.layout.column(block), size).isZero(0.0)) continue;
     append_columns(block);
-    prior.blocks.push_back(prior_block_after_slide(block, blocks_));
+    prior.blocks.push_back(prior_block_after_slide(block, at.point));
   }
   if (prior.blocks.empty()) return prior;
-  return with_square_root(std::move(prior), marginalized);
+  prior = with_square_root(std::move(prior), marginalized);
+  if (at.at_first_estimates()) move_residual_to_linearization(blocks_, prior);
+  return prior;
 }
 
 }  // namespace stillpoint

@@ -37,12 +37,16 @@ struct ImuLinearization {
   }
 };
 
-ImuLinearization linearize_imu(const Window& window, int frame, const ParameterBlocks& blocks) {
+ImuLinearization linearize_imu(const Window& window, int frame, const Linearization& at) {
   ImuLinearization out;
-  const std::array<const double*, 4> states = addresses(imu_blocks(frame), blocks);
+  const std::array<const double*, 4> states = addresses(imu_blocks(frame), at.states);
   std::array<double*, 4> jacobians = {out.J_pose_i.data(), out.J_speed_bias_i.data(), out.J_pose_j.data(),
                                       out.J_speed_bias_j.data()};
-  imu_residual(window, frame, blocks).evaluate(states.data(), out.residual.data(), jacobians.data());
+  imu_residual(window, frame, at.states).evaluate(states.data(), out.residual.data(), jacobians.data());
+  if (!at.at_first_estimates()) return out;
+  Vector15 unused;
+  const std::array<const double*, 4> point = addresses(imu_blocks(frame), at.point);
+  imu_residual(window, frame, at.point).evaluate(point.data(), unused.data(), jacobians.data());
   return out;
 }
 
@@ -126,9 +130,9 @@ double imu_cost(const Window& window, int frame, const ParameterBlocks& blocks) 
   return 0.5 * residual.squaredNorm();
 }
 
-double add_imu_term(const Window& window, int frame, const ParameterBlocks& blocks, ReducedSystem& system) {
+double add_imu_term(const Window& window, int frame, const Linearization& at, ReducedSystem& system) {
   system.widen_profile(imu_blocks(frame));
-  const ImuLinearization linear = linearize_imu(window, frame, blocks);
+  const ImuLinearization linear = linearize_imu(window, frame, at);
   const Eigen::Matrix<double, 15, 30> J = linear.jacobian();
   const Eigen::Matrix<double, 30, 30> H = J.transpose() * J;
   const Eigen::Matrix<double, 30, 1> g = J.transpose() * linear.residual;
@@ -145,7 +149,7 @@ double add_imu_term(const Window& window, int frame, const ParameterBlocks& bloc
     }
     row += size_a;
   }
-  if (window.estimates_gravity()) add_gravity_rows(window, frame, blocks, linear, system);
+  if (window.estimates_gravity()) add_gravity_rows(window, frame, at.point, linear, system);
   return 0.5 * linear.residual.squaredNorm();
 }
 

@@ -68,7 +68,7 @@ class ReducedSystem {
 /// Cost of the IMU factor between frame - 1 and frame; requires `has_imu_term`.
 [[nodiscard]] double imu_cost(const Window& window, int frame, const ParameterBlocks& blocks);
 /// Adds J^T J and J^T r of that factor. @return the cost
-double add_imu_term(const Window& window, int frame, const ParameterBlocks& blocks, ReducedSystem& system);
+double add_imu_term(const Window& window, int frame, const Linearization& at, ReducedSystem& system);
 
 /// A LinearPrior (of marginalization or calibration) as a term of the system; its Jacobian is constant.
 class PriorTerm {

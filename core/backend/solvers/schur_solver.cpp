@@ -40,14 +40,15 @@ void SchurSolver::read(const Window& window, const BackendConfig& config, double
                           variable_globals(window, config));
 }
 
-double SchurSolver::linearize(const Window& window) {
+double SchurSolver::linearize(const Window& window, const BackendConfig& config) {
   system_.reset(layout_);
   system_.widen_profile(prior_.blocks());
+  const Linearization at = linearize_at(blocks_, window, config, point_);
   double cost = prior_.add_to(system_, blocks_) + calibration_.add_to(system_, blocks_);
   for (int frame = 1; frame <= window.newest(); ++frame) {
-    if (has_imu_term(window, frame)) cost += add_imu_term(window, frame, blocks_, system_);
+    if (has_imu_term(window, frame)) cost += add_imu_term(window, frame, at, system_);
   }
-  cost += visual_.add_to(system_, blocks_);
+  cost += visual_.add_to(system_, at);
   scale_squared_.states = system_.H.diagonal().cwiseMax(kMinCurvature);
   scale_squared_.landmarks = visual_.information().cwiseMax(kMinCurvature);
   return cost;
@@ -153,7 +154,7 @@ void SchurSolver::apply_step() {
 
 SolveReport SchurSolver::iterate(const Window& window, const BackendConfig& config) {
   SolveReport report;
-  double cost = linearize(window);
+  double cost = linearize(window, config);
   report.initial_cost = cost;
   report.iterations = 1;  // the initial evaluation counts, as in Ceres
   report.usable = std::isfinite(cost) && compute_newton_step();
@@ -174,7 +175,7 @@ SolveReport SchurSolver::iterate(const Window& window, const BackendConfig& conf
       std::swap(blocks_, candidate_);
       cost -= decrease;
       if (converged || report.iterations > config.max_iterations) break;
-      cost = linearize(window);
+      cost = linearize(window, config);
       if (!compute_newton_step()) break;
     } else if (converged) {
       break;

@@ -7,7 +7,9 @@
 namespace stillpoint {
 namespace {
 
-/// Below this speed the image motion is too small to observe time offset and extrinsics.
+constexpr double kSharedInformation = 0.4;  // see marginalized_information
+
+/// Published prior: below this speed the image motion is too small to observe time offset and extrinsics.
 constexpr double kMinSpeedForCalibration = 0.2;  // [m/s]
 
 void pack_pose(const Pose& pose, double* values) {
@@ -53,6 +55,16 @@ std::size_t ParameterBlocks::offset(BlockRef block) const {
   return 16 * frames_ + 7;
 }
 
+Linearization linearize_at(const ParameterBlocks& now, const Window& window, const BackendConfig& config,
+                           ParameterBlocks& point) {
+  if (!has_consistent_prior(window, config)) return {now, now};
+  point = now;
+  for (const PriorBlock& block : window.prior.blocks) {
+    std::copy_n(block.linearization.data(), global_size(block.kind), point.at({block.kind, block.frame}));
+  }
+  return {now, point};
+}
+
 void unpack(const ParameterBlocks& blocks, Window& window) {
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     NavState& state = window.frames[i].state;
@@ -85,27 +97,52 @@ bool uses_depth(const Observation& observation, const BackendConfig& config) {
 }
 
 VariableGlobals variable_globals(const Window& window, const BackendConfig& config) {
-  const bool moving = window.inertial && window.frames.back().state.v_w.norm() > kMinSpeedForCalibration;
+  const bool moving = window.inertial && (config.prior == PriorModel::kConsistent ||
+                                          window.frames.back().state.v_w.norm() > kMinSpeedForCalibration);
   return {.extrinsics = config.estimate_extrinsics && moving,
           .time_offset = config.estimate_time_offset && moving,
           .gravity = window.estimates_gravity()};
 }
 
-VariableGlobals marginalized_globals(const Window& window) { return {.gravity = window.estimates_gravity()}; }
+VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config) {
+  if (has_consistent_prior(window, config)) return variable_globals(window, config);
+  return {.gravity = window.estimates_gravity()};
+}
 
-std::vector<BlockRef> candidate_blocks(const Window& window, std::vector<BlockRef> recycled) {
+double marginalized_information(const Window& window, const BackendConfig& config) {
+  return has_consistent_prior(window, config) ? kSharedInformation : 1.0;
+}
+
+std::vector<BlockRef> candidate_blocks(const Window& window, const BackendConfig& config,
+                                       std::vector<BlockRef> recycled) {
   std::vector<BlockRef> blocks = std::move(recycled);
   blocks.clear();
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
   if (!window.inertial) return blocks;
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
-  if (marginalized_globals(window).gravity) blocks.push_back({BlockKind::kGravity});
+  const VariableGlobals globals = marginalized_globals(window, config);
+  if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
+  if (globals.gravity) blocks.push_back({BlockKind::kGravity});
+  if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
   return blocks;
 }
 
-PriorBlock prior_block_after_slide(BlockRef block, const ParameterBlocks& blocks) {
+PriorBlock prior_block_after_slide(BlockRef block, const ParameterBlocks& point) {
   return {block.kind, std::max(block.frame - 1, -1),
-          Eigen::Map<const BlockVector>(blocks.at(block), global_size(block.kind))};
+          Eigen::Map<const BlockVector>(point.at(block), global_size(block.kind))};
+}
+
+void move_residual_to_linearization(const ParameterBlocks& now, LinearPrior& prior) {
+  int column = 0;
+  for (const PriorBlock& block : prior.blocks) {
+    const int size = local_size(block.kind);
+    const BlockRef before{block.kind, block.frame < 0 ? -1 : block.frame + 1};
+    const BlockVector difference = block_difference(block.kind, now.at(before), block.linearization);
+    if (!difference.isZero(0.0)) {
+      prior.residual.noalias() -= prior.jacobian.middleCols(column, size) * difference;
+    }
+    column += size;
+  }
 }
 
 }  // namespace stillpoint

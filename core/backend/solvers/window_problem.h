@@ -58,6 +58,23 @@ class ParameterBlocks {
   std::vector<double> values_;
 };
 
+/// States, and the point at which Jacobians are evaluated.
+struct Linearization {
+  const ParameterBlocks& states;
+  const ParameterBlocks& point;
+
+  [[nodiscard]] bool at_first_estimates() const { return &states != &point; }
+};
+
+/// Linearization at the states `now`. With the published prior Jacobians are evaluated there. With the
+/// consistent one the states that the prior involves are replaced by their linearization points in the prior
+/// (first-estimates Jacobians, Huang et al. 2009): the null space of the prior is that at its linearization
+/// points, and if the other residuals had another one, the world would gain information about its own
+/// position and orientation.
+/// @param point storage for the point
+[[nodiscard]] Linearization linearize_at(const ParameterBlocks& now, const Window& window,
+                                         const BackendConfig& config, ParameterBlocks& point);
+
 /// Writes the values of the blocks back to the states of the window.
 void unpack(const ParameterBlocks& blocks, Window& window);
 
@@ -70,6 +87,11 @@ void unpack(const ParameterBlocks& blocks, Window& window);
 /// Whether the measured depth of an observation is used as a residual.
 [[nodiscard]] bool uses_depth(const Observation& observation, const BackendConfig& config);
 
+/// Whether `PriorModel::kConsistent` applies.
+[[nodiscard]] inline bool has_consistent_prior(const Window& window, const BackendConfig& config) {
+  return window.inertial && config.prior == PriorModel::kConsistent;
+}
+
 /// Which global states are variable.
 struct VariableGlobals {
   bool extrinsics = false;
@@ -78,17 +100,27 @@ struct VariableGlobals {
 };
 /// In the solve.
 [[nodiscard]] VariableGlobals variable_globals(const Window& window, const BackendConfig& config);
-/// In marginalize_oldest. Calibration is treated as constant, because linearizing at an early, inaccurate
-/// time offset would add overconfident information.
-[[nodiscard]] VariableGlobals marginalized_globals(const Window& window);
+/// In marginalize_oldest. With the published prior calibration is constant there.
+[[nodiscard]] VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config);
+
+/// Factor on the information of the landmarks that marginalize_oldest eliminates. Landmarks are hosted in the
+/// next frame when their first one leaves, with their other observations, so the same observation enters
+/// several priors. With the consistent prior its information is shared between them. The factor was found by
+/// a Monte Carlo simulation of the normalized estimation error: with 1 the covariance of the position is 2.2
+/// times too small, and the error is smallest from 0.3 to 0.5.
+[[nodiscard]] double marginalized_information(const Window& window, const BackendConfig& config);
 
 /// Blocks that the prior of marginalize_oldest may involve: the states after the oldest frame, and
 /// `marginalized_globals`.
 /// @param recycled storage for the result; its content is ignored
-[[nodiscard]] std::vector<BlockRef> candidate_blocks(const Window& window,
+[[nodiscard]] std::vector<BlockRef> candidate_blocks(const Window& window, const BackendConfig& config,
                                                      std::vector<BlockRef> recycled = {});
 
-/// The block of a prior at the current value, with its frame index after the oldest frame was removed.
-[[nodiscard]] PriorBlock prior_block_after_slide(BlockRef block, const ParameterBlocks& blocks);
+/// The block of a prior linearized at `point`, with its frame index after the oldest frame was removed.
+[[nodiscard]] PriorBlock prior_block_after_slide(BlockRef block, const ParameterBlocks& point);
+
+/// Moves the residual of a prior from the states `now` (before the slide) to its linearization point x0:
+/// r0 = r(now) - J (now [-] x0).
+void move_residual_to_linearization(const ParameterBlocks& now, LinearPrior& prior);
 
 }  // namespace stillpoint

@@ -52,6 +52,13 @@ const std::vector<Case> kCases = {
                 o.config.estimate_extrinsics = true;
                 o.config.estimate_time_offset = false;
               }),
+    make_case("ConsistentPrior",
+              [](SimulatedWindowOptions& o) {
+                o.config.gravity = GravityModel::kEstimated;
+                o.config.prior = PriorModel::kConsistent;
+                o.config.estimate_extrinsics = true;
+                o.frames = 24;
+              }),
     make_case("FewFrames", [](SimulatedWindowOptions& o) { o.frames = 6; })};
 
 class SchurSolverCase : public testing::TestWithParam<Case> {};
@@ -88,12 +95,14 @@ ReducedSystem reduced_system(const Window& window, const BackendConfig& config,
   calibration.read(window.calibration);
   system.reset(ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
                              variable_globals(window, config)));
+  ParameterBlocks point;
+  const Linearization at = linearize_at(blocks, window, config, point);
   prior.add_to(system, blocks);
   calibration.add_to(system, blocks);
   for (int frame = 1; frame <= window.newest(); ++frame) {
-    if (has_imu_term(window, frame)) add_imu_term(window, frame, blocks, system);
+    if (has_imu_term(window, frame)) add_imu_term(window, frame, at, system);
   }
-  visual.add_to(system, blocks);
+  visual.add_to(system, at);
   Eigen::VectorXd rhs = -system.g;
   visual.eliminate(0.0, system.H, rhs);
   system.g = -rhs;
