@@ -116,6 +116,8 @@ std::string result_json(const RunResult& result) {
   json["dynamic_features"] = result.run.dynamic_features;
   json["dynamic_labels"] = labels_json(result.run);
   json["realtime"] = realtime_json(summary);
+  const Eigen::Quaterniond& q_level_w = result.run.q_level_w;
+  json["leveling_rotation_xyzw"] = {q_level_w.x(), q_level_w.y(), q_level_w.z(), q_level_w.w()};
   json["notes"] = result.notes;
   json["warnings"] = result.warnings;
   json["timings"] = {{"unit", "ms"},

@@ -3,7 +3,9 @@
 
 #include <utility>
 
+#include "core/backend/failure_detection.h"
 #include "core/backend/start/depth_initialization.h"
+#include "core/backend/start/frozen_world.h"
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/start/initializer.h"
 #include "core/backend/start/monocular_structure.h"
@@ -15,11 +17,6 @@ namespace {
 
 /// Inlier threshold of camera localization.
 constexpr double kLocalizationInlier_px = 5.0;
-
-/// Failure detection limits. Qin et al. 2018, Sec. VI-E; values of the published code.
-constexpr double kMaxAccelBias = 2.5;  // [m/s^2]
-constexpr double kMaxGyroBias = 1.0;   // [rad/s]
-constexpr double kMaxJump_m = 5.0;     // between successive frames
 
 /// Largest bias change from the linearization point for which the first-order correction is used.
 constexpr double kRepropagateGyro = 0.01;  // [rad/s]
@@ -105,7 +102,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
     next.state = newest_;
     next.state.t = frame.t;
     window_.frames.push_back(next);
-    window_.prior = initial_prior(window_, backend_.initializer);
+    window_.prior = initial_prior(window_, backend_);
     window_.calibration = calibration_prior(window_, backend_);
     return;
   }
@@ -165,24 +162,25 @@ void Estimator::try_initialize_imu() {
   const std::optional<InertialAlignment> alignment =
       align_with_imu(*visual, imu_config_.gravity, backend_.initializer);
   if (!alignment) return;
-  apply_alignment(*alignment, window_.frames.front().state.T_w_b, *visual);
+  const Pose anchor = window_.frames.front().state.T_w_b;
+  if (backend_.gravity == GravityModel::kEstimated) {
+    apply_alignment_to_frozen_world(*alignment, anchor, *visual);
+  } else {
+    apply_alignment(*alignment, anchor, *visual);
+  }
   window_ = std::move(*visual);
-  window_.prior = initial_prior(window_, backend_.initializer);
-}
-
-bool Estimator::has_failed(const NavState& before) const {
-  const NavState& now = window_.frames.back().state;
-  const bool finite = now.T_w_b.p.allFinite() && now.T_w_b.q.coeffs().allFinite() && now.v_w.allFinite();
-  return !finite || now.accel_bias.norm() > kMaxAccelBias || now.gyro_bias.norm() > kMaxGyroBias ||
-         (now.T_w_b.p - before.T_w_b.p).norm() > kMaxJump_m;
+  window_.prior = initial_prior(window_, backend_);
 }
 
 /// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
-void Estimator::restart() {
+/// @param gravity_w before the solve that failed; an estimated one is kept with its covariance
+void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   Window fresh;
   fresh.T_b_c = rig_.T_b_c;
   fresh.time_offset_s = rig_.time_offset_s;
-  fresh.gravity_w = window_.gravity_w;
+  fresh.gravity_w = gravity_w;
+  fresh.gravity_covariance =
+      window_.estimates_gravity() ? gravity_covariance(window_.prior) : window_.gravity_covariance;
   window_ = std::move(fresh);
   newest_.v_w.setZero();
   previous_ = newest_;
@@ -192,7 +190,7 @@ void Estimator::slide(bool keyframe) {
   if (!is_full()) return;
   if (!has_metric_scale()) {
     keyframe ? remove_oldest_frame(window_) : remove_second_newest_frame(window_);
-    window_.prior = initial_prior(window_, backend_.initializer);
+    window_.prior = initial_prior(window_, backend_);
   } else if (keyframe) {
     LinearPrior prior = solver_->marginalize_oldest(window_, pixel_noise_.applied_to(backend_),
                                                     rig_.camera.focal_px(), std::move(discarded_prior_));
@@ -203,7 +201,7 @@ void Estimator::slide(bool keyframe) {
     remove_second_newest_frame(window_);
   }
   // Nothing connected the removed frame to the others: fix the gauge at the new oldest frame.
-  if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_.initializer);
+  if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_);
 }
 
 OdometryStatus Estimator::status() const {
@@ -248,13 +246,14 @@ bool Estimator::refine() {
   try_initialize_imu();
   repropagate_preintegrations();
   const NavState before = newest_;
+  const Eigen::Vector3d gravity_before = window_.gravity_w;
   if (has_metric_scale()) {
     initialize_depths(backend_, rig_.camera.focal_px(), window_);
     const ScopedTimer solve_timer(update_.timings, Module::kWindowSolve);
     const Pose oldest = window_.frames.front().state.T_w_b;
     const SolveReport report =
         solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
-    if (!window_.inertial) restore_gauge(oldest, backend_.initializer, window_);
+    if (!window_.inertial) restore_gauge(oldest, backend_, window_);
     if (backend_.reprojection_error_px > 0.0) {
       pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
     }
@@ -263,9 +262,9 @@ bool Estimator::refine() {
     update_.counters.solver_iterations = report.iterations;
   }
   update_.counters.keyframe = keyframe_;
-  if (has_failed(before)) {
+  if (has_failed(before, window_.frames.back().state)) {
     update_.counters.reset = true;
-    restart();
+    restart(gravity_before);
     return false;
   }
   previous_ = newest_;
@@ -293,6 +292,9 @@ void Estimator::report(const NavState& state) {
   update_.T_w_c = state.T_w_b * window_.T_b_c;
   update_.status = status();
   update_.time_offset_s = window_.time_offset_s;
+  if (window_.gravity_covariance) {
+    update_.q_level_w = Eigen::Quaterniond::FromTwoVectors(window_.gravity_w, -Eigen::Vector3d::UnitZ());
+  }
 }
 
 }  // namespace stillpoint

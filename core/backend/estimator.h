@@ -77,8 +77,7 @@ class Estimator {
   [[nodiscard]] bool localize_newest();
   void repropagate_preintegrations();
   void try_initialize_imu();
-  [[nodiscard]] bool has_failed(const NavState& before) const;
-  void restart();
+  void restart(const Eigen::Vector3d& gravity_w);
   void slide(bool keyframe);
   [[nodiscard]] OdometryStatus status() const;
   void begin_update(std::int64_t frame_id);

@@ -30,6 +30,25 @@ constexpr auto enum_names(WindowSolverKind) {
       {{WindowSolverKind::kCeres, "ceres"}, {WindowSolverKind::kSchur, "schur"}}};
 }
 
+/// `kFixed`: the world is level by initialization, and the poses turn while the attitude becomes more
+/// accurate (published system); `kEstimated`: the direction of gravity is a state, and the world is fixed by
+/// the first pose.
+enum class GravityModel { kFixed, kEstimated };
+constexpr auto enum_names(GravityModel) {
+  return EnumNames<GravityModel, 2>{
+      {{GravityModel::kFixed, "fixed"}, {GravityModel::kEstimated, "estimated"}}};
+}
+
+/// `kPublished`: the prior is linearized again at each slide, calibration is no part of it, and the
+/// information of a landmark enters the prior in full each time that its first frame leaves. `kConsistent`:
+/// first-estimates Jacobians, calibration is part of the prior, the information of landmarks is shared
+/// between the priors that contain them, and the first pose is exact.
+enum class PriorModel { kPublished, kConsistent };
+constexpr auto enum_names(PriorModel) {
+  return EnumNames<PriorModel, 2>{
+      {{PriorModel::kPublished, "published"}, {PriorModel::kConsistent, "consistent"}}};
+}
+
 /// How measured depth enters the estimate.
 struct DepthConfig {
   DepthUsage usage = DepthUsage::kFixed;
@@ -93,6 +112,9 @@ struct BackendConfig {
   int max_iterations = 8;
   double function_tolerance = 1e-6;      ///< relative change of the cost at which the solve stops
   double keyframe_max_interval_s = 5.0;  ///< limits the length of a preintegration
+  GravityModel gravity = GravityModel::kFixed;
+  PriorModel prior =
+      PriorModel::kPublished;  ///< once the IMU is initialized; before and without one published
   bool estimate_time_offset = true;
   double time_offset_sigma_s = 0.01;  ///< prior standard deviation around the calibrated value
   bool estimate_extrinsics = false;
@@ -116,6 +138,8 @@ void visit_fields(Visitor&& field, Config& config) {
   field("max_iterations", config.max_iterations, 1, 100);
   field("function_tolerance", config.function_tolerance, 1e-12, 0.1);
   field("keyframe_max_interval_s", config.keyframe_max_interval_s, 0.05, 10.0);
+  field("gravity", config.gravity);
+  field("prior", config.prior);
   field("estimate_time_offset", config.estimate_time_offset);
   field("time_offset_sigma_s", config.time_offset_sigma_s, 1e-6, 1.0);
   field("estimate_extrinsics", config.estimate_extrinsics);

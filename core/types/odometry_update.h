@@ -42,6 +42,9 @@ struct OdometryUpdate {
   Pose T_w_c;  ///< camera pose, by the extrinsics estimated at this frame
   OdometryStatus status = OdometryStatus::kInitializing;
   double time_offset_s = 0.0;  ///< current estimate
+  /// Rotates the world such that gravity points along -z, by the current estimate of gravity; the identity if
+  /// gravity is not estimated (`backend.gravity`) or not yet known.
+  Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();
   OdometryCounters counters;
   StateHashes hashes;
   ModuleTimings timings;

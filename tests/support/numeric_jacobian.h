@@ -7,11 +7,12 @@
 #include <ceres/cost_function.h>
 #include <Eigen/Core>
 
+#include "core/backend/factors/gravity_manifold.h"
 #include "core/backend/factors/pose_manifold.h"
 
 namespace stillpoint {
 
-/// Parameter blocks of a cost function; blocks of 7 values are poses.
+/// Parameter blocks of a cost function; blocks of 7 values are poses, of 3 gravity.
 using Blocks = std::vector<std::vector<double>>;
 
 inline std::vector<const double*> addresses(const Blocks& blocks) {
@@ -27,18 +28,21 @@ inline Eigen::VectorXd residual_at(const ceres::CostFunction& cost, const Blocks
 }
 
 inline int tangent_size(const std::vector<double>& block) {
-  return block.size() == 7 ? 6 : static_cast<int>(block.size());
+  return static_cast<int>(block.size()) - (block.size() == 7 || block.size() == 3);
 }
 
 inline void move(std::vector<double>& block, int direction, double step) {
-  if (block.size() != 7) {
-    block[static_cast<std::size_t>(direction)] += step;
-    return;
-  }
   double delta[6] = {};
-  delta[direction] = step;
   const std::vector<double> before = block;
-  PoseManifold().Plus(before.data(), delta, block.data());
+  if (block.size() == 7) {
+    delta[direction] = step;
+    PoseManifold().Plus(before.data(), delta, block.data());
+  } else if (block.size() == 3) {
+    delta[direction] = step;
+    GravityManifold().Plus(before.data(), delta, block.data());
+  } else {
+    block[static_cast<std::size_t>(direction)] += step;
+  }
 }
 
 /// Central differences; one matrix per block, tangent columns.

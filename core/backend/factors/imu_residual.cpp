@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/factors/imu_residual.h"
 
+#include "core/backend/factors/gravity_direction.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -105,6 +106,16 @@ void ImuResidual::evaluate(double const* const* parameters, double* residuals, d
     Eigen::Map<SpeedBiasJacobian>{jacobians[1]} = W * jacobian_speed_bias_i(s, imu);
   if (jacobians[2] != nullptr) Eigen::Map<PoseJacobian>{jacobians[2]} = W * jacobian_pose_j(s);
   if (jacobians[3] != nullptr) Eigen::Map<SpeedBiasJacobian>{jacobians[3]} = W * jacobian_speed_bias_j(s);
+}
+
+void ImuResidual::evaluate_gravity_jacobian(const double* pose_i, double* jacobian) const {
+  const double dt = imu_.duration_s();
+  const Eigen::Matrix3d R_i_t = Eigen::Quaterniond(pose_i + 3).toRotationMatrix().transpose();
+  const Eigen::Matrix<double, 3, 2> velocity = -dt * R_i_t * gravity_jacobian(gravity_w_);
+  Eigen::Matrix<double, 15, 3> J = Eigen::Matrix<double, 15, 3>::Zero();
+  J.block<3, 2>(kP, 0) = 0.5 * dt * velocity;
+  J.block<3, 2>(kV, 0) = velocity;
+  Eigen::Map<Eigen::Matrix<double, 15, 3, Eigen::RowMajor>>{jacobian} = imu_.sqrt_information() * J;
 }
 
 }  // namespace stillpoint

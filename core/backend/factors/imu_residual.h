@@ -31,6 +31,12 @@ class ImuResidual {
   /// Writes the residual, 15 values, and the Jacobians. @param jacobians null = none
   void evaluate(double const* const* parameters, double* residuals, double** jacobians) const;
 
+  /// Writes the derivative of W r by the tangent vector d of gravity (see gravity_direction.h), 15x3
+  /// row-major, into the first two of three columns (see GravityManifold). Before whitening it is
+  ///
+  ///   d r_p / d d = -1/2 dt^2 R_i^T dg/dd,    d r_v / d d = -dt R_i^T dg/dd.
+  void evaluate_gravity_jacobian(const double* pose_i, double* jacobian) const;
+
  private:
   const Preintegration& imu_;
   Eigen::Vector3d gravity_w_;

@@ -2,6 +2,8 @@
 /// Linear prior on the window's states, as left by marginalization: a linearized residual.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,14 +12,17 @@
 
 namespace stillpoint {
 
-enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset };
+/// The first two belong to a frame, the others to the window (global states).
+enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity };
 
 /// Number of doubles in a parameter block, and of its tangent space.
 [[nodiscard]] constexpr int global_size(BlockKind kind) {
-  return kind == BlockKind::kSpeedBias ? 9 : kind == BlockKind::kTimeOffset ? 1 : 7;
+  constexpr int kSizes[] = {7, 9, 7, 1, 3};
+  return kSizes[static_cast<std::size_t>(kind)];
 }
 [[nodiscard]] constexpr int local_size(BlockKind kind) {
-  return kind == BlockKind::kSpeedBias ? 9 : kind == BlockKind::kTimeOffset ? 1 : 6;
+  constexpr int kSizes[] = {6, 9, 6, 1, 2};
+  return kSizes[static_cast<std::size_t>(kind)];
 }
 
 /// Values of one block, or its tangent vector: at most nine, stored inline.
@@ -26,7 +31,7 @@ using BlockVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 9,
 /// One parameter block of the prior and its linearization point x0.
 struct PriorBlock {
   BlockKind kind = BlockKind::kPose;
-  int frame = -1;             ///< index in the window; -1 for calibration
+  int frame = -1;             ///< index in the window; -1 for global states
   BlockVector linearization;  ///< `global_size(kind)` values
 };
 
@@ -48,7 +53,11 @@ struct LinearPrior {
 };
 
 /// x [-] origin, in the tangent space at `origin`: for poses (p - p0, Log(q0^-1 q)), the inverse of
-/// PoseManifold::Plus; for other blocks x - x0.
+/// PoseManifold::Plus; for gravity `gravity_difference`; for other blocks x - x0.
 [[nodiscard]] BlockVector block_difference(BlockKind kind, const double* x, const BlockVector& origin);
+
+/// Covariance of gravity by the prior alone, in the tangent space at its linearization point [rad^2]; nothing
+/// if the prior does not constrain gravity or is not finite.
+[[nodiscard]] std::optional<Eigen::Matrix2d> gravity_covariance(const LinearPrior& prior);
 
 }  // namespace stillpoint

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/factors/reprojection_factor.h"
 
+#include "core/backend/factors/relative_pose_linearization.h"
 #include "core/geometry/pose.h"
 #include "core/geometry/so3.h"
 
@@ -56,6 +57,22 @@ Matrix36 J_point_extrinsics(const TransferredPoint& t) {
   return J;
 }
 
+/// Derivatives of the point by pose i, pose j and T_b_c.
+using PointJacobians = std::array<Matrix36, 3>;
+
+PointJacobians point_jacobians(const TransferredPoint& t) {
+  return {J_point_pose_i(t), J_point_pose_j(t), J_point_extrinsics(t)};
+}
+
+/// Same, with the derivative of the relative pose at the `poses`.
+PointJacobians point_jacobians_at(const std::array<const double*, 3>& poses, const TransferredPoint& t) {
+  const RelativePoseLinearization relative =
+      linearize_relative_pose(pose_of(poses[0]), pose_of(poses[1]), pose_of(poses[2]));
+  Matrix36 J;
+  J << t.lambda * Eigen::Matrix3d::Identity(), -skew(t.p_cj);
+  return {J * relative.J_pose_i, J * relative.J_pose_j, J * relative.J_extrinsics};
+}
+
 /// Writes d residual / d pose; the tangent space is in the first six of seven columns.
 template <int Rows>
 void write_pose_jacobian(double* out, const Eigen::Matrix<double, Rows, 3>& J_point,
@@ -81,9 +98,15 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   const Eigen::Matrix<double, Rows, 3> J_point = rows.J_point.template topRows<Rows>();
   if (jacobians == nullptr) return true;
 
-  if (jacobians[0] != nullptr) write_pose_jacobian<Rows>(jacobians[0], J_point, J_point_pose_i(t));
-  if (jacobians[1] != nullptr) write_pose_jacobian<Rows>(jacobians[1], J_point, J_point_pose_j(t));
-  if (jacobians[2] != nullptr) write_pose_jacobian<Rows>(jacobians[2], J_point, J_point_extrinsics(t));
+  const PointJacobians J_poses = first_ == FirstEstimates{}
+                                     ? point_jacobians(t)
+                                     : point_jacobians_at({first_[0] != nullptr ? first_[0] : x[0],
+                                                           first_[1] != nullptr ? first_[1] : x[1],
+                                                           first_[2] != nullptr ? first_[2] : x[2]},
+                                                          t);
+  for (std::size_t i = 0; i < J_poses.size(); ++i) {
+    if (jacobians[i] != nullptr) write_pose_jacobian<Rows>(jacobians[i], J_point, J_poses[i]);
+  }
   if (jacobians[3] != nullptr) {
     const Eigen::Matrix<double, Rows, 3> J_ray = J_point * t.R_cj_bi * t.T_b_c.R();
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[3]);

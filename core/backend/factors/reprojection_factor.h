@@ -2,6 +2,8 @@
 /// Reprojection residual of a landmark between its host frame and another frame, optionally with a depth row.
 #pragma once
 
+#include <array>
+
 #include <ceres/sized_cost_function.h>
 #include <Eigen/Core>
 
@@ -38,19 +40,26 @@ struct ReprojectionMeasurement {
 /// including zero and negative values, and for points behind camera j. One outlier therefore cannot make the
 /// solver reject a step.
 ///
-/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, lambda.
+/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, lambda. The derivative of the relative pose
+/// of the cameras is evaluated with the first estimates in place of the poses, where given; the residual is
+/// not.
 template <int Rows>
 class ReprojectionFactor final : public ceres::SizedCostFunction<Rows, 7, 7, 7, 1, 1> {
   static_assert(Rows == 2 || Rows == 3);
 
  public:
-  ReprojectionFactor(const ReprojectionMeasurement& measurement, const ReprojectionNoise& noise)
-      : measurement_(measurement), noise_(noise) {}
+  /// First estimates of pose i, pose j and T_b_c, or null.
+  using FirstEstimates = std::array<const double*, 3>;
+
+  ReprojectionFactor(const ReprojectionMeasurement& measurement, const ReprojectionNoise& noise,
+                     const FirstEstimates& first = {})
+      : measurement_(measurement), noise_(noise), first_(first) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   ReprojectionMeasurement measurement_;
   ReprojectionNoise noise_;
+  FirstEstimates first_;
 };
 
 extern template class ReprojectionFactor<2>;

@@ -25,7 +25,8 @@ NormalEquations linearize_oldest(const Window& window, const BackendConfig& conf
     if (landmark.host != 0 || !is_usable(landmark)) continue;
     builder.clear();
     builder.add_landmark(static_cast<int>(i));
-    equations.add(builder.residuals(), blocks, has_constant_depth(landmark, config));
+    equations.add(builder.residuals(), blocks, has_constant_depth(landmark, config),
+                  marginalized_information(window, config));
   }
   return equations;
 }
@@ -42,20 +43,22 @@ LinearPrior CeresSolver::marginalize_oldest(const Window& window, const BackendC
   if (window.inertial)
     marginalized = with_columns(std::move(marginalized), layout.column({BlockKind::kSpeedBias, 0}), 9);
 
+  ParameterBlocks point;
+  const Linearization at = linearize_at(blocks, window, config, point);
   LinearPrior prior;
   std::vector<int> remaining;
-  for (const BlockRef block : candidate_blocks(window)) {
+  for (const BlockRef block : candidate_blocks(window, config)) {
     const int column = layout.column(block);
     const int size = local_size(block.kind);
     if (equations.H.diagonal().segment(column, size).isZero(0.0)) continue;
     remaining = with_columns(std::move(remaining), column, size);
-    const Eigen::Map<const Eigen::VectorXd> now(blocks.at(block), global_size(block.kind));
-    prior.blocks.push_back({block.kind, block.frame - 1, now});
+    prior.blocks.push_back(prior_block_after_slide(block, at.point));
   }
   if (remaining.empty()) return prior;
   SquareRoot root = eliminate(equations.H, equations.b, marginalized, remaining);
   prior.jacobian = std::move(root.jacobian);
   prior.residual = std::move(root.residual);
+  if (at.at_first_estimates()) move_residual_to_linearization(blocks, prior);
   return prior;
 }
 

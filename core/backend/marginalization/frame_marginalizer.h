@@ -15,12 +15,13 @@ namespace stillpoint {
 class FrameMarginalizer {
  public:
   /// The prior without the frame; the frame indices above `frame` are decremented.
-  /// @param frame >= 0, that is, not calibration
+  /// @param frame >= 0, that is, not a global state
   [[nodiscard]] LinearPrior remove(int frame, LinearPrior prior);
 
  private:
   static constexpr int kMaxColumns = 15;  ///< pose, velocity and biases
-  static constexpr int kMaxRows = kMaxColumns * (kMaxWindowSize + 1);
+  static constexpr int kGlobalColumns = 9;
+  static constexpr int kMaxRows = kMaxColumns * (kMaxWindowSize + 1) + kGlobalColumns;
   /// Columns of the states of one frame; fixed capacity, so the factorization does not allocate.
   using FrameColumns =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxColumns>;

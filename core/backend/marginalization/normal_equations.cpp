@@ -21,7 +21,7 @@ struct Linearized {
   std::vector<RowMajorMatrix> jacobians;  ///< in block order, tangent columns only
 };
 
-Linearized linearize(const Residual& source, const ParameterBlocks& blocks) {
+Linearized linearize(const Residual& source, const ParameterBlocks& blocks, double information) {
   const std::vector<const double*> addresses = parameter_addresses(source, blocks);
   const std::vector<int>& sizes = source.cost->parameter_block_sizes();
   Linearized out{Eigen::VectorXd(source.cost->num_residuals()), {}};
@@ -36,9 +36,10 @@ Linearized linearize(const Residual& source, const ParameterBlocks& blocks) {
     source.loss->Evaluate(out.residual.squaredNorm(), rho);
     weight = std::sqrt(rho[1]);
   }
+  weight *= std::sqrt(information);
   out.residual *= weight;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const int tangent = sizes[i] == 7 ? 6 : sizes[i];
+    const int tangent = i < source.states.size() ? local_size(source.states[i].kind) : 1;
     out.jacobians[i] = RowMajorMatrix(weight * out.jacobians[i].leftCols(tangent));
   }
   return out;
@@ -64,12 +65,13 @@ NormalEquations::NormalEquations(int frames)
       H(Eigen::MatrixXd::Zero(layout.size(), layout.size())),
       b(Eigen::VectorXd::Zero(layout.size())) {}
 
-void NormalEquations::add(const std::vector<Residual>& group, const ParameterBlocks& blocks, bool fixed) {
+void NormalEquations::add(const std::vector<Residual>& group, const ParameterBlocks& blocks, bool fixed,
+                          double information) {
   Eigen::VectorXd landmark_column = Eigen::VectorXd::Zero(layout.size());
   double landmark_information = 0.0;
   double landmark_gradient = 0.0;
   for (const Residual& source : group) {
-    const Linearized linear = linearize(source, blocks);
+    const Linearized linear = linearize(source, blocks, information);
     const bool has_landmark = source.landmark >= 0;
     const RowMajorMatrix* J_landmark = has_landmark ? &linear.jacobians.back() : nullptr;
     for (std::size_t i = 0; i < source.states.size(); ++i) {

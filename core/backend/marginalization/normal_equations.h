@@ -10,11 +10,11 @@
 
 namespace stillpoint {
 
-/// Column order of all states of a window: poses, then velocities and biases, then calibration.
+/// Column order of all states of a window: poses, then velocities and biases, then global states.
 class StateLayout {
  public:
   explicit StateLayout(int frames) : frames_(frames) {}
-  [[nodiscard]] int size() const { return 15 * frames_ + 7; }
+  [[nodiscard]] int size() const { return 15 * frames_ + 9; }
   [[nodiscard]] int column(BlockRef block) const {
     switch (block.kind) {
       case BlockKind::kPose:
@@ -23,6 +23,8 @@ class StateLayout {
         return 6 * frames_ + 9 * block.frame;
       case BlockKind::kExtrinsics:
         return 15 * frames_;
+      case BlockKind::kGravity:
+        return 15 * frames_ + 7;
       case BlockKind::kTimeOffset:
         break;
     }
@@ -40,7 +42,9 @@ struct NormalEquations {
 
   /// Adds the residuals of one landmark (or of none), linearized at `blocks`. Unless it is `fixed`, the
   /// inverse depth l of the landmark is eliminated: H -= H_xl H_xl^T / H_ll, b -= H_xl b_l / H_ll.
-  void add(const std::vector<Residual>& group, const ParameterBlocks& blocks, bool fixed);
+  /// @param information factor on the information of the residuals
+  void add(const std::vector<Residual>& group, const ParameterBlocks& blocks, bool fixed,
+           double information = 1.0);
 
   StateLayout layout;
   Eigen::MatrixXd H;

@@ -18,11 +18,15 @@ void SchurSolver::append_columns(BlockRef block) {
   for (int i = 0; i < local_size(block.kind); ++i) columns_.push_back(system_.layout.column(block) + i);
 }
 
-/// Computes the Cholesky factor L of the system in the order of `columns_`, in place in S_.
+/// Computes the Cholesky factor L of the system in the order of `columns_`, in place in S_; rows up to the
+/// next multiple of kTile are those of the identity.
 /// @return false if it would be inaccurate
 bool SchurSolver::factorize_columns() {
   const auto size = static_cast<Eigen::Index>(columns_.size());
-  S_.resize(size, size);
+  const Eigen::Index padded = (size + kTile - 1) / kTile * kTile;
+  S_.resize(padded, padded);
+  S_.bottomRows(padded - size).setZero();
+  S_.diagonal().tail(padded - size).setOnes();
   for (Eigen::Index row = 0; row < size; ++row) {
     for (Eigen::Index column = 0; column <= row; ++column) {
       const auto [smaller, larger] =
@@ -31,7 +35,7 @@ bool SchurSolver::factorize_columns() {
     }
   }
   diagonal_ = S_.diagonal();
-  dense_.assign(columns_.size() / kTile, 0);
+  dense_.assign(static_cast<std::size_t>(padded / kTile), 0);
   return skyline_factorize(dense_, S_) &&
          (kMinPivotRatio * S_.diagonal().cwiseAbs2().cwiseProduct(diagonal_)).maxCoeff() < 1.0;
 }
@@ -50,16 +54,18 @@ LinearPrior SchurSolver::with_square_root(LinearPrior prior, Eigen::Index margin
     return prior;
   }
   step_.states.resize(S_.rows());
+  step_.states.tail(S_.rows() - static_cast<Eigen::Index>(columns_.size())).setZero();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     step_.states[static_cast<Eigen::Index>(i)] = -newton_.states[columns_[i]];
   }
   skyline_forward(dense_, S_, step_.states);
   S_.diagonal() = S_.diagonal().cwiseInverse();
-  const Eigen::Index remaining = S_.rows() - marginalized;
-  prior.residual = step_.states.tail(remaining);
+  const Eigen::Index remaining = static_cast<Eigen::Index>(columns_.size()) - marginalized;
+  prior.residual = step_.states.segment(marginalized, remaining);
   prior.jacobian.resize(remaining, remaining);
   prior.jacobian.setZero();
-  prior.jacobian.triangularView<Eigen::Upper>() = S_.bottomRightCorner(remaining, remaining).transpose();
+  prior.jacobian.triangularView<Eigen::Upper>() =
+      S_.block(marginalized, marginalized, remaining, remaining).transpose();
   return prior;
 }
 
@@ -67,11 +73,13 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
                                             double focal_px, LinearPrior recycled) {
   blocks_.assign(window);
   visual_.read(window, config, focal_px, LandmarkSelection::kHostedByOldest);
-  system_.reset(ReducedLayout(static_cast<int>(window.frames.size()), window.inertial, {}));
+  system_.reset(ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
+                              marginalized_globals(window, config)));
   prior_.read(window.prior);
   prior_.add_to(system_, blocks_);
-  if (window.newest() >= 1 && has_imu_term(window, 1)) add_imu_term(window, 1, blocks_, system_);
-  visual_.add_to(system_, blocks_);
+  const Linearization at = linearize_at(blocks_, window, config, point_);
+  if (window.newest() >= 1 && has_imu_term(window, 1)) add_imu_term(window, 1, at, system_);
+  visual_.add_to(system_, at);
   newton_.states = -system_.g;
   visual_.eliminate(0.0, system_.H, newton_.states);
 
@@ -81,16 +89,17 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
   const auto marginalized = static_cast<Eigen::Index>(columns_.size());
   LinearPrior prior = std::move(recycled);
   prior.blocks.clear();
-  prior_blocks_ = candidate_blocks(window, std::move(prior_blocks_));
+  prior_blocks_ = candidate_blocks(window, config, std::move(prior_blocks_));
   for (const BlockRef block : prior_blocks_) {
     const int size = local_size(block.kind);
     if (system_.H.diagonal().segment(system_.layout.column(block), size).isZero(0.0)) continue;
     append_columns(block);
-    prior.blocks.push_back({block.kind, block.frame - 1,
-                            Eigen::Map<const BlockVector>(blocks_.at(block), global_size(block.kind))});
+    prior.blocks.push_back(prior_block_after_slide(block, at.point));
   }
   if (prior.blocks.empty()) return prior;
-  return with_square_root(std::move(prior), marginalized);
+  prior = with_square_root(std::move(prior), marginalized);
+  if (at.at_first_estimates()) move_residual_to_linearization(blocks_, prior);
+  return prior;
 }
 
 }  // namespace stillpoint

@@ -24,6 +24,15 @@ ResidualBuilder::ResidualBuilder(const Window& window, const BackendConfig& conf
   observation_model_.read(window);
 }
 
+/// Linearization point of a state that the prior involves; null with the published prior.
+const double* ResidualBuilder::first_estimate(BlockRef block) const {
+  if (!has_consistent_prior(window_, config_)) return nullptr;
+  for (const PriorBlock& known : window_.prior.blocks) {
+    if (known.kind == block.kind && known.frame == block.frame) return known.linearization.data();
+  }
+  return nullptr;
+}
+
 void ResidualBuilder::add_landmark(int index) {
   const Landmark& landmark = window_.landmarks[static_cast<std::size_t>(index)];
   const Observation& host = landmark.observations.front();
@@ -36,6 +45,9 @@ void ResidualBuilder::add_landmark(int index) {
   ReprojectionMeasurement m{
       .bearing_i = in_host.bearing, .velocity_i = in_host.velocity, .exposure_i_s = in_host.exposure_s};
   for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
+    const std::array<const double*, 3> first = {first_estimate({BlockKind::kPose, landmark.host}),
+                                                first_estimate({BlockKind::kPose, frame}),
+                                                first_estimate({BlockKind::kExtrinsics})};
     const Observation& observation = landmark.observation_in(frame);
     const TimedBearing timed = observation_model_.at(landmark, frame, position_w);
     m.bearing_j = timed.bearing;
@@ -44,9 +56,9 @@ void ResidualBuilder::add_landmark(int index) {
     std::unique_ptr<ceres::CostFunction> cost;
     if (uses_depth(observation, config_)) {
       m.inverse_depth_j = 1.0 / observation.depth;
-      cost = std::make_unique<ReprojectionFactor<3>>(m, noise_);
+      cost = std::make_unique<ReprojectionFactor<3>>(m, noise_, first);
     } else {
-      cost = std::make_unique<ReprojectionFactor<2>>(m, noise_);
+      cost = std::make_unique<ReprojectionFactor<2>>(m, noise_, first);
     }
     residuals_.push_back({std::move(cost),
                           loss_.get(),
@@ -61,13 +73,14 @@ void ResidualBuilder::add_landmark(int index) {
 void ResidualBuilder::add_imu(int frame) {
   const std::optional<Preintegration>& imu = window_.frames[static_cast<std::size_t>(frame)].from_previous;
   if (!window_.inertial || !imu) return;
-  residuals_.push_back({std::make_unique<ImuFactor>(*imu, window_.gravity_w),
-                        nullptr,
-                        {{BlockKind::kPose, frame - 1},
-                         {BlockKind::kSpeedBias, frame - 1},
-                         {BlockKind::kPose, frame},
-                         {BlockKind::kSpeedBias, frame}},
-                        -1});
+  std::vector<BlockRef> states = {{BlockKind::kPose, frame - 1},
+                                  {BlockKind::kSpeedBias, frame - 1},
+                                  {BlockKind::kPose, frame},
+                                  {BlockKind::kSpeedBias, frame},
+                                  {BlockKind::kGravity}};
+  ImuFactor::FirstEstimates first{};
+  for (std::size_t i = 0; i < states.size(); ++i) first[i] = first_estimate(states[i]);
+  residuals_.push_back({std::make_unique<ImuFactor>(*imu, first), nullptr, std::move(states), -1});
 }
 
 void ResidualBuilder::add_prior() {

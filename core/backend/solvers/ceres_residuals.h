@@ -51,6 +51,8 @@ class ResidualBuilder {
   void clear() { residuals_.clear(); }
 
  private:
+  [[nodiscard]] const double* first_estimate(BlockRef block) const;
+
   const Window& window_;
   const BackendConfig& config_;
   ObservationModel observation_model_;

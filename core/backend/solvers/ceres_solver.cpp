@@ -4,6 +4,7 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
+#include "core/backend/factors/gravity_manifold.h"
 #include "core/backend/factors/pose_manifold.h"
 #include "core/backend/solvers/ceres_residuals.h"
 
@@ -36,7 +37,7 @@ class WindowProblem {
       problem_.AddResidualBlock(r.cost.get(), r.loss, parameter_addresses(r, blocks_));
     }
     order_landmarks(window, config);
-    set_calibration_constancy(window, config);
+    set_global_constancy(window, config);
   }
 
   ceres::Solver::Summary solve(const BackendConfig& config) {
@@ -74,6 +75,7 @@ class WindowProblem {
     }
     add_state(blocks_.extrinsics(), 7, &manifold_);
     add_state(blocks_.time_offset(), 1, nullptr);
+    add_state(blocks_.gravity(), 3, &gravity_manifold_);
   }
 
   void add_state(double* block, int size, ceres::Manifold* manifold) {
@@ -92,13 +94,15 @@ class WindowProblem {
     }
   }
 
-  void set_calibration_constancy(const Window& window, const BackendConfig& config) {
-    const VariableCalibration variable = variable_calibration(window, config);
+  void set_global_constancy(const Window& window, const BackendConfig& config) {
+    const VariableGlobals variable = variable_globals(window, config);
     if (!variable.extrinsics) problem_.SetParameterBlockConstant(blocks_.extrinsics());
     if (!variable.time_offset) problem_.SetParameterBlockConstant(blocks_.time_offset());
+    if (!variable.gravity) problem_.SetParameterBlockConstant(blocks_.gravity());
   }
 
   PoseManifold manifold_;
+  GravityManifold gravity_manifold_;
   ParameterBlocks blocks_;
   ResidualBuilder builder_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =

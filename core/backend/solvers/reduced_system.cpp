@@ -20,8 +20,8 @@ std::array<const double*, 4> addresses(const std::array<BlockRef, 4>& refs, cons
   return {blocks.at(refs[0]), blocks.at(refs[1]), blocks.at(refs[2]), blocks.at(refs[3])};
 }
 
-ImuResidual imu_residual(const Window& window, int frame) {
-  return {*window.frames[static_cast<std::size_t>(frame)].from_previous, window.gravity_w};
+ImuResidual imu_residual(const Window& window, int frame, const ParameterBlocks& blocks) {
+  return {*window.frames[static_cast<std::size_t>(frame)].from_previous, Eigen::Vector3d(blocks.gravity())};
 }
 
 /// The residual and its Jacobians as written by the factor; `jacobian` stacks their tangent columns.
@@ -37,13 +37,38 @@ struct ImuLinearization {
   }
 };
 
-ImuLinearization linearize_imu(const Window& window, int frame, const ParameterBlocks& blocks) {
+ImuLinearization linearize_imu(const Window& window, int frame, const Linearization& at) {
   ImuLinearization out;
-  const std::array<const double*, 4> states = addresses(imu_blocks(frame), blocks);
+  const std::array<const double*, 4> states = addresses(imu_blocks(frame), at.states);
   std::array<double*, 4> jacobians = {out.J_pose_i.data(), out.J_speed_bias_i.data(), out.J_pose_j.data(),
                                       out.J_speed_bias_j.data()};
-  imu_residual(window, frame).evaluate(states.data(), out.residual.data(), jacobians.data());
+  imu_residual(window, frame, at.states).evaluate(states.data(), out.residual.data(), jacobians.data());
+  if (!at.at_first_estimates()) return out;
+  Vector15 unused;
+  const std::array<const double*, 4> point = addresses(imu_blocks(frame), at.point);
+  imu_residual(window, frame, at.point).evaluate(point.data(), unused.data(), jacobians.data());
   return out;
+}
+
+/// Adds the rows of gravity in J^T J and J^T r of the factor between frame - 1 and frame.
+void add_gravity_rows(const Window& window, int frame, const ParameterBlocks& blocks,
+                      const ImuLinearization& linear, ReducedSystem& system) {
+  Eigen::Matrix<double, 15, 3, Eigen::RowMajor> J_padded;
+  imu_residual(window, frame, blocks)
+      .evaluate_gravity_jacobian(blocks.at({BlockKind::kPose, frame - 1}), J_padded.data());
+  const Eigen::Matrix<double, 15, 2> J = J_padded.leftCols<2>();
+  const int row = system.layout.column({BlockKind::kGravity});
+  const std::array<BlockRef, 2> profile = {{{BlockKind::kSpeedBias, frame}, {BlockKind::kGravity}}};
+  system.widen_profile(profile);
+  system.g.segment<2>(row) += J.transpose() * linear.residual;
+  system.add(row, row, J.transpose() * J);
+  const Eigen::Matrix<double, 2, 30> H = J.transpose() * linear.jacobian();
+  int column = 0;
+  for (const BlockRef block : imu_blocks(frame)) {
+    const int size = local_size(block.kind);
+    system.add(row, system.layout.column(block), H.middleCols(column, size));
+    column += size;
+  }
 }
 
 }  // namespace
@@ -55,11 +80,14 @@ int ReducedLayout::column(BlockRef block) const {
     case BlockKind::kSpeedBias:
       return inertial_ ? 9 * (frames_ - 1 - block.frame) : -1;
     case BlockKind::kExtrinsics:
-      return variable_.extrinsics ? first_pose() + 6 * frames_ : -1;
+      return variable_.extrinsics ? first_global() : -1;
+    case BlockKind::kGravity:
+      return variable_.gravity ? first_global() + (variable_.extrinsics ? 6 : 0) : -1;
     case BlockKind::kTimeOffset:
       break;
   }
-  return variable_.time_offset ? first_pose() + 6 * frames_ + (variable_.extrinsics ? 6 : 0) : -1;
+  if (!variable_.time_offset) return -1;
+  return first_global() + (variable_.extrinsics ? 6 : 0) + (variable_.gravity ? 2 : 0);
 }
 
 void ReducedSystem::reset(const ReducedLayout& new_layout) {
@@ -98,13 +126,13 @@ bool has_imu_term(const Window& window, int frame) {
 double imu_cost(const Window& window, int frame, const ParameterBlocks& blocks) {
   Vector15 residual;
   const std::array<const double*, 4> states = addresses(imu_blocks(frame), blocks);
-  imu_residual(window, frame).evaluate(states.data(), residual.data(), nullptr);
+  imu_residual(window, frame, blocks).evaluate(states.data(), residual.data(), nullptr);
   return 0.5 * residual.squaredNorm();
 }
 
-double add_imu_term(const Window& window, int frame, const ParameterBlocks& blocks, ReducedSystem& system) {
+double add_imu_term(const Window& window, int frame, const Linearization& at, ReducedSystem& system) {
   system.widen_profile(imu_blocks(frame));
-  const ImuLinearization linear = linearize_imu(window, frame, blocks);
+  const ImuLinearization linear = linearize_imu(window, frame, at);
   const Eigen::Matrix<double, 15, 30> J = linear.jacobian();
   const Eigen::Matrix<double, 30, 30> H = J.transpose() * J;
   const Eigen::Matrix<double, 30, 1> g = J.transpose() * linear.residual;
@@ -121,6 +149,7 @@ double add_imu_term(const Window& window, int frame, const ParameterBlocks& bloc
     }
     row += size_a;
   }
+  if (window.estimates_gravity()) add_gravity_rows(window, frame, at.point, linear, system);
   return 0.5 * linear.residual.squaredNorm();
 }
 

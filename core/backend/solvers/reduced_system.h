@@ -12,11 +12,12 @@
 namespace stillpoint {
 
 /// Column order of the variable states: velocities and biases, newest first (IMU factors couple only
-/// neighbors, so these cause little fill-in); then poses, oldest first; then variable calibration.
+/// neighbors, so these cause little fill-in); then poses, oldest first; then extrinsics, gravity and time
+/// offset, if variable.
 class ReducedLayout {
  public:
   ReducedLayout() = default;
-  ReducedLayout(int frames, bool inertial, VariableCalibration variable)
+  ReducedLayout(int frames, bool inertial, VariableGlobals variable)
       : frames_(frames), inertial_(inertial), variable_(variable) {}
 
   /// -1 for a constant block.
@@ -24,15 +25,19 @@ class ReducedLayout {
   [[nodiscard]] int first_pose() const { return inertial_ ? 9 * frames_ : 0; }
   /// Padded to a multiple of kTile.
   [[nodiscard]] int size() const {
-    return first_pose() + 6 * frames_ + (variable_.extrinsics ? 6 : 0) + (variable_.time_offset ? kTile : 0);
+    const int globals =
+        (variable_.extrinsics ? 6 : 0) + (variable_.gravity ? 2 : 0) + (variable_.time_offset ? 1 : 0);
+    return first_global() + (globals + kTile - 1) / kTile * kTile;
   }
   [[nodiscard]] int frames() const { return frames_; }
-  [[nodiscard]] VariableCalibration variable_calibration() const { return variable_; }
+  [[nodiscard]] const VariableGlobals& variable_globals() const { return variable_; }
 
  private:
+  [[nodiscard]] int first_global() const { return first_pose() + 6 * frames_; }
+
   int frames_ = 0;
   bool inertial_ = false;
-  VariableCalibration variable_;
+  VariableGlobals variable_;
 };
 
 /// H dx = -g with H = J^T J, g = J^T r; only the lower triangle of H is stored. Unconstrained columns are
@@ -63,7 +68,7 @@ class ReducedSystem {
 /// Cost of the IMU factor between frame - 1 and frame; requires `has_imu_term`.
 [[nodiscard]] double imu_cost(const Window& window, int frame, const ParameterBlocks& blocks);
 /// Adds J^T J and J^T r of that factor. @return the cost
-double add_imu_term(const Window& window, int frame, const ParameterBlocks& blocks, ReducedSystem& system);
+double add_imu_term(const Window& window, int frame, const Linearization& at, ReducedSystem& system);
 
 /// A LinearPrior (of marginalization or calibration) as a term of the system; its Jacobian is constant.
 class PriorTerm {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/backend/factors/gravity_direction.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -36,17 +37,18 @@ void SchurSolver::read(const Window& window, const BackendConfig& config, double
   prior_.read(window.prior);
   calibration_.read(window.calibration);
   layout_ = ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
-                          variable_calibration(window, config));
+                          variable_globals(window, config));
 }
 
-double SchurSolver::linearize(const Window& window) {
+double SchurSolver::linearize(const Window& window, const BackendConfig& config) {
   system_.reset(layout_);
   system_.widen_profile(prior_.blocks());
+  const Linearization at = linearize_at(blocks_, window, config, point_);
   double cost = prior_.add_to(system_, blocks_) + calibration_.add_to(system_, blocks_);
   for (int frame = 1; frame <= window.newest(); ++frame) {
-    if (has_imu_term(window, frame)) cost += add_imu_term(window, frame, blocks_, system_);
+    if (has_imu_term(window, frame)) cost += add_imu_term(window, frame, at, system_);
   }
-  cost += visual_.add_to(system_, blocks_);
+  cost += visual_.add_to(system_, at);
   scale_squared_.states = system_.H.diagonal().cwiseMax(kMinCurvature);
   scale_squared_.landmarks = visual_.information().cwiseMax(kMinCurvature);
   return cost;
@@ -142,12 +144,17 @@ void SchurSolver::apply_step() {
   if (extrinsics >= 0) add_to_pose(step_.states, extrinsics, candidate_.extrinsics());
   const int time_offset = layout_.column({BlockKind::kTimeOffset});
   if (time_offset >= 0) *candidate_.time_offset() += step_.states[time_offset];
+  const int gravity = layout_.column({BlockKind::kGravity});
+  if (gravity >= 0) {
+    Eigen::Map<Eigen::Vector3d> g(candidate_.gravity());
+    g = rotate_gravity(g, step_.states.segment<2>(gravity));
+  }
   visual_.apply_step(step_.landmarks, candidate_);
 }
 
 SolveReport SchurSolver::iterate(const Window& window, const BackendConfig& config) {
   SolveReport report;
-  double cost = linearize(window);
+  double cost = linearize(window, config);
   report.initial_cost = cost;
   report.iterations = 1;  // the initial evaluation counts, as in Ceres
   report.usable = std::isfinite(cost) && compute_newton_step();
@@ -168,7 +175,7 @@ SolveReport SchurSolver::iterate(const Window& window, const BackendConfig& conf
       std::swap(blocks_, candidate_);
       cost -= decrease;
       if (converged || report.iterations > config.max_iterations) break;
-      cost = linearize(window);
+      cost = linearize(window, config);
       if (!compute_newton_step()) break;
     } else if (converged) {
       break;

@@ -52,7 +52,7 @@ class SchurSolver final : public WindowSolver {
   };
 
   void read(const Window& window, const BackendConfig& config, double focal_px);
-  [[nodiscard]] double linearize(const Window& window);
+  [[nodiscard]] double linearize(const Window& window, const BackendConfig& config);
   [[nodiscard]] double cost_at(const Window& window, const ParameterBlocks& blocks);
   [[nodiscard]] bool compute_newton_step();
   void compute_dogleg_step(double radius);
@@ -72,6 +72,7 @@ class SchurSolver final : public WindowSolver {
   PriorTerm calibration_;
   ParameterBlocks blocks_;
   ParameterBlocks candidate_;
+  ParameterBlocks point_;  ///< of the Jacobians, if not blocks_
   ReusableMatrix<RowMajorMatrix> S_;
   Direction scale_squared_;  // D
   Direction newton_;

@@ -23,6 +23,7 @@ void VisualTerms::read(const Window& window, const BackendConfig& config, double
   frames_ = static_cast<int>(window.frames.size());
   noise_ = reprojection_noise(config, focal_px);
   cauchy_squared_ = config.cauchy_scale * config.cauchy_scale;
+  information_factor_ = selection == LandmarkSelection::kAll ? 1.0 : marginalized_information(window, config);
   observation_model_.read(window);
   const auto pairs = static_cast<std::size_t>(frames_ * frames_);
   pair_used_.assign(pairs, 0);
@@ -82,6 +83,30 @@ void VisualTerms::update_relative_poses(const ParameterBlocks& blocks) {
   }
 }
 
+/// Evaluates the derivatives of the relative poses, but not the poses, at `point`.
+void VisualTerms::move_jacobians_to(const ParameterBlocks& point) {
+  const Pose T_b_c = pose_at(point.extrinsics());
+  for (int host = 0; host < frames_; ++host) {
+    for (int frame = host + 1; frame < frames_; ++frame) {
+      if (pair_used_[pair(host, frame)] == 0) continue;
+      const RelativePoseLinearization first =
+          linearize_relative_pose(pose_at(point.pose(static_cast<std::size_t>(host))),
+                                  pose_at(point.pose(static_cast<std::size_t>(frame))), T_b_c);
+      RelativePoseLinearization& relative = relative_poses_[pair(host, frame)];
+      relative.J_pose_i = first.J_pose_i;
+      relative.J_pose_j = first.J_pose_j;
+      relative.J_extrinsics = first.J_extrinsics;
+    }
+  }
+}
+
+void VisualTerms::scale_information() {
+  for (PairSum& sum : sums_) sum *= information_factor_;
+  information_ *= information_factor_;
+  gradient_ *= information_factor_;
+  coupling_ *= information_factor_;
+}
+
 VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
                                                  const ParameterBlocks& blocks) const {
   return {*blocks.inverse_depth(landmark.index), at_state(landmark.in_host, time_offset_).homogeneous(),
@@ -120,15 +145,17 @@ double VisualTerms::cost(const ParameterBlocks& blocks) {
   return 0.5 * total;
 }
 
-double VisualTerms::add_to(ReducedSystem& system, const ParameterBlocks& blocks) {
-  update_relative_poses(blocks);
+double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
+  update_relative_poses(at.states);
+  if (at.at_first_estimates()) move_jacobians_to(at.point);
   for (PairSum& sum : sums_) sum.setZero();
   information_.setZero();
   gradient_.setZero();
   coupling_.resize(system.layout.size() - system.layout.first_pose(), variable_count_);
   coupling_.setZero();
   double total = 0.0;
-  for (const VisualLandmark& landmark : landmarks_) total += linearize(landmark, blocks, system.layout);
+  for (const VisualLandmark& landmark : landmarks_) total += linearize(landmark, at.states, system.layout);
+  if (information_factor_ != 1.0) scale_information();
   for (int host = 0; host < frames_; ++host) {
     for (int frame = host + 1; frame < frames_; ++frame) {
       if (pair_used_[pair(host, frame)] != 0) add_pair(host, frame, system);
@@ -192,11 +219,11 @@ void VisualTerms::add_coupling(const VisualLandmark& landmark, int frame, const 
   const Eigen::Index to_column = landmark.column;
   coupling_.block<6, 1>(6 * frame, to_column).noalias() = to.J_pose_j.transpose() * relative;
   coupling_.block<6, 1>(6 * landmark.host, to_column).noalias() += to.J_pose_i.transpose() * relative;
-  if (layout.variable_calibration().extrinsics) {
+  if (layout.variable_globals().extrinsics) {
     const int extrinsics = layout.column({BlockKind::kExtrinsics}) - layout.first_pose();
     coupling_.block<6, 1>(extrinsics, to_column).noalias() += to.J_extrinsics.transpose() * relative;
   }
-  if (layout.variable_calibration().time_offset) {
+  if (layout.variable_globals().time_offset) {
     coupling_(layout.column({BlockKind::kTimeOffset}) - layout.first_pose(), to_column) += column[6];
   }
 }

@@ -2,8 +2,8 @@
 /// Visual residuals of a window and the elimination of its landmarks from the normal equations.
 #pragma once
 
+#include "core/backend/factors/relative_pose_linearization.h"
 #include "core/backend/solvers/reduced_system.h"
-#include "core/backend/solvers/relative_pose_linearization.h"
 #include "core/backend/window/observation_model.h"
 
 namespace stillpoint {
@@ -19,7 +19,9 @@ enum class LandmarkSelection { kAll, kHostedByOldest };
 ///
 ///   A_ij = sum w [J_y r]^T [J_y r],    w = 1 / (1 + |r|^2 / c^2)    (8x8; w: weight of the Cauchy loss)
 ///
-/// is mapped to the states x once, with M_ij = dy/dx: H_pp += M_ij^T A_yy M_ij, g_p += M_ij^T A_yr.
+/// is mapped to the states x once, with M_ij = dy/dx: H_pp += M_ij^T A_yy M_ij, g_p += M_ij^T A_yr. A
+/// displacement of the world is in the null space of M_ij, whatever A_ij is: with first-estimates Jacobians
+/// only M_ij is evaluated at the first estimates.
 ///
 /// A landmark is one scalar lambda. Over its observations
 ///
@@ -34,7 +36,7 @@ class VisualTerms {
 
   [[nodiscard]] double cost(const ParameterBlocks& blocks);
   /// Adds H_pp and g_p to the system and stores H_ll, g_l and H_pl. @return the cost
-  double add_to(ReducedSystem& system, const ParameterBlocks& blocks);
+  double add_to(ReducedSystem& system, const Linearization& at);
 
   /// Schur complement with damped landmarks, H_ll' = (1 + damping) H_ll:
   /// S -= H_pl H_ll'^-1 H_lp (lower triangle), rhs += H_pl H_ll'^-1 g_l.
@@ -83,6 +85,8 @@ class VisualTerms {
 
   void add_landmark(const Landmark& landmark, std::size_t index, const BackendConfig& config);
   void update_relative_poses(const ParameterBlocks& blocks);
+  void move_jacobians_to(const ParameterBlocks& point);
+  void scale_information();
   [[nodiscard]] LandmarkState state_of(const VisualLandmark& landmark, const ParameterBlocks& blocks) const;
   [[nodiscard]] MeasuredPoint measured_point_at(const TimedObservation& observation) const;
   [[nodiscard]] const TimedObservation& observation_of(const VisualLandmark& landmark, int frame) const {
@@ -103,6 +107,7 @@ class VisualTerms {
 
   int frames_ = 0;
   int measured_ = 0;
+  double information_factor_ = 1.0;
   double cauchy_squared_ = 1.0;
   double time_offset_ = 0.0;
   ReprojectionNoise noise_;

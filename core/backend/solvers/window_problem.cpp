@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/window_problem.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace stillpoint {
 namespace {
 
-/// Below this speed the image motion is too small to observe time offset and extrinsics.
+constexpr double kSharedInformation = 0.4;  // see marginalized_information
+
+/// Published prior: below this speed the image motion is too small to observe time offset and extrinsics.
 constexpr double kMinSpeedForCalibration = 0.2;  // [m/s]
 
 void pack_pose(const Pose& pose, double* values) {
@@ -22,7 +25,7 @@ Pose unpack_pose(const double* values) {
 
 void ParameterBlocks::assign(const Window& window) {
   frames_ = window.frames.size();
-  values_.resize(16 * frames_ + 8 + window.landmarks.size());
+  values_.resize(16 * frames_ + 11 + window.landmarks.size());
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     const NavState& state = window.frames[i].state;
     pack_pose(state.T_w_b, pose(i));
@@ -30,6 +33,7 @@ void ParameterBlocks::assign(const Window& window) {
   }
   pack_pose(window.T_b_c, extrinsics());
   *time_offset() = window.time_offset_s;
+  Eigen::Map<Eigen::Vector3d>{gravity()} = window.gravity_w;
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     *inverse_depth(i) = window.landmarks[i].inverse_depth;
   }
@@ -43,10 +47,22 @@ std::size_t ParameterBlocks::offset(BlockRef block) const {
       return 7 * frames_ + 9 * static_cast<std::size_t>(block.frame);
     case BlockKind::kExtrinsics:
       return 16 * frames_;
+    case BlockKind::kGravity:
+      return 16 * frames_ + 8;
     case BlockKind::kTimeOffset:
       break;
   }
   return 16 * frames_ + 7;
+}
+
+Linearization linearize_at(const ParameterBlocks& now, const Window& window, const BackendConfig& config,
+                           ParameterBlocks& point) {
+  if (!has_consistent_prior(window, config)) return {now, now};
+  point = now;
+  for (const PriorBlock& block : window.prior.blocks) {
+    std::copy_n(block.linearization.data(), global_size(block.kind), point.at({block.kind, block.frame}));
+  }
+  return {now, point};
 }
 
 void unpack(const ParameterBlocks& blocks, Window& window) {
@@ -60,6 +76,7 @@ void unpack(const ParameterBlocks& blocks, Window& window) {
   }
   window.T_b_c = unpack_pose(blocks.extrinsics());
   window.time_offset_s = *blocks.time_offset();
+  window.gravity_w = Eigen::Vector3d(blocks.gravity());
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     window.landmarks[i].inverse_depth = *blocks.inverse_depth(i);
   }
@@ -79,19 +96,53 @@ bool uses_depth(const Observation& observation, const BackendConfig& config) {
   return config.depth.usage == DepthUsage::kWeighted && observation.depth > 0.0;
 }
 
-VariableCalibration variable_calibration(const Window& window, const BackendConfig& config) {
-  const bool moving = window.inertial && window.frames.back().state.v_w.norm() > kMinSpeedForCalibration;
+VariableGlobals variable_globals(const Window& window, const BackendConfig& config) {
+  const bool moving = window.inertial && (config.prior == PriorModel::kConsistent ||
+                                          window.frames.back().state.v_w.norm() > kMinSpeedForCalibration);
   return {.extrinsics = config.estimate_extrinsics && moving,
-          .time_offset = config.estimate_time_offset && moving};
+          .time_offset = config.estimate_time_offset && moving,
+          .gravity = window.estimates_gravity()};
 }
 
-std::vector<BlockRef> candidate_blocks(const Window& window, std::vector<BlockRef> recycled) {
+VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config) {
+  if (has_consistent_prior(window, config)) return variable_globals(window, config);
+  return {.gravity = window.estimates_gravity()};
+}
+
+double marginalized_information(const Window& window, const BackendConfig& config) {
+  return has_consistent_prior(window, config) ? kSharedInformation : 1.0;
+}
+
+std::vector<BlockRef> candidate_blocks(const Window& window, const BackendConfig& config,
+                                       std::vector<BlockRef> recycled) {
   std::vector<BlockRef> blocks = std::move(recycled);
   blocks.clear();
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kPose, frame});
   if (!window.inertial) return blocks;
   for (int frame = 1; frame <= window.newest(); ++frame) blocks.push_back({BlockKind::kSpeedBias, frame});
+  const VariableGlobals globals = marginalized_globals(window, config);
+  if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
+  if (globals.gravity) blocks.push_back({BlockKind::kGravity});
+  if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
   return blocks;
+}
+
+PriorBlock prior_block_after_slide(BlockRef block, const ParameterBlocks& point) {
+  return {block.kind, std::max(block.frame - 1, -1),
+          Eigen::Map<const BlockVector>(point.at(block), global_size(block.kind))};
+}
+
+void move_residual_to_linearization(const ParameterBlocks& now, LinearPrior& prior) {
+  int column = 0;
+  for (const PriorBlock& block : prior.blocks) {
+    const int size = local_size(block.kind);
+    const BlockRef before{block.kind, block.frame < 0 ? -1 : block.frame + 1};
+    const BlockVector difference = block_difference(block.kind, now.at(before), block.linearization);
+    if (!difference.isZero(0.0)) {
+      prior.residual.noalias() -= prior.jacobian.middleCols(column, size) * difference;
+    }
+    column += size;
+  }
 }
 
 }  // namespace stillpoint

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/start/initial_prior.h"
 
+#include <utility>
+
+#include <Eigen/Cholesky>
+
 #include "core/backend/solvers/window_problem.h"
 
 namespace stillpoint {
@@ -8,6 +12,9 @@ namespace {
 
 constexpr double kGaugeSigma_m = 1e-3;
 constexpr double kGaugeSigma_rad = 1e-3;
+
+/// [m] and [rad]: exact up to rounding errors, so that covariances are relative to the first pose.
+constexpr double kExactSigma = 1e-6;
 
 /// Jump of the oldest pose in one solve above which the gauge is restored.
 constexpr double kJump_m = 0.1;
@@ -25,9 +32,35 @@ Eigen::Matrix<double, 6, 6> pose_root_information(double sigma_m, double sigma_r
   return diagonal.asDiagonal();
 }
 
+/// Rows: position, heading, gyro bias, accel bias. d heading / d theta = e_z^T R.
+LinearPrior prior_of_level_world(LinearPrior prior, const Window& window, const BackendConfig& config) {
+  prior.residual = Eigen::VectorXd::Zero(10);
+  prior.jacobian = Eigen::MatrixXd::Zero(10, 15);
+  prior.jacobian.block<3, 3>(0, 0).diagonal().setConstant(1.0 / kGaugeSigma_m);
+  prior.jacobian.block<1, 3>(3, 3) = window.frames.front().state.T_w_b.R().row(2) / kGaugeSigma_rad;
+  prior.jacobian.block<3, 3>(4, 9).diagonal().setConstant(1.0 / config.initializer.gyro_bias_sigma);
+  prior.jacobian.block<3, 3>(7, 12).diagonal().setConstant(1.0 / config.initializer.accel_bias_sigma);
+  return prior;
+}
+
+/// Rows: pose, gyro bias, accel bias, gravity (the inverse Cholesky factor of its covariance).
+LinearPrior prior_with_gravity(LinearPrior prior, const Window& window, const BackendConfig& config) {
+  prior.blocks.push_back(prior_block(window, BlockKind::kGravity, -1));
+  prior.residual = Eigen::VectorXd::Zero(14);
+  prior.jacobian = Eigen::MatrixXd::Zero(14, 17);
+  prior.jacobian.topLeftCorner<6, 6>() = config.prior == PriorModel::kConsistent
+                                             ? pose_root_information(kExactSigma, kExactSigma)
+                                             : pose_root_information(kGaugeSigma_m, kGaugeSigma_rad);
+  prior.jacobian.block<3, 3>(6, 9).diagonal().setConstant(1.0 / config.initializer.gyro_bias_sigma);
+  prior.jacobian.block<3, 3>(9, 12).diagonal().setConstant(1.0 / config.initializer.accel_bias_sigma);
+  prior.jacobian.block<2, 2>(12, 15) =
+      window.gravity_covariance->llt().matrixL().solve(Eigen::Matrix2d::Identity());
+  return prior;
+}
+
 }  // namespace
 
-LinearPrior initial_prior(const Window& window, const InitializerConfig& config) {
+LinearPrior initial_prior(const Window& window, const BackendConfig& config) {
   LinearPrior prior;
   prior.blocks.push_back(prior_block(window, BlockKind::kPose, 0));
   if (!window.inertial) {
@@ -36,14 +69,8 @@ LinearPrior initial_prior(const Window& window, const InitializerConfig& config)
     return prior;
   }
   prior.blocks.push_back(prior_block(window, BlockKind::kSpeedBias, 0));
-  // Rows: position, heading, gyro bias, accel bias. d heading / d theta = e_z^T R.
-  prior.residual = Eigen::VectorXd::Zero(10);
-  prior.jacobian = Eigen::MatrixXd::Zero(10, 15);
-  prior.jacobian.block<3, 3>(0, 0).diagonal().setConstant(1.0 / kGaugeSigma_m);
-  prior.jacobian.block<1, 3>(3, 3) = window.frames.front().state.T_w_b.R().row(2) / kGaugeSigma_rad;
-  prior.jacobian.block<3, 3>(4, 9).diagonal().setConstant(1.0 / config.gyro_bias_sigma);
-  prior.jacobian.block<3, 3>(7, 12).diagonal().setConstant(1.0 / config.accel_bias_sigma);
-  return prior;
+  return window.gravity_covariance ? prior_with_gravity(std::move(prior), window, config)
+                                   : prior_of_level_world(std::move(prior), window, config);
 }
 
 LinearPrior calibration_prior(const Window& window, const BackendConfig& config) {
@@ -58,7 +85,7 @@ LinearPrior calibration_prior(const Window& window, const BackendConfig& config)
   return prior;
 }
 
-bool restore_gauge(const Pose& oldest_T_w_b, const InitializerConfig& config, Window& window) {
+bool restore_gauge(const Pose& oldest_T_w_b, const BackendConfig& config, Window& window) {
   const Pose& current = window.frames.front().state.T_w_b;
   const bool translated = (current.p - oldest_T_w_b.p).norm() > kJump_m;
   const bool rotated = current.q.angularDistance(oldest_T_w_b.q) > kJump_rad;

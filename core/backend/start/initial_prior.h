@@ -7,9 +7,10 @@
 
 namespace stillpoint {
 
-/// Initial prior of a window: fixes the gauge at frame 0 (position and heading, or the whole pose without
-/// IMU) and constrains its biases by their configured uncertainty.
-[[nodiscard]] LinearPrior initial_prior(const Window& window, const InitializerConfig& config);
+/// Initial prior of a window: fixes the gauge at frame 0 and constrains its biases by their configured
+/// uncertainty. The gauge is the whole pose; with an IMU and constant gravity only position and heading. If
+/// gravity is estimated, it is constrained by `Window::gravity_covariance`.
+[[nodiscard]] LinearPrior initial_prior(const Window& window, const BackendConfig& config);
 
 /// Prior on extrinsics and time offset at their current values, with the configured uncertainty.
 [[nodiscard]] LinearPrior calibration_prior(const Window& window, const BackendConfig& config);
@@ -21,6 +22,6 @@ namespace stillpoint {
 /// initial one.
 /// @param oldest_T_w_b pose of the oldest frame before the solve
 /// @return whether there was a jump
-bool restore_gauge(const Pose& oldest_T_w_b, const InitializerConfig& config, Window& window);
+bool restore_gauge(const Pose& oldest_T_w_b, const BackendConfig& config, Window& window);
 
 }  // namespace stillpoint

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "core/backend/start/frozen_world.h"
 #include "core/imu/gyro_bias.h"
 
 namespace stillpoint {
@@ -124,6 +125,8 @@ std::optional<InertialAlignment> align_with_imu(const Window& window, double gra
       refine_gravity(system, gravity * unconstrained.segment<3>(3).normalized(), config.max_scale_sigma);
   if (!refined.scale_is_certain) return std::nullopt;
   alignment.gravity_w = refined.gravity_w;
+  alignment.gravity_covariance =
+      gravity_direction_covariance({system.A, system.y}, refined.gravity_w, config.accel_bias_sigma);
   alignment.first_velocity_w = refined.solution.head<3>();
   if (!metric) alignment.scale = 1.0 + refined.solution[5];
   return alignment;

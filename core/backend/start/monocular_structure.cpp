@@ -213,7 +213,7 @@ void Structure::triangulate_landmarks() {
 
 /// Bundle adjustment. @return whether it converged to a sufficiently low cost
 bool Structure::bundle_adjust(WindowSolver& solver) {
-  window_.prior = initial_prior(window_, config_.initializer);
+  window_.prior = initial_prior(window_, config_);
   BackendConfig adjustment = config_;
   adjustment.max_iterations = kBundleAdjustmentIterations;
   const SolveReport report = solver.solve(window_, adjustment, focal_px_);

@@ -56,12 +56,16 @@ struct Window {
   Pose T_b_c;
   double time_offset_s = 0.0;
   Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();
-  bool inertial = false;    ///< IMU initialized: the world is aligned with gravity, velocities are valid
-  LinearPrior prior;        ///< marginalization prior on the states
-  LinearPrior calibration;  ///< prior on extrinsics and time offset
+  /// Covariance of the direction of gravity [rad^2] in its tangent space (see gravity_direction.h) when the
+  /// current initial prior was built; absent: gravity is constant.
+  std::optional<Eigen::Matrix2d> gravity_covariance;
+  bool inertial = false;                     ///< IMU initialized: gravity and velocities are valid
+  LinearPrior prior;                         ///< marginalization prior on the states
+  LinearPrior calibration;                   ///< prior on extrinsics and time offset
   VectorPool<Observation> observation_pool;  ///< of removed landmarks
   VectorPool<ImuSample> sample_pool;         ///< of removed preintegrations
 
+  [[nodiscard]] bool estimates_gravity() const { return inertial && gravity_covariance.has_value(); }
   [[nodiscard]] int newest() const { return static_cast<int>(frames.size()) - 1; }
   [[nodiscard]] Pose T_w_c(int frame) const {
     return frames[static_cast<std::size_t>(frame)].state.T_w_b * T_b_c;

@@ -15,12 +15,23 @@ namespace {
 constexpr double kRate_hz = 30.0;
 
 struct SimulatedRun {
-  double position_rmse_m = 0.0;  ///< relative to the first reported pose, no alignment
+  double position_rmse_m = 0.0;    ///< relative to the first reported pose, no alignment
+  double rotation_rmse_rad = 0.0;  ///< of the motion over 1 s
   double first_pose_s = -1.0;
   double time_offset_s = 0.0;
   int poses = 0;
   NavState last;
 };
+
+/// Root mean square of the change of a rotation error over 1 s [rad].
+double change_over_one_second(const std::vector<Eigen::Quaterniond>& errors) {
+  const auto step = static_cast<std::size_t>(kRate_hz);
+  double squared = 0.0;
+  for (std::size_t i = step; i < errors.size(); ++i) {
+    squared += std::pow(errors[i].angularDistance(errors[i - step]), 2);
+  }
+  return std::sqrt(squared / static_cast<double>(errors.size() - step));
+}
 
 /// Evaluates poses relative to the first reported one against ground truth relative to the same time.
 SimulatedRun simulate(const SimulatedMotion& motion, const BackendConfig& backend,
@@ -33,6 +44,7 @@ SimulatedRun simulate(const SimulatedMotion& motion, const BackendConfig& backen
   SimulatedRun run;
   std::optional<Pose> T_first, T_first_true;
   double squared = 0.0;
+  std::vector<Eigen::Quaterniond> rotation_errors;
   for (int i = 0; i < static_cast<int>(seconds * kRate_hz); ++i) {
     const double t = 0.1 + i / kRate_hz;
     for (; next < imu.size() && to_seconds(imu[next].t) < t + 0.05; ++next) estimator.add_imu(imu[next]);
@@ -47,11 +59,13 @@ SimulatedRun simulate(const SimulatedMotion& motion, const BackendConfig& backen
     const Pose moved = T_first->inverse() * update.state.T_w_b;
     const Pose moved_true = T_first_true->inverse() * truth;
     squared += (moved.p - moved_true.p).squaredNorm();
+    rotation_errors.push_back(moved.q * moved_true.q.conjugate());
     ++run.poses;
     run.last = update.state;
     run.time_offset_s = update.time_offset_s;
   }
   run.position_rmse_m = std::sqrt(squared / run.poses);
+  run.rotation_rmse_rad = change_over_one_second(rotation_errors);
   return run;
 }
 
@@ -74,6 +88,43 @@ TEST(Estimator, TracksANoisyTrajectoryAndEstimatesItsBiases) {
   const SimulatedRun run = simulate(motion, every_frame(), {}, 10.0);
   EXPECT_LT(run.position_rmse_m, 0.03);
   EXPECT_LT((run.last.gyro_bias - Eigen::Vector3d::Constant(0.02)).norm(), 0.005);
+}
+
+TEST(Estimator, AWorldWithEstimatedGravityDoesNotTurn) {
+  const SimulatedMotion motion{.pixel_noise_px = 0.5, .depth_noise = 0.003, .noisy_imu = true};
+  BackendConfig config = every_frame();
+  config.solver = WindowSolverKind::kSchur;
+  const SimulatedRun fixed = simulate(motion, config, {}, 6.0);
+  config.gravity = GravityModel::kEstimated;
+  const SimulatedRun estimated = simulate(motion, config, {}, 6.0);
+  // With constant gravity the poses turn while the accelerometer bias becomes known.
+  EXPECT_LT(estimated.rotation_rmse_rad, 0.5 * fixed.rotation_rmse_rad);
+  EXPECT_LT(estimated.rotation_rmse_rad, 0.002);
+  EXPECT_LT(estimated.position_rmse_m, 0.03);
+}
+
+TEST(Estimator, ARestartKeepsGravityWithItsCovariance) {
+  const SimulatedMotion motion{.pixel_noise_px = 0.3, .depth_noise = 0.003, .noisy_imu = true};
+  BackendConfig config = every_frame();
+  config.solver = WindowSolverKind::kSchur;
+  config.gravity = GravityModel::kEstimated;
+  Estimator estimator(config, {}, SimulatedMotion::rig(), 1);
+  std::vector<ImuSample> imu = motion.imu(8.0);
+  imu[700].accel_b.x() = 1e5;  // at 3.5 s: velocity changes by 500 m/s
+  for (const ImuSample& sample : imu) estimator.add_imu(sample);
+  Eigen::Vector3d before = Eigen::Vector3d::Zero(), after = before;
+  bool reset = false, known = false;
+  for (int i = 0; i < 150; ++i) {
+    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, 0.1 + i / kRate_hz));
+    if (update.counters.reset) known = estimator.window().gravity_covariance.has_value();
+    reset |= update.counters.reset;
+    (reset ? after : before) = estimator.window().gravity_w;
+  }
+  ASSERT_TRUE(reset && known);
+  EXPECT_TRUE(estimator.window().inertial);
+  EXPECT_LT((after - before).norm(), 0.15);
+  ASSERT_TRUE(estimator.window().gravity_covariance);
+  EXPECT_LT(estimator.window().gravity_covariance->trace(), 4e-4);  // 0.02 after an alignment
 }
 
 TEST(Estimator, TracksWithoutAnImu) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/backend/start/frozen_world.h"
 #include "core/imu/imu_buffer.h"
 #include "tests/support/simulated/simulated_motion.h"
 
@@ -50,6 +51,48 @@ TEST(Initializer, AlignsTheWorldWithGravityAndPreservesPositionAndHeading) {
   EXPECT_LT(log_so3(truth_last.T_w_b.q.conjugate() * last.T_w_b.q).norm(), 0.002);
   EXPECT_LT((last.T_w_b.p - truth_last.T_w_b.p).norm(), 0.002);
   EXPECT_LT((last.v_w - truth_last.v_w).norm(), 0.005);
+}
+
+/// Angle between gravity of the window and `down` [rad].
+double tilt(const Window& window, const Eigen::Vector3d& down) {
+  return window.gravity_w.normalized().cross(down.normalized()).norm();
+}
+
+TEST(Initializer, LevelsAWorldWhoseGravityIsUnknownWithAWeakCovariance) {
+  Window window = exact_window(Pose{exp_so3({0.7, -0.3, 0.4}), {1.0, 2.0, 3.0}}, 11, 1.0 / 30.0);
+  const NavState truth = SimulatedMotion::state(0.5);
+  apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window);
+  EXPECT_LT(tilt(window, {0.0, 0.0, -1.0}), 1e-9);
+  const NavState& last = window.frames.back().state;
+  const NavState truth_last = SimulatedMotion::state(0.5 + 10.0 / 30.0);
+  EXPECT_LT(log_so3(truth_last.T_w_b.q.conjugate() * last.T_w_b.q).norm(), 0.002);
+  // An accelerometer bias of 0.1 m/s^2 tilts by 0.01 rad; ten times that.
+  ASSERT_TRUE(window.estimates_gravity());
+  EXPECT_NEAR(std::sqrt((*window.gravity_covariance)(0, 0)), 0.1, 0.02);
+  EXPECT_NEAR(std::sqrt((*window.gravity_covariance)(1, 1)), 0.1, 0.02);
+}
+
+TEST(Initializer, KeepsAKnownGravityAndTheWorld) {
+  const NavState truth = SimulatedMotion::state(0.5);
+  Window window = exact_window(Pose{}, 11, 1.0 / 30.0);
+  window.gravity_w = exp_so3({0.01, 0.0, 0.0}) * Eigen::Vector3d(0.0, 0.0, -9.81);
+  window.gravity_covariance = 1e-6 * Eigen::Matrix2d::Identity();
+  const Eigen::Vector3d known = window.gravity_w;
+  apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window);
+  EXPECT_EQ(window.gravity_w, known);
+  EXPECT_EQ((*window.gravity_covariance)(0, 0), 1e-6);
+  EXPECT_LT(log_so3(truth.T_w_b.q.conjugate() * window.frames[0].state.T_w_b.q).norm(), 1e-9);
+}
+
+TEST(Initializer, ReplacesAKnownGravityThatTheSamplesContradictButKeepsTheWorld) {
+  const NavState truth = SimulatedMotion::state(0.5);
+  Window window = exact_window(Pose{}, 11, 1.0 / 30.0);
+  window.gravity_w = exp_so3({0.3, 0.0, 0.0}) * Eigen::Vector3d(0.0, 0.0, -9.81);
+  window.gravity_covariance = 1e-6 * Eigen::Matrix2d::Identity();
+  apply_alignment_to_frozen_world(*align_with_imu(window, 9.81, {}), truth.T_w_b, window);
+  EXPECT_LT(tilt(window, {0.0, 0.0, -1.0}), 0.002);
+  EXPECT_GT((*window.gravity_covariance)(0, 0), 1e-3);
+  EXPECT_LT(log_so3(truth.T_w_b.q.conjugate() * window.frames[0].state.T_w_b.q).norm(), 1e-9);
 }
 
 TEST(Initializer, RejectsAWindowWithMissingSamples) {

@@ -19,7 +19,7 @@ LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config
 
 TEST(Marginalization, ExactDataGiveAZeroResidual) {
   Window window = visual_window(5, 30);
-  window.prior = initial_prior(window, InitializerConfig{});
+  window.prior = initial_prior(window, BackendConfig{});
   const LinearPrior prior = marginalize_oldest(window, {});
   EXPECT_EQ(prior.blocks.size(), 4u);  // poses 1..4, now 0..3
   EXPECT_EQ(prior.blocks.front().frame, 0);
@@ -31,7 +31,7 @@ TEST(Marginalization, ThePriorPullsADisplacedFrameBack) {
   Window window = truth;
   BackendConfig config;
   config.depth.usage = DepthUsage::kWeighted;
-  window.prior = initial_prior(window, config.initializer);
+  window.prior = initial_prior(window, config);
   window.prior = marginalize_oldest(window, config);
   remove_oldest_frame(window);
   window.landmarks.clear();  // the prior alone must constrain the poses
@@ -44,7 +44,7 @@ TEST(Marginalization, ThePriorPullsADisplacedFrameBack) {
 
 TEST(Marginalization, AnUnconnectedFrameLeavesAnEmptyPrior) {
   Window window = visual_window(5, 30);
-  window.prior = initial_prior(window, InitializerConfig{});  // of frame 0 alone
+  window.prior = initial_prior(window, BackendConfig{});  // of frame 0 alone
   window.landmarks.clear();
   for (const WindowSolverKind kind : {WindowSolverKind::kCeres, WindowSolverKind::kSchur}) {
     BackendConfig config;

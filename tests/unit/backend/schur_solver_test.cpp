@@ -45,6 +45,20 @@ const std::vector<Case> kCases = {
     make_case("WithExtrinsics", [](SimulatedWindowOptions& o) { o.config.estimate_extrinsics = true; }),
     make_case(
         "RollingShutter", [](SimulatedWindowOptions&) {}, 0.02),
+    make_case("WithGravity", [](SimulatedWindowOptions& o) { o.config.gravity = GravityModel::kEstimated; }),
+    make_case("WithGravityAndExtrinsics",
+              [](SimulatedWindowOptions& o) {
+                o.config.gravity = GravityModel::kEstimated;
+                o.config.estimate_extrinsics = true;
+                o.config.estimate_time_offset = false;
+              }),
+    make_case("ConsistentPrior",
+              [](SimulatedWindowOptions& o) {
+                o.config.gravity = GravityModel::kEstimated;
+                o.config.prior = PriorModel::kConsistent;
+                o.config.estimate_extrinsics = true;
+                o.frames = 24;
+              }),
     make_case("FewFrames", [](SimulatedWindowOptions& o) { o.frames = 6; })};
 
 class SchurSolverCase : public testing::TestWithParam<Case> {};
@@ -80,13 +94,15 @@ ReducedSystem reduced_system(const Window& window, const BackendConfig& config,
   prior.read(window.prior);
   calibration.read(window.calibration);
   system.reset(ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
-                             variable_calibration(window, config)));
+                             variable_globals(window, config)));
+  ParameterBlocks point;
+  const Linearization at = linearize_at(blocks, window, config, point);
   prior.add_to(system, blocks);
   calibration.add_to(system, blocks);
   for (int frame = 1; frame <= window.newest(); ++frame) {
-    if (has_imu_term(window, frame)) add_imu_term(window, frame, blocks, system);
+    if (has_imu_term(window, frame)) add_imu_term(window, frame, at, system);
   }
-  visual.add_to(system, blocks);
+  visual.add_to(system, at);
   Eigen::VectorXd rhs = -system.g;
   visual.eliminate(0.0, system.H, rhs);
   system.g = -rhs;
@@ -101,7 +117,7 @@ struct ColumnPairs {
 
 ColumnPairs matching_columns(const Window& window, const ReducedLayout& reduced) {
   const StateLayout reference(static_cast<int>(window.frames.size()));
-  std::vector<BlockRef> blocks = {{BlockKind::kExtrinsics}, {BlockKind::kTimeOffset}};
+  std::vector<BlockRef> blocks = {{BlockKind::kExtrinsics}, {BlockKind::kTimeOffset}, {BlockKind::kGravity}};
   for (int frame = 0; frame <= window.newest(); ++frame) {
     blocks.push_back({BlockKind::kPose, frame});
     blocks.push_back({BlockKind::kSpeedBias, frame});
@@ -150,6 +166,7 @@ TEST_P(SchurSolverCase, ReachesTheCostOfCeres) {
   for (std::size_t i = 0; i < by_schur.frames.size(); ++i) {
     EXPECT_LT((by_schur.frames[i].state.T_w_b.p - by_ceres.frames[i].state.T_w_b.p).norm(), 1e-4);
   }
+  EXPECT_LT((by_schur.gravity_w - by_ceres.gravity_w).norm(), 1e-3);
 }
 
 TEST_P(SchurSolverCase, MarginalizationYieldsTheSameInformation) {

@@ -29,7 +29,7 @@ TEST(WindowSolver, ALandmarkBeyondInfinityDoesNotAffectTheOthers) {
   Window window = truth;
   BackendConfig config;
   config.depth.usage = DepthUsage::kWeighted;
-  window.prior = initial_prior(window, config.initializer);
+  window.prior = initial_prior(window, config);
   window.landmarks.push_back(landmark_beyond_infinity(truth));
   for (int i = 1; i <= window.newest(); ++i) {
     window.frames[static_cast<std::size_t>(i)].state.T_w_b.p += Eigen::Vector3d(0.01, -0.02, 0.015);

@@ -105,6 +105,7 @@ TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {
                      {"backend.solver", "\"schur\""},
                      {"backend.max_iterations", "4"},
                      {"backend.keyframe_max_interval_s", "0.5"},
+                     {"backend.gravity", "\"estimated\""},
                      {"backend.depth.usage", "\"weighted\""},
                      {"backend.depth.outlier_sigmas", "5.0"},
                      {"backend.initializer.kind", "\"instant\""}}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/solvers/relative_pose_linearization.h"
+#include "core/backend/factors/relative_pose_linearization.h"
 
 #include "core/geometry/so3.h"
 
