@@ -95,6 +95,7 @@ row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/m
   bench/run bench/profile bench/record
 row bench/plan core/base datasets datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
+row bench/executors core/base eval/io bench/model bench/store bench/process bench/record bench/systems bench/plan
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/serve core/base bench/record
 row bench/micro $core tests/support
@@ -117,7 +118,7 @@ execution="core/base bench/cli bench/model bench/config bench/record"
 row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector datasets datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
-row bench/cli/plan $execution bench/store bench/systems bench/plan reports/tables reports/text reports/page
+row bench/cli/plan $execution bench/store bench/process bench/systems bench/plan bench/executors reports/tables reports/text reports/page
 row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/plan bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 

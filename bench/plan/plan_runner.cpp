@@ -213,19 +213,24 @@ class PlanRunner {
 
 }  // namespace
 
-PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
-                    const PlanHooks& hooks) {
-  require_recorded_boxes(matrix);
+void prepare_store(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options) {
   std::vector<Outcome> repeated = {Outcome::kBadData};
   if (options.retry) {
     repeated = {Outcome::kLost, Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory,
                 Outcome::kBadData};
   }
   writer.remove_runs(matrix.keys, repeated);
+  if (!options.record) return;
   writer.record_plan({.name = matrix.plan.name,
                       .title = matrix.plan.title,
                       .text = matrix.plan.text,
                       .run_keys = matrix.keys});
+}
+
+PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
+                    const PlanHooks& hooks) {
+  require_recorded_boxes(matrix);
+  prepare_store(matrix, writer, options);
   return PlanRunner(matrix, writer, options, hooks).run();
 }
 

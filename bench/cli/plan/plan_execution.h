@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Options of `bench` that select where the runs of a plan are executed.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/cli/command_line.h"
+#include "bench/plan/plan_runner.h"
+
+namespace stillpoint::bench {
+
+struct ExecutionArguments {
+  std::string executor = "local";
+  std::string hosts;
+  std::string ssh_config;
+  std::string machine_class;
+  int tasks = 0;  ///< 0 = default of the executor
+};
+
+/// @param arguments target of the options; must outlive them
+[[nodiscard]] std::vector<Option> execution_options(ExecutionArguments& arguments);
+
+/// Executes the missing runs of a plan, on this machine or by tasks on others.
+/// @throws InputError for options that the executor does not have, and as `run_plan` and the executors
+[[nodiscard]] PlanReport execute_plan(const PlanMatrix& matrix, const std::string& store,
+                                      const PlanOptions& options, const ExecutionArguments& arguments);
+
+}  // namespace stillpoint::bench
