@@ -118,7 +118,7 @@ execution="core/base bench/cli bench/model bench/config bench/record"
 row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector datasets datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
-row bench/cli/plan $execution bench/store bench/process bench/systems bench/plan bench/executors reports/tables reports/text reports/page
+row bench/cli/plan $execution eval/io bench/store bench/process bench/systems bench/plan bench/executors reports/tables reports/text reports/page
 row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/plan bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 
@@ -152,6 +152,7 @@ threads=(
   'core/pipeline/threaded_odometry\.(h|cpp)'
   'core/pipeline/runners/(realtime_runner|pacing_clock)\.(h|cpp)'
   'datasets/synthetic/sequence/render_sequence\.cpp'
+  'bench/plan/sequence_renderer\.(h|cpp)'
   'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'
   'bench/record/host_info\.cpp'
   'bench/cli/plan/reproduce_command\.cpp'

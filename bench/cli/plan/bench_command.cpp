@@ -30,7 +30,7 @@ struct BenchArguments {
   std::string plan;
   std::string store = "build/bench/store.sqlite";
   std::string out;
-  int jobs = 1;
+  int jobs = 0;  ///< 0 = default of the executor
   std::vector<std::string> filters;
   bool dry_run = false;
   bool estimate = false;
@@ -115,7 +115,8 @@ int run_bench(const BenchArguments& arguments) {
     throw InputError("--filter", "matches no run of the plan; see `stillpoint plan show`");
   if (arguments.dry_run) return dry_run(matrix, arguments.store);
   if (arguments.estimate) {
-    std::cout << estimate_text(matrix, arguments.store, arguments.jobs);
+    std::cout << estimate_text(matrix, arguments.store,
+                               {.jobs = local_jobs(arguments.jobs), .tasks = arguments.execution.tasks});
     return kExitOk;
   }
   require_available_run(matrix);
@@ -148,12 +149,16 @@ Command bench_command() {
       .options = {{"PLAN", "Plan: an embedded name (quick) or a TOML file", &arguments->plan},
                   {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
                   {"--out", "Output folder of the table [build/bench/PLAN]", &arguments->out},
-                  {"--jobs", "Number of concurrent accuracy runs", &arguments->jobs, {1, 1000}},
+                  {"--jobs",
+                   "Number of concurrent accuracy runs [processors; 1 per task of slurm and ssh]",
+                   &arguments->jobs,
+                   {1, 1000}},
                   {"--filter",
                    "Execute only runs whose sequence, variant or system matches this glob; may be repeated",
                    &arguments->filters},
                   {"--dry-run", "List the runs and their state; execute none", &arguments->dry_run},
-                  {"--estimate", "Print how long the plan takes; execute nothing", &arguments->estimate},
+                  {"--estimate", "Print how long the plan takes, with --tasks also by tasks; execute nothing",
+                   &arguments->estimate},
                   {"--retry", "Execute failed runs again", &arguments->retry}},
       .action = [arguments] { return run_bench(*arguments); }};
   for (Option& option : execution_options(arguments->execution)) command.options.push_back(std::move(option));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/cli/plan/plan_execution.h"
 
+#include <algorithm>
+
 #include "bench/cli/enum_option.h"
 #include "bench/cli/plan/plan_progress.h"
 #include "bench/executors/slurm_executor.h"
@@ -18,8 +20,8 @@ constexpr auto enum_names(ExecutorKind) {
       {{ExecutorKind::kLocal, "local"}, {ExecutorKind::kSlurm, "slurm"}, {ExecutorKind::kSsh, "ssh"}}};
 }
 
-constexpr int kDefaultTasks =
-    4;  // of Slurm; and per concurrent task of a host, so that faster hosts get more
+// Of Slurm; and per concurrent task of a host, so that faster hosts execute more.
+constexpr int kDefaultTasks = 4;
 
 /// @throws InputError for the first option that is set although the executor does not have it
 void require_options(ExecutorKind kind, const ExecutionArguments& arguments) {
@@ -38,7 +40,7 @@ DistributionOptions distribution_of(const std::string& store, const PlanOptions&
   const PlanHooks hooks = plan_progress();
   return {.store = store,
           .tasks = arguments.tasks > 0 ? arguments.tasks : kDefaultTasks,
-          .jobs = options.jobs,
+          .jobs = std::max(1, options.jobs),
           .retry = options.retry,
           .machine_class = arguments.machine_class,
           .on_step = hooks.on_step,
@@ -46,6 +48,8 @@ DistributionOptions distribution_of(const std::string& store, const PlanOptions&
 }
 
 }  // namespace
+
+int local_jobs(int jobs) { return jobs > 0 ? jobs : static_cast<int>(allowed_processors().size()); }
 
 std::vector<Option> execution_options(ExecutionArguments& arguments) {
   return {{"--executor", "Where runs are executed: local, slurm or ssh [local]", &arguments.executor},
@@ -62,7 +66,8 @@ PlanReport execute_plan(const PlanMatrix& matrix, const std::string& store, cons
   require_options(kind, arguments);
   if (kind == ExecutorKind::kLocal) {
     StoreWriter writer(store);
-    return run_plan(matrix, writer, options, plan_progress());
+    return run_plan(matrix, writer, {.jobs = local_jobs(options.jobs), .retry = options.retry},
+                    plan_progress());
   }
   DistributionOptions distribution = distribution_of(store, options, arguments);
   if (kind == ExecutorKind::kSlurm)

@@ -22,7 +22,12 @@ struct ExecutionArguments {
 /// @param arguments target of the options; must outlive them
 [[nodiscard]] std::vector<Option> execution_options(ExecutionArguments& arguments);
 
+/// Number of concurrent accuracy runs on this machine.
+/// @param jobs 0 = as many as processors are available
+[[nodiscard]] int local_jobs(int jobs);
+
 /// Executes the missing runs of a plan, on this machine or by tasks on others.
+/// @param options `jobs` = 0: all processors; with tasks one run at a time in each
 /// @throws InputError for options that the executor does not have, and as `run_plan` and the executors
 [[nodiscard]] PlanReport execute_plan(const PlanMatrix& matrix, const std::string& store,
                                       const PlanOptions& options, const ExecutionArguments& arguments);
