@@ -102,6 +102,8 @@ row bench/plan core/base datasets datasets/faults datasets/synthetic/sequence ev
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
 row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems bench/plan
+row bench/executors core/base eval/io bench/model bench/store bench/store/maintenance bench/process bench/record bench/systems \
+  bench/plan bench/plan/execution
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/serve core/base bench/record
 row bench/micro $core tests/support tests/support/simulated
@@ -125,7 +127,7 @@ execution="core/base bench/cli bench/model bench/config bench/record"
 row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector datasets datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
-row bench/cli/plan $execution bench/store bench/systems bench/plan bench/plan/execution reports/tables \
+row bench/cli/plan $execution eval/io bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/tables/formats reports/text reports/page
 row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/store/maintenance bench/plan \
   bench/plan/execution bench/analysis \
@@ -164,6 +166,7 @@ threads=(
   'core/pipeline/threaded_odometry\.(h|cpp)'
   'core/pipeline/runners/(realtime_runner|pacing_clock)\.(h|cpp)'
   'datasets/synthetic/sequence/render_sequence\.cpp'
+  'bench/plan/execution/sequence_renderer\.(h|cpp)'
   'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'
   'bench/record/host_info\.cpp'
   'bench/cli/plan/reproduce_command\.cpp'

@@ -5,6 +5,8 @@
 #   scripts/setup.sh --dev   also clang-format and clang-tidy, for scripts/check.sh, and valgrind, to count instructions
 #   scripts/setup.sh --pages also a browser and LaTeX, for the tests of pages and tables that are skipped without
 #   scripts/setup.sh --docs  also Doxygen, for scripts/docs.sh
+#   scripts/setup.sh --cluster also Slurm, sshd, GNU parallel and rsync, for the tests of `bench --executor`; the packages
+#                            start their services under systemd, which the tests do not use
 #   scripts/setup.sh --all   all of these, as CI does: no test is skipped for want of a package
 set -euo pipefail
 
@@ -24,13 +26,15 @@ dev=(clang-format clang-tidy valgrind)
 pages=(chromium texlive-latex-recommended)
 { command -v node && command -v npm; } >/dev/null || pages+=(nodejs npm)
 docs=(doxygen)
+cluster=(munge slurm-wlm openssh-server parallel rsync)
 case "${1:-}" in
   "") ;;
   --dev) packages+=("${dev[@]}") ;;
   --pages) packages+=("${pages[@]}") ;;
   --docs) packages+=("${docs[@]}") ;;
-  --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}") ;;
-  *) echo "setup: error: unknown option \"$1\"; the options are --dev, --pages, --docs and --all" >&2; exit 2 ;;
+  --cluster) packages+=("${cluster[@]}") ;;
+  --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}" "${cluster[@]}") ;;
+  *) echo "setup: error: unknown option \"$1\"; the options are --dev, --pages, --docs, --cluster and --all" >&2; exit 2 ;;
 esac
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }

@@ -47,6 +47,7 @@ void add_option(CLI::App& app, const Option& option, bool optional) {
     if (positional && !optional) added->required();
     if constexpr (std::is_same_v<decltype(target), std::vector<std::string>*>) {
       if (!positional) added->allow_extra_args(false);
+      if (option.values > 1) added->expected(option.values);  // else it may be repeated
       if (!option.hidden_alias.empty()) add_hidden_alias(app, option.hidden_alias, *target);
     }
   };

@@ -10,6 +10,7 @@ namespace stillpoint::bench {
 [[nodiscard]] Command eval_command();            ///< `stillpoint eval`: score trajectory files
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: score result files by scene
 [[nodiscard]] Command bench_command();           ///< `stillpoint bench`: execute a benchmark plan
+[[nodiscard]] Command worker_command();          ///< `stillpoint worker`: execute tasks of a plan
 [[nodiscard]] Command plan_command();            ///< `stillpoint plan`: list plans and their runs
 [[nodiscard]] Command store_command();           ///< `stillpoint store`: inspect and maintain stores
 /// `stillpoint store accept`, `withdraw` and `accepted`: accepted metric changes

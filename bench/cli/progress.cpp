@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/cli/progress.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -19,6 +20,11 @@ std::string duration_text(double seconds) {
   const auto minutes = std::llround(seconds / 60.0);
   if (minutes < 60) return fmt::format("{} min", minutes);
   return fmt::format("{} h {} min", minutes / 60, minutes % 60);
+}
+
+std::string rate_text(std::size_t runs, double seconds) {
+  return fmt::format("{} runs in {}, {:.3g} runs per minute", runs, duration_text(seconds),
+                     60.0 * static_cast<double>(runs) / std::max(seconds, 1e-3));
 }
 
 ProgressLine::ProgressLine(std::string label, std::size_t total, std::string unit)

@@ -34,6 +34,9 @@ class ProgressLine {
   std::chrono::steady_clock::time_point drawn_;
 };
 
+/// Number, duration and rate of executed runs: "12 runs in 3 min, 4.1 runs per minute".
+[[nodiscard]] std::string rate_text(std::size_t runs, double seconds);
+
 /// Human-readable duration: "50 s", "3 min", "2 h 5 min".
 [[nodiscard]] std::string duration_text(double seconds);
 

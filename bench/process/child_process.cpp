@@ -51,6 +51,7 @@ struct Launch {
   char* const* arguments;
   char* const* environment;
   const char* folder;  ///< null = inherited
+  const char* output;  ///< file that receives stdout
   int message_pipe;
   pid_t parent;
   bool pinned;
@@ -58,7 +59,7 @@ struct Launch {
   bool fixed_addresses;
 };
 
-/// Executes the program with stderr redirected to the pipe and stdout to /dev/null.
+/// Executes the program with stderr redirected to the pipe and stdout to a file.
 [[noreturn]] void exec_child(const Launch& launch) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -66,7 +67,7 @@ struct Launch {
   if (getppid() != launch.parent) _exit(kExecFailed);  // the parent died before prctl
   if (launch.pinned) sched_setaffinity(0, sizeof launch.processors, &launch.processors);
   dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
-  dup2(open("/dev/null", O_WRONLY | O_CLOEXEC), STDOUT_FILENO);
+  dup2(open(launch.output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), STDOUT_FILENO);
   dup2(launch.message_pipe, STDERR_FILENO);
   if (launch.folder == nullptr || chdir(launch.folder) == 0) {
     if (launch.fixed_addresses) personality(ADDR_NO_RANDOMIZE);
@@ -124,6 +125,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
                       .arguments = arguments.data(),
                       .environment = spec.environment ? environment.data() : environ,
                       .folder = spec.folder.empty() ? nullptr : spec.folder.c_str(),
+                      .output = spec.output.empty() ? "/dev/null" : spec.output.c_str(),
                       .message_pipe = ends[1],
                       .parent = getpid(),
                       .pinned = !spec.cores.empty(),

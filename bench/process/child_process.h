@@ -22,6 +22,7 @@ struct ProcessSpec {
   std::vector<int> cores;                               ///< CPU affinity; empty = all processors
   std::filesystem::path folder;                         ///< working directory; empty = inherited
   std::optional<std::vector<std::string>> environment;  ///< "NAME=value", complete; nullopt = inherited
+  std::filesystem::path output;                         ///< receives stdout; empty = discarded
   bool fixed_addresses = false;                         ///< disables address space randomization
 };
 

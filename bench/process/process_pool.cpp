@@ -27,7 +27,8 @@ void ProcessPool::wait_for_messages() const {
   poll(descriptors.data(), descriptors.size(), poll_timeout_ms);
 }
 
-std::optional<std::pair<std::size_t, ProcessResult>> ProcessPool::wait_next() {
+std::optional<std::pair<std::size_t, ProcessResult>> ProcessPool::wait_next(
+    const std::function<bool()>& wake) {
   while (!children_.empty()) {
     forward_stop();
     for (auto entry = children_.begin(); entry != children_.end(); ++entry) {
@@ -37,6 +38,7 @@ std::optional<std::pair<std::size_t, ProcessResult>> ProcessPool::wait_next() {
       children_.erase(entry);
       return std::pair{tag, result};
     }
+    if (wake && wake()) return std::nullopt;
     wait_for_messages();
   }
   return std::nullopt;

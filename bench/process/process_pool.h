@@ -22,8 +22,10 @@ class ProcessPool {
   void start(std::size_t tag, const ProcessSpec& spec);
 
   /// Waits until a child exits.
-  /// @return nothing if none is running
-  [[nodiscard]] std::optional<std::pair<std::size_t, ProcessResult>> wait_next();
+  /// @param wake polled at least ten times per second; on true the waiting ends
+  /// @return nothing if none is running, or on `wake`
+  [[nodiscard]] std::optional<std::pair<std::size_t, ProcessResult>> wait_next(
+      const std::function<bool()>& wake = {});
 
   [[nodiscard]] std::size_t running() const { return children_.size(); }
 

@@ -73,10 +73,11 @@ TEST(BenchFaults, DataRemovedDuringABenchmarkFailOnlyTheirRuns) {
                "\"rm -rf " +
                    (folder.path() / "freiburg1_b").string() + "; exit 1\"]\n");
   const fs::path store = folder.path() / "store.sqlite";
-  const ProgramResult result = run_program(
-      {"bench", plan.string(), "--store", store.string(), "--out", (folder.path() / "out").string()},
-      {.environment = {"STILLPOINT_DATA=" + folder.path().string(),
-                       "STILLPOINT_REGISTRY=" + (folder.path() / "none.json").string()}});
+  const ProgramResult result =
+      run_program({"bench", plan.string(), "--store", store.string(), "--out",
+                   (folder.path() / "out").string(), "--jobs", "1"},
+                  {.environment = {"STILLPOINT_DATA=" + folder.path().string(),
+                                   "STILLPOINT_REGISTRY=" + (folder.path() / "none.json").string()}});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   const std::vector<bench::StoredRun> runs = bench::Store(store).runs();
   ASSERT_EQ(runs.size(), 2u);

@@ -14,6 +14,7 @@
 #include "bench/record/output_guard.h"
 #include "bench/store/maintenance/maintenance.h"
 #include "bench/store/maintenance/salvage.h"
+#include "bench/store/maintenance/store_equality.h"
 #include "bench/store/maintenance/store_export.h"
 #include "bench/store/store.h"
 #include "core/base/error.h"
@@ -28,6 +29,7 @@ struct StoreArguments {
   std::string store = "build/bench/store.sqlite";
   std::string run;
   std::string file;
+  std::vector<std::string> equal;
   bool numbers = false;
   bool force = false;
 };
@@ -112,7 +114,15 @@ int extract(const StoreArguments& arguments) {
   return kExitOk;
 }
 
+int verify_equal(const std::string& first, const std::string& second) {
+  const std::vector<std::string> differences = store_differences(first, second);
+  for (const std::string& difference : differences) std::cout << difference << '\n';
+  std::cout << (differences.empty() ? "equal\n" : fmt::format("{} differences\n", differences.size()));
+  return differences.empty() ? kExitOk : kExitFindings;
+}
+
 int verify(const StoreArguments& arguments) {
+  if (!arguments.equal.empty()) return verify_equal(arguments.equal.front(), arguments.equal.back());
   const std::vector<std::string> errors = verify_store(arguments.store);
   for (const std::string& error : errors) std::cout << error << '\n';
   std::cout << (errors.empty() ? "no errors found\n" : fmt::format("{} errors\n", errors.size()));
@@ -181,10 +191,16 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
   const Option without_blobs{"--numbers",
                              "Without trajectories and manifests; sufficient as a baseline for `compare`",
                              &arguments->numbers};
+  const Option equal{
+      .name = "--equal",
+      .help = "Instead compare two stores by content, without times and hosts; exit code 1 if they differ",
+      .target = &arguments->equal,
+      .values = 2};
   return {
       store_subcommand({.name = "verify",
                         .summary = "Check the integrity of the database and its files; exit code 1 on errors",
-                        .example = "store verify"},
+                        .example = "store verify",
+                        .options = {equal}},
                        arguments, verify),
       store_subcommand(
           {.name = "gc", .summary = "Remove files that are not referenced by any run", .example = "store gc"},

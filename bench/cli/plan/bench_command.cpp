@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <chrono>
 #include <iostream>
 #include <memory>
 
@@ -8,7 +9,9 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
-#include "bench/cli/plan/plan_progress.h"
+#include "bench/cli/plan/plan_estimate.h"
+#include "bench/cli/plan/plan_execution.h"
+#include "bench/cli/progress.h"
 #include "bench/plan/execution/bench_table.h"
 #include "bench/plan/execution/plan_runner.h"
 #include "bench/record/output_folder.h"
@@ -27,10 +30,12 @@ struct BenchArguments {
   std::string plan;
   std::string store = "build/bench/store.sqlite";
   std::string out;
-  int jobs = 1;
+  int jobs = 0;  ///< 0 = default of the executor
   std::vector<std::string> filters;
   bool dry_run = false;
+  bool estimate = false;
   bool retry = false;
+  ExecutionArguments execution;
 };
 
 int exit_code(const std::vector<BenchRow>& rows) {
@@ -39,6 +44,14 @@ int exit_code(const std::vector<BenchRow>& rows) {
     return !row.is_available || row.outcome == Outcome::kOk;
   });
   return all_ok ? kExitOk : kExitFindings;
+}
+
+/// `kExitFindings`, with a message, if runs of a plan were not executed because workers died.
+int incomplete_code(const PlanMatrix& matrix, const PlanReport& report) {
+  const std::size_t lacking = matrix.runs.size() - report.executed - report.cached - report.missing;
+  if (lacking == 0 || report.interrupted) return kExitOk;
+  std::cout << fmt::format("{} runs are missing; the same command executes them\n", lacking);
+  return kExitFindings;
 }
 
 /// Prints the state of each run of the plan. Executes nothing and does not create the store.
@@ -101,43 +114,55 @@ int run_bench(const BenchArguments& arguments) {
   if (matrix.runs.empty() && !arguments.filters.empty())
     throw InputError("--filter", "matches no run of the plan; see `stillpoint plan show`");
   if (arguments.dry_run) return dry_run(matrix, arguments.store);
+  if (arguments.estimate) {
+    std::cout << estimate_text(matrix, arguments.store,
+                               {.jobs = local_jobs(arguments.jobs), .tasks = arguments.execution.tasks});
+    return kExitOk;
+  }
   require_available_run(matrix);
   const fs::path out =
       arguments.out.empty() ? fs::path("build/bench") / matrix.plan.name : fs::path(arguments.out);
   require_safe_folder(out, {.names = {"table.md", "table.json"}, .marks = {{"table.md", "table.json"}}},
                       {arguments.store});
   require_writable(out);
-  PlanReport report;
-  {
-    StoreWriter writer(arguments.store);
-    report = run_plan(matrix, writer, {.jobs = arguments.jobs, .retry = arguments.retry}, plan_progress());
-  }
+  const auto start = std::chrono::steady_clock::now();
+  const PlanReport report = execute_plan(
+      matrix, arguments.store, {.jobs = arguments.jobs, .retry = arguments.retry}, arguments.execution);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   const Store store(arguments.store);
   const std::vector<BenchRow> rows = plan_rows(matrix, store);
   print_rows(matrix, rows, published_tables(matrix, store), out);
   std::cout << fmt::format("{} of {} runs executed, {} cached; store {}\n", report.executed,
                            matrix.runs.size(), report.cached, arguments.store);
-  return exit_code(rows);
+  if (report.executed > 0) std::cout << rate_text(report.executed, elapsed.count()) << '\n';
+  return std::max(exit_code(rows), incomplete_code(matrix, report));
 }
 
 }  // namespace
 
 Command bench_command() {
   const auto arguments = std::make_shared<BenchArguments>();
-  return {
+  Command command = {
       .name = "bench",
       .summary = "Execute the runs of a plan that are not in the store; print a table of scores and times",
       .example = "bench quick --store /tmp/store.sqlite --jobs 2",
       .options = {{"PLAN", "Plan: an embedded name (quick) or a TOML file", &arguments->plan},
                   {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
                   {"--out", "Output folder of the table [build/bench/PLAN]", &arguments->out},
-                  {"--jobs", "Number of concurrent accuracy runs", &arguments->jobs, {1, 1000}},
+                  {"--jobs",
+                   "Number of concurrent accuracy runs [processors; 1 per task of slurm and ssh]",
+                   &arguments->jobs,
+                   {1, 1000}},
                   {"--filter",
                    "Execute only runs whose sequence, variant or system matches this glob; may be repeated",
                    &arguments->filters},
                   {"--dry-run", "List the runs and their state; execute none", &arguments->dry_run},
+                  {"--estimate", "Print how long the plan takes, with --tasks also by tasks; execute nothing",
+                   &arguments->estimate},
                   {"--retry", "Execute failed runs again", &arguments->retry}},
       .action = [arguments] { return run_bench(*arguments); }};
+  for (Option& option : execution_options(arguments->execution)) command.options.push_back(std::move(option));
+  return command;
 }
 
 }  // namespace stillpoint::bench

@@ -9,7 +9,9 @@
 #include <poll.h>
 
 #include "bench/plan/execution/plan_boxes.h"
+#include "bench/plan/execution/run_order.h"
 #include "bench/plan/execution/run_outcome.h"
+#include "bench/plan/execution/sequence_renderer.h"
 #include "bench/process/machine_load.h"
 #include "bench/process/process_pool.h"
 #include "bench/systems/external_system.h"
@@ -32,19 +34,23 @@ class PlanRunner {
         writer_(writer),
         hooks_(hooks),
         pool_(hooks.stop_requested),
+        renderer_(hooks.stop_requested),
         jobs_(matrix.plan.kind == RunKind::kTiming ? 1 : std::max(1, options.jobs)) {
     for (const ExternalSystem& system : matrix.systems) external_.emplace_back(system);
-    for (std::size_t i = 0; i < matrix.runs.size(); ++i) {
-      const bool missing = !sequence_of(i).unavailable_reason.empty();
-      missing ? static_cast<void>(++report_.missing) : queue_.push_back(i);
-    }
+    const std::vector<std::size_t> order = execution_order(matrix, Store(writer.file()).runs(), jobs_);
+    report_.missing = matrix.runs.size() - order.size();
+    for (const std::size_t run : order)
+      writer.is_done(run_key(identity_of(run))) ? count_cached() : queue_.push_back(run);
   }
 
   PlanReport run() {
     while (true) {
-      while (!stopped() && !queue_.empty() && pool_.running() < static_cast<std::size_t>(jobs_)) start_next();
-      if (const auto ended = pool_.wait_next()) {
+      while (!stopped() && select_next()) start_next();
+      if (!stopped()) render_ahead();
+      if (const auto ended = pool_.wait_next([this] { return is_idle() && renderer_.is_finished(); })) {
         complete(ended->first, ended->second);
+      } else if (pool_.running() > 0) {
+        continue;
       } else if (stopped() || (queue_.empty() && leased_by_other_.empty())) {
         break;
       } else if (queue_.empty()) {
@@ -88,6 +94,46 @@ class PlanRunner {
     }
     wait_reported_ = true;
     poll(nullptr, 0, kLeasePollMs);
+  }
+
+  /// Whether a further run may be started.
+  [[nodiscard]] bool is_idle() const { return pool_.running() < static_cast<std::size_t>(jobs_); }
+
+  /// Whether the files of a run are available without rendering.
+  [[nodiscard]] bool is_ready(std::size_t run) const {
+    const std::size_t index = matrix_.runs[run].sequence;
+    return !sequence_of(run).rendering || folders_.contains(index) || unrendered_.contains(index);
+  }
+
+  /// Moves the next run that can be started to the front of the queue; without one and without running
+  /// processes the first run, whose sequence is then rendered.
+  /// @return false if none should be started now
+  bool select_next() {
+    if (queue_.empty() || !is_idle()) return false;
+    if (renderer_.is_finished() || (renderer_.is_busy() && pool_.running() == 0)) take_rendered();
+    const auto ready = std::ranges::find_if(queue_, [&](std::size_t run) { return is_ready(run); });
+    if (ready == queue_.end()) return pool_.running() == 0;
+    const std::size_t run = *ready;
+    queue_.erase(ready);
+    queue_.push_front(run);
+    return true;
+  }
+
+  void take_rendered() {
+    const SequenceRenderer::Rendered rendered = renderer_.take();
+    if (rendered.folder.empty())
+      unrendered_.insert(rendered.index);
+    else
+      folders_[rendered.index] = rendered.folder;
+  }
+
+  /// Renders the next sequence while runs of the last one are executed. Timing runs execute alone.
+  void render_ahead() {
+    if (matrix_.plan.kind == RunKind::kTiming || pool_.running() == 0 || renderer_.is_busy()) return;
+    const auto next = std::ranges::find_if(queue_, [&](std::size_t run) { return !is_ready(run); });
+    if (next == queue_.end()) return;
+    if (hooks_.on_step) hooks_.on_step("render " + sequence_of(*next).name);
+    renderer_.start(matrix_.runs[*next].sequence, sequence_of(*next));
   }
 
   void start_next() {
@@ -198,6 +244,7 @@ class PlanRunner {
   StoreWriter& writer_;
   const PlanHooks& hooks_;
   ProcessPool pool_;
+  SequenceRenderer renderer_;
   OwnOdometry own_;
   std::vector<ExternalRun> external_;
   int jobs_;
@@ -206,6 +253,7 @@ class PlanRunner {
   std::set<std::size_t> leased_;             ///< runs leased by this worker
   std::set<std::size_t> warmed_up_;          ///< indices of sequences
   std::map<std::size_t, fs::path> folders_;  ///< by index of the sequence
+  std::set<std::size_t> unrendered_;         ///< sequences whose rendering ahead failed
   MachineLoad load_before_;
   bool wait_reported_ = false;
   PlanReport report_;
@@ -213,19 +261,24 @@ class PlanRunner {
 
 }  // namespace
 
-PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
-                    const PlanHooks& hooks) {
-  require_recorded_boxes(matrix);
+void prepare_store(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options) {
   std::vector<Outcome> repeated = {Outcome::kBadData};
   if (options.retry) {
     repeated = {Outcome::kLost, Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory,
                 Outcome::kBadData};
   }
   writer.remove_runs(matrix.keys, repeated);
+  if (!options.record) return;
   writer.record_plan({.name = matrix.plan.name,
                       .title = matrix.plan.title,
                       .text = matrix.plan.text,
                       .run_keys = matrix.keys});
+}
+
+PlanReport run_plan(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options,
+                    const PlanHooks& hooks) {
+  require_recorded_boxes(matrix);
+  prepare_store(matrix, writer, options);
   return PlanRunner(matrix, writer, options, hooks).run();
 }
 

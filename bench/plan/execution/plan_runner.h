@@ -22,6 +22,7 @@ struct PlanHooks {
 struct PlanOptions {
   int jobs = 1;        ///< concurrent accuracy runs; timing runs always execute one at a time
   bool retry = false;  ///< execute runs again that did not succeed
+  bool record = true;  ///< store the plan; workers that execute a part of a plan do not
 };
 
 /// Numbers of runs by what `run_plan` did with them.
@@ -31,6 +32,10 @@ struct PlanReport {
   std::size_t missing = 0;  ///< skipped, as their sequence is not available
   bool interrupted = false;
 };
+
+/// Prepares a store for the execution of a plan: removes runs that are to be executed again, and stores the
+/// plan if `options.record` is set. `run_plan` does this itself.
+void prepare_store(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options);
 
 /// Executes every run of the matrix that is not completed yet, and stores each as soon as it ends. Runs with
 /// outcome "bad_data" are executed again. Several workers may execute the same plan: runs leased by another

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/executors/host_list.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <sstream>
+
+#include "bench/executors/tool.h"
+#include "core/base/error.h"
+#include "eval/io/text_reader.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr int kMaxTasks = 1000;
+
+bool is_host(const std::string& name) {
+  const std::size_t at = name.find('@');
+  if (at == std::string::npos) return is_host_word(name);
+  return is_host_word(name.substr(0, at)) && is_host_word(name.substr(at + 1));
+}
+
+int task_count(const std::string& text) {
+  int count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  const bool is_number = error == std::errc{} && end == text.data() + text.size();
+  if (!is_number || count < 1 || count > kMaxTasks)
+    throw InputError("tasks \"" + text + "\" must be a number from 1 to " + std::to_string(kMaxTasks));
+  return count;
+}
+
+/// The host with one more word of its line.
+Host with_word(Host host, const std::string& word) {
+  const std::size_t equals = word.find('=');
+  const std::string key = word.substr(0, equals);
+  const std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
+  if (key == "program") {
+    if (!value.starts_with('/') || !is_plain_word(value))
+      throw InputError("program \"" + value +
+                       "\" must be an absolute path of letters, digits and _ . / + , = @ : -");
+    host.program = value;
+  } else if (key == "class") {
+    if (!is_host_word(value))
+      throw InputError("class \"" + value + "\" must consist of letters, digits and _ . -");
+    host.machine_class = value;
+  } else if (key == "tasks") {
+    host.tasks = task_count(value);
+  } else {
+    throw InputError("unknown word \"" + word + "\"; expected program=PATH, class=NAME or tasks=N");
+  }
+  return host;
+}
+
+Host parse_host(std::istringstream& words, const std::string& name, const std::string& program) {
+  if (!is_host(name))
+    throw InputError("host \"" + name +
+                     "\" must be NAME or USER@NAME of letters, digits and _ . -; "
+                     "port and keys belong into the configuration of ssh");
+  Host host{.name = name, .program = program, .machine_class = ""};
+  for (std::string word; words >> word;) host = with_word(std::move(host), word);
+  if (!is_plain_word(host.program))
+    throw InputError("the path of this program, " + host.program +
+                     ", has characters that shells interpret; add program=PATH");
+  return host;
+}
+
+}  // namespace
+
+bool is_host_word(std::string_view text) {
+  const auto is_letter = [](char letter) {
+    const auto code = static_cast<unsigned char>(letter);
+    return code < 0x80 && std::isalnum(code) != 0;
+  };
+  const auto is_allowed = [&](char letter) {
+    return is_letter(letter) || std::string_view("_.-").find(letter) != std::string_view::npos;
+  };
+  return !text.empty() && is_letter(text.front()) && std::ranges::all_of(text, is_allowed);
+}
+
+std::vector<Host> parse_hosts(std::string_view text, const std::string& place,
+                              const std::filesystem::path& program) {
+  std::vector<Host> hosts;
+  eval::LineReader lines(text);
+  for (long number = 1; const auto line = lines.next(); ++number) {
+    std::istringstream words{std::string(line->substr(0, line->find('#')))};
+    std::string name;
+    if (!(words >> name)) continue;
+    try {
+      hosts.push_back(parse_host(words, name, program.string()));
+    } catch (const InputError& error) {
+      throw InputError(place, number, error.what());
+    }
+    if (std::ranges::count(hosts, name, &Host::name) > 1)
+      throw InputError(place, number, "host \"" + name + "\" is listed twice; use tasks=N for more tasks");
+  }
+  if (hosts.empty()) throw InputError(place, "lists no host; write one per line");
+  return hosts;
+}
+
+}  // namespace stillpoint::bench

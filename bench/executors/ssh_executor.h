@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Execution of tasks on other machines: rsync copies the job folder and the results, GNU parallel starts the
+/// workers over ssh and gives the next task to the next idle host. On a host, the folder
+/// ~/.stillpoint/jobs/KEY contains the job.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "bench/executors/distribution.h"
+#include "bench/executors/host_list.h"
+
+namespace stillpoint::bench {
+
+struct SshOptions {
+  std::vector<Host> hosts;
+  std::filesystem::path config;  ///< configuration file of ssh; empty = that of the user
+};
+
+/// Hosts that cannot be reached are reported and left out. A recorded sequence is used where the host has it
+/// under its name with the same checksum, and copied otherwise.
+/// @throws InputError if ssh, rsync or parallel are not installed, no host can be reached, no host has the
+/// machine class, or a host has another build or other data
+[[nodiscard]] Executor ssh_executor(const PlanMatrix& matrix, const DistributionOptions& options,
+                                    const SshOptions& ssh);
+
+}  // namespace stillpoint::bench

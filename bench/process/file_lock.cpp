@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/process/file_lock.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+
+FileLock::FileLock(const std::filesystem::path& file, LockKind kind)
+    : descriptor_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  int result = descriptor_ < 0 ? -1 : 0;
+  while (descriptor_ >= 0) {
+    result = flock(descriptor_, kind == LockKind::kShared ? LOCK_SH : LOCK_EX);
+    if (result == 0 || errno != EINTR) break;
+  }
+  if (result == 0) return;
+  const int error = errno;
+  if (descriptor_ >= 0) close(descriptor_);
+  throw InputError(file.string(), std::string("cannot be locked: ") + std::strerror(error) +
+                                      "; its folder must be writable and support locks");
+}
+
+FileLock::~FileLock() { close(descriptor_); }
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A lock on a file (flock), which the kernel releases when the process exits.
+#pragma once
+
+#include <filesystem>
+
+namespace stillpoint::bench {
+
+enum class LockKind {
+  kShared,     ///< with other shared locks
+  kExclusive,  ///< alone
+};
+
+class FileLock {
+ public:
+  /// Waits until no other process holds a conflicting lock.
+  /// @param file created if it does not exist
+  /// @throws InputError if it cannot be opened or locked
+  FileLock(const std::filesystem::path& file, LockKind kind);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace stillpoint::bench

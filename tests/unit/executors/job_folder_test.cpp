@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/executors/job_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "bench/store/store.h"
+#include "bench/systems/own_odometry.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+BenchPlan plan_in(const TemporaryFolder& folder) {
+  return load_plan(folder.write("p.toml",
+                                "variants = [\"stillpoint\", \"vo\"]\n[rendered]\nsequences = "
+                                "[\"walking_static\"]\n"));
+}
+
+std::vector<std::string> keys_of(const BenchPlan& plan) { return expand_plan(plan, build_name(), {}).keys; }
+
+void store_run(const fs::path& store, const RunIdentity& identity, double error) {
+  StoreWriter writer(store);
+  static_cast<void>(writer.acquire(identity));
+  writer.finish(identity, {.metrics = {{"ate_rmse_m", "p", "m", error}}});
+}
+
+TEST(JobFolder, ATaskHasTheRunsOfItsKeys) {
+  const TemporaryFolder folder;
+  const BenchPlan plan = plan_in(folder);
+  const std::vector<std::string> keys = keys_of(plan);
+  const fs::path job = folder.path() / "job";
+  write_job(job, plan, {{keys[0]}, {keys[1]}, {}});
+  write_job(job, plan, {{keys[1]}, {keys[0]}});
+  const PlanMatrix matrix = job_matrix(job, task_keys(job, 1));
+  ASSERT_EQ(matrix.runs.size(), 1u);
+  EXPECT_EQ(run_key(matrix.runs[0].identity), keys[1]);
+  EXPECT_EQ(all_task_keys(job), (std::vector<std::string>{keys[1], keys[0]}));
+  expect_input_error([&] { static_cast<void>(task_keys(job, 3)); }, {"keys-3", "does not exist"});
+}
+
+TEST(JobFolder, ARunThatThisMachineDoesNotHaveIsAnError) {
+  const TemporaryFolder folder;
+  const fs::path job = folder.path() / "job";
+  write_job(job, plan_in(folder), {{"0123456789abcdef"}});
+  expect_input_error([&] { static_cast<void>(job_matrix(job, task_keys(job, 1))); },
+                     {"1 runs, e.g. 0123456789abcdef"});
+  std::ofstream(job / "build") << "another\n";
+  expect_input_error([&] { static_cast<void>(job_matrix(job, task_keys(job, 1))); }, {"build another"});
+}
+
+TEST(JobFolder, MergingIsIdempotentAndCompletesAnInterruptedMerge) {
+  const TemporaryFolder folder;
+  const fs::path job = folder.path() / "job";
+  fs::create_directories(job);
+  const RunIdentity first{.variant = "a"};
+  const RunIdentity second{.variant = "b"};
+  const fs::path store = folder.path() / "all.sqlite";
+  store_run(store, first, 1.0);  // was merged before the interruption
+  store_run(job / "store-1.sqlite", first, 2.0);
+  store_run(job / "store-2.sqlite", second, 3.0);
+  std::ofstream(job / "store-3.sqlite").close();  // its worker was killed at the start
+  const MergeReport report = merge_tasks(job, store);
+  EXPECT_EQ(report.added, 1u);
+  EXPECT_EQ(report.present, 1u);
+  EXPECT_EQ(merge_tasks(job, store).added, 0u);
+  const std::vector<StoredRun> runs = Store(store).runs();
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(metric_value(runs[0], "ate_rmse_m"), 1.0);
+  EXPECT_EQ(std::distance(fs::directory_iterator(job), {}), 1);  // the lock
+}
+
+}  // namespace
+}  // namespace stillpoint::bench
