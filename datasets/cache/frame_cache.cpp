@@ -193,7 +193,7 @@ void FrameCache::append(std::size_t index, const std::optional<PackedFrame>& fra
 std::unique_ptr<FrameFileWriter> FrameCache::create_writer() {
   remove_abandoned_files(options_.folder);
   fs::path partial = digests_file(options_.folder, content_.info.folder);
-  partial.replace_extension("-" + std::to_string(frames_) + kPartialExtension);
+  partial.replace_extension(std::to_string(frames_) + kPartialExtension);
   const Camera& camera = content_.info.rig.camera;
   space_ = CacheSpace(options_);
   return FrameFileWriter::create(
