@@ -33,8 +33,8 @@ struct PlanReport {
   bool interrupted = false;
 };
 
-/// Prepares a store for the execution of a plan: removes runs that are to be executed again, and stores the plan
-/// if `options.record` is set. `run_plan` does this itself.
+/// Prepares a store for the execution of a plan: removes runs that are to be executed again, and stores the
+/// plan if `options.record` is set. `run_plan` does this itself.
 void prepare_store(const PlanMatrix& matrix, StoreWriter& writer, const PlanOptions& options);
 
 /// Executes every run of the matrix that is not completed yet, and stores each as soon as it ends. Runs with
