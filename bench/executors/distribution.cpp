@@ -64,8 +64,10 @@ void require_class(const PlanMatrix& matrix, const DistributionOptions& options)
 PlanReport report_of(const PlanMatrix& matrix, const StoreWriter& writer) {
   PlanReport report;
   for (const PlannedRun& run : matrix.runs) {
-    if (!is_available(matrix, run)) ++report.missing;
-    if (writer.is_done(run_key(run.identity))) ++report.cached;
+    if (!is_available(matrix, run))
+      ++report.missing;
+    else if (writer.is_done(run_key(run.identity)))
+      ++report.cached;
   }
   return report;
 }

@@ -15,8 +15,8 @@
 namespace stillpoint::bench {
 namespace {
 
-/// Time that `store merge` needs for one run, see reports/measured/scaling.md.
-constexpr double kMergeSecondsPerRun = 0.03;
+/// Time that `store merge` needs for one run with annotated images, see reports/measured/scaling.md.
+constexpr double kMergeSecondsPerRun = 0.17;
 
 /// How many expected durations have each source.
 std::string source_text(const std::vector<RunCost>& costs) {
