@@ -5,6 +5,8 @@
 #include "core/geometry/so3.h"
 #include "core/imu/midpoint.h"
 
+#include <cmath>
+
 #include <Eigen/Cholesky>
 
 namespace stillpoint {
@@ -151,8 +153,17 @@ void Preintegration::finalize() {
   jacobian_.block<3, 3>(Index::kRotation, Index::kRotation) = delta_q_.conjugate().toRotationMatrix();
   jacobian_.block<3, 3>(Index::kPosition, Index::kVelocity) = duration_s_ * Eigen::Matrix3d::Identity();
   if (duration_s_ <= 0.0) return;
-  const Eigen::LLT<Matrix15> root(covariance_);
-  sqrt_information_ = root.matrixL().solve(Matrix15::Identity());
+  Matrix15 regular = covariance_;
+  if (samples_.size() == 2) {
+    regular.diagonal().segment<3>(Index::kPosition).array() +=
+        noise_.accel_noise * noise_.accel_noise * std::pow(duration_s_, 3) / 12.0;
+  }
+  const Eigen::LLT<Matrix15> root(regular);
+  if (root.info() == Eigen::Success) {
+    sqrt_information_ = root.matrixL().solve(Matrix15::Identity());
+  } else {
+    sqrt_information_.setZero();
+  }
 }
 
 Eigen::Vector3d Preintegration::delta_p(const Eigen::Vector3d& gyro_bias,

@@ -55,8 +55,10 @@ using Vector15 = Eigen::Matrix<double, 15, 1>;
 ///
 /// N = diag(0, 0, 0, s_g^2 / dt, s_a^2 / dt) is the white noise (densities s_g, s_a), which acts like a bias
 /// during the step and enters the p, theta and v rows only; W = diag(0, 0, 0, s_wg^2 dt, s_wa^2 dt) is the
-/// random walk of the biases. A later change of the biases is applied to first order by the bias columns of
-/// J:
+/// random walk of the biases. Over a single step P is singular, because the errors of position and velocity
+/// are proportional; for its inverse s_a^2 dt^3 / 12 is added to the variance of the position, which then is
+/// s_a^2 dt^3 / 3 as for continuous white noise. A later change of the biases is applied to first order by
+/// the bias columns of J:
 ///
 ///   delta_p(b) = delta_p + J_pbg (b_g - b_g0) + J_pba (b_a - b_a0),    same for delta_v,
 ///   delta_q(b) = delta_q Exp(J_qbg (b_g - b_g0)),
@@ -85,7 +87,8 @@ class Preintegration {
   [[nodiscard]] const Eigen::Vector3d& gyro_bias() const { return gyro_bias_; }    ///< linearization point
   [[nodiscard]] const Eigen::Vector3d& accel_bias() const { return accel_bias_; }  ///< linearization point
   [[nodiscard]] const Matrix15& covariance() const { return covariance_; }  ///< of (p, theta, v, bg, ba)
-  /// Lower triangular W with W^T W = inverse of the covariance; valid for a positive duration.
+  /// Lower triangular W with W^T W = inverse of the covariance; valid for a positive duration. Zero, that is,
+  /// no information, if the covariance is singular (noise densities of zero).
   [[nodiscard]] const Matrix15& sqrt_information() const { return sqrt_information_; }
   /// J = d e_j / d e_i; columns 9..14 correct the deltas for changed biases.
   [[nodiscard]] const Matrix15& jacobian() const { return jacobian_; }

@@ -2,6 +2,7 @@
 #include "core/imu/preintegration.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "core/geometry/so3.h"
 #include "tests/unit/imu/motions.h"
@@ -138,6 +139,25 @@ TEST(Preintegration, ExtendingAnIntervalEqualsASingleIntegration) {
   imu.integrate(second);
   expect_same(integrated(samples), imu, 1e-15);
   EXPECT_EQ(imu.samples().size(), samples.size());
+}
+
+TEST(Preintegration, TheInformationOfASingleStepIsThatOfContinuousWhiteNoise) {
+  constexpr double dt = 0.03;
+  std::vector<ImuSample> samples(2,
+                                 ImuSample{.t = {}, .gyro_b = {0.3, -0.2, 0.1}, .accel_b = {0.5, 1.0, 9.8}});
+  samples[1].t = from_seconds(dt);
+  const Preintegration imu = integrated(samples);
+  const Matrix15& W = imu.sqrt_information();
+  const Matrix15 P = (W.transpose() * W).inverse();
+  const double density = ImuNoise{}.accel_noise;
+  EXPECT_NEAR(P(Index::kPosition, Index::kPosition), density * density * dt * dt * dt / 3.0, 1e-3 * P(0, 0));
+  EXPECT_LT(W.cwiseAbs().maxCoeff(), 1e7);
+}
+
+TEST(Preintegration, WithoutNoiseDensitiesThereIsNoInformation) {
+  Preintegration imu(ImuNoise{0.0, 0.0, 0.0, 0.0}, kZero, kZero);
+  imu.integrate(rich_motion_samples(0.1));
+  EXPECT_EQ(imu.sqrt_information(), Matrix15::Zero());
 }
 
 TEST(Preintegration, ASingleSampleGivesNoMotion) {
