@@ -8,6 +8,8 @@
 
 namespace stillpoint {
 
+/// XXH64 of `bytes`.
+/// @param bytes any content
 /// @param seed hash of the preceding content, to chain several contents
 [[nodiscard]] std::uint64_t content_hash(std::string_view bytes, std::uint64_t seed = 0);
 

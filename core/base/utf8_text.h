@@ -14,6 +14,7 @@ namespace stillpoint {
 [[nodiscard]] std::string escaped_utf8(std::string_view text);
 
 /// @param what kind of name, e.g. "sequence name"
+/// @param name the name to check
 /// @throws InputError if `name` is not valid UTF-8; the message contains it escaped
 void require_utf8(const std::string& what, std::string_view name);
 

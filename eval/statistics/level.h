@@ -24,6 +24,7 @@ namespace stillpoint::eval {
 /// values are positive, the test is made on their logarithms, and its estimate and interval are mapped by
 /// e^x - 1; otherwise they are divided by |median(before)|.
 /// @param before, after finite values
+/// @param confidence of the interval, in (0, 1)
 /// @return nullopt if a side is empty, or if only the median of `before` is 0; `count` is the size of the
 /// smaller side
 [[nodiscard]] std::optional<RelativeChange> level_change(std::span<const double> before,

@@ -17,6 +17,7 @@ namespace stillpoint::eval {
 
 /// Shortest symmetric interval with at least this confidence.
 /// @param values finite
+/// @param confidence of the interval, in (0, 1)
 /// @return nullopt if there are too few values
 [[nodiscard]] std::optional<Interval> median_interval(std::span<const double> values,
                                                       double confidence = 0.95);

@@ -27,6 +27,7 @@ struct PairedDifference {
 };
 
 /// @param pairs finite values
+/// @param confidence of the interval, in (0, 1)
 /// @return nullopt without pairs
 [[nodiscard]] std::optional<PairedDifference> paired_difference(std::span<const Pair> pairs,
                                                                 double confidence = 0.95);
@@ -44,6 +45,7 @@ struct RelativeChange {
 /// each other. Otherwise x_i = (changed_i - base_i) / |base_i|. Pairs with base 0 are excluded, unless both
 /// values are 0, which counts as no change.
 /// @param pairs finite values
+/// @param confidence of the interval, in (0, 1)
 /// @return nullopt without usable pairs
 [[nodiscard]] std::optional<RelativeChange> relative_change(std::span<const Pair> pairs,
                                                             double confidence = 0.95);

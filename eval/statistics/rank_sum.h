@@ -29,6 +29,7 @@ struct RankSum {
 
 /// O(m^2 n^2).
 /// @param before, after finite values
+/// @param confidence of the interval, in (0, 1)
 /// @return nullopt if a side is empty
 [[nodiscard]] std::optional<RankSum> rank_sum(std::span<const double> before, std::span<const double> after,
                                               double confidence = 0.95);

@@ -43,6 +43,7 @@ struct SignedRank {
 
 /// O(n^3) for n differences.
 /// @param differences finite
+/// @param confidence of the interval, in (0, 1)
 /// @return nullopt for an empty list
 [[nodiscard]] std::optional<SignedRank> signed_rank(std::span<const double> differences,
                                                     double confidence = 0.95);
