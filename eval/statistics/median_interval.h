@@ -32,6 +32,7 @@ struct Spread {
 };
 
 /// @param values finite
+/// @param confidence of the interval, in (0, 1)
 /// @return nullopt for an empty list
 [[nodiscard]] std::optional<Spread> spread(std::span<const double> values, double confidence = 0.95);
 

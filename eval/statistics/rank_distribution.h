@@ -43,6 +43,7 @@ struct Interval {
 [[nodiscard]] std::vector<double> mann_whitney_distribution(std::size_t first, std::size_t second);
 
 /// Two-sided p-value min(1, 2 P(T <= t)) of a symmetric distribution.
+/// @param distribution as `sign_distribution` or `mann_whitney_distribution`
 /// @param t the smaller one of the statistic and its reflection
 [[nodiscard]] double two_sided_p(std::span<const double> distribution, std::size_t t);
 
