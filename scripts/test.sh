@@ -3,6 +3,7 @@
 # Sets the machine up, builds, and runs every test: the fast ones under asan and ubsan, then all in the release build.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 export UBSAN_OPTIONS=print_stacktrace=1
+export LSAN_OPTIONS="suppressions=$PWD/scripts/leaks.supp:print_suppressions=0"
 
 step "packages"
 scripts/setup.sh
