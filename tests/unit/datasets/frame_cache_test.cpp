@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/sequences/cached_sequence.h"
 #include "tests/support/expect_input_error.h"
+#include "tests/support/sequences/cached_sequence.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -197,9 +197,8 @@ TEST(Summary, NamesFailedRunsAndTheBestVariant) {
   ASSERT_EQ(sentences.size(), 2u);
   EXPECT_EQ(sentences[0], "3 runs of 3 variants on 1 sequence: 1 run failed.");
   EXPECT_EQ(sentences[1], "c on s: lost, no frame has a pose.");
-  EXPECT_EQ(
-      best_sentence(runs),
-      "b has the smallest median ATE on 1 of 1 sequences (n = 1; not a statement of significance).");
+  EXPECT_EQ(best_sentence(runs),
+            "b has the smallest median ATE on 1 of 1 sequences (n = 1; not a statement of significance).");
 }
 
 }  // namespace
