@@ -9,6 +9,7 @@
 #include "bench/config/config_text.h"
 #include "bench/plan/plan_place.h"
 #include "bench/plan/plan_validation.h"
+#include "bench/plan/synth_settings.h"
 #include "datasets/faults/sensor_fault.h"
 
 namespace stillpoint::bench {
@@ -53,7 +54,7 @@ class PlanExpander {
   void add_rendered(const std::string& preset, int seed) {
     std::string id;
     for (const SweepAxis& point : sweep_points_) {
-      const bool is_rendering_point = point.key.starts_with("synth.");
+      const bool is_rendering_point = point.key.starts_with(kSynthPrefix);
       PlanSequence sequence =
           rendered_sequence(matrix_.plan, preset, seed, is_rendering_point ? point : SweepAxis{});
       if (sequence.id != id) matrix_.sequences.push_back(sequence);
@@ -64,7 +65,7 @@ class PlanExpander {
 
   void add_recorded(int seed) {
     for (const SweepAxis& point : sweep_points_) {
-      if (!point.key.starts_with("synth.")) add_repetitions(matrix_.plan.recorded.variants, seed, point);
+      if (!point.key.starts_with(kSynthPrefix)) add_repetitions(matrix_.plan.recorded.variants, seed, point);
     }
   }
 
@@ -76,7 +77,7 @@ class PlanExpander {
       for (const std::string& fault : matrix_.plan.faults) {
         for (const std::string& variant : variants) add_own(identity, variant, fault);
       }
-      const bool is_config_point = !point.key.empty() && !point.key.starts_with("synth.");
+      const bool is_config_point = !point.key.empty() && !point.key.starts_with(kSynthPrefix);
       for (std::size_t i = 0; i < matrix_.systems.size() && !is_config_point; ++i) add_external(identity, i);
     }
   }
@@ -110,7 +111,7 @@ class PlanExpander {
     }
     std::vector<std::string> settings = matrix_.plan.config_settings;
     settings.push_back(fmt::format("seed={}", identity.seed));
-    if (!identity.axis.empty() && !identity.axis.starts_with("synth.")) {
+    if (!identity.axis.empty() && !identity.axis.starts_with(kSynthPrefix)) {
       settings.push_back(fmt::format("{}={}", identity.axis, identity.axis_value));
     }
     ConfigRequest config{matrix_.plan.base, variant, settings};

@@ -62,11 +62,18 @@ struct RunArguments {
 struct ConfiguredRun {
   std::string variant;
   RunSpec spec;
+  std::vector<datasets::SensorFault> faults;  ///< the same for all runs
   fs::path folder;
   fs::path video;  ///< folder of annotated frames; empty = none
 };
 
-/// Loads all configs before the first run starts, so that errors are reported early.
+std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
+  std::vector<datasets::SensorFault> faults;
+  for (const std::string& text : arguments.faults) faults.push_back(datasets::parse_fault(text));
+  return faults;
+}
+
+/// Loads all configs and faults before the first run starts, so that errors are reported early.
 std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   std::vector<std::string> variants = arguments.variants;
   if (variants.empty()) variants.emplace_back();
@@ -80,6 +87,7 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
                              .decode_color = !arguments.video.empty(),
                              .keep_spans = true,
                              .deterministic_counts = arguments.deterministic_counts},
+                    .faults = faults_of(arguments),
                     .folder = {},
                     .video = arguments.video});
   }
@@ -147,16 +155,10 @@ std::string id_of(const datasets::SequenceInfo& info, const RunArguments& argume
                                        : arguments.sequence_id;
 }
 
-std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
-  std::vector<datasets::SensorFault> faults;
-  for (const std::string& text : arguments.faults) faults.push_back(datasets::parse_fault(text));
-  return faults;
-}
-
 RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& arguments,
                         const ConfiguredRun& configured) {
   std::vector<std::string> faults;
-  for (const datasets::SensorFault& fault : faults_of(arguments)) faults.push_back(fault_text(fault));
+  for (const datasets::SensorFault& fault : configured.faults) faults.push_back(fault_text(fault));
   return {.sequence = info.name,
           .faults = faults,
           .sequence_format = info.format,
@@ -211,7 +213,7 @@ std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
                           .frame_cache = logged_frame_cache(cached, frames)});
   if (stream && arguments.passes > 1)
     stream = datasets::ping_pong_playback(std::move(stream), arguments.passes);
-  return stream ? datasets::with_faults(std::move(stream), faults_of(arguments)) : nullptr;
+  return stream ? datasets::with_faults(std::move(stream), runs.front().faults) : nullptr;
 }
 
 /// Executes a run and writes its files, then its dumps. @return exit code
@@ -230,7 +232,6 @@ int run(const RunArguments& arguments) {
   require_known_dumps(arguments.dumps);
   install_interrupt_handlers();
   const std::vector<ConfiguredRun> runs = plan_runs(arguments);
-  static_cast<void>(faults_of(arguments));  // reports errors before the sequence is rendered
   const std::unique_ptr<datasets::SensorStream> stream = open(arguments, runs);
   if (!stream) return kExitInterrupted;
   for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
