@@ -40,25 +40,40 @@ std::vector<std::string> summary_cells(const RunSpread& row) {
   return cells;
 }
 
+/// Rows of the spreads of one metric, and the numbers of replicates behind them.
+struct SpreadRows {
+  std::vector<GroupRows> groups;
+  std::set<std::size_t> counts;
+};
+
+/// One row for each spread that satisfies `keep`; a group without a row is left out.
+SpreadRows spread_rows(const RunSelection& selection, const std::string& metric,
+                       bool (*keep)(const RunSpread&), std::vector<std::string> (*cells)(const RunSpread&)) {
+  require_metric(selection, metric);
+  SpreadRows result;
+  for (const RunGroup& group : selection.groups) {
+    GroupRows rows{.group = &group, .rows = {}};
+    for (const RunSpread& row : run_spreads(group.runs, metric)) {
+      if (!keep(row)) continue;
+      result.counts.insert(count_of(row));
+      rows.rows.push_back(cells(row));
+    }
+    if (!rows.rows.empty()) result.groups.push_back(std::move(rows));
+  }
+  return result;
+}
+
 int summary(const StatsArguments& arguments) {
   const Store store(arguments.store);
   const RunSelection selection = chosen_runs(store, arguments);
-  require_metric(selection, arguments.metric);
-  std::vector<GroupRows> groups;
-  std::set<std::size_t> counts;
-  for (const RunGroup& group : selection.groups) {
-    GroupRows rows{.group = &group, .rows = {}};
-    for (const RunSpread& row : run_spreads(group.runs, arguments.metric)) {
-      counts.insert(count_of(row));
-      rows.rows.push_back(summary_cells(row));
-    }
-    groups.push_back(std::move(rows));
-  }
+  const SpreadRows rows = spread_rows(
+      selection, arguments.metric, [](const RunSpread&) { return true; }, summary_cells);
   print_groups(
       {"sequence", "variant", "sweep", "runs", "failed", "n", "median", "median 95 %", "quartiles", "worst"},
-      groups,
-      with_left_out({arguments.metric + "; n: replicates with a value.", interval_note(kMedianTest, counts)},
-                    selection),
+      rows.groups,
+      with_left_out(
+          {arguments.metric + "; n: replicates with a value.", interval_note(kMedianTest, rows.counts)},
+          selection),
       arguments);
   return kExitOk;
 }
@@ -109,24 +124,14 @@ std::vector<std::string> sweep_cells(const RunSpread& row) {
 int sweep(const StatsArguments& arguments) {
   const Store store(arguments.store);
   const RunSelection selection = chosen_runs(store, arguments);
-  require_metric(selection, arguments.metric);
-  std::vector<GroupRows> groups;
-  std::set<std::size_t> counts;
-  for (const RunGroup& group : selection.groups) {
-    GroupRows rows{.group = &group, .rows = {}};
-    for (const RunSpread& row : run_spreads(group.runs, arguments.metric)) {
-      if (row.axis.empty()) continue;
-      counts.insert(count_of(row));
-      rows.rows.push_back(sweep_cells(row));
-    }
-    if (!rows.rows.empty()) groups.push_back(std::move(rows));
-  }
-  if (groups.empty())
+  const SpreadRows rows = spread_rows(
+      selection, arguments.metric, [](const RunSpread& row) { return !row.axis.empty(); }, sweep_cells);
+  if (rows.groups.empty())
     throw InputError(arguments.store, "contains no run of a sweep; add a [sweep] to a plan");
   print_groups(
       {"axis", "value", "sequence", "variant", "runs", "failed", "n", "median", "median 95 % low", "high"},
-      groups, with_left_out({arguments.metric + ".", interval_note(kMedianTest, counts)}, selection),
-      arguments);
+      rows.groups,
+      with_left_out({arguments.metric + ".", interval_note(kMedianTest, rows.counts)}, selection), arguments);
   return kExitOk;
 }
 
