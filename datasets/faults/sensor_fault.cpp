@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -99,10 +100,29 @@ void assign(std::string_view key, std::string_view value, SensorFault& fault, co
   } else if (key == "amount") {
     throw InputError(place, fmt::format("\"{}\" has no amount", descriptor.name));
   } else if (key == "seed") {
-    fault.seed = static_cast<std::uint64_t>(number_in(value, 0.0, 1e9, place));
+    const double seed = number_in(value, 0.0, 1e9, place);
+    if (seed != std::floor(seed))
+      throw InputError(place, fmt::format("seed \"{}\" is not an integer", value));
+    fault.seed = static_cast<std::uint64_t>(seed);
   } else {
     throw InputError(place,
                      fmt::format("unknown key \"{}\"; use start, duration, every, amount or seed", key));
+  }
+}
+
+/// Sets the fields of a list "key=value,key=value,...", in which a key occurs once.
+void assign_all(std::string_view list, SensorFault& fault, const std::string& place) {
+  std::set<std::string_view> keys;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string_view item = list.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t equals = item.find('=');
+    if (equals == std::string_view::npos)
+      throw InputError(place, fmt::format("\"{}\" is not key=value", item));
+    const std::string_view key = item.substr(0, equals);
+    if (!keys.insert(key).second) throw InputError(place, fmt::format("\"{}\" is given twice", key));
+    assign(key, item.substr(equals + 1), fault, place);
   }
 }
 
@@ -129,16 +149,7 @@ SensorFault parse_fault(std::string_view text) {
   const std::size_t colon = text.find(':');
   const FaultDescriptor& descriptor = descriptor_named(text.substr(0, colon), place);
   SensorFault fault{.kind = descriptor.kind, .amount = descriptor.typical};
-  for (std::string_view rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
-       !rest.empty();) {
-    const std::string_view item = rest.substr(0, rest.find(','));
-    rest.remove_prefix(std::min(rest.size(), item.size() + 1));
-    const std::size_t equals = item.find('=');
-    if (equals == std::string_view::npos) {
-      throw InputError(place, fmt::format("\"{}\" is not key=value", item));
-    }
-    assign(item.substr(0, equals), item.substr(equals + 1), fault, place);
-  }
+  if (colon != std::string_view::npos) assign_all(text.substr(colon + 1), fault, place);
   if (fault.every_s > 0.0 && fault.every_s <= fault.duration_s) {
     throw InputError(place, "the period \"every\" must exceed the duration");
   }

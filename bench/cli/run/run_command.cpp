@@ -77,6 +77,9 @@ std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
 std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   std::vector<std::string> variants = arguments.variants;
   if (variants.empty()) variants.emplace_back();
+  // Parsed before the loop: g++ 12 destroys members twice if an initializer in the braces of an aggregate
+  // throws.
+  const std::vector<datasets::SensorFault> faults = faults_of(arguments);
   std::vector<ConfiguredRun> runs;
   for (const std::string& variant : variants) {
     runs.push_back({.variant = variant.empty() ? arguments.base : variant,
@@ -87,7 +90,7 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
                              .decode_color = !arguments.video.empty(),
                              .keep_spans = true,
                              .deterministic_counts = arguments.deterministic_counts},
-                    .faults = faults_of(arguments),
+                    .faults = faults,
                     .folder = {},
                     .video = arguments.video});
   }
