@@ -70,7 +70,6 @@ TEST(ConfigOverlays, DynamicVinsVoHasThePublishedTumSettings) {
                      {"frontend.min_distance_px", "10"},
                      {"frontend.unstable_radius_px", "10"},
                      {"backend.rate_hz", "0.0"},
-                     {"backend.keyframe_min_shared_ratio", "0.7"},
                      {"backend.depth.min_m", "0.4"},
                      {"backend.depth.max_m", "10.0"}}));
 }
@@ -86,13 +85,16 @@ TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {
                      {"frontend.min_correlation", "0.6"},
                      {"frontend.outlier_model", "\"rigid\""},
                      {"frontend.ransac_threshold_px", "2.0"},
+                     {"frontend.ransac_min_inlier_ratio", "0.5"},
                      {"frontend.reject_static_only", "true"},
+                     {"frontend.depth_max_spread", "0.05"},
                      {"frontend.grid.stop_early", "true"},
                      {"dynamic.mask", "\"depth_band\""},
                      {"dynamic.epsilon_m", "0.4"},
                      {"dynamic.depth_window_px", "5"},
                      {"dynamic.box_margin_px", "2.0"},
                      {"dynamic.unmeasured_is_dynamic", "false"},
+                     {"dynamic.max_skipped_frames", "10"},
                      {"dynamic.growth_px_per_miss", "3.0"},
                      {"dynamic.mcc_threshold_px", "5.0"},
                      {"dynamic.mcc_min_observations", "3"},
@@ -101,14 +103,20 @@ TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {
                      {"dynamic.gate_before_solve", "true"},
                      {"dynamic.min_stable_features", "20"},
                      {"backend.rate_hz", "0.0"},
+                     {"backend.keyframe_min_shared_ratio", "0.5"},
                      {"backend.reprojection_error_px", "0.5"},
                      {"backend.solver", "\"schur\""},
                      {"backend.max_iterations", "4"},
                      {"backend.keyframe_max_interval_s", "0.5"},
                      {"backend.gravity", "\"estimated\""},
+                     {"backend.time_offset_sigma_s", "0.01"},
                      {"backend.depth.usage", "\"weighted\""},
+                     {"backend.depth.max_m", "8.0"},
                      {"backend.depth.outlier_sigmas", "5.0"},
-                     {"backend.initializer.kind", "\"instant\""}}));
+                     {"backend.depth.max_landmark_depth_m", "100.0"},
+                     {"backend.initializer.kind", "\"instant\""},
+                     {"backend.initializer.gyro_bias_sigma", "0.02"},
+                     {"backend.initializer.accel_bias_sigma", "0.1"}}));
 }
 
 TEST(ConfigOverlays, LibrariesSelectsOpenCvTrackerAndCeresSolver) {
@@ -126,19 +134,29 @@ TEST(ConfigOverlays, VinsRgbdIsDynamicVinsWithoutItsContributions) {
                      {"dynamic.mask", "\"off\""},
                      {"dynamic.missed_detection", "false"},
                      {"dynamic.moving_consistency", "false"},
-                     {"backend.depth.min_m", "0.1"},
-                     {"backend.depth.max_m", "3.0"}}));
+                     {"backend.depth.min_m", "0.1"}}));
 }
 
 TEST(ConfigOverlays, VinsMonoIsVinsRgbdWithoutDepth) {
   EXPECT_EQ(config_difference(base("baselines/vins_rgbd"), base("baselines/vins_mono")),
             (Entries{{"backend.depth.usage", "\"off\""},
                      {"backend.initializer.kind", "\"monocular\""},
-                     {"backend.initializer.min_parallax_px", "10.0"}}));
+                     {"backend.initializer.max_scale_sigma", "10.0"}}));
 }
 
-TEST(ConfigOverlays, DynamicVinsEqualsTheDefaultsOfTheCode) {
-  EXPECT_EQ(config_difference(OdometryConfig{}, base("dynamic_vins")), Entries{});
+/// The published system has neither these checks nor these priors.
+TEST(ConfigOverlays, DynamicVinsIsTheDefaultsOfTheCodeWithoutUnpublishedChecks) {
+  EXPECT_EQ(config_difference(OdometryConfig{}, base("dynamic_vins")),
+            (Entries{{"frontend.ransac_min_inlier_ratio", "0.0"},
+                     {"frontend.depth_max_spread", "0.0"},
+                     {"dynamic.max_skipped_frames", "3"},
+                     {"backend.keyframe_min_shared_ratio", "0.0"},
+                     {"backend.keyframe_max_interval_s", "10.0"},
+                     {"backend.time_offset_sigma_s", "1.0"},
+                     {"backend.depth.max_m", "3.0"},
+                     {"backend.depth.max_landmark_depth_m", "10000.0"},
+                     {"backend.initializer.gyro_bias_sigma", "10.0"},
+                     {"backend.initializer.accel_bias_sigma", "10.0"}}));
 }
 
 TEST(ConfigOverlays, EveryEmbeddedConfigLoads) {
