@@ -135,9 +135,10 @@ row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/open
 
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
 libraries=(
-  '<OpenImageIO/      ^datasets/io/image_io\.cpp$'
+  '<OpenImageIO/      ^datasets/io/image_module\.cpp$'
   '<blosc            ^datasets/cache/frame_codec\.cpp$'
   '<libdeflate       ^datasets/io/png_decoder\.cpp$'
+  '<turbojpeg        ^datasets/io/jpeg_encoder\.cpp$'
   '<embree3/          ^datasets/synthetic/render/'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'
@@ -146,7 +147,7 @@ libraries=(
   '<opencv2/imgproc[./]  ^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
   '<opencv2/calib3d[./]  ^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/relative_pose\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'
-  '<opencv2/videoio[./]  ^reports/frames/video_file\.cpp$'
+  '<opencv2/videoio[./]  ^reports/frames/video_module\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
   '<(sqlite3|zstd)    ^bench/store/'
   '<cairo            ^reports/drawing/pdf_drawing\.cpp$'

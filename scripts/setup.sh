@@ -15,7 +15,7 @@ packages=(
   libeigen3-dev libceres-dev libsuitesparse-dev
   libopencv-dev
   libhwy-dev
-  libopenimageio-dev openimageio-tools libdeflate-dev libblosc-dev
+  libopenimageio-dev openimageio-tools libdeflate-dev libturbojpeg0-dev libblosc-dev
   libembree-dev libtbb-dev
   libfmt-dev libspdlog-dev libcli11-dev
   nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev libmicrohttpd-dev libcairo2-dev

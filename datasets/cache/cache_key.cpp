@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/cache/cache_key.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +43,19 @@ class Bits {
   std::vector<std::uint64_t> words_;
 };
 
+bool is_png(const std::filesystem::path& file) {
+  return file.empty() || file.extension() == ".png" || file.extension() == ".PNG";
+}
+
+/// Versions of the libraries that decode lossy formats. All decoders give the same pixels of a PNG, and
+/// loading OpenImageIO to ask for its version takes longer than opening the cache.
+std::string decoder_of(const SequenceContent& content) {
+  const bool lossless = std::ranges::all_of(content.frame_files, [](const FrameFiles& files) {
+    return is_png(files.color) && is_png(files.depth);
+  });
+  return lossless ? "PNG" : image_decoder_version();
+}
+
 }  // namespace
 
 std::uint64_t cache_key(const SequenceContent& content, std::span<const FrameDigest> frames) {
@@ -60,7 +75,7 @@ std::uint64_t cache_key(const SequenceContent& content, std::span<const FrameDig
     bits.add(frame.color);
     bits.add(frame.depth);
   }
-  return bits.hash(content_hash(image_decoder_version()));
+  return bits.hash(content_hash(decoder_of(content)));
 }
 
 std::filesystem::path frame_file(const std::filesystem::path& cache, std::uint64_t key) {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/io/image_io.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -14,29 +10,21 @@
 
 #include "core/base/error.h"
 #include "datasets/io/file_bytes.h"
+#include "datasets/io/image_module.h"
+#include "datasets/io/jpeg_encoder.h"
 #include "datasets/io/luma.h"
 #include "datasets/io/png_decoder.h"
+#include "datasets/io/shared_module.h"
 
 namespace stillpoint::datasets {
+
 namespace {
 
-// Measured on a 640x480 RGB image: 7 ms and 374 kB with this filter and strategy, 15 ms and 416 kB with the
-// defaults of the writer at the same level.
-constexpr int kFastCompression = 1;  ///< zlib level
-constexpr int kUpFilter = 0x20;  ///< libpng's PNG_FILTER_UP: each row as its difference from the one above
-
-/// Decoding runs on the calling thread: the program is parallel over frames, not over the rows of an image.
-void disable_oiio_threads() {
-  static const bool done = OIIO::attribute("threads", 1);
-  static_cast<void>(done);
-}
-
-/// The error text of OpenImageIO on one line, or a placeholder if it is empty.
-std::string reason(std::string text) {
-  if (text.empty()) return "unknown reason";
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  for (char& c : text) c = c == '\n' ? ';' : c;
-  return text;
+/// Loads OpenImageIO at the first call. @throws InputError if it is not installed
+const ImageModule& image_module() {
+  static const auto& module =
+      *static_cast<const ImageModule*>(module_symbol("imageio", "stillpoint_image_module"));
+  return module;
 }
 
 /// Whether a PNG has its final IEND chunk. Checked before decoding, because libpng handles truncated files by
@@ -51,8 +39,8 @@ bool has_png_end(const std::filesystem::path& file) {
   return in && tail.find("IEND") != std::string::npos;
 }
 
-std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file) {
-  disable_oiio_threads();
+/// Decodes by OpenImageIO an image that `decode_png` does not.
+LoadedImage load_image(const std::filesystem::path& file, int depth) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw InputError(file.string(), "no such image; is the sequence complete?");
@@ -61,28 +49,9 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file) 
   if (is_png && !has_png_end(file)) {
     throw InputError(file.string(), "is truncated or not a PNG; copy the file again");
   }
-  OIIO::ImageSpec keep_alpha;
-  keep_alpha.attribute("oiio:UnassociatedAlpha", 1);
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &keep_alpha);
-  if (!input) {
-    throw InputError(file.string(),
-                     "cannot be decoded (" + reason(OIIO::geterror()) + "); copy the file again");
-  }
-  return input;
-}
-
-/// Reads the first `channels` channels.
-cv::Mat read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, int channels,
-                    OIIO::TypeDesc::BASETYPE type) {
-  const OIIO::ImageSpec& spec = input.spec();
-  cv::Mat pixels(spec.height, spec.width,
-                 CV_MAKETYPE(type == OIIO::TypeDesc::UINT16 ? CV_16U : CV_8U, channels));
-  const bool complete = input.read_image(0, 0, 0, channels, OIIO::TypeDesc(type), pixels.data);
-  const std::string problem = input.geterror();
-  if (!complete || !problem.empty()) {
-    throw InputError(file.string(), "is truncated or damaged (" + reason(problem) + "); copy the file again");
-  }
-  return pixels;
+  LoadedImage image = image_module().load(file, depth);
+  if (!image.problem.empty()) throw InputError(file.string(), image.problem + "; copy the file again");
+  return image;
 }
 
 /// nullopt if the file is no PNG of a common kind with this depth; OpenImageIO reads it, or describes the
@@ -93,30 +62,7 @@ std::optional<DecodedPng> decode_fast(const std::filesystem::path& file, PngPixe
   return png && png->image.depth() == depth ? png : std::nullopt;
 }
 
-OIIO::ImageSpec spec_of(const cv::Mat& image) {
-  const bool supported = image.type() == CV_8UC1 || image.type() == CV_8UC3 || image.type() == CV_16UC1;
-  STILLPOINT_CHECK(supported && !image.empty());
-  const OIIO::TypeDesc type(image.depth() == CV_16U ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
-  return {image.cols, image.rows, image.channels(), type};
-}
-
 using Bytes = std::vector<unsigned char>;
-
-/// Encodes to a buffer first, because OpenImageIO's PNG writer does not report a full disk.
-/// @param format "png" or "jpg"
-Bytes encode(const std::filesystem::path& file, const std::string& format, const OIIO::ImageSpec& spec,
-             const cv::Mat& image) {
-  Bytes bytes;
-  OIIO::Filesystem::IOVecOutput buffer(bytes);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format, &buffer);
-  STILLPOINT_CHECK(output != nullptr);
-  const auto row_bytes = static_cast<OIIO::stride_t>(image.step[0]);
-  const bool encoded = output->open("memory." + format, spec) &&
-                       output->write_image(spec.format, image.data, OIIO::AutoStride, row_bytes) &&
-                       output->close();
-  if (!encoded) throw InputError(file.string(), "cannot be encoded (" + reason(output->geterror()) + ")");
-  return bytes;
-}
 
 /// Writes to a temporary name, then renames, so that no partial file remains.
 void write_atomically(const std::filesystem::path& file, const Bytes& bytes) {
@@ -138,13 +84,12 @@ void write_atomically(const std::filesystem::path& file, const Bytes& bytes) {
 
 cv::Mat read_image(const std::filesystem::path& file) {
   if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored, CV_8U)) return png->image;
-  const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.format != OIIO::TypeDesc(OIIO::TypeDesc::UINT8)) {
-    throw InputError(file.string(), "has " + std::to_string(8 * spec.format.size()) +
+  const LoadedImage image = load_image(file, CV_8U);
+  if (image.pixels.empty()) {
+    throw InputError(file.string(), "has " + std::to_string(image.bits) +
                                         " bits per channel, expected 8; is it a depth image?");
   }
-  return read_pixels(file, *input, spec.nchannels < 3 ? 1 : 3, OIIO::TypeDesc::UINT8);
+  return image.pixels;
 }
 
 GrayImage read_gray(const std::filesystem::path& file) {
@@ -158,14 +103,13 @@ GrayImage read_gray(const std::filesystem::path& file) {
 cv::Mat read_depth(const std::filesystem::path& file) {
   if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored, CV_16U))
     return png->image;
-  const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.format != OIIO::TypeDesc(OIIO::TypeDesc::UINT16) || spec.nchannels != 1) {
-    throw InputError(file.string(), "has " + std::to_string(spec.nchannels) + " channel(s) of " +
-                                        std::to_string(8 * spec.format.size()) +
+  const LoadedImage image = load_image(file, CV_16U);
+  if (image.pixels.empty() || image.channels != 1) {
+    throw InputError(file.string(), "has " + std::to_string(image.channels) + " channel(s) of " +
+                                        std::to_string(image.bits) +
                                         " bits, but depth has one channel of 16; is it a color image?");
   }
-  return read_pixels(file, *input, 1, OIIO::TypeDesc::UINT16);
+  return image.pixels;
 }
 
 cv::Mat to_gray(const cv::Mat& image) {
@@ -183,26 +127,22 @@ cv::Mat to_gray(const cv::Mat& image) {
   return gray;
 }
 
-std::string image_decoder_version() {
-  return "OpenImageIO " + std::to_string(OIIO::openimageio_version()) + " " +
-         std::string(OIIO::get_string_attribute("library_list"));
-}
+std::string image_decoder_version() { return image_module().version(); }
 
 void write_png(const std::filesystem::path& file, const cv::Mat& image) {
-  disable_oiio_threads();
-  OIIO::ImageSpec spec = spec_of(image);
-  spec.attribute("png:compressionLevel", kFastCompression);
-  spec.attribute("png:filter", kUpFilter);
-  spec.attribute("compression", "rle");
-  write_atomically(file, encode(file, "png", spec, image));
+  const bool supported = image.type() == CV_8UC1 || image.type() == CV_8UC3 || image.type() == CV_16UC1;
+  STILLPOINT_CHECK(supported && !image.empty());
+  const EncodedImage encoded = image_module().encode_png(image);
+  if (!encoded.problem.empty())
+    throw InputError(file.string(), "cannot be encoded (" + encoded.problem + ")");
+  write_atomically(file, encoded.bytes);
 }
 
 void write_jpeg(const std::filesystem::path& file, const cv::Mat& image, int quality) {
-  disable_oiio_threads();
-  STILLPOINT_CHECK(image.depth() == CV_8U);
-  OIIO::ImageSpec spec = spec_of(image);
-  spec.attribute("compression", "jpeg:" + std::to_string(quality));
-  write_atomically(file, encode(file, "jpg", spec, image));
+  const std::optional<Bytes> bytes = encode_jpeg(image, quality);
+  if (!bytes)
+    throw InputError(file.string(), "cannot be encoded; JPEG images have at most 65500 rows and columns");
+  write_atomically(file, *bytes);
 }
 
 }  // namespace stillpoint::datasets

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Reads and writes image files as cv::Mat. The only component that depends on OpenImageIO.
+/// Reads and writes image files as cv::Mat: common PNG files by `decode_png`, JPEG output by libjpeg-turbo, all
+/// others by OpenImageIO, which is loaded when the first one is met.
 ///
 /// All functions are thread-safe. Error messages name the file.
 #pragma once
@@ -33,7 +34,8 @@ struct GrayImage {
 /// @param image CV_8UC3 (R, G, B) or CV_8UC1
 [[nodiscard]] cv::Mat to_gray(const cv::Mat& image);
 
-/// Names and versions of the libraries that decode images. Lossy formats may decode differently with others.
+/// Names and versions of OpenImageIO and its libraries. Lossy formats may decode differently with others.
+/// @throws InputError if OpenImageIO is not installed
 [[nodiscard]] std::string image_decoder_version();
 
 /// Writes a PNG, compressed for speed rather than size.

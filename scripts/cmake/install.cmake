@@ -26,6 +26,19 @@ function(stillpoint_component name)
   install(EXPORT stillpoint_${name} NAMESPACE stillpoint:: DESTINATION ${stillpoint_package_folder} COMPONENT library)
 endfunction()
 
+# stillpoint_module(NAME SOURCE source LIBRARIES libs... COMPONENTS components...): lib/libstillpoint_NAME.so, which is
+# loaded when it is first used (datasets/io/shared_module.h), and belongs to these components of the installation.
+function(stillpoint_module name)
+  cmake_parse_arguments(ARG "" "SOURCE" "LIBRARIES;COMPONENTS" ${ARGN})
+  set(target stillpoint_module_${name})
+  add_library(${target} MODULE ${ARG_SOURCE})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME stillpoint_${name} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+  target_link_libraries(${target} PRIVATE stillpoint_options stillpoint_warnings ${ARG_LIBRARIES})
+  foreach(component IN LISTS ARG_COMPONENTS)
+    install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component})
+  endforeach()
+endfunction()
+
 # stillpoint_install_package(): headers, examples and the package config; called once, after all components.
 function(stillpoint_install_package)
   # The list is made when installing, so a header added since configuring is not forgotten.

@@ -47,6 +47,14 @@ INSTANTIATE_TEST_SUITE_P(CommandLine, WrongUsage,
                                          std::vector<std::string>{"run", "a", "--sped", "3"},
                                          std::vector<std::string>{"run", "a", "--max-frames", "many"}));
 
+// OpenImageIO and OpenCV's video encoders load 205 further libraries, in 0.2 s.
+TEST(ProgramStart, LoadsNeitherImageNorVideoLibraries) {
+  const ProgramResult result = run_program({}, {.environment = {"LD_TRACE_LOADED_OBJECTS=1"}});
+  EXPECT_NE(result.out.find("libopencv_core"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("libOpenImageIO"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("libavcodec"), std::string::npos) << result.out;
+}
+
 TEST(ConfigCommand, PrintsTheResolvedValuesOfAVariant) {
   const ProgramResult result =
       run_program({"config", "show", "--config", "dynamic_vins", "--variant", "vo", "--set", "seed=5"});

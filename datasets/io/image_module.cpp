@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Source of libstillpoint_imageio.so. It is linked with no other source of the project.
+#include "datasets/io/image_module.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+#include <string>
+
+namespace stillpoint::datasets {
+namespace {
+
+// Measured on a 640x480 RGB image: 7 ms and 374 kB with this filter and strategy, 15 ms and 416 kB with the
+// defaults of the writer at the same level.
+constexpr int kFastCompression = 1;  ///< zlib level
+constexpr int kUpFilter = 0x20;  ///< libpng's PNG_FILTER_UP: each row as its difference from the one above
+
+/// Decoding runs on the calling thread: the program is parallel over frames, not over the rows of an image.
+void disable_oiio_threads() {
+  static const bool done = OIIO::attribute("threads", 1);
+  static_cast<void>(done);
+}
+
+/// The error text of OpenImageIO on one line, or a placeholder if it is empty.
+std::string reason(std::string text) {
+  if (text.empty()) return "unknown reason";
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  for (char& c : text) c = c == '\n' ? ';' : c;
+  return text;
+}
+
+LoadedImage load(const std::filesystem::path& file, int depth) {
+  disable_oiio_threads();
+  OIIO::ImageSpec keep_alpha;
+  keep_alpha.attribute("oiio:UnassociatedAlpha", 1);
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &keep_alpha);
+  if (!input) return {.problem = "cannot be decoded (" + reason(OIIO::geterror()) + ")"};
+  const OIIO::ImageSpec& spec = input->spec();
+  LoadedImage image{.channels = spec.nchannels, .bits = static_cast<int>(8 * spec.format.size())};
+  const OIIO::TypeDesc type(depth == CV_16U ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
+  if (spec.format != type) return image;
+  const int channels = spec.nchannels < 3 ? 1 : 3;
+  image.pixels.create(spec.height, spec.width, CV_MAKETYPE(depth, channels));
+  const bool complete = input->read_image(0, 0, 0, channels, type, image.pixels.data);
+  const std::string problem = input->geterror();
+  if (!complete || !problem.empty()) image.problem = "is truncated or damaged (" + reason(problem) + ")";
+  return image;
+}
+
+/// Encodes to a buffer, because OpenImageIO's PNG writer does not report a full disk.
+EncodedImage encode_png(const cv::Mat& image) {
+  disable_oiio_threads();
+  const OIIO::TypeDesc type(image.depth() == CV_16U ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
+  OIIO::ImageSpec spec(image.cols, image.rows, image.channels(), type);
+  spec.attribute("png:compressionLevel", kFastCompression);
+  spec.attribute("png:filter", kUpFilter);
+  spec.attribute("compression", "rle");
+  EncodedImage encoded;
+  OIIO::Filesystem::IOVecOutput buffer(encoded.bytes);
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png", &buffer);
+  if (!output) return {.bytes = {}, .problem = reason(OIIO::geterror())};
+  const auto row_bytes = static_cast<OIIO::stride_t>(image.step[0]);
+  const bool complete = output->open("memory.png", spec) &&
+                        output->write_image(type, image.data, OIIO::AutoStride, row_bytes) && output->close();
+  if (!complete) encoded.problem = reason(output->geterror());
+  return encoded;
+}
+
+std::string version() {
+  return "OpenImageIO " + std::to_string(OIIO::openimageio_version()) + " " +
+         std::string(OIIO::get_string_attribute("library_list"));
+}
+
+}  // namespace
+
+extern "C" const ImageModule stillpoint_image_module;
+const ImageModule stillpoint_image_module = {.load = load, .encode_png = encode_png, .version = version};
+
+}  // namespace stillpoint::datasets

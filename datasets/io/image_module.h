@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// OpenImageIO behind function pointers, in a module of its own (shared_module.h).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+namespace stillpoint::datasets {
+
+struct LoadedImage {
+  cv::Mat pixels;       ///< gray, or the first three channels; empty if the file has another depth
+  int channels = 0;     ///< of the file
+  int bits = 0;         ///< per channel of the file
+  std::string problem;  ///< why the file cannot be decoded, else empty
+};
+
+struct EncodedImage {
+  std::vector<unsigned char> bytes;
+  std::string problem;  ///< empty on success
+};
+
+struct ImageModule {
+  /// @param depth CV_8U or CV_16U: the expected depth
+  LoadedImage (*load)(const std::filesystem::path& file, int depth);
+  /// @param image CV_8UC1, CV_8UC3 (R, G, B) or CV_16UC1
+  EncodedImage (*encode_png)(const cv::Mat& image);
+  /// Names and versions of the libraries that decode images.
+  std::string (*version)();
+};
+
+}  // namespace stillpoint::datasets
