@@ -27,23 +27,6 @@ ImuNoise scaled(const ImuNoise& noise, double factor) {
           factor * noise.accel_walk};
 }
 
-/// Static points observed in the newest frame whose position is known from earlier frames.
-std::vector<PointObservation> known_points(const Window& window, const DepthConfig& depth,
-                                           std::vector<PointObservation> recycled) {
-  std::vector<PointObservation> observations = std::move(recycled);
-  observations.clear();
-  for (const Landmark& landmark : window.landmarks) {
-    if (landmark.dynamic || landmark.last() != window.newest() || landmark.host == window.newest()) continue;
-    const Observation& host = landmark.observations.front();
-    const bool measured = host.depth > 0.0 && host.depth <= depth.max_m;
-    double inverse_depth = landmark.inverse_depth;
-    if (inverse_depth <= 0.0 && measured) inverse_depth = 1.0 / host.depth;
-    if (inverse_depth <= 0.0) continue;
-    observations.push_back({window.position(landmark, inverse_depth), landmark.observations.back().bearing});
-  }
-  return observations;
-}
-
 /// Rejects configurations in which the scale is unobservable.
 void check_scale(const BackendConfig& backend, const ImuConfig& imu) {
   const bool monocular = backend.initializer.kind == InitializerKind::kMonocular;
@@ -254,6 +237,10 @@ bool Estimator::refine() {
     const SolveReport report =
         solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
     if (!window_.inertial) restore_gauge(oldest, backend_, window_);
+    if (backend_.covariance && report.usable) {
+      update_.covariance =
+          solver_->newest_covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
+    }
     if (backend_.reprojection_error_px > 0.0) {
       pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
     }

@@ -115,6 +115,7 @@ struct BackendConfig {
   GravityModel gravity = GravityModel::kFixed;
   PriorModel prior =
       PriorModel::kPublished;  ///< once the IMU is initialized; before and without one published
+  bool covariance = false;  ///< compute the covariance of the newest state with each frame
   bool estimate_time_offset = true;
   double time_offset_sigma_s = 0.01;  ///< prior standard deviation around the calibrated value
   bool estimate_extrinsics = false;
@@ -140,6 +141,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("keyframe_max_interval_s", config.keyframe_max_interval_s, 0.05, 10.0);
   field("gravity", config.gravity);
   field("prior", config.prior);
+  field("covariance", config.covariance);
   field("estimate_time_offset", config.estimate_time_offset);
   field("time_offset_sigma_s", config.time_offset_sigma_s, 1e-6, 1.0);
   field("estimate_extrinsics", config.estimate_extrinsics);

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "core/base/module_timings.h"
 #include "core/types/nav_state.h"
+#include "core/types/state_covariance.h"
 
 namespace stillpoint {
 
@@ -45,6 +47,8 @@ struct OdometryUpdate {
   /// Rotates the world such that gravity points along -z, by the current estimate of gravity; the identity if
   /// gravity is not estimated (`backend.gravity`) or not yet known.
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();
+  /// Of `state`, as of the last solve; absent unless `backend.covariance` is on and the frame was solved.
+  std::optional<StateCovariance> covariance;
   OdometryCounters counters;
   StateHashes hashes;
   ModuleTimings timings;

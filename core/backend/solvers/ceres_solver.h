@@ -14,6 +14,11 @@ class CeresSolver final : public WindowSolver {
   [[nodiscard]] LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config,
                                                double focal_px, LinearPrior recycled) override;
 
+  /// By the inverse of the dense H of all states.
+  [[nodiscard]] std::optional<StateCovariance> newest_covariance(const Window& window,
+                                                                 const BackendConfig& config,
+                                                                 double focal_px) override;
+
  private:
   [[nodiscard]] SolveReport minimize(Window& window, const BackendConfig& config, double focal_px) override;
 };

@@ -24,15 +24,16 @@ class ReducedLayout {
   [[nodiscard]] int column(BlockRef block) const;
   [[nodiscard]] int first_pose() const { return inertial_ ? 9 * frames_ : 0; }
   /// Padded to a multiple of kTile.
-  [[nodiscard]] int size() const {
-    const int globals =
-        (variable_.extrinsics ? 6 : 0) + (variable_.gravity ? 2 : 0) + (variable_.time_offset ? 1 : 0);
-    return first_global() + (globals + kTile - 1) / kTile * kTile;
-  }
+  [[nodiscard]] int size() const { return first_global() + (globals() + kTile - 1) / kTile * kTile; }
+  /// Number of rows at the end that belong to no state.
+  [[nodiscard]] int padding() const { return size() - first_global() - globals(); }
   [[nodiscard]] int frames() const { return frames_; }
   [[nodiscard]] const VariableGlobals& variable_globals() const { return variable_; }
 
  private:
+  [[nodiscard]] int globals() const {
+    return (variable_.extrinsics ? 6 : 0) + (variable_.gravity ? 2 : 0) + (variable_.time_offset ? 1 : 0);
+  }
   [[nodiscard]] int first_global() const { return first_pose() + 6 * frames_; }
 
   int frames_ = 0;

@@ -42,6 +42,12 @@ class SchurSolver final : public WindowSolver {
   [[nodiscard]] LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config,
                                                double focal_px, LinearPrior recycled) override;
 
+  /// With S = L L^T, the rows and columns I of S^-1 are Y^T Y, where L Y = E_I and E_I are the columns I of
+  /// the identity: one forward substitution, which starts late for poses and global states.
+  [[nodiscard]] std::optional<StateCovariance> newest_covariance(const Window& window,
+                                                                 const BackendConfig& config,
+                                                                 double focal_px) override;
+
  private:
   [[nodiscard]] SolveReport minimize(Window& window, const BackendConfig& config, double focal_px) override;
 
@@ -83,6 +89,7 @@ class SchurSolver final : public WindowSolver {
   std::vector<int> columns_;         // marginalization: marginalized columns, then remaining ones
   std::vector<int> dense_;           // skyline profile of a dense matrix
   std::vector<BlockRef> prior_blocks_;
+  ReusableMatrix<RowMajorMatrix> unit_columns_;  // covariance: E_I, then L^-1 E_I
   ReusableVector diagonal_;
 };
 

@@ -103,6 +103,16 @@ void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajor
   }
 }
 
+void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor, int begin,
+                     Eigen::Ref<RowMajorMatrix> X) {
+  for (int row = begin; row < static_cast<int>(X.rows()); ++row) {
+    for (int k = std::max(begin, first[static_cast<std::size_t>(row / kTile)]); k < row; ++k) {
+      X.row(row) -= factor(row, k) * X.row(k);
+    }
+    X.row(row) *= factor(row, row);
+  }
+}
+
 void skyline_solve(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor,
                    Eigen::Ref<Eigen::VectorXd> x) {
   skyline_forward(first, factor, x);

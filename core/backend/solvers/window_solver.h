@@ -3,9 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/backend/window/window.h"
 #include "core/config/backend_config.h"
+#include "core/types/state_covariance.h"
 
 namespace stillpoint {
 
@@ -58,6 +60,13 @@ class WindowSolver {
   /// @param recycled a prior that is no longer needed; its memory is reused
   [[nodiscard]] virtual LinearPrior marginalize_oldest(const Window& window, const BackendConfig& config,
                                                        double focal_px, LinearPrior recycled) = 0;
+
+  /// Covariance of the newest state: with H of all residuals of `solve`, linearized at the states of the
+  /// window, the blocks of H^-1 of that state and of the global states. Absent if H is singular, that is, if
+  /// the residuals leave a state unconstrained.
+  [[nodiscard]] virtual std::optional<StateCovariance> newest_covariance(const Window& window,
+                                                                         const BackendConfig& config,
+                                                                         double focal_px) = 0;
 
  private:
   /// `solve` without the reset of lost depths.

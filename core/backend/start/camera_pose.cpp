@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -90,6 +91,22 @@ std::optional<CameraPose> estimate_camera_pose(const std::vector<PointObservatio
   best_inliers = count_inliers(best, observations, threshold);
   if (best_inliers < options.min_inliers || !best.p.allFinite()) return std::nullopt;
   return CameraPose{best.inverse(), best_inliers};
+}
+
+std::vector<PointObservation> known_points(const Window& window, const DepthConfig& depth,
+                                           std::vector<PointObservation> recycled) {
+  std::vector<PointObservation> observations = std::move(recycled);
+  observations.clear();
+  for (const Landmark& landmark : window.landmarks) {
+    if (landmark.dynamic || landmark.last() != window.newest() || landmark.host == window.newest()) continue;
+    const Observation& host = landmark.observations.front();
+    const bool measured = host.depth > 0.0 && host.depth <= depth.max_m;
+    double inverse_depth = landmark.inverse_depth;
+    if (inverse_depth <= 0.0 && measured) inverse_depth = 1.0 / host.depth;
+    if (inverse_depth <= 0.0) continue;
+    observations.push_back({window.position(landmark, inverse_depth), landmark.observations.back().bearing});
+  }
+  return observations;
 }
 
 }  // namespace stillpoint

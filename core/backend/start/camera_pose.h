@@ -8,7 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "core/geometry/pose.h"
+#include "core/backend/window/window.h"
+#include "core/config/backend_config.h"
 
 namespace stillpoint {
 
@@ -36,5 +37,10 @@ struct CameraPose {
 [[nodiscard]] std::optional<CameraPose> estimate_camera_pose(
     const std::vector<PointObservation>& observations, const Pose& prediction,
     const CameraPoseOptions& options);
+
+/// Static points observed in the newest frame whose position is known from earlier frames.
+/// @param recycled storage for the result; its content is ignored
+[[nodiscard]] std::vector<PointObservation> known_points(const Window& window, const DepthConfig& depth,
+                                                         std::vector<PointObservation> recycled);
 
 }  // namespace stillpoint

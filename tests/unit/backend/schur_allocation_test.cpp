@@ -20,6 +20,10 @@ TEST(SchurSolver, ASecondSolveDoesNotAllocate) {
   const std::size_t between = bench::allocation_count();
   ASSERT_TRUE(solver.solve(second, options.config, kSimulatedFocal_px).usable);
   EXPECT_EQ(bench::allocation_count(), between);
+  ASSERT_TRUE(solver.newest_covariance(first, options.config, kSimulatedFocal_px));
+  const std::size_t after_first = bench::allocation_count();
+  ASSERT_TRUE(solver.newest_covariance(second, options.config, kSimulatedFocal_px));
+  EXPECT_EQ(bench::allocation_count(), after_first);
   EXPECT_GT(between, before);  // the counter works
 }
 

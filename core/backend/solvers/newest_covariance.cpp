@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/solvers/newest_covariance.h"
+
+#include <utility>
+
+namespace stillpoint {
+
+std::vector<BlockRef> newest_blocks(const Window& window, const BackendConfig& config,
+                                    std::vector<BlockRef> recycled) {
+  std::vector<BlockRef> blocks = std::move(recycled);
+  blocks.clear();
+  const VariableGlobals globals = variable_globals(window, config);
+  blocks.push_back({BlockKind::kPose, window.newest()});
+  if (window.inertial) blocks.push_back({BlockKind::kSpeedBias, window.newest()});
+  if (globals.gravity) blocks.push_back({BlockKind::kGravity});
+  if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
+  if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
+  return blocks;
+}
+
+StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestMatrix& covariance) {
+  StateCovariance result;
+  int column = 0;
+  for (const BlockRef block : blocks) {
+    switch (block.kind) {
+      case BlockKind::kPose:
+        result.state.topLeftCorner<6, 6>() = covariance.block<6, 6>(column, column);
+        break;
+      case BlockKind::kSpeedBias:  // follows the pose
+        result.state = covariance.topLeftCorner<15, 15>();
+        result.inertial = true;
+        break;
+      case BlockKind::kGravity:
+        result.gravity = covariance.block<2, 2>(column, column);
+        break;
+      case BlockKind::kExtrinsics:
+        result.extrinsics = covariance.block<6, 6>(column, column);
+        break;
+      case BlockKind::kTimeOffset:
+        result.time_offset = covariance(column, column);
+        break;
+    }
+    column += local_size(block.kind);
+  }
+  return result;
+}
+
+}  // namespace stillpoint

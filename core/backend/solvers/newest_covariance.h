@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The blocks whose covariance is reported with each frame, and their place in StateCovariance.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/backend/solvers/window_problem.h"
+#include "core/types/state_covariance.h"
+
+namespace stillpoint {
+
+/// At most 24 rows: pose, velocity and biases, gravity, extrinsics, time offset.
+using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 24, 24>;
+
+/// Pose of the newest frame, its velocity and biases if there are any, and the variable global states.
+/// @param recycled storage for the result; its content is ignored
+[[nodiscard]] std::vector<BlockRef> newest_blocks(const Window& window, const BackendConfig& config,
+                                                  std::vector<BlockRef> recycled = {});
+
+/// @param covariance joint covariance of `blocks`, as `newest_blocks` gives them, in their order
+[[nodiscard]] StateCovariance state_covariance(std::span<const BlockRef> blocks,
+                                               const NewestMatrix& covariance);
+
+}  // namespace stillpoint
