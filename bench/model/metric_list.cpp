@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The list of metrics and the functions that compute them.
+#include <algorithm>
+#include <array>
+
+#include "bench/model/imu_rate_metrics.h"
 #include "bench/model/metrics.h"
 
 namespace stillpoint::bench {
@@ -280,8 +284,14 @@ constexpr MetricDescriptor kMetrics[] = {
      .gate = MetricGate{}},
 };
 
+constexpr auto kAllMetrics = [] {
+  std::array<MetricDescriptor, std::size(kMetrics) + std::size(kImuRateMetrics)> all{};
+  std::ranges::copy(kImuRateMetrics, std::ranges::copy(kMetrics, all.begin()).out);
+  return all;
+}();
+
 }  // namespace
 
-std::span<const MetricDescriptor> all_metrics() { return kMetrics; }
+std::span<const MetricDescriptor> all_metrics() { return kAllMetrics; }
 
 }  // namespace stillpoint::bench

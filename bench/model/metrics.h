@@ -63,11 +63,27 @@ struct ProcessCost {
   std::int64_t peak_memory_bytes = 0;
 };
 
+/// Errors of the poses at IMU rate; see bench/model/imu_rate_metrics.h for the definitions.
+struct ImuRateScore {
+  std::optional<double> ate_m{};
+  std::optional<double> rpe_100ms_m{};
+  std::optional<double> rpe_100ms_deg{};
+  std::optional<double> rpe_m_per_s{};
+  std::optional<double> rpe_deg_per_s{};
+  std::optional<double> step_p95_m{};
+  std::optional<double> step_max_m{};
+  std::optional<double> step_p95_deg{};
+  std::optional<double> age_p95_ms{};
+  std::optional<double> frame_rate_rpe_100ms_m{};
+  std::optional<double> frame_rate_rpe_100ms_deg{};
+};
+
 /// What metrics are computed from. Its parts are measured at different places; those that were not measured
 /// are empty.
 struct Measurements {
   std::optional<ScoredTrajectory> scored;
   std::optional<RunCounts> counts;
+  std::optional<ImuRateScore> imu_rate;
   std::optional<ProcessCost> process;
   std::optional<double> other_load;                                 ///< CPU load by other processes, 0 to 1
   std::map<std::string, std::int64_t, std::less<>> instructions{};  ///< executed, by stage of the odometry
@@ -76,6 +92,7 @@ struct Measurements {
 enum class MetricSource {
   kTrajectory,    ///< estimate and ground truth: in result.json, a column of result tables
   kRun,           ///< counts of the run: in result.json
+  kImuRate,       ///< poses at IMU rate: in result.json if they were recorded
   kProcess,       ///< the process of the run, measured by its parent
   kMachine,       ///< the machine during a timing run
   kInstructions,  ///< execution under valgrind

@@ -196,6 +196,8 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   files.push_back({"counters.csv", counter_text(result.run.frame_counters)});
   files.push_back({"stacks.folded", folded_stacks(result.run.spans)});
   files.push_back({"manifest.json", manifest_json(manifest)});
+  if (result.run.imu_rate)
+    files.push_back({"trajectory_imu.tum", eval::format_tum(result.run.imu_rate->trajectory)});
   write_files(folder, files);
 }
 

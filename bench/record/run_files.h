@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The files of a run: trajectory.tum, result.json, timings.csv, frames.csv, counters.csv, stacks.folded,
-/// manifest.json.
+/// manifest.json, and trajectory_imu.tum with `pipeline.imu_rate`.
 #pragma once
 
 #include <filesystem>

@@ -52,6 +52,7 @@ class RunRecorder {
  public:
   RunRecorder(const datasets::SensorStream& stream, const RunSpec& spec)
       : stream_(stream), spec_(spec), drifted_(stream.info()) {
+    if (spec.config.pipeline.imu_rate) imu_rate_.emplace(spec.config, stream.info().imu);
     run_.trajectory.frame = "camera";
     run_.frames_planned = frames_to_run(stream.info(), spec.max_frames);
   }
@@ -68,8 +69,9 @@ class RunRecorder {
     run_.recording += std::chrono::steady_clock::now() - begin;
   }
 
-  /// Scores the labels of a frame if the sequence has ground truth for them.
+  /// Adds the poses at IMU rate, and scores the labels of a frame if the sequence has ground truth for them.
   void add(const FrameReport& report) {
+    if (imu_rate_) imu_rate_->add(report.update, report.available);
     if (spec_.mode == "realtime") return;  // decoding labels would slow down the run
     drifted_.add(report.tracked);
     if (report.dynamic.labels.empty()) return;
@@ -83,6 +85,7 @@ class RunRecorder {
   [[nodiscard]] OdometryRun finish(RunSummary summary, double wall_s, const FramePrefetcher& prefetcher) {
     run_.summary = std::move(summary);
     run_.wall_s = wall_s;
+    if (imu_rate_) run_.imu_rate = imu_rate_->take();
     if (!spec_.deterministic_counts) run_.summary.waits.push_back(decoded_);
     for (const DecodedFrame& frame : prefetcher.decoded()) record_decoding(frame);
     return std::move(run_);
@@ -123,6 +126,7 @@ class RunRecorder {
   const datasets::SensorStream& stream_;
   const RunSpec& spec_;
   OdometryRun run_;
+  std::optional<ImuRatePoses> imu_rate_;
   DriftedTracks drifted_;
   ChannelWaits decoded_{.channel = "decoded frames", .for_items = {}, .for_room = {}};
 };
@@ -168,6 +172,8 @@ bool needs_color(const RunSpec& spec) {
 OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
                          const RunControl& control) {
   require_recorded_boxes(spec.config, stream.info());
+  if (spec.config.pipeline.imu_rate && !spec.config.imu.enabled)
+    throw InputError("pipeline.imu_rate", "requires an IMU; set imu.enabled = true, or leave it out");
   RunRecorder recorder(stream, spec);
   FramePrefetcher prefetcher([&](std::size_t index) { return load_frame(stream, spec, index); },
                              recorder.frames_planned(), frames_ahead(stream, spec));

@@ -14,6 +14,7 @@
 #include "bench/model/stored_run.h"
 #include "bench/run/label_score.h"
 #include "bench/run/timing_statistics.h"
+#include "core/pipeline/runners/imu_rate_poses.h"
 #include "core/pipeline/runners/runner.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
@@ -46,6 +47,7 @@ struct FrameSpan {
 struct OdometryRun {
   Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose per tracked frame
   RunSummary summary;
+  std::optional<ImuRateOutput> imu_rate;  ///< if `pipeline.imu_rate`
   TimingSamples timings;
   std::int64_t dynamic_features = 0;          ///< features labelled as dynamic, summed over frames
   std::optional<LabelScore> label_score;      ///< if the sequence has labels; not in mode "realtime"

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/run/imu_rate_score.h"
 #include "eval/trajectory/alignment.h"
 
 namespace stillpoint::bench {
@@ -68,7 +69,8 @@ Measurements measurements_of(const RunResult& result) {
                               .poses = run.trajectory.poses.size(),
                               .resets = run.summary.resets,
                               .frames_without_boxes = run.summary.detector_counters.unrecorded,
-                              .wall_s = run.wall_s}};
+                              .wall_s = run.wall_s},
+          .imu_rate = result.imu_rate};
 }
 
 RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run) {
@@ -84,6 +86,7 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run) {
   result.warnings = warnings_of(info, run.summary);
   result.gt = camera_truth(info, options.expected_times);
   result.score = eval::score(result.gt, run.trajectory, options);
+  if (run.imu_rate) result.imu_rate = score_imu_rate(result.gt, *run.imu_rate, run.trajectory);
   result.run = std::move(run);
   return result;
 }

@@ -2,6 +2,7 @@
 /// The scored result of one run, the content of its result.json.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct RunResult {
   std::vector<std::string> warnings;  ///< irregularities of the data, as "LOCATION: FAULT"
   Trajectory gt;                      ///< of the camera, over the processed frames
   eval::Score score;
+  std::optional<ImuRateScore> imu_rate;  ///< if poses at IMU rate were recorded
   OdometryRun run;
 };
 

@@ -142,8 +142,11 @@ void ThreadedOdometry::Impl::publish(const FrameJob& job, const OdometryUpdate& 
   }
   if (options.on_update) options.on_update(update);
   if (options.on_frame) {
-    options.on_frame(
-        {.frame = job.frame, .tracked = job.tracked, .dynamic = optimization.dynamic(), .update = update});
+    options.on_frame({.frame = job.frame,
+                      .tracked = job.tracked,
+                      .dynamic = optimization.dynamic(),
+                      .update = update,
+                      .available = imu_end_of(job.frame.t, rig)});
   }
 }
 

@@ -51,6 +51,7 @@ struct RunArguments {
   int max_frames = 0;
   bool deterministic_counts = false;
   bool no_frame_cache = false;
+  bool imu_rate = false;
   double speed = 1.0;
   std::vector<std::string> dumps;
   int passes = 1;
@@ -80,10 +81,12 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   // Parsed before the loop: g++ 12 destroys members twice if an initializer in the braces of an aggregate
   // throws.
   const std::vector<datasets::SensorFault> faults = faults_of(arguments);
+  std::vector<std::string> settings = arguments.settings;
+  if (arguments.imu_rate) settings.emplace_back("pipeline.imu_rate=true");
   std::vector<ConfiguredRun> runs;
   for (const std::string& variant : variants) {
     runs.push_back({.variant = variant.empty() ? arguments.base : variant,
-                    .spec = {.config = load_config({arguments.base, variant, arguments.settings}),
+                    .spec = {.config = load_config({arguments.base, variant, settings}),
                              .mode = arguments.mode,
                              .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames),
@@ -263,8 +266,7 @@ Command run_command() {
            {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
            {"--fault",
             "Inject a sensor fault: KIND or KIND:key=value,... with the keys start, duration, every [s], "
-            "amount, "
-            "seed; may be repeated; kinds: `stillpoint data faults`",
+            "amount, seed; may be repeated; kinds: `stillpoint data faults`",
             &arguments->faults},
            {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
            {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed, {1e-3, 1e3}},
@@ -281,10 +283,8 @@ Command run_command() {
             &arguments->passes,
             {1, 1000}},
            {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
-           {"--images",
-            "Number of frames with the largest error growth to write as annotated images [0]",
-            &arguments->images,
-            {0, 1e6}},
+           {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
+           {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
            {"--sequence-id",
             "Identifier for the manifest, instead of a checksum over all files of the sequence",
             &arguments->sequence_id},

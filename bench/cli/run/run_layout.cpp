@@ -12,8 +12,8 @@ std::vector<std::vector<std::string>> marks() {
 }  // namespace
 
 OutputLayout run_layout() {
-  return {.names = {"trajectory.tum", "result.json", "timings.csv", "frames.csv", "counters.csv",
-                    "stacks.folded", "manifest.json", "labels.csv", "cost.svg", "images"},
+  return {.names = {"trajectory.tum", "trajectory_imu.tum", "result.json", "timings.csv", "frames.csv",
+                    "counters.csv", "stacks.folded", "manifest.json", "labels.csv", "cost.svg", "images"},
           .marks = marks()};
 }
 

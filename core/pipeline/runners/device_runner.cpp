@@ -71,6 +71,11 @@ class DeviceRun {
     return Time(std::llround(1e9 * seconds / clock_.speed));
   }
 
+  /// The recorded time that corresponds to a time of the virtual clock.
+  [[nodiscard]] Timestamp recorded_time(Time time) const {
+    return after(input_.frame_times.front(), 1e-9 * clock_.speed * static_cast<double>(time.count()));
+  }
+
   /// Index of the next frame that the tracker accepts; advances `now_` to that time.
   std::optional<std::size_t> next_frame() {
     const std::size_t count = input_.frame_times.size();
@@ -129,15 +134,16 @@ class DeviceRun {
     const OdometryUpdate& update = optimize_frame(job, found, stages_.optimization);
     const ModuleTime measured = update.timings[Module::kOptimizationThread];
     summary_.resets += update.counters.reset;
-    notify(control_, {.frame = job.frame,
-                      .tracked = job.tracked,
-                      .dynamic = stages_.optimization.dynamic(),
-                      .update = update});
     const bool free = !job.enters_window && clock_.device.optimization.fixed_ms;
     const Time cost = free ? Time{} : cost_of(clock_.device.optimization, measured);
     optimization_start_ = start;
     optimizer_free_ = cores_.occupy(start, cost);
     report_.latencies_ms.push_back(1e-6 * static_cast<double>((optimizer_free_ - exposed).count()));
+    notify(control_, {.frame = job.frame,
+                      .tracked = job.tracked,
+                      .dynamic = stages_.optimization.dynamic(),
+                      .update = update,
+                      .available = recorded_time(optimizer_free_)});
     feedback_.push_back({stages_.optimization.feedback(), optimizer_free_});
   }
 

@@ -108,7 +108,8 @@ class RealtimeRun {
       notify(control_, {.frame = job->frame,
                         .tracked = job->tracked,
                         .dynamic = stages_.optimization.dynamic(),
-                        .update = update});
+                        .update = update,
+                        .available = after(t, clock_.seconds_late(t))});
       report_.latencies_ms.push_back(1e3 * clock_.wall_seconds_late(t));
       feedback_.push_dropping_oldest(
           {stages_.optimization.feedback(std::move(job->feedback)), std::move(job->tracked)});

@@ -31,8 +31,11 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
     update.timings.add(*job->decoding, 1);
     if (detections.timing) update.timings.add(*detections.timing, 1);
     resets += update.counters.reset;
-    notify(control,
-           {.frame = frame, .tracked = odometry.tracked(), .dynamic = odometry.dynamic(), .update = update});
+    notify(control, {.frame = frame,
+                     .tracked = odometry.tracked(),
+                     .dynamic = odometry.dynamic(),
+                     .update = update,
+                     .available = imu_end_of(frame.t, input.rig)});
   }
   RunSummary summary = completed(loader.summary(), odometry.imu_health(), *detector);
   summary.resets = resets;

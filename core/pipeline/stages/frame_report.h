@@ -32,6 +32,9 @@ struct FrameReport {
   const TrackedFrame& tracked;
   const DynamicReport& dynamic;  ///< empty for a frame that does not enter the window
   const OdometryUpdate& update;
+  /// Time on the IMU clock from which the update is available. In sequential and pipelined execution: when
+  /// the last sample that the frame waits for has arrived; in paced modes: when it was computed.
+  Timestamp available{};
 };
 
 }  // namespace stillpoint

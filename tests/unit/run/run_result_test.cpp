@@ -119,5 +119,18 @@ TEST(RunResult, IsConvertedFromJsonToMetricsAndCosts) {
   EXPECT_EQ(read.costs[1].per, "frame");
 }
 
+TEST(RunResult, ContainsTheScoreOfPosesAtImuRateIfTheyWereRecorded) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  EXPECT_EQ(result_json(score_run(info, run)).find("imu_rate_"), std::string::npos);
+  run.imu_rate.emplace();
+  run.imu_rate->trajectory = run.trajectory;
+  run.imu_rate->ages_ms = {10.0};
+  const auto json = nlohmann::json::parse(result_json(score_run(info, std::move(run))));
+  EXPECT_NEAR(json.at("imu_rate_ate_rmse_m").get<double>(), 0.0, 1e-9);
+  EXPECT_NEAR(json.at("imu_rate_age_p95_ms").get<double>(), 10.0, 1e-9);
+  EXPECT_TRUE(json.at("imu_rate_step_p95_m").is_null());
+}
+
 }  // namespace
 }  // namespace stillpoint::bench
