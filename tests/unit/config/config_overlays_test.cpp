@@ -109,6 +109,7 @@ TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {
                      {"backend.max_iterations", "4"},
                      {"backend.keyframe_max_interval_s", "0.5"},
                      {"backend.gravity", "\"estimated\""},
+                     {"backend.covariance", "true"},
                      {"backend.time_offset_sigma_s", "0.01"},
                      {"backend.depth.usage", "\"weighted\""},
                      {"backend.depth.max_m", "8.0"},
