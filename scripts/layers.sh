@@ -77,6 +77,8 @@ row datasets/synthetic/actors $scene datasets/io datasets/synthetic/scenes
 row datasets/synthetic/sensors $scene core/types datasets/synthetic/actors
 row datasets/synthetic/sequence $scene core/types $trajectories datasets/io datasets/synthetic/scenes datasets/synthetic/actors \
   datasets/synthetic/sensors
+row datasets/catalogue core/base
+row datasets/download core/base
 row datasets/faults core/base core/types datasets datasets/io datasets/synthetic datasets/synthetic/materials
 datasets="datasets datasets/io datasets/calibration datasets/formats datasets/synthetic/sequence"
 
@@ -98,10 +100,11 @@ row bench/record $common core/pipeline/runners datasets/cache eval eval/io eval/
   bench/profile
 row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record
-row bench/plan core/base datasets datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
+row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
 row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems bench/plan
+row bench/fetch core/base datasets datasets/catalogue datasets/download eval/io bench/model bench/process bench/record bench/plan
 row bench/executors core/base eval/io bench/model bench/store bench/store/maintenance bench/process bench/record bench/systems \
   bench/plan bench/plan/execution
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
@@ -126,7 +129,7 @@ row bench/cli core/base eval/io bench/config bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
 row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
-row bench/cli/data $execution core/detector datasets datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
+row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution eval/io bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/tables/formats reports/text reports/page
 row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/store/maintenance bench/plan \
@@ -154,7 +157,10 @@ libraries=(
   '<microhttpd        ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
   '<spdlog/           ^bench/cli/'
-  '<toml\+\+/         ^bench/(config|systems)/|^datasets/io/'
+  '<toml\+\+/         ^bench/(config|systems)/|^datasets/(io|catalogue)/'
+  '<curl/            ^datasets/download/http_transfer\.cpp$'
+  '<archive          ^datasets/download/archive_reader\.cpp$'
+  '<openssl/         ^datasets/download/file_digests\.cpp$'
   '<yaml-cpp/         ^datasets/io/'
   '<nlohmann/         ^(bench|reports)/|^datasets/formats/'
   '<benchmark/        ^bench/micro/'

@@ -19,6 +19,7 @@ packages=(
   libembree-dev libtbb-dev
   libfmt-dev libspdlog-dev libcli11-dev
   nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev libmicrohttpd-dev libcairo2-dev
+  libcurl4-openssl-dev libarchive-dev libssl-dev
   libgtest-dev libbenchmark-dev
   universal-ctags
 )

@@ -64,9 +64,9 @@ inline constexpr std::size_t kMaxAnalyzedCommits = 300;
 /// Level shifts are change points of E-divisive (eval/statistics/change_points.h). A change point counts if
 /// the levels differ by at least the margin and the floor of the metric (`MetricGate`), the 95 % confidence
 /// interval of the change excludes 0, and the step at the change point itself reaches the same limits after a
-/// trend that both levels share is removed (`eval::step_beside_trend`). A slow change is therefore listed as a
-/// drift, also if it consists of many steps below the margin; at most 6 of 180 simulated ones still count as
-/// a level shift (`drift_validation_test`). A drift is a linear trend with p
+/// trend that both levels share is removed (`eval::step_beside_trend`). A slow change is therefore listed as
+/// a drift, also if it consists of many steps below the margin; at most 6 of 180 simulated ones still count
+/// as a level shift (`drift_validation_test`). A drift is a linear trend with p
 /// <= 0.005 that exceeds the same limits and fits better than the level shifts. The fraction of failed runs
 /// needs no test: it is a regression if it is larger at the newest commit than at an earlier one.
 [[nodiscard]] HistoryChanges history_changes(const CommitHistory& history,

@@ -44,7 +44,7 @@ void add_option(CLI::App& app, const Option& option, bool optional) {
       added->check([range = option.range](const std::string& value) { return range_problem(value, range); });
     }
     const bool positional = option.name.front() != '-';
-    if (positional && !optional) added->required();
+    if (positional && !optional && !option.may_be_omitted) added->required();
     if constexpr (std::is_same_v<decltype(target), std::vector<std::string>*>) {
       if (!positional) added->allow_extra_args(false);
       if (option.values > 1) added->expected(option.values);  // else it may be repeated

@@ -23,6 +23,7 @@ struct Option {
   NumberRange range = {};         ///< of a number option
   std::string hidden_alias = {};  ///< former name of a vector option; accepted, not listed by --help
   int values = 1;                 ///< > 1: number of values of a vector option, which is then not repeated
+  bool may_be_omitted = false;    ///< of an argument
 };
 
 /// A subcommand. `action` owns the option targets, usually through a captured shared_ptr to a struct.

@@ -25,6 +25,9 @@ namespace stillpoint::bench {
 [[nodiscard]] Command reproduce_command();    ///< `stillpoint reproduce`: tables of the paper
 [[nodiscard]] Command config_command();       ///< `stillpoint config`: resolved configs and the key reference
 [[nodiscard]] Command data_command();         ///< `stillpoint data`: create and inspect sequences
+[[nodiscard]] Command catalogue_command();    ///< `stillpoint data catalogue`: list public datasets
+[[nodiscard]] Command get_command();          ///< `stillpoint data get`: download sequences
+[[nodiscard]] Command verify_command();       ///< `stillpoint data verify`: compare files with their digests
 [[nodiscard]] Command cache_command();        ///< `stillpoint data cache`: decoded frames on disk
 [[nodiscard]] Command check_command();        ///< `stillpoint data check`: validate a sequence
 [[nodiscard]] Command faults_command();       ///< `stillpoint data faults`: list injectable sensor faults

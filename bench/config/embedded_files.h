@@ -12,7 +12,7 @@ struct EmbeddedFile {
   std::string_view text;
 };
 
-/// The TOML files of configs, plans, systems, devices and published tables, sorted by path.
+/// The TOML files of configs, plans, systems, devices, published tables and catalogues, sorted by path.
 [[nodiscard]] std::span<const EmbeddedFile> embedded_files();
 
 /// The files of reports/web; defined in the reports library.

@@ -38,6 +38,8 @@ KindInfo info_of(TomlKind kind) {
       return {"reports/published/", "published table"};
     case TomlKind::kDevice:
       return {"bench/devices/", "device"};
+    case TomlKind::kCatalogue:
+      return {"datasets/catalogue/", "catalogue"};
   }
   return {};
 }

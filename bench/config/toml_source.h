@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Finds configs, plans, systems, devices and published tables among the embedded files or on disk.
+/// Finds configs, plans, systems, devices, published tables and catalogues of datasets among the embedded
+/// files or on disk.
 #pragma once
 
 #include <string>
@@ -15,7 +16,7 @@ struct TomlSource {
 };
 
 /// Kinds of files; each kind has its own folder.
-enum class TomlKind { kConfig, kPlan, kSystem, kPublished, kDevice };
+enum class TomlKind { kConfig, kPlan, kSystem, kPublished, kDevice, kCatalogue };
 
 /// A name that ends in ".toml" is a file on disk; any other is an embedded file, with or without its folder
 /// ("wo_circular_mask" and "ablations/wo_circular_mask" are equivalent).

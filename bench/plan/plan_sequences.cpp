@@ -8,6 +8,7 @@
 #include <fnmatch.h>
 
 #include "bench/config/spelling.h"
+#include "bench/plan/dataset_catalogue.h"
 #include "bench/plan/synth_settings.h"
 #include "bench/record/sequence_checksum.h"
 #include "bench/run/frame_cache_settings.h"
@@ -43,7 +44,7 @@ std::map<std::string, RegisteredSequence> known_sequences() {
 }  // namespace
 
 PlanSequence verified_sequence(const RegisteredSequence& registered) {
-  if (!fs::is_directory(registered.folder)) {
+  if (!fs::exists(registered.folder)) {
     throw InputError("sequence \"" + registered.name + "\"",
                      "its folder " + registered.folder.string() +
                          " does not exist; restore it, or register it again with `stillpoint data add`");
@@ -78,6 +79,23 @@ RegisteredSequence sequence_at(const std::string& path) {
   return {.name = folder.filename().string(), .folder = folder, .checksum = "", .format = ""};
 }
 
+/// The patterns, with names of the catalogue ("tum/fr3_walking_*") replaced by those of their registrations.
+std::vector<std::string> without_catalogue_names(const std::vector<std::string>& patterns,
+                                                 const std::vector<datasets::CatalogueDataset>& catalogues) {
+  std::vector<std::string> names;
+  for (const std::string& pattern : patterns) {
+    const std::vector<datasets::CatalogueEntry> entries = datasets::matching_entries(catalogues, pattern);
+    std::error_code ignored;
+    if (!is_path(pattern) || entries.empty() || fs::is_directory(pattern, ignored)) {
+      names.push_back(pattern);
+      continue;
+    }
+    for (const datasets::CatalogueEntry& entry : entries)
+      names.push_back(datasets::registered_name(*entry.dataset, *entry.sequence));
+  }
+  return names;
+}
+
 /// The sequences that a pattern selects; empty if none.
 std::vector<RegisteredSequence> selected_by(const std::string& pattern,
                                             const std::map<std::string, RegisteredSequence>& known) {
@@ -106,8 +124,9 @@ void add_distinct(std::vector<PlanSequence>& found, const RegisteredSequence& se
   }
 }
 
-[[noreturn]] void throw_unknown(const std::string& pattern,
+[[noreturn]] void throw_unknown(const std::string& pattern, const std::string& advice,
                                 const std::map<std::string, RegisteredSequence>& known) {
+  if (!advice.empty()) throw InputError("sequence \"" + pattern + "\"", "is not available; " + advice);
   std::vector<std::string> names;
   for (const auto& [name, sequence] : known) names.push_back(name);
   throw InputError("sequence \"" + pattern + "\"",
@@ -159,19 +178,23 @@ PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset,
 std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
   std::vector<PlanSequence> found;
   const std::map<std::string, RegisteredSequence> known = known_sequences();
-  for (const std::string& pattern : group.sequences) {
+  const std::vector<datasets::CatalogueDataset> catalogues = load_catalogues();
+  for (const std::string& pattern : without_catalogue_names(group.sequences, catalogues)) {
     const std::vector<RegisteredSequence> selected = selected_by(pattern, known);
     for (const RegisteredSequence& sequence : selected) add_distinct(found, sequence);
     if (!selected.empty()) continue;
-    if (group.required) throw_unknown(pattern, known);
+    const std::string advice = fetch_advice(catalogues, pattern);
+    if (group.required) throw_unknown(pattern, advice, known);
     if (is_glob(pattern)) continue;
     found.push_back(
         {.name = pattern,
          .id = "",
          .rendering = {},
          .folder = {},
-         .unavailable_reason = "no folder " + (data_folder() / pattern).string() +
-                               "; set STILLPOINT_DATA, or register it with `stillpoint data add`"});
+         .unavailable_reason = !advice.empty()
+                                   ? pattern + ": " + advice
+                                   : "no folder " + (data_folder() / pattern).string() +
+                                         "; set STILLPOINT_DATA, or register it with `stillpoint data add`"});
   }
   return found;
 }

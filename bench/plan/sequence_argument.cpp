@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "bench/config/spelling.h"
+#include "bench/plan/dataset_catalogue.h"
 #include "bench/plan/plan_sequences.h"
 #include "core/base/error.h"
 #include "datasets/synthetic/sequence/presets.h"
@@ -24,14 +25,26 @@ namespace fs = std::filesystem;
   }
   std::vector<std::string> names = synth::preset_names();
   for (const RegisteredSequence& known : registry) names.push_back(known.name);
+  const std::string advice = fetch_advice(load_catalogues(), argument);
+  if (!advice.empty()) throw InputError(place, "is not available; " + advice);
   throw InputError(
       place, "is neither a folder nor a preset nor a registered sequence" + suggestion(argument, names));
 }
 
+/// "tum/fr3_walking_xyz" as the name of its registration; other arguments unchanged.
+std::string without_catalogue_name(const std::string& argument) {
+  if (argument.find('/') == std::string::npos) return argument;
+  const std::vector<datasets::CatalogueDataset> catalogues = load_catalogues();
+  const std::vector<datasets::CatalogueEntry> entries = datasets::matching_entries(catalogues, argument);
+  return entries.size() == 1 ? datasets::registered_name(*entries.front().dataset, *entries.front().sequence)
+                             : argument;
+}
+
 }  // namespace
 
-std::string resolve_sequence(const std::string& argument) {
+std::string resolve_sequence(const std::string& given) {
   std::error_code ignored;
+  const std::string argument = fs::is_directory(given, ignored) ? given : without_catalogue_name(given);
   eval::reject_bag(argument, eval::kExportSequence);
   if (fs::is_directory(argument, ignored)) return argument;
   const std::vector<std::string> presets = synth::preset_names();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/model/json_problem.h"
+#include "bench/process/file_lock.h"
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
 #include "core/base/utf8_text.h"
@@ -79,6 +80,9 @@ std::vector<RegisteredSequence> read_registry(const fs::path& file) {
 void register_sequence(const fs::path& file, const RegisteredSequence& sequence, Registration registration) {
   require_valid_name(sequence.name);
   require_utf8("folder", sequence.folder.string());
+  std::error_code ignored;  // the lock reports a folder that cannot be written
+  fs::create_directories(file.parent_path(), ignored);
+  const FileLock exclusive(file.string() + ".lock", LockKind::kExclusive);
   std::vector<RegisteredSequence> sequences = read_registry(file);
   if (registration == Registration::kNew) require_unused(sequences, sequence);
   std::erase_if(sequences, [&](const RegisteredSequence& known) { return known.name == sequence.name; });

@@ -28,6 +28,7 @@ std::uint64_t hash_file(const fs::path& file, std::uint64_t hash) {
 }  // namespace
 
 std::string sequence_checksum(const fs::path& folder) {
+  if (fs::is_regular_file(folder)) return hash_text(hash_file(folder, 0));
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file()) files.push_back(entry.path());

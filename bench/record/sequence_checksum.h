@@ -7,8 +7,8 @@
 
 namespace stillpoint::bench {
 
-/// Hash of the names and contents of all files below a folder, sorted by name, as sixteen hexadecimal digits.
-/// Reads every byte.
+/// Hash of the names and contents of all files below a folder, sorted by name, as sixteen hexadecimal digits;
+/// of the content of a file. Reads every byte.
 /// @throws InputError if a file cannot be read
 [[nodiscard]] std::string sequence_checksum(const std::filesystem::path& folder);
 

@@ -115,7 +115,7 @@ struct BackendConfig {
   GravityModel gravity = GravityModel::kFixed;
   PriorModel prior =
       PriorModel::kPublished;  ///< once the IMU is initialized; before and without one published
-  bool covariance = false;  ///< compute the covariance of the newest state with each frame
+  bool covariance = false;     ///< compute the covariance of the newest state with each frame
   bool estimate_time_offset = true;
   double time_offset_sigma_s = 0.01;  ///< prior standard deviation around the calibrated value
   bool estimate_extrinsics = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Reads and writes image files as cv::Mat: common PNG files by `decode_png`, JPEG output by libjpeg-turbo, all
-/// others by OpenImageIO, which is loaded when the first one is met.
+/// Reads and writes image files as cv::Mat: common PNG files by `decode_png`, JPEG output by libjpeg-turbo,
+/// all others by OpenImageIO, which is loaded when the first one is met.
 ///
 /// All functions are thread-safe. Error messages name the file.
 #pragma once

@@ -7,6 +7,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/plan/plan_sequences.h"
 #include "bench/plan/sequence_registry.h"
 #include "bench/record/sequence_checksum.h"
 #include "datasets/open_sequence.h"
@@ -37,12 +38,19 @@ int add(const AddArguments& arguments) {
   return kExitOk;
 }
 
+/// Whether each registered sequence can be used, and the folders of the data folder, which need no
+/// registration.
 int list() {
-  for (const RegisteredSequence& sequence : read_registry(registry_file())) {
-    std::cout << fmt::format("{:<24} {:<10} {}  {}{}\n", sequence.name, sequence.format, sequence.checksum,
+  const std::vector<RegisteredSequence> registry = read_registry(registry_file());
+  for (const RegisteredSequence& sequence : registry) {
+    std::cout << fmt::format("{:<32} {:<10} {}  {}{}\n", sequence.name, sequence.format, sequence.checksum,
                              sequence.folder.string(),
-                             std::filesystem::is_directory(sequence.folder) ? "" : "  (missing)");
+                             std::filesystem::exists(sequence.folder) ? "" : "  (missing)");
   }
+  std::cout << fmt::format(
+      "{} registered sequences; plans can also use the folders in {} by their names, and any folder by its "
+      "path\n",
+      registry.size(), data_folder().string());
   return kExitOk;
 }
 
@@ -59,17 +67,20 @@ Command add_command() {
 }
 
 Command list_command() {
-  return {.name = "list", .summary = "List the registered sequences", .example = "data list", .action = list};
+  return {.name = "list",
+          .summary = "List the sequences that plans can use",
+          .example = "data list",
+          .action = list};
 }
 
 }  // namespace
 
 Command data_command() {
   return {.name = "data",
-          .summary = "Create and inspect sequences",
+          .summary = "Download, create and inspect sequences",
           .example = "data synth walking_xyz --out build/walking_xyz",
-          .subcommands = {check_command(), synth_command(), add_command(), list_command(), cache_command(),
-                          faults_command()}};
+          .subcommands = {catalogue_command(), get_command(), verify_command(), list_command(), add_command(),
+                          check_command(), synth_command(), cache_command(), faults_command()}};
 }
 
 }  // namespace stillpoint::bench

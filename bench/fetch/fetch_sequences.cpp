@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/fetch/fetch_sequences.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "bench/fetch/data_lock.h"
+#include "bench/fetch/install_sequence.h"
+#include "bench/model/utc_time.h"
+#include "bench/plan/sequence_registry.h"
+#include "bench/process/file_lock.h"
+#include "core/base/error.h"
+#include "datasets/download/disk_space.h"
+#include "datasets/download/file_kind.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using datasets::CatalogueArchive;
+using datasets::CatalogueDataset;
+using datasets::CatalogueEntry;
+using datasets::CatalogueSequence;
+
+/// Extracted files per byte of an archive: images hardly compress, and a nested archive exists with its
+/// content for a moment.
+constexpr double kExtractedRatio = 1.5;
+
+/// Fetches the archives of one sequence, and all sequences in them.
+class ArchiveFetch {
+ public:
+  ArchiveFetch(const CatalogueEntry& entry, const FetchOptions& options, const FetchControl& control)
+      : dataset_(*entry.dataset),
+        files_(entry.sequence->archives),
+        options_(options),
+        control_(control),
+        folder_(options.root / dataset_.name),
+        staging_(folder_ / (".extracting-" + fs::path(files_.front()).filename().string())) {}
+
+  /// @return false if stopped
+  bool run() {
+    fs::create_directories(folder_ / "downloads");
+    const fs::path name = fs::path(files_.front()).filename();
+    const FileLock exclusive(folder_ / "downloads" / ("." + name.string() + ".lock"), LockKind::kExclusive);
+    if (missing().empty()) return true;  // another process fetched them
+    require_space();
+    fs::remove_all(staging_);
+    fs::create_directories(staging_);
+    const StagingRemoval removal{staging_};
+    for (const std::string& file : files_) {
+      if (!fetch_archive(datasets::archive_of(dataset_, file))) return false;
+    }
+    for (const CatalogueSequence* sequence : missing())
+      control_.report(install_sequence(dataset_, *sequence, staging_, folder_));
+    if (options_.keep_archives) return true;
+    for (const std::string& file : files_) fs::remove(local_file(file));
+    return true;
+  }
+
+ private:
+  struct StagingRemoval {
+    fs::path folder;
+    ~StagingRemoval() {
+      std::error_code ignored;
+      fs::remove_all(folder, ignored);
+    }
+  };
+
+  /// The sequences in these archives that are not available.
+  [[nodiscard]] std::vector<const CatalogueSequence*> missing() const {
+    std::vector<const CatalogueSequence*> found;
+    for (const CatalogueSequence& sequence : dataset_.sequences) {
+      if (sequence.archives == files_ && !is_available(dataset_, sequence)) found.push_back(&sequence);
+    }
+    return found;
+  }
+
+  [[nodiscard]] fs::path local_file(const std::string& file) const {
+    return folder_ / "downloads" / fs::path(file).filename();
+  }
+
+  void require_space() const {
+    const auto bytes = static_cast<double>(datasets::published_bytes(dataset_, files_));
+    datasets::require_disk_space(folder_, static_cast<std::uint64_t>(bytes * (1.0 + kExtractedRatio)));
+  }
+
+  [[nodiscard]] datasets::DownloadRequest request_of(const CatalogueArchive& archive) const {
+    datasets::DownloadRequest request{.file = local_file(archive.file),
+                                      .urls = archive.urls,
+                                      .bytes = archive.bytes,
+                                      .sha256 = archive.sha256,
+                                      .md5 = archive.md5,
+                                      .md5_suffix = dataset_.md5_suffix,
+                                      .settings = {},
+                                      .attempts = options_.attempts,
+                                      .first_backoff_s = options_.first_backoff_s};
+    if (!options_.mirror.empty())
+      request.urls.insert(request.urls.begin(), options_.mirror + "/" + dataset_.name + "/" + archive.file);
+    request.settings.user_agent = dataset_.user_agent;
+    request.settings.stall_timeout_s = options_.stall_timeout_s;
+    const char* token =
+        dataset_.token_variable.empty() ? nullptr : std::getenv(dataset_.token_variable.c_str());
+    if (token != nullptr) request.settings.token = token;
+    return request;
+  }
+
+  /// Downloads to the folder of downloads, and extracts to the staging folder. @return false if stopped
+  bool fetch_archive(const CatalogueArchive& archive) {
+    const std::string key = dataset_.name + "/" + archive.file;
+    datasets::DownloadRequest request = request_of(archive);
+    const DataLock lock = read_data_lock(options_.root);
+    const auto locked = lock.files.find(key);
+    const bool is_published = !archive.sha256.empty() || !archive.md5.empty();
+    if (request.sha256.empty() && locked != lock.files.end()) request.sha256 = locked->second.sha256;
+    const std::string name = request.file.filename().string();
+    const auto downloaded = datasets::download(request, control_.step("downloading " + name));
+    if (!downloaded) return false;
+    if (locked == lock.files.end()) {
+      lock_file(options_.root, key,
+                {.bytes = downloaded->digests.bytes,
+                 .sha256 = downloaded->digests.sha256,
+                 .url = downloaded->url,
+                 .date = utc_now(),
+                 .published = is_published});
+      if (!is_published)
+        control_.report(
+            fmt::format("{}: no digest is published; SHA-256 {} is recorded and required from now on", name,
+                        downloaded->digests.sha256));
+    }
+    return extract(request.file);
+  }
+
+  bool extract(const fs::path& file) {
+    if (!datasets::has_archive_name(file)) {
+      std::error_code error;
+      fs::create_hard_link(file, staging_ / file.filename(), error);
+      if (error) fs::copy_file(file, staging_ / file.filename());
+      return true;
+    }
+    const datasets::TransferControl step = control_.step("extracting " + file.filename().string());
+    totals_ = datasets::extract_archive(file, staging_, options_.limits, step, totals_);
+    return !totals_.stopped;
+  }
+
+  const CatalogueDataset& dataset_;
+  const std::vector<std::string>& files_;
+  const FetchOptions& options_;
+  const FetchControl& control_;
+  fs::path folder_;
+  fs::path staging_;
+  datasets::ExtractionTotals totals_;
+};
+
+/// @throws InputError if a program cannot fetch the dataset
+void require_addresses(const CatalogueEntry& entry, const std::string& mirror) {
+  const CatalogueDataset& dataset = *entry.dataset;
+  const std::string name = datasets::catalogue_name(dataset, *entry.sequence);
+  const bool has_address =
+      !entry.sequence->archives.empty() &&
+      (!mirror.empty() || std::ranges::none_of(entry.sequence->archives, [&](const std::string& file) {
+        return datasets::archive_of(dataset, file).urls.empty();
+      }));
+  if (has_address) return;
+  throw InputError(name, dataset.manual.empty()
+                             ? "the catalogue has no address of its files; set one with --mirror"
+                             : "cannot be fetched by a program: " + dataset.manual);
+}
+
+}  // namespace
+
+fs::path download_root() {
+  if (const char* folder = std::getenv("STILLPOINT_DATA")) return folder;
+  if (const char* data = std::getenv("XDG_DATA_HOME")) return fs::path(data) / "stillpoint";
+  const char* home = std::getenv("HOME");
+  return fs::path(home != nullptr ? home : ".") / ".local" / "share" / "stillpoint";
+}
+
+bool is_available(const CatalogueDataset& dataset, const CatalogueSequence& sequence) {
+  const std::vector<RegisteredSequence> registry = read_registry(registry_file());
+  const auto found =
+      std::ranges::find(registry, registered_name(dataset, sequence), &RegisteredSequence::name);
+  std::error_code ignored;
+  return found != registry.end() && fs::exists(found->folder, ignored);
+}
+
+bool fetch_sequences(const std::vector<CatalogueEntry>& entries, const FetchOptions& options,
+                     const FetchControl& control) {
+  if (!unaccepted_licences(entries, options.root).empty())
+    throw InputError("licence", "has not been accepted; specify --accept-licence");
+  for (const CatalogueEntry& entry : entries) {
+    if (!is_available(*entry.dataset, *entry.sequence)) require_addresses(entry, options.mirror);
+  }
+  for (const CatalogueEntry& entry : entries) {
+    if (is_available(*entry.dataset, *entry.sequence)) continue;
+    if (!ArchiveFetch(entry, options, control).run()) return false;
+  }
+  return true;
+}
+
+std::vector<const CatalogueDataset*> unaccepted_licences(const std::vector<CatalogueEntry>& entries,
+                                                         const fs::path& root) {
+  const DataLock lock = read_data_lock(root);
+  std::vector<const CatalogueDataset*> found;
+  for (const CatalogueEntry& entry : entries) {
+    const bool is_known = std::ranges::find(found, entry.dataset) != found.end();
+    if (!is_known && !lock.licences.contains(entry.dataset->name)) found.push_back(entry.dataset);
+  }
+  return found;
+}
+
+}  // namespace stillpoint::bench

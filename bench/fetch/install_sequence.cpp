@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/fetch/install_sequence.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/plan/sequence_registry.h"
+#include "bench/record/output_folder.h"
+#include "bench/record/sequence_checksum.h"
+#include "core/base/error.h"
+#include "datasets/open_sequence.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using datasets::CatalogueDataset;
+using datasets::CatalogueSequence;
+
+/// Where the archives contain the sequence. Some archives have no top folder.
+fs::path extracted_folder(const CatalogueDataset& dataset, const CatalogueSequence& sequence,
+                          const fs::path& staging) {
+  if (fs::exists(staging / sequence.folder)) return staging / sequence.folder;
+  const auto users = std::ranges::count_if(
+      dataset.sequences, [&](const CatalogueSequence& other) { return other.archives == sequence.archives; });
+  if (users == 1 && !fs::is_empty(staging)) {
+    const fs::path folder = staging / ".content";
+    fs::create_directory(folder);
+    for (const fs::directory_entry& entry : fs::directory_iterator(staging)) {
+      if (entry.path() != folder) fs::rename(entry.path(), folder / entry.path().filename());
+    }
+    return folder;
+  }
+  throw InputError(datasets::catalogue_name(dataset, sequence),
+                   "its archives do not contain \"" + sequence.folder +
+                       "\"; the host has changed them, or the catalogue is wrong: correct the folder there");
+}
+
+/// Opens the sequence. @return what was found, for the user
+std::string validated(const CatalogueDataset& dataset, const fs::path& folder) {
+  if (fs::is_regular_file(folder)) return dataset.layout;
+  const fs::path rig = folder / "rig.toml";
+  if (!dataset.rig.empty() && !fs::exists(rig)) write_files(folder, {{"rig.toml", dataset.rig}});
+  const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(folder);
+  return stream->info().format;
+}
+
+/// Moves `from` to `to`, unless an equal one is there.
+void move_sequence(const fs::path& from, const fs::path& to, const std::string& checksum) {
+  if (fs::exists(to)) {
+    if (sequence_checksum(to) == checksum) return;
+    throw InputError(to.string(),
+                     "exists with other content than the downloaded sequence; move it away, or "
+                     "choose another folder with --to");
+  }
+  fs::create_directories(to.parent_path());
+  fs::rename(from, to);
+}
+
+}  // namespace
+
+std::string install_sequence(const CatalogueDataset& dataset, const CatalogueSequence& sequence,
+                             const fs::path& staging, const fs::path& folder) {
+  const fs::path extracted = extracted_folder(dataset, sequence, staging);
+  const std::string format = validated(dataset, extracted);
+  const std::string checksum = sequence_checksum(extracted);
+  const fs::path target = folder / sequence.folder;
+  move_sequence(extracted, target, checksum);
+  const std::string name = datasets::registered_name(dataset, sequence);
+  register_sequence(registry_file(),
+                    {.name = name, .folder = fs::canonical(target), .checksum = checksum, .format = format},
+                    Registration::kReplace);
+  return fmt::format("registered {}: {} ({}, checksum {})", name, target.string(), format, checksum);
+}
+
+}  // namespace stillpoint::bench

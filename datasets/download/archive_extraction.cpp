@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/download/archive_extraction.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "datasets/download/archive_reader.h"
+#include "datasets/download/disk_space.h"
+#include "datasets/download/file_kind.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBlockBytes = 1U << 20U;
+constexpr double kUnratedBytes = 100e6;                // small archives may be compressed to any extent
+constexpr std::uint64_t kSpaceCheckBytes = 1U << 28U;  // interval of checks of the disk
+constexpr mode_t kFileMode = 0666;
+
+/// A new file; existing ones are replaced, links are not followed.
+class OutputFileDescriptor {
+ public:
+  explicit OutputFileDescriptor(const fs::path& file)
+      : file_(file),
+        descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, kFileMode)) {
+    if (descriptor_ < 0) fail();
+  }
+  ~OutputFileDescriptor() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  OutputFileDescriptor(const OutputFileDescriptor&) = delete;
+  OutputFileDescriptor& operator=(const OutputFileDescriptor&) = delete;
+
+  void append(std::span<const char> bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t count = write(descriptor_, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) fail();
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    throw InputError(file_.string(), std::string("cannot be written: ") + std::strerror(errno) +
+                                         "; free disk space, then run the command again");
+  }
+
+  fs::path file_;
+  int descriptor_;
+};
+
+/// "a/seq-01.tar.gz" -> "a/seq-01".
+fs::path without_archive_extension(fs::path file) {
+  file.replace_extension();
+  return file.extension() == ".tar" ? file.replace_extension() : file;
+}
+
+/// Extraction of one archive file, without the archives in it.
+class Extraction {
+ public:
+  Extraction(const fs::path& archive, const ExtractionLimits& limits, const TransferControl& control,
+             ExtractionTotals totals)
+      : archive_(archive),
+        limits_(limits),
+        control_(control),
+        totals_(totals),
+        before_(totals.bytes),
+        archive_bytes_(fs::file_size(archive)),
+        reader_(archive),
+        block_(kBlockBytes) {}
+
+  /// @param top folder of entries that is left out of their paths; may be empty
+  void extract_to(const fs::path& folder, const fs::path& top) {
+    fs::create_directories(folder);
+    while (const std::optional<ArchiveEntry> entry = reader_.next()) {
+      if (++totals_.entries > limits_.max_entries)
+        fail(fmt::format("has more than {} entries", limits_.max_entries));
+      const fs::path relative = without_top(entry->path, top);
+      if (relative.empty()) continue;
+      const fs::path target = folder / relative;
+      if (entry->kind == EntryKind::kFolder) {
+        create_folder(target);
+      } else {
+        create_folder(target.parent_path());
+        extract_file(target);
+        if (has_archive_name(target)) nested_.push_back(target);
+      }
+      if (totals_.stopped) return;
+    }
+  }
+
+  [[nodiscard]] const ExtractionTotals& totals() const { return totals_; }
+  [[nodiscard]] const std::vector<fs::path>& nested() const { return nested_; }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw InputError(archive_.string(),
+                     problem + "; an archive of a dataset would not: do not use this file");
+  }
+
+  static fs::path without_top(const fs::path& path, const fs::path& top) {
+    if (top.empty() || *path.begin() != top) return path;
+    fs::path rest;
+    for (auto part = std::next(path.begin()); part != path.end(); ++part) rest /= *part;
+    return rest;
+  }
+
+  void create_folder(const fs::path& folder) const {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
+  }
+
+  void extract_file(const fs::path& target) {
+    const OutputFileDescriptor output(target);
+    while (const std::size_t count = reader_.read(block_)) {
+      totals_.bytes += count;
+      require_within_limits();
+      output.append(std::span(block_).first(count));
+      report_progress(control_, std::min(reader_.position(), archive_bytes_), archive_bytes_);
+      if (!is_stopped(control_)) continue;
+      totals_.stopped = true;
+      return;
+    }
+  }
+
+  void require_within_limits() {
+    if (totals_.bytes > limits_.max_bytes)
+      fail(fmt::format("contains more than {} bytes", limits_.max_bytes));
+    const double ratio_limit = kUnratedBytes + limits_.max_ratio * static_cast<double>(archive_bytes_);
+    if (static_cast<double>(totals_.bytes - before_) > ratio_limit)
+      fail(fmt::format("contains more than {:.0f} times its size", limits_.max_ratio));
+    if (totals_.bytes < next_space_check_) return;
+    require_disk_space(archive_.parent_path(), 0);
+    next_space_check_ = totals_.bytes + kSpaceCheckBytes;
+  }
+
+  fs::path archive_;
+  const ExtractionLimits& limits_;
+  const TransferControl& control_;
+  ExtractionTotals totals_;
+  std::uint64_t before_;  ///< extracted bytes of earlier archives
+  std::uint64_t archive_bytes_;
+  std::uint64_t next_space_check_ = 0;
+  ArchiveReader reader_;
+  std::vector<char> block_;
+  std::vector<fs::path> nested_;
+};
+
+/// @param depth number of archives around this one
+ExtractionTotals extract(const fs::path& archive, const fs::path& folder, const ExtractionLimits& limits,
+                         const TransferControl& control, ExtractionTotals totals, int depth) {
+  std::vector<fs::path> nested;
+  {
+    Extraction extraction(archive, limits, control, totals);
+    extraction.extract_to(folder, depth == 0 ? fs::path() : folder.filename());
+    totals = extraction.totals();
+    nested = extraction.nested();
+  }
+  for (const fs::path& file : nested) {
+    if (totals.stopped) return totals;
+    if (depth >= limits.max_depth)
+      throw InputError(
+          file.string(),
+          fmt::format("is an archive in more than {} archives; extract it by hand", limits.max_depth));
+    totals = extract(file, without_archive_extension(file), limits, control, totals, depth + 1);
+    if (!totals.stopped) fs::remove(file);
+  }
+  return totals;
+}
+
+}  // namespace
+
+ExtractionTotals extract_archive(const fs::path& archive, const fs::path& folder,
+                                 const ExtractionLimits& limits, const TransferControl& control,
+                                 ExtractionTotals totals) {
+  return extract(archive, folder, limits, control, totals, 0);
+}
+
+}  // namespace stillpoint::datasets
