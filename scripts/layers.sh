@@ -173,7 +173,7 @@ threads=(
   'core/pipeline/threaded_odometry\.(h|cpp)'
   'core/pipeline/runners/(realtime_runner|pacing_clock)\.(h|cpp)'
   'datasets/synthetic/sequence/render_sequence\.cpp'
-  'bench/plan/execution/sequence_renderer\.(h|cpp)'
+  'bench/plan/execution/(sequence_renderer|outcome_scorer)\.(h|cpp)'
   'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'
   'bench/record/host_info\.cpp'
   'bench/cli/plan/reproduce_command\.cpp'

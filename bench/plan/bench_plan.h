@@ -88,6 +88,7 @@ struct BenchPlan {
   std::vector<std::string> faults;
   std::vector<std::string> protocols;  ///< additional evaluation protocols, e.g. "strict:se3"
   int images = 20;  ///< annotated images of the worst frames per accuracy run; see `stillpoint run --images`
+  bool frame_cache = true;  ///< false: every run decodes the images
   RenderedGroup rendered;
   RecordedGroup recorded;
   TableLayout table;
@@ -121,6 +122,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("faults", config.faults);
   field("protocols", config.protocols);
   field("images", config.images, 0, 1000);
+  field("frame_cache", config.frame_cache);
   field("rendered", config.rendered);
   field("recorded", config.recorded);
   field("table", config.table);

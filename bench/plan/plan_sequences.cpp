@@ -172,7 +172,8 @@ PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset,
           .id = "synth-" + synth::request_key(request),
           .rendering = request,
           .folder = {},
-          .unavailable_reason = ""};
+          .unavailable_reason = "",
+          .frame_cache = plan.frame_cache};
 }
 
 std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
@@ -200,7 +201,10 @@ std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
 }
 
 fs::path sequence_folder(const PlanSequence& sequence, const synth::RenderControl& control) {
-  if (sequence.rendering) return rendered_sequence(*sequence.rendering, control, frame_cache_options(0, {}));
+  if (sequence.rendering) {
+    return rendered_sequence(*sequence.rendering, control,
+                             sequence.frame_cache ? frame_cache_options(0, {}) : std::nullopt);
+  }
   if (fs::is_directory(sequence.folder)) return sequence.folder;
   throw InputError(sequence.folder.string(),
                    "no longer exists; restore the sequence and run the command again");

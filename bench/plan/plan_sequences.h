@@ -20,6 +20,7 @@ struct PlanSequence {
   std::optional<synth::SynthRequest> rendering;  ///< of a synthetic sequence
   std::filesystem::path folder;                  ///< of a recorded sequence
   std::string unavailable_reason;  ///< why a recorded sequence cannot be used; empty if it is available
+  bool frame_cache = true;         ///< a rendering is written to the frame cache as well
 };
 
 /// Presets that match one of the names or globs, in the order of the patterns, each once.

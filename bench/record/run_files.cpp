@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/record/run_files.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -88,6 +89,13 @@ Json labels_json(const OdometryRun& run) {
           {"background", group(run.label_score->background)}};
 }
 
+/// Time that the odometry waited for decoded frames; null if it was not measured.
+Json image_waits_s(const RunSummary& summary) {
+  const auto waits = std::ranges::find(summary.waits, kDecodedFrames, &ChannelWaits::channel);
+  if (waits == summary.waits.end()) return nullptr;
+  return 1e-9 * static_cast<double>(waits->for_items.ns);
+}
+
 /// Hash of the detector's network weights; null without a network.
 Json weights_json(const DetectorConfig& detector) {
   if (detector.kind != DetectorKind::kNetwork) return nullptr;
@@ -120,6 +128,8 @@ std::string result_json(const RunResult& result) {
   json["leveling_rotation_xyzw"] = {q_level_w.x(), q_level_w.y(), q_level_w.z(), q_level_w.w()};
   json["notes"] = result.notes;
   json["warnings"] = result.warnings;
+  json["start_s"] = result.start_s;
+  json["image_waits_s"] = image_waits_s(summary);
   json["timings"] = {{"unit", "ms"},
                      {"modules", timing_json(result.run.timings, false)},
                      {"threads", timing_json(result.run.timings, true)}};
@@ -145,8 +155,9 @@ std::string manifest_json(const RunManifest& manifest) {
   json["mode"] = manifest.mode;
   json["seed"] = manifest.config.seed;
   json["weights"] = weights_json(manifest.config.detector);
-  json["threads"] = {
-      {"odometry", 1}, {"detection_pool", manifest.config.frontend.grid.threads}, {"decoding", 1}};
+  json["threads"] = {{"odometry", 1},
+                     {"detection_pool", manifest.config.frontend.grid.threads},
+                     {"decoding", kMaxDecodingThreads}};
   json["build"] = {{"version", manifest.build.version},         {"git_commit", manifest.build.git_commit},
                    {"git_time", manifest.build.git_time},       {"git_dirty", manifest.build.git_dirty},
                    {"git_changes", manifest.build.git_changes}, {"type", manifest.build.build_type},

@@ -8,9 +8,10 @@
 
 namespace stillpoint::bench {
 
-FramePrefetcher::FramePrefetcher(Load load, std::size_t count, std::size_t ahead)
+FramePrefetcher::FramePrefetcher(Load load, std::size_t count, ReadAhead ahead)
     : load_(std::move(load)), count_(count), ahead_(ahead) {
-  if (ahead_ > 0) thread_ = std::jthread([this] { decode_all(); });
+  if (ahead_.frames == 0) return;
+  for (std::size_t i = 0; i < ahead_.threads; ++i) threads_.emplace_back([this] { decode_all(); });
 }
 
 FramePrefetcher::~FramePrefetcher() {
@@ -22,7 +23,7 @@ FramePrefetcher::~FramePrefetcher() {
 Frame FramePrefetcher::take(std::size_t index) {
   STILLPOINT_CHECK(index >= next_ && index < count_);
   next_ = index + 1;
-  Slot slot = ahead_ > 0 ? wait_for(index) : decode(index);
+  Slot slot = ahead_.frames > 0 ? wait_for(index) : decode(index);
   decoded_.push_back(slot.decoded);
   if (slot.error) std::rethrow_exception(slot.error);
   return std::move(slot.frame);
@@ -32,9 +33,9 @@ FramePrefetcher::Slot FramePrefetcher::wait_for(std::size_t index) {
   std::unique_lock lock(mutex_);
   Slot slot;
   do {
-    changed_.wait(lock, [this] { return !slots_.empty(); });
-    slot = std::move(slots_.front());
-    slots_.pop_front();
+    changed_.wait(lock, [this] { return slots_.contains(released_); });
+    slot = std::move(slots_.extract(released_).mapped());
+    ++released_;
     changed_.notify_all();
   } while (slot.decoded.index < index);
   return slot;
@@ -53,14 +54,20 @@ FramePrefetcher::Slot FramePrefetcher::decode(std::size_t index) const {
   return slot;
 }
 
+std::optional<std::size_t> FramePrefetcher::claim() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock,
+                [this] { return stopped_ || claimed_ == count_ || claimed_ < released_ + ahead_.frames; });
+  if (stopped_ || claimed_ == count_) return std::nullopt;
+  return claimed_++;
+}
+
 void FramePrefetcher::decode_all() {
   name_this_thread("decoding");
-  for (std::size_t index = 0; index < count_; ++index) {
-    Slot slot = decode(index);
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return stopped_ || slots_.size() < ahead_; });
-    if (stopped_) return;
-    slots_.push_back(std::move(slot));
+  while (const std::optional<std::size_t> index = claim()) {
+    Slot slot = decode(*index);
+    const std::scoped_lock lock(mutex_);
+    slots_.emplace(*index, std::move(slot));
     changed_.notify_all();
   }
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Decodes images ahead of the odometry, in order, on a separate thread or on the caller's.
+/// Decodes images ahead of the odometry on separate threads, or on the caller's.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <functional>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -22,15 +23,20 @@ struct DecodedFrame {
   std::chrono::nanoseconds elapsed{};
 };
 
-/// Returns frames 0, 1, ... `count - 1`; buffers at most `ahead` decoded frames. The returned frames do not
-/// depend on timing.
+/// How much is decoded in advance.
+struct ReadAhead {
+  std::size_t frames = 8;   ///< that are decoded or being decoded at any time; 0: `take` decodes on the
+                            ///< calling thread
+  std::size_t threads = 1;  ///< each decodes the next frame that no other one decodes
+};
+
+/// Returns frames 0, 1, ... `count - 1` in order. They do not depend on timing.
 class FramePrefetcher {
  public:
   using Load = std::function<Frame(std::size_t index)>;
 
-  /// @param load  called on the prefetching thread only
-  /// @param ahead 0: no thread is started; `take` decodes on the calling thread
-  FramePrefetcher(Load load, std::size_t count, std::size_t ahead = 8);
+  /// @param load thread-safe if there are several threads
+  FramePrefetcher(Load load, std::size_t count, ReadAhead ahead = {});
   ~FramePrefetcher();
   FramePrefetcher(const FramePrefetcher&) = delete;
   FramePrefetcher& operator=(const FramePrefetcher&) = delete;
@@ -51,18 +57,22 @@ class FramePrefetcher {
 
   [[nodiscard]] Slot decode(std::size_t index) const;
   [[nodiscard]] Slot wait_for(std::size_t index);
+  /// The next frame to decode; nullopt if there is none or the prefetcher is destroyed. Waits for room.
+  [[nodiscard]] std::optional<std::size_t> claim();
   void decode_all();
 
   Load load_;
   std::size_t count_;
-  std::size_t ahead_;
+  ReadAhead ahead_;
   std::size_t next_ = 0;  ///< smallest index that `take` accepts
   std::vector<DecodedFrame> decoded_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Slot> slots_;  ///< guarded by mutex_
-  bool stopped_ = false;    ///< guarded by mutex_
-  std::jthread thread_;
+  std::map<std::size_t, Slot> slots_;  ///< decoded frames by index; guarded by mutex_, as are the next three
+  std::size_t claimed_ = 0;            ///< frames that were given to a thread
+  std::size_t released_ = 0;           ///< frames that were taken or dropped
+  bool stopped_ = false;
+  std::vector<std::jthread> threads_;
 };
 
 }  // namespace stillpoint::bench

@@ -128,7 +128,7 @@ class RunRecorder {
   OdometryRun run_;
   std::optional<ImuRatePoses> imu_rate_;
   DriftedTracks drifted_;
-  ChannelWaits decoded_{.channel = "decoded frames", .for_items = {}, .for_room = {}};
+  ChannelWaits decoded_{.channel = kDecodedFrames, .for_items = {}, .for_room = {}};
 };
 
 RunSummary run_in_mode(const RunSpec& spec, const SensorInput& input, const RunControl& control) {
@@ -150,11 +150,12 @@ RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& wor
   return std::async(std::launch::async, work).get();
 }
 
-/// Number of frames to decode ahead; 0: frames are decoded by the thread that requests them.
-std::size_t frames_ahead(const datasets::SensorStream& stream, const RunSpec& spec) {
+ReadAhead read_ahead(const datasets::SensorStream& stream, const RunSpec& spec) {
   const bool fast = stream.frames_are_cached() && !needs_color(spec);
-  if (spec.deterministic_counts || (spec.mode == "realtime" && fast)) return 0;
-  return fast ? kCachedAhead : kDecodedAhead;
+  if (spec.deterministic_counts || (spec.mode == "realtime" && fast)) return {.frames = 0};
+  if (fast) return {.frames = kCachedAhead};
+  // In real time a second thread would take processor time from the odometry.
+  return {.frames = kDecodedAhead, .threads = spec.mode == "realtime" ? 1U : kMaxDecodingThreads};
 }
 
 Frame load_frame(const datasets::SensorStream& stream, const RunSpec& spec, std::size_t index) {
@@ -176,7 +177,7 @@ OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& sp
     throw InputError("pipeline.imu_rate", "requires an IMU; set imu.enabled = true, or leave it out");
   RunRecorder recorder(stream, spec);
   FramePrefetcher prefetcher([&](std::size_t index) { return load_frame(stream, spec, index); },
-                             recorder.frames_planned(), frames_ahead(stream, spec));
+                             recorder.frames_planned(), read_ahead(stream, spec));
   const auto on_update = [&](const OdometryUpdate& update) {
     recorder.add(update);
     if (control.on_update) control.on_update(update);

@@ -24,6 +24,12 @@ namespace stillpoint::bench {
 /// Names of the execution modes.
 inline constexpr std::array<std::string_view, 3> kRunModes = {"sequential", "pipelined", "realtime"};
 
+/// Threads that decode images which are not in the frame cache.
+inline constexpr std::size_t kMaxDecodingThreads = 2;
+
+/// Channel in `RunSummary::waits` at which the odometry waits for decoded frames.
+inline constexpr const char* kDecodedFrames = "decoded frames";
+
 /// What to run.
 struct RunSpec {
   OdometryConfig config;

@@ -23,6 +23,7 @@ struct RunResult {
   eval::Score score;
   std::optional<ImuRateScore> imu_rate;  ///< if poses at IMU rate were recorded
   OdometryRun run;
+  double start_s = 0.0;  ///< from the start of the process to that of the run: loading, config, opening
 };
 
 /// What the metrics of the run are computed from; refers to `result`.

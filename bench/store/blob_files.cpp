@@ -91,7 +91,7 @@ std::string BlobFiles::put(std::string_view content) const {
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) cannot_write(target.parent_path(), error.value());
-  const fs::path temporary = target.string() + "." + std::to_string(getpid());
+  const fs::path temporary = target.string() + "." + std::to_string(gettid());
   write_through(temporary, compressed(content));
   fs::rename(temporary, target);
   return name;

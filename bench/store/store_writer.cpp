@@ -93,6 +93,10 @@ RunLease StoreWriter::acquire(const RunIdentity& identity) {
   return RunLease::kGranted;
 }
 
+void StoreWriter::write_files(const RunOutcome& outcome) const {
+  for (const auto& [kind, content] : outcome.attachments) static_cast<void>(blobs_.put(content));
+}
+
 void StoreWriter::finish(const RunIdentity& identity, const RunOutcome& outcome) {
   const std::string key = run_key(identity);
   Transaction transaction(database_);  // also blocks collect_garbage() until the row references the files

@@ -35,6 +35,10 @@ class StoreWriter {
   /// The lease of a dead worker is revoked.
   [[nodiscard]] RunLease acquire(const RunIdentity& identity);
 
+  /// Writes and syncs the attachments of a run, so that `finish` need not wait for the disk. Optional;
+  /// thread-safe. @throws InputError if they cannot be written
+  void write_files(const RunOutcome& outcome) const;
+
   /// Completes a leased run. Its files are synced to disk before its row is committed.
   void finish(const RunIdentity& identity, const RunOutcome& outcome);
 

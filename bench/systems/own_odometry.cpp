@@ -100,6 +100,7 @@ ProcessSpec OwnOdometry::command(const RunRequest& request) const {
   if (request.max_frames > 0) {
     spec.arguments.insert(spec.arguments.end(), {"--max-frames", std::to_string(request.max_frames)});
   }
+  if (!request.frame_cache) spec.arguments.emplace_back("--no-frame-cache");
   if (!request.fault.empty()) spec.arguments.insert(spec.arguments.end(), {"--fault", request.fault});
   for (const std::string& setting : config.settings) {
     spec.arguments.insert(spec.arguments.end(), {"--set", setting});

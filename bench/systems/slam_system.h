@@ -20,6 +20,7 @@ struct RunRequest {
   std::filesystem::path sequence;  ///< folder
   std::filesystem::path work;      ///< exclusive output folder of the run
   int images = 0;                  ///< number of annotated images of its worst frames
+  bool frame_cache = true;         ///< this odometry uses the frame cache
 };
 
 /// Starts a system and reads its results.

@@ -2,6 +2,7 @@
 #include "datasets/faults/faulty_stream.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "datasets/faults/detection_faults.h"
 #include "datasets/faults/image_faults.h"
 #include "datasets/faults/imu_faults.h"
+#include "datasets/faults/occluder.h"
 #include "datasets/synthetic/counter_random.h"
 
 namespace stillpoint::datasets {
@@ -36,6 +38,8 @@ class FaultyStream final : public SensorStream {
     keep_frames();
     const cv::Size image(info_.rig.camera.width, info_.rig.camera.height);
     for (const SensorFault& fault : faults_) {
+      if (fault.kind == FaultKind::kOccluder)
+        occluders_.emplace(&fault, Occluder(image, fault.amount, fault.seed));
       const FaultTarget target = descriptor_of(fault.kind).target;
       if (target == FaultTarget::kImu) info_.imu = samples_with_fault(std::move(info_.imu), fault, start_);
       if (target == FaultTarget::kDetections) {
@@ -59,6 +63,13 @@ class FaultyStream final : public SensorStream {
     }
     frame.id = static_cast<std::int64_t>(index);
     return frame;
+  }
+
+  [[nodiscard]] bool frames_are_cached() const override {
+    const auto uses_color = [](const SensorFault& fault) {
+      return descriptor_of(fault.kind).target == FaultTarget::kImages;
+    };
+    return stream_->frames_are_cached() && std::none_of(faults_.begin(), faults_.end(), uses_color);
   }
 
   [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t index) const override {
@@ -97,6 +108,8 @@ class FaultyStream final : public SensorStream {
       case FaultKind::kDepthPrevious:
         if (source > 0) frame.depth = stream_->load_frame(source - 1).depth;
         return frame;
+      case FaultKind::kOccluder:
+        return occluders_.at(&fault).in_front_of(with_color(std::move(frame)), source);
       default:
         if (descriptor_of(fault.kind).target == FaultTarget::kImages) frame = with_color(std::move(frame));
         return frame_with_fault(std::move(frame), fault, source);
@@ -114,7 +127,8 @@ class FaultyStream final : public SensorStream {
   }
 
   std::unique_ptr<SensorStream> stream_;
-  std::vector<SensorFault> faults_;
+  const std::vector<SensorFault> faults_;
+  std::map<const SensorFault*, Occluder> occluders_;  ///< of elements of `faults_`
   SequenceInfo info_;
   Timestamp start_;
   std::vector<std::size_t> frames_;  ///< source index of each remaining frame

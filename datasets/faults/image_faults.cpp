@@ -8,7 +8,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/error.h"
-#include "datasets/faults/occluder.h"
 #include "datasets/synthetic/counter_random.h"
 
 namespace stillpoint::datasets {
@@ -125,8 +124,6 @@ Frame frame_with_fault(Frame frame, const SensorFault& fault, std::size_t index)
       const cv::Mat mask = smear_mask(frame.gray.size(), amount, random_of(fault));
       return with_images(std::move(frame), [&](const cv::Mat& image) { return smeared(image, mask); });
     }
-    case FaultKind::kOccluder:
-      return with_occluder(std::move(frame), amount, {.seed = fault.seed, .frame = index});
     case FaultKind::kDepthMissing:
       return with_depth(std::move(frame), [](cv::Mat& depth) { depth.setTo(0); });
     case FaultKind::kDepthScaled:

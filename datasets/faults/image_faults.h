@@ -8,8 +8,8 @@
 
 namespace stillpoint::datasets {
 
-/// Applies a fault of the targets `kImages` or `kDepth` that needs no other frame: all but frozen, dropped
-/// and depth_previous. The result depends on the fault and the index only.
+/// Applies a fault of the targets `kImages` or `kDepth` that needs nothing but the frame: all but frozen,
+/// dropped, depth_previous and occluder. The result depends on the fault and the index only.
 /// @param frame gray, and color or depth if not empty
 /// @param index position of the frame in the sequence
 [[nodiscard]] Frame frame_with_fault(Frame frame, const SensorFault& fault, std::size_t index);

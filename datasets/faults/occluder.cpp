@@ -24,27 +24,31 @@ cv::Mat clothes_of(const cv::Size& size, std::uint64_t seed) {
   return clothes;
 }
 
-/// Columns of the image that the trunk covers.
-cv::Rect trunk_of(const cv::Size& size, double fraction, std::size_t frame) {
-  const int width = cvRound(fraction * size.width);
-  const double sway = kSwayWidths * size.width *
+/// Left column of a trunk.
+int left_of(int trunk_width, int image_width, std::size_t frame) {
+  const double sway = kSwayWidths * image_width *
                       std::sin(2.0 * std::numbers::pi * static_cast<double>(frame) / kFramesPerSway);
-  const int free = size.width - width;
-  const int left = std::clamp(cvRound(0.5 * free + sway), 0, free);
-  return {left, 0, width, size.height};
+  const int free = image_width - trunk_width;
+  return std::clamp(cvRound(0.5 * free + sway), 0, free);
 }
 
 }  // namespace
 
-Frame with_occluder(Frame frame, double fraction, const OccluderPhase& phase) {
-  const cv::Rect trunk = trunk_of(frame.gray.size(), fraction, phase.frame);
-  if (trunk.width == 0) return frame;
-  const cv::Mat clothes = clothes_of(trunk.size(), phase.seed);
+Occluder::Occluder(cv::Size image, double fraction, std::uint64_t seed)
+    : trunk_(cvRound(fraction * image.width), image.height) {
+  if (trunk_.width == 0) return;
+  clothes_ = clothes_of(trunk_, seed);
+  cv::cvtColor(clothes_, gray_clothes_, cv::COLOR_RGB2GRAY);
+}
+
+Frame Occluder::in_front_of(Frame frame, std::size_t index) const {
+  if (trunk_.width == 0) return frame;
+  const cv::Rect trunk({left_of(trunk_.width, frame.gray.cols, index), 0}, trunk_);
   frame.gray = frame.gray.clone();
-  cv::cvtColor(clothes, frame.gray(trunk), cv::COLOR_RGB2GRAY);
+  gray_clothes_.copyTo(frame.gray(trunk));
   if (!frame.color.empty()) {
     frame.color = frame.color.clone();
-    clothes.copyTo(frame.color(trunk));
+    clothes_.copyTo(frame.color(trunk));
   }
   if (!frame.depth.empty()) {
     frame.depth = frame.depth.clone();

@@ -2,20 +2,31 @@
 /// A person directly in front of the camera: the trunk fills a part of the image at its full height.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+
+#include <opencv2/core/mat.hpp>
 
 #include "core/types/frame.h"
 
 namespace stillpoint::datasets {
 
-/// Which person, and when.
-struct OccluderPhase {
-  std::uint64_t seed = 1;  ///< of the clothes and of the swaying
-  std::size_t frame = 0;   ///< position of the frame in the sequence; the trunk sways with it
-};
+/// The person of one fault. The clothes are those of rendered people.
+class Occluder {
+ public:
+  /// @param image    size of the images
+  /// @param fraction of the image that the trunk covers, in [0, 1]
+  /// @param seed     of the clothes
+  Occluder(cv::Size image, double fraction, std::uint64_t seed);
 
-/// Paints a trunk at 0.45 m over gray, color and depth. Its clothes are those of rendered people.
-/// @param fraction of the image that it covers, in [0, 1]
-[[nodiscard]] Frame with_occluder(Frame frame, double fraction, const OccluderPhase& phase);
+  /// The frame with a trunk at 0.45 m over gray, color and depth. Thread-safe.
+  /// @param index position of the frame in the sequence; the trunk sways with it
+  [[nodiscard]] Frame in_front_of(Frame frame, std::size_t index) const;
+
+ private:
+  cv::Size trunk_;
+  cv::Mat clothes_;       ///< CV_8UC3 (R, G, B) of the size of the trunk
+  cv::Mat gray_clothes_;  ///< CV_8UC1
+};
 
 }  // namespace stillpoint::datasets

@@ -36,29 +36,46 @@ std::vector<Eigen::Vector3d> thinned_positions(const Trajectory& path, const eva
   return positions;
 }
 
-void draw_paths(Drawing& drawing, const Trajectory& gt, const std::vector<PlottedRun>& runs) {
-  Eigen::Vector3d low = gt.poses.front().T_w_f.p;
-  Eigen::Vector3d high = low;
-  for (const StampedPose& pose : gt.poses) {
-    low = low.cwiseMin(pose.T_w_f.p);
-    high = high.cwiseMax(pose.T_w_f.p);
+/// Smallest box around positions.
+struct Bounds {
+  Eigen::Vector3d low;
+  Eigen::Vector3d high;
+
+  explicit Bounds(const std::vector<Eigen::Vector3d>& positions)
+      : low(positions.front()), high(positions.front()) {
+    add(positions);
   }
-  const Eigen::Vector3d extent = high - low;
+  void add(const std::vector<Eigen::Vector3d>& positions) {
+    for (const Eigen::Vector3d& p : positions) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  }
+};
+
+void draw_paths(Drawing& drawing, const Trajectory& gt, const std::vector<PlottedRun>& runs) {
+  const std::vector<Eigen::Vector3d> truth = thinned_positions(gt, {});
+  Bounds bounds(truth);
+  const Eigen::Vector3d extent = bounds.high - bounds.low;
   std::array<int, 3> order{0, 1, 2};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return extent(a) > extent(b); });
-  const double scale = std::min((kWidth - 2.0 * kMargin) / std::max(extent(order[0]), 1e-3),
-                                (kPathHeight - 2.0 * kMargin) / std::max(extent(order[1]), 1e-3));
-  const Axis across{low(order[0]), scale, kMargin};
-  const Axis up{low(order[1]), -scale, kPathHeight - kMargin};
+  std::vector<std::vector<Eigen::Vector3d>> estimates;
+  for (const PlottedRun& run : runs) {
+    estimates.push_back(thinned_positions(*run.est, run.evaluation->alignment.S_w_v));
+    bounds.add(estimates.back());
+  }
+  const Eigen::Vector3d shown = bounds.high - bounds.low;
+  const double scale = std::min((kWidth - 2.0 * kMargin) / std::max(shown(order[0]), 1e-3),
+                                (kPathHeight - 2.0 * kMargin) / std::max(shown(order[1]), 1e-3));
+  const Axis across{bounds.low(order[0]), scale, kMargin};
+  const Axis up{bounds.low(order[1]), -scale, kPathHeight - kMargin};
   const auto draw = [&](const std::vector<Eigen::Vector3d>& positions, Color color) {
     Polyline line{{}, color, 2.0};
     for (const Eigen::Vector3d& p : positions) line.points.push_back({across(p(order[0])), up(p(order[1]))});
     drawing.marks.push_back(line);
   };
-  draw(thinned_positions(gt, {}), kBlack);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    draw(thinned_positions(*runs[i].est, runs[i].evaluation->alignment.S_w_v), kColors[i % kColors.size()]);
-  }
+  draw(truth, kBlack);
+  for (std::size_t i = 0; i < estimates.size(); ++i) draw(estimates[i], kColors[i % kColors.size()]);
   constexpr std::array<char, 3> kNames{'x', 'y', 'z'};
   drawing.marks.push_back(
       Label{{kMargin, kPathHeight - 20.0},

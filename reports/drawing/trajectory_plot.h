@@ -19,7 +19,7 @@ struct PlottedRun {
 };
 
 /// Upper part: ground truth (black) and aligned estimates in the two axes along which the ground truth is
-/// longest, to scale. Lower part: position error [m] over time [s].
+/// longest, to scale and completely visible. Lower part: position error [m] over time [s].
 [[nodiscard]] Drawing trajectory_plot(const Trajectory& gt, const std::vector<PlottedRun>& runs);
 
 }  // namespace stillpoint::report

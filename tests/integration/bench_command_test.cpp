@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint bench` with a plan file.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -22,7 +24,7 @@ ProgramResult run_bench(const TemporaryFolder& folder, const std::string& varian
   const fs::path plan = folder.write("plan.toml", plan_text(variants));
   options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string()};
   return run_program({"bench", plan.string(), "--out", (folder.path() / "out").string(), "--store",
-                      (folder.path() / "store.sqlite").string()},
+                      (folder.path() / "store.sqlite").string(), "--jobs", "1"},
                      options);
 }
 
@@ -45,6 +47,44 @@ TEST(BenchCommand, ExecutesAllVariantsOnAllSequencesAndPrintsATable) {
   const std::string text{std::istreambuf_iterator<char>(markdown), {}};
   EXPECT_NE(text.find("| office        | vo         | ok      |"), std::string::npos) << text;
   EXPECT_NE(result.out.find("| office        | vo         | ok      |"), std::string::npos) << result.out;
+}
+
+TEST(BenchCommand, PrintsAndWritesWhereTheTimeWent) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_bench(folder, "\"stillpoint\"");
+  EXPECT_NE(result.out.find("start of processes"), std::string::npos) << result.out;
+  const nlohmann::json profile = nlohmann::json::parse(std::ifstream(folder.path() / "out" / "profile.json"));
+  EXPECT_EQ(profile["runs"], 1);
+  EXPECT_GT(profile["odometry_s"], 0.0);
+  EXPECT_GT(profile["storing_s"], 0.0);
+  EXPECT_EQ(profile["other_process_s"], 0.0);
+}
+
+/// Number of files in the frame cache after a timing plan.
+std::ptrdiff_t cached_after_timing(const TemporaryFolder& folder, const std::vector<std::string>& options) {
+  const fs::path sequence = copy_of_rendered_sequence(folder);
+  const fs::path plan = folder.write(
+      "plan.toml", "kind = \"timing\"\n[recorded]\nsequences = [\"copy\"]\nvariants = [\"stillpoint\"]");
+  std::vector<std::string> arguments = {"bench",   plan.string(),
+                                        "--out",   (folder.path() / "out").string(),
+                                        "--store", (folder.path() / "store.sqlite").string()};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  const ProgramResult result =
+      run_program(arguments, {.environment = {"STILLPOINT_DATA=" + folder.path().string(),
+                                              "STILLPOINT_CACHE=" + (folder.path() / "cache").string(),
+                                              "STILLPOINT_CACHE_SIZE=1GB"}});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err.find("read images of copy") != std::string::npos, options.empty()) << result.err;
+  std::error_code none;
+  const fs::directory_iterator files(folder.path() / "cache" / "frames", none);
+  return none ? 0 : std::count_if(begin(files), end(files), [](const fs::directory_entry& entry) {
+    return entry.path().extension() == ".frames";
+  });
+}
+
+TEST(BenchCommand, FillsTheFrameCacheBeforeTimingRuns) {
+  EXPECT_EQ(cached_after_timing(TemporaryFolder(), {}), 1);
+  EXPECT_EQ(cached_after_timing(TemporaryFolder(), {"--no-frame-cache"}), 0);
 }
 
 TEST(BenchCommand, ReportsAFailedRunWithItsReason) {

@@ -26,6 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kProfileFile = "profile.json";
+
 struct BenchArguments {
   std::string plan;
   std::string store = "build/bench/store.sqlite";
@@ -35,6 +37,7 @@ struct BenchArguments {
   bool dry_run = false;
   bool estimate = false;
   bool retry = false;
+  bool no_frame_cache = false;
   ExecutionArguments execution;
 };
 
@@ -108,9 +111,18 @@ void require_available_run(const PlanMatrix& matrix) {
           (matrix.sequences.empty() ? "no sequence matches" : matrix.sequences.front().unavailable_reason));
 }
 
+/// @throws InputError as `load_plan`, and if workers would not know an option, as they only get the plan
+BenchPlan plan_of(const BenchArguments& arguments) {
+  if (arguments.no_frame_cache && arguments.execution.executor != "local")
+    throw InputError("--no-frame-cache", "requires --executor local; set frame_cache = false in the plan");
+  BenchPlan plan = load_plan(arguments.plan);
+  plan.frame_cache = plan.frame_cache && !arguments.no_frame_cache;
+  return plan;
+}
+
 int run_bench(const BenchArguments& arguments) {
   install_interrupt_handlers();
-  const PlanMatrix matrix = expand_plan(load_plan(arguments.plan), build_name(), arguments.filters);
+  const PlanMatrix matrix = expand_plan(plan_of(arguments), build_name(), arguments.filters);
   if (matrix.runs.empty() && !arguments.filters.empty())
     throw InputError("--filter", "matches no run of the plan; see `stillpoint plan show`");
   if (arguments.dry_run) return dry_run(matrix, arguments.store);
@@ -122,8 +134,9 @@ int run_bench(const BenchArguments& arguments) {
   require_available_run(matrix);
   const fs::path out =
       arguments.out.empty() ? fs::path("build/bench") / matrix.plan.name : fs::path(arguments.out);
-  require_safe_folder(out, {.names = {"table.md", "table.json"}, .marks = {{"table.md", "table.json"}}},
-                      {arguments.store});
+  require_safe_folder(
+      out, {.names = {"table.md", "table.json", kProfileFile}, .marks = {{"table.md", "table.json"}}},
+      {arguments.store});
   require_writable(out);
   const auto start = std::chrono::steady_clock::now();
   const PlanReport report = execute_plan(
@@ -135,6 +148,10 @@ int run_bench(const BenchArguments& arguments) {
   std::cout << fmt::format("{} of {} runs executed, {} cached; store {}\n", report.executed,
                            matrix.runs.size(), report.cached, arguments.store);
   if (report.executed > 0) std::cout << rate_text(report.executed, elapsed.count()) << '\n';
+  if (report.profile.runs > 0) {
+    write_files(out, {{kProfileFile, profile_json(report.profile)}});
+    std::cout << profile_text(report.profile);
+  }
   return std::max(exit_code(rows), incomplete_code(matrix, report));
 }
 
@@ -159,6 +176,9 @@ Command bench_command() {
                   {"--dry-run", "List the runs and their state; execute none", &arguments->dry_run},
                   {"--estimate", "Print how long the plan takes, with --tasks also by tasks; execute nothing",
                    &arguments->estimate},
+                  {"--no-frame-cache",
+                   "Every run decodes all images, as with frame_cache = false in the plan",
+                   &arguments->no_frame_cache},
                   {"--retry", "Execute failed runs again", &arguments->retry}},
       .action = [arguments] { return run_bench(*arguments); }};
   for (Option& option : execution_options(arguments->execution)) command.options.push_back(std::move(option));

@@ -85,6 +85,7 @@ bool execute_runs(const Target& target, const std::string& plan, const Reproduce
       run_plan(matrix, writer, {.jobs = arguments.jobs, .retry = false}, plan_progress());
   std::cout << fmt::format("{}: {} of {} runs executed, {} cached, {} skipped\n", target.name,
                            report.executed, matrix.runs.size(), report.cached, report.missing);
+  if (report.profile.runs > 0) std::cout << profile_text(report.profile);
   return !report.interrupted;
 }
 

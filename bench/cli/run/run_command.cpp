@@ -18,6 +18,7 @@
 #include "bench/model/metrics.h"
 #include "bench/model/utc_time.h"
 #include "bench/plan/sequence_argument.h"
+#include "bench/profile/meters/process_usage.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/output_guard.h"
 #include "bench/record/remembered_checksum.h"
@@ -124,9 +125,7 @@ void log_update(const OdometryUpdate& update) {
 }
 
 DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& configured) {
-  const auto requested = [&](const char* dump) {
-    return std::ranges::find(arguments.dumps, dump) != arguments.dumps.end();
-  };
+  const auto requested = [&](const char* dump) { return std::ranges::count(arguments.dumps, dump) > 0; };
   return {.folder = configured.folder,
           .labels = requested("labels"),
           .cost = requested("cost"),
@@ -137,10 +136,10 @@ DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& con
 /// Executes a run, and passes its frames to the dumps.
 RunResult execute(const datasets::SensorStream& stream, const RunArguments& arguments,
                   const ConfiguredRun& configured, RunDumps& dumps) {
-  const std::size_t total = stream.info().frame_times.size();
   const std::optional<Heartbeat> heartbeat =
       arguments.heartbeat.empty() ? std::nullopt : std::make_optional<Heartbeat>(arguments.heartbeat);
-  ProgressLine progress(stream.info().name + " " + configured.variant, total, "frames");
+  ProgressLine progress(stream.info().name + " " + configured.variant, stream.info().frame_times.size(),
+                        "frames");
   const auto on_update = [&](const OdometryUpdate& update) {
     log_update(update);
     if (heartbeat) heartbeat->beat(update.frame_id);
@@ -148,7 +147,9 @@ RunResult execute(const datasets::SensorStream& stream, const RunArguments& argu
   };
   RunControl control{.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested};
   if (dumps.needs_frames()) control.on_frame = [&](const FrameReport& report) { dumps.add(report); };
+  const double start_s = process_age_s();
   RunResult result = score_run(stream.info(), run_odometry(stream, configured.spec, control));
+  result.start_s = start_s;
   result.variant = configured.variant;
   result.mode = configured.spec.mode;
   return result;
@@ -190,9 +191,8 @@ std::string score_line(const RunResult& result) {
 }
 
 void print_result(const RunResult& result, const fs::path& folder) {
-  for (const SkippedFrame& frame : result.run.summary.skipped) {
+  for (const SkippedFrame& frame : result.run.summary.skipped)
     spdlog::warn("frame {} skipped: {}", frame.index, frame.reason);
-  }
   for (const std::string& warning : result.warnings) spdlog::warn("{}", warning);
   if (!result.failure.empty()) spdlog::warn("{}", result.failure);
   std::cout << fmt::format("{} {}: {}, {} of {} frames, {}\n  {}\n", result.sequence, result.variant,

@@ -3,17 +3,18 @@
 
 #include <algorithm>
 #include <deque>
-#include <map>
 #include <set>
 
 #include <poll.h>
 
+#include "bench/plan/execution/outcome_scorer.h"
 #include "bench/plan/execution/plan_boxes.h"
 #include "bench/plan/execution/run_order.h"
 #include "bench/plan/execution/run_outcome.h"
-#include "bench/plan/execution/sequence_renderer.h"
+#include "bench/plan/execution/sequence_folders.h"
 #include "bench/process/machine_load.h"
 #include "bench/process/process_pool.h"
+#include "bench/run/cached_sequence.h"
 #include "bench/systems/external_system.h"
 #include "bench/systems/own_odometry.h"
 #include "core/base/error.h"
@@ -34,8 +35,9 @@ class PlanRunner {
         writer_(writer),
         hooks_(hooks),
         pool_(hooks.stop_requested),
-        renderer_(hooks.stop_requested),
-        jobs_(matrix.plan.kind == RunKind::kTiming ? 1 : std::max(1, options.jobs)) {
+        folders_(matrix, hooks),
+        jobs_(matrix.plan.kind == RunKind::kTiming ? 1 : std::max(1, options.jobs)),
+        scorer_(writer) {
     for (const ExternalSystem& system : matrix.systems) external_.emplace_back(system);
     const std::vector<std::size_t> order = execution_order(matrix, Store(writer.file()).runs(), jobs_);
     report_.missing = matrix.runs.size() - order.size();
@@ -44,13 +46,18 @@ class PlanRunner {
   }
 
   PlanReport run() {
+    const Stopwatch time;
     while (true) {
       while (!stopped() && select_next()) start_next();
       if (!stopped()) render_ahead();
-      if (const auto ended = pool_.wait_next([this] { return is_idle() && renderer_.is_finished(); })) {
-        complete(ended->first, ended->second);
+      while (scorer_.is_finished() || scorer_.pending() > 2 * static_cast<std::size_t>(jobs_)) store_next();
+      const auto is_due = [this] { return (is_idle() && folders_.is_finished()) || scorer_.is_finished(); };
+      if (const auto ended = pool_.wait_next(is_due)) {
+        end_run(ended->first, ended->second);
       } else if (pool_.running() > 0) {
         continue;
+      } else if (scorer_.pending() > 0) {
+        store_next();
       } else if (stopped() || (queue_.empty() && leased_by_other_.empty())) {
         break;
       } else if (queue_.empty()) {
@@ -59,6 +66,9 @@ class PlanRunner {
       }
     }
     report_.interrupted = stopped();
+    report_.profile.workers = jobs_;
+    report_.profile.wall_s = time.seconds();
+    report_.profile.rendering_s = folders_.rendering_s();
     return report_;
   }
 
@@ -99,10 +109,11 @@ class PlanRunner {
   /// Whether a further run may be started.
   [[nodiscard]] bool is_idle() const { return pool_.running() < static_cast<std::size_t>(jobs_); }
 
-  /// Whether the files of a run are available without rendering.
-  [[nodiscard]] bool is_ready(std::size_t run) const {
-    const std::size_t index = matrix_.runs[run].sequence;
-    return !sequence_of(run).rendering || folders_.contains(index) || unrendered_.contains(index);
+  [[nodiscard]] bool is_ready(std::size_t run) const { return folders_.is_ready(matrix_.runs[run].sequence); }
+
+  /// Whether its time is measured, so that nothing else may disturb it.
+  [[nodiscard]] bool is_timed(std::size_t run) const {
+    return matrix_.plan.kind == RunKind::kTiming || identity_of(run).mode == "realtime";
   }
 
   /// Moves the next run that can be started to the front of the queue; without one and without running
@@ -110,7 +121,7 @@ class PlanRunner {
   /// @return false if none should be started now
   bool select_next() {
     if (queue_.empty() || !is_idle()) return false;
-    if (renderer_.is_finished() || (renderer_.is_busy() && pool_.running() == 0)) take_rendered();
+    if (folders_.is_finished() || (folders_.is_rendering() && pool_.running() == 0)) folders_.take_rendered();
     const auto ready = std::ranges::find_if(queue_, [&](std::size_t run) { return is_ready(run); });
     if (ready == queue_.end()) return pool_.running() == 0;
     const std::size_t run = *ready;
@@ -119,31 +130,22 @@ class PlanRunner {
     return true;
   }
 
-  void take_rendered() {
-    const SequenceRenderer::Rendered rendered = renderer_.take();
-    if (rendered.folder.empty())
-      unrendered_.insert(rendered.index);
-    else
-      folders_[rendered.index] = rendered.folder;
-  }
-
   /// Renders the next sequence while runs of the last one are executed. Timing runs execute alone.
   void render_ahead() {
-    if (matrix_.plan.kind == RunKind::kTiming || pool_.running() == 0 || renderer_.is_busy()) return;
+    if (matrix_.plan.kind == RunKind::kTiming || pool_.running() == 0 || folders_.is_rendering()) return;
     const auto next = std::ranges::find_if(queue_, [&](std::size_t run) { return !is_ready(run); });
-    if (next == queue_.end()) return;
-    if (hooks_.on_step) hooks_.on_step("render " + sequence_of(*next).name);
-    renderer_.start(matrix_.runs[*next].sequence, sequence_of(*next));
+    if (next != queue_.end()) folders_.render_ahead(matrix_.runs[*next].sequence);
   }
 
   void start_next() {
     const std::size_t run = queue_.front();
     queue_.pop_front();
     if (writer_.is_done(run_key(identity_of(run)))) return count_cached();
+    while (!is_ready(run) && scorer_.pending() > 0) store_next();  // rendering takes long
     try {
-      const fs::path folder = folder_of(run);
+      const fs::path folder = folders_.find(matrix_.runs[run].sequence);
       if (folder.empty()) return;  // the rendering was stopped
-      warm_up(run, folder);
+      prepare(run, folder);
       if (acquire(run)) start(run, folder);
     } catch (const InputError& error) {
       store_bad_data(run, error);
@@ -167,20 +169,7 @@ class PlanRunner {
     count_executed();
   }
 
-  fs::path folder_of(std::size_t run) {
-    const std::size_t index = matrix_.runs[run].sequence;
-    if (const auto found = folders_.find(index); found != folders_.end()) return found->second;
-    const PlanSequence& sequence = sequence_of(run);
-    if (sequence.rendering && hooks_.on_step) hooks_.on_step("render " + sequence.name);
-    fs::path folder =
-        sequence_folder(sequence, {.progress = hooks_.on_rendered, .stop_requested = hooks_.stop_requested});
-    if (!folder.empty()) folders_[index] = folder;
-    return folder;
-  }
-
   [[nodiscard]] RunRequest request_of(std::size_t run, const fs::path& folder) const {
-    // Drawing the annotated images would distort the measured times.
-    const bool is_timed = matrix_.plan.kind == RunKind::kTiming || identity_of(run).mode == "realtime";
     const PlannedRun& planned = matrix_.runs[run];
     return {.identity = planned.identity,
             .config = planned.config,
@@ -189,7 +178,9 @@ class PlanRunner {
             .program = planned.program,
             .sequence = folder,
             .work = writer_.work_folder(identity_of(run)),
-            .images = is_timed ? 0 : matrix_.plan.images};
+            // Drawing the annotated images would distort the measured times.
+            .images = is_timed(run) ? 0 : matrix_.plan.images,
+            .frame_cache = matrix_.plan.frame_cache};
   }
 
   [[nodiscard]] ProcessSpec spec_of(std::size_t run, const fs::path& folder) const {
@@ -201,16 +192,22 @@ class PlanRunner {
     return spec;
   }
 
-  /// Executes runs whose results are discarded: they fill the page cache and bring the CPU to its steady
-  /// clock.
-  void warm_up(std::size_t run, const fs::path& folder) {
-    if (matrix_.plan.kind != RunKind::kTiming || !warmed_up_.insert(matrix_.runs[run].sequence).second)
-      return;
-    for (int i = 0; i < matrix_.plan.warm_up && !stopped(); ++i) {
+  /// Before the first timed run of a sequence: decodes its images into the frame cache, so that all runs read
+  /// them from there, and executes runs whose results are discarded: they bring the CPU to its steady clock.
+  void prepare(std::size_t run, const fs::path& folder) {
+    if (!is_timed(run) || !prepared_.insert(matrix_.runs[run].sequence).second) return;
+    const Stopwatch time;
+    if (matrix_.plan.frame_cache && identity_of(run).mode != "external") {
+      if (hooks_.on_step) hooks_.on_step("read images of " + sequence_of(run).name);
+      fill_frame_cache(folder, matrix_.runs[run].max_frames, hooks_.stop_requested);
+    }
+    const int warm_ups = matrix_.plan.kind == RunKind::kTiming ? matrix_.plan.warm_up : 0;
+    for (int i = 0; i < warm_ups && !stopped(); ++i) {
       if (hooks_.on_step) hooks_.on_step("warm up " + sequence_of(run).name);
       static_cast<void>(run_process(spec_of(run, folder)));
       fs::remove_all(writer_.work_folder(identity_of(run)));
     }
+    report_.profile.preparing_s += time.seconds();
   }
 
   void start(std::size_t run, const fs::path& folder) {
@@ -220,22 +217,38 @@ class PlanRunner {
     pool_.start(run, spec);
   }
 
-  void complete(std::size_t run, const ProcessResult& end) {
-    leased_.erase(run);
-    const RunRequest request = request_of(run, folders_.at(matrix_.runs[run].sequence));
+  /// Scores a run on another thread while the next one is executed; a timed run must not be disturbed, so the
+  /// previous one is stored first.
+  void end_run(std::size_t run, const ProcessResult& end) {
+    const RunRequest request = request_of(run, folders_.find(matrix_.runs[run].sequence));
     if (stopped() && (end.signal != 0 || end.exit_code == kInterruptedCode)) {
+      leased_.erase(run);
       writer_.release(identity_of(run));
-    } else {
-      RunOutcome outcome = outcome_of_run(system_of(run), request, end, matrix_.plan);
-      if (matrix_.plan.kind == RunKind::kTiming) {
-        const std::vector<Metric> load =
-            load_metrics(load_before_, machine_load(), end.user_s + end.system_s);
-        outcome.metrics.insert(outcome.metrics.end(), load.begin(), load.end());
-      }
-      writer_.finish(identity_of(run), outcome);
-      count_executed();
+      fs::remove_all(request.work);
+      return;
     }
-    fs::remove_all(request.work);
+    scorer_.start(run, end, [this, run, end, request] {
+      return outcome_of_run(system_of(run), request, end, matrix_.plan);
+    });
+    while (is_timed(run) && scorer_.pending() > 0) store_next();
+  }
+
+  void store_next() {
+    ScoredRun scored = scorer_.take();
+    RunOutcome& outcome = scored.outcome;
+    if (matrix_.plan.kind == RunKind::kTiming) {
+      const std::vector<Metric> load =
+          load_metrics(load_before_, machine_load(), scored.process.user_s + scored.process.system_s);
+      outcome.metrics.insert(outcome.metrics.end(), load.begin(), load.end());
+    }
+    const Stopwatch storing;
+    writer_.finish(identity_of(scored.run), outcome);
+    leased_.erase(scored.run);
+    fs::remove_all(writer_.work_folder(identity_of(scored.run)));
+    report_.profile = with_run(report_.profile, scored.process, outcome);
+    report_.profile.scoring_s += scored.scoring_s;
+    report_.profile.storing_s += scored.writing_s + storing.seconds();
+    count_executed();
   }
 
   static constexpr int kInterruptedCode = 130;  // exit code of `stillpoint run`
@@ -244,19 +257,18 @@ class PlanRunner {
   StoreWriter& writer_;
   const PlanHooks& hooks_;
   ProcessPool pool_;
-  SequenceRenderer renderer_;
+  SequenceFolders folders_;
   OwnOdometry own_;
   std::vector<ExternalRun> external_;
   int jobs_;
   std::deque<std::size_t> queue_;
   std::deque<std::size_t> leased_by_other_;  ///< runs leased by other workers
   std::set<std::size_t> leased_;             ///< runs leased by this worker
-  std::set<std::size_t> warmed_up_;          ///< indices of sequences
-  std::map<std::size_t, fs::path> folders_;  ///< by index of the sequence
-  std::set<std::size_t> unrendered_;         ///< sequences whose rendering ahead failed
+  std::set<std::size_t> prepared_;           ///< sequences of timed runs
   MachineLoad load_before_;
   bool wait_reported_ = false;
   PlanReport report_;
+  OutcomeScorer scorer_;  ///< last, as its threads use the other members
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "bench/plan/execution/harness_profile.h"
 #include "bench/plan/plan_matrix.h"
 #include "bench/store/store_writer.h"
 
@@ -31,6 +32,7 @@ struct PlanReport {
   std::size_t cached = 0;   ///< already in the store, or executed by another worker in the meantime
   std::size_t missing = 0;  ///< skipped, as their sequence is not available
   bool interrupted = false;
+  HarnessProfile profile;  ///< of the executed runs
 };
 
 /// Prepares a store for the execution of a plan: removes runs that are to be executed again, and stores the

@@ -27,7 +27,7 @@ class SequenceRenderer {
   void start(std::size_t index, const PlanSequence& sequence);
 
   /// Whether a sequence was started and not taken.
-  [[nodiscard]] bool is_busy() const { return folder_.valid(); }
+  [[nodiscard]] bool is_busy() const { return rendered_.valid(); }
 
   /// Whether `take` returns at once.
   [[nodiscard]] bool is_finished() const;
@@ -35,6 +35,7 @@ class SequenceRenderer {
   struct Rendered {
     std::size_t index = 0;
     std::filesystem::path folder;  ///< empty if the rendering was stopped or failed
+    double seconds = 0.0;          ///< duration of a rendering that succeeded
   };
 
   /// Waits for the rendering. A failure is not reported here: `sequence_folder` reports it for each run.
@@ -44,7 +45,7 @@ class SequenceRenderer {
   std::function<bool()> stop_requested_;
   std::atomic<bool> abandoned_ = false;
   std::size_t index_ = 0;
-  std::future<std::filesystem::path> folder_;
+  std::future<Rendered> rendered_;
 };
 
 }  // namespace stillpoint::bench

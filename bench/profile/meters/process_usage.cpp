@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/profile/meters/process_usage.h"
 
+#include <algorithm>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -43,6 +45,21 @@ ProcessUsage usage_between(const ProcessUsage& before, const ProcessUsage& after
           .minor_faults = after.minor_faults - before.minor_faults,
           .major_faults = after.major_faults - before.major_faults,
           .peak_memory_bytes = after.peak_memory_bytes};
+}
+
+double process_age_s() {
+  std::ifstream file("/proc/self/stat");
+  std::string fields;
+  std::getline(file, fields);
+  std::istringstream values(fields.substr(std::min(fields.size(), fields.rfind(')') + 1)));
+  std::string skipped;
+  constexpr int kFieldsBetween = 19;  // from state (3) to itrealvalue (21), see proc(5)
+  for (int i = 0; i < kFieldsBetween; ++i) values >> skipped;
+  double start_ticks = 0.0;  // since the boot
+  timespec now{};
+  if (!(values >> start_ticks) || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0.0;
+  const double now_s = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  return std::max(0.0, now_s - start_ticks / static_cast<double>(sysconf(_SC_CLK_TCK)));
 }
 
 std::map<int, ThreadUsage> thread_usages() {

@@ -35,6 +35,9 @@ struct ProcessUsage {
 /// `after` - `before`; the peak memory is that of the whole process.
 [[nodiscard]] ProcessUsage usage_between(const ProcessUsage& before, const ProcessUsage& after);
 
+/// Time since this process was started, in steps of the kernel's clock; 0 if /proc is not available.
+[[nodiscard]] double process_age_s();
+
 /// By thread id; without threads that have exited.
 [[nodiscard]] std::map<int, ThreadUsage> thread_usages();
 

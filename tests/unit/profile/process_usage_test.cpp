@@ -24,6 +24,11 @@ TEST(ThreadStat, RejectsTruncatedText) {
   EXPECT_THROW(static_cast<void>(parse_thread_stat("4711", 100.0)), InputError);
 }
 
+TEST(ProcessAge, IsShortInATest) {
+  EXPECT_GE(process_age_s(), 0.0);
+  EXPECT_LT(process_age_s(), 3600.0);
+}
+
 TEST(ThreadUsages, ContainTheCallingThread) { EXPECT_TRUE(thread_usages().contains(gettid())); }
 
 TEST(ProcessUsage, IsTheDifferenceOfTwoReadings) {

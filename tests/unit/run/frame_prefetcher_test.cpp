@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
 #include <set>
 #include <thread>
 
@@ -19,9 +22,39 @@ Frame frame_of(std::size_t index) {
 }
 
 TEST(FramePrefetcher, ReturnsFramesInOrder) {
-  FramePrefetcher prefetcher(frame_of, 20, 3);
+  FramePrefetcher prefetcher(frame_of, 20, {.frames = 3});
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(prefetcher.take(i).id, static_cast<std::int64_t>(i));
   EXPECT_EQ(prefetcher.decoded().size(), 20u);
+}
+
+TEST(FramePrefetcher, ReturnsFramesInOrderFromSeveralThreads) {
+  std::mutex mutex;
+  std::condition_variable arrived;
+  std::set<std::thread::id> threads;
+  // Both threads must decode at the same time: the first two frames wait for each other.
+  const auto load = [&](std::size_t index) {
+    std::unique_lock lock(mutex);
+    threads.insert(std::this_thread::get_id());
+    arrived.notify_all();
+    if (index < 2) arrived.wait(lock, [&] { return threads.size() == 2; });
+    return frame_of(index);
+  };
+  FramePrefetcher prefetcher(load, 50, {.frames = 4, .threads = 2});
+  for (std::size_t i = 0; i < 50; ++i) EXPECT_EQ(prefetcher.take(i).id, static_cast<std::int64_t>(i));
+  EXPECT_EQ(threads.size(), 2u);
+}
+
+TEST(FramePrefetcher, DecodesAtMostTheGivenFramesAhead) {
+  std::atomic<std::size_t> started = 0;
+  const auto load = [&](std::size_t index) {
+    started = std::max<std::size_t>(started, index + 1);
+    return frame_of(index);
+  };
+  FramePrefetcher prefetcher(load, 50, {.frames = 3, .threads = 2});
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_LE(started, i + 3);  // frames 0 ... i - 1 were taken
+    static_cast<void>(prefetcher.take(i));
+  }
 }
 
 TEST(FramePrefetcher, DecodesOnTheCallingThreadWithoutReadAhead) {
@@ -30,7 +63,7 @@ TEST(FramePrefetcher, DecodesOnTheCallingThreadWithoutReadAhead) {
     threads.insert(std::this_thread::get_id());
     return frame_of(index);
   };
-  FramePrefetcher prefetcher(load, 20, 0);
+  FramePrefetcher prefetcher(load, 20, {.frames = 0});
   EXPECT_EQ(prefetcher.take(2).id, 2);
   EXPECT_EQ(prefetcher.take(5).id, 5);
   EXPECT_EQ(prefetcher.decoded().size(), 2u);  // skipped frames are not decoded
@@ -38,7 +71,7 @@ TEST(FramePrefetcher, DecodesOnTheCallingThreadWithoutReadAhead) {
 }
 
 TEST(FramePrefetcher, DropsSkippedFrames) {
-  FramePrefetcher prefetcher(frame_of, 20, 3);
+  FramePrefetcher prefetcher(frame_of, 20, {.frames = 3});
   EXPECT_EQ(prefetcher.take(7).id, 7);
   EXPECT_EQ(prefetcher.take(19).id, 19);
 }
@@ -55,7 +88,7 @@ TEST(FramePrefetcher, RethrowsADecodingErrorAndContinues) {
 }
 
 TEST(FramePrefetcher, CanBeDestroyedWithFramesLeft) {
-  FramePrefetcher prefetcher(frame_of, 1000, 2);
+  FramePrefetcher prefetcher(frame_of, 1000, {.frames = 2});
   EXPECT_EQ(prefetcher.take(0).id, 0);
 }
 

@@ -43,6 +43,21 @@ void acquire_and_die(const std::filesystem::path& file, const RunIdentity& ident
   ASSERT_TRUE(WIFSIGNALED(status));
 }
 
+TEST(StoreWriter, WritesFilesAheadWhichFinishFinds) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "store.sqlite";
+  const BlobFiles blobs(files_folder(file) / "blobs");
+  StoreWriter writer(file);
+  ASSERT_EQ(writer.acquire(identity_of("vo")), RunLease::kGranted);
+  writer.write_files(good_outcome());
+  const std::vector<std::string> written = blobs.names();
+  EXPECT_EQ(written.size(), 2u);  // trajectory and timings
+  EXPECT_TRUE(Store(file).runs().empty());
+  writer.finish(identity_of("vo"), good_outcome());
+  EXPECT_EQ(blobs.names(), written);
+  EXPECT_EQ(Store(file).runs().size(), 1u);
+}
+
 TEST(StoreWriter, StoresTheResultsOfARun) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "new" / "store.sqlite";

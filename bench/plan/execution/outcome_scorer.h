@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Scores completed runs and writes their files on other threads, so that a worker never waits for them.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <future>
+
+#include "bench/process/child_process.h"
+#include "bench/store/store_writer.h"
+
+namespace stillpoint::bench {
+
+/// A run that is ready to be stored.
+struct ScoredRun {
+  std::size_t run = 0;
+  ProcessResult process;
+  RunOutcome outcome;
+  double scoring_s = 0.0;
+  double writing_s = 0.0;  ///< of the attachments
+};
+
+class OutcomeScorer {
+ public:
+  /// @param writer must outlive this object; only `write_files` is called on other threads
+  explicit OutcomeScorer(const StoreWriter& writer) : writer_(writer) {}
+
+  /// @param score reads and scores the results of the run, on another thread
+  void start(std::size_t run, const ProcessResult& process, std::function<RunOutcome()> score);
+
+  [[nodiscard]] std::size_t pending() const { return scored_.size(); }
+
+  /// Whether `take` returns at once.
+  [[nodiscard]] bool is_finished() const;
+
+  /// Waits for the run that was started first.
+  /// @throws InputError if the store cannot be written
+  [[nodiscard]] ScoredRun take();
+
+ private:
+  const StoreWriter& writer_;
+  std::deque<std::future<ScoredRun>> scored_;  ///< in the order of `start`
+};
+
+}  // namespace stillpoint::bench
