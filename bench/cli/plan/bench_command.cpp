@@ -36,6 +36,7 @@ struct BenchArguments {
   std::vector<std::string> filters;
   bool dry_run = false;
   bool estimate = false;
+  int workers = 0;  ///< simulated by --estimate
   bool retry = false;
   bool no_frame_cache = false;
   ExecutionArguments execution;
@@ -125,10 +126,13 @@ int run_bench(const BenchArguments& arguments) {
   const PlanMatrix matrix = expand_plan(plan_of(arguments), build_name(), arguments.filters);
   if (matrix.runs.empty() && !arguments.filters.empty())
     throw InputError("--filter", "matches no run of the plan; see `stillpoint plan show`");
+  if (arguments.workers > 0 && !arguments.estimate) throw InputError("--workers", "requires --estimate");
   if (arguments.dry_run) return dry_run(matrix, arguments.store);
   if (arguments.estimate) {
     std::cout << estimate_text(matrix, arguments.store,
-                               {.jobs = local_jobs(arguments.jobs), .tasks = arguments.execution.tasks});
+                               {.jobs = local_jobs(arguments.jobs),
+                                .tasks = arguments.execution.tasks,
+                                .simulated = arguments.workers});
     return kExitOk;
   }
   require_available_run(matrix);
@@ -176,6 +180,10 @@ Command bench_command() {
                   {"--dry-run", "List the runs and their state; execute none", &arguments->dry_run},
                   {"--estimate", "Print how long the plan takes, with --tasks also by tasks; execute nothing",
                    &arguments->estimate},
+                  {"--workers",
+                   "With --estimate: simulate the plan and its multiples on this many workers",
+                   &arguments->workers,
+                   {1, 10000}},
                   {"--no-frame-cache",
                    "Every run decodes all images, as with frame_cache = false in the plan",
                    &arguments->no_frame_cache},

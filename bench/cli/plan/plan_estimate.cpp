@@ -9,14 +9,15 @@
 #include <fmt/format.h>
 
 #include "bench/cli/progress.h"
+#include "bench/executors/scaling_simulation.h"
 #include "bench/plan/execution/run_cost.h"
 #include "bench/store/store.h"
 
 namespace stillpoint::bench {
 namespace {
 
-/// Time that `store merge` needs for one run with annotated images, see reports/measured/scaling.md.
-constexpr double kMergeSecondsPerRun = 0.17;
+/// Plans are multiplied until they have this many runs per simulated worker.
+constexpr std::size_t kMaxRunsPerWorker = 64;
 
 /// How many expected durations have each source.
 std::string source_text(const std::vector<RunCost>& costs) {
@@ -37,7 +38,7 @@ std::string task_text(const std::vector<double>& run_seconds, int tasks) {
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i)
     longest_s = std::max(longest_s, std::reduce(at(i), at(i + 1)));
   const double total_s = std::reduce(run_seconds.begin(), run_seconds.end());
-  const double merge_s = kMergeSecondsPerRun * static_cast<double>(run_seconds.size());
+  const double merge_s = ScalingCosts().merge_s * static_cast<double>(run_seconds.size());
   const double wall_s = longest_s + merge_s;
   return fmt::format("{:>5} tasks: {:>10.1f} s, of which merging {:>7.1f} s; {:>5.1f} times one worker\n",
                      tasks, wall_s, merge_s, total_s / wall_s);
@@ -47,6 +48,33 @@ std::string scaling_text(const std::vector<double>& run_seconds, int tasks) {
   std::string text;
   for (int n = 1; n < tasks && !run_seconds.empty(); n *= 2) text += task_text(run_seconds, n);
   return tasks > 0 && !run_seconds.empty() ? text + task_text(run_seconds, tasks) : text;
+}
+
+/// A table of the plan, 2, 4, 8, ... times as large: wall time, and what it consists of.
+std::string simulation_text(const std::vector<SimulatedRun>& runs, const EstimatedWorkers& workers) {
+  const int tasks = workers.tasks > 0 ? workers.tasks : workers.simulated;
+  const ScalingCosts costs;
+  std::string text = fmt::format(
+      "simulation of {} workers, {} tasks; s per worker: start of a task {:.1f}, of a sequence {:.1f}; "
+      "merging {:.2f} "
+      "per run\n{:>8}{:>10}{:>12}{:>10}{:>11}{:>9}{:>9}{:>12}\n",
+      workers.simulated, tasks, costs.task_start_s, costs.prepare_s, costs.merge_s, "runs", "wall s",
+      "executing", "starting", "preparing", "waiting", "merging", "efficiency");
+  const std::size_t limit = kMaxRunsPerWorker * static_cast<std::size_t>(workers.simulated);
+  for (std::size_t times = 1; times == 1 || times * runs.size() <= limit; times *= 2) {
+    const SimulatedPlan plan = simulate_plan(repeated(runs, times), workers.simulated, tasks, costs);
+    text += fmt::format("{:>8}{:>10.1f}{:>12.1f}{:>10.1f}{:>11.1f}{:>9.1f}{:>9.1f}{:>10.1f} %\n", plan.runs,
+                        plan.wall_s(), plan.executing_s, plan.starting_s, plan.preparing_s, plan.waiting_s,
+                        plan.merging_s, 100.0 * plan.efficiency());
+  }
+  return text;
+}
+
+std::vector<SimulatedRun> simulated_runs(const PlanMatrix& matrix, const std::vector<RunCost>& costs) {
+  std::vector<SimulatedRun> runs;
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    runs.push_back({.seconds = costs[i].seconds, .sequence = matrix.runs[i].sequence});
+  return runs;
 }
 
 }  // namespace
@@ -65,7 +93,9 @@ std::string estimate_text(const PlanMatrix& matrix, const std::filesystem::path&
   const std::vector<RunCost> costs = expected_costs(pending, history);
   std::vector<double> seconds;
   for (const RunCost& cost : costs) seconds.push_back(cost.seconds);
-  const std::string scaling = scaling_text(seconds, workers.tasks);
+  std::string scaling = scaling_text(seconds, workers.tasks);
+  if (workers.simulated > 0 && !seconds.empty())
+    scaling += simulation_text(simulated_runs(pending, costs), workers);
   std::ranges::sort(seconds, std::greater<>());
   const int jobs = matrix.plan.kind == RunKind::kTiming ? 1 : workers.jobs;
   return fmt::format("{} of {} runs to execute, {} of one worker; with {} at once: {}\n", seconds.size(),
