@@ -37,7 +37,8 @@ window="core/imu core/backend/factors core/backend/window"
 row core/backend/solvers $common $window
 row core/backend/start $common $window core/backend/solvers
 row core/backend/marginalization $common $window core/backend/solvers
-backend="$window core/backend/solvers core/backend/start core/backend/marginalization"
+row core/backend/health $common $window core/backend/start
+backend="$window core/backend/solvers core/backend/start core/backend/marginalization core/backend/health"
 row core/backend $common $backend
 row core/loop $common core/backend/factors
 row core/pipeline/stages $common core/imu core/frontend core/dynamic core/detector core/loop core/backend \

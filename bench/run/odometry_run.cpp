@@ -105,7 +105,7 @@ class RunRecorder {
     const Timestamp t = stream_.info().frame_times[static_cast<std::size_t>(update.frame_id)];
     run_.frame_counters.push_back(counters_of(update, t));
     run_.q_level_w = update.q_level_w;
-    if (update.status != OdometryStatus::kTracking) return;
+    if (!is_located(update.status)) return;
     run_.trajectory.poses.push_back({t, update.T_w_c});
   }
 

@@ -3,12 +3,12 @@
 
 #include <utility>
 
-#include "core/backend/failure_detection.h"
 #include "core/backend/start/depth_initialization.h"
 #include "core/backend/start/frozen_world.h"
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/start/initializer.h"
 #include "core/backend/start/monocular_structure.h"
+#include "core/backend/start/scale_check.h"
 #include "core/backend/window/landmark_tracks.h"
 #include "core/base/error.h"
 
@@ -27,24 +27,12 @@ ImuNoise scaled(const ImuNoise& noise, double factor) {
           factor * noise.accel_walk};
 }
 
-/// Rejects configurations in which the scale is unobservable.
-void check_scale(const BackendConfig& backend, const ImuConfig& imu) {
-  const bool monocular = backend.initializer.kind == InitializerKind::kMonocular;
-  const bool no_depth = backend.depth.usage == DepthUsage::kOff;
-  if (no_depth && !imu.enabled) {
-    throw InputError("backend.depth.usage",
-                     "\"off\" without an IMU makes the scale unobservable; use \"fixed\" or \"weighted\"");
-  }
-  if (no_depth && !monocular) {
-    throw InputError("backend.depth.usage",
-                     "\"off\" makes the scale unobservable; use \"fixed\" or \"weighted\", or "
-                     "backend.initializer.kind = \"monocular\"");
-  }
-  if (monocular && !no_depth) {
-    throw InputError("backend.initializer.kind",
-                     "\"monocular\" requires backend.depth.usage = \"off\"; with depth use \"window\" or "
-                     "\"instant\"");
-  }
+MonitorOptions monitor_options(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed) {
+  return {.uses_imu = imu.enabled,
+          .inlier_threshold = kLocalizationInlier_px / rig.camera.focal_px(),
+          .max_dead_reckoning_s = backend.max_dead_reckoning_s,
+          .max_relocalization_s = backend.max_relocalization_s,
+          .seed = static_cast<std::uint32_t>(seed)};
 }
 
 }  // namespace
@@ -55,7 +43,8 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
       rig_(rig),
       seed_(static_cast<std::uint32_t>(seed)),
       imu_(imu.max_gap_s),
-      solver_(make_window_solver(backend.solver)) {
+      solver_(make_window_solver(backend.solver)),
+      monitor_(monitor_options(backend, imu, rig, seed)) {
   if (imu.enabled && !rig.has_imu) {
     throw InputError("imu.enabled", "the sequence has no inertial data; run with --variant vo");
   }
@@ -73,11 +62,10 @@ MotionState Estimator::motion_state() const {
           .time_offset_s = window_.time_offset_s,
           .initialized = !window_.frames.empty(),
           .uses_imu = uses_imu(),
-          .inertial = window_.inertial};
+          .inertial = window_.inertial && inertial_check_.is_consistent()};
 }
 
 void Estimator::push_frame(const TrackedFrame& frame) {
-  received_frame_ = true;
   WindowFrame next;
   next.id = frame.id;
   next.time_offset_s = window_.time_offset_s;
@@ -89,28 +77,43 @@ void Estimator::push_frame(const TrackedFrame& frame) {
     window_.calibration = calibration_prior(window_, backend_);
     return;
   }
-  const WindowFrame& last = window_.frames.back();
   next.state = extrapolate(motion_state(), imu_, frame.t);
-  if (uses_imu()) {
-    const std::vector<ImuSample>& samples =
-        imu_.samples_up_to(after(last.state.t, last.time_offset_s), after(frame.t, next.time_offset_s));
-    if (samples.size() >= 2) {
-      next.gyro_b = samples.back().gyro_b;
-      next.from_previous.emplace(rig_.imu_noise, last.state.gyro_bias, last.state.accel_bias,
-                                 window_.sample_pool.acquire());
-      next.from_previous->integrate(samples);
-    }
-  }
+  if (uses_imu()) integrate_samples(window_.frames.back(), next);
   window_.frames.push_back(std::move(next));
 }
 
+/// Missing samples of an inertial window are replaced by those of a constant velocity; wrong and missing ones
+/// get a large noise, so that vision determines the motion.
+void Estimator::integrate_samples(const WindowFrame& last, WindowFrame& next) {
+  const Timestamp begin = after(last.state.t, last.time_offset_s);
+  const Timestamp end = after(next.state.t, next.time_offset_s);
+  const std::vector<ImuSample>& samples = imu_.samples_up_to(begin, end);
+  evidence_.imu_defect = inspector_.inspect(samples, imu_config_.max_gap_s);
+  if (evidence_.imu_defect == StatusReason::kNone && !inertial_check_.is_consistent()) {
+    evidence_.imu_defect = StatusReason::kImuInconsistent;
+  }
+  const bool missing = samples.size() < 2;
+  if (missing && (!window_.inertial || begin >= end)) return;
+  next.imu_is_reliable = evidence_.imu_defect == StatusReason::kNone;
+  const ImuNoise noise = next.imu_is_reliable ? rig_.imu_noise : unreliable_noise(rig_.imu_noise);
+  next.from_previous.emplace(noise, last.state.gyro_bias, last.state.accel_bias,
+                             window_.sample_pool.acquire());
+  if (missing) {
+    next.from_previous->integrate(constant_velocity_samples(last.state, window_.gravity_w, begin, end));
+  } else {
+    next.from_previous->integrate(samples);
+  }
+  next.gyro_b = next.from_previous->samples().back().gyro_b;
+}
+
 /// Without inertial prediction: estimates the newest camera pose from known points (PnP).
+/// @return whether inertial data or vision located the newest frame
 bool Estimator::localize_newest() {
   WindowFrame& newest = window_.frames.back();
-  if (window_.inertial) return newest.from_previous.has_value();
+  if (has_inertial_prediction()) return newest.from_previous.has_value();
   if (window_.newest() == 0 || !has_metric_scale()) return true;
   Pose prediction = newest.state.T_w_b;
-  if (newest.from_previous) {
+  if (newest.from_previous && newest.imu_is_reliable) {
     const NavState& before = window_.frames[window_.frames.size() - 2].state;
     prediction.q = before.T_w_b.q * newest.from_previous->delta_q(before.gyro_bias);
   }
@@ -153,20 +156,7 @@ void Estimator::try_initialize_imu() {
   }
   window_ = std::move(*visual);
   window_.prior = initial_prior(window_, backend_);
-}
-
-/// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
-/// @param gravity_w before the solve that failed; an estimated one is kept with its covariance
-void Estimator::restart(const Eigen::Vector3d& gravity_w) {
-  Window fresh;
-  fresh.T_b_c = rig_.T_b_c;
-  fresh.time_offset_s = rig_.time_offset_s;
-  fresh.gravity_w = gravity_w;
-  fresh.gravity_covariance =
-      window_.estimates_gravity() ? gravity_covariance(window_.prior) : window_.gravity_covariance;
-  window_ = std::move(fresh);
-  newest_.v_w.setZero();
-  previous_ = newest_;
+  inertial_check_.reset();
 }
 
 void Estimator::slide(bool keyframe) {
@@ -187,12 +177,6 @@ void Estimator::slide(bool keyframe) {
   if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_);
 }
 
-OdometryStatus Estimator::status() const {
-  if (window_.frames.empty()) return received_frame_ ? OdometryStatus::kLost : OdometryStatus::kInitializing;
-  if (uses_imu() && !window_.inertial) return OdometryStatus::kInitializing;
-  return localized_ ? OdometryStatus::kTracking : OdometryStatus::kLost;
-}
-
 void Estimator::begin_update(std::int64_t frame_id) {
   ModuleTimings timings = std::move(update_.timings);
   timings.clear();
@@ -202,6 +186,8 @@ void Estimator::begin_update(std::int64_t frame_id) {
 void Estimator::add(const TrackedFrame& frame) {
   begin_update(frame.id);
   update_.counters.tracked_features = static_cast<int>(frame.features.size());
+  evidence_ = {.t = frame.t, .features = static_cast<int>(frame.features.size())};
+  relocalize(frame);
   push_frame(frame);
   const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
   add_observations(frame, rig_, backend_.depth, window_);
@@ -222,41 +208,50 @@ void Estimator::mark_dynamic(std::span<const DynamicLabel> labels) {
   }
 }
 
+void Estimator::solve() {
+  initialize_depths(backend_, rig_.camera.focal_px(), window_);
+  const ScopedTimer solve_timer(update_.timings, Module::kWindowSolve);
+  const Pose oldest = window_.frames.front().state.T_w_b;
+  const SolveReport report =
+      solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
+  unusable_solves_ = report.usable ? 0 : unusable_solves_ + 1;
+  if (!window_.inertial) restore_gauge(oldest, backend_, window_);
+  if (backend_.covariance && report.usable) {
+    update_.covariance =
+        solver_->newest_covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
+  }
+  if (backend_.reprojection_error_px > 0.0) {
+    pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
+  }
+  update_.counters.window_landmarks = report.landmarks;
+  update_.counters.depth_landmarks = report.depth_landmarks;
+  update_.counters.solver_iterations = report.iterations;
+}
+
 bool Estimator::refine() {
   const ScopedTimer timer(update_.timings, Module::kStateOptimization);
   keyframe_ = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
+  check_inertial_data();
   localized_ = localize_newest();
+  update_.counters.keyframe = keyframe_;
+  if (!localized_) {
+    discard_newest();
+    return true;
+  }
   try_initialize_imu();
   repropagate_preintegrations();
-  const NavState before = newest_;
   const Eigen::Vector3d gravity_before = window_.gravity_w;
-  if (has_metric_scale()) {
-    initialize_depths(backend_, rig_.camera.focal_px(), window_);
-    const ScopedTimer solve_timer(update_.timings, Module::kWindowSolve);
-    const Pose oldest = window_.frames.front().state.T_w_b;
-    const SolveReport report =
-        solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
-    if (!window_.inertial) restore_gauge(oldest, backend_, window_);
-    if (backend_.covariance && report.usable) {
-      update_.covariance =
-          solver_->newest_covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
-    }
-    if (backend_.reprojection_error_px > 0.0) {
-      pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
-    }
-    update_.counters.window_landmarks = report.landmarks;
-    update_.counters.depth_landmarks = report.depth_landmarks;
-    update_.counters.solver_iterations = report.iterations;
-  }
-  update_.counters.keyframe = keyframe_;
-  if (has_failed(before, window_.frames.back().state)) {
+  if (has_metric_scale()) solve();
+  evidence_.failure = failure();
+  if (evidence_.failure != StatusReason::kNone) {
     update_.counters.reset = true;
     restart(gravity_before);
-    return false;
+    forget_biases();
+  } else {
+    previous_ = newest_;
+    newest_ = window_.frames.back().state;
   }
-  previous_ = newest_;
-  newest_ = window_.frames.back().state;
-  return true;
+  return update_status();
 }
 
 void Estimator::finish() {
@@ -277,7 +272,9 @@ void Estimator::predict(std::int64_t frame_id, Timestamp t) {
 void Estimator::report(const NavState& state) {
   update_.state = state;
   update_.T_w_c = state.T_w_b * window_.T_b_c;
-  update_.status = status();
+  update_.status = monitor_.status();
+  update_.reason = monitor_.reason();
+  update_.segment = monitor_.segment();
   update_.time_offset_s = window_.time_offset_s;
   if (window_.gravity_covariance) {
     update_.q_level_w = Eigen::Quaterniond::FromTwoVectors(window_.gravity_w, -Eigen::Vector3d::UnitZ());

@@ -7,6 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "core/backend/health/inertial_check.h"
+#include "core/backend/health/inertial_interval.h"
+#include "core/backend/health/tracking_monitor.h"
 #include "core/backend/marginalization/frame_marginalizer.h"
 #include "core/backend/solvers/window_solver.h"
 #include "core/backend/start/camera_pose.h"
@@ -48,6 +51,7 @@ class Estimator {
   void mark_dynamic(std::span<const DynamicLabel> labels);
 
   /// Optimizes the window, including the pose of the newest frame.
+  /// A frame that neither vision nor inertial data locates is removed again.
   /// @return false after a failure: the window has been cleared and restarts with the next frame
   [[nodiscard]] bool refine();
 
@@ -64,6 +68,11 @@ class Estimator {
   /// Input of the tracker's motion prediction.
   [[nodiscard]] MotionState motion_state() const;
 
+  /// Whether the newest frame was predicted by reliable inertial data.
+  [[nodiscard]] bool has_inertial_prediction() const {
+    return window_.inertial && !window_.frames.empty() && window_.frames.back().imu_is_reliable;
+  }
+
   [[nodiscard]] const ImuHealth& imu_health() const { return imu_.health(); }
   [[nodiscard]] const Window& window() const { return window_; }
 
@@ -73,13 +82,22 @@ class Estimator {
     return window_.inertial || backend_.depth.usage != DepthUsage::kOff;
   }
   [[nodiscard]] bool is_full() const { return window_.newest() == backend_.window_size; }
+  void relocalize(const TrackedFrame& frame);
   void push_frame(const TrackedFrame& frame);
+  void integrate_samples(const WindowFrame& last, WindowFrame& next);
   [[nodiscard]] bool localize_newest();
+  void check_inertial_data();
+  void distrust_recent_samples();
+  void solve();
+  void discard_newest();
+  [[nodiscard]] StatusReason failure() const;
+  [[nodiscard]] bool update_status();
+  void assess_newest();
   void repropagate_preintegrations();
   void try_initialize_imu();
   void restart(const Eigen::Vector3d& gravity_w);
+  void forget_biases();
   void slide(bool keyframe);
-  [[nodiscard]] OdometryStatus status() const;
   void begin_update(std::int64_t frame_id);
   void report(const NavState& state);
 
@@ -95,11 +113,15 @@ class Estimator {
   std::vector<PointObservation> known_points_;  ///< buffer of `localize_newest`
   ReprojectionErrorMonitor error_monitor_;
   PixelNoise pixel_noise_;
-  NavState newest_;              ///< last reported state
-  NavState previous_;            ///< the state before it: constant velocity model without an IMU
-  bool localized_ = true;        ///< whether the pose of the newest frame was found
-  bool keyframe_ = true;         ///< whether the second-newest frame stays in the window
-  bool received_frame_ = false;  ///< at least one frame was added
+  NavState newest_;        ///< last reported state
+  NavState previous_;      ///< the state before it: constant velocity model without an IMU
+  bool localized_ = true;  ///< whether the pose of the newest frame was found
+  bool keyframe_ = true;   ///< whether the second-newest frame stays in the window
+  TrackingMonitor monitor_;
+  SampleInspector inspector_;
+  InertialCheck inertial_check_;
+  FrameEvidence evidence_;   ///< of the last frame that was added
+  int unusable_solves_ = 0;  ///< in succession
   OdometryUpdate update_;
 };
 

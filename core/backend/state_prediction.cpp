@@ -24,8 +24,14 @@ NavState extrapolate(const MotionState& motion, ImuBuffer& imu, Timestamp t) {
   if (motion.inertial) {
     NavState start = motion.newest;
     start.t = after(start.t, motion.time_offset_s);
-    state = propagate(start, imu.samples_up_to(start.t, after(t, motion.time_offset_s)), motion.gravity_w);
-  } else if (motion.previous.t < motion.newest.t) {
+    const std::vector<ImuSample>& samples = imu.samples_up_to(start.t, after(t, motion.time_offset_s));
+    if (samples.size() >= 2) {
+      state = propagate(start, samples, motion.gravity_w);
+      state.t = t;
+      return state;
+    }
+  }
+  if (motion.previous.t < motion.newest.t) {
     state.T_w_b = constant_velocity(motion.previous, motion.newest, t);
   }
   state.t = t;
@@ -38,7 +44,8 @@ void drop_old_samples(const MotionState& motion, ImuBuffer& imu) {
 
 MotionPrior motion_prior(const MotionState& motion, ImuBuffer& imu, Timestamp from, Timestamp to) {
   if (!motion.initialized || !motion.uses_imu) return {};
-  if (motion.inertial) {
+  if (motion.inertial &&
+      !imu.samples_up_to(after(from, motion.time_offset_s), after(to, motion.time_offset_s)).empty()) {
     return full_prior(extrapolate(motion, imu, from).T_w_b, extrapolate(motion, imu, to).T_w_b, motion.T_b_c);
   }
   return rotation_prior(imu.samples_up_to(after(from, motion.time_offset_s), after(to, motion.time_offset_s)),

@@ -20,7 +20,7 @@ struct MotionState {
   bool inertial = false;     ///< gravity and velocity are initialized
 };
 
-/// State at an image timestamp >= `newest.t`: IMU propagation, or constant velocity without an IMU.
+/// State at an image timestamp >= `newest.t`: IMU propagation, or constant velocity without samples.
 [[nodiscard]] NavState extrapolate(const MotionState& motion, ImuBuffer& imu, Timestamp t);
 
 /// Drops IMU samples older than the newest state.

@@ -121,6 +121,8 @@ struct BackendConfig {
   bool estimate_extrinsics = false;
   double extrinsics_sigma_m = 0.02;    ///< prior standard deviation around the calibrated value
   double extrinsics_sigma_rad = 0.02;  ///< same for the rotation
+  double max_dead_reckoning_s = 6.0;   ///< without vision; then the pose is lost
+  double max_relocalization_s = 1.0;   ///< with a view after a loss; then a new world begins
   DepthConfig depth;
   InitializerConfig initializer;
 };
@@ -147,6 +149,8 @@ void visit_fields(Visitor&& field, Config& config) {
   field("estimate_extrinsics", config.estimate_extrinsics);
   field("extrinsics_sigma_m", config.extrinsics_sigma_m, 1e-6, 1.0);
   field("extrinsics_sigma_rad", config.extrinsics_sigma_rad, 1e-6, 1.0);
+  field("max_dead_reckoning_s", config.max_dead_reckoning_s, 0.0, 1000.0);
+  field("max_relocalization_s", config.max_relocalization_s, 0.0, 1000.0);
   field("depth", config.depth);
   field("initializer", config.initializer);
 }

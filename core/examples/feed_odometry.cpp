@@ -48,7 +48,7 @@ int main() {
     const stillpoint::OdometryUpdate& update =
         odometry.track(frame);  // your detector's boxes are the second argument
     const Eigen::Vector3d& p = update.T_w_c.p;
-    if (update.status != stillpoint::OdometryStatus::kTracking) continue;
+    if (!stillpoint::is_located(update.status)) continue;
     std::printf("t %.3f s  position (%+.3f, %+.3f, %+.3f) m\n", to_seconds(frame.t), p.x(), p.y(), p.z());
   }
   return odometry.state().has_value() ? 0 : 1;

@@ -5,6 +5,7 @@
 #include "core/geometry/so3.h"
 #include "core/imu/midpoint.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -109,6 +110,21 @@ void Preintegration::integrate(const std::vector<ImuSample>& samples) {
     samples_.push_back(samples[i]);
   }
   finalize();
+}
+
+void Preintegration::append(const Preintegration& later) {
+  const ImuNoise larger{.gyro_noise = std::max(noise_.gyro_noise, later.noise_.gyro_noise),
+                        .accel_noise = std::max(noise_.accel_noise, later.noise_.accel_noise),
+                        .gyro_walk = std::max(noise_.gyro_walk, later.noise_.gyro_walk),
+                        .accel_walk = std::max(noise_.accel_walk, later.noise_.accel_walk)};
+  if (larger.gyro_noise > noise_.gyro_noise || larger.accel_noise > noise_.accel_noise) set_noise(larger);
+  noise_ = larger;
+  integrate(later.samples_);
+}
+
+void Preintegration::set_noise(const ImuNoise& noise) {
+  noise_ = noise;
+  repropagate(gyro_bias_, accel_bias_);
 }
 
 void Preintegration::repropagate(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias) {

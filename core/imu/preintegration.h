@@ -77,6 +77,12 @@ class Preintegration {
   /// not added again. Fewer than two samples add no motion.
   void integrate(const std::vector<ImuSample>& samples);
 
+  /// Extends the interval by a later one, with the larger noise of both.
+  void append(const Preintegration& later);
+
+  /// Reintegrates all samples with another noise, for samples that turn out to be unreliable.
+  void set_noise(const ImuNoise& noise);
+
   /// Reintegrates all samples with other biases; for changes too large for the first-order correction.
   void repropagate(const Eigen::Vector3d& gyro_bias, const Eigen::Vector3d& accel_bias);
 

@@ -54,8 +54,8 @@ class Odometry {
   [[nodiscard]] bool enters_window(Timestamp t) const;
 
   /// Processes the next frame. Never waits. If samples up to the exposure are missing, the newest sample is
-  /// held for at most `imu.max_gap_s`; if more is missing, a frame that enters the window is reported as
-  /// `kLost`. Samples that are added later are used for the following frames, which recover.
+  /// held for at most `imu.max_gap_s`; if more is missing, a frame that enters the window is located by
+  /// vision alone (`kDegraded`), or `kLost`. Samples that are added later are used for the following frames.
   /// @param frame CV_8UC1 gray of the size of the camera; depth of the same size, CV_16UC1, or empty
   /// @param detections of the frame; ignored if it does not enter the window or if `dynamic.mask` is off
   /// @return valid until the next call; the caller may add timings to it
@@ -63,7 +63,7 @@ class Odometry {
   /// frame is then ignored, but not its IMU samples
   OdometryUpdate& track(const Frame& frame, const DetectionSet& detections = {});
 
-  /// Estimated state at the newest frame that entered the window; nullopt unless its status is `kTracking`.
+  /// Estimated state at the newest frame that entered the window; nullopt unless it is located or dead reckoning.
   [[nodiscard]] std::optional<NavState> state() const;
 
   /// State at time `t` on the clock of the frames (IMU time minus `OdometryUpdate::time_offset_s`): `state`

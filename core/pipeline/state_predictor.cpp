@@ -5,7 +5,7 @@ namespace stillpoint {
 
 void StatePredictor::set(const MotionState& motion, OdometryStatus status) {
   motion_ = motion;
-  valid_ = status == OdometryStatus::kTracking;
+  valid_ = is_located(status) || status == OdometryStatus::kDeadReckoning;
   drop_old_samples(motion_, imu_);
 }
 

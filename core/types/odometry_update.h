@@ -4,21 +4,13 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 
 #include "core/base/module_timings.h"
 #include "core/types/nav_state.h"
+#include "core/types/odometry_status.h"
 #include "core/types/state_covariance.h"
 
 namespace stillpoint {
-
-enum class OdometryStatus { kInitializing, kTracking, kLost };
-
-/// Names used in output files.
-[[nodiscard]] constexpr std::string_view status_name(OdometryStatus status) {
-  constexpr std::string_view kNames[] = {"initializing", "tracking", "lost"};
-  return kNames[static_cast<std::size_t>(status)];
-}
 
 struct OdometryCounters {
   int tracked_features = 0;  ///< received from the tracker
@@ -37,12 +29,14 @@ struct StateHashes {
   std::uint64_t optimization = 0;  ///< state
 };
 
-/// `state` is valid only if `status == kTracking`.
+/// `state` is valid only if `is_located(status)`; while dead reckoning it is propagated by inertial data.
 struct OdometryUpdate {
   std::int64_t frame_id = 0;
   NavState state;
   Pose T_w_c;  ///< camera pose, by the extrinsics estimated at this frame
   OdometryStatus status = OdometryStatus::kInitializing;
+  StatusReason reason = StatusReason::kNone;
+  int segment = 0;  ///< number of the world frame; a new one begins after a loss without relocation
   double time_offset_s = 0.0;  ///< current estimate
   /// Rotates the world such that gravity points along -z, by the current estimate of gravity; the identity if
   /// gravity is not estimated (`backend.gravity`) or not yet known.

@@ -68,7 +68,7 @@ void WorstFrames::add(const FrameReport& report) {
 
 std::optional<eval::MatchedPose> WorstFrames::matched(const OdometryUpdate& update) const {
   const std::optional<Pose>& truth = truth_.at(static_cast<std::size_t>(update.frame_id));
-  if (!truth || update.status != OdometryStatus::kTracking) return std::nullopt;
+  if (!truth || !is_located(update.status)) return std::nullopt;
   return eval::MatchedPose{.t = {}, .gt = *truth, .est = update.T_w_c};
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kMinimalSteps = 5;
 constexpr int kRefineSteps = 8;
+constexpr int kStepsFromPrediction = 3;
 constexpr double kMinDepth = 0.05;  // [m]
 
 /// Squared bearing error of an observation; infinite behind the camera.
@@ -107,6 +108,11 @@ std::vector<PointObservation> known_points(const Window& window, const DepthConf
     observations.push_back({window.position(landmark, inverse_depth), landmark.observations.back().bearing});
   }
   return observations;
+}
+
+Pose refine_camera_pose(const std::vector<PointObservation>& observations, const Pose& prediction,
+                        double inlier_threshold) {
+  return refine(prediction.inverse(), observations, inlier_threshold, kStepsFromPrediction).inverse();
 }
 
 }  // namespace stillpoint

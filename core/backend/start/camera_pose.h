@@ -43,4 +43,9 @@ struct CameraPose {
 [[nodiscard]] std::vector<PointObservation> known_points(const Window& window, const DepthConfig& depth,
                                                          std::vector<PointObservation> recycled);
 
+/// Robust least squares from a prediction that is close to the solution, without RANSAC.
+/// @param inlier_threshold scale of the Cauchy loss [normalized image plane]
+[[nodiscard]] Pose refine_camera_pose(const std::vector<PointObservation>& observations,
+                                      const Pose& prediction, double inlier_threshold);
+
 }  // namespace stillpoint

@@ -111,7 +111,7 @@ void rescale(double scale, Window& window) {
 std::optional<InertialAlignment> align_with_imu(const Window& window, double gravity,
                                                 const InitializerConfig& config) {
   for (std::size_t i = 1; i < window.frames.size(); ++i) {
-    if (!window.frames[i].from_previous) return std::nullopt;
+    if (!window.frames[i].from_previous || !window.frames[i].imu_is_reliable) return std::nullopt;
   }
   InertialAlignment alignment;
   alignment.gyro_bias = solve_gyro_bias(window);

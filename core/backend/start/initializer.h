@@ -42,7 +42,7 @@ struct InertialAlignment {
 ///
 /// @param window visual; every frame but the first with inertial samples
 /// @param gravity configured norm [m/s^2]
-/// @return nothing if samples are missing, the norm of g after step 2 deviates by more than
+/// @return nothing if samples are missing or unreliable, the norm of g after step 2 deviates by more than
 /// `gravity_tolerance`, or the relative standard deviation of s exceeds `max_scale_sigma`
 [[nodiscard]] std::optional<InertialAlignment> align_with_imu(const Window& window, double gravity,
                                                               const InitializerConfig& config);

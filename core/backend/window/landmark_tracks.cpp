@@ -50,10 +50,12 @@ void remove_preintegration(int frame, Window& window) {
 void merge_preintegrations(int frame, Window& window) {
   std::optional<Preintegration>& earlier = window.frames[static_cast<std::size_t>(frame)].from_previous;
   std::optional<Preintegration>& later = window.frames[static_cast<std::size_t>(frame + 1)].from_previous;
-  if (earlier && later) earlier->integrate(later->samples());
+  if (earlier && later) earlier->append(*later);
   if (!later) remove_preintegration(frame, window);
   remove_preintegration(frame + 1, window);
   later = std::exchange(earlier, std::nullopt);
+  window.frames[static_cast<std::size_t>(frame + 1)].imu_is_reliable &=
+      window.frames[static_cast<std::size_t>(frame)].imu_is_reliable;
 }
 
 /// Removes the first observation and re-expresses the inverse depth in the next frame with the estimated
@@ -138,6 +140,16 @@ void remove_second_newest_frame(Window& window) {
   }
   merge_preintegrations(second, window);
   window.frames.erase(window.frames.end() - 2);
+  remove_expired(window);
+}
+
+void remove_newest_frame(Window& window) {
+  const int newest = window.newest();
+  for (Landmark& landmark : window.landmarks) {
+    if (landmark.last() == newest) landmark.observations.pop_back();
+  }
+  remove_preintegration(newest, window);
+  window.frames.pop_back();
   remove_expired(window);
 }
 

@@ -25,6 +25,9 @@ void remove_oldest_frame(Window& window);
 /// Removes the second-newest frame; its inertial samples are merged into the newest frame's preintegration.
 void remove_second_newest_frame(Window& window);
 
+/// Removes the newest frame, whose pose was not found; the next frame continues the tracks.
+void remove_newest_frame(Window& window);
+
 /// Restarts a landmark at its newest observation; earlier ones belong to another point.
 void restart_track(Landmark& landmark);
 

@@ -48,7 +48,7 @@ void ImuRatePoses::add(const OdometryUpdate& update, Timestamp available) {
   motion_.gravity_w = update.q_level_w.conjugate() * Eigen::Vector3d(0.0, 0.0, -gravity_);
   motion_.time_offset_s = update.time_offset_s;
   motion_.initialized = true;
-  motion_.inertial = update.status == OdometryStatus::kTracking;
+  motion_.inertial = has_reliable_imu(update.status, update.reason);
   predictor_.set(motion_, update.status);
   if (predicted) record_correction(*predicted, samples_[next_ - 1].t);
 }

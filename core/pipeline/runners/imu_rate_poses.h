@@ -32,7 +32,7 @@ struct ImuRateOutput {
 ///
 /// s: time of a sample; x_k, d_k: state and time offset estimated at frame k; t_k: its exposure; available_k:
 /// `FrameReport::available`. The pose has the stamp s - d_k. Samples before the first estimate, after the
-/// last one, and while the status is not `kTracking` have no pose.
+/// last one, and while the odometry is lost have no pose.
 class ImuRatePoses {
  public:
   /// @param samples ascending; must outlive this object

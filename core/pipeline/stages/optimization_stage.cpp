@@ -42,6 +42,8 @@ OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& ri
       static_readmission_(config.dynamic.min_static_frames, config.dynamic.static_residual_px) {}
 
 OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const DetectionSet& detections) {
+  if (last_frame_ && frame.t <= *last_frame_) return predict(frame);
+  last_frame_ = frame.t;
   dynamic_.clear();
   OdometryUpdate& update = estimator_.update();
   {
@@ -93,7 +95,8 @@ void OptimizationStage::apply_semantic_mask(const TrackedFrame& frame, const Det
 
 /// Sec. III-E at the predicted pose, which requires inertial data.
 void OptimizationStage::check_motion_before_solve() {
-  if (!config_.moving_consistency || !config_.gate_before_solve || !estimator_.window().inertial) return;
+  if (!config_.moving_consistency || !config_.gate_before_solve || !estimator_.has_inertial_prediction())
+    return;
   const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition, Kind::kPart);
   residuals_ = gate_on_prediction(update_view(), std::move(residuals_));
   apply_labels(recognition_.gate(residuals_));

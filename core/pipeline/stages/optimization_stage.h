@@ -58,6 +58,7 @@ class OptimizationStage {
   StaticReadmission static_readmission_;
   DynamicReport dynamic_;
   std::vector<std::int64_t> dynamic_ids_;  ///< of the last frame that entered the window
+  std::optional<Timestamp> last_frame_;    ///< same
   // Members only to reuse the memory.
   std::vector<Box> boxes_;
   ConsistencyView view_;

@@ -49,7 +49,7 @@ SimulatedRun simulate(const SimulatedMotion& motion, const BackendConfig& backen
     const double t = 0.1 + i / kRate_hz;
     for (; next < imu.size() && to_seconds(imu[next].t) < t + 0.05; ++next) estimator.add_imu(imu[next]);
     const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
-    if (update.status != OdometryStatus::kTracking) continue;
+    if (!is_located(update.status)) continue;
     const Pose truth = SimulatedMotion::state(t + motion.time_offset_s).T_w_b;
     if (!T_first) {
       T_first = update.state.T_w_b;
@@ -110,7 +110,7 @@ TEST(Estimator, ARestartKeepsGravityWithItsCovariance) {
   config.gravity = GravityModel::kEstimated;
   Estimator estimator(config, {}, SimulatedMotion::rig(), 1);
   std::vector<ImuSample> imu = motion.imu(8.0);
-  imu[700].accel_b.x() = 1e5;  // at 3.5 s: velocity changes by 500 m/s
+  imu[700].accel_b.x() = 1e300;  // at 3.5 s
   for (const ImuSample& sample : imu) estimator.add_imu(sample);
   Eigen::Vector3d before = Eigen::Vector3d::Zero(), after = before;
   bool reset = false, known = false;

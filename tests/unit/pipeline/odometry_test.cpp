@@ -93,17 +93,18 @@ TEST(Odometry, HoldsTheNewestSampleAcrossAShortGap) {
   EXPECT_EQ(feed.track_next().status, OdometryStatus::kTracking);
 }
 
-TEST(Odometry, ReportsALostFrameIfTooManySamplesAreMissingAndRecoversWithLateOnes) {
+TEST(Odometry, LocatesFramesByVisionWhileSamplesAreMissing) {
   OdometryConfig config = inertial_config();
   config.imu.max_gap_s = 0.01;
   InertialFeed feed(config);
   feed.track_with_imu(20);
-  EXPECT_TRUE(feed.odometry.state().has_value());
   feed.track_next();  // within the 20 ms of lookahead plus 10 ms, 33 ms after the previous frame
-  EXPECT_EQ(feed.track_next().status, OdometryStatus::kLost);
-  EXPECT_FALSE(feed.odometry.state().has_value());
-  feed.track_with_imu(1);
+  const OdometryUpdate& update = feed.track_next();
+  EXPECT_EQ(update.status, OdometryStatus::kDegraded);
+  EXPECT_EQ(update.reason, StatusReason::kImuGap);
   EXPECT_TRUE(feed.odometry.state().has_value());
+  feed.track_with_imu(5);
+  EXPECT_EQ(feed.track_next().reason, StatusReason::kImuGap);  // nothing was added for this frame
 }
 
 TEST(Odometry, TellsWhichFramesEnterTheWindow) {

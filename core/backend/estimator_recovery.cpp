@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The estimator's reaction to failures: relocalization, unreliable inertial data, restart.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "core/backend/estimator.h"
+#include "core/backend/failure_detection.h"
+#include "core/backend/window/landmark_tracks.h"
+
+namespace stillpoint {
+namespace {
+
+/// Inlier threshold of the visual poses that inertial data is compared with.
+constexpr double kVisualPoseInlier_px = 3.0;
+
+/// Fraction of the features that agree with a visual pose which may contradict inertial data.
+constexpr double kMinAgreeing = 0.7;
+
+/// Inertial data that contradicts vision was wrong before it was recognized.
+constexpr double kRecognitionDelay_s = 0.15;
+
+/// A pose from the map this close to the inertial one confirms it.
+constexpr double kConfirmed_m = 0.02;
+constexpr double kConfirmed_rad = 0.01;
+
+/// Solver failures in succession after which the window is given up.
+constexpr int kMaxUnusableSolves = 3;
+
+/// Features with a measured depth from which a window can start.
+constexpr int kMinFirstFeatures = 8;
+
+bool has_depth(const Landmark& landmark) {
+  return !landmark.dynamic && !landmark.observations.empty() && landmark.observations.back().depth > 0.0;
+}
+
+bool is_finite(const LinearPrior& prior) { return prior.jacobian.allFinite() && prior.residual.allFinite(); }
+
+}  // namespace
+
+/// While dead reckoning or lost: restarts the window at the pose found in the map of trusted landmarks.
+void Estimator::relocalize(const TrackedFrame& frame) {
+  const Pose predicted = extrapolate(motion_state(), imu_, frame.t).T_w_b;
+  const std::optional<Pose> found = monitor_.relocalize(frame, predicted * window_.T_b_c);
+  if (!found) return;
+  const Pose T_w_b = *found * window_.T_b_c.inverse();
+  const bool confirmed = !monitor_.awaits_map() && (T_w_b.p - predicted.p).norm() < kConfirmed_m &&
+                         T_w_b.q.angularDistance(predicted.q) < kConfirmed_rad;
+  if (confirmed) return;
+  restart(window_.gravity_w);
+  newest_.T_w_b = T_w_b;
+  newest_.t = frame.t;
+  previous_ = newest_;
+  monitor_.relocated();
+}
+
+/// Compares inertial data with the pose by vision alone. Wrong data of the last frames is replaced.
+void Estimator::check_inertial_data() {
+  if (!window_.inertial || !window_.frames.back().from_previous) return;
+  WindowFrame& newest = window_.frames.back();
+  known_points_ = known_points(window_, backend_.depth, std::move(known_points_));
+  const double focal_px = rig_.camera.focal_px();
+  const Pose T_w_c =
+      refine_camera_pose(known_points_, newest.state.T_w_b * window_.T_b_c, kVisualPoseInlier_px / focal_px);
+  const VisionAssessment vision = assess_vision(known_points_, T_w_c, kVisualPoseInlier_px / 5.0 / focal_px);
+  if (vision.has_few_features() || vision.has_weak_geometry() ||
+      vision.inliers < kMinAgreeing * vision.features) {
+    if (!vision.is_located()) inertial_check_.interrupt(newest.state.t);
+    return;
+  }
+  const bool was_consistent = inertial_check_.is_consistent();
+  const VisualPose pose{.t = after(newest.state.t, newest.time_offset_s),
+                        .T_w_b = T_w_c * window_.T_b_c.inverse(),
+                        .sigma_m = vision.sigma_m,
+                        .sigma_rad = vision.sigma_rad};
+  if (inertial_check_.update(pose, newest_, window_.gravity_w, imu_) || !was_consistent) return;
+  evidence_.imu_defect = StatusReason::kImuInconsistent;
+  distrust_recent_samples();
+}
+
+void Estimator::distrust_recent_samples() {
+  const Timestamp newest = window_.frames.back().state.t;
+  for (WindowFrame& frame : window_.frames) {
+    if (!frame.from_previous || seconds_between(frame.state.t, newest) > kRecognitionDelay_s) continue;
+    frame.imu_is_reliable = false;
+    frame.from_previous->set_noise(unreliable_noise(rig_.imu_noise));
+  }
+}
+
+/// The newest frame was located by neither vision nor inertial data. A window that has not started begins
+/// anew: its poses would depend on this one.
+void Estimator::discard_newest() {
+  if (monitor_.status() == OdometryStatus::kInitializing) {
+    restart(window_.gravity_w);
+  } else {
+    remove_newest_frame(window_);
+    previous_ = newest_;
+    newest_.v_w.setZero();
+  }
+  static_cast<void>(update_status());
+}
+
+/// Why the estimate must be given up, if so.
+StatusReason Estimator::failure() const {
+  if (has_failed(newest_, window_.frames.back().state) || !is_finite(window_.prior)) {
+    return StatusReason::kDiverged;
+  }
+  return unusable_solves_ >= kMaxUnusableSolves ? StatusReason::kSolveFailed : StatusReason::kNone;
+}
+
+/// @return false if the window was cleared
+bool Estimator::update_status() {
+  evidence_.inertial = window_.inertial;
+  evidence_.has_start = uses_imu() ? window_.inertial : has_metric_scale();
+  evidence_.located = false;
+  if (update_.covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(update_.covariance->position(),
+                                                               Eigen::EigenvaluesOnly);
+    evidence_.sigma_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+  }
+  const bool alive = evidence_.failure == StatusReason::kNone;
+  if (alive && localized_ && !window_.frames.empty()) assess_newest();
+  const bool clear = monitor_.update(evidence_, window_);
+  if (clear) restart(window_.gravity_w);
+  return alive && !clear;
+}
+
+void Estimator::assess_newest() {
+  if (window_.newest() == 0) {
+    const auto measured = std::ranges::count_if(window_.landmarks, has_depth);
+    evidence_.located = measured >= kMinFirstFeatures;
+    return;
+  }
+  known_points_ = known_points(window_, backend_.depth, std::move(known_points_));
+  evidence_.vision = assess_vision(known_points_, window_.T_w_c(window_.newest()),
+                                   backend_.pixel_sigma_px / rig_.camera.focal_px());
+  evidence_.located = evidence_.vision.is_located();
+}
+
+/// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
+/// @param gravity_w before the solve that failed; an estimated one is kept with its covariance
+void Estimator::restart(const Eigen::Vector3d& gravity_w) {
+  Window fresh;
+  fresh.T_b_c = rig_.T_b_c;
+  fresh.time_offset_s = rig_.time_offset_s;
+  fresh.gravity_w = gravity_w;
+  fresh.gravity_covariance =
+      window_.estimates_gravity() ? gravity_covariance(window_.prior) : window_.gravity_covariance;
+  if (fresh.gravity_covariance && !fresh.gravity_covariance->allFinite()) fresh.gravity_covariance.reset();
+  window_ = std::move(fresh);
+  newest_.v_w.setZero();
+  previous_ = newest_;
+  unusable_solves_ = 0;
+  inertial_check_.reset();
+}
+
+/// After a divergence, which the biases were part of.
+void Estimator::forget_biases() {
+  newest_.gyro_bias.setZero();
+  newest_.accel_bias.setZero();
+  previous_ = newest_;
+}
+
+}  // namespace stillpoint

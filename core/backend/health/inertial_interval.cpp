@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/health/inertial_interval.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillpoint {
+namespace {
+
+constexpr double kUnreliableGyro = 1.0;    // [rad/s/sqrt(Hz)]
+constexpr double kUnreliableAccel = 20.0;  // [m/s^2/sqrt(Hz)]
+constexpr int kSaturatedSamples = 4;
+
+/// Whether one axis is at the limit for some samples, while the others vary.
+template <class Vector>
+bool is_saturated(std::span<const ImuSample> samples, double limit, const Vector& vector) {
+  for (int axis = 0; axis < 3; ++axis) {
+    int at_limit = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      at_limit = std::abs(vector(samples[i])[axis]) == limit ? at_limit + 1 : 0;
+      if (at_limit >= kSaturatedSamples && vector(samples[i]) != vector(samples[i - 1])) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+ImuNoise unreliable_noise(const ImuNoise& noise) {
+  return {.gyro_noise = std::max(noise.gyro_noise, kUnreliableGyro),
+          .accel_noise = std::max(noise.accel_noise, kUnreliableAccel),
+          .gyro_walk = noise.gyro_walk,
+          .accel_walk = noise.accel_walk};
+}
+
+StatusReason SampleInspector::inspect(std::span<const ImuSample> samples, double max_gap_s) {
+  for (const ImuSample& sample : samples) {
+    largest_gyro_ = std::max(largest_gyro_, sample.gyro_b.cwiseAbs().maxCoeff());
+    largest_accel_ = std::max(largest_accel_, sample.accel_b.cwiseAbs().maxCoeff());
+  }
+  if (samples.size() < 2) return StatusReason::kImuGap;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (seconds_between(samples[i - 1].t, samples[i].t) > max_gap_s) return StatusReason::kImuGap;
+  }
+  const auto gyro = [](const ImuSample& sample) -> const Eigen::Vector3d& { return sample.gyro_b; };
+  const auto accel = [](const ImuSample& sample) -> const Eigen::Vector3d& { return sample.accel_b; };
+  const bool saturated =
+      is_saturated(samples, largest_gyro_, gyro) || is_saturated(samples, largest_accel_, accel);
+  return saturated ? StatusReason::kImuSaturated : StatusReason::kNone;
+}
+
+std::vector<ImuSample> constant_velocity_samples(const NavState& before, const Eigen::Vector3d& gravity_w,
+                                                 Timestamp begin, Timestamp end) {
+  const ImuSample sample{.t = begin,
+                         .gyro_b = before.gyro_bias,
+                         .accel_b = before.accel_bias - before.T_w_b.q.conjugate() * gravity_w};
+  ImuSample last = sample;
+  last.t = end;
+  return {sample, last};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/health/tracking_monitor.h"
+
+#include <cmath>
+
+namespace stillpoint {
+namespace {
+
+using enum OdometryStatus;
+
+/// Limits of the distance between a pose found by the map and the predicted one: constant and per second.
+struct PoseGate {
+  double base_m;
+  double rate_m;
+  double base_rad;
+  double rate_rad;
+};
+constexpr PoseGate kInertialGate{.base_m = 0.1, .rate_m = 0.3, .base_rad = 0.05, .rate_rad = 0.05};
+constexpr PoseGate kVisualGate{.base_m = 0.5, .rate_m = 2.0, .base_rad = 0.5, .rate_rad = 1.5};
+
+/// Features in a frame from which a new segment can begin.
+constexpr int kVisibleFeatures = 20;
+
+bool agrees(const Pose& predicted, const Pose& found, const PoseGate& gate, double seconds) {
+  return (predicted.p - found.p).norm() <= gate.base_m + gate.rate_m * seconds &&
+         predicted.q.angularDistance(found.q) <= gate.base_rad + gate.rate_rad * seconds;
+}
+
+}  // namespace
+
+std::optional<Pose> TrackingMonitor::relocalize(const TrackedFrame& frame, const Pose& T_w_c) {
+  relocated_ = false;
+  const bool dead_reckoning = status_ == kDeadReckoning;
+  if (map_.empty() || !(dead_reckoning || awaits_map_)) return std::nullopt;
+  const CameraPoseOptions options{.inlier_threshold = options_.inlier_threshold,
+                                  .seed = options_.seed + static_cast<std::uint32_t>(frame.id)};
+  const std::optional<CameraPose> found = map_.locate(frame, T_w_c, options);
+  if (!found) return std::nullopt;
+  const double seconds = seconds_between(located_at_, frame.t);
+  const PoseGate& gate = dead_reckoning ? kInertialGate : kVisualGate;
+  if (!agrees(T_w_c, found->T_w_c, gate, seconds)) return std::nullopt;
+  return found->T_w_c;
+}
+
+/// Located by vision, in the world of the segment.
+TrackingMonitor::Decision TrackingMonitor::decide_located(const FrameEvidence& evidence) const {
+  if (relocated_ || status_ == kLost) return {kRelocated, StatusReason::kMapMatched};
+  if (options_.uses_imu && !evidence.inertial) return {kDegraded, StatusReason::kNoInertialStart};
+  if (evidence.imu_defect != StatusReason::kNone) return {kDegraded, evidence.imu_defect};
+  if (evidence.vision.has_few_features()) return {kDegraded, StatusReason::kFewFeatures};
+  if (evidence.vision.has_weak_geometry()) return {kDegraded, StatusReason::kWeakGeometry};
+  return {kTracking, StatusReason::kNone};
+}
+
+bool TrackingMonitor::is_too_uncertain(const FrameEvidence& evidence) const {
+  const double grown = std::pow(evidence.sigma_m, 2) - std::pow(located_sigma_m_, 2);
+  return seconds_between(located_at_, evidence.t) > options_.max_dead_reckoning_s ||
+         grown > std::pow(options_.max_dead_reckoning_sigma_m, 2);
+}
+
+TrackingMonitor::Decision TrackingMonitor::decide(const FrameEvidence& evidence) const {
+  if (status_ == kInitializing) {
+    if (!evidence.has_start || !evidence.located) return {kInitializing, StatusReason::kNone};
+    return {kTracking, StatusReason::kNone};
+  }
+  if (evidence.failure != StatusReason::kNone) return {kLost, evidence.failure};
+  if (relocated_) return {kRelocated, StatusReason::kMapMatched};
+  if (awaits_map_) return {kLost, reason_};
+  if (evidence.located) return decide_located(evidence);
+  if (!evidence.inertial) return {kLost, StatusReason::kFewFeatures};
+  if (evidence.imu_defect != StatusReason::kNone) return {kLost, evidence.imu_defect};
+  if (is_too_uncertain(evidence)) return {kLost, StatusReason::kUncertain};
+  return {kDeadReckoning, StatusReason::kFewFeatures};
+}
+
+/// Whether the view has returned for some time without a pose from the map.
+bool TrackingMonitor::patience_is_over(const FrameEvidence& evidence) {
+  if (status_ != kLost) {
+    visible_since_.reset();
+  } else if (!visible_since_ && evidence.features >= kVisibleFeatures) {
+    visible_since_ = evidence.t;
+  }
+  return visible_since_ && seconds_between(*visible_since_, evidence.t) > options_.max_relocalization_s;
+}
+
+void TrackingMonitor::begin_segment() {
+  map_.clear();
+  visible_since_.reset();
+  awaits_map_ = false;
+  ++segment_;
+  status_ = kInitializing;
+  reason_ = StatusReason::kNone;
+}
+
+bool TrackingMonitor::update(const FrameEvidence& evidence, const Window& window) {
+  const bool diverged = evidence.failure != StatusReason::kNone && status_ != kInitializing;
+  const Decision decision = decide(evidence);
+  status_ = decision.status;
+  reason_ = decision.reason;
+  relocated_ = false;
+  if (is_located(status_)) {
+    located_at_ = evidence.t;
+    located_sigma_m_ = evidence.sigma_m;
+    awaits_map_ = false;
+  }
+  if (status_ == kTracking) map_.update(window);
+  if (diverged) map_.discard_newest();
+  const bool too_uncertain = reason_ == StatusReason::kUncertain && !awaits_map_;
+  awaits_map_ = awaits_map_ || diverged || too_uncertain;
+  const bool new_segment = patience_is_over(evidence);
+  if (new_segment) begin_segment();
+  return new_segment || too_uncertain;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/health/trusted_map.h"
+
+#include <utility>
+
+namespace stillpoint {
+namespace {
+
+constexpr double kVersionAge_s = 0.5;
+constexpr int kMinFeatures = 12;
+constexpr double kMinInlierRatio = 0.5;
+
+}  // namespace
+
+void TrustedMap::update(const Window& window) {
+  newest_.t = window.frames.back().state.t;
+  newest_.points.clear();
+  for (const Landmark& landmark : window.landmarks) {
+    if (is_usable(landmark)) newest_.points.push_back({landmark.id, window.position(landmark)});
+  }
+  if (!candidate_.points.empty() && seconds_between(candidate_.t, newest_.t) < kVersionAge_s) return;
+  std::swap(earlier_, candidate_);
+  candidate_ = newest_;
+}
+
+void TrustedMap::discard_newest() {
+  newest_ = earlier_;
+  candidate_ = earlier_;
+}
+
+void TrustedMap::clear() {
+  newest_ = {};
+  candidate_ = {};
+  earlier_ = {};
+}
+
+std::optional<CameraPose> TrustedMap::locate(const TrackedFrame& frame, const Pose& prediction,
+                                             CameraPoseOptions options) {
+  observations_.clear();
+  auto point = newest_.points.begin();
+  for (const TrackedFeature& feature : frame.features) {
+    while (point != newest_.points.end() && point->id < feature.id) ++point;
+    if (point == newest_.points.end()) break;
+    if (point->id == feature.id) observations_.push_back({point->p_w, feature.bearing});
+  }
+  const auto matched = static_cast<int>(observations_.size());
+  if (matched < kMinFeatures) return std::nullopt;
+  options.min_inliers = std::max(options.min_inliers, static_cast<int>(kMinInlierRatio * matched));
+  return estimate_camera_pose(observations_, prediction, options);
+}
+
+}  // namespace stillpoint
