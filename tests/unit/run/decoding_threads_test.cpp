@@ -47,7 +47,8 @@ class WatchedStream final : public datasets::SensorStream {
 
 std::set<std::string> loading_threads(const std::string& mode, bool cached) {
   const WatchedStream stream(cached);
-  RunSpec spec{.mode = mode};
+  RunSpec spec{.mode = mode, .speed = 20.0};
+  spec.config.imu.enabled = false;
   spec.config.detector.kind = DetectorKind::kNone;
   static_cast<void>(run_odometry(stream, spec, {}));
   return stream.threads();
