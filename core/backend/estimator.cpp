@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "core/backend/factors/gravity_direction.h"
 #include "core/backend/start/depth_initialization.h"
 #include "core/backend/start/frozen_world.h"
 #include "core/backend/start/initial_prior.h"
@@ -276,9 +277,7 @@ void Estimator::report(const NavState& state) {
   update_.reason = monitor_.reason();
   update_.segment = monitor_.segment();
   update_.time_offset_s = window_.time_offset_s;
-  if (window_.gravity_covariance) {
-    update_.q_level_w = Eigen::Quaterniond::FromTwoVectors(window_.gravity_w, -Eigen::Vector3d::UnitZ());
-  }
+  if (window_.gravity_covariance) update_.q_level_w = level_rotation(window_.gravity_w);
 }
 
 }  // namespace stillpoint

@@ -34,4 +34,18 @@ Eigen::Matrix<double, 3, 2> gravity_jacobian(const Eigen::Vector3d& gravity) {
   return -skew(gravity) * gravity_basis(gravity);
 }
 
+Eigen::Quaterniond level_rotation(const Eigen::Vector3d& gravity) {
+  // Not Eigen's FromTwoVectors, which compiles a singular value decomposition for opposite vectors.
+  constexpr double kOpposite = 1e-12 - 1.0;
+  const Eigen::Vector3d from = gravity.normalized();
+  const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
+  const double cosine = down.dot(from);
+  if (cosine < kOpposite) return {0.0, 1.0, 0.0, 0.0};
+  const double scale = std::sqrt((1.0 + cosine) * 2.0);  // twice the cosine of half the angle
+  Eigen::Quaterniond q;
+  q.vec() = from.cross(down) * (1.0 / scale);
+  q.w() = scale * 0.5;
+  return q;
+}
+
 }  // namespace stillpoint

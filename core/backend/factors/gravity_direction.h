@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace stillpoint {
 
@@ -27,5 +28,9 @@ namespace stillpoint {
 
 /// d (g [+] d) / dd at d = 0: -[g]x B(g).
 [[nodiscard]] Eigen::Matrix<double, 3, 2> gravity_jacobian(const Eigen::Vector3d& gravity);
+
+/// The rotation by the smallest angle that takes gravity to -z; by half a turn about x if gravity is along
+/// +z.
+[[nodiscard]] Eigen::Quaterniond level_rotation(const Eigen::Vector3d& gravity);
 
 }  // namespace stillpoint

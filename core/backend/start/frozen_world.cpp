@@ -16,14 +16,6 @@ constexpr double kReuseFactor = 100.0;
 /// 0.999 quantile of the chi-square distribution with two degrees of freedom.
 constexpr double kGravityGate = 13.8;
 
-/// Two orthonormal vectors orthogonal to a direction, for all directions.
-Eigen::Matrix<double, 3, 2> orthogonal_vectors(const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d first = direction.unitOrthogonal();
-  Eigen::Matrix<double, 3, 2> vectors;
-  vectors << first, direction.normalized().cross(first);
-  return vectors;
-}
-
 /// Covariance of the tangent vector of gravity. A change du of its direction u is the rotation u x du.
 Eigen::Matrix2d tangent_covariance(const Eigen::Vector3d& gravity_w, const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix<double, 2, 3> J = gravity_basis(gravity_w).transpose() * skew(gravity_w.normalized());
@@ -52,6 +44,15 @@ Eigen::Quaterniond restore_attitude(const Pose& anchor, Window& window) {
 
 }  // namespace
 
+Eigen::Matrix<double, 3, 2> orthogonal_vectors(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d first = direction.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> vectors;
+  vectors << first, direction.normalized().cross(first);
+  return vectors;
+}
+
+Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& A) { return (A.transpose() * A).inverse(); }
+
 Eigen::Matrix3d gravity_direction_covariance(const AlignmentEquations& equations,
                                              const Eigen::Vector3d& gravity_w, double accel_bias_sigma) {
   const double norm = gravity_w.norm();
@@ -61,7 +62,7 @@ Eigen::Matrix3d gravity_direction_covariance(const AlignmentEquations& equations
   A << equations.A.leftCols<3>(), norm * equations.A.middleCols<3>(3) * basis,
       equations.A.rightCols(scale_columns);
   const Eigen::VectorXd y = equations.y - equations.A.middleCols<3>(3) * gravity_w;
-  const Eigen::MatrixXd covariance = (A.transpose() * A).inverse();
+  const Eigen::MatrixXd covariance = least_squares_covariance(A);
   const double variance =
       (y - A * (covariance * (A.transpose() * y))).squaredNorm() / static_cast<double>(A.rows() - A.cols());
   const double bias_variance = accel_bias_sigma * accel_bias_sigma / (norm * norm);

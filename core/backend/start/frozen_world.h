@@ -13,6 +13,12 @@ struct AlignmentEquations {
   const Eigen::VectorXd& y;
 };
 
+/// Two orthonormal vectors orthogonal to `direction`, which may have any length but 0.
+[[nodiscard]] Eigen::Matrix<double, 3, 2> orthogonal_vectors(const Eigen::Vector3d& direction);
+
+/// (A^T A)^-1: the covariance of the least-squares solution of A x = y for residuals of unit variance.
+[[nodiscard]] Eigen::MatrixXd least_squares_covariance(const Eigen::MatrixXd& A);
+
 /// Covariance of the direction g / |g| in its tangent plane, 3x3 of rank 2: that of the least squares over
 /// v_0, the two tangent directions of g and s, with the variance of the residuals, plus that of an
 /// accelerometer bias, which the system cannot tell from gravity.

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "core/backend/factors/gravity_direction.h"
 #include "core/backend/start/frozen_world.h"
 #include "core/imu/gyro_bias.h"
 
@@ -56,14 +56,6 @@ AlignmentSystem alignment_system(const Window& window, const Eigen::Vector3d& gy
   return system;
 }
 
-/// Two orthonormal vectors orthogonal to `direction`.
-Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d first = direction.unitOrthogonal();
-  Eigen::Matrix<double, 3, 2> basis;
-  basis << first, direction.normalized().cross(first);
-  return basis;
-}
-
 /// Solution of the alignment system with the norm of gravity constrained.
 struct RefinedGravity {
   Eigen::Vector3d gravity_w;
@@ -81,7 +73,7 @@ RefinedGravity refine_gravity(const AlignmentSystem& system, const Eigen::Vector
   Eigen::MatrixXd A(system.A.rows(), 5 + scale_columns);
   Eigen::VectorXd residual;
   for (int i = 0; i < kGravitySteps; ++i) {
-    const Eigen::Matrix<double, 3, 2> basis = tangent_basis(refined.gravity_w);
+    const Eigen::Matrix<double, 3, 2> basis = orthogonal_vectors(refined.gravity_w);
     A << system.A.leftCols<3>(), A_gravity * basis, system.A.rightCols(scale_columns);
     const Eigen::VectorXd y = system.y - A_gravity * refined.gravity_w;
     refined.solution = A.colPivHouseholderQr().solve(y);
@@ -91,7 +83,7 @@ RefinedGravity refine_gravity(const AlignmentSystem& system, const Eigen::Vector
   }
   if (scale_columns == 0) return refined;
   const double variance = residual.squaredNorm() / static_cast<double>(A.rows() - A.cols());
-  const Eigen::MatrixXd covariance = variance * (A.transpose() * A).inverse();
+  const Eigen::MatrixXd covariance = variance * least_squares_covariance(A);
   const double scale = 1.0 + refined.solution[5];
   refined.scale_is_certain = std::sqrt(covariance(5, 5)) <= max_scale_sigma * scale;
   return refined;
@@ -134,8 +126,7 @@ std::optional<InertialAlignment> align_with_imu(const Window& window, double gra
 
 void apply_alignment(const InertialAlignment& alignment, const Pose& anchor, Window& window) {
   rescale(alignment.scale, window);
-  const Eigen::Quaterniond q_level =
-      Eigen::Quaterniond::FromTwoVectors(alignment.gravity_w, -Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond q_level = level_rotation(alignment.gravity_w);
   const Eigen::Matrix3d R_0 = (q_level * window.frames[0].state.T_w_b.q).toRotationMatrix();
   const Eigen::Matrix3d R_anchor = anchor.R();
   // Heading difference: the rotation about z closest to R_turn.

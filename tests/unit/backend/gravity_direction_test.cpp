@@ -38,6 +38,21 @@ TEST(GravityDirection, TheJacobianMatchesNumericDifferentiation) {
   EXPECT_LT((numeric - gravity_jacobian(kTilted)).norm(), 1e-9 * numeric.norm());
 }
 
+TEST(GravityDirection, TheLevelRotationTakesGravityToMinusZByTheSmallestAngle) {
+  for (const Eigen::Vector3d& gravity :
+       {kTilted, Eigen::Vector3d(0.0, 0.0, -9.81), Eigen::Vector3d(3.0, -2.0, 8.0)}) {
+    const Eigen::Quaterniond q = level_rotation(gravity);
+    EXPECT_NEAR(q.norm(), 1.0, 1e-14);
+    EXPECT_LT((q * gravity - Eigen::Vector3d(0.0, 0.0, -gravity.norm())).norm(), 1e-13);
+    EXPECT_EQ(q.z(), 0.0);  // the axis is horizontal
+  }
+}
+
+TEST(GravityDirection, GravityAlongZIsLeveledByHalfATurn) {
+  const Eigen::Vector3d leveled = level_rotation({0.0, 0.0, 9.81}) * Eigen::Vector3d(0.0, 0.0, 9.81);
+  EXPECT_LT((leveled - Eigen::Vector3d(0.0, 0.0, -9.81)).norm(), 1e-14);
+}
+
 TEST(GravityDirection, ThePriorYieldsTheCovarianceOfGravity) {
   LinearPrior prior;
   prior.blocks = {{BlockKind::kSpeedBias, 0, Eigen::VectorXd::Zero(9)}, {BlockKind::kGravity, -1, kTilted}};
