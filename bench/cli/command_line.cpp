@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <optional>
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -16,6 +17,7 @@
 #include "bench/record/build_info.h"
 #include "core/base/error.h"
 #include "core/base/utf8_text.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -29,6 +31,14 @@ void add_hidden_alias(CLI::App& app, const std::string& alias, std::vector<std::
     target.insert(target.end(), values.begin(), values.end());
   };
   app.add_option_function<std::vector<std::string>>(alias, append)->allow_extra_args(false)->group("");
+}
+
+/// "must be from 1 to 1000, not nan"; empty if the value is within the range, or is not a number, which the
+/// parser reports.
+std::string range_problem(const std::string& value, const NumberRange& range) {
+  const std::optional<double> number = eval::parse_number(value);
+  if (!number || (*number >= range.least && *number <= range.most)) return "";
+  return fmt::format("must be from {:g} to {:g}, not {}", range.least, range.most, value);
 }
 
 /// @param optional whether positional arguments may be omitted, as a subcommand may be given instead

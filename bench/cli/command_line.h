@@ -7,13 +7,18 @@
 #include <variant>
 #include <vector>
 
-#include "bench/cli/number_range.h"
-
 namespace stillpoint::bench {
 
 /// Destination of an option's value; its type determines the accepted values. A bool is a flag without a
 /// value, a vector is an option that may be repeated.
 using OptionTarget = std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*>;
+
+/// Range of the values of a number option. Both ends are allowed. The default admits every number that a
+/// command can compute with; nan and inf never are in a range.
+struct NumberRange {
+  double least = -1e9;
+  double most = 1e9;
+};
 
 /// An option (`--out`) or, when its name does not begin with a dash, a required argument (`SEQ`).
 struct Option {

@@ -1,8 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The program `stillpoint`.
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <iostream>
+
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
-#include "bench/cli/process_streams.h"
+
+namespace stillpoint::bench {
+namespace {
+
+/// Reserves the descriptors of closed standard streams, so that no output file receives one of them and the
+/// text printed to it. A write beyond the file size limit (ulimit -f) becomes an error instead of a signal.
+void prepare_process() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    // open() returns the lowest free descriptor. Read-only: writing to it remains an error.
+    if (fcntl(stream, F_GETFD) == -1) static_cast<void>(open("/dev/null", O_RDONLY));
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+/// Flushes stdout. @return `exit_code`, or `kExitBadInput` with a message on stderr if some output was lost
+int finish_output(int exit_code) {
+  errno = 0;
+  std::cout.flush();
+  if (std::cout) return exit_code;
+  std::cerr << "stillpoint: error: standard output: cannot be written"
+            << (errno == 0 ? "" : std::string(": ") + std::strerror(errno))
+            << "; free space and run it again\n";
+  return kExitBadInput;
+}
+
+}  // namespace
+}  // namespace stillpoint::bench
 
 int main(int argc, char** argv) {
   using namespace stillpoint::bench;

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <random>
-
-#include "eval/statistics/random_index.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -68,6 +67,12 @@ Split best_of_segments(std::span<const double> values, const std::vector<std::si
     if (split.divergence > best.divergence) best = {bounds[i] + split.index, split.divergence};
   }
   return best;
+}
+
+/// Uniform integer in [0, count), count > 0: floor(u * count / 2^64) with u from the generator. Unlike that
+/// of std::uniform_int_distribution its sequence does not depend on the standard library.
+std::size_t random_index(std::mt19937_64& random, std::size_t count) {
+  return static_cast<std::size_t>((static_cast<unsigned __int128>(random()) * count) >> 64);
 }
 
 /// Fisher-Yates shuffle.
