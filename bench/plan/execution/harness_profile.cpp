@@ -49,7 +49,7 @@ double worker_seconds(const HarnessProfile& profile) {
   return static_cast<double>(profile.workers) * profile.wall_s;
 }
 
-std::string line(const HarnessProfile& profile, const char* text, double seconds) {
+std::string profile_line(const HarnessProfile& profile, const char* text, double seconds) {
   const double all_s = worker_seconds(profile);
   return fmt::format("  {:<26}{:>9.2f} s  {:>5.1f} %\n", text, seconds,
                      all_s > 0.0 ? 100.0 * seconds / all_s : 0.0);
@@ -88,12 +88,12 @@ std::string profile_text(const HarnessProfile& profile) {
   std::string text = fmt::format("{} runs, {} at once, {:.1f} s; time of the workers:\n", profile.runs,
                                  profile.workers, profile.wall_s);
   for (const Part& part : kWorkerParts) {
-    if (profile.*part.seconds > 0.0) text += line(profile, part.text, profile.*part.seconds);
+    if (profile.*part.seconds > 0.0) text += profile_line(profile, part.text, profile.*part.seconds);
   }
-  text += line(profile, "no run to execute", profile.idle_s());
+  text += profile_line(profile, "no run to execute", profile.idle_s());
   text += "outside of the workers:\n";
   for (const Part& part : kOtherParts) {
-    if (profile.*part.seconds > 0.0) text += line(profile, part.text, profile.*part.seconds);
+    if (profile.*part.seconds > 0.0) text += profile_line(profile, part.text, profile.*part.seconds);
   }
   return text;
 }
