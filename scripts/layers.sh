@@ -105,7 +105,7 @@ row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/sy
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
 row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems bench/plan
-row bench/fetch core/base datasets datasets/catalogue datasets/download eval/io bench/model bench/process bench/record bench/plan
+row bench/fetch $common core/detector datasets datasets/io datasets/catalogue datasets/download eval/io bench/model bench/config bench/process bench/record bench/plan
 row bench/executors core/base eval/io bench/model bench/store bench/store/maintenance bench/process bench/record bench/systems \
   bench/plan bench/plan/execution
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
@@ -116,7 +116,7 @@ row bench/micro $core tests/support tests/support/simulated
 stored="core/base bench/model bench/store bench/analysis"
 row reports/tables $stored eval/statistics bench/systems
 row reports/tables/formats $stored reports/tables
-row reports/drawing core/base core/types datasets/io eval/openloris eval/protocols eval/statistics bench/run bench/record \
+row reports/drawing core/base core/types datasets/io eval/io eval/openloris eval/protocols eval/statistics bench/run bench/record \
   reports/tables
 row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
@@ -131,7 +131,7 @@ execution="core/base bench/cli bench/model bench/config bench/record"
 row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
-row bench/cli/plan $execution eval/io bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
+row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/tables/formats reports/text reports/page
 row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/store/maintenance bench/plan \
   bench/plan/execution bench/analysis \

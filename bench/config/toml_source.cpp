@@ -56,6 +56,9 @@ TomlSource read_file(const fs::path& path) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw InputError(path.string(),
                      "is UTF-16 text; convert it to UTF-8, e.g. with `iconv -f UTF-16 -t UTF-8`");
+  // toml++ 3.3 violates an assertion of its own for "[" and a NUL byte.
+  if (text.find('\0') != std::string::npos)
+    throw InputError(path.string(), "contains a NUL byte; it is not a text file");
   const bool has_mark = text.starts_with(kUtf8Mark);
   return {path.string(), has_mark ? text.substr(kUtf8Mark.size()) : text, false};
 }

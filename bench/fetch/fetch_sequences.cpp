@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 
-#include <fmt/format.h>
-
+#include "bench/fetch/box_recording.h"
 #include "bench/fetch/data_lock.h"
 #include "bench/fetch/install_sequence.h"
-#include "bench/model/utc_time.h"
+#include "bench/fetch/locked_download.h"
 #include "bench/plan/sequence_registry.h"
 #include "bench/process/file_lock.h"
 #include "core/base/error.h"
@@ -52,10 +52,13 @@ class ArchiveFetch {
     for (const std::string& file : files_) {
       if (!fetch_archive(datasets::archive_of(dataset_, file))) return false;
     }
-    for (const CatalogueSequence* sequence : missing())
-      control_.report(install_sequence(dataset_, *sequence, staging_, folder_));
+    for (const CatalogueSequence* sequence : missing()) {
+      const InstalledSequence place{dataset_, *sequence, staging_, folder_};
+      if (options_.record_boxes && !record_missing_boxes(place, options_, control_)) return false;
+      control_.report(install_sequence(place));
+    }
     if (options_.keep_archives) return true;
-    for (const std::string& file : files_) fs::remove(local_file(file));
+    for (const std::string& file : files_) fs::remove(download_path(options_.root, dataset_, file));
     return true;
   }
 
@@ -77,59 +80,15 @@ class ArchiveFetch {
     return found;
   }
 
-  [[nodiscard]] fs::path local_file(const std::string& file) const {
-    return folder_ / "downloads" / fs::path(file).filename();
-  }
-
   void require_space() const {
     const auto bytes = static_cast<double>(datasets::published_bytes(dataset_, files_));
     datasets::require_disk_space(folder_, static_cast<std::uint64_t>(bytes * (1.0 + kExtractedRatio)));
   }
 
-  [[nodiscard]] datasets::DownloadRequest request_of(const CatalogueArchive& archive) const {
-    datasets::DownloadRequest request{.file = local_file(archive.file),
-                                      .urls = archive.urls,
-                                      .bytes = archive.bytes,
-                                      .sha256 = archive.sha256,
-                                      .md5 = archive.md5,
-                                      .md5_suffix = dataset_.md5_suffix,
-                                      .settings = {},
-                                      .attempts = options_.attempts,
-                                      .first_backoff_s = options_.first_backoff_s};
-    if (!options_.mirror.empty())
-      request.urls.insert(request.urls.begin(), options_.mirror + "/" + dataset_.name + "/" + archive.file);
-    request.settings.user_agent = dataset_.user_agent;
-    request.settings.stall_timeout_s = options_.stall_timeout_s;
-    const char* token =
-        dataset_.token_variable.empty() ? nullptr : std::getenv(dataset_.token_variable.c_str());
-    if (token != nullptr) request.settings.token = token;
-    return request;
-  }
-
   /// Downloads to the folder of downloads, and extracts to the staging folder. @return false if stopped
   bool fetch_archive(const CatalogueArchive& archive) {
-    const std::string key = dataset_.name + "/" + archive.file;
-    datasets::DownloadRequest request = request_of(archive);
-    const DataLock lock = read_data_lock(options_.root);
-    const auto locked = lock.files.find(key);
-    const bool is_published = !archive.sha256.empty() || !archive.md5.empty();
-    if (request.sha256.empty() && locked != lock.files.end()) request.sha256 = locked->second.sha256;
-    const std::string name = request.file.filename().string();
-    const auto downloaded = datasets::download(request, control_.step("downloading " + name));
-    if (!downloaded) return false;
-    if (locked == lock.files.end()) {
-      lock_file(options_.root, key,
-                {.bytes = downloaded->digests.bytes,
-                 .sha256 = downloaded->digests.sha256,
-                 .url = downloaded->url,
-                 .date = utc_now(),
-                 .published = is_published});
-      if (!is_published)
-        control_.report(
-            fmt::format("{}: no digest is published; SHA-256 {} is recorded and required from now on", name,
-                        downloaded->digests.sha256));
-    }
-    return extract(request.file);
+    if (!download_locked(dataset_, archive, options_, control_)) return false;
+    return extract(download_path(options_.root, dataset_, archive.file));
   }
 
   bool extract(const fs::path& file) {
@@ -168,6 +127,13 @@ void require_addresses(const CatalogueEntry& entry, const std::string& mirror) {
                              : "cannot be fetched by a program: " + dataset.manual);
 }
 
+/// @return false if stopped
+bool fetch_entry(const CatalogueEntry& entry, const FetchOptions& options, const FetchControl& control) {
+  if (entry.dataset->layout == kDetectorLayout) return fetch_detector(*entry.dataset, options, control);
+  if (is_available(*entry.dataset, *entry.sequence)) return true;
+  return ArchiveFetch(entry, options, control).run();
+}
+
 }  // namespace
 
 fs::path download_root() {
@@ -185,18 +151,26 @@ bool is_available(const CatalogueDataset& dataset, const CatalogueSequence& sequ
   return found != registry.end() && fs::exists(found->folder, ignored);
 }
 
-bool fetch_sequences(const std::vector<CatalogueEntry>& entries, const FetchOptions& options,
-                     const FetchControl& control) {
+FetchResult fetch_sequences(const std::vector<CatalogueEntry>& entries, const FetchOptions& options,
+                            const FetchControl& control) {
   if (!unaccepted_licences(entries, options.root).empty())
     throw InputError("licence", "has not been accepted; specify --accept-licence");
   for (const CatalogueEntry& entry : entries) {
     if (!is_available(*entry.dataset, *entry.sequence)) require_addresses(entry, options.mirror);
   }
+  FetchResult result;
+  std::set<std::vector<std::string>> failed;  // archives; several sequences may need the same ones
   for (const CatalogueEntry& entry : entries) {
-    if (is_available(*entry.dataset, *entry.sequence)) continue;
-    if (!ArchiveFetch(entry, options, control).run()) return false;
+    if (failed.contains(entry.sequence->archives)) continue;
+    try {
+      result.stopped = !fetch_entry(entry, options, control);
+    } catch (const InputError& error) {
+      result.problems.emplace_back(error.what());
+      failed.insert(entry.sequence->archives);
+    }
+    if (result.stopped) break;
   }
-  return true;
+  return result;
 }
 
 std::vector<const CatalogueDataset*> unaccepted_licences(const std::vector<CatalogueEntry>& entries,

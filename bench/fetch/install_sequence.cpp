@@ -2,7 +2,6 @@
 #include "bench/fetch/install_sequence.h"
 
 #include <algorithm>
-#include <memory>
 
 #include <fmt/format.h>
 
@@ -19,32 +18,17 @@ namespace fs = std::filesystem;
 using datasets::CatalogueDataset;
 using datasets::CatalogueSequence;
 
-/// Where the archives contain the sequence. Some archives have no top folder.
-fs::path extracted_folder(const CatalogueDataset& dataset, const CatalogueSequence& sequence,
-                          const fs::path& staging) {
-  if (fs::exists(staging / sequence.folder)) return staging / sequence.folder;
-  const auto users = std::ranges::count_if(
-      dataset.sequences, [&](const CatalogueSequence& other) { return other.archives == sequence.archives; });
-  if (users == 1 && !fs::is_empty(staging)) {
-    const fs::path folder = staging / ".content";
-    fs::create_directory(folder);
-    for (const fs::directory_entry& entry : fs::directory_iterator(staging)) {
-      if (entry.path() != folder) fs::rename(entry.path(), folder / entry.path().filename());
-    }
-    return folder;
-  }
-  throw InputError(datasets::catalogue_name(dataset, sequence),
-                   "its archives do not contain \"" + sequence.folder +
-                       "\"; the host has changed them, or the catalogue is wrong: correct the folder there");
-}
-
-/// Opens the sequence. @return what was found, for the user
+/// Opens the sequence. @return its format
 std::string validated(const CatalogueDataset& dataset, const fs::path& folder) {
   if (fs::is_regular_file(folder)) return dataset.layout;
-  const fs::path rig = folder / "rig.toml";
-  if (!dataset.rig.empty() && !fs::exists(rig)) write_files(folder, {{"rig.toml", dataset.rig}});
-  const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(folder);
-  return stream->info().format;
+  return datasets::open_sequence(folder)->info().format;
+}
+
+/// The calibration of the catalogue, for formats without one.
+fs::path with_rig(const fs::path& folder, const std::string& rig) {
+  if (!rig.empty() && fs::is_directory(folder) && !fs::exists(folder / "rig.toml"))
+    write_files(folder, {{"rig.toml", rig}});
+  return folder;
 }
 
 /// Moves `from` to `to`, unless an equal one is there.
@@ -61,9 +45,28 @@ void move_sequence(const fs::path& from, const fs::path& to, const std::string& 
 
 }  // namespace
 
-std::string install_sequence(const CatalogueDataset& dataset, const CatalogueSequence& sequence,
-                             const fs::path& staging, const fs::path& folder) {
-  const fs::path extracted = extracted_folder(dataset, sequence, staging);
+fs::path extracted_folder(const InstalledSequence& place) {
+  const auto& [dataset, sequence, staging, dataset_folder] = place;
+  if (fs::exists(staging / sequence.folder)) return with_rig(staging / sequence.folder, dataset.rig);
+  const auto users = std::ranges::count_if(dataset.sequences, [&](const CatalogueSequence& other) {
+    return other.archives == place.sequence.archives;
+  });
+  const fs::path folder = staging / ".content";
+  if (users == 1 && !fs::is_empty(staging)) {
+    fs::create_directory(folder);  // exists after the first call
+    for (const fs::directory_entry& entry : fs::directory_iterator(staging)) {
+      if (entry.path() != folder) fs::rename(entry.path(), folder / entry.path().filename());
+    }
+    return with_rig(folder, dataset.rig);
+  }
+  throw InputError(datasets::catalogue_name(dataset, sequence),
+                   "its archives do not contain \"" + sequence.folder +
+                       "\"; the host has changed them, or the catalogue is wrong: correct the folder there");
+}
+
+std::string install_sequence(const InstalledSequence& place) {
+  const auto& [dataset, sequence, staging, folder] = place;
+  const fs::path extracted = extracted_folder(place);
   const std::string format = validated(dataset, extracted);
   const std::string checksum = sequence_checksum(extracted);
   const fs::path target = folder / sequence.folder;

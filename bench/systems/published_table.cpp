@@ -40,6 +40,23 @@ struct PublishedReader {
     return row;
   }
 
+  /// The names of the recordings, and the values of all rows under these names as well.
+  [[nodiscard]] PublishedTable with_recordings(PublishedTable table, const toml::table& root) const {
+    const toml::table* recordings = root["recordings"].as_table();
+    if (recordings == nullptr) return table;
+    for (const auto& [name, recording] : *recordings) {
+      if (!recording.is_string()) fail(recording, fmt::format("\"{}\" must be a string", name.str()));
+      table.recordings[std::string(name.str())] = recording.as_string()->get();
+    }
+    for (PublishedRow& row : table.rows) {
+      for (const auto& [name, recording] : table.recordings) {
+        const auto value = row.values.find(name);
+        if (value != row.values.end()) row.values[recording] = value->second;
+      }
+    }
+    return table;
+  }
+
   [[nodiscard]] PublishedTable table(const toml::table& root) const {
     PublishedTable table{.name = std::filesystem::path(place).stem().string(),
                          .title = text(root, "title"),
@@ -61,7 +78,7 @@ struct PublishedReader {
         }
       }
     }
-    return table;
+    return with_recordings(std::move(table), root);
   }
 };
 

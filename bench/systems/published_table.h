@@ -11,9 +11,10 @@ namespace stillpoint::bench {
 
 struct PublishedRow {
   std::string system;
-  std::string source;                    ///< short name, a key of `PublishedTable::sources`
-  std::string note;                      ///< remark on the row; may be empty
-  std::map<std::string, double> values;  ///< by sequence, or by module in cost tables
+  std::string source;  ///< short name, a key of `PublishedTable::sources`
+  std::string note;    ///< remark on the row; may be empty
+  /// By sequence, under the name of the table and that of the registered recording; by module in cost tables.
+  std::map<std::string, double> values;
 };
 
 /// A file of reports/published/.
@@ -25,6 +26,7 @@ struct PublishedTable {
   std::string alignment;                   ///< trajectory alignment used for the results
   std::vector<std::string> comparability;  ///< limits of comparability, one sentence each
   std::map<std::string, std::string> sources;
+  std::map<std::string, std::string> recordings;  ///< registered name by name in the table: [recordings]
   std::vector<PublishedRow> rows;
 };
 

@@ -49,9 +49,9 @@ struct CatalogueDataset {
 ///     name, folder (default "{}"), files = ["x/{}.tgz"], group
 ///   [archives."x/a.tgz"]            bytes, sha256, md5, urls = ["https://other/host"] (complete addresses)
 /// @param place name of the text in messages
-/// @throws InputError with file and line if the text is not valid TOML, a key is unknown, a value has the
-/// wrong type, a name or digest is malformed, an address is not http(s), a path leaves its folder, or a name
-/// occurs twice
+/// @throws InputError with file and line if the text is not ASCII or not valid TOML, a key is unknown, a
+/// value has the wrong type, a name or digest is malformed, an address is not http(s), a path leaves its
+/// folder, or a name occurs twice
 [[nodiscard]] CatalogueDataset parse_catalogue(std::string_view text, const std::string& place);
 
 /// The archive with this file name.

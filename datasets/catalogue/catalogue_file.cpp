@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -212,9 +212,22 @@ CatalogueDataset read_dataset(const CatalogueReader& reader, const toml::table& 
   return dataset;
 }
 
+/// toml++ 3.3 has undefined behavior for a NUL byte after "[", and for some characters that are not ASCII.
+void require_ascii(std::string_view text, const std::string& place) {
+  const auto is_text = [](unsigned char c) {
+    return (c >= 0x20 && c < 0x7f) || c == '\n' || c == '\r' || c == '\t';
+  };
+  const auto found = std::ranges::find_if_not(text, is_text);
+  if (found == text.end()) return;
+  throw InputError(place, 1 + std::count(text.begin(), found, '\n'),
+                   fmt::format("contains the byte 0x{:02x}; write only ASCII characters, others as in LaTeX",
+                               static_cast<unsigned char>(*found)));
+}
+
 }  // namespace
 
 CatalogueDataset parse_catalogue(std::string_view text, const std::string& place) {
+  require_ascii(text, place);
   try {
     const toml::table root = toml::parse(text, place);
     return read_dataset(CatalogueReader(place), root);

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "eval/io/bag_file.h"
 #include "eval/io/matrix_files.h"
+#include "eval/io/nmea_file.h"
 #include "eval/io/openloris_file.h"
 #include "eval/io/text_reader.h"
 #include "eval/io/text_table.h"
@@ -32,6 +33,7 @@ LoadedTrajectory one_sequence(OpenlorisFile file, const TrajectorySource& source
 }  // namespace
 
 TrajectoryFormat detect_format(std::string_view text) {
+  if (is_nmea(text)) return TrajectoryFormat::kNmea;
   RowReader rows(text, "");
   while (const std::optional<TextRow> row = rows.next()) {
     if (row->content.find(':') != std::string_view::npos) return TrajectoryFormat::kOpenloris;
@@ -64,6 +66,8 @@ LoadedTrajectory read_trajectory(const TrajectorySource& source) {
         throw InputError(name, "KITTI poses have no time stamps; specify their file with --times");
       }
       return parse_kitti(text, name, read_text_file(source.times), source.times.string());
+    case TrajectoryFormat::kNmea:
+      return parse_nmea(text, name);
     default:
       return parse_tum(text, name);
   }

@@ -11,13 +11,14 @@
 
 namespace stillpoint::eval {
 
-enum class TrajectoryFormat { kTum, kEuroc, kKitti, kOpenloris, kSevenScenes };
+enum class TrajectoryFormat { kTum, kEuroc, kKitti, kOpenloris, kSevenScenes, kNmea };
 constexpr auto enum_names(TrajectoryFormat) {
-  return EnumNames<TrajectoryFormat, 5>{{{TrajectoryFormat::kTum, "tum"},
+  return EnumNames<TrajectoryFormat, 6>{{{TrajectoryFormat::kTum, "tum"},
                                          {TrajectoryFormat::kEuroc, "euroc"},
                                          {TrajectoryFormat::kKitti, "kitti"},
                                          {TrajectoryFormat::kOpenloris, "openloris"},
-                                         {TrajectoryFormat::kSevenScenes, "7scenes"}}};
+                                         {TrajectoryFormat::kSevenScenes, "7scenes"},
+                                         {TrajectoryFormat::kNmea, "nmea"}}};
 }
 
 struct TrajectorySource {
@@ -27,9 +28,9 @@ struct TrajectorySource {
   int sequence = 0;                                       ///< sequence number, for OpenLORIS; 0: the only one
 };
 
-/// Reads a trajectory. Format detection: a folder is 7-Scenes; a file with a "key: value" line is OpenLORIS;
-/// rows of 12 numbers are KITTI; rows whose first field is an integer of 16 digits or more are EuRoC; other
-/// rows are TUM.
+/// Reads a trajectory. Format detection: a folder is 7-Scenes; a file that begins with a sentence is NMEA; a
+/// file with a "key: value" line is OpenLORIS; rows of 12 numbers are KITTI; rows whose first field is an
+/// integer of 16 digits or more are EuRoC; other rows are TUM.
 /// @throws InputError for unreadable or malformed input, KITTI without times, or several sequences without a
 /// sequence number
 [[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+
+#include <fmt/format.h>
 
 #include "bench/model/metrics.h"
 #include "bench/systems/published_table.h"
@@ -74,13 +77,23 @@ TableCell difference_cell(const TableCell& ours, const TableCell& published) {
   return cell;
 }
 
+/// The runs of a variant on a sequence: a rendered one, or the recording.
+std::vector<const bench::StoredRun*> own_runs(std::span<const bench::StoredRun> runs,
+                                              const PaperSystem& system, const std::string& sequence,
+                                              const bench::PublishedTable& published) {
+  const std::vector<const bench::StoredRun*> rendered = runs_of(runs, system.variant, sequence);
+  const auto recording = published.recordings.find(sequence);
+  if (!rendered.empty() || recording == published.recordings.end()) return rendered;
+  return runs_of(runs, system.variant, recording->second);
+}
+
 /// Published, ours and difference of one sequence.
 std::vector<TableRow> sequence_rows(std::span<const bench::StoredRun> runs, const std::string& sequence,
                                     const PaperMetrics& metrics, std::span<const PaperSystem> systems) {
   std::vector<TableRow> rows = {
       {sequence, "published", {}}, {sequence, "ours", {}}, {sequence, "difference", {}}};
   for (const PaperSystem& system : systems) {
-    const auto own = runs_of(runs, system.variant, sequence);
+    const auto own = own_runs(runs, system, sequence, metrics.front().published);
     for (std::size_t i = 0; i < metrics.size(); ++i) {
       rows[0].cells.push_back(published_cell(metrics, i, system, sequence));
       rows[1].cells.push_back(metric_cell(own, metrics[i].metric->id));
@@ -88,6 +101,43 @@ std::vector<TableRow> sequence_rows(std::span<const bench::StoredRun> runs, cons
     }
   }
   return rows;
+}
+
+/// Means over the sequences with a number in each column of "ours" that has any. Sequences without data
+/// remain in the table but not in the means; the label tells how many are left. Empty without such a
+/// sequence.
+std::vector<TableRow> mean_rows(const std::vector<TableRow>& rows) {
+  constexpr std::size_t kRowsPerSequence = 3;
+  const std::size_t columns = rows.front().cells.size();
+  const auto has_number = [&](std::size_t row, std::size_t column) {
+    return rows[row].cells[column].number.has_value();
+  };
+  std::vector<std::size_t> complete;
+  for (std::size_t first = 0; first < rows.size(); first += kRowsPerSequence) {
+    bool is_complete = false;
+    for (std::size_t column = 0; column < columns; ++column) {
+      bool is_used = false;
+      for (std::size_t other = 1; other < rows.size(); other += kRowsPerSequence)
+        is_used = is_used || has_number(other, column);
+      if (is_used) is_complete = has_number(first + 1, column);
+      if (is_used && !is_complete) break;
+    }
+    if (is_complete) complete.push_back(first);
+  }
+  if (complete.empty()) return {};
+  std::vector<TableRow> means;
+  for (std::size_t kind = 0; kind < kRowsPerSequence; ++kind) {
+    TableRow& mean = means.emplace_back(
+        TableRow{fmt::format("mean of {} of {} sequences", complete.size(), rows.size() / kRowsPerSequence),
+                 rows[kind].source,
+                 {}});
+    for (std::size_t column = 0; column < columns; ++column) {
+      std::vector<TableCell> cells;
+      for (const std::size_t first : complete) cells.push_back(rows[first + kind].cells[column]);
+      mean.cells.push_back(mean_cell(cells));
+    }
+  }
+  return means;
 }
 
 /// The row with the best system of each metric marked.
@@ -114,11 +164,12 @@ ReportTable accuracy_table(ReportTable table, std::span<const bench::StoredRun> 
                                .decimals = 4,
                                .tooltip = bench::tooltip(*metric.metric)});
   }
-  for (const char* sequence : kSequences) {
-    for (TableRow& row : sequence_rows(runs, sequence, metrics, systems)) {
-      table.rows.push_back(row.source == "difference" ? std::move(row) : with_best_systems(std::move(row)));
-    }
-  }
+  std::vector<TableRow> rows;
+  for (const char* sequence : kSequences)
+    std::ranges::move(sequence_rows(runs, sequence, metrics, systems), std::back_inserter(rows));
+  std::ranges::move(mean_rows(rows), std::back_inserter(rows));
+  for (TableRow& row : rows)
+    table.rows.push_back(row.source == "difference" ? std::move(row) : with_best_systems(std::move(row)));
   table.notes.emplace_back("Published rows, bold: best number of a row. Difference: ours minus published.");
   table.notes.emplace_back("Rows \"ours\": medians over runs.");
   if (std::string note = best_note(table, "row", false); !note.empty())

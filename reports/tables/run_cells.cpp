@@ -114,6 +114,17 @@ TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs, const std:
   });
 }
 
+TableCell mean_cell(std::span<const TableCell> cells) {
+  TableCell mean{.number = 0.0, .state = CellState::kOk};
+  for (const TableCell& cell : cells) {
+    if (!cell.number) return {};
+    *mean.number += *cell.number / static_cast<double>(cells.size());
+    mean.is_suspicious = mean.is_suspicious || cell.is_suspicious;
+    if (mean.note.empty()) mean.note = cell.note;
+  }
+  return cells.empty() ? TableCell{} : mean;
+}
+
 std::vector<const bench::StoredRun*> runs_of(std::span<const bench::StoredRun> runs, const std::string& label,
                                              const std::string& sequence) {
   std::vector<const bench::StoredRun*> found;

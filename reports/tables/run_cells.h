@@ -40,6 +40,9 @@ using RunNumber = std::function<std::optional<double>(const bench::StoredRun&)>;
 [[nodiscard]] TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs,
                                   const std::string& module);
 
+/// The mean of cells that all have a number; else an empty cell. It is suspicious if one of them is.
+[[nodiscard]] TableCell mean_cell(std::span<const TableCell> cells);
+
 /// Runs of a label on a sequence, outside sweeps; an empty sequence matches all.
 [[nodiscard]] std::vector<const bench::StoredRun*> runs_of(std::span<const bench::StoredRun> runs,
                                                            const std::string& label,

@@ -19,6 +19,7 @@
 #include "eval/io/any_trajectory.h"
 #include "eval/trajectory/overlap.h"
 #include "reports/drawing/drawing_file.h"
+#include "reports/drawing/local_map.h"
 #include "reports/drawing/trajectory_plot.h"
 #include "reports/text/evaluation_json.h"
 #include "reports/text/evaluation_table.h"
@@ -49,6 +50,7 @@ struct EvalArguments {
   bool csv = false;
   bool markdown = false;
   std::string plot;
+  std::string map;
   std::string per_pose;
   bool force = false;
 };
@@ -186,11 +188,11 @@ void print_tables(const EvalArguments& arguments, const Trajectory& gt,
   }
 }
 
-report::Drawing plot_of(const Trajectory& gt, const std::vector<report::EvaluatedRun>& runs) {
+std::vector<report::PlottedRun> plotted_runs(const std::vector<report::EvaluatedRun>& runs) {
   std::vector<report::PlottedRun> plotted;
   for (const report::EvaluatedRun& run : runs)
     plotted.push_back({run.name, &run.est, &run.evaluations.front()});
-  return report::trajectory_plot(gt, plotted);
+  return plotted;
 }
 
 /// What --plot and --per-pose must not overwrite.
@@ -217,6 +219,7 @@ int evaluate_files(const EvalArguments& arguments) {
   }
   const OutputRules rules = output_rules(arguments);
   if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules);
+  if (!arguments.map.empty()) report::require_drawing_file(arguments.map, rules);
   if (!arguments.per_pose.empty()) require_safe_output(arguments.per_pose, rules);
   const eval::LoadedTrajectory truth = load(arguments, arguments.ground_truth);
   const Trajectory& gt = truth.trajectory;
@@ -228,7 +231,11 @@ int evaluate_files(const EvalArguments& arguments) {
   }
   if (arguments.find_offset) print_offsets(gt, runs);
   if (!arguments.plot.empty())
-    report::write_drawing(arguments.plot, plot_of(gt, runs), kPlotPixelsPerUnit, rules);
+    report::write_drawing(arguments.plot, report::trajectory_plot(gt, plotted_runs(runs)), kPlotPixelsPerUnit,
+                          rules);
+  if (!arguments.map.empty())
+    report::write_drawing(arguments.map, report::local_map(gt, plotted_runs(runs)), kPlotPixelsPerUnit,
+                          rules);
   if (!arguments.per_pose.empty()) write_output(arguments.per_pose, report::per_pose_csv(runs), rules);
   return kExitOk;
 }
@@ -260,6 +267,8 @@ std::vector<Option> options_of(EvalArguments& a) {
       {"--json", "Print JSON with full precision", &a.json},
       {"--csv", "Print CSV", &a.csv},
       {"--markdown", "Print Markdown", &a.markdown},
+      {"--map", "Write a plan with scale and north arrow; GT may be NMEA sentences of a GNSS receiver",
+       &a.map},
       {"--plot", "Write a plot of trajectories and errors (.svg, .pdf or .png)", &a.plot},
       {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
       {"--force", "Replace existing files of --plot and --per-pose", &a.force}};

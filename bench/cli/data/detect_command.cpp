@@ -9,6 +9,7 @@
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
 #include "bench/config/config_file.h"
+#include "bench/fetch/box_recording.h"
 #include "bench/plan/sequence_argument.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/output_guard.h"
@@ -47,18 +48,6 @@ OdometryConfig config_of(const DetectArguments& arguments) {
   return config;
 }
 
-/// Detections of a frame; state `kNone` if its image cannot be read.
-DetectionSet detect_frame(const datasets::SensorStream& stream, std::size_t index, ObjectDetector& detector) {
-  Frame frame;
-  try {
-    frame = stream.load_frame(index);
-  } catch (const InputError& error) {
-    std::cerr << "stillpoint: warning: frame " << index << " skipped: " << error.what() << "\n";
-    return {.t = stream.info().frame_times[index], .state = DetectionState::kNone, .detections = {}};
-  }
-  return detector.detect(frame);
-}
-
 void print_summary(const ObjectDetector& detector, const fs::path& file) {
   const DetectorCounters& counters = detector.counters();
   std::cout << fmt::format("{} boxes in {} frames, {} clipped to the image, {} rejected ({})\n  {}\n",
@@ -88,13 +77,17 @@ int detect(const DetectArguments& arguments) {
   const std::size_t frames = max_frames == 0 ? available : std::min(available, max_frames);
   std::vector<DetectionSet> sets;
   {
-    ProgressLine progress("detecting in " + stream->info().name, frames, "frames");
-    for (std::size_t i = 0; i < frames; ++i) {
-      if (interrupt_requested()) return kExitInterrupted;
-      sets.push_back(detect_frame(*stream, i, *detector));
-      progress.update(i + 1);
-    }
+    ProgressLine line("detecting in " + stream->info().name, frames, "frames");
+    sets = detect_boxes(*stream, *detector, frames,
+                        {.stop = interrupt_requested,
+                         .progress = [&line](std::size_t done) { line.update(done); },
+                         .skipped =
+                             [](std::size_t frame, const std::string& problem) {
+                               std::cerr << "stillpoint: warning: frame " << frame << " skipped: " << problem
+                                         << "\n";
+                             }});
   }
+  if (sets.size() < frames) return kExitInterrupted;
   write_output(file, datasets::detections_text(sets), rules);
   print_summary(*detector, file);
   return kExitOk;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
 #include "bench/fetch/data_lock.h"
+#include "bench/plan/bench_plan.h"
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
 
@@ -81,13 +84,16 @@ FetchControl FetchProgress::control() {
   return {.step = step, .report = report};
 }
 
+namespace {
+
+/// Prints each licence that has not been accepted, and records its acceptance.
 void accept_licences(const std::vector<datasets::CatalogueEntry>& entries, const std::filesystem::path& root,
-                     bool accepted_by_option) {
+                     LicenceAnswer answer_by_option) {
   std::filesystem::create_directories(root);
   for (const datasets::CatalogueDataset* dataset : unaccepted_licences(entries, root)) {
     std::cout << fmt::format("{}\n  licence: {}\n  {}\n", dataset->title, dataset->licence, dataset->homepage)
               << std::flush;
-    if (!accepted_by_option) {
+    if (answer_by_option == LicenceAnswer::kAsk) {
       const std::string problem =
           "the licence \"" + dataset->licence + "\" has not been accepted; specify --accept-licence";
       if (isatty(STDIN_FILENO) != 1) throw InputError(dataset->name, problem);
@@ -98,6 +104,57 @@ void accept_licences(const std::vector<datasets::CatalogueEntry>& entries, const
     }
     lock_licence(root, dataset->name);
   }
+}
+
+/// One line about what will be downloaded.
+void print_selection(const std::vector<datasets::CatalogueEntry>& entries,
+                     const std::filesystem::path& root) {
+  std::size_t available = 0;
+  std::set<std::string> counted;
+  std::uint64_t bytes = 0;
+  bool has_unknown = false;
+  for (const datasets::CatalogueEntry& entry : entries) {
+    if (is_available(*entry.dataset, *entry.sequence)) {
+      ++available;
+      continue;
+    }
+    for (const std::string& file : entry.sequence->archives) {
+      if (!counted.insert(entry.dataset->name + "/" + file).second) continue;
+      const std::uint64_t size = datasets::archive_of(*entry.dataset, file).bytes;
+      bytes += size;
+      has_unknown = has_unknown || size == 0;
+    }
+  }
+  std::cout << fmt::format("{} sequences, {} available; {} archives to download to {}", entries.size(),
+                           available, counted.size(), root.string());
+  if (bytes > 0) std::cout << (has_unknown ? ", more than " : ", ") << datasets::size_text(bytes);
+  std::cout << "\n" << std::flush;
+}
+
+}  // namespace
+
+std::vector<datasets::CatalogueEntry> plan_entries(
+    const std::string& plan, const std::vector<datasets::CatalogueDataset>& catalogues) {
+  std::vector<datasets::CatalogueEntry> entries;
+  for (const std::string& pattern : load_plan(plan).recorded.sequences) {
+    for (const datasets::CatalogueEntry& entry : datasets::matching_entries(catalogues, pattern))
+      entries.push_back(entry);
+  }
+  if (entries.empty()) throw InputError("plan \"" + plan + "\"", "has no sequences of the catalogue");
+  return entries;
+}
+
+FetchResult fetch_with_progress(const std::vector<datasets::CatalogueEntry>& entries, FetchOptions options,
+                                LicenceAnswer licence) {
+  if (options.root.empty()) options.root = download_root();
+  const char* mirror = std::getenv("STILLPOINT_MIRROR");
+  if (options.mirror.empty() && mirror != nullptr) options.mirror = mirror;
+  accept_licences(entries, options.root, licence);
+  print_selection(entries, options.root);
+  FetchProgress progress;
+  FetchResult result = fetch_sequences(entries, options, progress.control());
+  if (result.stopped) std::cout << "interrupted; run the command again to continue\n";
+  return result;
 }
 
 }  // namespace stillpoint::bench

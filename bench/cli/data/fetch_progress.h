@@ -2,7 +2,6 @@
 /// Console output while sequences are fetched.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,10 +27,19 @@ class FetchProgress {
   std::unique_ptr<ByteProgress> line_;
 };
 
-/// Prints each licence that has not been accepted, and records its acceptance.
-/// @param accepted_by_option else the user is asked on a terminal
-/// @throws InputError if it is not accepted
-void accept_licences(const std::vector<datasets::CatalogueEntry>& entries, const std::filesystem::path& root,
-                     bool accepted_by_option);
+enum class LicenceAnswer {
+  kAccepted,  ///< by an option of the command
+  kAsk,       ///< on a terminal
+};
+
+/// The sequences of a plan that the catalogue has.
+/// @throws InputError as `load_plan`
+[[nodiscard]] std::vector<datasets::CatalogueEntry> plan_entries(
+    const std::string& plan, const std::vector<datasets::CatalogueDataset>& catalogues);
+
+/// Prints licences that have not been accepted, and what is missing; then fetches it.
+/// @throws InputError if a licence is not accepted, and as `fetch_sequences`
+[[nodiscard]] FetchResult fetch_with_progress(const std::vector<datasets::CatalogueEntry>& entries,
+                                              FetchOptions options, LicenceAnswer licence);
 
 }  // namespace stillpoint::bench

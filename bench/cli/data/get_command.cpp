@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
 #include <memory>
-#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
@@ -13,10 +12,8 @@
 #include "bench/cli/interrupt.h"
 #include "bench/config/spelling.h"
 #include "bench/fetch/fetch_sequences.h"
-#include "bench/plan/bench_plan.h"
 #include "bench/plan/dataset_catalogue.h"
 #include "core/base/error.h"
-#include "datasets/cache/cache_space.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -28,29 +25,19 @@ struct GetArguments {
   std::string mirror;
   bool accept_licence = false;
   bool keep_archives = false;
+  bool boxes = false;
   int attempts = 5;
   int stall_timeout_s = 30;
   double backoff_s = 1.0;
 };
 
-/// The sequences of a plan that the catalogue has.
-std::vector<std::string> patterns_of_plan(const std::string& plan,
-                                          const std::vector<datasets::CatalogueDataset>& catalogues) {
-  std::vector<std::string> patterns;
-  for (const std::string& pattern : load_plan(plan).recorded.sequences) {
-    if (!datasets::matching_entries(catalogues, pattern).empty()) patterns.push_back(pattern);
-  }
-  if (patterns.empty()) throw InputError("--for " + plan, "this plan has no sequences of the catalogue");
-  return patterns;
-}
-
 std::vector<datasets::CatalogueEntry> selected_entries(
     const GetArguments& arguments, const std::vector<datasets::CatalogueDataset>& catalogues) {
-  std::vector<std::string> patterns = arguments.sequences;
-  if (!arguments.plan.empty()) patterns = patterns_of_plan(arguments.plan, catalogues);
-  if (patterns.empty()) throw InputError("data get", "requires the name of a sequence, or --for PLAN");
+  if (!arguments.plan.empty()) return plan_entries(arguments.plan, catalogues);
+  if (arguments.sequences.empty())
+    throw InputError("data get", "requires the name of a sequence, or --for PLAN");
   std::vector<datasets::CatalogueEntry> entries;
-  for (const std::string& pattern : patterns) {
+  for (const std::string& pattern : arguments.sequences) {
     const std::vector<datasets::CatalogueEntry> found = datasets::matching_entries(catalogues, pattern);
     if (found.empty()) {
       std::vector<std::string> names;
@@ -71,50 +58,25 @@ std::vector<datasets::CatalogueEntry> selected_entries(
   return entries;
 }
 
-/// One line about what will be downloaded.
-void print_selection(const std::vector<datasets::CatalogueEntry>& entries,
-                     const std::filesystem::path& root) {
-  std::size_t available = 0;
-  std::set<std::string> counted;
-  std::uint64_t bytes = 0;
-  bool has_unknown = false;
-  for (const datasets::CatalogueEntry& entry : entries) {
-    if (is_available(*entry.dataset, *entry.sequence)) {
-      ++available;
-      continue;
-    }
-    for (const std::string& file : entry.sequence->archives) {
-      if (!counted.insert(entry.dataset->name + "/" + file).second) continue;
-      const std::uint64_t size = datasets::archive_of(*entry.dataset, file).bytes;
-      bytes += size;
-      has_unknown = has_unknown || size == 0;
-    }
-  }
-  std::cout << fmt::format("{} sequences, {} available; {} archives to download to {}", entries.size(),
-                           available, counted.size(), root.string());
-  if (bytes > 0) std::cout << (has_unknown ? ", more than " : ", ") << datasets::size_text(bytes);
-  std::cout << "\n" << std::flush;
-}
-
 int get(const GetArguments& arguments) {
   install_interrupt_handlers();
   const std::vector<datasets::CatalogueDataset> catalogues = load_catalogues();
   const std::vector<datasets::CatalogueEntry> entries = selected_entries(arguments, catalogues);
-  FetchOptions options{.root = arguments.to.empty() ? download_root() : std::filesystem::path(arguments.to),
-                       .mirror = arguments.mirror,
-                       .keep_archives = arguments.keep_archives,
-                       .attempts = arguments.attempts,
-                       .first_backoff_s = arguments.backoff_s,
-                       .stall_timeout_s = arguments.stall_timeout_s,
-                       .limits = {}};
-  if (const char* mirror = std::getenv("STILLPOINT_MIRROR"); options.mirror.empty() && mirror != nullptr)
-    options.mirror = mirror;
-  accept_licences(entries, options.root, arguments.accept_licence);
-  print_selection(entries, options.root);
-  FetchProgress progress;
-  if (!fetch_sequences(entries, options, progress.control())) {
-    std::cout << "interrupted; run the command again to continue\n";
-    return kExitInterrupted;
+  const FetchOptions options{.root = arguments.to,
+                             .mirror = arguments.mirror,
+                             .keep_archives = arguments.keep_archives,
+                             .attempts = arguments.attempts,
+                             .first_backoff_s = arguments.backoff_s,
+                             .stall_timeout_s = arguments.stall_timeout_s,
+                             .limits = {},
+                             .record_boxes = arguments.boxes};
+  const LicenceAnswer licence = arguments.accept_licence ? LicenceAnswer::kAccepted : LicenceAnswer::kAsk;
+  const FetchResult result = fetch_with_progress(entries, options, licence);
+  if (result.stopped) return kExitInterrupted;
+  if (result.problems.size() == 1) throw InputError(result.problems.front());
+  if (!result.problems.empty()) {
+    throw InputError(fmt::format("{} downloads failed:\n  {}", result.problems.size(),
+                                 fmt::join(result.problems, "\n  ")));
   }
   std::cout << fmt::format("{} sequences are available\n", entries.size());
   return kExitOk;
@@ -142,6 +104,8 @@ Command get_command() {
            {"--accept-licence", "Accept the licences of the datasets; they are printed",
             &arguments->accept_licence},
            {"--keep-archives", "Keep the archives after extraction", &arguments->keep_archives},
+           {"--boxes", "Also download a detection network, and record its boxes in new sequences",
+            &arguments->boxes},
            {"--attempts", "Attempts per address without progress [5]", &arguments->attempts, {1, 1000}},
            {"--stall-timeout",
             "Seconds below 1 kB/s after which an attempt ends [30]",

@@ -2,20 +2,26 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
+#include "bench/cli/data/fetch_progress.h"
 #include "bench/cli/interrupt.h"
+#include "bench/cli/plan/openloris_results.h"
 #include "bench/cli/plan/plan_progress.h"
+#include "bench/model/metrics.h"
+#include "bench/plan/dataset_catalogue.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/output_guard.h"
 #include "bench/systems/own_odometry.h"
+#include "bench/systems/published_table.h"
 #include "core/base/error.h"
 #include "reports/page/report_page.h"
+#include "reports/tables/dataset_table.h"
 #include "reports/tables/formats/table_formats.h"
 #include "reports/tables/paper_tables.h"
 #include "reports/tables/result_tables.h"
@@ -31,28 +37,24 @@ struct ReproduceArguments {
   std::string out = "build/reproduce";
   bool synthetic = false;
   bool real = false;
+  bool get = false;
+  bool accept_licence = false;
+  std::string mirror;
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 };
 
-/// A table or figure of the paper, and the plans that reproduce it.
+/// A table or figure, and the plans that reproduce it.
 struct Target {
   const char* name;
-  const char* synthetic_plan;
-  const char* real_plan;  ///< empty = none
-  const char* real_data;  ///< required data set, and how to obtain it
+  const char* synthetic_plan;  ///< empty = none
+  const char* real_plan;
 };
-constexpr const char* kTumData =
-    "the fr3_walking sequences of the TUM RGB-D dataset; unpack them and register each one with `stillpoint "
-    "data "
-    "add walking_xyz DIR`";
-constexpr const char* kOpenlorisData =
-    "the OpenLORIS-Scene recordings, which are available on request; run `stillpoint run` on each, and "
-    "`stillpoint "
-    "eval openloris` on the results";
-constexpr Target kTargets[] = {{"table1", "table1_tum_synthetic", "table1_tum", kTumData},
-                               {"table2", "table2_ablation_synthetic", "table2_ablation", kTumData},
-                               {"table3", "table3_runtime", "", kOpenlorisData},
-                               {"openloris", "openloris_synthetic", "", kOpenlorisData}};
+constexpr Target kTargets[] = {{"table1", "table1_tum_synthetic", "table1_tum"},
+                               {"table2", "table2_ablation_synthetic", "table2_ablation"},
+                               {"table3", "table3_runtime", "table3_runtime_real"},
+                               {"openloris", "openloris_synthetic", "openloris"},
+                               {"bonn", "", "bonn"},
+                               {"vcu_rvi", "", "vcu_rvi"}};
 
 std::vector<Target> select_targets(const std::string& name) {
   std::vector<Target> targets;
@@ -71,14 +73,34 @@ void print_missing_data(const Target& target, const PlanMatrix& matrix) {
   for (const PlanSequence& sequence : matrix.sequences) {
     if (!sequence.unavailable_reason.empty()) missing += "  " + sequence.unavailable_reason + "\n";
   }
-  if (missing.empty() && !matrix.runs.empty()) return;
-  std::cout << fmt::format("{}: missing data:\n{}It requires {}.\n\n", target.name, missing,
-                           target.real_data);
+  if (missing.empty()) return;
+  std::cout << fmt::format("{}: missing data:\n{}`stillpoint data get --for {}` fetches all of it.\n\n",
+                           target.name, missing, matrix.plan.name);
+}
+
+/// Fetches what the plan lacks. What cannot be fetched is named, and remains empty rows. @return false if
+/// interrupted
+bool fetch_data(const Target& target, const ReproduceArguments& arguments) {
+  const std::vector<datasets::CatalogueDataset> catalogues = load_catalogues();
+  std::vector<datasets::CatalogueEntry> entries = plan_entries(target.real_plan, catalogues);
+  const auto is_manual = [](const datasets::CatalogueEntry& entry) {
+    return !entry.dataset->manual.empty() && !is_available(*entry.dataset, *entry.sequence);
+  };
+  const auto manual = std::ranges::find_if(entries, is_manual);
+  if (manual != entries.end()) std::cout << manual->dataset->title << ": " << manual->dataset->manual << "\n";
+  std::erase_if(entries, is_manual);
+  if (entries.empty()) return true;
+  FetchOptions options;
+  options.mirror = arguments.mirror;
+  options.record_boxes = true;
+  const FetchResult result = fetch_with_progress(
+      entries, options, arguments.accept_licence ? LicenceAnswer::kAccepted : LicenceAnswer::kAsk);
+  for (const std::string& problem : result.problems) spdlog::warn("{}", problem);
+  return !result.stopped;
 }
 
 /// Executes the runs of a plan that are not in the store. @return false if interrupted
-bool execute_runs(const Target& target, const std::string& plan, const ReproduceArguments& arguments) {
-  const PlanMatrix matrix = expand_plan(load_plan(plan), build_name(), {});
+bool execute_runs(const Target& target, const PlanMatrix& matrix, const ReproduceArguments& arguments) {
   print_missing_data(target, matrix);
   StoreWriter writer(arguments.store);
   const PlanReport report =
@@ -89,16 +111,28 @@ bool execute_runs(const Target& target, const std::string& plan, const Reproduce
   return !report.interrupted;
 }
 
+/// The tables of a target: that of the paper, or those of the sequences of a plan with recordings, or those
+/// of all metrics.
+std::vector<report::ReportTable> target_tables(const Target& target, const PlanMatrix& matrix,
+                                               const std::vector<StoredRun>& runs) {
+  if (const auto paper = report::paper_table_of(matrix.plan.name)) return {report::paper_table(*paper, runs)};
+  if (matrix.plan.name != target.real_plan) return report::metric_tables(runs);
+  report::DatasetTableLayout layout{
+      .name = target.name, .title = matrix.plan.title, .sequences = {}, .variants = matrix.plan.variants};
+  for (const PlanSequence& sequence : matrix.sequences) layout.sequences.push_back(sequence.name);
+  PublishedTable published;
+  published.metric = headline_metric().id;
+  if (!matrix.plan.table.published.empty()) published = load_published(matrix.plan.table.published.front());
+  return {report::dataset_table(layout, runs, published)};
+}
+
 /// Writes the tables of a target and prints the first one.
-void write_tables(const Target& target, const std::vector<StoredRun>& runs, const fs::path& out) {
-  const std::optional<report::PaperTable> paper = report::paper_table_of(target.synthetic_plan);
-  const std::vector<report::ReportTable> tables =
-      paper ? std::vector{report::paper_table(*paper, runs)} : report::metric_tables(runs);
+void write_tables(const Target& target, const std::vector<report::ReportTable>& tables, const fs::path& out) {
   std::vector<OutputFile> files;
   std::string latex;
   for (const report::ReportTable& table : tables) {
     for (OutputFile& file : report::table_files(table)) {
-      file.name = paper ? file.name : std::string(target.name) + "_" + file.name;
+      if (!file.name.starts_with(target.name)) file.name = std::string(target.name) + "_" + file.name;
       files.push_back(std::move(file));
     }
     latex += report::table_latex(table);
@@ -121,9 +155,28 @@ void require_safe_tables(const std::vector<Target>& targets, const fs::path& out
   }
 }
 
+enum class TargetResult { kComplete, kSkipped, kInterrupted };
+
+TargetResult reproduce_target(const Target& target, const ReproduceArguments& arguments) {
+  const std::string plan = arguments.real ? target.real_plan : target.synthetic_plan;
+  if (plan.empty()) {
+    std::cout << fmt::format("{} has no plan for rendered sequences; specify --real.\n", target.name);
+    return TargetResult::kSkipped;
+  }
+  if (arguments.get && !fetch_data(target, arguments)) return TargetResult::kInterrupted;
+  const PlanMatrix matrix = expand_plan(load_plan(plan), build_name(), {});
+  const bool finished = execute_runs(target, matrix, arguments);
+  const Store store(arguments.store);
+  write_tables(target, target_tables(target, matrix, store.plan_runs(plan)), arguments.out);
+  if (finished && arguments.real && std::string(target.name) == "openloris")
+    std::cout << openloris_scene_table(matrix, store, arguments.out);
+  return finished ? TargetResult::kComplete : TargetResult::kInterrupted;
+}
+
 int reproduce(const ReproduceArguments& arguments) {
   if (arguments.real && arguments.synthetic)
     throw InputError("--real", "cannot be combined with --synthetic");
+  if (arguments.get && !arguments.real) throw InputError("--get", "requires --real");
   const std::vector<Target> targets = select_targets(arguments.target);
   const fs::path out = arguments.out;
   require_safe_tables(targets, out, arguments.store);
@@ -133,16 +186,10 @@ int reproduce(const ReproduceArguments& arguments) {
   std::size_t number = 0;
   for (const Target& target : targets) {
     std::cout << fmt::format("{} ({} of {})\n", target.name, ++number, targets.size()) << std::flush;
-    const std::string plan = arguments.real ? target.real_plan : target.synthetic_plan;
-    if (plan.empty()) {
-      std::cout << fmt::format("{} has no plan for recorded data. It requires {}.\n", target.name,
-                               target.real_data);
-      complete = false;
-      continue;
-    }
-    const bool finished = execute_runs(target, plan, arguments);
-    write_tables(target, Store(arguments.store).plan_runs(plan), out);
-    if (!finished) return kExitInterrupted;
+    const TargetResult result = reproduce_target(target, arguments);
+    if (result == TargetResult::kInterrupted) return kExitInterrupted;
+    const bool is_optional = arguments.target == "all" && std::string(target.synthetic_plan).empty();
+    complete = complete && (result == TargetResult::kComplete || is_optional);
   }
   if (!fs::exists(arguments.store)) return kExitFindings;
   const Store store(arguments.store);
@@ -161,10 +208,15 @@ Command reproduce_command() {
       .name = "reproduce",
       .summary = "Reproduce a table of the paper; can be resumed after an interruption",
       .example = "reproduce table2 --synthetic --jobs 2",
-      .options = {{"TARGET", "table1, table2, table3, openloris or all", &arguments->target},
+      .options = {{"TARGET", "table1, table2, table3, openloris, bonn, vcu_rvi or all", &arguments->target},
                   {"--synthetic", "Use rendered sequences [default]", &arguments->synthetic},
-                  {"--real", "Use recorded sequences that were registered with `stillpoint data add`",
+                  {"--real", "Use recorded sequences; missing ones are named and remain empty rows",
                    &arguments->real},
+                  {"--get",
+                   "First download what is missing and record boxes, see `stillpoint data get --boxes`",
+                   &arguments->get},
+                  {"--accept-licence", "Accept the licences of the datasets", &arguments->accept_licence},
+                  {"--mirror", "As in `stillpoint data get`", &arguments->mirror},
                   {"--store", "Database of runs [build/bench/reproduce.sqlite]", &arguments->store},
                   {"--out", "Output folder of tables and the HTML report [build/reproduce]", &arguments->out},
                   {"--jobs",

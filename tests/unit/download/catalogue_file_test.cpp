@@ -53,7 +53,9 @@ TEST(CatalogueFile, RejectsFaultsWithTheirLine) {
       {kHead + kSeries + "[archives.\"x/a.tgz\"]\nbytes = -1", "positive number"},
       {kHead + kSeries + "[archives.\"x/a.tgz\"]\nurls = [\"file:///etc/passwd\"]", "http"},
       {"typo = 1\n" + kHead + kSeries, "unknown key \"typo\""},
-      {"a = [", "not valid TOML"}};
+      {"a = [", "not valid TOML"},
+      {std::string("[\0", 2), "0x00"},
+      {"\xEF\xB9\xBF", "0xef"}};
   for (const auto& [text, part] : faults)
     expect_input_error([&] { static_cast<void>(parse_catalogue(text, "f")); }, {"f", part});
 }

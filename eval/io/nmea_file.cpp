@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/io/nmea_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+
+namespace stillpoint::eval {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kSecondsPerDay = 86400.0;
+
+std::vector<std::string_view> split(std::string_view sentence) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t comma = sentence.find(',');
+    fields.push_back(sentence.substr(0, comma));
+    if (comma == std::string_view::npos) return fields;
+    sentence.remove_prefix(comma + 1);
+  }
+}
+
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
+  return is_number ? std::optional(value) : std::nullopt;
+}
+
+/// "4807.038" and "N" -> 48.1173. @param degree_digits 2 or 3
+std::optional<double> angle_deg(std::string_view text, std::string_view side, std::size_t degree_digits) {
+  if (text.size() < degree_digits + 2 || side.size() != 1) return std::nullopt;
+  const auto degrees = number(text.substr(0, degree_digits));
+  const auto minutes = number(text.substr(degree_digits));
+  if (!degrees || !minutes || *minutes < 0.0 || *minutes >= 60.0) return std::nullopt;
+  const double sign = side == "S" || side == "W" ? -1.0 : 1.0;
+  return sign * (*degrees + *minutes / 60.0);
+}
+
+/// "123519.50" -> seconds of the day.
+std::optional<double> time_of_day_s(std::string_view text) {
+  if (text.size() < 6) return std::nullopt;
+  const auto hours = number(text.substr(0, 2));
+  const auto minutes = number(text.substr(2, 2));
+  const auto seconds = number(text.substr(4));
+  if (!hours || !minutes || !seconds) return std::nullopt;
+  return *hours * 3600.0 + *minutes * 60.0 + *seconds;
+}
+
+/// "230394" -> days since 1970. Years 80 to 99 are those of the last century.
+std::optional<int> date_days(std::string_view text) {
+  if (text.size() != 6) return std::nullopt;
+  const auto day = number(text.substr(0, 2));
+  const auto month = number(text.substr(2, 2));
+  const auto year = number(text.substr(4, 2));
+  if (!day || !month || !year) return std::nullopt;
+  const int century = *year >= 80.0 ? 1900 : 2000;
+  const std::chrono::year_month_day date{std::chrono::year(century + static_cast<int>(*year)),
+                                         std::chrono::month(static_cast<unsigned>(*month)),
+                                         std::chrono::day(static_cast<unsigned>(*day))};
+  if (!date.ok()) return std::nullopt;
+  return static_cast<int>(std::chrono::sys_days(date).time_since_epoch().count());
+}
+
+/// The sentence between "$" and "*"; empty if the checksum is wrong. A checksum is optional.
+std::string_view checked_sentence(std::string_view line) {
+  if (!line.starts_with('$')) return {};
+  line.remove_prefix(1);
+  const std::size_t star = line.find('*');
+  const std::string_view sentence = line.substr(0, star);
+  if (star == std::string_view::npos) return sentence;
+  unsigned sum = 0;
+  for (const char letter : sentence) sum ^= static_cast<unsigned char>(letter);
+  unsigned expected = 0;
+  const std::string_view digits = line.substr(star + 1, 2);
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), expected, 16);
+  return error == std::errc{} && expected == sum ? sentence : std::string_view{};
+}
+
+struct Fix {
+  double time_of_day_s = 0.0;
+  GeodeticPosition position;
+};
+
+/// A GGA sentence; empty without a fix.
+std::optional<Fix> parse_gga(const std::vector<std::string_view>& fields) {
+  if (fields.size() < 12 || fields[6] == "0" || fields[6].empty()) return std::nullopt;
+  const auto time = time_of_day_s(fields[1]);
+  const auto latitude = angle_deg(fields[2], fields[3], 2);
+  const auto longitude = angle_deg(fields[4], fields[5], 3);
+  const auto altitude = number(fields[9]);
+  if (!time || !latitude || !longitude || !altitude) return std::nullopt;
+  return Fix{*time, {*latitude, *longitude, *altitude + number(fields[11]).value_or(0.0)}};
+}
+
+/// Fixes of a text, and the date of the first RMC sentence.
+struct NmeaContent {
+  std::vector<Fix> fixes;
+  std::optional<int> first_day;  ///< of the first fix
+  std::size_t skipped = 0;
+};
+
+NmeaContent parse_sentences(std::string_view text) {
+  NmeaContent content;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.empty()) continue;
+    const std::vector<std::string_view> fields = split(checked_sentence(line));
+    const bool is_known = fields.front().size() == 5;
+    if (is_known && fields.front().ends_with("RMC")) {
+      if (!content.first_day && fields.size() > 9) content.first_day = date_days(fields[9]);
+    } else if (is_known && fields.front().ends_with("GGA")) {
+      const std::optional<Fix> fix = parse_gga(fields);
+      if (fix) content.fixes.push_back(*fix);
+      content.skipped += fix ? 0 : 1;
+    } else if (!is_known) {
+      ++content.skipped;
+    }
+  }
+  return content;
+}
+
+}  // namespace
+
+Eigen::Vector3d ecef(const GeodeticPosition& position) {
+  constexpr double kSemiMajorM = 6378137.0;
+  constexpr double kFlattening = 1.0 / 298.257223563;
+  constexpr double kEccentricity2 = kFlattening * (2.0 - kFlattening);
+  const double latitude = position.latitude_deg * kRadPerDeg;
+  const double longitude = position.longitude_deg * kRadPerDeg;
+  const double sine = std::sin(latitude);
+  const double normal_m = kSemiMajorM / std::sqrt(1.0 - kEccentricity2 * sine * sine);
+  return {(normal_m + position.height_m) * std::cos(latitude) * std::cos(longitude),
+          (normal_m + position.height_m) * std::cos(latitude) * std::sin(longitude),
+          (normal_m * (1.0 - kEccentricity2) + position.height_m) * sine};
+}
+
+Eigen::Vector3d east_north_up(const GeodeticPosition& position, const GeodeticPosition& origin) {
+  const double latitude = origin.latitude_deg * kRadPerDeg;
+  const double longitude = origin.longitude_deg * kRadPerDeg;
+  const Eigen::Vector3d east(-std::sin(longitude), std::cos(longitude), 0.0);
+  const Eigen::Vector3d up(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
+                           std::sin(latitude));
+  const Eigen::Vector3d difference = ecef(position) - ecef(origin);
+  return {east.dot(difference), up.cross(east).dot(difference), up.dot(difference)};
+}
+
+bool is_nmea(std::string_view text) {
+  if (text.size() < 7 || text.front() != '$' || text[6] != ',') return false;
+  return std::all_of(text.begin() + 1, text.begin() + 6,
+                     [](unsigned char c) { return std::isupper(c) != 0; });
+}
+
+LoadedTrajectory parse_nmea(std::string_view text, const std::string& name) {
+  const NmeaContent content = parse_sentences(text);
+  if (content.fixes.empty()) throw InputError(name, "has no GGA sentence with a position");
+  if (!content.first_day)
+    throw InputError(name, "has no RMC sentence with a date; record RMC as well as GGA sentences");
+  LoadedTrajectory loaded;
+  loaded.trajectory.frame = kGnssFrame;
+  loaded.repairs.skipped = content.skipped;
+  double day_s = kSecondsPerDay * *content.first_day;
+  double previous_s = content.fixes.front().time_of_day_s;
+  for (const Fix& fix : content.fixes) {
+    if (fix.time_of_day_s < previous_s - 0.5 * kSecondsPerDay) day_s += kSecondsPerDay;  // midnight
+    previous_s = fix.time_of_day_s;
+    StampedPose pose;
+    pose.t = from_seconds(day_s + fix.time_of_day_s);
+    pose.T_w_f.p = east_north_up(fix.position, content.fixes.front().position);
+    const bool is_later = loaded.trajectory.poses.empty() || loaded.trajectory.poses.back().t < pose.t;
+    if (is_later) loaded.trajectory.poses.push_back(pose);
+    loaded.repairs.repeated += is_later ? 0 : 1;
+  }
+  return loaded;
+}
+
+}  // namespace stillpoint::eval

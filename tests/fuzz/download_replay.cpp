@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Runs the download target on archives of every kind, catalogue files, and random mutations of them, with a
+/// fixed random seed.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/temporary_folder.h"
+#include "tests/support/test_archive.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace stillpoint {
+namespace {
+
+std::string archive_seed(const std::string& name, const std::vector<TestEntry>& entries) {
+  const TemporaryFolder folder;
+  write_archive(folder.path() / name, entries);
+  std::ifstream input(folder.path() / name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+std::vector<std::string> seeds() {
+  std::vector<std::string> all{"", "HTTP/1.1 206 x\r\nContent-Range: bytes 0-9/10\r\nETag: \"a\"\r\n",
+                               "name = \"d\"\ntitle = \"t\"\nlicence = \"l\"\nlayout = \"tum\"\n"
+                               "urls = [\"https://h/{}\"]\n[[sequences]]\nmembers = [\"a\", \"b\"]\n"
+                               "files = [\"{}.tgz\"]\n[archives.\"a.tgz\"]\nbytes = 1\n"};
+  const std::vector<TestEntry> entries{{"a/rgb.txt", "1 rgb/1.png"}, {"a/rgb/1.png", std::string(300, 'x')}};
+  for (const char* name : {"a.tar", "a.tgz", "a.tar.xz", "a.tar.bz2", "a.zip", "a.7z"})
+    all.push_back(archive_seed(name, entries));
+  all.push_back(archive_seed("b.zip", {{"a.zip", archive_seed("a.zip", entries)}}));
+  return all;
+}
+
+/// One mutation: a changed byte, or a removed or duplicated substring.
+std::string mutated(std::string bytes, std::mt19937& random) {
+  if (bytes.empty()) return bytes;
+  const std::size_t at = random() % bytes.size();
+  const std::size_t length = random() % std::min<std::size_t>(bytes.size() - at, 40);
+  switch (random() % 3) {
+    case 0:
+      bytes[at] = static_cast<char>(random());
+      return bytes;
+    case 1:
+      return bytes.erase(at, length);
+    default:
+      return bytes.insert(at, bytes.substr(at, length));
+  }
+}
+
+TEST(DownloadTarget, MutatedSeedsAreAcceptedOrRejected) {
+  std::mt19937 random(1);
+  for (const std::string& seed : seeds()) {
+    for (int round = 0; round < 100; ++round) {
+      std::string bytes = seed;
+      for (int i = 0; i < round % 5; ++i) bytes = mutated(std::move(bytes), random);
+      ASSERT_EQ(LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint
