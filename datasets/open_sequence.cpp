@@ -7,6 +7,7 @@
 #include "datasets/formats/formats.h"
 #include "datasets/io/image_io.h"
 #include "datasets/read_sequence.h"
+#include "eval/io/bag_file.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -52,6 +53,12 @@ std::string sequence_format_names() {
     names += (names.empty() ? "" : ", ") + std::string(format->name);
   }
   return names;
+}
+
+bool is_sequence_path(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored) ||
+         (eval::is_bag(path) && std::filesystem::is_regular_file(path, ignored));
 }
 
 std::unique_ptr<SensorStream> open_sequence(const std::filesystem::path& folder, const OpenOptions& options) {

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/utf8_text.h"
+#include "datasets/formats/bag_format.h"
 #include "datasets/formats/formats.h"
 #include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
@@ -30,17 +31,17 @@ const SequenceFormat& find_format(const std::filesystem::path& folder, const std
 /// Absolute path of the folder without a trailing slash or dot, so that `filename()` is the sequence name.
 std::filesystem::path normalized_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
-  eval::reject_bag(folder, eval::kExportSequence);
-  if (!std::filesystem::is_directory(folder, ignored)) {
-    throw InputError(folder.string(), "no such folder");
+  if (!std::filesystem::is_directory(folder, ignored) &&
+      !(eval::is_bag(folder) && std::filesystem::exists(folder, ignored))) {
+    throw InputError(folder.string(), "no such folder or bag");
   }
   const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
   return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-/// Applies the requested rig file, or else the rig.toml of the folder if there is one.
+/// Applies the requested rig file, or else the rig.toml of the sequence if there is one.
 void override_rig(SequenceContent& content, const std::filesystem::path& requested) {
-  const std::filesystem::path local = content.info.folder / "rig.toml";
+  const std::filesystem::path local = companion_file(content.info.folder, "rig.toml");
   const std::filesystem::path file = requested.empty() && std::filesystem::exists(local) ? local : requested;
   if (!file.empty()) {
     const OverriddenRig overridden = apply_rig_file(file, content.info.rig);
@@ -56,7 +57,7 @@ constexpr std::string_view kExampleCamera =
 
 void check_rig(const SequenceContent& content) {
   const Camera& camera = content.info.rig.camera;
-  const std::string rig_file = (content.info.folder / "rig.toml").string();
+  const std::string rig_file = companion_file(content.info.folder, "rig.toml").string();
   if (camera.width <= 0 || camera.height <= 0 || camera.fx <= 0.0 || camera.fy <= 0.0) {
     throw InputError(rig_file, "the camera calibration is missing: " + content.missing_calibration +
                                    "; write your values into this file, as in this example with those of "
@@ -107,8 +108,9 @@ void require_size(const std::filesystem::path& file, const cv::Mat& image, const
                                       std::to_string(camera.height) + "; correct [camera] in rig.toml");
 }
 
-cv::Mat load_depth(const SequenceContent& content, const std::filesystem::path& file) {
-  cv::Mat depth = read_depth(file);
+cv::Mat load_depth(const SequenceContent& content, std::size_t index) {
+  const std::filesystem::path& file = content.frame_files[index].depth;
+  cv::Mat depth = content.images ? content.images->depth(index) : read_depth(file);
   const Rig& rig = content.info.rig;
   require_size(file, depth, content.depth_camera ? content.depth_camera->camera : rig.camera);
   if (content.no_depth_value != 0) {
@@ -125,15 +127,24 @@ std::vector<DetectionSet> read_optional_boxes(const std::filesystem::path& file,
 
 }  // namespace
 
+std::filesystem::path companion_file(const std::filesystem::path& sequence, const std::string& name) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(sequence, ignored)) return sequence / name;
+  return sequence.parent_path() / (sequence.stem().string() + "." + name);
+}
+
 SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOptions& options,
                               FaultLog& faults) {
   const std::filesystem::path root = normalized_folder(folder);
   const SequenceFormat& format = find_format(root, options.format);
-  SequenceContent content = with_warnings(format.read(root, faults));
+  if (!options.topics.empty() && &format != &kBagFormat)
+    throw InputError("--topics", root.string() + " is no bag; omit the option");
+  SequenceContent content = with_warnings(
+      options.topics.empty() ? format.read(root, faults) : read_bag_sequence(root, options.topics, faults));
   require_utf8("sequence name", content.info.name);
   content.info.format = format.name;
-  content.info.detections = read_optional_boxes(root / "detections.txt", faults);
-  content.info.true_boxes = read_optional_boxes(root / "true_boxes.txt", faults);
+  content.info.detections = read_optional_boxes(companion_file(root, "detections.txt"), faults);
+  content.info.true_boxes = read_optional_boxes(companion_file(root, "true_boxes.txt"), faults);
   override_rig(content, options.rig_file);
   check_rig(content);
   check_overlap(content.info, faults);
@@ -143,7 +154,7 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
 cv::Mat decode_color(const SequenceContent& content, std::size_t index) {
   STILLPOINT_CHECK(index < content.frame_files.size());
   const std::filesystem::path& file = content.frame_files[index].color;
-  const cv::Mat image = read_image(file);
+  const cv::Mat image = content.images ? content.images->color(index) : read_image(file);
   require_size(file, image, content.info.rig.camera);
   return image.channels() == 3 ? image : cv::Mat();
 }
@@ -154,17 +165,17 @@ Frame decode_frame(const SequenceContent& content, std::size_t index, ColorDecod
   Frame frame;
   frame.id = static_cast<std::int64_t>(index);
   frame.t = content.info.frame_times[index];
-  if (color == ColorDecoding::kDeferred) {
+  if (color == ColorDecoding::kDeferred && !content.images) {
     const GrayImage gray = read_gray(files.color);
     frame.gray = gray.image;
     if (gray.is_color) frame.decode_color = [&content, index] { return decode_color(content, index); };
   } else {
-    const cv::Mat image = read_image(files.color);
+    const cv::Mat image = content.images ? content.images->color(index) : read_image(files.color);
     frame.gray = to_gray(image);
     if (image.channels() == 3) frame.color = image;
   }
   require_size(files.color, frame.gray, content.info.rig.camera);
-  if (!files.depth.empty()) frame.depth = load_depth(content, files.depth);
+  if (!files.depth.empty()) frame.depth = load_depth(content, index);
   frame.depth_units_per_m = content.info.rig.depth_units_per_m;
   return frame;
 }

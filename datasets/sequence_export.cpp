@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
+#include "datasets/io/rig_file.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::datasets {
@@ -31,6 +33,18 @@ void write_atomically(const fs::path& folder, const std::function<void(const fs:
   }
 }
 
+void report_frame(const ExportControl& control, std::size_t done, std::size_t total) {
+  if (control.stop_requested && control.stop_requested())
+    throw InputError("was interrupted; partial output was removed");
+  if (control.progress) control.progress(done, total);
+}
+
+/// The recorded boxes, which every format reads from this file.
+void write_boxes(const SequenceInfo& info, const fs::path& folder) {
+  if (!info.detections.empty())
+    eval::write_text_file(folder / "detections.txt", detections_text(info.detections));
+}
+
 std::string matrix_text(const Pose& pose) {
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = pose.matrix();
   return fmt::format("[{:.17g}]", fmt::join(rows.data(), rows.data() + 16, ", "));
@@ -44,22 +58,6 @@ const char* model_text(const Camera& camera) {
   return camera.model == CameraModel::kKannalaBrandt ? "kannala-brandt" : "radial-tangential";
 }
 
-std::string rig_text(const Rig& rig) {
-  const Camera& camera = rig.camera;
-  std::string text = fmt::format(
-      "[camera]\nwidth = {}\nheight = {}\nfx = {:.17g}\nfy = {:.17g}\ncx = {:.17g}\ncy = {:.17g}\nmodel = "
-      "\"{}\"\n"
-      "distortion = [{:.17g}]\nrolling_shutter_s = {:.17g}\n\n[depth]\nscale = {:.17g}\n",
-      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, model_text(camera),
-      fmt::join(camera.distortion, ", "), rig.rolling_shutter_s, rig.depth_units_per_m);
-  if (!rig.has_imu) return text;
-  return text + fmt::format(
-                    "\n[imu]\nT_b_c = {}\ngyro_noise = {:.17g}\naccel_noise = {:.17g}\ngyro_walk = {:.17g}\n"
-                    "accel_walk = {:.17g}\ntime_offset_s = {:.17g}\n",
-                    matrix_text(rig.T_b_c), rig.imu_noise.gyro_noise, rig.imu_noise.accel_noise,
-                    rig.imu_noise.gyro_walk, rig.imu_noise.accel_walk, rig.time_offset_s);
-}
-
 std::string pose_text(const Pose& pose) {
   return fmt::format("{:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}", pose.p.x(), pose.p.y(), pose.p.z(),
                      pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w());
@@ -71,7 +69,7 @@ std::string imu_row(const ImuSample& sample, char separator) {
                      sample.accel_b.z(), separator);
 }
 
-void write_tum_images(const SensorStream& stream, const fs::path& folder) {
+void write_tum_images(const SensorStream& stream, const fs::path& folder, const ExportControl& control) {
   fs::create_directories(folder / "rgb");
   fs::create_directories(folder / "depth");
   std::string colors;
@@ -82,16 +80,18 @@ void write_tum_images(const SensorStream& stream, const fs::path& folder) {
     const cv::Mat color = color_image(frame);
     write_png(folder / "rgb" / (stamp + ".png"), color.empty() ? frame.gray : color);
     colors += fmt::format("{0} rgb/{0}.png\n", stamp);
-    if (frame.depth.empty()) continue;
-    write_png(folder / "depth" / (stamp + ".png"), frame.depth);
-    depths += fmt::format("{0} depth/{0}.png\n", stamp);
+    if (!frame.depth.empty()) {
+      write_png(folder / "depth" / (stamp + ".png"), frame.depth);
+      depths += fmt::format("{0} depth/{0}.png\n", stamp);
+    }
+    report_frame(control, i + 1, stream.info().frame_times.size());
   }
   eval::write_text_file(folder / "rgb.txt", colors);
   eval::write_text_file(folder / "depth.txt", depths);
 }
 
 void write_tum_texts(const SequenceInfo& info, const fs::path& folder) {
-  eval::write_text_file(folder / "rig.toml", rig_text(info.rig));
+  eval::write_text_file(folder / "rig.toml", rig_file_text(info.rig));
   std::string poses = "# timestamp tx ty tz qx qy qz qw (camera in world)\n";
   const Pose T_f_c = info.ground_truth.T_c_f.inverse();
   for (const StampedPose& pose : info.ground_truth.trajectory.poses) {
@@ -105,13 +105,14 @@ void write_tum_texts(const SequenceInfo& info, const fs::path& folder) {
   eval::write_text_file(folder / "imu.txt", samples);
 }
 
-void write_euroc_images(const SensorStream& stream, const fs::path& folder) {
+void write_euroc_images(const SensorStream& stream, const fs::path& folder, const ExportControl& control) {
   fs::create_directories(folder / "data");
   std::string list = "#timestamp [ns],filename\n";
   for (std::size_t i = 0; i < stream.info().frame_times.size(); ++i) {
     const Frame frame = stream.load_frame(i);
     write_png(folder / "data" / fmt::format("{}.png", frame.t.ns), frame.gray);
     list += fmt::format("{0},{0}.png\n", frame.t.ns);
+    report_frame(control, i + 1, stream.info().frame_times.size());
   }
   eval::write_text_file(folder / "data.csv", list);
 }
@@ -161,20 +162,22 @@ void write_euroc_texts(const SequenceInfo& info, const fs::path& mav) {
 
 }  // namespace
 
-void export_tum(const SensorStream& stream, const fs::path& folder) {
+void export_tum(const SensorStream& stream, const fs::path& folder, const ExportControl& control) {
   write_atomically(folder, [&](const fs::path& unfinished) {
-    write_tum_images(stream, unfinished);
+    write_tum_images(stream, unfinished, control);
     write_tum_texts(stream.info(), unfinished);
+    write_boxes(stream.info(), unfinished);
   });
 }
 
-void export_euroc(const SensorStream& stream, const fs::path& folder) {
+void export_euroc(const SensorStream& stream, const fs::path& folder, const ExportControl& control) {
   if (stream.info().imu.empty()) {
     throw InputError(stream.info().folder.string(),
                      "has no IMU, which the EuRoC layout requires; use layout = \"tum\"");
   }
   write_atomically(folder, [&](const fs::path& unfinished) {
-    write_euroc_images(stream, unfinished / "mav0" / "cam0");
+    write_euroc_images(stream, unfinished / "mav0" / "cam0", control);
+    write_boxes(stream.info(), unfinished);
     write_euroc_texts(stream.info(), unfinished / "mav0");
   });
 }

@@ -64,9 +64,11 @@ eval="eval eval/io eval/trajectory eval/metrics eval/statistics eval/compare eva
 trajectories="eval/io eval/trajectory"
 row datasets/io $messages $trajectories
 row datasets/calibration $messages datasets/io
-row datasets/formats $messages $trajectories datasets/io datasets/calibration
+row datasets/bags $messages $trajectories datasets/io datasets/calibration
+row datasets/bags/writing $messages datasets/bags datasets/io
+row datasets/formats $messages $trajectories datasets/io datasets/calibration datasets/bags
 row datasets/cache $messages datasets/io datasets/calibration datasets/formats
-row datasets $messages $trajectories datasets/io datasets/calibration datasets/formats datasets/cache
+row datasets $messages $trajectories datasets/io datasets/calibration datasets/bags datasets/bags/writing datasets/formats datasets/cache
 row datasets/synthetic core/base core/geometry
 row datasets/synthetic/materials core/base datasets/synthetic
 row datasets/synthetic/motion $messages $trajectories datasets/io datasets/synthetic
@@ -97,7 +99,7 @@ row bench/run $common core/pipeline/runners datasets datasets/cache datasets/fau
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
   bench/profile/meters
-row bench/record $common core/pipeline/runners datasets/cache eval eval/io eval/metrics bench/model bench/model/csv bench/config bench/run \
+row bench/record $common core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/model/csv bench/config bench/run \
   bench/profile
 row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record
@@ -133,7 +135,7 @@ row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/m
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/tables/formats reports/text reports/page
-row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/openloris bench/store bench/store/maintenance bench/plan \
+row bench/cli/analysis $execution datasets/bags eval/io eval/trajectory eval/compare eval/openloris bench/store bench/store/maintenance bench/plan \
   bench/plan/execution bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 
@@ -141,7 +143,8 @@ row bench/cli/analysis $execution eval/io eval/trajectory eval/compare eval/open
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_module\.cpp$'
   '<blosc            ^datasets/cache/frame_codec\.cpp$'
-  '<libdeflate       ^datasets/io/png_decoder\.cpp$'
+  '<libdeflate       ^datasets/(io/png_decoder|bags/chunk_codec)\.cpp$'
+  '<(bzlib|lz4)       ^datasets/bags/chunk_codec\.cpp$'
   '<turbojpeg        ^datasets/io/jpeg_encoder\.cpp$'
   '<embree3/          ^datasets/synthetic/render/'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
@@ -153,7 +156,8 @@ libraries=(
   '<opencv2/dnn[./]   ^core/detector/'
   '<opencv2/videoio[./]  ^reports/frames/video_module\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
-  '<(sqlite3|zstd)    ^bench/store/'
+  '<sqlite3           ^bench/store/|^datasets/bags/'
+  '<zstd              ^bench/store/|^datasets/bags/chunk_codec\.cpp$'
   '<cairo            ^reports/drawing/pdf_drawing\.cpp$'
   '<microhttpd        ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'

@@ -5,6 +5,7 @@
 #   scripts/setup.sh --dev   also clang-format and clang-tidy, for scripts/check.sh, and valgrind, to count instructions
 #   scripts/setup.sh --pages also a browser and LaTeX, for the tests of pages and tables that are skipped without
 #   scripts/setup.sh --docs  also Doxygen, for scripts/docs.sh
+#   scripts/setup.sh --oracles also the ROS 1 bag library of Debian, which tests compare the own reader with
 #   scripts/setup.sh --cluster also Slurm, sshd, GNU parallel and rsync, for the tests of `bench --executor`; the packages
 #                            start their services under systemd, which the tests do not use
 #   scripts/setup.sh --all   all of these, as CI does: no test is skipped for want of a package
@@ -15,7 +16,7 @@ packages=(
   libeigen3-dev libceres-dev libsuitesparse-dev
   libopencv-dev
   libhwy-dev
-  libopenimageio-dev openimageio-tools libdeflate-dev libturbojpeg0-dev libblosc-dev
+  libopenimageio-dev openimageio-tools libdeflate-dev libturbojpeg0-dev libblosc-dev libbz2-dev liblz4-dev
   libembree-dev libtbb-dev
   libfmt-dev libspdlog-dev libcli11-dev
   nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev libmicrohttpd-dev libcairo2-dev
@@ -27,15 +28,17 @@ dev=(clang-format clang-tidy valgrind)
 pages=(chromium texlive-latex-recommended)
 { command -v node && command -v npm; } >/dev/null || pages+=(nodejs npm)
 docs=(doxygen)
+oracles=(python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-tf2-msgs)
 cluster=(munge slurm-wlm openssh-server parallel rsync)
 case "${1:-}" in
   "") ;;
   --dev) packages+=("${dev[@]}") ;;
   --pages) packages+=("${pages[@]}") ;;
   --docs) packages+=("${docs[@]}") ;;
+  --oracles) packages+=("${oracles[@]}") ;;
   --cluster) packages+=("${cluster[@]}") ;;
-  --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}" "${cluster[@]}") ;;
-  *) echo "setup: error: unknown option \"$1\"; the options are --dev, --pages, --docs, --cluster and --all" >&2; exit 2 ;;
+  --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}" "${oracles[@]}" "${cluster[@]}") ;;
+  *) echo "setup: error: unknown option \"$1\"; the options are --dev, --pages, --docs, --oracles, --cluster and --all" >&2; exit 2 ;;
 esac
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }

@@ -6,6 +6,12 @@
 
 namespace stillpoint::bench {
 
+/// Help of the option --topics, of which the values are passed to `OpenOptions::topics`.
+inline constexpr const char* kTopicsHelp =
+    "Topic of a bag: ROLE=TOPIC, with a role color, depth, imu, gyro, accel or truth; may be repeated [by "
+    "type and "
+    "name]";
+
 [[nodiscard]] Command run_command();             ///< `stillpoint run`: odometry on one sequence
 [[nodiscard]] Command eval_command();            ///< `stillpoint eval`: score trajectory files
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: score result files by scene
@@ -31,6 +37,7 @@ namespace stillpoint::bench {
 [[nodiscard]] Command cache_command();        ///< `stillpoint data cache`: decoded frames on disk
 [[nodiscard]] Command check_command();        ///< `stillpoint data check`: validate a sequence
 [[nodiscard]] Command faults_command();       ///< `stillpoint data faults`: list injectable sensor faults
+[[nodiscard]] Command export_command();       ///< `stillpoint data export`: write other layouts
 [[nodiscard]] Command detect_command();       ///< `stillpoint detect`: record boxes of a detection network
 [[nodiscard]] Command synth_command();        ///< `stillpoint data synth`: render a sequence
 

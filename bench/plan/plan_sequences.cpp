@@ -14,6 +14,7 @@
 #include "bench/run/frame_cache_settings.h"
 #include "bench/run/rendered_sequence.h"
 #include "core/base/error.h"
+#include "datasets/open_sequence.h"
 #include "datasets/synthetic/sequence/request_text.h"
 
 namespace stillpoint::bench {
@@ -35,7 +36,7 @@ std::map<std::string, RegisteredSequence> known_sequences() {
   if (!fs::is_directory(data_folder(), ignored)) return known;
   for (const fs::directory_entry& entry : fs::directory_iterator(data_folder())) {
     const std::string name = entry.path().filename().string();
-    if (entry.is_directory())
+    if (datasets::is_sequence_path(entry.path()))
       known.insert({name, {.name = name, .folder = entry.path(), .checksum = "", .format = ""}});
   }
   return known;
@@ -44,7 +45,7 @@ std::map<std::string, RegisteredSequence> known_sequences() {
 }  // namespace
 
 PlanSequence verified_sequence(const RegisteredSequence& registered) {
-  if (!fs::exists(registered.folder)) {
+  if (!datasets::is_sequence_path(registered.folder)) {
     throw InputError("sequence \"" + registered.name + "\"",
                      "its folder " + registered.folder.string() +
                          " does not exist; restore it, or register it again with `stillpoint data add`");
@@ -67,13 +68,13 @@ namespace {
 /// Whether a pattern of [recorded] is a path; names of sequences have no slash.
 bool is_path(const std::string& pattern) { return pattern.find('/') != std::string::npos; }
 
-/// A folder that is named by its path; relative to the working directory.
+/// A folder or bag that is named by its path; relative to the working directory.
 RegisteredSequence sequence_at(const std::string& path) {
   std::error_code error;
   const fs::path folder = fs::canonical(path, error);
-  if (error || !fs::is_directory(folder, error)) {
+  if (error || !datasets::is_sequence_path(folder)) {
     throw InputError("sequence \"" + path + "\"",
-                     "is not a folder; correct the path, or register the sequence "
+                     "is neither a folder nor a bag; correct the path, or register the sequence "
                      "with `stillpoint data add NAME DIR`");
   }
   return {.name = folder.filename().string(), .folder = folder, .checksum = "", .format = ""};
@@ -205,7 +206,7 @@ fs::path sequence_folder(const PlanSequence& sequence, const synth::RenderContro
     return rendered_sequence(*sequence.rendering, control,
                              sequence.frame_cache ? frame_cache_options(0, {}) : std::nullopt);
   }
-  if (fs::is_directory(sequence.folder)) return sequence.folder;
+  if (datasets::is_sequence_path(sequence.folder)) return sequence.folder;
   throw InputError(sequence.folder.string(),
                    "no longer exists; restore the sequence and run the command again");
 }

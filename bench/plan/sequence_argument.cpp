@@ -8,8 +8,8 @@
 #include "bench/plan/dataset_catalogue.h"
 #include "bench/plan/plan_sequences.h"
 #include "core/base/error.h"
+#include "datasets/open_sequence.h"
 #include "datasets/synthetic/sequence/presets.h"
-#include "eval/io/bag_file.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -43,10 +43,8 @@ std::string without_catalogue_name(const std::string& argument) {
 }  // namespace
 
 std::string resolve_sequence(const std::string& given) {
-  std::error_code ignored;
-  const std::string argument = fs::is_directory(given, ignored) ? given : without_catalogue_name(given);
-  eval::reject_bag(argument, eval::kExportSequence);
-  if (fs::is_directory(argument, ignored)) return argument;
+  const std::string argument = datasets::is_sequence_path(given) ? given : without_catalogue_name(given);
+  if (datasets::is_sequence_path(argument)) return argument;
   const std::vector<std::string> presets = synth::preset_names();
   const bool is_preset = std::ranges::find(presets, argument) != presets.end();
   const std::vector<RegisteredSequence> registry = read_registry(registry_file());

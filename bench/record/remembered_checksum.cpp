@@ -12,7 +12,7 @@
 
 #include "bench/record/sequence_checksum.h"
 #include "core/base/content_hash.h"
-#include "datasets/cache/file_descriptor.h"
+#include "datasets/io/file_descriptor.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -28,13 +28,20 @@ struct FolderState {
 };
 
 FolderState state_of_folder(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder)) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+      files.push_back(entry.path());
+  } else {
+    files.push_back(folder);
+  }
   std::vector<std::string> rows;
   FolderState folder_state;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    const std::optional<datasets::FileState> state = datasets::file_state(entry.path());
+  for (const fs::path& file : files) {
+    const std::optional<datasets::FileState> state = datasets::file_state(file);
     if (!state) continue;
-    rows.push_back(entry.path().lexically_relative(folder).string() + '\0' + std::to_string(state->size) +
-                   ' ' + std::to_string(state->modified_ns) + ' ' + std::to_string(state->inode) + '\n');
+    rows.push_back(file.lexically_relative(folder).string() + '\0' + std::to_string(state->size) + ' ' +
+                   std::to_string(state->modified_ns) + ' ' + std::to_string(state->inode) + '\n');
     folder_state.modified_ns = std::max(folder_state.modified_ns, state->modified_ns);
   }
   std::ranges::sort(rows);

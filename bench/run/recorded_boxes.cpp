@@ -8,12 +8,13 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "datasets/open_sequence.h"
 
 namespace stillpoint::bench {
 namespace {
 
 [[noreturn]] void throw_missing(const std::filesystem::path& folder, const std::string& problem) {
-  const std::string file = (folder / "detections.txt").string();
+  const std::string file = datasets::companion_file(folder, "detections.txt").string();
   throw InputError(
       file, problem +
                 ", but the config uses recorded boxes (detector.kind = \"recorded\"); record them with "
@@ -47,7 +48,8 @@ void require_recorded_boxes(const OdometryConfig& config, const datasets::Sequen
 
 void require_recorded_boxes(const OdometryConfig& config, const std::filesystem::path& folder) {
   if (used_detector(config) != DetectorKind::kRecorded) return;
-  if (!std::filesystem::exists(folder / "detections.txt")) throw_missing(folder, "does not exist");
+  if (!std::filesystem::exists(datasets::companion_file(folder, "detections.txt")))
+    throw_missing(folder, "does not exist");
 }
 
 }  // namespace stillpoint::bench

@@ -12,7 +12,7 @@ namespace stillpoint::bench {
 std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
                                                       const datasets::OpenOptions& options,
                                                       const synth::RenderControl& control) {
-  if (std::filesystem::is_directory(name)) return datasets::open_sequence(name, options);
+  if (datasets::is_sequence_path(name)) return datasets::open_sequence(name, options);
   const std::vector<std::string> presets = synth::preset_names();
   if (std::find(presets.begin(), presets.end(), name) == presets.end()) {
     throw InputError("sequence \"" + name + "\"",

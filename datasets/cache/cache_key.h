@@ -10,12 +10,6 @@
 
 namespace stillpoint::datasets {
 
-/// Digests of the files of one frame.
-struct FrameDigest {
-  std::uint64_t color = 0;
-  std::uint64_t depth = 0;
-};
-
 /// Version of the decoding: of gray values, registration and depth. Increase it whenever `decode_frame`
 /// returns other images for the same files.
 constexpr std::uint64_t kDecodingVersion = 1;

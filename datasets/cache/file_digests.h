@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "datasets/cache/file_descriptor.h"
+#include "datasets/io/file_descriptor.h"
 
 namespace stillpoint::datasets {
 

@@ -57,6 +57,11 @@ void FrameCache::open() {
 
 /// The digests of the frames from the first on, as far as they are remembered.
 std::vector<FrameDigest> FrameCache::known_digests() {
+  if (content_.images) {
+    std::vector<FrameDigest> digests;
+    for (std::size_t i = 0; i < content_.frame_files.size(); ++i) digests.push_back(content_.images->digest(i));
+    return digests;
+  }
   int digested = 0;
   const auto digest_of = [&](const fs::path& file) -> std::optional<std::uint64_t> {
     std::optional<std::uint64_t> known = file.empty() ? kNoFileDigest : digests_->find(file);
@@ -148,6 +153,7 @@ bool FrameCache::wants(std::size_t index) const {
 
 /// Digests of the files of a frame; nullopt if one changed while it was read.
 std::optional<FrameDigest> FrameCache::digest_frame(std::size_t index) {
+  if (content_.images) return content_.images->digest(index);
   const FrameFiles& files = content_.frame_files[index];
   const std::optional<FileDigest> color = digest_of_file(files.color);
   const std::optional<FileDigest> depth = files.depth.empty() ? FileDigest{} : digest_of_file(files.depth);
@@ -164,9 +170,12 @@ void FrameCache::store(std::size_t index, const std::optional<PackedFrame>& fram
   const std::scoped_lock lock(mutex_);
   if (!writing_ || (writer_ && writer_->contains(index))) return;  // another thread was faster
   const FrameFiles& files = content_.frame_files[index];
-  const bool unchanged = digest && digests_->find(files.color) == digest->color &&
-                         (files.depth.empty() || digests_->find(files.depth) == digest->depth);
-  if (!unchanged)
+  const auto unchanged = [&] {
+    if (content_.images) return content_.images->digest(index) == *digest;
+    return digests_->find(files.color) == digest->color &&
+           (files.depth.empty() || digests_->find(files.depth) == digest->depth);
+  };
+  if (!digest || !unchanged())
     return disable(files.color.string() + ": the images of the frame changed while they were read");
   try {
     if (!writer_) writer_ = create_writer();

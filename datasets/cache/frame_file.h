@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/cache/file_descriptor.h"
+#include "datasets/io/file_descriptor.h"
 #include "datasets/cache/frame_codec.h"
 
 namespace stillpoint::datasets {

@@ -33,11 +33,27 @@ extern const SequenceFormat kEurocFormat;
 /// Microsoft 7-Scenes: numbered frames with one pose each, no timestamps.
 extern const SequenceFormat kSevenScenesFormat;
 
+/// Bags of ROS 1 (.bag) and ROS 2 (.mcap, .db3, folders of rosbag2), and recordings of librealsense.
+extern const SequenceFormat kBagFormat;
+
+/// ETH3D SLAM: lists like TUM RGB-D, calibration.txt; with or without depth.
+extern const SequenceFormat kEth3dFormat;
+
+/// ICL-NUIM in the layout of TUM RGB-D: associations.txt with frame numbers, published with fy < 0.
+extern const SequenceFormat kIclNuimFormat;
+
+/// TUM VI, exported in EuRoC format: left fisheye camera and IMU; no depth.
+extern const SequenceFormat kTumViFormat;
+
+/// CID-SIMS: images named by time, imu.txt, pose.txt; the camera must be given in rig.toml.
+extern const SequenceFormat kCidSimsFormat;
+
 /// Plain folders color/ and depth/ with images of equal names; calibration from a JSON file or rig.toml.
 extern const SequenceFormat kFolderFormat;
 
 /// All formats, in the order of detection.
-inline constexpr std::array kSequenceFormats{&kTumFormat, &kOpenLorisFormat, &kEurocFormat,
-                                             &kSevenScenesFormat, &kFolderFormat};
+inline constexpr std::array kSequenceFormats{
+    &kBagFormat,   &kEth3dFormat, &kTumFormat,         &kIclNuimFormat, &kOpenLorisFormat,
+    &kTumViFormat, &kEurocFormat, &kSevenScenesFormat, &kCidSimsFormat, &kFolderFormat};
 
 }  // namespace stillpoint::datasets

@@ -2,8 +2,11 @@
 /// Result of a format reader: the metadata of the sequence and the paths of its image files.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,9 +24,25 @@ struct FrameFiles {
   double depth_offset_s = 0.0;  ///< timestamp of the depth image minus that of the color image
 };
 
+/// Identifies the content of the images of one frame; 0 = no image.
+struct FrameDigest {
+  std::uint64_t color = 0;
+  std::uint64_t depth = 0;
+  bool operator==(const FrameDigest&) const = default;
+};
+
+/// Images that are not files of their own, e.g. messages of a bag. The functions are thread-safe, return
+/// images like `read_image` and `read_depth`, and throw InputError like them.
+struct ImageSource {
+  std::function<cv::Mat(std::size_t frame)> color;
+  std::function<cv::Mat(std::size_t frame)> depth;
+  std::function<FrameDigest(std::size_t frame)> digest;  ///< without reading the images
+};
+
 struct SequenceContent {
   SequenceInfo info;
-  std::vector<FrameFiles> frame_files;      ///< one per info.frame_times
+  std::vector<FrameFiles> frame_files;      ///< one per info.frame_times; with `images`, names for messages
+  std::optional<ImageSource> images;        ///< set if the images are not files
   eval::RowRepairs truth_repairs;           ///< of the ground-truth file
   bool extrinsic_known = true;              ///< whether the format provides the camera-IMU extrinsic
   std::string missing_calibration;          ///< why the format does not know the camera, if it does not

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -54,6 +55,33 @@ LoadedImage load_image(const std::filesystem::path& file, int depth) {
   return image;
 }
 
+/// The same for bytes in a buffer.
+LoadedImage load_bytes(std::string_view bytes, const std::string& name, int depth) {
+  const bool is_png = bytes.starts_with("\x89PNG");
+  if (!is_png && !bytes.starts_with("\xff\xd8\xff"))
+    throw InputError(name, "is neither a PNG nor a JPEG image");
+  if (is_png && bytes.find("IEND") == std::string_view::npos)
+    throw InputError(name, "is a truncated PNG; copy the file again");
+  LoadedImage image = image_module().decode(bytes, depth);
+  if (!image.problem.empty()) throw InputError(name, image.problem + "; copy the file again");
+  return image;
+}
+
+/// @throws InputError unless the image has 8 bits per channel
+cv::Mat color_of(const LoadedImage& image, const std::string& name) {
+  if (!image.pixels.empty()) return image.pixels;
+  throw InputError(
+      name, "has " + std::to_string(image.bits) + " bits per channel, expected 8; is it a depth image?");
+}
+
+/// @throws InputError unless the image has one channel of 16 bits
+cv::Mat depth_of(const LoadedImage& image, const std::string& name) {
+  if (!image.pixels.empty() && image.channels == 1) return image.pixels;
+  throw InputError(name, "has " + std::to_string(image.channels) + " channel(s) of " +
+                             std::to_string(image.bits) +
+                             " bits, but depth has one channel of 16; is it a color image?");
+}
+
 /// nullopt if the file is no PNG of a common kind with this depth; OpenImageIO reads it, or describes the
 /// fault.
 std::optional<DecodedPng> decode_fast(const std::filesystem::path& file, PngPixels pixels, int depth) {
@@ -84,12 +112,7 @@ void write_atomically(const std::filesystem::path& file, const Bytes& bytes) {
 
 cv::Mat read_image(const std::filesystem::path& file) {
   if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored, CV_8U)) return png->image;
-  const LoadedImage image = load_image(file, CV_8U);
-  if (image.pixels.empty()) {
-    throw InputError(file.string(), "has " + std::to_string(image.bits) +
-                                        " bits per channel, expected 8; is it a depth image?");
-  }
-  return image.pixels;
+  return color_of(load_image(file, CV_8U), file.string());
 }
 
 GrayImage read_gray(const std::filesystem::path& file) {
@@ -103,13 +126,17 @@ GrayImage read_gray(const std::filesystem::path& file) {
 cv::Mat read_depth(const std::filesystem::path& file) {
   if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored, CV_16U))
     return png->image;
-  const LoadedImage image = load_image(file, CV_16U);
-  if (image.pixels.empty() || image.channels != 1) {
-    throw InputError(file.string(), "has " + std::to_string(image.channels) + " channel(s) of " +
-                                        std::to_string(image.bits) +
-                                        " bits, but depth has one channel of 16; is it a color image?");
-  }
-  return image.pixels;
+  return depth_of(load_image(file, CV_16U), file.string());
+}
+
+cv::Mat decode_image(std::string_view bytes, const std::string& name) {
+  const std::optional<DecodedPng> png = decode_png(bytes);
+  return png && png->image.depth() == CV_8U ? png->image : color_of(load_bytes(bytes, name, CV_8U), name);
+}
+
+cv::Mat decode_depth(std::string_view bytes, const std::string& name) {
+  const std::optional<DecodedPng> png = decode_png(bytes);
+  return png && png->image.type() == CV_16UC1 ? png->image : depth_of(load_bytes(bytes, name, CV_16U), name);
 }
 
 cv::Mat to_gray(const cv::Mat& image) {

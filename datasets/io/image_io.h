@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <string_view>
 
 namespace stillpoint::datasets {
 
@@ -29,6 +30,12 @@ struct GrayImage {
 /// @return CV_16UC1, the raw values
 /// @throws InputError as above
 [[nodiscard]] cv::Mat read_depth(const std::filesystem::path& file);
+
+/// Decode the bytes of a PNG or JPEG file, like `read_image` and `read_depth`.
+/// @param name of the image, for errors
+/// @throws InputError as above
+[[nodiscard]] cv::Mat decode_image(std::string_view bytes, const std::string& name);
+[[nodiscard]] cv::Mat decode_depth(std::string_view bytes, const std::string& name);
 
 /// Luma of an RGB image, see luma.h; a gray image is returned unchanged.
 /// @param image CV_8UC3 (R, G, B) or CV_8UC1

@@ -30,22 +30,45 @@ std::string reason(std::string text) {
   return text;
 }
 
+/// The pixels of an opened image.
+LoadedImage pixels_of(OIIO::ImageInput& input, int depth) {
+  const OIIO::ImageSpec& spec = input.spec();
+  LoadedImage image{.channels = spec.nchannels, .bits = static_cast<int>(8 * spec.format.size())};
+  const OIIO::TypeDesc type(depth == CV_16U ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
+  if (spec.format != type) return image;
+  const int channels = spec.nchannels < 3 ? 1 : 3;
+  image.pixels.create(spec.height, spec.width, CV_MAKETYPE(depth, channels));
+  const bool complete = input.read_image(0, 0, 0, channels, type, image.pixels.data);
+  const std::string problem = input.geterror();
+  if (!complete || !problem.empty()) image.problem = "is truncated or damaged (" + reason(problem) + ")";
+  return image;
+}
+
 LoadedImage load(const std::filesystem::path& file, int depth) {
   disable_oiio_threads();
   OIIO::ImageSpec keep_alpha;
   keep_alpha.attribute("oiio:UnassociatedAlpha", 1);
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &keep_alpha);
   if (!input) return {.problem = "cannot be decoded (" + reason(OIIO::geterror()) + ")"};
-  const OIIO::ImageSpec& spec = input->spec();
-  LoadedImage image{.channels = spec.nchannels, .bits = static_cast<int>(8 * spec.format.size())};
-  const OIIO::TypeDesc type(depth == CV_16U ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
-  if (spec.format != type) return image;
-  const int channels = spec.nchannels < 3 ? 1 : 3;
-  image.pixels.create(spec.height, spec.width, CV_MAKETYPE(depth, channels));
-  const bool complete = input->read_image(0, 0, 0, channels, type, image.pixels.data);
-  const std::string problem = input->geterror();
-  if (!complete || !problem.empty()) image.problem = "is truncated or damaged (" + reason(problem) + ")";
-  return image;
+  return pixels_of(*input, depth);
+}
+
+LoadedImage decode(std::string_view bytes, int depth) {
+  disable_oiio_threads();
+  OIIO::Filesystem::IOMemReader buffer(bytes.data(), bytes.size());
+  // The readers take the bytes from this attribute; the argument of `ImageInput::open` does not reach that
+  // of JPEG.
+  OIIO::Filesystem::IOProxy* const proxy = &buffer;
+  OIIO::ImageSpec settings;
+  settings.attribute("oiio:UnassociatedAlpha", 1);
+  settings.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const bool is_png = bytes.starts_with("\x89PNG");
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(is_png ? "png" : "jpg");
+  if (!input) return {.problem = "cannot be decoded (" + reason(OIIO::geterror()) + ")"};
+  OIIO::ImageSpec ignored;
+  if (!input->open(is_png ? "memory.png" : "memory.jpg", ignored, settings))
+    return {.problem = "cannot be decoded (" + reason(input->geterror()) + ")"};
+  return pixels_of(*input, depth);
 }
 
 /// Encodes to a buffer, because OpenImageIO's PNG writer does not report a full disk.
@@ -75,6 +98,7 @@ std::string version() {
 }  // namespace
 
 extern "C" const ImageModule stillpoint_image_module;
-const ImageModule stillpoint_image_module = {.load = load, .encode_png = encode_png, .version = version};
+const ImageModule stillpoint_image_module = {
+    .load = load, .decode = decode, .encode_png = encode_png, .version = version};
 
 }  // namespace stillpoint::datasets

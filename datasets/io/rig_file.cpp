@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/io/rig_file.h"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
@@ -181,6 +182,39 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
   result.rig.time_offset_s = imu.number("time_offset_s", rig.time_offset_s);
   require_complete(camera, rig.camera);
   return result;
+}
+
+namespace {
+
+std::string_view model_name(CameraModel model) {
+  for (const auto& [value, name] : enum_names(CameraModel{})) {
+    if (value == model) return name;
+  }
+  STILLPOINT_CHECK(!"a camera model without name");
+  return {};
+}
+
+}  // namespace
+
+std::string rig_file_text(const Rig& rig, bool with_extrinsic) {
+  const Camera& camera = rig.camera;
+  std::string text = fmt::format(
+      "[camera]\nwidth = {}\nheight = {}\nfx = {:.17g}\nfy = {:.17g}\ncx = {:.17g}\ncy = {:.17g}\nmodel = "
+      "\"{}\"\n"
+      "distortion = [{:.17g}]\nrolling_shutter_s = {:.17g}\n\n[depth]\nscale = {:.17g}\n",
+      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, model_name(camera.model),
+      fmt::join(camera.distortion, ", "), rig.rolling_shutter_s, rig.depth_units_per_m);
+  if (!rig.has_imu) return text;
+  text += "\n[imu]\n";
+  if (with_extrinsic) {
+    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = rig.T_b_c.matrix();
+    text += fmt::format("T_b_c = [{:.17g}]\n", fmt::join(rows.data(), rows.data() + 16, ", "));
+  }
+  return text + fmt::format(
+                    "gyro_noise = {:.17g}\naccel_noise = {:.17g}\ngyro_walk = {:.17g}\naccel_walk = {:.17g}\n"
+                    "time_offset_s = {:.17g}\n",
+                    rig.imu_noise.gyro_noise, rig.imu_noise.accel_noise, rig.imu_noise.gyro_walk,
+                    rig.imu_noise.accel_walk, rig.time_offset_s);
 }
 
 }  // namespace stillpoint::datasets

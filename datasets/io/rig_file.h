@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "core/types/rig.h"
 
@@ -22,5 +23,9 @@ struct OverriddenRig {
 /// @throws InputError with file and line on an unknown key, a wrong type, a value out of range, or a missing
 /// value of a camera of which `rig` contains nothing
 [[nodiscard]] OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig);
+
+/// A rig file with all values of `rig`; numbers are exact.
+/// @param with_extrinsic whether to write T_b_c, whose rotation is rounded when it is read
+[[nodiscard]] std::string rig_file_text(const Rig& rig, bool with_extrinsic = true);
 
 }  // namespace stillpoint::datasets

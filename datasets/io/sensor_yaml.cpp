@@ -28,6 +28,19 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
+/// The entries of a list, or of the lists in it: Kalibr writes matrices as lists of rows.
+std::vector<YAML::Node> flattened(const YAML::Node& list) {
+  std::vector<YAML::Node> entries;
+  for (const YAML::Node& entry : list) {
+    if (entry.IsSequence()) {
+      for (const YAML::Node& part : entry) entries.push_back(part);
+    } else {
+      entries.push_back(entry);
+    }
+  }
+  return entries;
+}
+
 }  // namespace
 
 SensorYaml::SensorYaml(const std::filesystem::path& file) : file_(file.string()) {
@@ -71,6 +84,17 @@ std::string SensorYaml::text(const std::string& key) const {
   return value.Scalar();
 }
 
+std::vector<std::string> SensorYaml::texts(const std::string& key) const {
+  const YAML::Node value = require(key);
+  if (!value.IsSequence()) fail(key, "must be a list");
+  std::vector<std::string> result;
+  for (const YAML::Node& entry : value) {
+    if (!entry.IsScalar()) fail(key, "must be a list of single values");
+    result.push_back(entry.Scalar());
+  }
+  return result;
+}
+
 double SensorYaml::number(const std::string& key) const {
   double value = 0.0;
   if (!YAML::convert<double>::decode(require(key), value) || !std::isfinite(value)) {
@@ -92,7 +116,7 @@ std::vector<double> SensorYaml::numbers(const std::string& key) const {
   if (value.IsMap()) value.reset(YAML::Node(value["data"]));
   if (!value.IsSequence()) fail(key, "must be a list of numbers");
   std::vector<double> result;
-  for (const YAML::Node& entry : value) {
+  for (const YAML::Node& entry : flattened(value)) {
     double number = 0.0;
     if (!YAML::convert<double>::decode(entry, number) || !std::isfinite(number)) {
       fail(key, "must contain finite numbers only");

@@ -24,9 +24,10 @@ class SensorYaml {
   [[nodiscard]] SensorYaml child(const std::string& key) const;
   [[nodiscard]] std::vector<SensorYaml> list(const std::string& key) const;
   [[nodiscard]] std::string text(const std::string& key) const;
-  [[nodiscard]] double number(const std::string& key) const;  ///< finite
+  [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;  ///< a list of single values
+  [[nodiscard]] double number(const std::string& key) const;                   ///< finite
   [[nodiscard]] int positive_int(const std::string& key) const;
-  /// A list of finite numbers: the value of `key` itself, or of its entry `data`.
+  /// A list of finite numbers, or of rows of numbers: the value of `key` itself, or of its entry `data`.
   [[nodiscard]] std::vector<double> numbers(const std::string& key) const;
   /// A 4x4 matrix of 16 numbers in row-major order.
   [[nodiscard]] Pose pose(const std::string& key) const;

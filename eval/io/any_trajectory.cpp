@@ -48,7 +48,9 @@ TrajectoryFormat detect_format(std::string_view text) {
 }
 
 LoadedTrajectory read_trajectory(const TrajectorySource& source) {
-  reject_bag(source.path, kExportTrajectory);
+  if (is_bag(source.path))
+    throw InputError(source.path.string(), "is a bag; name the topic of the poses, e.g. " +
+                                               source.path.string() + ":/ground_truth");
   std::error_code ignored;
   const bool is_folder = std::filesystem::is_directory(source.path, ignored);
   if (source.format == TrajectoryFormat::kSevenScenes || (!source.format && is_folder)) {

@@ -2,10 +2,7 @@
 #include "eval/io/bag_file.h"
 
 #include <algorithm>
-#include <string>
 #include <system_error>
-
-#include "core/base/error.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -17,19 +14,16 @@ bool has_bag_extension(const fs::path& path) {
   return extension == ".bag" || extension == ".mcap" || extension == ".db3";
 }
 
+}  // namespace
+
 bool is_bag(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return has_bag_extension(path);
   if (!fs::exists(path / "metadata.yaml", ignored)) return false;
   return std::any_of(fs::directory_iterator(path, ignored), fs::directory_iterator(),
-                     [](const fs::directory_entry& entry) { return has_bag_extension(entry.path()); });
-}
-
-}  // namespace
-
-void reject_bag(const fs::path& path, std::string_view remedy) {
-  if (is_bag(path))
-    throw InputError(path.string(), "is a ROS bag, which is not read; " + std::string(remedy));
+                     [](const fs::directory_entry& entry) {
+                       return has_bag_extension(entry.path()) || has_bag_extension(entry.path().stem());
+                     });
 }
 
 }  // namespace stillpoint::eval

@@ -14,6 +14,7 @@
 #include "bench/record/output_guard.h"
 #include "bench/record/result_values.h"
 #include "core/base/error.h"
+#include "datasets/bags/bag_trajectory.h"
 #include "eval/compare/conventions.h"
 #include "eval/compare/time_offset.h"
 #include "eval/io/any_trajectory.h"
@@ -72,7 +73,9 @@ eval::LoadedTrajectory load(const EvalArguments& arguments, const std::string& p
   eval::TrajectorySource source{.path = path, .times = arguments.times, .sequence = arguments.sequence};
   if (!arguments.format.empty())
     source.format = enum_of<eval::TrajectoryFormat>("--format", arguments.format);
-  eval::LoadedTrajectory loaded = eval::read_trajectory(source);
+  const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path);
+  eval::LoadedTrajectory loaded = bag ? datasets::read_bag_trajectory(datasets::BagFile(bag->bag), bag->topic)
+                                      : eval::read_trajectory(source);
   for (const std::string& repair : eval::repair_texts(loaded.repairs)) spdlog::warn("{}: {}", path, repair);
   return loaded;
 }
@@ -242,7 +245,10 @@ int evaluate_files(const EvalArguments& arguments) {
 
 std::vector<Option> options_of(EvalArguments& a) {
   return {
-      {"GT", "Ground-truth trajectory", &a.ground_truth},
+      {"GT",
+       "Ground-truth trajectory: a file, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD for a chain of "
+       "transforms)",
+       &a.ground_truth},
       {"EST", "Estimated trajectories of the same body frame", &a.estimates},
       {"--protocol",
        "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "

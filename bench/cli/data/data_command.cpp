@@ -45,7 +45,7 @@ int list() {
   for (const RegisteredSequence& sequence : registry) {
     std::cout << fmt::format("{:<32} {:<10} {}  {}{}\n", sequence.name, sequence.format, sequence.checksum,
                              sequence.folder.string(),
-                             std::filesystem::exists(sequence.folder) ? "" : "  (missing)");
+                             datasets::is_sequence_path(sequence.folder) ? "" : "  (missing)");
   }
   std::cout << fmt::format(
       "{} registered sequences; plans can also use the folders in {} by their names, and any folder by its "
@@ -61,7 +61,7 @@ Command add_command() {
       .summary = "Register a recorded sequence under a name for plans; stores its current checksum",
       .example = "data add cafe1 /data/openloris/cafe1-1",
       .options = {{"NAME", "Name of the sequence in plans", &arguments->name},
-                  {"DIR", "Sequence folder", &arguments->folder},
+                  {"DIR", "Sequence folder or bag", &arguments->folder},
                   {"--force", "Replace the registration of the name for another folder", &arguments->force}},
       .action = [arguments] { return add(*arguments); }};
 }
@@ -80,7 +80,7 @@ Command data_command() {
           .summary = "Download, create and inspect sequences",
           .example = "data synth walking_xyz --out build/walking_xyz",
           .subcommands = {catalogue_command(), get_command(), verify_command(), list_command(), add_command(),
-                          check_command(), synth_command(), cache_command(), faults_command()}};
+                          check_command(), synth_command(), export_command(), cache_command(), faults_command()}};
 }
 
 }  // namespace stillpoint::bench

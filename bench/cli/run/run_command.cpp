@@ -47,6 +47,7 @@ struct RunArguments {
   std::string out;
   std::string format;
   std::string rig;
+  std::vector<std::string> topics;
   std::string heartbeat;
   std::string sequence_id;
   int max_frames = 0;
@@ -215,6 +216,7 @@ std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
       open_with_progress(resolve_sequence(arguments.sequence),
                          {.format = arguments.format,
                           .rig_file = arguments.rig,
+                          .topics = arguments.topics,
                           .defer_color = std::ranges::none_of(runs, needs_color, &ConfiguredRun::spec),
                           .frame_cache = logged_frame_cache(cached, frames)});
   if (stream && arguments.passes > 1)
@@ -259,7 +261,7 @@ Command run_command() {
       .summary = "Run the odometry on one sequence; write trajectory, scores and manifest",
       .example = "run walking_xyz --variant wo_circular_mask --out /tmp/run",
       .options =
-          {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
+          {{"SEQ", "Sequence folder, bag or preset name", &arguments->sequence},
            {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
            {"--variant", "Overlays joined by +; may be repeated, each --variant is a separate run",
             &arguments->variants},
@@ -273,6 +275,7 @@ Command run_command() {
            {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
            {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
             &arguments->format},
+           {"--topics", kTopicsHelp, &arguments->topics},
            {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
            {"--dump",
             "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
@@ -285,9 +288,7 @@ Command run_command() {
            {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
            {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
            {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
-           {"--sequence-id",
-            "Identifier for the manifest, instead of a checksum over all files of the sequence",
-            &arguments->sequence_id},
+           {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
            {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
            {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
            {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Bags of all containers: ROS 1 (.bag), MCAP (.mcap), SQLite (.db3), and the folders of rosbag2.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "datasets/bags/bag_index.h"
+#include "datasets/bags/mcap_file.h"
+#include "datasets/bags/ros1_bag.h"
+#include "datasets/bags/rosbag2_database.h"
+
+namespace stillpoint::datasets {
+
+/// One message of an opened bag.
+struct MessageReference {
+  BagMessage message;      ///< `message.connection` is an index of `BagFile::connections`
+  std::uint32_t file = 0;  ///< of the bag
+};
+
+/// An opened bag. Memory: 32 bytes per message and a few decompressed chunks.
+class BagFile {
+ public:
+  /// @throws InputError if the path is no bag or a file of it is damaged
+  explicit BagFile(const std::filesystem::path& path);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const std::vector<BagConnection>& connections() const { return connections_; }
+
+  /// All messages in the order of their recording times.
+  [[nodiscard]] const std::vector<MessageReference>& messages() const { return messages_; }
+
+  /// Repaired faults, as "FILE: FAULT".
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// The connection of a message.
+  [[nodiscard]] const BagConnection& connection(const MessageReference& reference) const {
+    return connections_[reference.message.connection];
+  }
+
+  /// The serialized message, or its first `max_bytes`. Thread-safe.
+  /// @throws InputError if the file is damaged
+  [[nodiscard]] std::string payload(
+      const MessageReference& reference,
+      std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max()) const;
+
+  /// Location of a message for errors, e.g. "a.bag:/imu at 12.345678900 s".
+  [[nodiscard]] std::string place(const MessageReference& reference) const;
+
+  /// Changes when a file of the bag is written: a hash of their sizes, times of modification and inodes.
+  [[nodiscard]] std::uint64_t state() const;
+
+ private:
+  using Container = std::variant<Ros1Bag, McapFile, Rosbag2Database>;
+  struct File {
+    std::filesystem::path path;
+    std::unique_ptr<Container> container;
+    std::uint32_t first_connection = 0;
+  };
+
+  void add_file(const std::filesystem::path& path);
+
+  std::filesystem::path path_;
+  std::vector<File> files_;
+  std::vector<BagConnection> connections_;
+  std::vector<MessageReference> messages_;
+  std::vector<std::string> warnings_;
+};
+
+/// The messages in the order of their bytes in the files, so that each chunk is decompressed once.
+[[nodiscard]] std::vector<MessageReference> in_file_order(std::span<const MessageReference> messages);
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/bags/bag_trajectory.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "core/base/error.h"
+#include "datasets/bags/messages.h"
+#include "eval/io/bag_file.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr std::string_view kTransforms = "/tf";
+constexpr std::string_view kStaticTransforms = "/tf_static";
+constexpr std::string_view kTransformsOfFrames = "/tf:";
+constexpr double kMaxInterpolation_s = 1.0;  ///< between two transforms; robots publish at 10 Hz or more
+
+using Link = std::pair<std::string, std::string>;  // parent, child
+
+bool is_transforms_type(std::string_view type) {
+  return type == "tf2_msgs/TFMessage" || type == "tf/tfMessage";
+}
+
+/// Calls `action(connection, message, time of recording)` for all messages of a topic, in the order of their
+/// bytes.
+template <class Action>
+void for_each_message(const BagFile& bag, std::string_view topic, const Action& action) {
+  std::vector<MessageReference> selected;
+  std::ranges::copy_if(bag.messages(), std::back_inserter(selected), [&](const MessageReference& reference) {
+    return bag.connection(reference).topic == topic;
+  });
+  for (const MessageReference& reference : in_file_order(selected)) {
+    const std::string bytes = bag.payload(reference);
+    const std::string place = bag.place(reference);
+    const BagConnection& connection = bag.connection(reference);
+    action(connection, SerializedMessage{.bytes = bytes, .format = connection.format, .place = place},
+           reference.message.t);
+  }
+}
+
+Timestamp stamp_or(Timestamp stamp, Timestamp recorded) { return stamp.ns == 0 ? recorded : stamp; }
+
+/// Sorts poses by time and drops repeated ones.
+eval::LoadedTrajectory sorted_trajectory(std::vector<StampedPose> poses, eval::RowRepairs repairs) {
+  for (std::size_t i = 1; i < poses.size(); ++i) repairs.reordered += poses[i].t < poses[i - 1].t;
+  std::ranges::stable_sort(poses, {}, &StampedPose::t);
+  const auto repeated = std::ranges::unique(poses, {}, &StampedPose::t);
+  repairs.repeated += repeated.size();
+  poses.erase(repeated.begin(), repeated.end());
+  return {.trajectory = {.frame = {}, .poses = std::move(poses)}, .repairs = repairs};
+}
+
+eval::LoadedTrajectory trajectory_of_topic(const BagFile& bag, const std::string& topic) {
+  std::vector<StampedPose> poses;
+  eval::RowRepairs repairs;
+  std::string frame;
+  for_each_message(
+      bag, topic, [&](const BagConnection& connection, const SerializedMessage& message, Timestamp recorded) {
+        if (!is_pose_type(connection.type))
+          throw InputError(bag.path().string() + ":" + topic,
+                           "has the type " + connection.type +
+                               ", which contains no pose; expected PoseStamped, Odometry or "
+                               "TransformStamped, or /tf:PARENT.CHILD");
+        const PoseMessage pose = parse_pose(message, connection.type);
+        frame = pose.child;
+        if (pose.pose) {
+          poses.push_back({.t = stamp_or(pose.header.stamp, recorded), .T_w_f = *pose.pose});
+        } else {
+          ++repairs.skipped;
+        }
+      });
+  eval::LoadedTrajectory loaded = sorted_trajectory(std::move(poses), repairs);
+  loaded.trajectory.frame = frame;
+  return loaded;
+}
+
+/// The moving transforms of a bag, each in the order of time.
+std::map<Link, std::vector<StampedPose>> read_moving_transforms(const BagFile& bag) {
+  std::map<Link, std::vector<StampedPose>> links;
+  for_each_message(
+      bag, kTransforms,
+      [&](const BagConnection& connection, const SerializedMessage& message, Timestamp recorded) {
+        if (!is_transforms_type(connection.type)) return;
+        for (const PoseMessage& transform : parse_transforms(message)) {
+          if (!transform.pose) continue;
+          links[{transform.header.frame, transform.child}].push_back(
+              {.t = stamp_or(transform.header.stamp, recorded), .T_w_f = *transform.pose});
+        }
+      });
+  for (auto& [link, poses] : links) poses = sorted_trajectory(std::move(poses), {}).trajectory.poses;
+  return links;
+}
+
+/// The transform at a time between two of its messages.
+std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, Timestamp t) {
+  const auto next = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
+  if (next == poses.end()) return std::nullopt;
+  if (next->t == t) return next->T_w_f;
+  if (next == poses.begin()) return std::nullopt;
+  const StampedPose& last = *std::prev(next);
+  const double interval = seconds_between(last.t, next->t);
+  if (interval > kMaxInterpolation_s) return std::nullopt;
+  return interpolate(last.T_w_f, next->T_w_f, seconds_between(last.t, t) / interval);
+}
+
+std::string list_of(const std::map<Link, std::vector<StampedPose>>& links) {
+  std::string text;
+  for (const auto& [link, poses] : links) text += (text.empty() ? "" : ", ") + link.first + "." + link.second;
+  return text.empty() ? "none" : text;
+}
+
+/// The moving links whose value changes the pose of `child` in `parent`.
+std::vector<Link> links_between(const std::map<Link, std::vector<StampedPose>>& moving,
+                                const std::vector<NamedTransform>& all, const std::string& parent,
+                                const std::string& child) {
+  std::vector<Link> path;
+  for (const auto& [link, poses] : moving) {
+    // A tree has one path: without one of its links, the frames are not connected.
+    std::vector<NamedTransform> others;
+    std::ranges::copy_if(all, std::back_inserter(others), [&link](const NamedTransform& other) {
+      return other.parent != link.first || other.child != link.second;
+    });
+    if (!find_transform(others, parent, child)) path.push_back(link);
+  }
+  return path;
+}
+
+eval::LoadedTrajectory trajectory_of_frames(const BagFile& bag, const std::string& parent,
+                                            const std::string& child) {
+  const std::map<Link, std::vector<StampedPose>> moving = read_moving_transforms(bag);
+  std::vector<NamedTransform> links = read_static_transforms(bag);
+  const std::size_t fixed = links.size();
+  for (const auto& [link, poses] : moving)
+    links.push_back({.parent = link.first, .child = link.second, .T_parent_child = poses.front().T_w_f});
+  if (!find_transform(links, parent, child))
+    throw InputError(bag.path().string() + ":/tf", "no chain of transforms connects \"" + parent +
+                                                       "\" and \"" + child + "\"; the moving ones are " +
+                                                       list_of(moving));
+  const std::vector<Link> path = links_between(moving, links, parent, child);
+  if (path.empty())
+    throw InputError(bag.path().string() + ":/tf", "\"" + child + "\" does not move in \"" + parent +
+                                                       "\"; the moving transforms are " + list_of(moving));
+  const Link& fastest =
+      *std::ranges::max_element(path, {}, [&moving](const Link& link) { return moving.at(link).size(); });
+  std::vector<StampedPose> poses;
+  for (const StampedPose& sample : moving.at(fastest)) {
+    std::vector<NamedTransform> now(links.begin(), links.begin() + static_cast<std::ptrdiff_t>(fixed));
+    for (const Link& link : path) {
+      if (const std::optional<Pose> pose = pose_at(moving.at(link), sample.t))
+        now.push_back({.parent = link.first, .child = link.second, .T_parent_child = *pose});
+    }
+    if (const std::optional<Pose> pose = find_transform(now, parent, child))
+      poses.push_back({.t = sample.t, .T_w_f = *pose});
+  }
+  eval::LoadedTrajectory loaded = sorted_trajectory(std::move(poses), {});
+  loaded.trajectory.frame = child;
+  return loaded;
+}
+
+}  // namespace
+
+std::optional<BagTopic> parse_bag_topic(const std::string& text) {
+  const std::size_t separator = text.find(":/");
+  if (separator == std::string::npos || !eval::is_bag(text.substr(0, separator))) return std::nullopt;
+  return BagTopic{.bag = text.substr(0, separator), .topic = text.substr(separator + 1)};
+}
+
+std::vector<NamedTransform> read_static_transforms(const BagFile& bag) {
+  std::map<Link, Pose> links;
+  for_each_message(bag, kStaticTransforms,
+                   [&](const BagConnection& connection, const SerializedMessage& message, Timestamp) {
+                     if (!is_transforms_type(connection.type)) return;
+                     for (const PoseMessage& transform : parse_transforms(message)) {
+                       if (transform.pose) links[{transform.header.frame, transform.child}] = *transform.pose;
+                     }
+                   });
+  std::vector<NamedTransform> transforms;
+  for (const auto& [link, pose] : links)
+    transforms.push_back({.parent = link.first, .child = link.second, .T_parent_child = pose});
+  return transforms;
+}
+
+eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string& topic) {
+  eval::LoadedTrajectory loaded;
+  if (topic.starts_with(kTransformsOfFrames)) {
+    const std::string frames = topic.substr(kTransformsOfFrames.size());
+    const std::size_t separator = frames.find('.');
+    if (separator == std::string::npos)
+      throw InputError(bag.path().string() + ":" + topic,
+                       "has no child frame; expected /tf:PARENT.CHILD, e.g. /tf:map.base_link");
+    loaded = trajectory_of_frames(bag, frames.substr(0, separator), frames.substr(separator + 1));
+  } else {
+    loaded = trajectory_of_topic(bag, topic);
+  }
+  if (loaded.trajectory.poses.empty()) {
+    std::set<std::string> topics;
+    for (const BagConnection& connection : bag.connections()) {
+      if (is_pose_type(connection.type) || is_transforms_type(connection.type))
+        topics.insert(connection.topic);
+    }
+    std::string text;
+    for (const std::string& name : topics) text += (text.empty() ? "" : ", ") + name;
+    throw InputError(bag.path().string() + ":" + topic,
+                     "contains no poses; the topics with poses are " + (text.empty() ? "none" : text));
+  }
+  return loaded;
+}
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The messages of ROS 1 and ROS 2 that describe a sequence.
+///
+/// Both have the same fields, except that a header of ROS 1 begins with a sequence number. The bytes of ROS 1
+/// have no gaps; those of CDR (OMG DDSI-RTPS 2.2, chapter 10) begin with an encapsulation identifier, and
+/// align each number to its size.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/timestamp.h"
+#include "core/geometry/pose.h"
+#include "datasets/bags/bag_index.h"
+#include "datasets/calibration/transform_graph.h"
+
+namespace stillpoint::datasets {
+
+/// Serialized bytes of one message, and their place for errors. Both must outlive parsed views.
+struct SerializedMessage {
+  std::string_view bytes;
+  WireFormat format = WireFormat::kRos1;
+  std::string_view place;
+};
+
+struct MessageHeader {
+  Timestamp stamp;
+  std::string frame;  ///< coordinate frame; without the leading slash of early ROS versions
+};
+
+/// sensor_msgs/Image
+struct ImageMessage {
+  MessageHeader header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::string encoding;
+  bool big_endian = false;
+  std::uint32_t step = 0;  ///< bytes per row
+  std::string_view data;
+};
+
+/// sensor_msgs/CompressedImage
+struct CompressedImageMessage {
+  MessageHeader header;
+  std::string format;
+  std::string_view data;
+};
+
+/// sensor_msgs/CameraInfo, without binning and region of interest, which do not change the calibration.
+struct CameraInfoMessage {
+  MessageHeader header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::string distortion_model;
+  std::vector<double> D;
+  std::array<double, 9> K{};
+  std::array<double, 12> P{};
+};
+
+/// sensor_msgs/Imu, without orientation.
+struct ImuMessage {
+  MessageHeader header;
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< [rad/s]
+  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
+};
+
+/// A pose of frame `child` in the frame of the header.
+struct PoseMessage {
+  MessageHeader header;
+  std::string child;  ///< empty if the type has none
+  /// A rotation whose quaternion has no direction (0 0 0 0, or not finite) or a position that is not finite:
+  /// nullopt.
+  std::optional<Pose> pose;
+};
+
+/// sensor_msgs/NavSatFix
+struct NavSatFixMessage {
+  MessageHeader header;
+  int status = -1;  ///< < 0: no fix
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double altitude_m = 0.0;
+};
+
+/// Each function parses all fields in front of the last one that it returns.
+/// @throws InputError if the bytes end before, or have an encapsulation that is not plain CDR
+[[nodiscard]] MessageHeader parse_header(const SerializedMessage& message);
+[[nodiscard]] ImageMessage parse_image(const SerializedMessage& message);
+[[nodiscard]] CompressedImageMessage parse_compressed_image(const SerializedMessage& message);
+[[nodiscard]] CameraInfoMessage parse_camera_info(const SerializedMessage& message);
+[[nodiscard]] ImuMessage parse_imu(const SerializedMessage& message);
+[[nodiscard]] NavSatFixMessage parse_nav_sat_fix(const SerializedMessage& message);
+
+/// The fields of an image in front of its pixels; `data` is empty.
+[[nodiscard]] ImageMessage parse_image_head(const SerializedMessage& message);
+
+/// The header and format of a compressed image; `data` is empty.
+[[nodiscard]] CompressedImageMessage parse_compressed_image_head(const SerializedMessage& message);
+
+/// Types that contain one pose with a stamp: geometry_msgs/PoseStamped, PoseWithCovarianceStamped,
+/// TransformStamped, and nav_msgs/Odometry.
+[[nodiscard]] bool is_pose_type(std::string_view type);
+
+/// @param type for which `is_pose_type` is true
+[[nodiscard]] PoseMessage parse_pose(const SerializedMessage& message, std::string_view type);
+
+/// The transforms of a tf2_msgs/TFMessage or tf/tfMessage.
+[[nodiscard]] std::vector<PoseMessage> parse_transforms(const SerializedMessage& message);
+
+/// geometry_msgs/Transform
+[[nodiscard]] std::optional<Pose> parse_transform(const SerializedMessage& message);
+
+/// std_msgs/Float32
+[[nodiscard]] float parse_float(const SerializedMessage& message);
+
+}  // namespace stillpoint::datasets

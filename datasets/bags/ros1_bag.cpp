@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/bags/ros1_bag.h"
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "datasets/bags/byte_reader.h"
+#include "datasets/bags/chunk_codec.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr std::string_view kVersion2 = "#ROSBAG V2.0\n";
+constexpr std::uint64_t kHeadBytes = 4096;          ///< read at once; longer headers are read again
+constexpr std::uint64_t kMaxHeaderBytes = 1 << 24;  ///< fields of a record, without its data
+constexpr std::uint64_t kIndexEntryBytes = 12;      ///< time and offset
+
+/// Values of the field "op".
+enum Op : std::uint8_t { kMessage = 2, kBagHeader = 3, kIndexData = 4, kChunk = 5, kConnection = 7 };
+
+/// Fields `name=value` of a record header or of the data of a connection.
+std::map<std::string, std::string, std::less<>> parse_fields(std::string_view header,
+                                                             const std::string& place) {
+  std::map<std::string, std::string, std::less<>> fields;
+  ByteReader reader(header, place);
+  while (reader.remaining() > 0) {
+    const std::string_view field = reader.block();
+    const std::size_t separator = field.find('=');
+    if (separator == std::string_view::npos) reader.fail("has a record field without \"=\"");
+    fields.emplace(field.substr(0, separator), field.substr(separator + 1));
+  }
+  return fields;
+}
+
+/// Fields of a record, and where its data are.
+struct Record {
+  std::map<std::string, std::string, std::less<>> fields;
+  std::uint64_t data_offset = 0;
+  std::uint64_t data_bytes = 0;
+
+  [[nodiscard]] std::uint64_t end() const { return data_offset + data_bytes; }
+
+  template <class Number>
+  [[nodiscard]] Number number(std::string_view name, const std::string& place) const {
+    return ByteReader(text(name, place), place).number<Number>();
+  }
+
+  [[nodiscard]] std::string text(std::string_view name, const std::string& place) const {
+    const auto found = fields.find(name);
+    if (found == fields.end())
+      throw InputError(
+          place, "a record has no field \"" + std::string(name) + "\"; it is damaged, copy the file again");
+    return found->second;
+  }
+};
+
+/// Time stamps of ROS 1: seconds, then nanoseconds.
+Timestamp read_time(ByteReader& reader) {
+  const std::int64_t seconds = reader.number<std::uint32_t>();
+  return {seconds * 1'000'000'000 + reader.number<std::uint32_t>()};
+}
+
+/// The record at `offset`.
+/// @param read (offset, count) returns bytes, fewer at the end
+/// @return nullopt if the bytes end within its header
+template <class Read>
+std::optional<Record> record_at(std::uint64_t offset, const Read& read, const std::string& place) {
+  std::string head = read(offset, kHeadBytes);
+  if (head.size() < sizeof(std::uint32_t)) return std::nullopt;
+  const std::uint64_t header_bytes = ByteReader(head, place).number<std::uint32_t>();
+  if (header_bytes > kMaxHeaderBytes)
+    throw InputError(place, "contains no record at byte " + std::to_string(offset) +
+                                "; it is damaged, copy the file again");
+  const std::uint64_t head_bytes = header_bytes + 2 * sizeof(std::uint32_t);
+  if (head.size() < head_bytes) head = read(offset, head_bytes);
+  if (head.size() < head_bytes) return std::nullopt;
+  ByteReader reader(head, place);
+  Record record;
+  record.fields = parse_fields(reader.block(), place);
+  record.data_bytes = reader.number<std::uint32_t>();
+  record.data_offset = offset + head_bytes;
+  return record;
+}
+
+/// Collects the index of a file in one pass over its records.
+class Ros1Indexer {
+ public:
+  explicit Ros1Indexer(const ChunkReader& reader) : reader_(reader), place_(reader.file().path().string()) {}
+
+  [[nodiscard]] BagIndex run() {
+    const ByteFile& file = reader_.file();
+    std::uint64_t position = kVersion2.size();
+    while (position < file.size()) {
+      const std::optional<Record> record = record_at(
+          position, [&file](auto offset, auto count) { return file.read(offset, count); }, place_);
+      if (!record || record->end() > file.size()) {
+        truncated_ = true;
+        break;
+      }
+      add(*record);
+      position = record->end();
+    }
+    finish();
+    return std::move(index_);
+  }
+
+ private:
+  void add(const Record& record) {
+    switch (record.number<std::uint8_t>("op", place_)) {
+      case kBagHeader:
+        if (record.fields.contains("encryptor") && !record.fields.at("encryptor").empty())
+          throw InputError(place_, "is encrypted; decrypt it with `rosbag decrypt`");
+        break;
+      case kChunk:
+        finish_chunk();
+        add_chunk(record);
+        break;
+      case kIndexData:
+        add_index_data(record);
+        break;
+      case kConnection:
+        add_connection(record, reader_.file().read(record.data_offset, record.data_bytes));
+        break;
+      default:
+        break;  // chunk info is not needed, unknown records are skipped
+    }
+  }
+
+  void add_chunk(const Record& record) {
+    const std::string name = record.text("compression", place_);
+    const std::optional<ChunkCompression> compression = compression_of(name);
+    if (!compression || compression == ChunkCompression::kZstd)
+      throw InputError(place_, "a chunk has the unknown compression \"" + name +
+                                   "\"; convert it with `rosbag compress --lz4`");
+    index_.chunks.push_back({.position = record.data_offset,
+                             .stored_bytes = record.data_bytes,
+                             .bytes = record.number<std::uint32_t>("size", place_),
+                             .compression = *compression});
+    const BagChunk& chunk = index_.chunks.back();
+    if (chunk.compression == ChunkCompression::kNone && chunk.bytes != chunk.stored_bytes)
+      throw InputError(place_, "a chunk has contradicting sizes; it is damaged, copy the file again");
+    indexed_ = false;
+    first_of_chunk_ = index_.messages.size();
+  }
+
+  void add_index_data(const Record& record) {
+    if (index_.chunks.empty() || record.number<std::uint32_t>("ver", place_) != 1) return;
+    const std::string data = reader_.file().read(record.data_offset, record.data_bytes);
+    ByteReader entries(data, place_);
+    const std::uint32_t connection = connection_index(record.number<std::uint32_t>("conn", place_));
+    for (std::uint64_t i = 0; i < data.size() / kIndexEntryBytes; ++i) {
+      const Timestamp t = read_time(entries);
+      add_message(connection, t, entries.number<std::uint32_t>());
+    }
+    indexed_ = true;
+  }
+
+  void add_message(std::uint32_t connection, Timestamp t, std::uint64_t offset) {
+    index_.messages.push_back({.t = t,
+                               .connection = connection,
+                               .chunk = static_cast<std::uint32_t>(index_.chunks.size() - 1),
+                               .offset = offset});
+  }
+
+  /// The index of the connection with this number; its description may follow later.
+  std::uint32_t connection_index(std::uint32_t id) {
+    const auto [entry, is_new] = ids_.emplace(id, static_cast<std::uint32_t>(index_.connections.size()));
+    if (is_new) index_.connections.emplace_back();
+    return entry->second;
+  }
+
+  void add_connection(const Record& record, const std::string& data) {
+    BagConnection& connection =
+        index_.connections[connection_index(record.number<std::uint32_t>("conn", place_))];
+    if (!connection.topic.empty()) return;  // written in its first chunk and at the end
+    const auto fields = parse_fields(data, place_);
+    const auto value = [&fields](std::string_view name) {
+      const auto found = fields.find(name);
+      return found == fields.end() ? std::string() : found->second;
+    };
+    connection = {.topic = record.text("topic", place_),
+                  .type = value("type"),
+                  .definition = value("message_definition"),
+                  .format = WireFormat::kRos1};
+  }
+
+  /// Reads the records in the chunk that was added last, unless index records have described it.
+  void finish_chunk() {
+    if (index_.chunks.empty() || (indexed_ && !truncated_)) return;
+    index_.messages.resize(first_of_chunk_);  // of an incomplete index
+    walk_chunk(index_.chunks.size() - 1, true);
+  }
+
+  /// @param with_messages false: connections only
+  void walk_chunk(std::size_t chunk, bool with_messages) {
+    const std::string place = place_ + ", chunk " + std::to_string(chunk);
+    const std::shared_ptr<const std::string> bytes = reader_.chunk_bytes(index_.chunks[chunk]);
+    const auto read = [&bytes](std::uint64_t offset, std::uint64_t count) {
+      return offset < bytes->size() ? bytes->substr(offset, count) : std::string();
+    };
+    for (std::uint64_t offset = 0; offset < bytes->size();) {
+      const std::optional<Record> record = record_at(offset, read, place);
+      if (!record || record->end() > bytes->size())
+        throw InputError(place, "ends within a record; it is damaged, copy the file again");
+      const std::uint8_t op = record->number<std::uint8_t>("op", place);
+      if (op == kConnection) add_connection(*record, read(record->data_offset, record->data_bytes));
+      if (op == kMessage && with_messages) {
+        const std::string time = record->text("time", place);
+        ByteReader reader(time, place);
+        add_message(connection_index(record->number<std::uint32_t>("conn", place)), read_time(reader),
+                    offset);
+      }
+      offset = record->end();
+    }
+  }
+
+  void finish() {
+    finish_chunk();
+    find_missing_connections();
+    if (truncated_) {
+      index_.warnings.push_back("is not complete: it ends within a record after " +
+                                std::to_string(index_.chunks.size()) + " chunks; those are read");
+    }
+  }
+
+  /// A bag that was not closed has its connections in the chunks only.
+  void find_missing_connections() {
+    std::set<std::uint32_t> chunks;
+    for (const BagMessage& message : index_.messages) {
+      if (index_.connections[message.connection].topic.empty()) chunks.insert(message.chunk);
+    }
+    for (const std::uint32_t chunk : chunks) walk_chunk(chunk, false);
+    const std::size_t dropped = std::erase_if(index_.messages, [this](const BagMessage& message) {
+      return index_.connections[message.connection].topic.empty();
+    });
+    if (dropped > 0)
+      index_.warnings.push_back(std::to_string(dropped) + " messages of unknown connections are skipped");
+  }
+
+  const ChunkReader& reader_;
+  std::string place_;
+  BagIndex index_;
+  std::map<std::uint32_t, std::uint32_t> ids_;  ///< number in the file to index
+  std::size_t first_of_chunk_ = 0;              ///< index of the first message of the last chunk
+  bool indexed_ = true;                         ///< whether index records followed the last chunk
+  bool truncated_ = false;
+};
+
+void require_version(const ByteFile& file) {
+  const std::string line = file.read(0, kVersion2.size());
+  if (line == kVersion2) return;
+  const std::string place = file.path().string();
+  if (line.starts_with("#ROSBAG") || line.starts_with("#ROSRECORD") || line.starts_with("#ROSLOG"))
+    throw InputError(place, "is a bag of an older format than 2.0; convert it with `rosbag fix`");
+  throw InputError(place, "is not a ROS 1 bag: it does not begin with \"#ROSBAG V2.0\"; copy the file again");
+}
+
+}  // namespace
+
+Ros1Bag::Ros1Bag(const std::filesystem::path& file) : reader_(file) {
+  require_version(reader_.file());
+  index_ = Ros1Indexer(reader_).run();
+}
+
+std::string Ros1Bag::payload(const BagMessage& message, std::uint64_t max_bytes) const {
+  const BagChunk& chunk = index_.chunks[message.chunk];
+  const std::string place = reader_.file().path().string();
+  const std::optional<Record> record = record_at(
+      message.offset,
+      [&](auto offset, auto count) {
+        return reader_.read(chunk, offset, std::min<std::uint64_t>(count, 256));
+      },
+      place);
+  if (!record || record->end() > chunk.bytes || record->number<std::uint8_t>("op", place) != kMessage)
+    throw InputError(place,
+                     "its index points to no message; it is damaged, restore it with `rosbag reindex`");
+  return reader_.read(chunk, record->data_offset, std::min(max_bytes, record->data_bytes));
+}
+
+}  // namespace stillpoint::datasets

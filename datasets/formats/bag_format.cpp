@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Bags of ROS 1 and ROS 2, and recordings of librealsense, as sequences.
+#include "datasets/formats/bag_format.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "core/base/content_hash.h"
+#include "core/base/error.h"
+#include "datasets/bags/bag_calibration.h"
+#include "datasets/bags/bag_streams.h"
+#include "datasets/bags/bag_topics.h"
+#include "datasets/bags/bag_trajectory.h"
+#include "datasets/bags/image_message.h"
+#include "eval/io/bag_file.h"
+#include "eval/trajectory/association.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr eval::AssociationOptions kAssociation{.max_difference_s = 0.02};  ///< as for image lists
+constexpr double kRealsenseMaxDepthUnits = 1e6;
+
+/// The images of a sequence in its bag.
+struct BagImages {
+  std::shared_ptr<const BagFile> bag;
+  std::vector<MessageReference> color;  ///< one per frame
+  std::vector<MessageReference> depth;  ///< one per frame, or empty
+};
+
+template <class Decode>
+cv::Mat decode_message(const BagFile& bag, const MessageReference& reference, const Decode& decode) {
+  const std::string bytes = bag.payload(reference);
+  const std::string place = bag.place(reference);
+  const SerializedMessage message{.bytes = bytes, .format = bag.connection(reference).format, .place = place};
+  if (bag.connection(reference).type == "sensor_msgs/Image") return decode(parse_image(message), place);
+  return decode(parse_compressed_image(message), place);
+}
+
+/// Of the position of a message and the state of the file: the bag is not read to find cached frames.
+std::uint64_t digest_of(const BagFile& bag, const MessageReference& reference) {
+  return content_hash(bag.connection(reference).topic + " " + std::to_string(reference.message.chunk) + " " +
+                          std::to_string(reference.message.offset),
+                      bag.state() + reference.file);
+}
+
+ImageSource source_of(std::shared_ptr<const BagImages> images) {
+  return {.color =
+              [images](std::size_t frame) {
+                return decode_message(*images->bag, images->color[frame],
+                                      [](const auto& image, const std::string& place) {
+                                        return decode_color_message(image, place);
+                                      });
+              },
+          .depth =
+              [images](std::size_t frame) {
+                return decode_message(*images->bag, images->depth[frame],
+                                      [](const auto& image, const std::string& place) {
+                                        return decode_depth_message(image, place);
+                                      });
+              },
+          .digest =
+              [images](std::size_t frame) {
+                return FrameDigest{
+                    .color = digest_of(*images->bag, images->color[frame]),
+                    .depth = images->depth.empty() ? 0 : digest_of(*images->bag, images->depth[frame])};
+              }};
+}
+
+std::vector<Timestamp> times_of(const std::vector<StampedImage>& images) {
+  std::vector<Timestamp> times;
+  for (const StampedImage& image : images) times.push_back(image.t);
+  return times;
+}
+
+/// Pairs of images less than 20 ms apart; without depth, all color images.
+void add_frames(SequenceContent& content, const BagStreams& streams,
+                const std::shared_ptr<const BagFile>& bag) {
+  auto images = std::make_shared<BagImages>();
+  images->bag = bag;
+  const auto add = [&](const StampedImage& color, const StampedImage* depth) {
+    content.info.frame_times.push_back(color.t);
+    images->color.push_back(color.message);
+    if (depth != nullptr) images->depth.push_back(depth->message);
+    content.frame_files.push_back(
+        {.color = bag->place(color.message),
+         .depth = depth == nullptr ? std::string() : bag->place(depth->message),
+         .depth_offset_s = depth == nullptr ? 0.0 : seconds_between(color.t, depth->t)});
+  };
+  if (streams.depth.empty()) {
+    for (const StampedImage& color : streams.color) add(color, nullptr);
+  } else {
+    // The pairs are in the order of the second list, which the frame times must follow.
+    for (const auto& [in_depth, in_color] :
+         eval::associate_tum(times_of(streams.depth), times_of(streams.color), kAssociation))
+      add(streams.color[in_color], &streams.depth[in_depth]);
+  }
+  if (images->color.empty())
+    throw InputError(bag->path().string(),
+                     "no depth image is less than 20 ms from a color image; select other topics with "
+                     "--topics, or none with \"--topics depth=\"");
+  if (const std::size_t unpaired = streams.color.size() - images->color.size(); unpaired > 0)
+    content.info.notes.push_back(std::to_string(unpaired) + " of " + std::to_string(streams.color.size()) +
+                                 " color images have no depth image less than 20 ms away and are dropped");
+  content.images = source_of(std::move(images));
+}
+
+/// The fixed transforms of a bag, and the names of the frames in them.
+struct BagFrames {
+  std::vector<NamedTransform> links;
+  std::string color;
+  std::string depth;
+  std::string imu;
+};
+
+BagFrames frames_of(const BagFile& bag, const BagTopics& topics, const BagStreams& streams,
+                    const RealsenseStreams& realsense) {
+  BagFrames frames{.links = read_static_transforms(bag),
+                   .color = streams.color_frame,
+                   .depth = streams.depth_frame,
+                   .imu = streams.imu_frame};
+  frames.links.insert(frames.links.end(), realsense.links.begin(), realsense.links.end());
+  const auto name_of = [](const std::string& topic, const std::string& frame) {
+    return realsense_stream(topic).value_or(frame);
+  };
+  frames.color = name_of(topics.color, frames.color);
+  frames.depth = name_of(topics.depth, frames.depth);
+  frames.imu = name_of(topics.imu.empty() ? topics.gyro : topics.imu, frames.imu);
+  return frames;
+}
+
+/// Sets the camera, and registration of depth if it is that of another camera.
+void set_cameras(SequenceContent& content, const BagFile& bag, const BagTopics& topics,
+                 const BagFrames& frames) {
+  const std::optional<CameraInfoMessage> color = find_camera_info(bag, topics.color, frames.color);
+  if (!color) {
+    content.missing_calibration = "the bag has no calibrated CameraInfo for " + topics.color;
+    return;
+  }
+  Camera& camera = content.info.rig.camera;
+  camera = camera_of(*color, topics.color, bag.path().string());
+  content.info.notes.push_back("calibration: CameraInfo of " + topics.color);
+  if (topics.depth.empty() || frames.depth == frames.color) return;
+  const std::optional<CameraInfoMessage> info = find_camera_info(bag, topics.depth, frames.depth);
+  const std::optional<Pose> T_c_d = find_transform(frames.links, frames.color, frames.depth);
+  if (!info) return;
+  const Camera depth = camera_of(*info, topics.depth, bag.path().string());
+  const bool same_camera = depth.width == camera.width && depth.height == camera.height &&
+                           depth.fx == camera.fx && depth.cx == camera.cx && depth.cy == camera.cy;
+  if (same_camera) return;
+  content.depth_camera = DepthCamera{.camera = depth, .T_c_d = T_c_d.value_or(Pose{})};
+  content.info.notes.push_back("depth of " + topics.depth + " is registered to the color camera");
+  if (!T_c_d)
+    content.info.warnings.push_back(
+        "depth: is that of another camera, and no transform of the bag connects \"" + frames.color +
+        "\" and \"" + frames.depth + "\"; it is registered as if both were at the same place");
+}
+
+/// Accelerations in g, as in VCU-RVI, are converted to m/s^2. There, their sign is inverted as well: the
+/// specific force of a camera that is held upright points along -y of the camera, not along y.
+void correct_accelerations(SequenceContent& content) {
+  constexpr double kGravity = 9.80665;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double norms = 0.0;
+  for (const ImuSample& sample : content.info.imu) {
+    sum += sample.accel_b;
+    norms += sample.accel_b.norm();
+  }
+  const double mean_norm = norms / static_cast<double>(content.info.imu.size());
+  if (mean_norm < 0.8 || mean_norm > 1.2) return;
+  const Eigen::Vector3d force_c = content.info.rig.T_b_c.R().transpose() * sum;
+  const bool inverted = content.extrinsic_known && force_c.y() > 0.7 * force_c.norm();
+  for (ImuSample& sample : content.info.imu) sample.accel_b *= inverted ? -kGravity : kGravity;
+  content.info.warnings.push_back(
+      "imu: the mean acceleration is " + std::to_string(mean_norm) +
+      ", that is, the unit is g; accelerations are converted to m/s^2" +
+      (inverted ? ", and their sign is inverted, as gravity points up in the images" : ""));
+}
+
+void set_imu(SequenceContent& content, const BagFrames& frames) {
+  content.info.rig.has_imu = true;
+  const std::optional<Pose> T_b_c = find_transform(frames.links, frames.imu, frames.color);
+  content.extrinsic_known = T_b_c.has_value() && !frames.imu.empty() && !frames.color.empty();
+  if (T_b_c) content.info.rig.T_b_c = *T_b_c;
+  content.info.notes.emplace_back(
+      "imu: default noise densities, unless a rig.toml sets [imu] gyro_noise etc.");
+  correct_accelerations(content);
+}
+
+void set_ground_truth(SequenceContent& content, const BagFile& bag, const std::string& topic,
+                      const BagFrames& frames) {
+  eval::LoadedTrajectory truth = read_bag_trajectory(bag, topic);
+  // OpenLORIS: the poses of /gt are those of the base of the robot.
+  std::string frame = truth.trajectory.frame;
+  if (frame.empty()) frame = "base_link";
+  const std::optional<Pose> T_c_f = find_transform(frames.links, frames.color, frame);
+  if (T_c_f) content.info.ground_truth.T_c_f = *T_c_f;
+  if (!T_c_f)
+    content.info.notes.push_back(
+        "ground truth: the bag has no transform from its frame to the camera; it is compared as if it were "
+        "the pose of the camera");
+  truth.trajectory.frame = T_c_f ? frame : topic;
+  content = with_ground_truth(std::move(content), std::move(truth));
+}
+
+}  // namespace
+
+SequenceContent read_bag_sequence(const std::filesystem::path& path, std::span<const std::string> requested,
+                                  FaultLog& faults) {
+  const auto bag = std::make_shared<const BagFile>(path);
+  const BagTopics topics = select_topics(*bag, requested);
+  const BagStreams streams = read_bag_streams(*bag, topics, faults);
+  const RealsenseStreams realsense = read_realsense_streams(*bag);
+  const BagFrames frames = frames_of(*bag, topics, streams, realsense);
+  SequenceContent content;
+  content.info.name = path.stem().string();
+  content.info.folder = path;
+  content.info.notes.push_back("topics: " + topics_text(topics));
+  content.info.warnings = bag->warnings();
+  content.info.warnings.insert(content.info.warnings.end(), streams.warnings.begin(), streams.warnings.end());
+  if (streams.color.empty()) throw InputError(path.string(), "contains no readable image of " + topics.color);
+  add_frames(content, streams, bag);
+  content.info.rig.depth_units_per_m = streams.float_depth
+                                           ? kFloatDepthUnitsPerM
+                                           : std::min(realsense.depth_units_per_m, kRealsenseMaxDepthUnits);
+  set_cameras(content, *bag, topics, frames);
+  content.info.imu = streams.imu;
+  if (!streams.imu.empty()) set_imu(content, frames);
+  if (!topics.truth.empty()) faults.guard([&] { set_ground_truth(content, *bag, topics.truth, frames); });
+  return content;
+}
+
+const SequenceFormat kBagFormat{.name = "bag",
+                                .signature = "the extension .bag, .mcap or .db3, or metadata.yaml of rosbag2",
+                                .recognize = eval::is_bag,
+                                .read = [](const std::filesystem::path& path, FaultLog& faults) {
+                                  return read_bag_sequence(path, {}, faults);
+                                }};
+
+}  // namespace stillpoint::datasets

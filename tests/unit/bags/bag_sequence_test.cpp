@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "datasets/bags/writing/bag_writer.h"
+#include "datasets/bags/writing/serialize.h"
+#include "datasets/open_sequence.h"
+#include "datasets/sequence_export.h"
+#include "datasets/sequence_validator.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/sequences/small_stream.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr std::int64_t kStart_ns = 100'000'000'000;
+
+Timestamp at_ms(std::int64_t ms) { return {kStart_ns + ms * 1'000'000}; }
+
+/// Writes a bag message by message.
+class BagBuilder {
+ public:
+  explicit BagBuilder(const std::filesystem::path& path) : writer_(path, ChunkCompression::kNone) {}
+
+  void image(const std::string& topic, Timestamp t, const std::string& encoding,
+             const std::string& frame = "cam") {
+    const std::size_t pixel = encoding == "rgb8" || encoding == "8UC3" ? 3
+                              : encoding == "mono8"                    ? 1
+                              : encoding == "32FC1"                    ? 4
+                                                                       : 2;
+    std::string data(8 * 6 * pixel, '\1');
+    if (encoding == "32FC1") {
+      for (std::size_t i = 0; i < 48; ++i) std::memcpy(data.data() + 4 * i, &kTwoMeters, 4);
+    }
+    write(topic, "sensor_msgs/Image", t,
+          serialize(ImageMessage{.header = {.stamp = t, .frame = frame},
+                                 .height = 6,
+                                 .width = 8,
+                                 .encoding = encoding,
+                                 .step = static_cast<std::uint32_t>(8 * pixel),
+                                 .data = data},
+                    writer_.format()));
+  }
+
+  void camera_info(const std::string& topic, double fx, const std::string& model = "plumb_bob",
+                   std::vector<double> D = {}) {
+    const CameraInfoMessage info{.header = {.stamp = at_ms(0), .frame = "cam"},
+                                 .height = 6,
+                                 .width = 8,
+                                 .distortion_model = model,
+                                 .D = std::move(D),
+                                 .K = {fx, 0, 4, 0, fx, 3, 0, 0, 1},
+                                 .P = {}};
+    write(topic, "sensor_msgs/CameraInfo", at_ms(0), serialize(info, writer_.format()));
+  }
+
+  void imu(const std::string& topic, Timestamp t, const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel) {
+    write(topic, "sensor_msgs/Imu", t,
+          serialize(ImuMessage{.header = {.stamp = t, .frame = "imu"}, .gyro = gyro, .accel = accel},
+                    writer_.format()));
+  }
+
+  void transform(const std::string& parent, const std::string& child, const Pose& pose) {
+    const PoseMessage link{.header = {.stamp = at_ms(0), .frame = parent}, .child = child, .pose = pose};
+    write("/tf_static", "tf2_msgs/TFMessage", at_ms(0),
+          serialize_transforms(std::span(&link, 1), writer_.format()));
+  }
+
+  void pose(const std::string& topic, Timestamp t, double x) {
+    const PoseMessage pose{.header = {.stamp = t, .frame = "world"},
+                           .child = "",
+                           .pose = Pose{Eigen::Quaterniond::Identity(), {x, 0, 0}}};
+    write(topic, "geometry_msgs/PoseStamped", t,
+          serialize_pose(pose, "geometry_msgs/PoseStamped", writer_.format()));
+  }
+
+  void finish() { writer_.finish(); }
+
+ private:
+  static constexpr float kTwoMeters = 2.0F;
+
+  void write(const std::string& topic, const std::string& type, Timestamp t, const std::string& bytes) {
+    const auto known = connections_.find(topic);
+    const std::uint32_t connection =
+        known != connections_.end() ? known->second : writer_.add_connection(topic, type);
+    connections_.emplace(topic, connection);
+    writer_.write(connection, t, bytes);
+  }
+
+  BagWriter writer_;
+  std::map<std::string, std::uint32_t> connections_;
+};
+
+bool has_note(const SequenceInfo& info, const std::string& text) {
+  return std::ranges::any_of(
+      info.notes, [&text](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
+TEST(BagSequence, TwoInertialTopicsAreMerged) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.camera_info("/d400/color/camera_info", 10.0);
+  bag.transform("imu", "cam", Pose{Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.0}});
+  for (int i = 0; i < 3; ++i) {
+    bag.image("/d400/color/image_raw", at_ms(40 * i), "rgb8");
+    bag.image("/t265/fisheye1/image_raw", at_ms(40 * i), "mono8");
+    bag.image("/d400/aligned_depth_to_color/image_raw", at_ms(40 * i + 3), "16UC1");
+    bag.image("/d400/depth/image_raw", at_ms(40 * i + 3), "16UC1");
+  }
+  for (int i = 0; i < 10; ++i) bag.imu("/d400/gyro/sample", at_ms(10 * i + 5), {0.0, 0.0, 1.0}, {0, 0, 0});
+  for (int i = 0; i < 6; ++i)
+    bag.imu("/d400/accel/sample", at_ms(20 * i), {0, 0, 0}, {0.0, static_cast<double>(i), 9.8});
+  for (int i = 0; i < 10; ++i) bag.imu("/base/imu", at_ms(10 * i), {0, 0, 0}, {0, 0, 0});
+  bag.finish();
+  const std::unique_ptr<SensorStream> stream = open_sequence(folder.path() / "a.bag");
+  const SequenceInfo& info = stream->info();
+  EXPECT_TRUE(has_note(info,
+                       "topics: color /d400/color/image_raw, depth /d400/aligned_depth_to_color/image_raw, "
+                       "gyro /d400/gyro/sample, accel /d400/accel/sample"));
+  EXPECT_EQ(info.frame_times.size(), 3U);
+  ASSERT_EQ(info.imu.size(), 10U);
+  EXPECT_NEAR(info.imu[0].accel_b.y(), 0.25, 1e-12);  // at 5 ms, between 0 at 0 ms and 1 at 20 ms
+  EXPECT_EQ(info.imu[0].gyro_b.z(), 1.0);
+  EXPECT_EQ(info.rig.T_b_c.p.x(), 0.1);
+  EXPECT_EQ(info.rig.camera.fx, 10.0);
+}
+
+TEST(BagSequence, SelectedTopicsOverrideTheSearch) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.camera_info("/a/camera_info", 10.0);
+  bag.camera_info("/b/camera_info", 20.0);
+  for (int i = 0; i < 3; ++i) {
+    bag.image("/a/image_raw", at_ms(40 * i), "rgb8");
+    bag.image("/b/image_raw", at_ms(40 * i), "mono8");
+    bag.image("/b/depth", at_ms(40 * i), "32FC1");
+    bag.pose("/robot/pose", at_ms(40 * i), i);
+  }
+  bag.finish();
+  EXPECT_EQ(open_sequence(folder.path() / "a.bag")->info().rig.camera.fx, 10.0);
+  const std::unique_ptr<SensorStream> stream =
+      open_sequence(folder.path() / "a.bag", {.topics = {"color=/b/image_raw", "truth=/robot/pose"}});
+  EXPECT_EQ(stream->info().rig.camera.fx, 20.0);
+  EXPECT_EQ(stream->info().ground_truth.trajectory.poses.size(), 3U);
+  EXPECT_EQ(stream->load_frame(1).depth.at<std::uint16_t>(2, 2), 10000);  // 2 m of 5000 units
+  EXPECT_EQ(stream->load_frame(1).depth_units_per_m, 5000.0);
+  const auto open = [&](const std::string& request) {
+    static_cast<void>(open_sequence(folder.path() / "a.bag", {.topics = {request}}));
+  };
+  expect_input_error([&] { open("color=/b/depth"); }, {"--topics", "/b/depth", "no topic for color",
+                                                       "/a/image_raw (sensor_msgs/Image, rgb8)"});
+  expect_input_error([&] { open("image=/b/image_raw"); }, {"--topics", "ROLE=TOPIC"});
+}
+
+TEST(BagSequence, RepeatedAndUnorderedStampsAreRepairedWithAWarning) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.mcap");
+  bag.camera_info("/camera_info", 10.0);
+  for (const int ms : {0, 40, 40, 120, 80}) bag.image("/image_raw", at_ms(ms), "mono8");
+  bag.finish();
+  const std::unique_ptr<SensorStream> stream = open_sequence(folder.path() / "a.mcap");
+  EXPECT_EQ(stream->info().frame_times, (std::vector<Timestamp>{at_ms(0), at_ms(40), at_ms(80), at_ms(120)}));
+  ASSERT_EQ(stream->info().warnings.size(), 2U);
+  EXPECT_NE(stream->info().warnings[0].find("1 messages with the time stamp of an earlier one"),
+            std::string::npos);
+}
+
+/// VCU-RVI has accelerations in g whose sign is inverted.
+TEST(BagSequence, AccelerationsInGAreConverted) {
+  const auto accel_of = [](const Eigen::Vector3d& recorded) {
+    const TemporaryFolder folder;
+    BagBuilder bag(folder.path() / "a.bag");
+    bag.camera_info("/camera/camera_info", 10.0);
+    bag.transform("imu", "cam", Pose{});
+    for (int i = 0; i < 3; ++i) bag.image("/camera/image_raw", at_ms(40 * i), "8UC3");
+    for (int i = 0; i < 10; ++i) bag.imu("/camera/imu", at_ms(10 * i), {0, 0, 0}, recorded);
+    bag.finish();
+    const SequenceInfo info = open_sequence(folder.path() / "a.bag")->info();
+    EXPECT_EQ(info.warnings.size(), 1U);
+    return info.imu[3].accel_b;
+  };
+  EXPECT_EQ(accel_of({0.0, -1.0, 0.0}), Eigen::Vector3d(0.0, -9.80665, 0.0));
+  EXPECT_EQ(accel_of({0.0, 1.0, 0.0}), Eigen::Vector3d(0.0, -9.80665, 0.0));
+  EXPECT_EQ(accel_of({0.0, 0.0, 1.0}), Eigen::Vector3d(0.0, 0.0, 9.80665));
+}
+
+TEST(BagSequence, MissingCalibrationNamesTheFileToWrite) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.image("/image_raw", at_ms(0), "mono8");
+  bag.finish();
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path() / "a.bag")); },
+                     {"a.rig.toml", "no calibrated CameraInfo"});
+  folder.write("a.rig.toml", "[camera]\nwidth = 8\nheight = 6\nfx = 5\nfy = 5\ncx = 4\ncy = 3\n");
+  EXPECT_EQ(open_sequence(folder.path() / "a.bag")->info().rig.camera.fx, 5.0);
+}
+
+TEST(BagSequence, DistortionModelsThatAreNotSupportedAreRejected) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.camera_info("/camera_info", 10.0, "rational_polynomial", {0.1, 0, 0, 0, 0, 0.5, 0, 0});
+  bag.image("/image_raw", at_ms(0), "mono8");
+  bag.finish();
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path() / "a.bag")); },
+                     {"rational_polynomial", "rig.toml"});
+}
+
+TEST(BagSequence, ABagWithoutImagesListsItsTopics) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.pose("/gt", at_ms(0), 0.0);
+  bag.finish();
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path() / "a.bag")); },
+                     {"no color or gray images", "/gt (geometry_msgs/PoseStamped)"});
+}
+
+TEST(BagSequence, IsChecked) {
+  const TemporaryFolder folder;
+  SmallStream stream;
+  for (ImuSample& sample : stream.info_.imu) sample.accel_b = {0.0, -9.81, 0.0};  // the camera is upright
+  export_bag(stream, folder.path() / "a.bag", "bz2");
+  const CheckReport report = check_sequence(folder.path() / "a.bag");
+  EXPECT_EQ(report.exit_code(), 0) << report_text(report);
+  EXPECT_EQ(report.format, "bag");
+}
+
+TEST(BagSequence, FramesAreCachedUntilTheBagChanges) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.bag";
+  export_bag(SmallStream(), path, "lz4");
+  const OpenOptions options{
+      .frame_cache = FrameCacheOptions{.folder = folder.path() / "cache", .disk_reserve_bytes = 0}};
+  const auto load_all = [&] {
+    const std::unique_ptr<SensorStream> stream = open_sequence(path, options);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(stream->load_frame(i).gray.at<std::uint8_t>(0, 0), 10 * i);
+  };
+  load_all();
+  EXPECT_TRUE(open_sequence(path, options)->frames_are_cached());
+  load_all();
+  std::filesystem::last_write_time(path,
+                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  EXPECT_FALSE(open_sequence(path, options)->frames_are_cached());
+}
+
+}  // namespace
+}  // namespace stillpoint::datasets

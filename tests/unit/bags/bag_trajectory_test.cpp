@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/bags/bag_trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include "datasets/bags/writing/bag_writer.h"
+#include "datasets/bags/writing/serialize.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+Timestamp at_ms(std::int64_t ms) { return {1'000'000'000 + ms * 1'000'000}; }
+
+Pose shifted(double x, double y = 0.0) { return {Eigen::Quaterniond::Identity(), {x, y, 0.0}}; }
+
+PoseMessage link(const std::string& parent, const std::string& child, Timestamp t, const Pose& pose) {
+  return {.header = {.stamp = t, .frame = parent}, .child = child, .pose = pose};
+}
+
+/// map -> odom at 1 Hz moves along y, odom -> base at 10 Hz along x, base -> camera is fixed.
+std::filesystem::path write_transforms(const TemporaryFolder& folder) {
+  BagWriter writer(folder.path() / "tf.bag", ChunkCompression::kNone);
+  const std::uint32_t moving = writer.add_connection("/tf", "tf2_msgs/TFMessage");
+  const std::uint32_t fixed = writer.add_connection("/tf_static", "tf2_msgs/TFMessage");
+  const std::vector<PoseMessage> camera{link("base", "camera", at_ms(0), shifted(0.5))};
+  writer.write(fixed, at_ms(0), serialize_transforms(camera, writer.format()));
+  for (int i = 0; i <= 10; ++i) {
+    std::vector<PoseMessage> links{link("odom", "base", at_ms(100 * i), shifted(0.1 * i))};
+    if (i % 10 == 0) links.push_back(link("map", "odom", at_ms(100 * i), shifted(0.0, 0.1 * i)));
+    links.push_back(link("map", "person", at_ms(100 * i), shifted(7.0)));
+    writer.write(moving, at_ms(100 * i), serialize_transforms(links, writer.format()));
+  }
+  writer.finish();
+  return folder.path() / "tf.bag";
+}
+
+TEST(BagTrajectory, AChainOfTransformsIsInterpolatedAtTheFastestLink) {
+  const TemporaryFolder folder;
+  const BagFile bag(write_transforms(folder));
+  const eval::LoadedTrajectory loaded = read_bag_trajectory(bag, "/tf:map.camera");
+  const std::vector<StampedPose>& poses = loaded.trajectory.poses;
+  ASSERT_EQ(poses.size(), 11U);
+  EXPECT_EQ(loaded.trajectory.frame, "camera");
+  EXPECT_EQ(poses[3].t, at_ms(300));
+  EXPECT_NEAR((poses[3].T_w_f.p - Eigen::Vector3d(0.3 + 0.5, 0.3, 0.0)).norm(), 0.0, 1e-12);
+}
+
+TEST(BagTrajectory, UnknownFramesListTheMovingOnes) {
+  const TemporaryFolder folder;
+  const BagFile bag(write_transforms(folder));
+  const auto read = [&bag](const std::string& topic) { static_cast<void>(read_bag_trajectory(bag, topic)); };
+  expect_input_error([&] { read("/tf:map.gripper"); }, {"no chain of transforms", "map.odom"});
+  expect_input_error([&] { read("/tf:base.camera"); }, {"does not move"});
+  expect_input_error([&] { read("/tf:map"); }, {"/tf:PARENT.CHILD"});
+  expect_input_error([&] { read("/pose"); }, {"tf.bag:/pose", "contains no poses", "/tf"});
+  expect_input_error([&] { read("/tf_static"); }, {"tf2_msgs/TFMessage", "contains no pose"});
+}
+
+TEST(BagTrajectory, PosesAreSortedAndRepairsCounted) {
+  const TemporaryFolder folder;
+  BagWriter writer(folder.path() / "poses", ChunkCompression::kNone);
+  const std::uint32_t odometry = writer.add_connection("/odom", "nav_msgs/Odometry");
+  const Pose no_rotation{Eigen::Quaterniond(0, 0, 0, 0), {0, 0, 0}};
+  const auto write = [&](std::int64_t stamp_ms, std::int64_t recorded_ms, const Pose& pose) {
+    const Timestamp stamp = stamp_ms < 0 ? Timestamp{0} : at_ms(stamp_ms);
+    writer.write(odometry, at_ms(recorded_ms),
+                 serialize_pose(link("odom", "base", stamp, pose), "nav_msgs/Odometry", writer.format()));
+  };
+  write(0, 0, shifted(0));
+  write(20, 10, shifted(2));
+  write(10, 20, shifted(1));
+  write(10, 21, shifted(9));
+  write(25, 25, no_rotation);
+  write(-1, 30, shifted(3));  // without a stamp
+  writer.finish();
+  const eval::LoadedTrajectory loaded = read_bag_trajectory(BagFile(folder.path() / "poses"), "/odom");
+  ASSERT_EQ(loaded.trajectory.poses.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(loaded.trajectory.poses[i].t, at_ms(10 * static_cast<std::int64_t>(i)));
+    EXPECT_EQ(loaded.trajectory.poses[i].T_w_f.p.x(), static_cast<double>(i));
+  }
+  EXPECT_EQ(loaded.repairs.skipped, 1U);
+  EXPECT_EQ(loaded.repairs.repeated, 1U);
+  EXPECT_EQ(loaded.repairs.reordered, 1U);
+  EXPECT_EQ(loaded.trajectory.frame, "base");
+}
+
+TEST(BagTrajectory, ArgumentsAreBagsAndTopics) {
+  EXPECT_EQ(parse_bag_topic("a/b.bag:/gt")->topic, "/gt");
+  EXPECT_EQ(parse_bag_topic("a/b.mcap:/tf:map.base")->bag, "a/b.mcap");
+  EXPECT_FALSE(parse_bag_topic("a/b.txt:/gt"));
+  EXPECT_FALSE(parse_bag_topic("a/b.bag"));
+}
+
+}  // namespace
+}  // namespace stillpoint::datasets
