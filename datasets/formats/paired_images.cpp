@@ -26,10 +26,15 @@ std::vector<Timestamp> stamps_of(const std::vector<StampedFile>& files) {
 }  // namespace
 
 PairedImages pair_images(const std::filesystem::path& color_list, const std::filesystem::path& depth_list,
-                         FaultLog& faults) {
-  const std::vector<StampedFile> color = read_list(color_list, faults);
-  const std::vector<StampedFile> depth = read_list(depth_list, faults);
-  PairedImages images{.times = {}, .files = {}, .color_images = color.size()};
+                         FaultLog& faults, MissingImages missing) {
+  std::vector<StampedFile> color = read_list(color_list, faults);
+  std::vector<StampedFile> depth = read_list(depth_list, faults);
+  std::size_t dropped = 0;
+  if (missing == MissingImages::kDrop) {
+    const auto is_missing = [](const StampedFile& image) { return !std::filesystem::exists(image.file); };
+    dropped = std::erase_if(color, is_missing) + std::erase_if(depth, is_missing);
+  }
+  PairedImages images{.times = {}, .files = {}, .color_images = color.size(), .missing = dropped};
   // The pairs are in the order of the second list, which the frame times must follow.
   for (const auto& [in_depth, in_color] :
        eval::associate_tum(stamps_of(depth), stamps_of(color), kAssociation)) {
@@ -54,6 +59,9 @@ SequenceContent with_frames(SequenceContent content, const PairedImages& images)
     content.info.notes.push_back(std::to_string(unpaired) + " of " + std::to_string(images.color_images) +
                                  " color images have no depth image less than 20 ms away and are dropped");
   }
+  if (images.missing > 0)
+    content.info.warnings.push_back("images: " + std::to_string(images.missing) +
+                                    " images of the lists do not exist and are dropped");
   return content;
 }
 

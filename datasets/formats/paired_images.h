@@ -16,13 +16,18 @@ struct PairedImages {
   std::vector<Timestamp> times;
   std::vector<FrameFiles> files;  ///< one per time
   std::size_t color_images = 0;   ///< of the list, including those without depth
+  std::size_t missing = 0;        ///< listed images that do not exist and were dropped
 };
+
+/// Whether listed images that do not exist are dropped before pairing; else decoding reports them.
+enum class MissingImages { kKeep, kDrop };
 
 /// Pairs the images of two lists, less than 20 ms apart, into frames with the timestamp of the color image,
 /// as `eval::associate_tum` does. Color images without depth are dropped.
 /// @throws InputError if a list is missing, empty or unsorted, or there are no pairs
 [[nodiscard]] PairedImages pair_images(const std::filesystem::path& color_list,
-                                       const std::filesystem::path& depth_list, FaultLog& faults);
+                                       const std::filesystem::path& depth_list, FaultLog& faults,
+                                       MissingImages missing = MissingImages::kKeep);
 
 /// `content` with the frames, and a note on the color images that were dropped.
 [[nodiscard]] SequenceContent with_frames(SequenceContent content, const PairedImages& images);

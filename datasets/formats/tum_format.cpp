@@ -15,16 +15,19 @@ namespace {
 
 constexpr double kTumDepthUnitsPerM = 5000.0;
 
-/// Color camera of one of the three Kinects of the benchmark.
+/// Names of folders of the Bonn RGB-D Dynamic dataset contain this.
+constexpr std::string_view kBonn = "rgbd_bonn";
+
+/// Color camera of one of the three Kinects of the benchmark, or of a dataset in its layout.
 struct KinectCalibration {
   std::string_view name;
   Camera camera;
 };
 
-/// From the page "File Formats" of the benchmark, section on intrinsic calibration (not the ROS default; the
-/// published depth images are already scale-corrected).
-const std::array<KinectCalibration, 3>& kinects() {
-  static const std::array<KinectCalibration, 3> kAll{
+/// The first three: from the page "File Formats" of the benchmark, section on intrinsic calibration (not the
+/// ROS default; the published depth images are already scale-corrected).
+const std::array<KinectCalibration, 4>& kinects() {
+  static const std::array<KinectCalibration, 4> kAll{
       {{"freiburg1",
         {.width = 640,
          .height = 480,
@@ -51,7 +54,16 @@ const std::array<KinectCalibration, 3>& kinects() {
          .cx = 320.1,
          .cy = 247.6,
          .model = CameraModel::kRadialTangential,
-         .distortion = {}}}}};
+         .distortion = {}}},
+       {kBonn,  // Palazzolo et al., IROS 2019
+        {.width = 640,
+         .height = 480,
+         .fx = 542.822841,
+         .fy = 542.576870,
+         .cx = 315.593520,
+         .cy = 237.756098,
+         .model = CameraModel::kRadialTangential,
+         .distortion = {0.039903, -0.099343, -0.000730, -0.000144, 0.0}}}}};
   return kAll;
 }
 
@@ -65,7 +77,7 @@ void set_calibration(SequenceContent& content) {
     return;
   }
   content.missing_calibration =
-      "the folder name contains none of freiburg1, freiburg2, freiburg3, whose cameras are known";
+      "the folder name contains none of freiburg1, freiburg2, freiburg3, rgbd_bonn, whose cameras are known";
 }
 
 void add_imu(SequenceContent& content, FaultLog& faults) {
@@ -88,7 +100,11 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  content = with_frames(std::move(content), pair_images(folder / "rgb.txt", folder / "depth.txt", faults));
+  // The lists of the Bonn dataset name images that its archives lack.
+  const bool is_bonn = content.info.name.find(kBonn) != std::string::npos;
+  content =
+      with_frames(std::move(content), pair_images(folder / "rgb.txt", folder / "depth.txt", faults,
+                                                  is_bonn ? MissingImages::kDrop : MissingImages::kKeep));
   set_calibration(content);
   add_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {

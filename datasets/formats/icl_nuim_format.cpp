@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// ICL-NUIM (Handa et al., ICRA 2014), the archives in the layout of TUM RGB-D: rgb/, depth/,
+/// associations.txt.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/base/error.h"
+#include "datasets/formats/formats.h"
+#include "eval/io/text_table.h"
+#include "eval/io/trajectory_file.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr double kIclDepthUnitsPerM = 5000.0;
+constexpr std::int64_t kIclFramesPerSecond = 30;
+
+/// Published with fy = -480: the y axis of the published camera and poses points up. With images whose rows
+/// go down and fy = 480, the camera frame c' is mirrored: p_c' = F p_c, F = diag(1, -1, 1).
+constexpr Camera kIclCamera{.width = 640,
+                            .height = 480,
+                            .fx = 481.2,
+                            .fy = 480.0,
+                            .cx = 319.5,
+                            .cy = 239.5,
+                            .model = CameraModel::kRadialTangential,
+                            .distortion = {}};
+
+Timestamp time_of_index(double index) {
+  const auto number = static_cast<std::int64_t>(index);
+  return {(number * 1'000'000'000 + kIclFramesPerSecond / 2) / kIclFramesPerSecond};
+}
+
+std::filesystem::path associations_file(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "associations.txt";
+  return std::filesystem::exists(file) ? file : folder / "associate.txt";
+}
+
+/// Rows `index depth index color`; the indices are frame numbers.
+void add_frames(SequenceContent& content, FaultLog& faults) {
+  const std::filesystem::path& folder = content.info.folder;
+  const std::filesystem::path file = associations_file(folder);
+  const std::string text = eval::read_text_file(file);
+  eval::for_each_row(text, file.string(), faults, [&](const eval::TextRow& row) {
+    if (row.fields.size() < 4)
+      throw row.error("expected the four fields: index, depth image, index, color image");
+    const Timestamp t = time_of_index(row.finite_number(2));
+    if (!content.info.frame_times.empty()) row.require_increasing(content.info.frame_times.back(), t);
+    content.info.frame_times.push_back(t);
+    content.frame_files.push_back({.color = folder / row.fields[3], .depth = folder / row.fields[1]});
+  });
+  if (content.frame_files.empty()) throw InputError(file.string(), "contains no images; copy the file again");
+}
+
+/// The mirrored pose T_w'_c' = F T_w_c F, a rigid transform.
+Pose mirrored(const Pose& T_w_c) {
+  const Eigen::Vector3d F(1.0, -1.0, 1.0);
+  const Eigen::Quaterniond& q = T_w_c.q;
+  // F R F: the rotation axis changes its x and z components.
+  return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), F.cwiseProduct(T_w_c.p)};
+}
+
+/// livingRoomN.gt.freiburg or trajN.gt.freiburg: rows of TUM with the frame number instead of the time.
+std::optional<std::filesystem::path> ground_truth_file(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".freiburg") return entry.path();
+  }
+  const std::filesystem::path file = folder / "groundtruth.txt";
+  return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;
+}
+
+SequenceContent read_icl(const std::filesystem::path& folder, FaultLog& faults) {
+  SequenceContent content;
+  content.info.name = folder.filename().string();
+  content.info.folder = folder;
+  add_frames(content, faults);
+  content.info.rig.camera = kIclCamera;
+  content.info.rig.depth_units_per_m = kIclDepthUnitsPerM;
+  content.info.notes.emplace_back("timestamps: frame number / 30 s, as the frames have none");
+  content.info.notes.emplace_back(
+      "calibration: that of ICL-NUIM with fy = 480 for the published -480; the ground truth is mirrored "
+      "accordingly");
+  if (const std::optional<std::filesystem::path> file = ground_truth_file(folder)) {
+    eval::LoadedTrajectory truth = eval::read_tum_ground_truth(*file, "camera", faults);
+    for (StampedPose& pose : truth.trajectory.poses)
+      pose = {.t = time_of_index(to_seconds(pose.t)), .T_w_f = mirrored(pose.T_w_f)};
+    content = with_ground_truth(std::move(content), std::move(truth));
+  }
+  return content;
+}
+
+bool recognize_icl(const std::filesystem::path& folder) {
+  return std::filesystem::exists(associations_file(folder)) && !std::filesystem::exists(folder / "rgb.txt") &&
+         std::filesystem::is_directory(folder / "rgb") && std::filesystem::is_directory(folder / "depth");
+}
+
+}  // namespace
+
+const SequenceFormat kIclNuimFormat{.name = "icl-nuim",
+                                    .signature = "associations.txt, rgb/ and depth/, no rgb.txt",
+                                    .recognize = recognize_icl,
+                                    .read = read_icl};
+
+}  // namespace stillpoint::datasets
