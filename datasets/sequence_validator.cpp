@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "datasets/read_sequence.h"
+#include "datasets/sequence_plausibility.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -111,6 +112,7 @@ CheckReport check_imu(const SequenceInfo& info) {
         "imu",
         fmt::format("the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2?", mean)));
   }
+  if (const auto finding = gravity_finding(info)) report.findings.push_back(warning("imu", *finding));
   return report;
 }
 
@@ -181,10 +183,12 @@ CheckReport check_depth_offset(const SequenceContent& content) {
 /// Decodes every image.
 CheckReport check_images(const SequenceContent& content, const CheckOptions& options) {
   CheckReport report;
+  ImagePlausibility plausibility(content.info);
   const std::size_t total = content.frame_files.size();
   for (std::size_t i = 0; i < total; ++i) {
     try {
       const Frame frame = decode_frame(content, i);
+      plausibility.add(frame);
       const auto measured = [](std::uint16_t raw) { return raw != 0; };
       if (!frame.depth.empty() &&
           std::none_of(frame.depth.begin<std::uint16_t>(), frame.depth.end<std::uint16_t>(), measured)) {
@@ -195,6 +199,9 @@ CheckReport check_images(const SequenceContent& content, const CheckOptions& opt
     }
     if (options.progress) options.progress(i + 1, total);
   }
+  if (const auto finding = plausibility.depth_unit_finding())
+    report.findings.push_back(warning("depth", *finding));
+  if (const auto finding = plausibility.clock_finding()) report.findings.push_back(warning("imu", *finding));
   return report;
 }
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Checks of the sensor data of a sequence against each other: units, axes and clocks.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types/frame.h"
+#include "datasets/io/sequence_info.h"
+
+namespace stillpoint::datasets {
+
+/// Compares gravity with the images: the mean specific force of a camera that is held upright points up, that
+/// is, along -y of the camera. Another direction (by more than 60 degrees) indicates swapped axes, an
+/// inverted sign, or a wrong T_b_c.
+/// @return the finding; nullopt if there is none, or no IMU
+[[nodiscard]] std::optional<std::string> gravity_finding(const SequenceInfo& info);
+
+/// Collects what the images of a sequence tell about the other sensors, one frame after the other.
+class ImagePlausibility {
+ public:
+  explicit ImagePlausibility(const SequenceInfo& info) : info_(info) {}
+
+  /// @param frame the next one; a frame that cannot be decoded is left out
+  void add(const Frame& frame);
+
+  /// Depth whose smallest values (5 %) are below 0.2 m, or whose largest (5 %) are beyond 12 m, is not that
+  /// of an RGB-D camera: millimeters that are read as 1/5000 m, or the other way round.
+  [[nodiscard]] std::optional<std::string> depth_unit_finding() const;
+
+  /// Compares the clocks of camera and IMU. The horizontal shift d [px] between the column means of two
+  /// images is d = -fx w_y dt for a rotation with the rate w_y about the y axis of the camera. The offset of
+  /// the clocks maximizes the correlation of -d / (fx dt) with the mean of w_y over the interval, shifted by
+  /// the offset. Sequences that turn too little, or whose images do not follow the rotation, have no result.
+  /// @return the finding if the offset exceeds 30 ms
+  [[nodiscard]] std::optional<std::string> clock_finding() const;
+
+ private:
+  /// Rate of turn between two frames, from their images.
+  struct Turn {
+    Timestamp from;
+    Timestamp to;
+    double rate = 0.0;  ///< about the y axis of the camera [rad/s]
+  };
+
+  [[nodiscard]] double correlation_at(double offset_s, const std::vector<double>& angle) const;
+
+  const SequenceInfo& info_;
+  std::vector<double> last_profile_;  ///< column means of the last frame
+  Timestamp last_t_;
+  std::vector<Turn> turns_;
+  std::vector<float> depths_m_;  ///< samples of all frames
+};
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/sequence_plausibility.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr double kFocal_px = 100.0;
+
+SequenceInfo info_with_force(const Eigen::Vector3d& force_b) {
+  SequenceInfo info;
+  for (int i = 0; i < 10; ++i)
+    info.imu.push_back({.t = {i * 10'000'000}, .gyro_b = {0, 0, 0}, .accel_b = force_b});
+  return info;
+}
+
+TEST(GravityFinding, AnUprightCameraHasNone) {
+  EXPECT_FALSE(gravity_finding(info_with_force({0.5, -9.8, 0.3})));
+  EXPECT_FALSE(gravity_finding(SequenceInfo{}));
+  SequenceInfo rotated = info_with_force({0.0, 0.0, 9.8});  // the z axis of the body points up
+  rotated.rig.T_b_c.q =
+      Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX());  // y of the camera is -z of the body
+  EXPECT_FALSE(gravity_finding(rotated));
+}
+
+TEST(GravityFinding, SwappedAxesAndAnInvertedSignAreReported) {
+  EXPECT_TRUE(gravity_finding(info_with_force({0.0, 9.8, 0.0})));
+  EXPECT_TRUE(gravity_finding(info_with_force({-9.8, 0.0, 0.0})));
+  EXPECT_NE(gravity_finding(info_with_force({0.0, 0.0, 9.8}))->find("swapped"), std::string::npos);
+}
+
+Frame frame_with_depth(std::uint16_t raw, double units_per_m) {
+  Frame frame;
+  frame.gray = cv::Mat::zeros(32, 32, CV_8UC1);
+  frame.depth = cv::Mat(32, 32, CV_16UC1, cv::Scalar(raw));
+  frame.depth_units_per_m = units_per_m;
+  return frame;
+}
+
+TEST(DepthUnitFinding, MillimetersAreNotFiveThousandths) {
+  SequenceInfo info;
+  const auto finding_of = [&info](std::uint16_t raw, double units_per_m) {
+    info.rig.depth_units_per_m = units_per_m;
+    ImagePlausibility plausibility(info);
+    plausibility.add(frame_with_depth(raw, units_per_m));
+    return plausibility.depth_unit_finding();
+  };
+  EXPECT_FALSE(finding_of(2000, 1000.0));
+  EXPECT_FALSE(finding_of(10000, 5000.0));
+  EXPECT_NE(finding_of(900, 5000.0)->find("scale = 1000 "), std::string::npos);    // 0.18 m instead of 0.9 m
+  EXPECT_NE(finding_of(15000, 1000.0)->find("scale = 5000 "), std::string::npos);  // 15 m instead of 3 m
+  EXPECT_FALSE(finding_of(0, 1000.0));
+}
+
+/// Frames at 30 Hz of a camera that turns about its y axis by 0.2 sin(3 t) rad, and a gyroscope at 200 Hz
+/// whose stamps are late by `offset_s`.
+std::optional<std::string> finding_of_clocks(double offset_s) {
+  SequenceInfo info;
+  info.rig.camera.fx = kFocal_px;
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 0.005 * i;
+    info.imu.push_back({.t = from_seconds(t),
+                        .gyro_b = {0.0, 0.6 * std::cos(3.0 * (t - offset_s)), 0.0},
+                        .accel_b = {0, -9.8, 0}});
+  }
+  ImagePlausibility plausibility(info);
+  for (int i = 15; i < 130; ++i) {
+    const double t = i / 30.0;
+    const double shift_px = -kFocal_px * 0.2 * std::sin(3.0 * t);
+    Frame frame;
+    frame.t = from_seconds(t);
+    frame.gray = cv::Mat(8, 160, CV_8UC1);
+    for (int column = 0; column < 160; ++column) {
+      const double x = column - shift_px;
+      frame.gray.col(column).setTo(
+          cv::Scalar(128.0 + 60.0 * std::sin(0.11 * x) + 50.0 * std::sin(0.037 * x + 1.0)));
+    }
+    plausibility.add(frame);
+  }
+  return plausibility.clock_finding();
+}
+
+TEST(ClockFinding, TheOffsetIsThatOfTheBestCorrelation) {
+  EXPECT_FALSE(finding_of_clocks(0.0));
+  const std::optional<std::string> finding = finding_of_clocks(0.12);
+  ASSERT_TRUE(finding);
+  EXPECT_NE(finding->find("time_offset_s = 0.12"), std::string::npos) << *finding;
+}
+
+}  // namespace
+}  // namespace stillpoint::datasets
