@@ -99,6 +99,23 @@ class ScopedSilentOpencv {
   cv::utils::logging::LogLevel previous_;
 };
 
+/// Number of OpenCV threads during inference only: the setting is global to the process, and the tracker must
+/// not depend on whether there is a network.
+class ScopedOpencvThreads {
+ public:
+  explicit ScopedOpencvThreads(int threads) : previous_(cv::getNumThreads()) {
+    if (threads != previous_) cv::setNumThreads(threads);
+  }
+  ~ScopedOpencvThreads() {
+    if (cv::getNumThreads() != previous_) cv::setNumThreads(previous_);
+  }
+  ScopedOpencvThreads(const ScopedOpencvThreads&) = delete;
+  ScopedOpencvThreads& operator=(const ScopedOpencvThreads&) = delete;
+
+ private:
+  int previous_;
+};
+
 /// Error message of OpenCV without line breaks.
 std::string one_line(const cv::Exception& error) {
   std::string text = error.err;
@@ -174,7 +191,6 @@ NetworkDetector::NetworkDetector(const DetectorConfig& config, std::span<const s
   require_known_class(config, decode_options_.names, dynamic_classes);
   if (config.layout == NetworkLayout::kDarknet) require_complete_weights(net_, config.weights);
   net_ = with_backend(std::move(net_), config.backend);
-  cv::setNumThreads(config.threads);
   const cv::Mat empty(config.input_px, config.input_px, CV_8UC3, cv::Scalar::all(kPadding));
   static_cast<void>(decode_outputs(decode_options_, run(cv::dnn::blobFromImage(empty)), config.weights));
 }
@@ -182,6 +198,7 @@ NetworkDetector::NetworkDetector(const DetectorConfig& config, std::span<const s
 std::vector<cv::Mat> NetworkDetector::run(const cv::Mat& input) {
   std::vector<cv::Mat> outputs;
   const ScopedSilentOpencv silent;
+  const ScopedOpencvThreads threads(config_.threads);
   try {
     net_.setInput(input);
     net_.forward(outputs, output_names_);

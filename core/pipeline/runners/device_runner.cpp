@@ -155,7 +155,7 @@ class DeviceRun {
                                                            : limit;
   }
 
-  /// Detections for a frame at the end of the wait, by the rules of `NewestDetections::take`.
+  /// Detections for a frame at the end of the wait, by the rules of `DetectionQueue::take`.
   DetectionJob take_detection(Timestamp t, Time end_of_wait) {
     std::optional<DetectionJob> newest;
     while (!detections_.empty() && detections_.front().available_at <= end_of_wait) {

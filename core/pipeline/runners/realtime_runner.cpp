@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
 #include "core/pipeline/assembly.h"
-#include "core/pipeline/runners/newest_detections.h"
+#include "core/pipeline/runners/detection_queue.h"
 #include "core/pipeline/runners/pacing_clock.h"
 #include "core/pipeline/runners/runner_parts.h"
 #include "core/pipeline/stages/optimize_frame.h"
@@ -144,7 +144,7 @@ class RealtimeRun {
   BoundedChannel<Frame> to_detect_{1};
   BoundedChannel<FrameJob> tracked_{1};
   BoundedChannel<TrackerFeedback> feedback_{1};
-  NewestDetections detected_;
+  DetectionQueue detected_;
   ThreadErrors errors_;
 };
 

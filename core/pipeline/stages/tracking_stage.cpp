@@ -17,8 +17,10 @@ TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, cons
   MotionPrior prior;
   if (uses_prediction_ && last_frame_) prior = motion_prior(motion, imu_, *last_frame_, frame.t);
   drop_old_samples(motion, imu_);
-  const TrackingOptions options{.detect = enters_window, .dynamic_ids = feedback.dynamic_ids};
-  TrackedFrame tracked = tracker_.track(frame, prior, options, std::move(recycled));
+  dynamic_ids_ = recognition_.tracker_ids(feedback.dynamic_ids, std::move(dynamic_ids_));
+  const TrackingOptions options{.detect = enters_window, .dynamic_ids = dynamic_ids_};
+  TrackedFrame tracked =
+      recognition_.process(frame.gray, tracker_.track(frame, prior, options, std::move(recycled)));
   perturbation_.perturb(tracked);
   last_frame_ = frame.t;
   return tracked;

@@ -6,6 +6,7 @@
 
 #include "core/config/odometry_config.h"
 #include "core/frontend/feature_tracker.h"
+#include "core/frontend/view_recognition.h"
 #include "core/pipeline/stages/feedback.h"
 #include "core/pipeline/stages/input_perturbation.h"
 
@@ -30,6 +31,8 @@ class TrackingStage {
   bool uses_prediction_;
   InputPerturbation perturbation_;
   FeatureTracker tracker_;
+  ViewRecognition recognition_;
+  std::vector<std::int64_t> dynamic_ids_;  ///< of the tracker; a member only to reuse the memory
   ImuBuffer imu_;
   std::optional<Timestamp> last_frame_;
 };

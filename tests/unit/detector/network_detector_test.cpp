@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/detector/network_detector.h"
 
+#include <opencv2/core/utility.hpp>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/expect_input_error.h"
@@ -52,6 +54,16 @@ TEST(NetworkDetector, RunsAnOnnxNetworkAndKeepsTheAspectRatio) {
   EXPECT_NEAR(found.detections[0].box.y_min, 160.0, 1e-3);
   EXPECT_NEAR(found.detections[0].box.x_max, 240.0, 1e-3);
   EXPECT_NEAR(found.detections[0].box.y_max, 320.0, 1e-3);
+}
+
+TEST(NetworkDetector, LeavesTheNumberOfOpencvThreadsOfOtherModulesUnchanged) {
+  NetworkFiles files;
+  const int before = cv::getNumThreads();
+  files.config.threads = before + 1;
+  NetworkDetector detector(files.config, kPerson);
+  EXPECT_EQ(cv::getNumThreads(), before);
+  static_cast<void>(detector.detect(blank_frame(3)));
+  EXPECT_EQ(cv::getNumThreads(), before);
 }
 
 TEST(NetworkDetector, DescribesTheActualImplementation) {
