@@ -69,6 +69,10 @@ struct SweepAxis {
 /// Name of an undisturbed run in `BenchPlan::faults`.
 inline constexpr std::string_view kNoFault = "none";
 
+/// Values of `BenchPlan::expected`.
+inline constexpr std::string_view kExpectSurvival = "survive";
+inline constexpr std::string_view kExpectLoss = "lose";
+
 struct BenchPlan {
   std::string title;
   std::string base = "stillpoint";    ///< config to which the variants are applied
@@ -86,6 +90,9 @@ struct BenchPlan {
   int memory_limit_mb = 0;       ///< per run; 0 = none
   /// Sensor faults, one run each: "none", or as `stillpoint run --fault`; empty = only "none".
   std::vector<std::string> faults;
+  /// Per fault, what the first variant should do: "survive", or "lose" honestly; see `stats faults`. May be
+  /// empty.
+  std::vector<std::string> expected;
   std::vector<std::string> protocols;  ///< additional evaluation protocols, e.g. "strict:se3"
   int images = 20;  ///< annotated images of the worst frames per accuracy run; see `stillpoint run --images`
   bool frame_cache = true;  ///< false: every run decodes the images
@@ -120,6 +127,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("time_limit_s", config.time_limit_s, 0.1, 1e6);
   field("memory_limit_mb", config.memory_limit_mb, 0, 1000000000);
   field("faults", config.faults);
+  field("expected", config.expected);
   field("protocols", config.protocols);
   field("images", config.images, 0, 1000);
   field("frame_cache", config.frame_cache);

@@ -103,6 +103,17 @@ void require_faults(const BenchPlan& plan) {
     throw InputError("faults are injected into runs of this odometry only; remove systems");
 }
 
+void require_expectations(const BenchPlan& plan) {
+  if (plan.expected.empty()) return;
+  if (plan.expected.size() != plan.faults.size())
+    throw InputError(fmt::format("has {} values for {} faults; give one for each", plan.expected.size(),
+                                 plan.faults.size()));
+  for (const std::string& value : plan.expected) {
+    if (value != kExpectSurvival && value != kExpectLoss)
+      throw InputError(fmt::format("unknown value \"{}\"; expected \"survive\" or \"lose\"", value));
+  }
+}
+
 /// Runs with equal keys are executed once; a value that is listed twice would only look like a repetition.
 template <class Value>
 void require_distinct(const BenchPlan& plan, const std::string& key, const std::vector<Value>& values) {
@@ -147,6 +158,7 @@ void validate_plan(const BenchPlan& plan) {
   require_supported_by_systems(plan);
   at_place(plan, "ablation_base", [&] { require_ablation_base(plan); });
   at_place(plan, "faults", [&] { require_faults(plan); });
+  at_place(plan, "expected", [&] { require_expectations(plan); });
   at_place(plan, "protocols", [&] { require_protocols(plan.protocols); });
   at_place(plan, "cores", [&] { static_cast<void>(parse_cpu_list(plan.cores)); });
   at_place(plan, "rendered.sequences", [&] { static_cast<void>(matching_presets(plan.rendered.sequences)); });

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "bench/cli/analysis/stats_ablation.h"
+#include "bench/cli/analysis/stats_faults.h"
 #include "bench/cli/analysis/stats_table.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
@@ -155,32 +156,38 @@ Command stats_command() {
   const Option metric{"--metric", "Metric to evaluate [" + arguments->metric + "]", &arguments->metric};
   const Option base{"--base", "Variant that the others are compared with [ablation_base of the plan]",
                     &arguments->base};
-  return {.name = "stats",
-          .summary = "Statistics over the runs of a store",
-          .example = "stats ablation --plan table2_ablation_synthetic",
-          .subcommands = {
-              subcommand({.name = "summary",
-                          .summary = "Median with confidence interval, quartiles, worst value and failures "
-                                     "of each variant on each sequence",
-                          .example = "stats summary --plan quick --metric " + arguments->metric,
-                          .options = {metric}},
-                         arguments, summary),
-              subcommand({.name = "ablation",
-                          .summary = "Paired differences from a base variant, with confidence interval and "
-                                     "effect size",
-                          .example = "stats ablation --plan table2_ablation_synthetic",
-                          .options = {metric, base}},
-                         arguments, stats_ablation),
-              subcommand({.name = "repeat",
-                          .summary = "Check that repetitions are bit-equal; if not, print the first frame "
-                                     "and module that differ",
-                          .example = "stats repeat --store build/bench/store.sqlite"},
-                         arguments, repeat),
-              subcommand({.name = "sweep",
-                          .summary = "Degradation curves: one row per value, sequence and variant",
-                          .example = "stats sweep --plan sweep_synthetic --csv",
-                          .options = {metric}},
-                         arguments, sweep)}};
+  return {
+      .name = "stats",
+      .summary = "Statistics over the runs of a store",
+      .example = "stats ablation --plan table2_ablation_synthetic",
+      .subcommands = {
+          subcommand({.name = "summary",
+                      .summary = "Median with confidence interval, quartiles, worst value and failures "
+                                 "of each variant on each sequence",
+                      .example = "stats summary --plan quick --metric " + arguments->metric,
+                      .options = {metric}},
+                     arguments, summary),
+          subcommand({.name = "ablation",
+                      .summary = "Paired differences from a base variant, with confidence interval and "
+                                 "effect size",
+                      .example = "stats ablation --plan table2_ablation_synthetic",
+                      .options = {metric, base}},
+                     arguments, stats_ablation),
+          subcommand({.name = "faults",
+                      .summary = "Matrix of sensor faults and variants: outcome, error after recovery and "
+                                 "false confidence",
+                      .example = "stats faults --plan faults"},
+                     arguments, stats_faults),
+          subcommand({.name = "repeat",
+                      .summary = "Check that repetitions are bit-equal; if not, print the first frame "
+                                 "and module that differ",
+                      .example = "stats repeat --store build/bench/store.sqlite"},
+                     arguments, repeat),
+          subcommand({.name = "sweep",
+                      .summary = "Degradation curves: one row per value, sequence and variant",
+                      .example = "stats sweep --plan sweep_synthetic --csv",
+                      .options = {metric}},
+                     arguments, sweep)}};
 }
 
 }  // namespace stillpoint::bench
