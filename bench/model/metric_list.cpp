@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bench/model/honesty_metrics.h"
 #include "bench/model/imu_rate_metrics.h"
 #include "bench/model/metrics.h"
 
@@ -285,8 +286,10 @@ constexpr MetricDescriptor kMetrics[] = {
 };
 
 constexpr auto kAllMetrics = [] {
-  std::array<MetricDescriptor, std::size(kMetrics) + std::size(kImuRateMetrics)> all{};
-  std::ranges::copy(kImuRateMetrics, std::ranges::copy(kMetrics, all.begin()).out);
+  std::array<MetricDescriptor, std::size(kMetrics) + std::size(kImuRateMetrics) + std::size(kHonestyMetrics)>
+      all{};
+  const auto end = std::ranges::copy(kImuRateMetrics, std::ranges::copy(kMetrics, all.begin()).out).out;
+  std::ranges::copy(kHonestyMetrics, end);
   return all;
 }();
 

@@ -15,6 +15,7 @@
 
 #include "bench/model/stored_run.h"
 #include "core/types/trajectory.h"
+#include "eval/metrics/honesty.h"
 #include "eval/score.h"
 
 namespace stillpoint::bench {
@@ -38,6 +39,11 @@ inline constexpr std::string_view kOtherLoad = "other_load";
 inline constexpr std::string_view kQuiet = "quiet";
 inline constexpr std::string_view kModuleTime = "ms";  ///< of each module; stored under the module's name
 inline constexpr std::string_view kFailedRuns = "failed_runs";
+inline constexpr std::string_view kFalseConfidence = "false_confidence";
+inline constexpr std::string_view kMissedAvailability = "missed_availability";
+inline constexpr std::string_view kTimeToDetect = "time_to_detect_s";
+inline constexpr std::string_view kTimeToRecover = "time_to_recover_s";
+inline constexpr std::string_view kErrorAfterRecovery = "error_after_recovery_m";
 }  // namespace metric_id
 
 /// A trajectory, its ground truth in the same coordinate frame, and their score.
@@ -84,6 +90,7 @@ struct Measurements {
   std::optional<ScoredTrajectory> scored;
   std::optional<RunCounts> counts;
   std::optional<ImuRateScore> imu_rate;
+  std::optional<eval::Honesty> honesty;  ///< of a run with injected faults
   std::optional<ProcessCost> process;
   std::optional<double> other_load;                                 ///< CPU load by other processes, 0 to 1
   std::map<std::string, std::int64_t, std::less<>> instructions{};  ///< executed, by stage of the odometry
@@ -92,6 +99,7 @@ struct Measurements {
 enum class MetricSource {
   kTrajectory,    ///< estimate and ground truth: in result.json, a column of result tables
   kRun,           ///< counts of the run: in result.json
+  kHonesty,       ///< run with injected faults: in result.json
   kImuRate,       ///< poses at IMU rate: in result.json if they were recorded
   kProcess,       ///< the process of the run, measured by its parent
   kMachine,       ///< the machine during a timing run

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_text.h"
@@ -193,6 +194,20 @@ std::string frames_csv(const OdometryRun& run) {
   return text;
 }
 
+/// Claims about all frames, with the poses that the trajectory does not contain.
+std::string status_csv(const OdometryRun& run) {
+  std::string text = "frame,t_ns,status,segment,x,y,z,qx,qy,qz,qw,sigma_m,sigma_rad\n";
+  for (std::size_t i = 0; i < run.claims.size(); ++i) {
+    const eval::ClaimedPose& claim = run.claims[i];
+    const Pose& T = claim.T_w_c;
+    text += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g}\n",
+                        run.frame_counters[i].frame, claim.t.ns, run.frame_counters[i].status, claim.segment,
+                        T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w(), claim.sigma_m,
+                        claim.sigma_rad);
+  }
+  return text;
+}
+
 std::string trajectory_text(const RunResult& result) {
   const std::string poses = eval::format_tum(result.run.trajectory);
   return result.outcome == Outcome::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
@@ -205,6 +220,7 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   files.push_back({"timings.csv", timings_csv(result.run)});
   files.push_back({"frames.csv", frames_csv(result.run)});
   files.push_back({"counters.csv", counter_text(result.run.frame_counters)});
+  files.push_back({"status.csv", status_csv(result.run)});
   files.push_back({"stacks.folded", folded_stacks(result.run.spans)});
   files.push_back({"manifest.json", manifest_json(manifest)});
   if (result.run.imu_rate)

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <future>
+
+#include <Eigen/Eigenvalues>
 
 #include "bench/run/frame_prefetcher.h"
 #include "bench/run/recorded_boxes.h"
@@ -45,6 +48,22 @@ FrameCounters counters_of(const OdometryUpdate& update, Timestamp t) {
           .solver_iterations = counters.solver_iterations,
           .keyframe = counters.keyframe,
           .reset = counters.reset};
+}
+
+eval::PoseClaim claim_of(OdometryStatus status) {
+  if (is_located(status)) return eval::PoseClaim::kLocated;
+  if (status == OdometryStatus::kDeadReckoning) return eval::PoseClaim::kDeadReckoning;
+  return status == OdometryStatus::kLost ? eval::PoseClaim::kLost : eval::PoseClaim::kNone;
+}
+
+eval::ClaimedPose claim_of(const OdometryUpdate& update, Timestamp t) {
+  eval::ClaimedPose claim{
+      .t = t, .T_w_c = update.T_w_c, .claim = claim_of(update.status), .segment = update.segment};
+  if (!update.covariance) return claim;
+  using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
+  claim.sigma_m = std::sqrt(std::max(0.0, Solver(update.covariance->position()).eigenvalues()[2]));
+  claim.sigma_rad = std::sqrt(std::max(0.0, Solver(update.covariance->rotation()).eigenvalues()[2]));
+  return claim;
 }
 
 /// Records the output of a runner.
@@ -105,7 +124,8 @@ class RunRecorder {
     const Timestamp t = stream_.info().frame_times[static_cast<std::size_t>(update.frame_id)];
     run_.frame_counters.push_back(counters_of(update, t));
     run_.q_level_w = update.q_level_w;
-    if (!is_located(update.status)) return;
+    run_.claims.push_back(claim_of(update, t));
+    if (!is_located(update.status) || update.segment > 0) return;
     run_.trajectory.poses.push_back({t, update.T_w_c});
   }
 

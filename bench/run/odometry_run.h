@@ -18,6 +18,7 @@
 #include "core/pipeline/runners/runner.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
+#include "eval/metrics/honesty.h"
 
 namespace stillpoint::bench {
 
@@ -51,7 +52,9 @@ struct FrameSpan {
 
 /// Recorded output of a run.
 struct OdometryRun {
-  Trajectory trajectory;  ///< T_w_c, frame "camera"; one pose per tracked frame
+  Trajectory trajectory;                  ///< T_w_c, frame "camera"; one pose per tracked frame
+  std::vector<eval::ClaimedPose> claims;  ///< per processed frame; the trajectory contains the located ones
+                                          ///< of the first segment
   RunSummary summary;
   std::optional<ImuRateOutput> imu_rate;  ///< if `pipeline.imu_rate`
   TimingSamples timings;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bench/run/imu_rate_score.h"
+#include "datasets/faults/faulty_stream.h"
 #include "eval/trajectory/alignment.h"
 
 namespace stillpoint::bench {
@@ -60,6 +61,21 @@ std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const R
   return warnings;
 }
 
+/// The times at which any fault is active, by their begin.
+std::vector<eval::TimeSpan> fault_spans(std::span<const datasets::SensorFault> faults,
+                                        std::span<const Timestamp> frame_times) {
+  std::vector<eval::TimeSpan> spans;
+  if (frame_times.empty()) return spans;
+  for (const datasets::SensorFault& fault : faults) {
+    for (const datasets::FaultInterval& interval :
+         datasets::fault_intervals(fault, frame_times.front(), frame_times.back())) {
+      spans.push_back({interval.begin, interval.end});
+    }
+  }
+  std::ranges::sort(spans, {}, &eval::TimeSpan::begin);
+  return spans;
+}
+
 }  // namespace
 
 Measurements measurements_of(const RunResult& result) {
@@ -70,10 +86,12 @@ Measurements measurements_of(const RunResult& result) {
                               .resets = run.summary.resets,
                               .frames_without_boxes = run.summary.detector_counters.unrecorded,
                               .wall_s = run.wall_s},
-          .imu_rate = result.imu_rate};
+          .imu_rate = result.imu_rate,
+          .honesty = result.honesty};
 }
 
-RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run) {
+RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
+                    std::span<const datasets::SensorFault> faults) {
   const std::size_t frames = std::min(run.summary.frames, info.frame_times.size());
   eval::ScoreOptions options;
   options.expected_times.assign(info.frame_times.begin(),
@@ -87,6 +105,8 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run) {
   result.gt = camera_truth(info, options.expected_times);
   result.score = eval::score(result.gt, run.trajectory, options);
   if (run.imu_rate) result.imu_rate = score_imu_rate(result.gt, *run.imu_rate, run.trajectory);
+  if (!faults.empty())
+    result.honesty = eval::honesty(result.gt, run.claims, fault_spans(faults, options.expected_times));
   result.run = std::move(run);
   return result;
 }

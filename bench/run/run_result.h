@@ -3,11 +3,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bench/model/metrics.h"
 #include "bench/run/odometry_run.h"
+#include "datasets/faults/sensor_fault.h"
 
 namespace stillpoint::bench {
 
@@ -21,6 +23,7 @@ struct RunResult {
   std::vector<std::string> warnings;  ///< irregularities of the data, as "LOCATION: FAULT"
   Trajectory gt;                      ///< of the camera, over the processed frames
   eval::Score score;
+  std::optional<eval::Honesty> honesty;  ///< if faults were injected
   std::optional<ImuRateScore> imu_rate;  ///< if poses at IMU rate were recorded
   OdometryRun run;
   double start_s = 0.0;  ///< from the start of the process to that of the run: loading, config, opening
@@ -31,6 +34,8 @@ struct RunResult {
 
 /// Scores a run against the sequence's ground truth, transformed to the camera frame. An interrupted run is
 /// scored on its processed frames.
-[[nodiscard]] RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run);
+/// @param faults that were injected
+[[nodiscard]] RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
+                                  std::span<const datasets::SensorFault> faults = {});
 
 }  // namespace stillpoint::bench

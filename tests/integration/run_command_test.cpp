@@ -48,7 +48,7 @@ TEST(RunCommand, WritesTrajectoryResultAndManifest) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(names_in(out.path()),
             (std::vector<std::string>{"counters.csv", "frames.csv", "manifest.json", "result.json",
-                                      "stacks.folded", "timings.csv", "trajectory.tum"}));
+                                      "stacks.folded", "status.csv", "timings.csv", "trajectory.tum"}));
   const nlohmann::json scores = json_of(out.path() / "result.json");
   EXPECT_EQ(scores["status"], "ok");
   EXPECT_EQ(scores["frames"], kFrames);

@@ -149,7 +149,8 @@ RunResult execute(const datasets::SensorStream& stream, const RunArguments& argu
   RunControl control{.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested};
   if (dumps.needs_frames()) control.on_frame = [&](const FrameReport& report) { dumps.add(report); };
   const double start_s = process_age_s();
-  RunResult result = score_run(stream.info(), run_odometry(stream, configured.spec, control));
+  RunResult result =
+      score_run(stream.info(), run_odometry(stream, configured.spec, control), configured.faults);
   result.start_s = start_s;
   result.variant = configured.variant;
   result.mode = configured.spec.mode;

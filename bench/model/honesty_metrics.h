@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Metrics of runs with injected sensor faults; definitions in eval/metrics/honesty.h.
+#pragma once
+
+#include "bench/model/metrics.h"
+
+namespace stillpoint::bench {
+
+/// The value of one member of `eval::Honesty`; nullopt for a run without faults.
+template <auto kMember>
+[[nodiscard]] std::optional<double> honesty_value(const Measurements& m) {
+  return m.honesty ? std::optional<double>((*m.honesty).*kMember) : std::nullopt;
+}
+
+inline constexpr MetricDescriptor kHonestyMetrics[] = {
+    {.id = metric_id::kFalseConfidence,
+     .label = "false confidence",
+     .title = "False confidence: fraction of the frames called located with a wrong pose",
+     .description =
+         "Fraction of the frames whose pose was called located, but is wrong by more than 5 cm or "
+         "2 degrees and three claimed standard deviations, in excess of the drift before the fault",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .source = MetricSource::kHonesty,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.01, 0.005},
+     .value = honesty_value<&eval::Honesty::false_confidence>},
+    {.id = metric_id::kMissedAvailability,
+     .label = "missed availability",
+     .title = "Missed availability: fraction of the frames called lost with a good pose",
+     .description =
+         "Fraction of the frames that were called lost although the pose is within 5 cm and 2 degrees",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .source = MetricSource::kHonesty,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.01, 0.02},
+     .value = honesty_value<&eval::Honesty::missed_availability>},
+    {.id = metric_id::kTimeToDetect,
+     .label = "time to detect",
+     .title = "Time to detect a wrong pose",
+     .description =
+         "Time from the first wrong pose after the begin of a fault to the first frame that is not "
+         "called located",
+     .unit = "s",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .decimals = 3,
+     .source = MetricSource::kHonesty,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 0.1},
+     .value = honesty_value<&eval::Honesty::time_to_detect_s>},
+    {.id = metric_id::kTimeToRecover,
+     .label = "time to recover",
+     .title = "Time to recover from a fault",
+     .description = "Time from the end of the last fault to the first right pose in the same world",
+     .unit = "s",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .decimals = 3,
+     .source = MetricSource::kHonesty,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 0.1},
+     .value = honesty_value<&eval::Honesty::time_to_recover_s>},
+    {.id = metric_id::kErrorAfterRecovery,
+     .label = "error after recovery",
+     .title = "Error after the recovery from a fault, RMSE",
+     .description = "Root mean square position error after the recovery, aligned before the fault",
+     .unit = "m",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .source = MetricSource::kHonesty,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 2e-3},
+     .value = honesty_value<&eval::Honesty::error_after_recovery_m>},
+};
+
+}  // namespace stillpoint::bench
