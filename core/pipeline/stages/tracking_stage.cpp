@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/stages/tracking_stage.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace stillpoint {
+namespace {
+
+/// Whether a camera delivered the same image again: noise makes two exposures differ.
+bool is_repeated(const cv::Mat& before, const cv::Mat& now) {
+  if (before.size() != now.size() || before.empty()) return false;
+  for (int row = 0; row < now.rows; ++row) {
+    if (!std::equal(now.ptr(row), now.ptr(row) + now.cols, before.ptr(row))) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 TrackingStage::TrackingStage(const OdometryConfig& config, const Rig& rig)
     : uses_prediction_(config.frontend.prediction != TrackerPrediction::kNone),
@@ -22,6 +35,8 @@ TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, cons
   TrackedFrame tracked =
       recognition_.process(frame.gray, tracker_.track(frame, prior, options, std::move(recycled)));
   perturbation_.perturb(tracked);
+  if (is_repeated(last_gray_, frame.gray)) tracked.features.clear();
+  last_gray_ = frame.gray;
   last_frame_ = frame.t;
   return tracked;
 }

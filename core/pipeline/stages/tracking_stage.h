@@ -21,6 +21,7 @@ class TrackingStage {
   /// Samples in temporal order; samples up to the exposure of a frame must be added before the frame.
   void add_imu(const ImuSample& sample) { imu_.add(perturbation_.of(sample)); }
 
+  /// An image that is bit-equal to the previous one is no new observation: its features are left out.
   /// @param enters_window whether the frame enters the window; if so, lost features are replaced by new ones
   /// @param feedback      newest available feedback of the optimization stage
   /// @param recycled      a result that is no longer needed; its memory is reused
@@ -35,6 +36,7 @@ class TrackingStage {
   std::vector<std::int64_t> dynamic_ids_;  ///< of the tracker; a member only to reuse the memory
   ImuBuffer imu_;
   std::optional<Timestamp> last_frame_;
+  cv::Mat last_gray_;
 };
 
 }  // namespace stillpoint
