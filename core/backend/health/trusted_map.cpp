@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/health/trusted_map.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace stillpoint {
@@ -8,9 +9,14 @@ namespace {
 
 constexpr double kVersionAge_s = 0.5;
 constexpr int kMinFeatures = 12;
+constexpr std::size_t kReservedPoints = 1024;  // so that updates allocate no memory
 constexpr double kMinInlierRatio = 0.5;
 
 }  // namespace
+
+TrustedMap::TrustedMap() {
+  for (Version* version : {&newest_, &candidate_, &earlier_}) version->points.reserve(kReservedPoints);
+}
 
 void TrustedMap::update(const Window& window) {
   newest_.t = window.frames.back().state.t;

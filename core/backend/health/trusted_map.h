@@ -14,6 +14,8 @@ namespace stillpoint {
 
 class TrustedMap {
  public:
+  TrustedMap();
+
   /// Replaces the map by the usable landmarks of a window whose state is trusted; keeps its version of 0.5 to
   /// 1 s ago.
   void update(const Window& window);

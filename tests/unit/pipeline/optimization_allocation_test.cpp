@@ -101,7 +101,7 @@ Counts run_periodic_motion(const std::string& variant) {
     counts.keyframes += update.counters.keyframe;
     counts.moving += static_cast<int>(
         std::ranges::count(stage.dynamic().labels, LabelClass::kDynamicMotion, &DynamicLabel::label));
-    counts.tracked += update.status == OdometryStatus::kTracking;
+    counts.tracked += is_located(update.status);
   }
   return counts;
 }

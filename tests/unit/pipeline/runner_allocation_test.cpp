@@ -42,7 +42,7 @@ TEST_P(RunnerIn, IsAllocationFreeInTheSteadyState) {
   const RunControl control{.on_update =
                                [&](const OdometryUpdate& update) {
                                  counts.push_back(bench::allocation_count());
-                                 lost += update.status != OdometryStatus::kTracking;
+                                 lost += !is_located(update.status);
                                },
                            .on_frame = {},
                            .stop_requested = {}};
