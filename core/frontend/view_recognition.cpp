@@ -12,6 +12,7 @@ namespace {
 constexpr int kMinView = 20;       ///< features of a view that is worth to be recognized
 constexpr int kMinContinued = 10;  ///< fewer continued tracks: the view was lost
 constexpr int kMinMatches = 12;
+constexpr int kMaxAttempts = 60;       ///< frames; then the camera sees another view
 constexpr float kMaxDistance = 64.0F;  // of 256 bits
 constexpr float kMaxRatio = 0.8F;      // Lowe 2004, Sec. 7.1
 constexpr float kPatch_px = 31.0F;
@@ -58,6 +59,10 @@ bool by_id(const TrackedFeature& a, const TrackedFeature& b) { return a.id < b.i
 }  // namespace
 
 void ViewRecognition::recognize(const View& view) {
+  if (++attempts_ > kMaxAttempts) {
+    lost_.reset();
+    return;
+  }
   const auto pairs = match(describe(view.gray, view.pixels), describe(lost_->gray, lost_->pixels));
   if (pairs.size() < kMinMatches) return;
   for (const auto& [now, before] : pairs) aliases_.push_back({view.ids[now], lost_->ids[before]});
@@ -68,7 +73,10 @@ void ViewRecognition::recognize(const View& view) {
 TrackedFrame ViewRecognition::process(const cv::Mat& gray, TrackedFrame frame) {
   const auto continued = std::ranges::count_if(frame.features, [](const auto& f) { return f.age > 1; });
   const bool is_lost = continued < kMinContinued && last_.ids.size() >= kMinView;
-  if (is_lost && !lost_) lost_ = std::move(last_);
+  if (is_lost && !lost_) {
+    lost_ = std::move(last_);
+    attempts_ = 0;
+  }
   last_.gray = gray;
   last_.ids.clear();
   last_.pixels.clear();

@@ -41,6 +41,7 @@ class ViewRecognition {
 
   View last_;                 ///< the last frame
   std::optional<View> lost_;  ///< the last frame before the loss
+  int attempts_ = 0;          ///< to recognize the lost view
   std::vector<Alias> aliases_;
 };
 

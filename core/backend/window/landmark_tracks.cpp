@@ -84,6 +84,10 @@ void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConf
     } else if (landmark == window.landmarks.end() || landmark->id != feature.id) {
       landmark = window.landmarks.insert(
           landmark, make_landmark(feature, make_observation(feature, rig, config), window));
+    } else {  // recognized after a loss
+      landmark->observations.push_back(make_observation(feature, rig, config));
+      landmark->host = newest + 1 - static_cast<int>(landmark->observations.size());
+      restart_track(*landmark);
     }
   }
   remove_expired(window);

@@ -50,6 +50,30 @@ TEST(LandmarkTracks, KeepOnlyTheNewestObservationAfterARestart) {
   EXPECT_EQ(landmark.inverse_depth, 0.0);
 }
 
+TEST(LandmarkTracks, BeginAnewWhenTheyAreRecognizedAfterALoss) {
+  Window window = visual_window(4, 1);
+  Landmark& landmark = window.landmarks[0];
+  landmark.observations.resize(2);  // lost in frame 2
+  TrackedFrame frame;
+  frame.features = {{.id = 0, .bearing = {0.1, 0.2}, .depth = 2.0}};
+  add_observations(frame, Rig{.camera = {.height = 480}}, DepthConfig{}, window);
+  ASSERT_EQ(window.landmarks.size(), 1u);
+  EXPECT_EQ(window.landmarks[0].host, 3);
+  ASSERT_EQ(window.landmarks[0].observations.size(), 1u);
+  EXPECT_EQ(window.landmarks[0].observations[0].bearing, Eigen::Vector2d(0.1, 0.2));
+  EXPECT_EQ(window.landmarks[0].inverse_depth, 0.0);
+}
+
+TEST(LandmarkTracks, EndOneFrameEarlierWhenTheNewestFrameIsRemoved) {
+  Window window = visual_window(4, 2);
+  window.landmarks[1].host = 3;
+  window.landmarks[1].observations.resize(1);
+  remove_newest_frame(window);
+  EXPECT_EQ(window.frames.size(), 3u);
+  ASSERT_EQ(window.landmarks.size(), 1u);
+  EXPECT_EQ(window.landmarks[0].last(), 2);
+}
+
 TEST(LandmarkTracks, AreExtendedByIdAndNewOnesAreHostedInTheNewestFrame) {
   Window window = visual_window(3, 2);
   window.frames.push_back(window.frames.back());
