@@ -65,7 +65,7 @@ struct TypeText {
   std::array<std::string_view, 8> parts;
 };
 
-constexpr std::array<TypeText, 10> kMessageTexts{{
+constexpr std::array<TypeText, 12> kMessageTexts{{
     {"sensor_msgs/Image",
      "060021388200f6f0f447d0fcd9c64743",
      "Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] "
@@ -112,6 +112,11 @@ constexpr std::array<TypeText, 10> kMessageTexts{{
      "pose\ngeometry_msgs/TwistWithCovariance twist\n",
      {kHeader, "geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose", "geometry_msgs/Point", kQuaternion,
       "geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist", kVector}},
+    {"geometry_msgs/Transform",
+     "ac9eff44abf714214112b05d54a3cf9b",
+     "Vector3 translation\nQuaternion rotation\n",
+     {kVector, kQuaternion}},
+    {"std_msgs/Float32", "73fcbf46b49191e672908e50842a83d4", "float32 data\n", {}},
     {"tf2_msgs/TFMessage",
      "94810edda583a504dfda3829e70d7eec",
      "geometry_msgs/TransformStamped[] transforms\n",
@@ -242,6 +247,16 @@ std::string serialize_pose(const PoseMessage& message, std::string_view type, Wi
   fields.pose(message.pose.value());
   if (type == "geometry_msgs/PoseWithCovarianceStamped") fields.zeros(kPoseCovariance);
   if (type == "nav_msgs/Odometry") fields.zeros(2 * kPoseCovariance + 6);
+  return fields.take();
+}
+
+std::string serialize_transform(const Pose& pose, WireFormat format) {
+  return FieldWriter(format).pose(pose).take();
+}
+
+std::string serialize_float(float value, WireFormat format) {
+  FieldWriter fields(format);
+  fields.writer().number(value);
   return fields.take();
 }
 

@@ -29,6 +29,12 @@ namespace stillpoint::datasets {
 /// A tf2_msgs/TFMessage.
 [[nodiscard]] std::string serialize_transforms(std::span<const PoseMessage> transforms, WireFormat format);
 
+/// A geometry_msgs/Transform.
+[[nodiscard]] std::string serialize_transform(const Pose& pose, WireFormat format);
+
+/// A std_msgs/Float32.
+[[nodiscard]] std::string serialize_float(float value, WireFormat format);
+
 /// Definition of a type as connections contain it, and its MD5 sum, which identifies it in ROS 1.
 struct MessageDefinition {
   std::string_view type;  ///< in the spelling of ROS 1

@@ -77,6 +77,14 @@ class BagBuilder {
           serialize_pose(pose, "geometry_msgs/PoseStamped", writer_.format()));
   }
 
+  void stream_transform(const std::string& topic, const Pose& pose) {
+    write(topic, "geometry_msgs/Transform", at_ms(0), serialize_transform(pose, writer_.format()));
+  }
+
+  void value(const std::string& topic, float value) {
+    write(topic, "std_msgs/Float32", at_ms(0), serialize_float(value, writer_.format()));
+  }
+
   void finish() { writer_.finish(); }
 
  private:
@@ -126,6 +134,39 @@ TEST(BagSequence, TwoInertialTopicsAreMerged) {
   EXPECT_EQ(info.imu[0].gyro_b.z(), 1.0);
   EXPECT_EQ(info.rig.T_b_c.p.x(), 0.1);
   EXPECT_EQ(info.rig.camera.fx, 10.0);
+}
+
+/// Recorded by librealsense: streams below /device_0, extrinsics to stream 0, no frames in the headers, depth
+/// of its own camera.
+TEST(BagSequence, RecordingsOfLibrealsenseAreRead) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  const std::string depth = "/device_0/sensor_0/Depth_0";
+  const std::string color = "/device_0/sensor_1/Color_0";
+  bag.camera_info(depth + "/info/camera_info", 8.0);
+  bag.camera_info(color + "/info/camera_info", 10.0);
+  bag.stream_transform(depth + "/tf/0", Pose{});
+  bag.stream_transform(color + "/tf/0", Pose{Eigen::Quaterniond::Identity(), {0.015, 0.0, 0.0}});
+  bag.stream_transform("/device_0/sensor_2/Gyro_0/tf/0",
+                       Pose{Eigen::Quaterniond::Identity(), {0.005, 0.0, 0.0}});
+  bag.value("/device_0/sensor_0/option/Depth_Units/value", 0.0001F);
+  for (int i = 0; i < 3; ++i) {
+    bag.image(color + "/image/data", at_ms(40 * i), "rgb8", "0");
+    bag.image(depth + "/image/data", at_ms(40 * i + 1), "mono16", "0");
+  }
+  for (int i = 0; i < 10; ++i) {
+    bag.imu("/device_0/sensor_2/Gyro_0/imu/data", at_ms(10 * i), {0, 0, 0.1}, {0, 0, 0});
+    bag.imu("/device_0/sensor_2/Accel_0/imu/data", at_ms(10 * i), {0, 0, 0}, {0, -9.8, 0});
+  }
+  bag.finish();
+  const std::unique_ptr<SensorStream> stream = open_sequence(folder.path() / "a.bag");
+  const SequenceInfo& info = stream->info();
+  EXPECT_EQ(info.rig.camera.fx, 10.0);
+  EXPECT_NEAR(info.rig.T_b_c.p.x(), 0.01, 1e-12);  // color is 10 mm from the gyroscope
+  EXPECT_NEAR(info.rig.depth_units_per_m, 10000.0, 1e-2);
+  EXPECT_TRUE(has_note(info, "is registered to the color camera"));
+  EXPECT_EQ(info.imu.size(), 10U);
+  EXPECT_EQ(stream->load_frame(0).depth.cols, 8);
 }
 
 TEST(BagSequence, SelectedTopicsOverrideTheSearch) {
