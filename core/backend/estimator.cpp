@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "core/backend/factors/gravity_direction.h"
+#include "core/backend/online_calibration.h"
+#include "core/backend/solvers/window_problem.h"
 #include "core/backend/start/depth_initialization.h"
 #include "core/backend/start/frozen_world.h"
 #include "core/backend/start/initial_prior.h"
@@ -81,6 +83,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
   next.state = extrapolate(motion_state(), imu_, frame.t);
   if (uses_imu()) integrate_samples(window_.frames.back(), next);
   window_.frames.push_back(std::move(next));
+  if (uses_imu() && backend_.prior == PriorModel::kConsistent) smooth_newest_rates(imu_, window_);
 }
 
 /// Missing samples of an inertial window are replaced by those of a constant velocity; wrong and missing ones
@@ -168,12 +171,14 @@ void Estimator::slide(bool keyframe) {
   } else if (keyframe) {
     LinearPrior prior = solver_->marginalize_oldest(window_, pixel_noise_.applied_to(backend_),
                                                     rig_.camera.focal_px(), std::move(discarded_prior_));
+    remove_marginalized_information(backend_, window_);
     remove_oldest_frame(window_);
     discarded_prior_ = std::exchange(window_.prior, std::move(prior));
   } else {
     window_.prior = marginalizer_.remove(window_.newest() - 1, std::move(window_.prior));
     remove_second_newest_frame(window_);
   }
+  if (uses_imu() && backend_.prior == PriorModel::kConsistent) add_calibration_walk(backend_, window_);
   // Nothing connected the removed frame to the others: fix the gauge at the new oldest frame.
   if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_);
 }
@@ -217,6 +222,9 @@ void Estimator::solve() {
       solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
   unusable_solves_ = report.usable ? 0 : unusable_solves_ + 1;
   if (!window_.inertial) restore_gauge(oldest, backend_, window_);
+  if (backend_.prior == PriorModel::kConsistent) {
+    update_.time_offset_at_bound = bound_time_offset(backend_, rig_.time_offset_s, window_);
+  }
   if (backend_.covariance && report.usable) {
     update_.covariance =
         solver_->newest_covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());

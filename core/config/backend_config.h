@@ -118,9 +118,13 @@ struct BackendConfig {
   bool covariance = false;     ///< compute the covariance of the newest state with each frame
   bool estimate_time_offset = true;
   double time_offset_sigma_s = 0.01;  ///< prior standard deviation around the calibrated value
+  double time_offset_walk = 0.0;      ///< random walk in the consistent prior [s/sqrt(s)]
+  double time_offset_max_s = 0.1;     ///< consistent prior: largest difference to the calibrated value
   bool estimate_extrinsics = false;
   double extrinsics_sigma_m = 0.02;    ///< prior standard deviation around the calibrated value
   double extrinsics_sigma_rad = 0.02;  ///< same for the rotation
+  double extrinsics_walk_m = 0.0;      ///< random walk in the consistent prior [m/sqrt(s)]
+  double extrinsics_walk_rad = 0.0;    ///< same for the rotation [rad/sqrt(s)]
   double max_dead_reckoning_s = 6.0;   ///< without vision; then the pose is lost
   double max_relocalization_s = 1.0;   ///< with a view after a loss; then a new world begins
   DepthConfig depth;
@@ -146,9 +150,13 @@ void visit_fields(Visitor&& field, Config& config) {
   field("covariance", config.covariance);
   field("estimate_time_offset", config.estimate_time_offset);
   field("time_offset_sigma_s", config.time_offset_sigma_s, 1e-6, 1.0);
+  field("time_offset_walk", config.time_offset_walk, 0.0, 1.0);
+  field("time_offset_max_s", config.time_offset_max_s, 1e-4, 1.0);
   field("estimate_extrinsics", config.estimate_extrinsics);
   field("extrinsics_sigma_m", config.extrinsics_sigma_m, 1e-6, 1.0);
   field("extrinsics_sigma_rad", config.extrinsics_sigma_rad, 1e-6, 1.0);
+  field("extrinsics_walk_m", config.extrinsics_walk_m, 0.0, 1.0);
+  field("extrinsics_walk_rad", config.extrinsics_walk_rad, 0.0, 1.0);
   field("max_dead_reckoning_s", config.max_dead_reckoning_s, 0.0, 1000.0);
   field("max_relocalization_s", config.max_relocalization_s, 0.0, 1000.0);
   field("depth", config.depth);

@@ -78,6 +78,19 @@ const std::vector<ImuSample>& ImuBuffer::samples_up_to(Timestamp begin, Timestam
   return interval_;
 }
 
+std::optional<Eigen::Vector3d> ImuBuffer::mean_rate(Timestamp t, double half_width_s) const {
+  const Timestamp end = after(t, half_width_s);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  auto sample = std::lower_bound(samples_.begin(), samples_.end(), after(t, -half_width_s), earlier);
+  for (; sample != samples_.end() && sample->t <= end; ++sample) {
+    sum += sample->gyro_b;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
 /// Counts the gaps between samples_[first] and samples_[last] that were not counted before.
 void ImuBuffer::count_gaps(std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/types/imu_health.h"
@@ -26,6 +27,10 @@ class ImuBuffer {
   /// Like `samples_between`, but extrapolates the newest sample (zero-order hold) to `end` if the buffer ends
   /// at most `max_gap_s` before. For predictions only, not for factors.
   [[nodiscard]] const std::vector<ImuSample>& samples_up_to(Timestamp begin, Timestamp end);
+
+  /// Mean angular rate of the samples from `t - half_width_s` to `t + half_width_s`, as far as the buffer
+  /// reaches; nothing without a sample there.
+  [[nodiscard]] std::optional<Eigen::Vector3d> mean_rate(Timestamp t, double half_width_s) const;
 
   [[nodiscard]] bool empty() const { return samples_.empty(); }
   [[nodiscard]] Timestamp newest() const { return samples_.back().t; }

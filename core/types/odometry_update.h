@@ -37,7 +37,8 @@ struct OdometryUpdate {
   OdometryStatus status = OdometryStatus::kInitializing;
   StatusReason reason = StatusReason::kNone;
   int segment = 0;  ///< number of the world frame; a new one begins after a loss without relocation
-  double time_offset_s = 0.0;  ///< current estimate
+  double time_offset_s = 0.0;         ///< current estimate
+  bool time_offset_at_bound = false;  ///< it reached `backend.time_offset_max_s`
   /// Rotates the world such that gravity points along -z, by the current estimate of gravity; the identity if
   /// gravity is not estimated (`backend.gravity`) or not yet known.
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();

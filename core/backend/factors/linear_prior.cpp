@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/factors/linear_prior.h"
 
+#include <array>
+#include <cmath>
+
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
 #include "core/backend/factors/gravity_direction.h"
+#include "core/config/backend_config.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
+namespace {
+
+/// Of a prior: 15 states per frame, and the global ones.
+constexpr int kMaxSize = 15 * (kMaxWindowSize + 1) + 9;
+
+}  // namespace
 
 BlockVector block_difference(BlockKind kind, const double* x, const BlockVector& origin) {
   const int size = global_size(kind);
@@ -23,6 +33,28 @@ BlockVector block_difference(BlockKind kind, const double* x, const BlockVector&
   difference.head<3>() = value.head<3>() - origin.head<3>();
   difference.tail<3>() = log_so3(q_origin.conjugate() * q);
   return difference;
+}
+
+void add_random_step(BlockKind kind, std::span<const double> sigmas, LinearPrior& prior) {
+  int column = 0;
+  for (const PriorBlock& block : prior.blocks) {
+    if (block.kind == kind) break;
+    column += local_size(block.kind);
+  }
+  if (column == prior.jacobian.cols()) return;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxSize, 1> direction;
+  for (std::size_t i = 0; i < sigmas.size(); ++i) {
+    direction = prior.jacobian.col(column + static_cast<Eigen::Index>(i));
+    const double squared = direction.squaredNorm();
+    if (squared == 0.0 || sigmas[i] == 0.0) continue;
+    const double reduction = (1.0 - 1.0 / std::sqrt(1.0 + sigmas[i] * sigmas[i] * squared)) / squared;
+    for (Eigen::Index j = 0; j < prior.jacobian.cols(); ++j) {
+      const double along = direction.dot(prior.jacobian.col(j));
+      prior.jacobian.col(j) -= (reduction * along) * direction;
+    }
+    const double along = direction.dot(prior.residual);
+    prior.residual -= (reduction * along) * direction;
+  }
 }
 
 std::optional<Eigen::Matrix2d> gravity_covariance(const LinearPrior& prior) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -55,6 +56,16 @@ struct LinearPrior {
 /// x [-] origin, in the tangent space at `origin`: for poses (p - p0, Log(q0^-1 q)), the inverse of
 /// PoseManifold::Plus; for gravity `gravity_difference`; for other blocks x - x0.
 [[nodiscard]] BlockVector block_difference(BlockKind kind, const double* x, const BlockVector& origin);
+
+/// Adds independent random steps to the components of a global state: with x' = x + w, w ~ N(0, S), the
+/// residual at x' has the covariance I + J_x S J_x^T, by which it is whitened again; component by component,
+/// with u = J_x, s the standard deviation,
+///
+///   J <- W J,  r0 <- W r0,    W = I - (1 - 1 / sqrt(1 + s^2 |u|^2)) u u^T / |u|^2.
+///
+/// A prior without the block is unchanged.
+/// @param sigmas of the steps, one per component, >= 0
+void add_random_step(BlockKind kind, std::span<const double> sigmas, LinearPrior& prior);
 
 /// Covariance of gravity by the prior alone, in the tangent space at its linearization point [rad^2]; nothing
 /// if the prior does not constrain gravity or is not finite.

@@ -26,7 +26,7 @@ NormalEquations linearize_oldest(const Window& window, const BackendConfig& conf
     builder.clear();
     builder.add_landmark(static_cast<int>(i));
     equations.add(builder.residuals(), blocks, has_constant_depth(landmark, config),
-                  marginalized_information(window, config));
+                  marginalized_fraction(landmark, window, config));
   }
   return equations;
 }

@@ -19,7 +19,7 @@ Residual prior_residual(const LinearPrior& prior) {
 ResidualBuilder::ResidualBuilder(const Window& window, const BackendConfig& config, double focal_px)
     : window_(window),
       config_(config),
-      noise_(reprojection_noise(config, focal_px)),
+      noise_(reprojection_noise(window, config, focal_px)),
       loss_(std::make_unique<ceres::CauchyLoss>(config.cauchy_scale)) {
   observation_model_.read(window);
 }
@@ -33,11 +33,22 @@ const double* ResidualBuilder::first_estimate(BlockRef block) const {
   return nullptr;
 }
 
+/// The loss times the fraction of the information that is not in the prior.
+ceres::LossFunction* ResidualBuilder::scaled_loss(ceres::LossFunction* loss, double information) {
+  if (information == 1.0) return loss;
+  scaled_losses_.push_back(
+      std::make_unique<ceres::ScaledLoss>(loss, information, ceres::DO_NOT_TAKE_OWNERSHIP));
+  return scaled_losses_.back().get();
+}
+
 void ResidualBuilder::add_landmark(int index) {
   const Landmark& landmark = window_.landmarks[static_cast<std::size_t>(index)];
   const Observation& host = landmark.observations.front();
   if (uses_depth(host, config_)) {
-    residuals_.push_back({std::make_unique<HostDepthFactor>(1.0 / host.depth, noise_), nullptr, {}, index});
+    residuals_.push_back({std::make_unique<HostDepthFactor>(1.0 / host.depth, noise_),
+                          scaled_loss(nullptr, host.information),
+                          {},
+                          index});
   }
 
   const Eigen::Vector3d position_w = observation_model_.position(landmark);
@@ -61,7 +72,7 @@ void ResidualBuilder::add_landmark(int index) {
       cost = std::make_unique<ReprojectionFactor<2>>(m, noise_, first);
     }
     residuals_.push_back({std::move(cost),
-                          loss_.get(),
+                          scaled_loss(loss_.get(), observation.information),
                           {{BlockKind::kPose, landmark.host},
                            {BlockKind::kPose, frame},
                            {BlockKind::kExtrinsics},

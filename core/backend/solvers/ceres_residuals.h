@@ -52,12 +52,14 @@ class ResidualBuilder {
 
  private:
   [[nodiscard]] const double* first_estimate(BlockRef block) const;
+  [[nodiscard]] ceres::LossFunction* scaled_loss(ceres::LossFunction* loss, double information);
 
   const Window& window_;
   const BackendConfig& config_;
   ObservationModel observation_model_;
   ReprojectionNoise noise_;
   std::unique_ptr<ceres::LossFunction> loss_;
+  std::vector<std::unique_ptr<ceres::LossFunction>> scaled_losses_;
   std::vector<Residual> residuals_;
 };
 

@@ -21,9 +21,9 @@ Eigen::Vector2d at_state(const TimedBearing& timed, double time_offset_s) {
 void VisualTerms::read(const Window& window, const BackendConfig& config, double focal_px,
                        LandmarkSelection selection) {
   frames_ = static_cast<int>(window.frames.size());
-  noise_ = reprojection_noise(config, focal_px);
+  noise_ = reprojection_noise(window, config, focal_px);
   cauchy_squared_ = config.cauchy_scale * config.cauchy_scale;
-  information_factor_ = selection == LandmarkSelection::kAll ? 1.0 : marginalized_information(window, config);
+  marginalizes_ = selection == LandmarkSelection::kHostedByOldest;
   observation_model_.read(window);
   const auto pairs = static_cast<std::size_t>(frames_ * frames_);
   pair_used_.assign(pairs, 0);
@@ -37,13 +37,15 @@ void VisualTerms::read(const Window& window, const BackendConfig& config, double
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     const Landmark& landmark = window.landmarks[i];
     const bool wanted = selection == LandmarkSelection::kAll || landmark.host == 0;
-    if (wanted && is_usable(landmark)) add_landmark(landmark, i, config);
+    if (wanted && is_usable(landmark)) add_landmark(window, i, config);
   }
   information_.resize(variable_count_);
   gradient_.resize(variable_count_);
 }
 
-void VisualTerms::add_landmark(const Landmark& landmark, std::size_t index, const BackendConfig& config) {
+void VisualTerms::add_landmark(const Window& window, std::size_t index, const BackendConfig& config) {
+  const Landmark& landmark = window.landmarks[index];
+  const double fraction = marginalizes_ ? marginalized_fraction(landmark, window, config) : 1.0;
   const Eigen::Vector3d position_w = observation_model_.position(landmark);
   const Observation& host = landmark.observations.front();
   const bool host_depth = uses_depth(host, config);
@@ -54,13 +56,15 @@ void VisualTerms::add_landmark(const Landmark& landmark, std::size_t index, cons
                         .in_host = observation_model_.at(landmark, landmark.host, position_w),
                         .measured = host_depth ? 1.0 / host.depth : 0.0,
                         .has_depth = host_depth,
+                        .information = fraction * host.information,
                         .column = has_constant_depth(landmark, config) ? -1 : variable_count_});
   for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
     const Observation& observation = landmark.observation_in(frame);
     const bool depth = uses_depth(observation, config);
     timed_observations_.push_back({.bearing = observation_model_.at(landmark, frame, position_w),
                                    .inverse_depth = depth ? 1.0 / observation.depth : 0.0,
-                                   .has_depth = depth});
+                                   .has_depth = depth,
+                                   .information = fraction * observation.information});
     pair_used_[pair(landmark.host, frame)] = 1;
   }
   measured_ += landmark.source == DepthSource::kMeasured;
@@ -100,13 +104,6 @@ void VisualTerms::move_jacobians_to(const ParameterBlocks& point) {
   }
 }
 
-void VisualTerms::scale_information() {
-  for (PairSum& sum : sums_) sum *= information_factor_;
-  information_ *= information_factor_;
-  gradient_ *= information_factor_;
-  coupling_ *= information_factor_;
-}
-
 VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
                                                  const ParameterBlocks& blocks) const {
   return {*blocks.inverse_depth(landmark.index), at_state(landmark.in_host, time_offset_).homogeneous(),
@@ -133,13 +130,15 @@ double VisualTerms::cost(const ParameterBlocks& blocks) {
   for (const VisualLandmark& landmark : landmarks_) {
     const LandmarkState state = state_of(landmark, blocks);
     const double depth = host_depth(landmark, state.lambda).value;
-    total += depth * depth;
+    total += landmark.information * depth * depth;
     for (int frame = landmark.host + 1; frame <= landmark.last; ++frame) {
       const RelativePoseLinearization& to = relative_poses_[pair(landmark.host, frame)];
       const Eigen::Vector3d p_cj = to.R_cj_ci * state.ray + state.lambda * to.p_cj_ci;
+      const TimedObservation& observation = observation_of(landmark, frame);
       const ReprojectionRows rows =
-          reprojection_rows(p_cj, state.lambda, measured_point_at(observation_of(landmark, frame)), noise_);
-      total += cauchy_squared_ * std::log(1.0 + rows.residual.squaredNorm() / cauchy_squared_);
+          reprojection_rows(p_cj, state.lambda, measured_point_at(observation), noise_);
+      total += observation.information * cauchy_squared_ *
+               std::log(1.0 + rows.residual.squaredNorm() / cauchy_squared_);
     }
   }
   return 0.5 * total;
@@ -155,7 +154,6 @@ double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
   coupling_.setZero();
   double total = 0.0;
   for (const VisualLandmark& landmark : landmarks_) total += linearize(landmark, at.states, system.layout);
-  if (information_factor_ != 1.0) scale_information();
   for (int host = 0; host < frames_; ++host) {
     for (int frame = host + 1; frame < frames_; ++frame) {
       if (pair_used_[pair(host, frame)] != 0) add_pair(host, frame, system);
@@ -189,14 +187,16 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
                               const ReducedLayout& layout) {
   const LandmarkState state = state_of(landmark, blocks);
   const BoundedError depth = host_depth(landmark, state.lambda);
-  double total = depth.value * depth.value;
-  double information = depth.slope * depth.slope;
-  double gradient = depth.slope * depth.value;
+  double total = landmark.information * depth.value * depth.value;
+  double information = landmark.information * depth.slope * depth.slope;
+  double gradient = landmark.information * depth.slope * depth.value;
   for (int frame = landmark.host + 1; frame <= landmark.last; ++frame) {
     const std::size_t shared = pair(landmark.host, frame);
-    const ObservationTerm term = linearize(observation_of(landmark, frame), relative_poses_[shared], state);
-    const double inverse_weight = 1.0 + term.rows.row(7).squaredNorm() / cauchy_squared_;
-    total += cauchy_squared_ * std::log(inverse_weight);
+    const TimedObservation& observation = observation_of(landmark, frame);
+    const ObservationTerm term = linearize(observation, relative_poses_[shared], state);
+    const double inner = 1.0 + term.rows.row(7).squaredNorm() / cauchy_squared_;
+    total += observation.information * cauchy_squared_ * std::log(inner);
+    const double inverse_weight = inner / observation.information;
     const Eigen::Matrix<double, 8, 3> weighted = term.rows / inverse_weight;
     sums_[shared].noalias() += weighted * term.rows.transpose();
     if (landmark.column < 0) continue;

@@ -17,7 +17,8 @@ enum class LandmarkSelection { kAll, kHostedByOldest };
 /// offset. Its rows r are therefore linearized with respect to y = (nu, omega, td), where (nu, omega) is the
 /// tangent of RelativePoseLinearization, and lambda. Per pair of frames (i, j) the sum
 ///
-///   A_ij = sum w [J_y r]^T [J_y r],    w = 1 / (1 + |r|^2 / c^2)    (8x8; w: weight of the Cauchy loss)
+///   A_ij = sum w [J_y r]^T [J_y r],    w = f / (1 + |r|^2 / c^2)    (8x8; w: weight of the Cauchy loss,
+///                                                           f: fraction of the information that is used)
 ///
 /// is mapped to the states x once, with M_ij = dy/dx: H_pp += M_ij^T A_yy M_ij, g_p += M_ij^T A_yr. A
 /// displacement of the world is in the null space of M_ij, whatever A_ij is: with first-estimates Jacobians
@@ -62,12 +63,14 @@ class VisualTerms {
     TimedBearing in_host;
     double measured = 0.0;  // inverse depth in the host
     bool has_depth = false;
-    int column = -1;  // among the variable landmarks; -1 = constant
+    double information = 1.0;  // of the depth in the host
+    int column = -1;           // among the variable landmarks; -1 = constant
   };
   struct TimedObservation {
     TimedBearing bearing;
     double inverse_depth = 0.0;
     bool has_depth = false;
+    double information = 1.0;  // that is used, as a fraction
   };
   /// A_ij: rows and columns (nu, omega, td, r).
   using PairSum = Eigen::Matrix<double, 8, 8>;
@@ -83,10 +86,9 @@ class VisualTerms {
     Eigen::Vector3d J_lambda;
   };
 
-  void add_landmark(const Landmark& landmark, std::size_t index, const BackendConfig& config);
+  void add_landmark(const Window& window, std::size_t index, const BackendConfig& config);
   void update_relative_poses(const ParameterBlocks& blocks);
   void move_jacobians_to(const ParameterBlocks& point);
-  void scale_information();
   [[nodiscard]] LandmarkState state_of(const VisualLandmark& landmark, const ParameterBlocks& blocks) const;
   [[nodiscard]] MeasuredPoint measured_point_at(const TimedObservation& observation) const;
   [[nodiscard]] const TimedObservation& observation_of(const VisualLandmark& landmark, int frame) const {
@@ -107,7 +109,7 @@ class VisualTerms {
 
   int frames_ = 0;
   int measured_ = 0;
-  double information_factor_ = 1.0;
+  bool marginalizes_ = false;  // only a fraction of the information, see marginalized_fraction
   double cauchy_squared_ = 1.0;
   double time_offset_ = 0.0;
   ReprojectionNoise noise_;

@@ -2,12 +2,14 @@
 #include "core/backend/solvers/window_problem.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace stillpoint {
 namespace {
 
-constexpr double kSharedInformation = 0.4;  // see marginalized_information
+/// Of a track that continues, see marginalized_fraction.
+constexpr double kMarginalizedFraction = 0.5;
 
 /// Published prior: below this speed the image motion is too small to observe time offset and extrinsics.
 constexpr double kMinSpeedForCalibration = 0.2;  // [m/s]
@@ -82,8 +84,9 @@ void unpack(const ParameterBlocks& blocks, Window& window) {
   }
 }
 
-ReprojectionNoise reprojection_noise(const BackendConfig& config, double focal_px) {
-  return {.bearing = config.pixel_sigma_px / focal_px,
+ReprojectionNoise reprojection_noise(const Window& window, const BackendConfig& config, double focal_px) {
+  const double bearings = has_consistent_prior(window, config) ? std::sqrt(2.0) : 1.0;
+  return {.bearing = bearings * config.pixel_sigma_px / focal_px,
           .inverse_depth = config.depth.inverse_sigma,
           .depth_outlier = config.depth.outlier_sigmas};
 }
@@ -109,8 +112,19 @@ VariableGlobals marginalized_globals(const Window& window, const BackendConfig& 
   return {.gravity = window.estimates_gravity()};
 }
 
-double marginalized_information(const Window& window, const BackendConfig& config) {
-  return has_consistent_prior(window, config) ? kSharedInformation : 1.0;
+double marginalized_fraction(const Landmark& landmark, const Window& window, const BackendConfig& config) {
+  const bool continues = landmark.last() == window.newest();
+  return continues && has_consistent_prior(window, config) ? kMarginalizedFraction : 1.0;
+}
+
+void remove_marginalized_information(const BackendConfig& config, Window& window) {
+  if (!has_consistent_prior(window, config)) return;
+  for (Landmark& landmark : window.landmarks) {
+    if (landmark.host != 0 || !is_usable(landmark)) continue;
+    const double remaining = 1.0 - marginalized_fraction(landmark, window, config);
+    if (remaining <= 0.0) landmark.observations.resize(1);
+    for (Observation& observation : landmark.observations) observation.information *= remaining;
+  }
 }
 
 std::vector<BlockRef> candidate_blocks(const Window& window, const BackendConfig& config,

@@ -78,8 +78,10 @@ struct Linearization {
 /// Writes the values of the blocks back to the states of the window.
 void unpack(const ParameterBlocks& blocks, Window& window);
 
-/// Standard deviations of the visual residuals.
-[[nodiscard]] ReprojectionNoise reprojection_noise(const BackendConfig& config, double focal_px);
+/// Standard deviations of the visual residuals. That of a bearing is the one of a single observation, and
+/// with the consistent prior that of the difference of two: the bearing in the host is no state.
+[[nodiscard]] ReprojectionNoise reprojection_noise(const Window& window, const BackendConfig& config,
+                                                   double focal_px);
 
 /// Whether a landmark's inverse depth is constant at its measured value (as in the published system).
 [[nodiscard]] bool has_constant_depth(const Landmark& landmark, const BackendConfig& config);
@@ -103,12 +105,21 @@ struct VariableGlobals {
 /// In marginalize_oldest. With the published prior calibration is constant there.
 [[nodiscard]] VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config);
 
-/// Factor on the information of the landmarks that marginalize_oldest eliminates. Landmarks are hosted in the
-/// next frame when their first one leaves, with their other observations, so the same observation enters
-/// several priors. With the consistent prior its information is shared between them. The factor was found by
-/// a Monte Carlo simulation of the normalized estimation error: with 1 the covariance of the position is 2.2
-/// times too small, and the error is smallest from 0.3 to 0.5.
-[[nodiscard]] double marginalized_information(const Window& window, const BackendConfig& config);
+/// Fraction of the information of a landmark of the oldest frame that marginalize_oldest adds to the prior.
+///
+/// A track that continues in the newest frame stays in the window with its other observations, hosted in the
+/// next frame. With the published prior all of its information enters the prior, and the observations that
+/// stay enter again with the next frame. With the consistent one a fraction a of the information of each
+/// observation enters the prior, and 1 - a remains: the likelihood of an observation is a product of powers,
+/// p = p^a p^(1-a), whose exponents sum up to at most one (as in covariance intersection, Julier and Uhlmann
+/// 1997). Only that both factors belong to the same point is lost. The whole information of a track that
+/// ended enters the prior.
+[[nodiscard]] double marginalized_fraction(const Landmark& landmark, const Window& window,
+                                           const BackendConfig& config);
+
+/// Removes the information that marginalize_oldest adds to the prior from the observations in the window;
+/// tracks of which nothing remains are left with the observation in the oldest frame.
+void remove_marginalized_information(const BackendConfig& config, Window& window);
 
 /// Blocks that the prior of marginalize_oldest may involve: the states after the oldest frame, and
 /// `marginalized_globals`.

@@ -20,6 +20,7 @@ struct Observation {
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of the bearing [1/s]
   double depth = 0.0;                                  ///< measured [m]; 0 = not measured or out of range
   double readout_offset_s = 0.0;  ///< readout time of its row minus that of the middle row
+  double information = 1.0;       ///< fraction of its information that is not in the prior, > 0
 };
 
 /// Origin of the initial depth of a landmark.

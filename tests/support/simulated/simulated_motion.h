@@ -2,6 +2,7 @@
 /// Simulated smooth motion through a point cloud: exact states, IMU samples and feature tracks.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -22,6 +23,11 @@ struct SimulatedMotion {
   double time_offset_s = 0.0;       ///< IMU time of a frame minus its timestamp
   int points = 200;                 ///< about half of them are visible
   double ping_pong_period_s = 0.0;  ///< of moving back and forth on the first part of the path; 0 = forward
+  double track_length_s = 0.0;      ///< after it a track ends and another one begins; 0 = while it is visible
+  std::uint32_t seed = 0;           ///< of all noise
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Constant(0.02);   ///< of noisy_imu; follows its random walk
+  Eigen::Vector3d accel_bias = Eigen::Vector3d::Constant(0.05);  ///< likewise
+  bool bias_walk = false;                                        ///< else the biases are constant
 
   static Rig rig() {
     Rig rig;
@@ -56,8 +62,9 @@ struct SimulatedMotion {
   }
 
   [[nodiscard]] std::vector<ImuSample> imu(double seconds, double rate_hz = 200.0) const {
-    Random random(11);
+    Random random(11 + 7919 * seed);
     const double density = std::sqrt(rate_hz);
+    Eigen::Vector3d bg = gyro_bias, ba = accel_bias;
     std::vector<ImuSample> samples;
     for (int i = 0; i <= static_cast<int>(seconds * rate_hz); ++i) {
       constexpr double h = 1e-4;
@@ -71,8 +78,11 @@ struct SimulatedMotion {
       sample.accel_b = q.conjugate() * (acceleration + Eigen::Vector3d(0.0, 0.0, 9.81));
       if (noisy_imu) {
         for (int k = 0; k < 3; ++k) {
-          sample.gyro_b[k] += imu_noise.gyro_noise * density * random.normal() + 0.02;
-          sample.accel_b[k] += imu_noise.accel_noise * density * random.normal() + 0.05;
+          sample.gyro_b[k] += imu_noise.gyro_noise * density * random.normal() + bg[k];
+          sample.accel_b[k] += imu_noise.accel_noise * density * random.normal() + ba[k];
+          if (!bias_walk) continue;
+          bg[k] += imu_noise.gyro_walk / density * random.normal();
+          ba[k] += imu_noise.accel_walk / density * random.normal();
         }
       }
       samples.push_back(sample);
@@ -83,7 +93,7 @@ struct SimulatedMotion {
   /// The frame with timestamp `t`. Feature ids are point indices: a track lasts while its point is visible.
   [[nodiscard]] TrackedFrame frame(std::int64_t id, double t) const {
     Random places(5);
-    Random random(static_cast<std::uint32_t>(1000 + id));
+    Random random(static_cast<std::uint32_t>(1000 + id) + 100'003 * seed);
     const Rig calibration = rig();
     const Pose T_c_w = (state(path_time(t + time_offset_s)).T_w_b * calibration.T_b_c).inverse();
     TrackedFrame frame{.id = id, .t = from_seconds(t)};
@@ -95,11 +105,21 @@ struct SimulatedMotion {
       Eigen::Vector2d pixel = calibration.camera.project(p_c);
       if (!calibration.camera.contains(pixel)) continue;
       pixel += pixel_noise_px * Eigen::Vector2d(random.normal(), random.normal());
-      TrackedFeature feature{.id = k, .pixel = pixel, .bearing = calibration.camera.unproject(pixel)};
+      TrackedFeature feature{
+          .id = track_id(k, t), .pixel = pixel, .bearing = calibration.camera.unproject(pixel)};
       feature.depth = depth_factor / (1.0 / p_c.z() + depth_noise * random.normal());
       frame.features.push_back(feature);
     }
+    if (track_length_s > 0.0) std::ranges::sort(frame.features, {}, &TrackedFeature::id);
     return frame;
+  }
+
+ private:
+  /// The point, or, with tracks of limited length, a number for each of its tracks; they begin at
+  /// different times.
+  [[nodiscard]] std::int64_t track_id(int point, double t) const {
+    if (track_length_s <= 0.0) return point;
+    return point + points * static_cast<std::int64_t>(t / track_length_s + std::fmod(0.618 * point, 1.0));
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/backend/solvers/window_problem.h"
 #include "core/backend/solvers/window_solver.h"
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/window/landmark_tracks.h"
@@ -69,6 +70,40 @@ TEST(Marginalization, RemovingAFrameFromAPriorPreservesTheMarginalsOfTheOthers) 
   const Eigen::MatrixXd information = remaining.jacobian.transpose() * remaining.jacobian;
   // variances add: 1 + 1 = 2, so the information is 1/2
   EXPECT_LT((information - 0.5 * Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-9);
+}
+
+/// Five frames with an IMU; the first landmark is lost after frame 3.
+Window inertial_window_with_ended_track() {
+  Window window = visual_window(5, 30);
+  window.inertial = true;
+  window.landmarks.front().observations.pop_back();
+  return window;
+}
+
+TEST(Marginalization, TheConsistentPriorTakesInformationFromTheObservations) {
+  BackendConfig config;
+  config.prior = PriorModel::kConsistent;
+  Window window = inertial_window_with_ended_track();
+  const double fraction = marginalized_fraction(window.landmarks.back(), window, config);
+  EXPECT_GT(fraction, 0.0);
+  EXPECT_LT(fraction, 1.0);
+  EXPECT_EQ(marginalized_fraction(window.landmarks.front(), window, config), 1.0);
+  remove_marginalized_information(config, window);
+  remove_oldest_frame(window);
+  EXPECT_EQ(window.landmarks.size(), 29u);  // nothing remains of the ended track
+  for (const Observation& observation : window.landmarks.back().observations) {
+    EXPECT_DOUBLE_EQ(observation.information, 1.0 - fraction);
+  }
+}
+
+TEST(Marginalization, ThePublishedPriorCountsObservationsAgain) {
+  const BackendConfig config;
+  Window window = inertial_window_with_ended_track();
+  EXPECT_EQ(marginalized_fraction(window.landmarks.back(), window, config), 1.0);
+  remove_marginalized_information(config, window);
+  remove_oldest_frame(window);
+  EXPECT_EQ(window.landmarks.size(), 30u);
+  EXPECT_EQ(window.landmarks.back().observations.front().information, 1.0);
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/factors/prior_factor.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
+
+#include <Eigen/LU>
 
 #include "tests/support/numeric_jacobian.h"
 
@@ -29,6 +33,20 @@ TEST(PriorFactor, ReturnsR0AtTheLinearizationPoint) {
   const Eigen::VectorXd residual =
       residual_at(PriorFactor(prior), {{1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0}, {0.01}});
   EXPECT_LT((residual - prior.residual).norm(), 1e-14);
+}
+
+TEST(LinearPrior, ARandomStepAddsItsVariance) {
+  LinearPrior prior = pose_and_offset_prior();
+  prior.jacobian = Eigen::MatrixXd::Random(7, 7) + 3.0 * Eigen::MatrixXd::Identity(7, 7);
+  prior.residual = Eigen::VectorXd::LinSpaced(7, -1.0, 1.0);
+  const Eigen::MatrixXd before = (prior.jacobian.transpose() * prior.jacobian).inverse();
+  const Eigen::VectorXd minimum = prior.jacobian.fullPivLu().solve(prior.residual);
+  add_random_step(BlockKind::kTimeOffset, std::array{0.7}, prior);
+  Eigen::MatrixXd expected = before;
+  expected(6, 6) += 0.7 * 0.7;
+  const Eigen::MatrixXd after = (prior.jacobian.transpose() * prior.jacobian).inverse();
+  EXPECT_LT((after - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_LT((prior.jacobian.fullPivLu().solve(prior.residual) - minimum).norm(), 1e-9);
 }
 
 }  // namespace

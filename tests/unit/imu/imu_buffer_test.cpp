@@ -110,5 +110,12 @@ TEST(ImuBuffer, DropsOnlySamplesThatAreNoLongerNeeded) {
   EXPECT_TRUE(buffer.samples_between(at_ms(5), at_ms(30)).empty());  // the sample at 0 ms was dropped
 }
 
+TEST(ImuBuffer, TheMeanRateUsesTheSamplesThatItHas) {
+  const ImuBuffer buffer = filled({0, 10, 20, 30});
+  EXPECT_EQ(buffer.mean_rate(at_ms(20), 0.010)->x(), 20.0);  // of 10, 20, 30 ms
+  EXPECT_EQ(buffer.mean_rate(at_ms(30), 0.010)->x(), 25.0);  // of 20, 30 ms
+  EXPECT_FALSE(buffer.mean_rate(at_ms(100), 0.010));
+}
+
 }  // namespace
 }  // namespace stillpoint
