@@ -47,6 +47,12 @@ Json timing_json(const TimingSamples& samples, bool threads) {
   return table;
 }
 
+Json matrix_json(const std::optional<Eigen::Matrix2d>& matrix) {
+  if (!matrix) return nullptr;
+  const Eigen::Matrix2d& m = *matrix;
+  return {{m(0, 0), m(0, 1)}, {m(1, 0), m(1, 1)}};
+}
+
 Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 /// Fraction of the frames that the recorded boxes lack; nullopt without recorded boxes or frames.
@@ -127,6 +133,7 @@ std::string result_json(const RunResult& result) {
   json["realtime"] = realtime_json(summary);
   const Eigen::Quaterniond& q_level_w = result.run.q_level_w;
   json["leveling_rotation_xyzw"] = {q_level_w.x(), q_level_w.y(), q_level_w.z(), q_level_w.w()};
+  json["leveling_covariance_rad2"] = matrix_json(result.run.level_covariance);
   json["notes"] = result.notes;
   json["warnings"] = result.warnings;
   json["start_s"] = result.start_s;

@@ -124,6 +124,8 @@ class RunRecorder {
     const Timestamp t = stream_.info().frame_times[static_cast<std::size_t>(update.frame_id)];
     run_.frame_counters.push_back(counters_of(update, t));
     run_.q_level_w = update.q_level_w;
+    if (update.covariance && !update.covariance->gravity.isZero(0.0))
+      run_.level_covariance = update.covariance->gravity;
     run_.claims.push_back(claim_of(update, t));
     if (!is_located(update.status) || update.segment > 0) return;
     run_.trajectory.poses.push_back({t, update.T_w_c});

@@ -65,6 +65,7 @@ struct OdometryRun {
   std::vector<StateHashes> frame_hashes;      ///< per processed frame
   std::vector<FrameCounters> frame_counters;  ///< per processed frame
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();  ///< of the last update
+  std::optional<Eigen::Matrix2d> level_covariance;  ///< of that rotation: `StateCovariance::gravity` [rad^2]
   std::size_t frames_planned = 0;
   std::chrono::nanoseconds recording{};  ///< time spent on recording this
   double wall_s = 0.0;                   ///< from the request of the first frame to the last update

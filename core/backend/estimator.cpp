@@ -6,6 +6,7 @@
 #include "core/backend/factors/gravity_direction.h"
 #include "core/backend/online_calibration.h"
 #include "core/backend/solvers/window_problem.h"
+#include "core/backend/standstill.h"
 #include "core/backend/start/depth_initialization.h"
 #include "core/backend/start/frozen_world.h"
 #include "core/backend/start/initial_prior.h"
@@ -249,6 +250,11 @@ bool Estimator::refine() {
   }
   try_initialize_imu();
   repropagate_preintegrations();
+  if (backend_.zero_velocity.enabled) {
+    window_.frames.back().at_rest = is_at_rest(window_, imu_, backend_.zero_velocity,
+                                               {rig_.imu_noise, imu_config_.gravity, rig_.camera.focal_px()});
+    update_.counters.at_rest = window_.frames.back().at_rest;
+  }
   const Eigen::Vector3d gravity_before = window_.gravity_w;
   if (has_metric_scale()) solve();
   evidence_.failure = failure();

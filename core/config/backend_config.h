@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Configuration of the estimator: window, solver, depth, initialization. Defaults are those of Dynamic-VINS.
+/// Configuration of the estimator: window, solver, depth, initialization. Defaults are those of
+/// Dynamic-VINS, except for checks, limits and priors that it lacks; its config disables them.
 #pragma once
 
 #include <type_traits>
@@ -95,6 +96,24 @@ void visit_fields(Visitor&& field, Config& config) {
   field("max_scale_sigma", config.max_scale_sigma, 1e-3, 10.0);
 }
 
+/// Zero-velocity factor for frames at rest; see core/backend/standstill.h. Not in the paper.
+struct ZeroVelocityConfig {
+  bool enabled = false;
+  double statistic = 12.0;        ///< largest statistic of inertial samples at rest; its mean is 6 at rest
+  double static_px = 1.0;         ///< largest motion of a static feature over 0.2 s or more
+  double min_static_ratio = 0.1;  ///< of the features; the others may belong to moving objects
+  double sigma_m_per_s = 0.002;   ///< standard deviation of the velocity at rest
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, ZeroVelocityConfig>
+void visit_fields(Visitor&& field, Config& config) {
+  field("enabled", config.enabled);
+  field("statistic", config.statistic, 0.1, 1e6);
+  field("static_px", config.static_px, 0.01, 100.0);
+  field("min_static_ratio", config.min_static_ratio, 0.01, 1.0);
+  field("sigma_m_per_s", config.sigma_m_per_s, 1e-4, 10.0);
+}
+
 /// Upper limit of `window_size`.
 inline constexpr int kMaxWindowSize = 40;
 
@@ -127,6 +146,7 @@ struct BackendConfig {
   double extrinsics_walk_rad = 0.0;    ///< same for the rotation [rad/sqrt(s)]
   double max_dead_reckoning_s = 6.0;   ///< without vision; then the pose is lost
   double max_relocalization_s = 1.0;   ///< with a view after a loss; then a new world begins
+  ZeroVelocityConfig zero_velocity;
   DepthConfig depth;
   InitializerConfig initializer;
 };
@@ -159,6 +179,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("extrinsics_walk_rad", config.extrinsics_walk_rad, 0.0, 1.0);
   field("max_dead_reckoning_s", config.max_dead_reckoning_s, 0.0, 1000.0);
   field("max_relocalization_s", config.max_relocalization_s, 0.0, 1000.0);
+  field("zero_velocity", config.zero_velocity);
   field("depth", config.depth);
   field("initializer", config.initializer);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Settings of the tracker and the feature detectors. Paper Sec. III-A, III-B; defaults are those of the
-/// published Dynamic-VINS code.
+/// published Dynamic-VINS code, except for checks that it lacks; its config disables them.
 #pragma once
 
 #include <type_traits>
@@ -75,7 +75,8 @@ struct FrontendConfig {
       OutlierModel::kEpipolar;       ///< motion model of RANSAC; rigid uses the measured depths
   double ransac_threshold_px = 1.0;  ///< residual of an inlier, px at the camera's focal length
   double ransac_confidence = 0.99;
-  double ransac_min_inlier_ratio = 0.5;  ///< models with fewer inliers are discarded: nothing is rejected
+  double ransac_min_inlier_ratio = 0.5;  ///< models with fewer inliers are discarded: nothing is rejected; 0
+                                         ///< = as published
   bool reject_static_only = false;  ///< exclude features labeled dynamic from RANSAC and never reject them,
                                     ///< so that a large dynamic object cannot become the consensus; not in
                                     ///< the paper

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// All settings of the odometry. The defaults are those of Dynamic-VINS; configuration files override them.
+/// All settings of the odometry. The defaults are mostly those of Dynamic-VINS; configuration files override
+/// them.
 #pragma once
 
 #include <type_traits>

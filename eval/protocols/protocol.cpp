@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdio>
+#include <numbers>
 
 #include "core/base/error.h"
+#include "eval/metrics/ate.h"
 #include "eval/protocols/compat.h"
 #include "eval/protocols/strict.h"
 
@@ -75,6 +77,25 @@ std::string overrides_text(const ProtocolOptions& options) {
   return text;
 }
 
+/// Evaluates with the world of the estimate leveled if the alignment is in yaw and its tilt is known. The
+/// alignment of the result includes the leveling.
+Evaluation evaluate_leveled(const Protocol& protocol, const EvaluationInput& input) {
+  const ProtocolOptions& options = input.options;
+  const bool yaw = options.alignment ? *options.alignment == Alignment::kYaw : protocol.name == "strict:yaw";
+  if (!yaw || !options.q_level_w) return protocol.evaluate(input);
+  Trajectory leveled = input.est;
+  for (StampedPose& pose : leveled.poses)
+    pose.T_w_f = Pose{*options.q_level_w, Eigen::Vector3d::Zero()} * pose.T_w_f;
+  Evaluation evaluation = protocol.evaluate({input.gt, leveled, options});
+  Eigen::Quaterniond& q = evaluation.alignment.S_w_v.T_w_v.q;
+  q = (q * *options.q_level_w).normalized();
+  char note[96];
+  std::snprintf(note, sizeof note, "the world was leveled by the estimated gravity, by %.3f deg",
+                rotation_angle(*options.q_level_w) * 180.0 / std::numbers::pi);
+  evaluation.notes.emplace_back(note);
+  return evaluation;
+}
+
 }  // namespace
 
 std::span<const Protocol> protocols() { return kProtocols; }
@@ -83,7 +104,7 @@ Evaluation evaluate(std::string_view protocol, const EvaluationInput& input) {
   std::string known;
   for (const Protocol& candidate : kProtocols) {
     if (candidate.name == protocol) {
-      Evaluation evaluation = candidate.evaluate(input);
+      Evaluation evaluation = evaluate_leveled(candidate, input);
       evaluation.protocol = candidate.name;
       evaluation.version = candidate.version;
       evaluation.text = std::string(candidate.text) + overrides_text(input.options);

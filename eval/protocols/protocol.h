@@ -25,6 +25,9 @@ struct ProtocolOptions {
   double rpe_delta = 1.0;
   RpeUnit rpe_unit = RpeUnit::kSeconds;
   double offset_s = 0.0;  ///< added to the estimate's stamps
+  /// Rotation that levels the world of the estimate, that is, turns gravity to -z; applied before an
+  /// alignment in yaw, which assumes a level world. Nullopt: the world of the estimate is level.
+  std::optional<Eigen::Quaterniond> q_level_w{};
   CorrectRateOptions correct{.max_translation_m = 1.0, .max_rotation_deg = 30.0};
   std::vector<double> segment_lengths_m;  ///< empty: 10 to 50 % of the path length
 };

@@ -11,6 +11,7 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/enum_option.h"
+#include "bench/record/leveling_rotation.h"
 #include "bench/record/output_guard.h"
 #include "bench/record/result_values.h"
 #include "core/base/error.h"
@@ -45,6 +46,7 @@ struct EvalArguments {
   std::string format;
   std::string times;
   int sequence = 0;
+  std::string level;
   bool find_offset = false;
   bool explain = false;
   bool json = false;
@@ -111,8 +113,18 @@ std::vector<eval::Evaluation> evaluate_by_default(const eval::EvaluationInput& i
   return evaluations;
 }
 
+/// From --level, or from the result.json beside the trajectory of a run.
+std::optional<Eigen::Quaterniond> leveling_rotation(const EvalArguments& arguments, const std::string& path) {
+  if (!arguments.level.empty()) {
+    if (const auto q_level_w = read_leveling_rotation(arguments.level)) return q_level_w;
+    throw InputError(arguments.level, "has no leveling_rotation_xyzw; use the result.json of a run");
+  }
+  const std::filesystem::path result = std::filesystem::path(path).replace_filename("result.json");
+  return std::filesystem::exists(result) ? read_leveling_rotation(result) : std::nullopt;
+}
+
 std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, const Trajectory& gt) {
-  const eval::ProtocolOptions options = protocol_options(arguments);
+  eval::ProtocolOptions options = protocol_options(arguments);
   std::vector<report::EvaluatedRun> runs;
   for (const std::string& path : arguments.estimates) {
     eval::LoadedTrajectory loaded = load(arguments, path);
@@ -121,6 +133,7 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, c
                              .repairs = loaded.repairs,
                              .evaluations = {}};
     eval::require_overlap(gt, run.est, arguments.offset_s, path);
+    options.q_level_w = leveling_rotation(arguments, path);
     const eval::EvaluationInput input{gt, run.est, options};
     for (const std::string& protocol : arguments.protocols)
       run.evaluations.push_back(eval::evaluate(protocol, input));
@@ -258,6 +271,7 @@ std::vector<Option> options_of(EvalArguments& a) {
        "--recipe"},
       {"--align", "Override the alignment of the protocol: " + enum_list<eval::Alignment>(), &a.alignment},
       {"--align-first", "Align with the first N matches only", &a.align_first, {1, 1e9}},
+      {"--level", "File with leveling_rotation_xyzw, for alignment yaw [result.json beside EST]", &a.level},
       {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta, {1e-6, 1e6}},
       {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
       {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s, {-1e9, 1e9}},

@@ -19,6 +19,7 @@ NormalEquations linearize_oldest(const Window& window, const BackendConfig& conf
   ResidualBuilder builder(window, config, focal_px);
   builder.add_prior();
   if (window.newest() >= 1) builder.add_imu(1);
+  builder.add_zero_velocity(0);
   equations.add(builder.residuals(), blocks, false);
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     const Landmark& landmark = window.landmarks[i];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/ceres_residuals.h"
 
+#include <ceres/normal_prior.h>
+
 #include "core/backend/factors/imu_factor.h"
 #include "core/backend/factors/prior_factor.h"
 #include "core/backend/factors/reprojection_factor.h"
@@ -92,6 +94,16 @@ void ResidualBuilder::add_imu(int frame) {
   ImuFactor::FirstEstimates first{};
   for (std::size_t i = 0; i < states.size(); ++i) first[i] = first_estimate(states[i]);
   residuals_.push_back({std::make_unique<ImuFactor>(*imu, first), nullptr, std::move(states), -1});
+}
+
+void ResidualBuilder::add_zero_velocity(int frame) {
+  if (!window_.inertial || !window_.frames[static_cast<std::size_t>(frame)].at_rest) return;
+  ceres::Matrix selection = ceres::Matrix::Zero(3, 9);
+  selection.diagonal().setConstant(1.0 / config_.zero_velocity.sigma_m_per_s);
+  residuals_.push_back({std::make_unique<ceres::NormalPrior>(selection, ceres::Vector::Zero(9)),
+                        nullptr,
+                        {{BlockKind::kSpeedBias, frame}},
+                        -1});
 }
 
 void ResidualBuilder::add_prior() {

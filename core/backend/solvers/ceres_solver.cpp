@@ -21,6 +21,7 @@ ResidualBuilder build_residuals(const Window& window, const BackendConfig& confi
   builder.add_prior();
   builder.add_calibration();
   for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
+  for (int frame = 0; frame <= window.newest(); ++frame) builder.add_zero_velocity(frame);
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     if (is_usable(window.landmarks[i])) builder.add_landmark(static_cast<int>(i));
   }

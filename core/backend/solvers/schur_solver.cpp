@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/backend/factors/gravity_direction.h"
+#include "core/backend/solvers/zero_velocity_term.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -48,14 +49,17 @@ double SchurSolver::linearize(const Window& window, const BackendConfig& config)
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) cost += add_imu_term(window, frame, at, system_);
   }
+  for (int frame = 0; frame <= window.newest(); ++frame)
+    cost += add_zero_velocity_term(window, frame, config, blocks_, system_);
   cost += visual_.add_to(system_, at);
   scale_squared_.states = system_.H.diagonal().cwiseMax(kMinCurvature);
   scale_squared_.landmarks = visual_.information().cwiseMax(kMinCurvature);
   return cost;
 }
 
-double SchurSolver::cost_at(const Window& window, const ParameterBlocks& blocks) {
-  double cost = prior_.cost(blocks) + calibration_.cost(blocks);
+double SchurSolver::cost_at(const Window& window, const BackendConfig& config,
+                            const ParameterBlocks& blocks) {
+  double cost = prior_.cost(blocks) + calibration_.cost(blocks) + zero_velocity_cost(window, config, blocks);
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) cost += imu_cost(window, frame, blocks);
   }
@@ -165,7 +169,7 @@ SolveReport SchurSolver::iterate(const Window& window, const BackendConfig& conf
     const double predicted = predicted_decrease(step_);
     if (!(predicted > 0.0)) break;  // at the minimum, up to rounding errors
     apply_step();
-    const double decrease = cost - cost_at(window, candidate_);
+    const double decrease = cost - cost_at(window, config, candidate_);
     const bool converged = std::abs(decrease) <= config.function_tolerance * cost;
     const double quality = decrease / predicted;
     const double length = scaled_norm(step_);

@@ -28,6 +28,7 @@ struct SimulatedMotion {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Constant(0.02);   ///< of noisy_imu; follows its random walk
   Eigen::Vector3d accel_bias = Eigen::Vector3d::Constant(0.05);  ///< likewise
   bool bias_walk = false;                                        ///< else the biases are constant
+  double stop_s = 0.0;              ///< from here on the motion slows down, and ends 1 s later; 0 = never
 
   static Rig rig() {
     Rig rig;
@@ -57,6 +58,10 @@ struct SimulatedMotion {
 
   /// Path parameter (the time argument of `state`) at time t; smooth, with unit rate at mid-path.
   [[nodiscard]] double path_time(double t) const {
+    if (stop_s > 0.0 && t > stop_s) {
+      const double u = std::min(t - stop_s, 1.0);
+      return stop_s + 0.5 * (u + std::sin(M_PI * u) / M_PI);
+    }
     const double turn = 2.0 * M_PI / ping_pong_period_s;
     return ping_pong_period_s > 0.0 ? (1.0 + std::sin(turn * t)) / turn : t;
   }

@@ -6,6 +6,7 @@
 
 #include "core/backend/marginalization/normal_equations.h"
 #include "core/backend/solvers/ceres_solver.h"
+#include "core/backend/solvers/zero_velocity_term.h"
 #include "tests/support/simulated/simulated_window.h"
 
 namespace stillpoint {
@@ -16,15 +17,22 @@ struct Case {
   const char* name;
   SimulatedWindowOptions options;
   double readout_offset_s = 0.0;  // of a rolling shutter, top to bottom
+  bool at_rest = false;
 
   [[nodiscard]] Window window() const {
     Window result = simulated_window(options);
     for (Landmark& landmark : result.landmarks) {
       for (Observation& o : landmark.observations) o.readout_offset_s = readout_offset_s * o.bearing.y();
     }
+    for (WindowFrame& frame : result.frames) frame.at_rest = at_rest;
     return result;
   }
 };
+
+Case at_rest(Case result) {
+  result.at_rest = true;
+  return result;
+}
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
@@ -46,6 +54,7 @@ const std::vector<Case> kCases = {
     make_case(
         "RollingShutter", [](SimulatedWindowOptions&) {}, 0.02),
     make_case("WithGravity", [](SimulatedWindowOptions& o) { o.config.gravity = GravityModel::kEstimated; }),
+    at_rest(make_case("AtRest", [](SimulatedWindowOptions&) {})),
     make_case("WithGravityAndExtrinsics",
               [](SimulatedWindowOptions& o) {
                 o.config.gravity = GravityModel::kEstimated;
@@ -73,6 +82,7 @@ NormalEquations reference_system(const Window& window, const BackendConfig& conf
   builder.add_prior();
   builder.add_calibration();
   for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
+  for (int frame = 0; frame <= window.newest(); ++frame) builder.add_zero_velocity(frame);
   equations.add(builder.residuals(), blocks, false);
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     if (!is_usable(window.landmarks[i])) continue;
@@ -102,6 +112,8 @@ ReducedSystem reduced_system(const Window& window, const BackendConfig& config,
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) add_imu_term(window, frame, at, system);
   }
+  for (int frame = 0; frame <= window.newest(); ++frame)
+    add_zero_velocity_term(window, frame, config, blocks, system);
   visual.add_to(system, at);
   Eigen::VectorXd rhs = -system.g;
   visual.eliminate(0.0, system.H, rhs);

@@ -97,6 +97,24 @@ TEST(StrictProtocol, RejectsAnUndeterminedAlignment) {
   EXPECT_NO_THROW(static_cast<void>(evaluate_with("compat:tum", line, line)));
 }
 
+TEST(YawAlignment, LevelsAWorldWhoseTiltIsKnown) {
+  const Trajectory gt = circle(0, 50, 0.1);
+  // The world of the estimate is tilted by 3 degrees about x; gravity tells by which rotation.
+  const Pose T_w_v{Eigen::Quaterniond(Eigen::AngleAxisd(0.052, Eigen::Vector3d::UnitX())),
+                   Eigen::Vector3d::Zero()};
+  Trajectory est = gt;
+  for (StampedPose& pose : est.poses) pose.T_w_f = T_w_v.inverse() * pose.T_w_f;
+  ProtocolOptions options;
+  EXPECT_GT(evaluate("strict:yaw", {gt, est, options}).ate_m->rmse, 0.05);
+  options.q_level_w = T_w_v.q;
+  const Evaluation leveled = evaluate("strict:yaw", {gt, est, options});
+  EXPECT_LT(leveled.ate_m->rmse, 1e-9);
+  EXPECT_LT(leveled.alignment.S_w_v.T_w_v.q.angularDistance(T_w_v.q), 1e-9);  // for drawings
+  EXPECT_EQ(leveled.notes.back(), "the world was leveled by the estimated gravity, by 2.979 deg");
+  // Other alignments contain the tilt.
+  EXPECT_EQ(evaluate("strict:se3", {gt, est, options}).notes, evaluate("strict:se3", {gt, est, {}}).notes);
+}
+
 TEST(Protocols, HaveADescriptionAndAVersion) {
   for (const Protocol& protocol : protocols()) {
     EXPECT_GT(protocol.text.size(), 100u) << protocol.name;

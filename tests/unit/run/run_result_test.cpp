@@ -132,5 +132,15 @@ TEST(RunResult, ContainsTheScoreOfPosesAtImuRateIfTheyWereRecorded) {
   EXPECT_TRUE(json.at("imu_rate_step_p95_m").is_null());
 }
 
+TEST(RunResult, ContainsTheCovarianceOfTheLevelingRotationIfItIsEstimated) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  EXPECT_TRUE(
+      nlohmann::json::parse(result_json(score_run(info, run))).at("leveling_covariance_rad2").is_null());
+  run.level_covariance = Eigen::Matrix2d{{4e-6, 1e-6}, {1e-6, 9e-6}};
+  const auto json = nlohmann::json::parse(result_json(score_run(info, std::move(run))));
+  EXPECT_EQ(json.at("leveling_covariance_rad2"), nlohmann::json::parse("[[4e-6, 1e-6], [1e-6, 9e-6]]"));
+}
+
 }  // namespace
 }  // namespace stillpoint::bench
