@@ -21,6 +21,7 @@ struct ExportControl {
 /// az`) if there is an IMU, rig.toml with the calibration. Frames without color are written as gray images.
 /// @param stream every frame is decoded
 /// @param folder created atomically: it exists only once it is complete
+/// @param control progress and interruption
 /// @throws InputError if it cannot be written, or an image cannot be read
 void export_tum(const SensorStream& stream, const std::filesystem::path& folder,
                 const ExportControl& control = {});
@@ -38,9 +39,11 @@ void export_euroc(const SensorStream& stream, const std::filesystem::path& folde
 /// finds it: noise densities, time offset and readout time to rig.toml, recorded boxes to detections.txt. The
 /// bits of images (depth of 1000 or 5000 units per meter), inertial samples and the calibration are kept;
 /// depth of other units is rounded to 0.2 mm.
+/// @param stream every frame is decoded
 /// @param path FILE.bag for ROS 1, FILE.mcap, or the folder of a rosbag2 with an SQLite database; must not
 /// exist
 /// @param compression of the chunks: none, bz2 or lz4 (ROS 1), none, lz4 or zstd (MCAP), none (rosbag2)
+/// @param control progress and interruption
 /// @throws InputError as above
 void export_bag(const SensorStream& stream, const std::filesystem::path& path,
                 const std::string& compression = "none", const ExportControl& control = {});

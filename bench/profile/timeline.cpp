@@ -40,12 +40,29 @@ std::string name_event(const char* what, int track, const std::string& name) {
       .dump();
 }
 
-std::string complete_event(const FrameSpan& one, std::chrono::steady_clock::time_point zero) {
+std::string complete_event(const FrameSpan& one, int track, std::chrono::steady_clock::time_point zero) {
   return fmt::format(
       R"({{"ph":"X","name":"{}","cat":"module","pid":{},"tid":{},"ts":{},"dur":{},"args":{{"frame":{}}}}})",
-      module_name(one.span.module), kProcess, track_number(track_of(one.span.module)),
-      microseconds(one.span.start - zero), microseconds(one.span.elapsed), one.frame);
+      module_name(one.span.module), kProcess, track, microseconds(one.span.start - zero),
+      microseconds(one.span.elapsed), one.frame);
 }
+
+/// Several threads decode images: each gets a track, numbered from that of Track::kDecoding on.
+class DecodingTracks {
+ public:
+  /// @param span not earlier than those before
+  int number_of(const ModuleSpan& span) {
+    const auto free = std::ranges::find_if(ends_, [&](const auto& end) { return end <= span.start; });
+    const auto index = free - ends_.begin();
+    if (free == ends_.end()) ends_.emplace_back();
+    ends_[static_cast<std::size_t>(index)] = end_of(span);
+    return track_number(Track::kDecoding) + static_cast<int>(index);
+  }
+  [[nodiscard]] int count() const { return static_cast<int>(ends_.size()); }
+
+ private:
+  std::vector<std::chrono::steady_clock::time_point> ends_;  ///< of the last span of each track
+};
 
 /// An open span and its self time.
 struct OpenSpan {
@@ -54,7 +71,8 @@ struct OpenSpan {
 };
 
 bool lies_within(const ModuleSpan& inner, const ModuleSpan& outer) {
-  return track_of(inner.module) == track_of(outer.module) && end_of(inner) <= end_of(outer);
+  return inner.module != Module::kImageDecoding && track_of(inner.module) == track_of(outer.module) &&
+         end_of(inner) <= end_of(outer);
 }
 
 /// Sums self times by stack over spans in their order.
@@ -118,12 +136,23 @@ std::string_view track_name(Track track) {
 
 std::string chrome_trace(std::span<const FrameSpan> spans, const std::string& process) {
   std::vector<std::string> events = {name_event("process_name", 0, process)};
-  for (const Track track : {Track::kTracking, Track::kDetection, Track::kOptimization, Track::kDecoding}) {
+  for (const Track track : {Track::kTracking, Track::kDetection, Track::kOptimization}) {
     events.push_back(name_event("thread_name", track_number(track), std::string(track_name(track))));
   }
   std::chrono::steady_clock::time_point zero = std::chrono::steady_clock::time_point::max();
   for (const FrameSpan& one : spans) zero = std::min(zero, one.span.start);
-  for (const FrameSpan& one : in_order(spans)) events.push_back(complete_event(one, zero));
+  DecodingTracks decoding;
+  std::vector<std::string> complete;
+  for (const FrameSpan& one : in_order(spans)) {
+    const Track track = track_of(one.span.module);
+    const int number = track == Track::kDecoding ? decoding.number_of(one.span) : track_number(track);
+    complete.push_back(complete_event(one, number, zero));
+  }
+  for (int i = 0; i < decoding.count(); ++i) {
+    const std::string name = fmt::format("{} {}", track_name(Track::kDecoding), i + 1);
+    events.push_back(name_event("thread_name", track_number(Track::kDecoding) + i, name));
+  }
+  events.insert(events.end(), complete.begin(), complete.end());
   return fmt::format("{{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n{}\n]}}\n", fmt::join(events, ",\n"));
 }
 

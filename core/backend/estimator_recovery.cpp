@@ -9,6 +9,7 @@
 #include "core/backend/estimator.h"
 #include "core/backend/failure_detection.h"
 #include "core/backend/window/landmark_tracks.h"
+#include "core/imu/zero_velocity.h"
 
 namespace stillpoint {
 namespace {
@@ -56,10 +57,16 @@ void Estimator::relocalize(const TrackedFrame& frame) {
   monitor_.relocated();
 }
 
-/// Compares inertial data with the pose by vision alone. Wrong data of the last frames is replaced.
+/// Compares inertial data with the pose by vision alone. Wrong data of the last frames is replaced. Inertial
+/// data of a body at rest is not compared: disturbances do not look like rest, but a person who covers most
+/// of the image looks like a motion of the camera.
 void Estimator::check_inertial_data() {
   if (!window_.inertial || !window_.frames.back().from_previous) return;
   WindowFrame& newest = window_.frames.back();
+  if (zero_velocity_statistic(newest.from_previous->samples(), newest.state, rig_.imu_noise,
+                              imu_config_.gravity) <= backend_.zero_velocity.statistic) {
+    return;
+  }
   known_points_ = known_points(window_, backend_.depth, std::move(known_points_));
   const double focal_px = rig_.camera.focal_px();
   const Pose T_w_c =
@@ -67,7 +74,7 @@ void Estimator::check_inertial_data() {
   const VisionAssessment vision = assess_vision(known_points_, T_w_c, kVisualPoseInlier_px / 5.0 / focal_px);
   if (vision.has_few_features() || vision.has_weak_geometry() ||
       vision.inliers < kMinAgreeing * vision.features) {
-    if (!vision.is_located()) inertial_check_.interrupt(newest.state.t);
+    if (!vision.is_located(false)) inertial_check_.interrupt(newest.state.t);
     return;
   }
   const bool was_consistent = inertial_check_.is_consistent();
@@ -136,7 +143,8 @@ void Estimator::assess_newest() {
   known_points_ = known_points(window_, backend_.depth, std::move(known_points_));
   evidence_.vision = assess_vision(known_points_, window_.T_w_c(window_.newest()),
                                    backend_.pixel_sigma_px / rig_.camera.focal_px());
-  evidence_.located = evidence_.vision.is_located();
+  evidence_.located =
+      evidence_.vision.is_located(window_.inertial && evidence_.imu_defect == StatusReason::kNone);
 }
 
 /// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.

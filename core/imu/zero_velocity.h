@@ -20,6 +20,8 @@ namespace stillpoint {
 /// about 6 at rest, less if the densities of `noise` are larger than the noise, and does not distinguish rest
 /// from constant velocity.
 /// @param samples of a short interval, in temporal order
+/// @param state   its biases
+/// @param noise   densities of white noise
 /// @param gravity norm [m/s^2]
 /// @return infinity for fewer than two samples, or without noise densities
 [[nodiscard]] double zero_velocity_statistic(std::span<const ImuSample> samples, const NavState& state,

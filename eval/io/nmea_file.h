@@ -31,6 +31,7 @@ struct GeodeticPosition {
 /// Reads GGA (position, height above the geoid and separation of the geoid) and RMC (date) of any talker.
 /// Other sentences, positions without a fix, and sentences with a wrong checksum are skipped and counted.
 /// Stamps are UTC seconds since 1970 without leap seconds.
+/// @param text sentences, one per line
 /// @param name of the text in messages
 /// @throws InputError if there is no position, or no date
 [[nodiscard]] LoadedTrajectory parse_nmea(std::string_view text, const std::string& name);

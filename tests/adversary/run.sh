@@ -44,7 +44,7 @@ make_fixtures() {
     awk "{\$2 += 0.01 * sin(7 * \$1)} 1" gt.tum >est.tum
     awk "{print 1, 0, 0, \$2, 0, 1, 0, \$3, 0, 0, 1, \$4}" gt.tum >kitti.txt
     mkdir gt results; { echo "seq: 1"; cat gt.tum; } >gt/gt_office_1.txt; cp gt.tum gt.onnx
-    small="--seconds 2.5 --rate 10 --width 80 --height 60"
+    small="--seconds 2.5 --rate 10 --width 320 --height 240"
     stillpoint data synth walking_xyz $small --out seq
     printf "variants = [\"stillpoint\", \"dynamic_vins\"]\nimages = 0\nrecorded.sequences = [\"./seq\"]\n" >plan.toml
     stillpoint bench plan.toml --store store.sqlite --out table || test $? = 1

@@ -165,7 +165,7 @@ TEST(ReproduceCommand, ReportsMissingDataAndWritesTheTable) {
       run_program({"reproduce", "table2", "--real", "--store", empty + "/s", "--out", empty},
                   {.environment = {"STILLPOINT_DATA=" + empty, "STILLPOINT_REGISTRY=" + empty + "/none"}});
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.out.find("stillpoint data add"), std::string::npos);
+  EXPECT_NE(result.out.find("stillpoint data get"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder.path() / "table2.tex"));
 }
 

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/analysis/eval_arguments.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/enum_option.h"
@@ -32,43 +33,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kPlotPixelsPerUnit = 1.5;  // of PNG files
-
-struct EvalArguments {
-  std::string ground_truth;
-  std::vector<std::string> estimates;
-  std::vector<std::string> protocols;
-  std::string alignment;
-  int align_first = 0;
-  double rpe_delta = 1.0;
-  std::string rpe_unit = "s";
-  double offset_s = 0.0;
-  double max_difference_s = 0.0;
-  std::string format;
-  std::string times;
-  int sequence = 0;
-  std::string level;
-  bool find_offset = false;
-  bool explain = false;
-  bool json = false;
-  bool csv = false;
-  bool markdown = false;
-  std::string plot;
-  std::string map;
-  std::string per_pose;
-  bool force = false;
-};
-
-eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
-  eval::ProtocolOptions options;
-  if (!arguments.alignment.empty())
-    options.alignment = enum_of<eval::Alignment>("--align", arguments.alignment);
-  options.align_first_n = static_cast<std::size_t>(arguments.align_first);
-  if (arguments.max_difference_s > 0.0) options.max_difference_s = arguments.max_difference_s;
-  options.rpe_delta = arguments.rpe_delta;
-  options.rpe_unit = enum_of<eval::RpeUnit>("--rpe-unit", arguments.rpe_unit);
-  options.offset_s = arguments.offset_s;
-  return options;
-}
 
 /// Reads a trajectory; its skipped and sorted rows are logged.
 eval::LoadedTrajectory load(const EvalArguments& arguments, const std::string& path) {
@@ -254,44 +218,6 @@ int evaluate_files(const EvalArguments& arguments) {
                           rules);
   if (!arguments.per_pose.empty()) write_output(arguments.per_pose, report::per_pose_csv(runs), rules);
   return kExitOk;
-}
-
-std::vector<Option> options_of(EvalArguments& a) {
-  return {
-      {"GT",
-       "Ground-truth trajectory: a file, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD for a chain of "
-       "transforms)",
-       &a.ground_truth},
-      {"EST", "Estimated trajectories of the same body frame", &a.estimates},
-      {"--protocol",
-       "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
-       "repeated",
-       &a.protocols,
-       {},
-       "--recipe"},
-      {"--align", "Override the alignment of the protocol: " + enum_list<eval::Alignment>(), &a.alignment},
-      {"--align-first", "Align with the first N matches only", &a.align_first, {1, 1e9}},
-      {"--level", "File with leveling_rotation_xyzw, for alignment yaw [result.json beside EST]", &a.level},
-      {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta, {1e-6, 1e6}},
-      {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
-      {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s, {-1e9, 1e9}},
-      {"--find-offset", "Estimate the time offset and print it, without applying it", &a.find_offset},
-      {"--max-difference",
-       "Override the maximum time difference of matched poses of the protocol [s]",
-       &a.max_difference_s,
-       {1e-9, 1e6}},
-      {"--format", "Trajectory format: " + enum_list<eval::TrajectoryFormat>() + " [detected]", &a.format},
-      {"--times", "File of time stamps of a KITTI trajectory", &a.times},
-      {"--seq", "Sequence number in an OpenLORIS file", &a.sequence, {0, 1e9}},
-      {"--explain", "Print a description of each protocol", &a.explain},
-      {"--json", "Print JSON with full precision", &a.json},
-      {"--csv", "Print CSV", &a.csv},
-      {"--markdown", "Print Markdown", &a.markdown},
-      {"--map", "Write a plan with scale and north arrow; GT may be NMEA sentences of a GNSS receiver",
-       &a.map},
-      {"--plot", "Write a plot of trajectories and errors (.svg, .pdf or .png)", &a.plot},
-      {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
-      {"--force", "Replace existing files of --plot and --per-pose", &a.force}};
 }
 
 }  // namespace

@@ -80,8 +80,7 @@ std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
 std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   std::vector<std::string> variants = arguments.variants;
   if (variants.empty()) variants.emplace_back();
-  // Parsed before the loop: g++ 12 destroys members twice if an initializer in the braces of an aggregate
-  // throws.
+  // Not in the braces below: g++ 12 destroys members of an aggregate twice if an initializer throws.
   const std::vector<datasets::SensorFault> faults = faults_of(arguments);
   std::vector<std::string> settings = arguments.settings;
   if (arguments.imu_rate) settings.emplace_back("pipeline.imu_rate=true");
@@ -232,7 +231,7 @@ int run_configured(const datasets::SensorStream& stream, const RunArguments& arg
   const RunResult result = execute(stream, arguments, configured, dumps);
   write_run(configured.folder, result, manifest_of(stream.info(), arguments, configured));
   print_result(result, configured.folder);
-  const std::vector<std::string> failures = dumps.finish(interrupt_requested() ? nullptr : &result.run);
+  const auto failures = dumps.finish(interrupt_requested() ? nullptr : &result.run);
   for (const std::string& failure : failures) spdlog::warn("{}", failure);
   return std::max(exit_code(result.outcome), failures.empty() ? kExitOk : kExitFindings);
 }

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kMinInliers = 8;
 constexpr double kMinInlierRatio = 0.3;
+constexpr double kMinInertialInlierRatio = 0.1;
 constexpr int kFewInliers = 15;
 constexpr double kWeak_m = 0.1;
 constexpr double kWeak_rad = 0.05;
@@ -29,8 +30,9 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-bool VisionAssessment::is_located() const {
-  return inliers >= kMinInliers && inliers >= kMinInlierRatio * features;
+bool VisionAssessment::is_located(bool inertial) const {
+  return inliers >= kMinInliers &&
+         inliers >= (inertial ? kMinInertialInlierRatio : kMinInlierRatio) * features;
 }
 
 bool VisionAssessment::has_few_features() const { return inliers < kFewInliers; }

@@ -18,8 +18,9 @@ struct VisionAssessment {
   double sigma_m = 1e3;    ///< standard deviation of the position along its least certain direction
   double sigma_rad = 1e3;  ///< same for the rotation
 
-  /// At least eight inliers, and three tenths of all: otherwise the pose is not that of the camera.
-  [[nodiscard]] bool is_located() const;
+  /// At least eight inliers, and three tenths of all, or one tenth if inertial data agree with the pose,
+  /// because the others may belong to moving objects: otherwise the pose is not that of the camera.
+  [[nodiscard]] bool is_located(bool inertial) const;
   /// Located by few features, or with an uncertain direction.
   [[nodiscard]] bool has_few_features() const;
   [[nodiscard]] bool has_weak_geometry() const;

@@ -43,13 +43,13 @@ TEST(Formats, SkipAByteOrderMarkAndNameUtf16) {
                      {"wide.tum: is UTF-16 text"});
 }
 
-TEST(Formats, RejectsRosBagsAndSaysHowToExportThem) {
+TEST(Formats, ABagNeedsTheTopicOfThePoses) {
   const TemporaryFolder folder;
   folder.write("ros2/metadata.yaml", "");
   folder.write("ros2/a_0.db3", "");
   for (const auto& bag : {folder.write("a.bag", ""), folder.write("a.mcap", ""), folder.path() / "ros2"}) {
     expect_input_error([&] { static_cast<void>(read_trajectory({.path = bag})); },
-                       {bag.string() + ": is a ROS bag", "evo_traj"});
+                       {bag.string() + ": is a bag", "name the topic", bag.string() + ":/ground_truth"});
   }
 }
 

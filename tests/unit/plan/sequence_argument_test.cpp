@@ -43,12 +43,15 @@ TEST_F(SequenceNames, ARegisteredNameStandsForItsFolder) {
   EXPECT_EQ(resolve_sequence("walking_xyz"), "walking_xyz");
 }
 
+TEST_F(SequenceNames, ABagStandsForItself) {
+  const std::string bag = folder.write("a.bag", "").string();
+  EXPECT_EQ(resolve_sequence(bag), bag);
+}
+
 TEST_F(SequenceNames, RejectsUnknownAndAmbiguousNames) {
   expect_input_error([] { static_cast<void>(resolve_sequence("dsk")); }, {"\"dsk\"", "\"desk\"?"});
   expect_input_error([] { static_cast<void>(resolve_sequence("/none")); },
                      {"\"/none\": is neither a folder nor a preset"});
-  expect_input_error([this] { static_cast<void>(resolve_sequence(folder.write("a.bag", "").string())); },
-                     {"a.bag: is a ROS bag"});
   add("market", desk, Registration::kNew);
   expect_input_error([] { static_cast<void>(resolve_sequence("market")); }, {"a preset and a registered"});
 }
@@ -76,7 +79,7 @@ TEST_F(SequenceNames, PlansAcceptPathsOfFolders) {
 
 TEST_F(SequenceNames, PlansRejectMissingFoldersAndTwoFoldersOfOneName) {
   expect_input_error([] { static_cast<void>(recorded_sequences({.sequences = {"/none/desk"}})); },
-                     {"\"/none/desk\"", "is not a folder"});
+                     {"\"/none/desk\"", "is neither a folder nor a bag"});
   folder.write("b/desk/rgb.txt", "1 rgb/1.png\n");
   const std::string other = (folder.path() / "b" / "desk").string();
   expect_input_error(
