@@ -63,7 +63,7 @@ struct Launch {
 [[noreturn]] void exec_child(const Launch& launch) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  signal(SIGXFSZ, SIG_DFL);  // this program ignores it, see bench/cli/main.cpp
+  signal(SIGXFSZ, SIG_DFL);                            // this program ignores it, see bench/cli/main.cpp
   if (getppid() != launch.parent) _exit(kExecFailed);  // the parent died before prctl
   if (launch.pinned) sched_setaffinity(0, sizeof launch.processors, &launch.processors);
   dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);

@@ -14,7 +14,8 @@ class BlobFiles {
   /// @param folder need not exist before the first `put`
   explicit BlobFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Stores a content unless it is stored already, and syncs it to disk. Safe for concurrent processes and threads.
+  /// Stores a content unless it is stored already, and syncs it to disk. Safe for concurrent processes and
+  /// threads.
   /// @return its name: 32 hexadecimal digits, two XXH64 of the content
   /// @throws InputError if it cannot be written; no partial file remains
   [[nodiscard]] std::string put(std::string_view content) const;

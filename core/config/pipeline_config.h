@@ -13,7 +13,7 @@ struct PipelineConfig {
   /// frame k-1; 1: it uses that of frame k-2 and runs in parallel with the optimization of frame k-1.
   int feedback_lag = 0;
   double detection_max_age_s = 0.1;  ///< mode `realtime`: older boxes are discarded as late
-  bool imu_rate = false;  ///< also output the pose at each IMU sample, and score these poses
+  bool imu_rate = false;             ///< also output the pose at each IMU sample, and score these poses
   /// Seed of a numerically negligible perturbation of gyro samples and feature positions, see
   /// core/pipeline/stages/input_perturbation.h; 0 = none. Runs with different seeds are replicates, which
   /// show how much of a change of the result is due to rounding.

@@ -18,8 +18,8 @@ class NetworkDetector : public ObjectDetector {
   /// Loads the network and runs it once on an empty image, so that errors occur before the first frame.
   ///
   /// OpenCV silently falls back to its default backend if the requested one is not available; here that is an
-  /// error. The number of OpenCV threads, which is global to the process, is that of the config during inference
-  /// only.
+  /// error. The number of OpenCV threads, which is global to the process, is that of the config during
+  /// inference only.
   /// @throws InputError if a file is missing or invalid, the layout or the number of classes does not match,
   /// the backend is not available, or none of the `dynamic_classes` (unless empty) is among the names
   NetworkDetector(const DetectorConfig& config, std::span<const std::string> dynamic_classes);

@@ -63,7 +63,8 @@ class Odometry {
   /// frame is then ignored, but not its IMU samples
   OdometryUpdate& track(const Frame& frame, const DetectionSet& detections = {});
 
-  /// Estimated state at the newest frame that entered the window; nullopt unless it is located or dead reckoning.
+  /// Estimated state at the newest frame that entered the window; nullopt unless it is located or dead
+  /// reckoning.
   [[nodiscard]] std::optional<NavState> state() const;
 
   /// State at time `t` on the clock of the frames (IMU time minus `OdometryUpdate::time_offset_s`): `state`

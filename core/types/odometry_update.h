@@ -20,7 +20,7 @@ struct OdometryCounters {
   int solver_iterations = 0;
   bool keyframe = false;
   bool at_rest = false;  ///< the velocity is constrained to zero, see `backend.zero_velocity`
-  bool reset = false;  ///< a failure was detected in this frame; the estimator reinitializes
+  bool reset = false;    ///< a failure was detected in this frame; the estimator reinitializes
 };
 
 /// Hashes of the modules' state after a frame, see core/pipeline/stages/state_hash.h.

@@ -59,7 +59,8 @@ void FrameCache::open() {
 std::vector<FrameDigest> FrameCache::known_digests() {
   if (content_.images) {
     std::vector<FrameDigest> digests;
-    for (std::size_t i = 0; i < content_.frame_files.size(); ++i) digests.push_back(content_.images->digest(i));
+    for (std::size_t i = 0; i < content_.frame_files.size(); ++i)
+      digests.push_back(content_.images->digest(i));
     return digests;
   }
   int digested = 0;

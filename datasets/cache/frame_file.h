@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/io/file_descriptor.h"
 #include "datasets/cache/frame_codec.h"
+#include "datasets/io/file_descriptor.h"
 
 namespace stillpoint::datasets {
 

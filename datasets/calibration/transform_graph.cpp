@@ -16,7 +16,8 @@ std::optional<Pose> find_transform(std::span<const NamedTransform> links, const 
     const Pose T_a_frame = T_a_known.at(frame);
     const auto visit = [&](const std::string& next, const Pose& T_frame_next) {
       // The product with the identity would change the last bits of a single link.
-      if (T_a_known.emplace(next, frame == a ? T_frame_next : T_a_frame * T_frame_next).second) frontier.push_back(next);
+      if (T_a_known.emplace(next, frame == a ? T_frame_next : T_a_frame * T_frame_next).second)
+        frontier.push_back(next);
     };
     for (const NamedTransform& link : links) {
       if (link.parent == frame) visit(link.child, link.T_parent_child);

@@ -13,7 +13,8 @@ std::vector<std::vector<std::string>> marks() {
 
 OutputLayout run_layout() {
   return {.names = {"trajectory.tum", "trajectory_imu.tum", "result.json", "timings.csv", "frames.csv",
-                    "counters.csv", "status.csv", "stacks.folded", "manifest.json", "labels.csv", "cost.svg", "images"},
+                    "counters.csv", "status.csv", "stacks.folded", "manifest.json", "labels.csv", "cost.svg",
+                    "images"},
           .marks = marks()};
 }
 

@@ -48,7 +48,7 @@ struct WindowFrame {
   NavState state;
   double time_offset_s = 0.0;                        ///< estimated offset when the frame was added
   Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();  ///< angular rate at the exposure, bias included [rad/s]
-  bool at_rest = false;  ///< the velocity was zero, by `is_at_rest`
+  bool at_rest = false;                              ///< the velocity was zero, by `is_at_rest`
   std::optional<Preintegration> from_previous;       ///< absent in the first frame and without an IMU
   bool imu_is_reliable = true;  ///< false: `from_previous` has the noise of missing or wrong samples
 };

@@ -28,7 +28,7 @@ struct SimulatedMotion {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Constant(0.02);   ///< of noisy_imu; follows its random walk
   Eigen::Vector3d accel_bias = Eigen::Vector3d::Constant(0.05);  ///< likewise
   bool bias_walk = false;                                        ///< else the biases are constant
-  double stop_s = 0.0;              ///< from here on the motion slows down, and ends 1 s later; 0 = never
+  double stop_s = 0.0;  ///< from here on the motion slows down, and ends 1 s later; 0 = never
 
   static Rig rig() {
     Rig rig;
