@@ -103,6 +103,20 @@ Json image_waits_s(const RunSummary& summary) {
   return 1e-9 * static_cast<double>(waits->for_items.ns);
 }
 
+Json calibration_json(const EstimatedCalibration& calibration) {
+  const auto or_null = [](const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+  };
+  return {{"time_offset_s", calibration.time_offset_s},
+          {"time_offset_sigma_s", or_null(calibration.time_offset_sigma_s)},
+          {"depth_scale", calibration.depth_scale},
+          {"depth_scale_sigma", or_null(calibration.depth_scale_sigma)},
+          {"frames_at_bound",
+           {{"time_offset", calibration.time_offset_at_bound},
+            {"extrinsics", calibration.extrinsics_at_bound},
+            {"depth_scale", calibration.depth_scale_at_bound}}}};
+}
+
 /// Hash of the detector's network weights; null without a network.
 Json weights_json(const DetectorConfig& detector) {
   if (detector.kind != DetectorKind::kNetwork) return nullptr;
@@ -134,6 +148,7 @@ std::string result_json(const RunResult& result) {
   const Eigen::Quaterniond& q_level_w = result.run.q_level_w;
   json["leveling_rotation_xyzw"] = {q_level_w.x(), q_level_w.y(), q_level_w.z(), q_level_w.w()};
   json["leveling_covariance_rad2"] = matrix_json(result.run.level_covariance);
+  json["calibration"] = calibration_json(result.run.calibration);
   json["notes"] = result.notes;
   json["warnings"] = result.warnings;
   json["start_s"] = result.start_s;

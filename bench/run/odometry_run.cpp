@@ -126,9 +126,22 @@ class RunRecorder {
     run_.q_level_w = update.q_level_w;
     if (update.covariance && !update.covariance->gravity.isZero(0.0))
       run_.level_covariance = update.covariance->gravity;
+    record_calibration(update);
     run_.claims.push_back(claim_of(update, t));
     if (!is_located(update.status) || update.segment > 0) return;
     run_.trajectory.poses.push_back({t, update.T_w_c});
+  }
+
+  void record_calibration(const OdometryUpdate& update) {
+    EstimatedCalibration& calibration = run_.calibration;
+    calibration.time_offset_s = update.time_offset_s;
+    calibration.depth_scale = update.depth_scale;
+    calibration.time_offset_at_bound += update.at_bound.time_offset;
+    calibration.extrinsics_at_bound += update.at_bound.extrinsics;
+    calibration.depth_scale_at_bound += update.at_bound.depth_scale;
+    if (!update.covariance) return;
+    calibration.time_offset_sigma_s = std::sqrt(update.covariance->time_offset);
+    calibration.depth_scale_sigma = std::sqrt(update.covariance->depth_scale);
   }
 
   void record_spans(const OdometryUpdate& update) {

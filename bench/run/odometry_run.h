@@ -50,6 +50,17 @@ struct FrameSpan {
   ModuleSpan span;
 };
 
+/// Calibration as estimated at the end of a run.
+struct EstimatedCalibration {
+  double time_offset_s = 0.0;
+  double depth_scale = 1.0;
+  /// Standard deviations, if `backend.covariance` is on; zero if constant.
+  std::optional<double> time_offset_sigma_s, depth_scale_sigma;
+  int time_offset_at_bound = 0;  ///< number of frames in which the value was at its bound
+  int extrinsics_at_bound = 0;   ///< same
+  int depth_scale_at_bound = 0;  ///< same
+};
+
 /// Recorded output of a run.
 struct OdometryRun {
   Trajectory trajectory;                  ///< T_w_c, frame "camera"; one pose per tracked frame
@@ -66,6 +77,7 @@ struct OdometryRun {
   std::vector<FrameCounters> frame_counters;  ///< per processed frame
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();  ///< of the last update
   std::optional<Eigen::Matrix2d> level_covariance;  ///< of that rotation: `StateCovariance::gravity` [rad^2]
+  EstimatedCalibration calibration;
   std::size_t frames_planned = 0;
   std::chrono::nanoseconds recording{};  ///< time spent on recording this
   double wall_s = 0.0;                   ///< from the request of the first frame to the last update

@@ -43,8 +43,27 @@ std::string failure_of(const OdometryRun& run) {
   }
 }
 
+std::vector<std::string> calibration_warnings(const EstimatedCalibration& calibration) {
+  std::vector<std::string> warnings;
+  const auto warn = [&](int frames, const std::string& value, std::string_view key) {
+    if (frames == 0) return;
+    warnings.push_back(
+        fmt::format("calibration: the {} was at its bound ({}) in {} frame(s); its estimate is unreliable",
+                    value, key, frames));
+  };
+  warn(calibration.time_offset_at_bound,
+       fmt::format("time offset, {:.4f} s at the end,", calibration.time_offset_s),
+       "backend.time_offset_bound_s");
+  warn(calibration.extrinsics_at_bound, "camera pose on the body",
+       "backend.extrinsics_bound_m, extrinsics_bound_rad");
+  warn(calibration.depth_scale_at_bound,
+       fmt::format("depth scale, {:.3f} at the end,", calibration.depth_scale), "backend.depth.scale_bound");
+  return warnings;
+}
+
 /// Irregularities that the reader repaired, and those that the run encountered.
-std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const RunSummary& summary) {
+std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const OdometryRun& run) {
+  const RunSummary& summary = run.summary;
   std::vector<std::string> warnings = info.warnings;
   if (summary.detector_counters.unrecorded.value_or(0) > 0) {
     warnings.push_back(fmt::format("detections: {} of {} frames have no recorded boxes and were not masked",
@@ -58,6 +77,7 @@ std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const R
     warnings.push_back(fmt::format("imu: {} sample(s) rejected: not finite, or not later than the one before",
                                    summary.imu_health.rejected_samples));
   }
+  for (std::string& warning : calibration_warnings(run.calibration)) warnings.push_back(std::move(warning));
   return warnings;
 }
 
@@ -101,7 +121,7 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
   result.outcome = outcome_of(run);
   result.failure = failure_of(run);
   result.notes = info.notes;
-  result.warnings = warnings_of(info, run.summary);
+  result.warnings = warnings_of(info, run);
   result.gt = camera_truth(info, options.expected_times);
   result.score = eval::score(result.gt, run.trajectory, options);
   if (run.imu_rate) result.imu_rate = score_imu_rate(result.gt, *run.imu_rate, run.trajectory);

@@ -54,8 +54,7 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
   }
   check_scale(backend, imu);
   rig_.imu_noise = scaled(rig.imu_noise, imu.noise_scale);
-  window_.T_b_c = rig.T_b_c;
-  window_.time_offset_s = rig.time_offset_s;
+  window_ = calibrated_window();
 }
 
 MotionState Estimator::motion_state() const {
@@ -76,6 +75,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
   if (window_.frames.empty()) {
     next.state = newest_;
     next.state.t = frame.t;
+    if (averages_imu()) average_imu_at_exposure(imu_, next);
     window_.frames.push_back(next);
     window_.prior = initial_prior(window_, backend_);
     window_.calibration = calibration_prior(window_, backend_);
@@ -84,7 +84,6 @@ void Estimator::push_frame(const TrackedFrame& frame) {
   next.state = extrapolate(motion_state(), imu_, frame.t);
   if (uses_imu()) integrate_samples(window_.frames.back(), next);
   window_.frames.push_back(std::move(next));
-  if (uses_imu() && backend_.prior == PriorModel::kConsistent) smooth_newest_rates(imu_, window_);
 }
 
 /// Missing samples of an inertial window are replaced by those of a constant velocity; wrong and missing ones
@@ -109,6 +108,8 @@ void Estimator::integrate_samples(const WindowFrame& last, WindowFrame& next) {
     next.from_previous->integrate(samples);
   }
   next.gyro_b = next.from_previous->samples().back().gyro_b;
+  next.accel_b = next.from_previous->samples().back().accel_b;
+  if (next.imu_is_reliable && averages_imu()) average_imu_at_exposure(imu_, next);
 }
 
 /// Without inertial prediction: estimates the newest camera pose from known points (PnP).
@@ -172,6 +173,8 @@ void Estimator::slide(bool keyframe) {
   } else if (keyframe) {
     LinearPrior prior = solver_->marginalize_oldest(window_, pixel_noise_.applied_to(backend_),
                                                     rig_.camera.focal_px(), std::move(discarded_prior_));
+    add_calibration_walk(backend_, seconds_between(window_.frames[0].state.t, window_.frames[1].state.t),
+                         prior);
     remove_marginalized_information(backend_, window_);
     remove_oldest_frame(window_);
     discarded_prior_ = std::exchange(window_.prior, std::move(prior));
@@ -179,7 +182,6 @@ void Estimator::slide(bool keyframe) {
     window_.prior = marginalizer_.remove(window_.newest() - 1, std::move(window_.prior));
     remove_second_newest_frame(window_);
   }
-  if (uses_imu() && backend_.prior == PriorModel::kConsistent) add_calibration_walk(backend_, window_);
   // Nothing connected the removed frame to the others: fix the gauge at the new oldest frame.
   if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_);
 }
@@ -222,10 +224,8 @@ void Estimator::solve() {
   const SolveReport report =
       solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
   unusable_solves_ = report.usable ? 0 : unusable_solves_ + 1;
+  update_.at_bound = limit_calibration(rig_, backend_, window_);
   if (!window_.inertial) restore_gauge(oldest, backend_, window_);
-  if (backend_.prior == PriorModel::kConsistent) {
-    update_.time_offset_at_bound = bound_time_offset(backend_, rig_.time_offset_s, window_);
-  }
   if (backend_.covariance && report.usable) {
     update_.covariance =
         solver_->newest_covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
@@ -291,6 +291,7 @@ void Estimator::report(const NavState& state) {
   update_.reason = monitor_.reason();
   update_.segment = monitor_.segment();
   update_.time_offset_s = window_.time_offset_s;
+  update_.depth_scale = window_.depth_scale;
   if (window_.gravity_covariance) update_.q_level_w = level_rotation(window_.gravity_w);
 }
 

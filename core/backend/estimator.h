@@ -35,7 +35,8 @@ class Estimator {
   /// is off and there is no IMU or no monocular initializer
   Estimator(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed);
 
-  /// Samples in temporal order; samples up to the exposure of a frame must be added before the frame.
+  /// Samples in temporal order; samples up to the exposure of a frame, by the time offset of `motion_state`,
+  /// must be added before the frame, and up to 20 ms after it for `TimeOffsetModel::kInertial`.
   void add_imu(const ImuSample& sample) { imu_.add(sample); }
 
   /// Appends a frame to the window at its predicted pose.
@@ -81,8 +82,14 @@ class Estimator {
   [[nodiscard]] bool has_metric_scale() const {
     return window_.inertial || backend_.depth.usage != DepthUsage::kOff;
   }
+  /// Whether the calibration is observed by inertial data at the exposures.
+  [[nodiscard]] bool averages_imu() const {
+    return backend_.time_offset_model == TimeOffsetModel::kInertial ||
+           backend_.prior == PriorModel::kConsistent;
+  }
   [[nodiscard]] bool is_full() const { return window_.newest() == backend_.window_size; }
   void relocalize(const TrackedFrame& frame);
+  [[nodiscard]] Window calibrated_window() const;
   void push_frame(const TrackedFrame& frame);
   void integrate_samples(const WindowFrame& last, WindowFrame& next);
   [[nodiscard]] bool localize_newest();

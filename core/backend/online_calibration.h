@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Online calibration with the consistent prior, in which information about the calibration accumulates.
+/// Online calibration: time offset, camera pose on the body, depth scale.
 #pragma once
 
 #include "core/backend/window/window.h"
 #include "core/config/backend_config.h"
 #include "core/imu/imu_buffer.h"
+#include "core/types/odometry_update.h"
 
 namespace stillpoint {
 
-/// Sets the angular rates of the newest two frames to means over 40 ms around their exposures, as far as
-/// the samples reach. Image velocities are computed from them, and the time offset is observed by differences
-/// of image velocities: the noise of a single sample would count as information about it.
-void smooth_newest_rates(const ImuBuffer& imu, Window& window);
+/// Sets what the IMU measures at the exposure of a frame to means over up to 40 ms around it, if there are
+/// samples on both sides. Image velocities and the inertial residual's derivative by the time offset are
+/// computed from them: the noise of a single sample would count as information about the time offset, and
+/// bias it towards its current value.
+void average_imu_at_exposure(const ImuBuffer& imu, WindowFrame& frame);
 
-/// Adds the configured random walks of time offset and extrinsics to the prior, for the interval between the
-/// newest two frames.
-void add_calibration_walk(const BackendConfig& config, Window& window);
+/// Adds the configured random walks of time offset, extrinsics and depth scale to a prior.
+/// @param seconds by which the prior advances: from the oldest frame to the next one
+void add_calibration_walk(const BackendConfig& config, double seconds, LinearPrior& prior);
 
-/// Limits the time offset to `time_offset_max_s` around the calibrated value. @return whether it was beyond
-bool bound_time_offset(const BackendConfig& config, double calibrated_s, Window& window);
+/// Moves the calibration of a window back into its bounds around the calibrated values of the rig: the time
+/// offset and the depth scale are clamped, the translation and the rotation vector of the extrinsics relative
+/// to the rig are shortened. An estimate outside of them is implausible, and IMU samples are only provided up
+/// to the bound of the time offset (see `last_imu_end_of`).
+/// @return which values were at their bound
+CalibrationAtBound limit_calibration(const Rig& rig, const BackendConfig& config, Window& window);
 
 }  // namespace stillpoint

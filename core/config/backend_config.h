@@ -50,6 +50,15 @@ constexpr auto enum_names(PriorModel) {
       {{PriorModel::kPublished, "published"}, {PriorModel::kConsistent, "consistent"}}};
 }
 
+/// How the offset between the clocks of camera and IMU enters the residuals. `kBearing`: bearings are shifted
+/// along their image velocity to the time of the state (Qin and Shen 2018); `kInertial`: states are defined
+/// at the exposures, and the inertial residual shifts them to the ends of its preintegration.
+enum class TimeOffsetModel { kBearing, kInertial };
+constexpr auto enum_names(TimeOffsetModel) {
+  return EnumNames<TimeOffsetModel, 2>{
+      {{TimeOffsetModel::kBearing, "bearing"}, {TimeOffsetModel::kInertial, "inertial"}}};
+}
+
 /// How measured depth enters the estimate.
 struct DepthConfig {
   DepthUsage usage = DepthUsage::kFixed;
@@ -59,6 +68,10 @@ struct DepthConfig {
   double outlier_sigmas = 2.0;          ///< kWeighted: bound of the depth residual, in standard deviations
   double agreement_px = 10.0;           ///< largest reprojection error of a depth accepted from one view
   double max_landmark_depth_m = 100.0;  ///< landmarks triangulated or estimated farther away are discarded
+  bool estimate_scale = false;          ///< ratio of measured to true depth; constant 1 without an IMU
+  double scale_sigma = 0.1;             ///< prior standard deviation around 1
+  double scale_walk = 0.0;              ///< random walk [1/sqrt(s)]
+  double scale_bound = 0.3;             ///< largest deviation from 1
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, DepthConfig>
@@ -70,6 +83,10 @@ void visit_fields(Visitor&& field, Config& config) {
   field("outlier_sigmas", config.outlier_sigmas, 0.1, 1000.0);
   field("agreement_px", config.agreement_px, 0.1, 100.0);
   field("max_landmark_depth_m", config.max_landmark_depth_m, 10.0, 10000.0);
+  field("estimate_scale", config.estimate_scale);
+  field("scale_sigma", config.scale_sigma, 1e-6, 1.0);
+  field("scale_walk", config.scale_walk, 0.0, 1.0);
+  field("scale_bound", config.scale_bound, 1e-3, 0.9);
 }
 
 /// Initialization, and the uncertainty of the initial state. Position and heading of frame 0 fix the gauge.
@@ -136,14 +153,17 @@ struct BackendConfig {
       PriorModel::kPublished;  ///< once the IMU is initialized; before and without one published
   bool covariance = false;     ///< compute the covariance of the newest state with each frame
   bool estimate_time_offset = true;
+  TimeOffsetModel time_offset_model = TimeOffsetModel::kBearing;
   double time_offset_sigma_s = 0.01;  ///< prior standard deviation around the calibrated value
   double time_offset_walk = 0.0;      ///< random walk in the consistent prior [s/sqrt(s)]
-  double time_offset_max_s = 0.1;     ///< consistent prior: largest difference to the calibrated value
+  double time_offset_bound_s = 1.0;   ///< largest deviation from the calibrated value; none is published
   bool estimate_extrinsics = false;
   double extrinsics_sigma_m = 0.02;    ///< prior standard deviation around the calibrated value
   double extrinsics_sigma_rad = 0.02;  ///< same for the rotation
   double extrinsics_walk_m = 0.0;      ///< random walk in the consistent prior [m/sqrt(s)]
   double extrinsics_walk_rad = 0.0;    ///< same for the rotation [rad/sqrt(s)]
+  double extrinsics_bound_m = 10.0;    ///< largest deviation from the calibrated value; none is published
+  double extrinsics_bound_rad = 3.14;  ///< same for the rotation
   double max_dead_reckoning_s = 6.0;   ///< without vision; then the pose is lost
   double max_relocalization_s = 1.0;   ///< with a view after a loss; then a new world begins
   ZeroVelocityConfig zero_velocity;
@@ -169,14 +189,17 @@ void visit_fields(Visitor&& field, Config& config) {
   field("prior", config.prior);
   field("covariance", config.covariance);
   field("estimate_time_offset", config.estimate_time_offset);
+  field("time_offset_model", config.time_offset_model);
   field("time_offset_sigma_s", config.time_offset_sigma_s, 1e-6, 1.0);
   field("time_offset_walk", config.time_offset_walk, 0.0, 1.0);
-  field("time_offset_max_s", config.time_offset_max_s, 1e-4, 1.0);
+  field("time_offset_bound_s", config.time_offset_bound_s, 1e-3, 1.0);
   field("estimate_extrinsics", config.estimate_extrinsics);
   field("extrinsics_sigma_m", config.extrinsics_sigma_m, 1e-6, 1.0);
   field("extrinsics_sigma_rad", config.extrinsics_sigma_rad, 1e-6, 1.0);
   field("extrinsics_walk_m", config.extrinsics_walk_m, 0.0, 1.0);
   field("extrinsics_walk_rad", config.extrinsics_walk_rad, 0.0, 1.0);
+  field("extrinsics_bound_m", config.extrinsics_bound_m, 1e-3, 10.0);
+  field("extrinsics_bound_rad", config.extrinsics_bound_rad, 1e-3, 3.14);
   field("max_dead_reckoning_s", config.max_dead_reckoning_s, 0.0, 1000.0);
   field("max_relocalization_s", config.max_relocalization_s, 0.0, 1000.0);
   field("zero_velocity", config.zero_velocity);

@@ -78,17 +78,26 @@ const std::vector<ImuSample>& ImuBuffer::samples_up_to(Timestamp begin, Timestam
   return interval_;
 }
 
-std::optional<Eigen::Vector3d> ImuBuffer::mean_rate(Timestamp t, double half_width_s) const {
-  const Timestamp end = after(t, half_width_s);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+std::optional<ImuSample> ImuBuffer::mean_around(Timestamp t, double half_width_s) const {
+  if (samples_.empty() || samples_.front().t > t || samples_.back().t < t) return std::nullopt;
+  const double covered =
+      std::min(seconds_between(samples_.front().t, t), seconds_between(t, samples_.back().t));
+  const double half_width = std::min(half_width_s, covered);
+  const auto begin = std::lower_bound(samples_.begin(), samples_.end(), after(t, -half_width), earlier);
+  ImuSample sum{.t = t, .gyro_b = Eigen::Vector3d::Zero(), .accel_b = Eigen::Vector3d::Zero()};
   int count = 0;
-  auto sample = std::lower_bound(samples_.begin(), samples_.end(), after(t, -half_width_s), earlier);
-  for (; sample != samples_.end() && sample->t <= end; ++sample) {
-    sum += sample->gyro_b;
+  for (auto sample = begin; sample != samples_.end() && sample->t <= after(t, half_width); ++sample) {
+    sum.gyro_b += sample->gyro_b;
+    sum.accel_b += sample->accel_b;
     ++count;
   }
-  if (count == 0) return std::nullopt;
-  return sum / count;
+  if (count == 0) {
+    const auto next = std::lower_bound(samples_.begin(), samples_.end(), t, earlier);
+    return next->t == t ? *next : interpolate_at(*std::prev(next), *next, t);
+  }
+  sum.gyro_b /= count;
+  sum.accel_b /= count;
+  return sum;
 }
 
 /// Counts the gaps between samples_[first] and samples_[last] that were not counted before.

@@ -28,9 +28,9 @@ class ImuBuffer {
   /// at most `max_gap_s` before. For predictions only, not for factors.
   [[nodiscard]] const std::vector<ImuSample>& samples_up_to(Timestamp begin, Timestamp end);
 
-  /// Mean angular rate of the samples from `t - half_width_s` to `t + half_width_s`, as far as the buffer
-  /// reaches; nothing without a sample there.
-  [[nodiscard]] std::optional<Eigen::Vector3d> mean_rate(Timestamp t, double half_width_s) const;
+  /// Mean of the samples within `half_width_s` of `t`, or of the largest interval around `t` that the buffer
+  /// covers; nullopt if it does not cover `t`.
+  [[nodiscard]] std::optional<ImuSample> mean_around(Timestamp t, double half_width_s) const;
 
   [[nodiscard]] bool empty() const { return samples_.empty(); }
   [[nodiscard]] Timestamp newest() const { return samples_.back().t; }

@@ -10,20 +10,26 @@
 
 namespace stillpoint {
 
-/// Samples up to this much later than an exposure are added before its frame: the sample at the exposure is
-/// interpolated, and the estimated time offset may increase.
+/// Samples up to this much later than an exposure are added before its frame, because the sample at the
+/// exposure is interpolated.
 constexpr double kImuLookahead_s = 0.02;
 
 /// Time of the last IMU sample that is used with the frame at `t`.
-[[nodiscard]] inline Timestamp imu_end_of(Timestamp t, const Rig& rig) {
-  return after(t, rig.time_offset_s + kImuLookahead_s);
+/// @param time_offset_s estimate when the frame is processed: IMU time of the exposure minus `t`
+[[nodiscard]] inline Timestamp imu_end_of(Timestamp t, double time_offset_s) {
+  return after(t, time_offset_s + kImuLookahead_s);
+}
+
+/// Latest time that `imu_end_of` can return for the frame at `t`.
+[[nodiscard]] inline Timestamp last_imu_end_of(Timestamp t, const OdometryConfig& config, const Rig& rig) {
+  return imu_end_of(t, rig.time_offset_s + config.backend.time_offset_bound_s);
 }
 
 /// Time that the IMU samples must have reached before the frame at `t` is processed; the smallest timestamp
 /// if the configuration does not use an IMU.
-[[nodiscard]] inline Timestamp needed_imu(Timestamp t, const OdometryConfig& config, const Rig& rig) {
+[[nodiscard]] inline Timestamp needed_imu(Timestamp t, const OdometryConfig& config, double time_offset_s) {
   constexpr Timestamp kNone{std::numeric_limits<std::int64_t>::min()};
-  return config.imu.enabled ? imu_end_of(t, rig) : kNone;
+  return config.imu.enabled ? imu_end_of(t, time_offset_s) : kNone;
 }
 
 /// First in, first out. Makes the samples that a frame is processed with independent of how early they were

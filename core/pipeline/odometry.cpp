@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/odometry.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -24,16 +25,22 @@ struct Odometry::Impl {
         predictor(config.imu.max_gap_s),
         ring(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1, {optimization.feedback(), {}}) {}
 
-  void feed_imu(Timestamp end) {
-    imu.feed_until(end, [this](const ImuSample& sample) {
-      tracking.add_imu(sample);
-      optimization.add_imu(sample);
-    });
+  /// The later one of the estimates that the tracker, whose feedback lags behind, and the optimization use.
+  [[nodiscard]] double time_offset() const {
+    return std::max(ring[oldest].feedback.motion.time_offset_s, ring[newest].feedback.motion.time_offset_s);
+  }
+
+  /// Each stage gets the samples up to the exposure by its own estimate, as on threads.
+  void feed_imu(Timestamp t) {
+    imu_of_tracker.feed_until(imu_end_of(t, ring[oldest].feedback.motion.time_offset_s),
+                              [this](const ImuSample& sample) { tracking.add_imu(sample); });
+    imu_of_estimator.feed_until(imu_end_of(t, ring[newest].feedback.motion.time_offset_s),
+                                [this](const ImuSample& sample) { optimization.add_imu(sample); });
   }
 
   OdometryUpdate& track(const Frame& frame, const DetectionSet& detections) {
     order.check(frame.t);
-    feed_imu(imu_end_of(frame.t, rig));
+    feed_imu(frame.t);
     const bool enters_window = rate.is_due(frame.t);
     auto& [feedback, tracked] = ring[oldest];
     tracked = tracking.process(frame, enters_window, feedback, std::move(tracked));
@@ -54,7 +61,7 @@ struct Odometry::Impl {
   TrackingStage tracking;
   OptimizationStage optimization;
   StatePredictor predictor;
-  ImuQueue imu;
+  ImuQueue imu_of_tracker, imu_of_estimator;
   FrameOrder order;
   std::vector<TrackerFeedback> ring;  ///< ring buffer of `feedback_lag + 1` messages
   std::size_t oldest = 0;             ///< index in `ring` of the feedback for the next frame
@@ -68,11 +75,14 @@ Odometry::Odometry(Odometry&& other) noexcept = default;
 Odometry& Odometry::operator=(Odometry&& other) noexcept = default;
 
 void Odometry::add_imu(const ImuSample& sample) {
-  impl_->imu.add(sample);
+  impl_->imu_of_tracker.add(sample);
+  impl_->imu_of_estimator.add(sample);
   impl_->predictor.add_imu(sample);
 }
 
-Timestamp Odometry::needs_imu_until(Timestamp t) const { return needed_imu(t, impl_->config, impl_->rig); }
+Timestamp Odometry::needs_imu_until(Timestamp t) const {
+  return needed_imu(t, impl_->config, impl_->time_offset());
+}
 
 bool Odometry::enters_window(Timestamp t) const { return impl_->rate.is_due(t); }
 

@@ -44,9 +44,9 @@ class Odometry {
   /// `imu_health`.
   void add_imu(const ImuSample& sample);
 
-  /// Time that the IMU samples must have reached before the frame with timestamp `t` is tracked: the exposure
-  /// on the IMU clock (t + `Rig::time_offset_s`) plus 20 ms for interpolation and for changes of the
-  /// estimated time offset. The smallest timestamp if `imu.enabled` is false.
+  /// Time that the IMU samples must have reached before the frame with timestamp `t` is tracked, if it is the
+  /// next one: the exposure on the IMU clock (t plus the estimated time offset, first
+  /// `Rig::time_offset_s`) plus 20 ms for interpolation. The smallest timestamp if `imu.enabled` is false.
   [[nodiscard]] Timestamp needs_imu_until(Timestamp t) const;
 
   /// Whether a frame with timestamp `t` would enter the window, if it was the next one. Detections of other

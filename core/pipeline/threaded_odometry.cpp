@@ -36,6 +36,7 @@ struct ThreadedOdometry::Impl {
 
   /// Closes all channels, so that all threads finish.
   void close();
+  void finish_imu();
   void join();
   bool push(FrameJob job);
   void publish(const FrameJob& job, const OdometryUpdate& update);
@@ -92,9 +93,11 @@ void ThreadedOdometry::Impl::track() {
     if (job->enters_window && !to_detect.push(job->frame)) return;
     std::optional<TrackerFeedback> message = feedback.pop();
     if (!message) return;
-    imu_of_tracker.wait_until(needed_imu(t, config, rig));
+    const double time_offset_s = message->feedback.motion.time_offset_s;
+    imu_of_tracker.wait_until(needed_imu(t, config, time_offset_s));
     if (stopped) return;
-    imu_of_tracker.feed_until(imu_end_of(t, rig), [this](const ImuSample& s) { tracking.add_imu(s); });
+    imu_of_tracker.feed_until(imu_end_of(t, time_offset_s),
+                              [this](const ImuSample& s) { tracking.add_imu(s); });
     job->tracked = tracking.process(job->frame, job->enters_window, message->feedback,
                                     std::move(message->recycled_frame));
     job->feedback = std::move(message->feedback);
@@ -125,9 +128,10 @@ void ThreadedOdometry::Impl::optimize() {
       detections = detected.pop();
       if (!detections) return;
     }
+    const double time_offset_s = optimization.motion_state().time_offset_s;
+    imu_of_estimator.wait_until(needed_imu(job->frame.t, config, time_offset_s));
     if (stopped) return;
-    // The samples arrived before those of the tracker, which has waited for them.
-    imu_of_estimator.feed_until(imu_end_of(job->frame.t, rig),
+    imu_of_estimator.feed_until(imu_end_of(job->frame.t, time_offset_s),
                                 [this](const ImuSample& s) { optimization.add_imu(s); });
     publish(*job, optimize_frame(*job, detections, optimization));
     feedback.push({optimization.feedback(std::move(job->feedback)), std::move(job->tracked)});
@@ -146,7 +150,7 @@ void ThreadedOdometry::Impl::publish(const FrameJob& job, const OdometryUpdate& 
                       .tracked = job.tracked,
                       .dynamic = optimization.dynamic(),
                       .update = update,
-                      .available = imu_end_of(job.frame.t, rig)});
+                      .available = imu_end_of(job.frame.t, update.time_offset_s)});
   }
 }
 
@@ -157,7 +161,12 @@ void ThreadedOdometry::Impl::close() {
   tracked.close();
   detected.close();
   feedback.close();
+  finish_imu();
+}
+
+void ThreadedOdometry::Impl::finish_imu() {
   imu_of_tracker.finish();
+  imu_of_estimator.finish();
 }
 
 void ThreadedOdometry::Impl::join() {
@@ -180,7 +189,6 @@ ThreadedOdometry::ThreadedOdometry(const OdometryConfig& config, const Rig& rig,
 
 ThreadedOdometry::~ThreadedOdometry() { stop(); }
 
-/// The tracker's inbox is last: a frame that has its samples there has them in the other one.
 void ThreadedOdometry::add_imu(const ImuSample& sample) {
   {
     const std::scoped_lock lock(impl_->mutex);
@@ -190,7 +198,7 @@ void ThreadedOdometry::add_imu(const ImuSample& sample) {
   impl_->imu_of_tracker.add(sample);
 }
 
-void ThreadedOdometry::finish_imu() { impl_->imu_of_tracker.finish(); }
+void ThreadedOdometry::finish_imu() { impl_->finish_imu(); }
 
 bool ThreadedOdometry::add_frame(Frame frame, const std::optional<ModuleSpan>& decoding) {
   impl_->errors.rethrow();
@@ -204,7 +212,7 @@ bool ThreadedOdometry::add_frame(Frame frame, const std::optional<ModuleSpan>& d
 void ThreadedOdometry::finish() {
   impl_->accepts_frames = false;
   impl_->frames.close();
-  impl_->imu_of_tracker.finish();
+  impl_->finish_imu();
   impl_->join();
   impl_->errors.rethrow();
 }

@@ -43,8 +43,13 @@ struct ThreadedOdometryOptions {
 
 /// Same results as `Odometry`, bit by bit, for the frames that are not dropped and the same detections: the
 /// feedback from optimization to tracking has the lag `pipeline.feedback_lag` (with 0, tracking and
-/// optimization alternate). Frames wait until their IMU samples have arrived; see
-/// `Odometry::needs_imu_until`.
+/// optimization alternate).
+///
+/// Frames wait until their IMU samples have arrived. The tracker waits for those up to the exposure by the
+/// time offset of its feedback, the optimization by its newest estimate; see `Odometry::needs_imu_until`.
+/// Neither depends on timing, so the results do not. A thread that adds both frames and samples must not
+/// block in `add_frame` while these are missing: it adds samples up to t + `Rig::time_offset_s` +
+/// `backend.time_offset_bound_s` + 20 ms first, or uses `kDropOldest`.
 ///
 /// `add_imu` and `add_frame` may be called by different threads, each by one at a time; `state`, `state_at`
 /// and the counters by any thread.

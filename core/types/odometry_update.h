@@ -23,6 +23,14 @@ struct OdometryCounters {
   bool reset = false;    ///< a failure was detected in this frame; the estimator reinitializes
 };
 
+/// Estimated calibration that is at a bound of the configuration: it does not fit the data, or the calibrated
+/// value is far off.
+struct CalibrationAtBound {
+  bool time_offset = false;
+  bool extrinsics = false;
+  bool depth_scale = false;
+};
+
 /// Hashes of the modules' state after a frame, see core/pipeline/stages/state_hash.h.
 struct StateHashes {
   std::uint64_t tracking = 0;      ///< features
@@ -38,8 +46,9 @@ struct OdometryUpdate {
   OdometryStatus status = OdometryStatus::kInitializing;
   StatusReason reason = StatusReason::kNone;
   int segment = 0;  ///< number of the world frame; a new one begins after a loss without relocation
-  double time_offset_s = 0.0;         ///< current estimate
-  bool time_offset_at_bound = false;  ///< it reached `backend.time_offset_max_s`
+  double time_offset_s = 0.0;  ///< current estimate
+  double depth_scale = 1.0;    ///< ratio of measured to true depth; current estimate
+  CalibrationAtBound at_bound;
   /// Rotates the world such that gravity points along -z, by the current estimate of gravity; the identity if
   /// gravity is not estimated (`backend.gravity`) or not yet known.
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();

@@ -3,23 +3,27 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <ceres/sized_cost_function.h>
 
-#include "core/backend/factors/imu_residual.h"
+#include "core/backend/factors/timed_imu_residual.h"
 
 namespace stillpoint {
 
-/// See ImuResidual; a fifth parameter block is gravity. Jacobians are evaluated with the first estimates in
-/// place of the parameter blocks, where given; the residual is not.
-class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9, 3> {
+/// See TimedImuResidual. Jacobians are evaluated with the first estimates in place of the parameter blocks,
+/// where given; the residual is not.
+class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9, 3, 1> {
  public:
   /// Of the parameter blocks, or null.
-  using FirstEstimates = std::array<const double*, 5>;
+  using FirstEstimates = std::array<const double*, 6>;
+  using Ends = std::optional<TimedImuResidual::Ends>;
 
   /// @param imu must outlive the factor; of positive duration
-  explicit ImuFactor(const Preintegration& imu, const FirstEstimates& first = {})
-      : imu_(imu), first_(first) {}
+  /// @param ends of the preintegration; none if the states are defined there
+  explicit ImuFactor(const Preintegration& imu, const Ends& ends = std::nullopt,
+                     const FirstEstimates& first = {})
+      : imu_(imu), ends_(ends), first_(first) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     evaluate_at(parameters, residuals, jacobians);
     if (jacobians == nullptr || first_ == FirstEstimates{}) return true;
@@ -34,13 +38,11 @@ class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9, 3> {
 
  private:
   void evaluate_at(double const* const* parameters, double* residuals, double** jacobians) const {
-    const ImuResidual residual(imu_, Eigen::Vector3d(parameters[4]));
-    residual.evaluate(parameters, residuals, jacobians);
-    if (jacobians != nullptr && jacobians[4] != nullptr)
-      residual.evaluate_gravity_jacobian(parameters[0], jacobians[4]);
+    TimedImuResidual(imu_, ends_ ? &*ends_ : nullptr).evaluate(parameters, residuals, jacobians);
   }
 
   const Preintegration& imu_;
+  Ends ends_;
   FirstEstimates first_;
 };
 

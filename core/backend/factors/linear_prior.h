@@ -14,15 +14,15 @@
 namespace stillpoint {
 
 /// The first two belong to a frame, the others to the window (global states).
-enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity };
+enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity, kDepthScale };
 
 /// Number of doubles in a parameter block, and of its tangent space.
 [[nodiscard]] constexpr int global_size(BlockKind kind) {
-  constexpr int kSizes[] = {7, 9, 7, 1, 3};
+  constexpr int kSizes[] = {7, 9, 7, 1, 3, 1};
   return kSizes[static_cast<std::size_t>(kind)];
 }
 [[nodiscard]] constexpr int local_size(BlockKind kind) {
-  constexpr int kSizes[] = {6, 9, 6, 1, 2};
+  constexpr int kSizes[] = {6, 9, 6, 1, 2, 1};
   return kSizes[static_cast<std::size_t>(kind)];
 }
 

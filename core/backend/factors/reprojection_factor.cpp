@@ -21,8 +21,8 @@ struct TransferredPoint {
   Eigen::Vector3d p_bi, p_bj, p_cj;  ///< each times lambda
   Eigen::Vector3d p_cj_ci;           ///< position of camera i in camera j; not scaled
 
-  TransferredPoint(double const* const* x, const Eigen::Vector2d& bearing_i)
-      : T_w_bi(pose_of(x[0])), T_w_bj(pose_of(x[1])), T_b_c(pose_of(x[2])), lambda(x[4][0]) {
+  TransferredPoint(double const* const* x, double inverse_depth, const Eigen::Vector2d& bearing_i)
+      : T_w_bi(pose_of(x[0])), T_w_bj(pose_of(x[1])), T_b_c(pose_of(x[2])), lambda(inverse_depth) {
     const Eigen::Matrix3d R_bi = T_w_bi.R();
     const Eigen::Matrix3d R_bj_t = T_w_bj.R().transpose();
     const Eigen::Matrix3d R_bc_t = T_b_c.R().transpose();
@@ -90,10 +90,15 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   const double time_offset = x[3][0];
   const Eigen::Vector2d bearing_i = m.bearing_i - (time_offset + m.exposure_i_s) * m.velocity_i;
   const Eigen::Vector2d bearing_j = m.bearing_j - (time_offset + m.exposure_j_s) * m.velocity_j;
-  const TransferredPoint t(x, bearing_i);
-  const ReprojectionRows rows = reprojection_rows(
-      t.p_cj, t.lambda, {.bearing = bearing_j, .inverse_depth = m.inverse_depth_j, .has_depth = Rows == 3},
-      noise_);
+  constexpr std::size_t kLambda = Rows == 3 ? 5 : 4;
+  const double depth_scale = Rows == 3 ? x[4][0] : 1.0;
+  const TransferredPoint t(x, x[kLambda][0], bearing_i);
+  const ReprojectionRows rows = reprojection_rows(t.p_cj, t.lambda,
+                                                  {.bearing = bearing_j,
+                                                   .inverse_depth = m.inverse_depth_j,
+                                                   .depth_scale = depth_scale,
+                                                   .has_depth = Rows == 3},
+                                                  noise_);
   Eigen::Map<Eigen::Matrix<double, Rows, 1>>{residuals} = rows.residual.template head<Rows>();
   const Eigen::Matrix<double, Rows, 3> J_point = rows.J_point.template topRows<Rows>();
   if (jacobians == nullptr) return true;
@@ -113,8 +118,11 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
     J = J_ray.template leftCols<2>() * -m.velocity_i;
     J.template head<2>() += m.velocity_j / noise_.bearing;
   }
-  if (jacobians[4] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[4]);
+  if (Rows == 3 && jacobians[4] != nullptr) {
+    Eigen::Map<Eigen::Vector3d>{jacobians[4]} = rows.J_depth_scale * Eigen::Vector3d::UnitZ();
+  }
+  if (jacobians[kLambda] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[kLambda]);
     J = J_point * t.p_cj_ci;
     if constexpr (Rows == 3) J[2] += rows.J_depth_lambda;
   }
@@ -125,10 +133,15 @@ template class ReprojectionFactor<2>;
 template class ReprojectionFactor<3>;
 
 bool HostDepthFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const double scale = x[0][0];
+  const double lambda = x[1][0];
   const BoundedError depth =
-      bounded_error((x[0][0] - measured_) / noise_.inverse_depth, noise_.depth_outlier);
+      bounded_error((lambda / scale - measured_) / noise_.inverse_depth, noise_.depth_outlier);
   residuals[0] = depth.value;
-  if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = depth.slope / noise_.inverse_depth;
+  if (jacobians == nullptr) return true;
+  const double slope = depth.slope / (noise_.inverse_depth * scale);
+  if (jacobians[0] != nullptr) jacobians[0][0] = -slope * lambda / scale;
+  if (jacobians[1] != nullptr) jacobians[1][0] = slope;
   return true;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 #include <ceres/sized_cost_function.h>
 #include <Eigen/Core>
@@ -24,27 +25,31 @@ struct ReprojectionMeasurement {
 
 /// Two rows of bearing error and, with `Rows == 3`, one of inverse depth. Qin et al. 2018, Eq. (25), on the
 /// normalized image plane instead of the unit sphere. With the bearings u_i, u_j and their velocities, td the
-/// time offset, e_k the row readout offset minus the time offset at which state k is defined, and lambda the
-/// inverse depth in the host:
+/// time offset, e_k the row readout offset minus the time offset at which state k is defined, s the depth
+/// scale (ratio of measured to true depth), and lambda the inverse depth in the host:
 ///
 ///   u_k(td) = u_k - (td + e_k) du_k/dt,  k = i, j         (shifted to the time of the state)
 ///   P       = T_c_b T_bj_w T_w_bi T_b_c [u_i(td); 1; lambda]
 ///   r_u     = (P_xy / P_z - u_j(td)) / sigma_u
-///   r_d     = rho((lambda / P_z - lambda_j) / sigma_d),   rho(d) = d / sqrt(1 + (d/c)^2)
+///   r_d     = rho((lambda / (s P_z) - lambda_j) / sigma_d),   rho(d) = d / sqrt(1 + (d/c)^2)
 ///
 /// P is homogeneous: lambda times the point in camera j.
-/// lambda_j is the inverse depth measured in j; lambda / P_z is the predicted one. The bounded rho (Geman &
-/// McClure 1985) keeps a depth measured across an object's edge from outweighing the bearing.
+/// lambda_j is the inverse depth measured in j; lambda / P_z is the true one. The scale divides the
+/// prediction: a factor on the measurement would scale its noise, and the cost would decrease with it. The
+/// bounded rho (Geman & McClure 1985) keeps a depth measured across an object's edge from outweighing the
+/// bearing.
 ///
 /// Scaling the point by lambda removes the pole at infinity: the residual is defined for every inverse depth,
 /// including zero and negative values, and for points behind camera j. One outlier therefore cannot make the
 /// solver reject a step.
 ///
-/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, lambda. The derivative of the relative pose
-/// of the cameras is evaluated with the first estimates in place of the poses, where given; the residual is
-/// not.
+/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, with `Rows == 3` s, lambda. The derivative
+/// of the relative pose of the cameras is evaluated with the first estimates in place of the poses, where
+/// given; the residual is not.
 template <int Rows>
-class ReprojectionFactor final : public ceres::SizedCostFunction<Rows, 7, 7, 7, 1, 1> {
+class ReprojectionFactor final
+    : public std::conditional_t<Rows == 3, ceres::SizedCostFunction<3, 7, 7, 7, 1, 1, 1>,
+                                ceres::SizedCostFunction<2, 7, 7, 7, 1, 1>> {
   static_assert(Rows == 2 || Rows == 3);
 
  public:
@@ -65,8 +70,9 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<Rows, 7, 7, 7, 
 extern template class ReprojectionFactor<2>;
 extern template class ReprojectionFactor<3>;
 
-/// Depth measured in the host: r = rho((lambda - lambda_i) / sigma_d), with rho as above.
-class HostDepthFactor final : public ceres::SizedCostFunction<1, 1> {
+/// Depth measured in the host: r = rho((lambda / s - lambda_i) / sigma_d), with rho as above. Parameter
+/// blocks: s, lambda.
+class HostDepthFactor final : public ceres::SizedCostFunction<1, 1, 1> {
  public:
   HostDepthFactor(double measured_inverse_depth, const ReprojectionNoise& noise)
       : measured_(measured_inverse_depth), noise_(noise) {}

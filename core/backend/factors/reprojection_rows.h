@@ -32,6 +32,7 @@ struct BoundedError {
 struct MeasuredPoint {
   Eigen::Vector2d bearing = Eigen::Vector2d::Zero();  ///< at the time of the state, normalized image plane
   double inverse_depth = 0.0;                         ///< measured [1/m]
+  double depth_scale = 1.0;                           ///< ratio of measured to true depth
   bool has_depth = false;                             ///< whether the depth row is evaluated
 };
 
@@ -40,6 +41,7 @@ struct ReprojectionRows {
   Eigen::Vector3d residual;
   Eigen::Matrix3d J_point;      ///< with respect to the scaled point P in camera j
   double J_depth_lambda = 0.0;  ///< depth row: partial derivative by lambda at constant P
+  double J_depth_scale = 0.0;   ///< depth row: derivative by the depth scale
 };
 
 /// Lower clamp of P_z, the ratio of the depths in j and in the host: smaller values, including points behind
@@ -63,13 +65,15 @@ inline constexpr double kMinDepthRatio = 0.01;
       0.0, weight * inverse_z, weight * projected.y() * dlog_dz,              //
       0.0, 0.0, 0.0;
   if (observation.has_depth) {
-    const double inverse_depth = lambda * inverse_z;
+    const double scaled_inverse_z = inverse_z / observation.depth_scale;
+    const double inverse_depth = lambda * scaled_inverse_z;
     const BoundedError depth =
         bounded_error((inverse_depth - observation.inverse_depth) / noise.inverse_depth, noise.depth_outlier);
     const double slope = depth.slope / noise.inverse_depth;
     rows.residual[2] = depth.value;
     rows.J_point(2, 2) = slope * inverse_depth * dlog_dz;
-    rows.J_depth_lambda = slope * inverse_z;
+    rows.J_depth_lambda = slope * scaled_inverse_z;
+    rows.J_depth_scale = -slope * inverse_depth / observation.depth_scale;
   }
   return rows;
 }

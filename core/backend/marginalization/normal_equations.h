@@ -14,7 +14,7 @@ namespace stillpoint {
 class StateLayout {
  public:
   explicit StateLayout(int frames) : frames_(frames) {}
-  [[nodiscard]] int size() const { return 15 * frames_ + 9; }
+  [[nodiscard]] int size() const { return 15 * frames_ + 10; }
   [[nodiscard]] int column(BlockRef block) const {
     switch (block.kind) {
       case BlockKind::kPose:
@@ -25,6 +25,8 @@ class StateLayout {
         return 15 * frames_;
       case BlockKind::kGravity:
         return 15 * frames_ + 7;
+      case BlockKind::kDepthScale:
+        return 15 * frames_ + 9;
       case BlockKind::kTimeOffset:
         break;
     }

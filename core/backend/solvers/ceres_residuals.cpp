@@ -49,7 +49,7 @@ void ResidualBuilder::add_landmark(int index) {
   if (uses_depth(host, config_)) {
     residuals_.push_back({std::make_unique<HostDepthFactor>(1.0 / host.depth, noise_),
                           scaled_loss(nullptr, host.information),
-                          {},
+                          {{BlockKind::kDepthScale}},
                           index});
   }
 
@@ -67,33 +67,34 @@ void ResidualBuilder::add_landmark(int index) {
     m.velocity_j = timed.velocity;
     m.exposure_j_s = timed.exposure_s;
     std::unique_ptr<ceres::CostFunction> cost;
+    std::vector<BlockRef> states = {{BlockKind::kPose, landmark.host},
+                                    {BlockKind::kPose, frame},
+                                    {BlockKind::kExtrinsics},
+                                    {BlockKind::kTimeOffset}};
     if (uses_depth(observation, config_)) {
       m.inverse_depth_j = 1.0 / observation.depth;
       cost = std::make_unique<ReprojectionFactor<3>>(m, noise_, first);
+      states.push_back({BlockKind::kDepthScale});
     } else {
       cost = std::make_unique<ReprojectionFactor<2>>(m, noise_, first);
     }
-    residuals_.push_back({std::move(cost),
-                          scaled_loss(loss_.get(), observation.information),
-                          {{BlockKind::kPose, landmark.host},
-                           {BlockKind::kPose, frame},
-                           {BlockKind::kExtrinsics},
-                           {BlockKind::kTimeOffset}},
-                          index});
+    residuals_.push_back(
+        {std::move(cost), scaled_loss(loss_.get(), observation.information), std::move(states), index});
   }
 }
 
 void ResidualBuilder::add_imu(int frame) {
   const std::optional<Preintegration>& imu = window_.frames[static_cast<std::size_t>(frame)].from_previous;
   if (!window_.inertial || !imu) return;
-  std::vector<BlockRef> states = {{BlockKind::kPose, frame - 1},
-                                  {BlockKind::kSpeedBias, frame - 1},
-                                  {BlockKind::kPose, frame},
-                                  {BlockKind::kSpeedBias, frame},
-                                  {BlockKind::kGravity}};
+  std::vector<BlockRef> states = {{BlockKind::kPose, frame - 1}, {BlockKind::kSpeedBias, frame - 1},
+                                  {BlockKind::kPose, frame},     {BlockKind::kSpeedBias, frame},
+                                  {BlockKind::kGravity},         {BlockKind::kTimeOffset}};
   ImuFactor::FirstEstimates first{};
-  for (std::size_t i = 0; i < states.size(); ++i) first[i] = first_estimate(states[i]);
-  residuals_.push_back({std::make_unique<ImuFactor>(*imu, first), nullptr, std::move(states), -1});
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].kind != BlockKind::kTimeOffset) first[i] = first_estimate(states[i]);
+  }
+  residuals_.push_back(
+      {std::make_unique<ImuFactor>(*imu, window_.imu_ends(frame), first), nullptr, std::move(states), -1});
 }
 
 void ResidualBuilder::add_zero_velocity(int frame) {

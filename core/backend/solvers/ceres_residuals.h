@@ -44,7 +44,7 @@ class ResidualBuilder {
   void add_zero_velocity(int frame);
   /// Marginalization prior.
   void add_prior();
-  /// Prior on extrinsics and time offset from the calibrated values.
+  /// Prior on the calibration from the calibrated values.
   void add_calibration();
 
   /// Residuals added so far; they refer to the builder and the window.

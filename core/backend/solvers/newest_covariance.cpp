@@ -15,6 +15,7 @@ std::vector<BlockRef> newest_blocks(const Window& window, const BackendConfig& c
   if (globals.gravity) blocks.push_back({BlockKind::kGravity});
   if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
   if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
+  if (globals.depth_scale) blocks.push_back({BlockKind::kDepthScale});
   return blocks;
 }
 
@@ -38,6 +39,9 @@ StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestM
         break;
       case BlockKind::kTimeOffset:
         result.time_offset = covariance(column, column);
+        break;
+      case BlockKind::kDepthScale:
+        result.depth_scale = covariance(column, column);
         break;
     }
     column += local_size(block.kind);

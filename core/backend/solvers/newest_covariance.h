@@ -10,8 +10,8 @@
 
 namespace stillpoint {
 
-/// At most 24 rows: pose, velocity and biases, gravity, extrinsics, time offset.
-using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 24, 24>;
+/// At most 25 rows: pose, velocity and biases, gravity, extrinsics, time offset, depth scale.
+using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 25, 25>;
 
 /// Pose of the newest frame, its velocity and biases if there are any, and the variable global states.
 /// @param recycled storage for the result; its content is ignored

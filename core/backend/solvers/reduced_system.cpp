@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <array>
 
-#include "core/backend/factors/imu_residual.h"
+#include "core/backend/factors/timed_imu_residual.h"
 
 namespace stillpoint {
 namespace {
 
+/// The blocks whose Jacobians ImuLinearization::jacobian stacks.
 std::array<BlockRef, 4> imu_blocks(int frame) {
   return {{{BlockKind::kPose, frame - 1},
            {BlockKind::kSpeedBias, frame - 1},
@@ -16,19 +17,19 @@ std::array<BlockRef, 4> imu_blocks(int frame) {
            {BlockKind::kSpeedBias, frame}}};
 }
 
-std::array<const double*, 4> addresses(const std::array<BlockRef, 4>& refs, const ParameterBlocks& blocks) {
-  return {blocks.at(refs[0]), blocks.at(refs[1]), blocks.at(refs[2]), blocks.at(refs[3])};
+std::array<const double*, 6> imu_parameters(int frame, const ParameterBlocks& blocks) {
+  const std::array<BlockRef, 4> refs = imu_blocks(frame);
+  return {blocks.at(refs[0]), blocks.at(refs[1]), blocks.at(refs[2]),
+          blocks.at(refs[3]), blocks.gravity(),   blocks.time_offset()};
 }
 
-ImuResidual imu_residual(const Window& window, int frame, const ParameterBlocks& blocks) {
-  return {*window.frames[static_cast<std::size_t>(frame)].from_previous, Eigen::Vector3d(blocks.gravity())};
-}
-
-/// The residual and its Jacobians as written by the factor; `jacobian` stacks their tangent columns.
+/// The residual and its Jacobians as written by the factor; `jacobian` stacks the tangent columns of states.
 struct ImuLinearization {
   Vector15 residual;
   Eigen::Matrix<double, 15, 7, Eigen::RowMajor> J_pose_i, J_pose_j;
   Eigen::Matrix<double, 15, 9, Eigen::RowMajor> J_speed_bias_i, J_speed_bias_j;
+  Eigen::Matrix<double, 15, 3, Eigen::RowMajor> J_gravity;
+  Vector15 J_time_offset;
 
   [[nodiscard]] Eigen::Matrix<double, 15, 30> jacobian() const {
     Eigen::Matrix<double, 15, 30> J;
@@ -38,31 +39,31 @@ struct ImuLinearization {
 };
 
 ImuLinearization linearize_imu(const Window& window, int frame, const Linearization& at) {
+  const std::optional<TimedImuResidual::Ends> ends = window.imu_ends(frame);
+  const TimedImuResidual residual(*window.frames[static_cast<std::size_t>(frame)].from_previous,
+                                  ends ? &*ends : nullptr);
   ImuLinearization out;
-  const std::array<const double*, 4> states = addresses(imu_blocks(frame), at.states);
-  std::array<double*, 4> jacobians = {out.J_pose_i.data(), out.J_speed_bias_i.data(), out.J_pose_j.data(),
-                                      out.J_speed_bias_j.data()};
-  imu_residual(window, frame, at.states).evaluate(states.data(), out.residual.data(), jacobians.data());
+  std::array<double*, 6> jacobians = {out.J_pose_i.data(),  out.J_speed_bias_i.data(),
+                                      out.J_pose_j.data(),  out.J_speed_bias_j.data(),
+                                      out.J_gravity.data(), out.J_time_offset.data()};
+  residual.evaluate(imu_parameters(frame, at.states).data(), out.residual.data(), jacobians.data());
   if (!at.at_first_estimates()) return out;
   Vector15 unused;
-  const std::array<const double*, 4> point = addresses(imu_blocks(frame), at.point);
-  imu_residual(window, frame, at.point).evaluate(point.data(), unused.data(), jacobians.data());
+  residual.evaluate(imu_parameters(frame, at.point).data(), unused.data(), jacobians.data());
   return out;
 }
 
-/// Adds the rows of gravity in J^T J and J^T r of the factor between frame - 1 and frame.
-void add_gravity_rows(const Window& window, int frame, const ParameterBlocks& blocks,
-                      const ImuLinearization& linear, ReducedSystem& system) {
-  Eigen::Matrix<double, 15, 3, Eigen::RowMajor> J_padded;
-  imu_residual(window, frame, blocks)
-      .evaluate_gravity_jacobian(blocks.at({BlockKind::kPose, frame - 1}), J_padded.data());
-  const Eigen::Matrix<double, 15, 2> J = J_padded.leftCols<2>();
-  const int row = system.layout.column({BlockKind::kGravity});
-  const std::array<BlockRef, 2> profile = {{{BlockKind::kSpeedBias, frame}, {BlockKind::kGravity}}};
+/// Adds the rows of a global state in J^T J and J^T r of the factor between frame - 1 and frame, without its
+/// blocks with other global states. @param J derivative of the residual by the state
+template <int Columns>
+void add_global_rows(BlockKind kind, int frame, const Eigen::Matrix<double, 15, Columns>& J,
+                     const ImuLinearization& linear, ReducedSystem& system) {
+  const int row = system.layout.column({kind});
+  const std::array<BlockRef, 2> profile = {{{BlockKind::kSpeedBias, frame}, {kind}}};
   system.widen_profile(profile);
-  system.g.segment<2>(row) += J.transpose() * linear.residual;
+  system.g.segment<Columns>(row) += J.transpose() * linear.residual;
   system.add(row, row, J.transpose() * J);
-  const Eigen::Matrix<double, 2, 30> H = J.transpose() * linear.jacobian();
+  const Eigen::Matrix<double, Columns, 30> H = J.transpose() * linear.jacobian();
   int column = 0;
   for (const BlockRef block : imu_blocks(frame)) {
     const int size = local_size(block.kind);
@@ -82,12 +83,13 @@ int ReducedLayout::column(BlockRef block) const {
     case BlockKind::kExtrinsics:
       return variable_.extrinsics ? first_global() : -1;
     case BlockKind::kGravity:
-      return variable_.gravity ? first_global() + (variable_.extrinsics ? 6 : 0) : -1;
+      return variable_.gravity ? first_gravity() : -1;
+    case BlockKind::kDepthScale:
+      return variable_.depth_scale ? first_depth_scale() : -1;
     case BlockKind::kTimeOffset:
       break;
   }
-  if (!variable_.time_offset) return -1;
-  return first_global() + (variable_.extrinsics ? 6 : 0) + (variable_.gravity ? 2 : 0);
+  return variable_.time_offset ? first_time_offset() : -1;
 }
 
 void ReducedSystem::reset(const ReducedLayout& new_layout) {
@@ -125,8 +127,9 @@ bool has_imu_term(const Window& window, int frame) {
 
 double imu_cost(const Window& window, int frame, const ParameterBlocks& blocks) {
   Vector15 residual;
-  const std::array<const double*, 4> states = addresses(imu_blocks(frame), blocks);
-  imu_residual(window, frame, blocks).evaluate(states.data(), residual.data(), nullptr);
+  const std::optional<TimedImuResidual::Ends> ends = window.imu_ends(frame);
+  TimedImuResidual(*window.frames[static_cast<std::size_t>(frame)].from_previous, ends ? &*ends : nullptr)
+      .evaluate(imu_parameters(frame, blocks).data(), residual.data(), nullptr);
   return 0.5 * residual.squaredNorm();
 }
 
@@ -149,7 +152,14 @@ double add_imu_term(const Window& window, int frame, const Linearization& at, Re
     }
     row += size_a;
   }
-  if (window.estimates_gravity()) add_gravity_rows(window, frame, at.point, linear, system);
+  const Eigen::Matrix<double, 15, 2> J_gravity = linear.J_gravity.leftCols<2>();
+  const VariableGlobals& variable = system.layout.variable_globals();
+  if (variable.gravity) add_global_rows(BlockKind::kGravity, frame, J_gravity, linear, system);
+  if (variable.time_offset && window.time_offset_model == TimeOffsetModel::kInertial) {
+    add_global_rows(BlockKind::kTimeOffset, frame, linear.J_time_offset, linear, system);
+    system.add(system.layout.column({BlockKind::kTimeOffset}), system.layout.column({BlockKind::kGravity}),
+               linear.J_time_offset.transpose() * J_gravity);
+  }
   return 0.5 * linear.residual.squaredNorm();
 }
 

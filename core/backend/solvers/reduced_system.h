@@ -12,8 +12,8 @@
 namespace stillpoint {
 
 /// Column order of the variable states: velocities and biases, newest first (IMU factors couple only
-/// neighbors, so these cause little fill-in); then poses, oldest first; then extrinsics, gravity and time
-/// offset, if variable.
+/// neighbors, so these cause little fill-in); then poses, oldest first; then extrinsics, gravity, time
+/// offset and depth scale, if variable.
 class ReducedLayout {
  public:
   ReducedLayout() = default;
@@ -32,9 +32,14 @@ class ReducedLayout {
 
  private:
   [[nodiscard]] int globals() const {
-    return (variable_.extrinsics ? 6 : 0) + (variable_.gravity ? 2 : 0) + (variable_.time_offset ? 1 : 0);
+    return first_depth_scale() + (variable_.depth_scale ? 1 : 0) - first_global();
   }
   [[nodiscard]] int first_global() const { return first_pose() + 6 * frames_; }
+  [[nodiscard]] int first_gravity() const { return first_global() + (variable_.extrinsics ? 6 : 0); }
+  [[nodiscard]] int first_time_offset() const { return first_gravity() + (variable_.gravity ? 2 : 0); }
+  [[nodiscard]] int first_depth_scale() const {
+    return first_time_offset() + (variable_.time_offset ? 1 : 0);
+  }
 
   int frames_ = 0;
   bool inertial_ = false;

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/visual_terms.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace stillpoint {
 namespace {
-
-/// Landmarks eliminated by one rank update.
-constexpr int kLandmarkBatch = 32;
 
 Pose pose_at(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Vector3d(x)}; }
 
@@ -29,6 +25,7 @@ void VisualTerms::read(const Window& window, const BackendConfig& config, double
   pair_used_.assign(pairs, 0);
   relative_poses_.resize(pairs);
   sums_.resize(pairs);
+  scale_sums_.resize(pairs);
   landmarks_.clear();
   timed_observations_.clear();
   host_frames_.clear();
@@ -76,6 +73,7 @@ void VisualTerms::add_landmark(const Window& window, std::size_t index, const Ba
 /// Linearizes the relative poses of all frame pairs that share landmarks at the current states.
 void VisualTerms::update_relative_poses(const ParameterBlocks& blocks) {
   time_offset_ = *blocks.time_offset();
+  depth_scale_ = *blocks.depth_scale();
   const Pose T_b_c = pose_at(blocks.extrinsics());
   for (int host = 0; host < frames_; ++host) {
     for (int frame = host + 1; frame < frames_; ++frame) {
@@ -113,6 +111,7 @@ VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
 MeasuredPoint VisualTerms::measured_point_at(const TimedObservation& observation) const {
   return {.bearing = at_state(observation.bearing, time_offset_),
           .inverse_depth = observation.inverse_depth,
+          .depth_scale = depth_scale_,
           .has_depth = observation.has_depth};
 }
 
@@ -120,8 +119,8 @@ MeasuredPoint VisualTerms::measured_point_at(const TimedObservation& observation
 BoundedError VisualTerms::host_depth(const VisualLandmark& landmark, double lambda) const {
   if (!landmark.has_depth) return {0.0, 0.0};
   const BoundedError depth =
-      bounded_error((lambda - landmark.measured) / noise_.inverse_depth, noise_.depth_outlier);
-  return {depth.value, depth.slope / noise_.inverse_depth};
+      bounded_error((lambda / depth_scale_ - landmark.measured) / noise_.inverse_depth, noise_.depth_outlier);
+  return {depth.value, depth.slope / noise_.inverse_depth / depth_scale_};
 }
 
 double VisualTerms::cost(const ParameterBlocks& blocks) {
@@ -148,6 +147,8 @@ double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
   update_relative_poses(at.states);
   if (at.at_first_estimates()) move_jacobians_to(at.point);
   for (PairSum& sum : sums_) sum.setZero();
+  for (Column8& sum : scale_sums_) sum.setZero();
+  scale_information_ = host_scale_gradient_ = 0.0;
   information_.setZero();
   gradient_.setZero();
   coupling_.resize(system.layout.size() - system.layout.first_pose(), variable_count_);
@@ -158,6 +159,11 @@ double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
     for (int frame = host + 1; frame < frames_; ++frame) {
       if (pair_used_[pair(host, frame)] != 0) add_pair(host, frame, system);
     }
+  }
+  const int depth_scale = system.layout.column({BlockKind::kDepthScale});
+  if (depth_scale >= 0) {
+    system.H(depth_scale, depth_scale) += scale_information_;
+    system.g[depth_scale] += host_scale_gradient_;
   }
   return 0.5 * total;
 }
@@ -179,6 +185,7 @@ VisualTerms::ObservationTerm VisualTerms::linearize(const TimedObservation& time
   term.rows.row(6).head<2>() += timed.bearing.velocity.transpose() / noise_.bearing;
   term.J_lambda = at.J_point * to.p_cj_ci;
   term.J_lambda[2] += at.J_depth_lambda;
+  term.J_scale = at.J_depth_scale;
   return term;
 }
 
@@ -190,6 +197,8 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
   double total = landmark.information * depth.value * depth.value;
   double information = landmark.information * depth.slope * depth.slope;
   double gradient = landmark.information * depth.slope * depth.value;
+  const bool with_scale = layout.variable_globals().depth_scale;
+  if (with_scale && landmark.has_depth) add_host_scale_terms(landmark, state.lambda, depth, layout);
   for (int frame = landmark.host + 1; frame <= landmark.last; ++frame) {
     const std::size_t shared = pair(landmark.host, frame);
     const TimedObservation& observation = observation_of(landmark, frame);
@@ -199,6 +208,7 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
     const double inverse_weight = inner / observation.information;
     const Eigen::Matrix<double, 8, 3> weighted = term.rows / inverse_weight;
     sums_[shared].noalias() += weighted * term.rows.transpose();
+    if (with_scale) add_scale_terms(landmark, frame, term, 1.0 / inverse_weight, layout);
     if (landmark.column < 0) continue;
     const Column8 column = weighted * term.J_lambda;
     information += term.J_lambda.squaredNorm() / inverse_weight;
@@ -209,6 +219,29 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
   information_[landmark.column] = information;
   gradient_[landmark.column] = gradient;
   return total;
+}
+
+/// H_ps, H_ss, g_s and H_ls of the depth row of one observation. @param weight w
+void VisualTerms::add_scale_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term,
+                                  double weight, const ReducedLayout& layout) {
+  const double weighted = weight * term.J_scale;
+  scale_sums_[pair(landmark.host, frame)] += weighted * term.rows.col(2);
+  scale_information_ += weighted * term.J_scale;
+  if (landmark.column < 0) return;
+  coupling_(layout.column({BlockKind::kDepthScale}) - layout.first_pose(), landmark.column) +=
+      weighted * term.J_lambda[2];
+}
+
+/// H_ss, g_s and H_ls of the depth in the host. @param depth of `host_depth`
+void VisualTerms::add_host_scale_terms(const VisualLandmark& landmark, double lambda,
+                                       const BoundedError& depth, const ReducedLayout& layout) {
+  const double J_scale = -depth.slope * lambda / depth_scale_;
+  const double weighted = landmark.information * J_scale;
+  scale_information_ += weighted * J_scale;
+  host_scale_gradient_ += weighted * depth.value;
+  if (landmark.column < 0) return;
+  coupling_(layout.column({BlockKind::kDepthScale}) - layout.first_pose(), landmark.column) +=
+      weighted * depth.slope;
 }
 
 /// H_pl += M_ij^T w J_y^T J_l of one observation. @param column w [J_y r]^T J_l
@@ -239,6 +272,8 @@ void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
                                    {system.layout.column({BlockKind::kPose, frame}), to.J_pose_j},
                                    {system.layout.column({BlockKind::kExtrinsics}), to.J_extrinsics}};
   const int time = system.layout.column({BlockKind::kTimeOffset});
+  const int scale = system.layout.column({BlockKind::kDepthScale});
+  const Column8& scale_sum = scale_sums_[pair(host, frame)];
   for (const PoseBlock& a : pose_blocks) {
     if (a.column < 0) continue;
     const Matrix6 left = a.map.transpose() * sum.topLeftCorner<6, 6>();
@@ -248,38 +283,15 @@ void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
     }
     system.g.segment<6>(a.column).noalias() += a.map.transpose() * sum.block<6, 1>(0, 7);
     if (time >= 0) system.H.block<1, 6>(time, a.column).noalias() += sum.block<1, 6>(6, 0) * a.map;
+    if (scale >= 0) {
+      system.H.block<1, 6>(scale, a.column).noalias() += scale_sum.head<6>().transpose() * a.map;
+    }
   }
+  if (scale >= 0) system.g[scale] += scale_sum[7];
+  if (scale >= 0 && time >= 0) system.H(scale, time) += scale_sum[6];
   if (time < 0) return;
   system.H(time, time) += sum(6, 6);
   system.g[time] += sum(6, 7);
-}
-
-void VisualTerms::eliminate(double damping, Eigen::Ref<RowMajorMatrix> S, Eigen::Ref<Eigen::VectorXd> rhs) {
-  const Eigen::Index states = coupling_.rows();
-  scaled_.resize(states, kLandmarkBatch);
-  for (int begin = 0; begin < variable_count_; begin += kLandmarkBatch) {
-    const int count = std::min(kLandmarkBatch, variable_count_ - begin);
-    int first_frame = frames_;
-    for (int i = 0; i < count; ++i) {
-      const int landmark = begin + i;
-      first_frame = std::min(first_frame, host_frames_[static_cast<std::size_t>(landmark)]);
-      const double damped = information_[landmark] * (1.0 + damping);
-      const double inverse_root = damped > 0.0 ? 1.0 / std::sqrt(damped) : 0.0;
-      scaled_.col(i) = inverse_root * coupling_.col(landmark);
-      rhs.tail(states) += (gradient_[landmark] * inverse_root) * scaled_.col(i);
-    }
-    // A landmark involves only the poses from its host on.
-    const Eigen::Index involved = states - 6 * first_frame;
-    S.bottomRightCorner(involved, involved)
-        .selfadjointView<Eigen::Lower>()
-        .rankUpdate(scaled_.bottomRows(involved).leftCols(count), -1.0);
-  }
-}
-
-void VisualTerms::apply_step(const ReusableVector& step, ParameterBlocks& blocks) const {
-  for (const VisualLandmark& landmark : landmarks_) {
-    if (landmark.column >= 0) *blocks.inverse_depth(landmark.index) += step[landmark.column];
-  }
 }
 
 }  // namespace stillpoint

@@ -30,6 +30,9 @@ enum class LandmarkSelection { kAll, kHostedByOldest };
 ///
 /// plus the host depth residual in H_ll and g_l, so its elimination is a rank-one update,
 /// S -= H_pl H_ll^-1 H_pl^T.
+///
+/// If the depth scale s is variable, it has the sum a_ij = sum w J_s [J_y r] per pair, mapped likewise to
+/// H_ps and g_s, and H_ss = sum w J_s^2; both only from depth rows.
 class VisualTerms {
  public:
   /// Reads the observations of a window; allocates only if it is larger than all windows before.
@@ -84,6 +87,7 @@ class VisualTerms {
   struct ObservationTerm {
     Eigen::Matrix<double, 8, 3> rows;  // [J_y r]^T
     Eigen::Vector3d J_lambda;
+    double J_scale;  // of the depth row
   };
 
   void add_landmark(const Window& window, std::size_t index, const BackendConfig& config);
@@ -95,6 +99,10 @@ class VisualTerms {
     return timed_observations_[landmark.first_observation +
                                static_cast<std::size_t>(frame - landmark.host - 1)];
   }
+  void add_scale_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term, double weight,
+                       const ReducedLayout& layout);
+  void add_host_scale_terms(const VisualLandmark& landmark, double lambda, const BoundedError& depth,
+                            const ReducedLayout& layout);
   [[nodiscard]] BoundedError host_depth(const VisualLandmark& landmark, double lambda) const;
   [[nodiscard]] ObservationTerm linearize(const TimedObservation& timed, const RelativePoseLinearization& to,
                                           const LandmarkState& host) const;
@@ -112,6 +120,7 @@ class VisualTerms {
   bool marginalizes_ = false;  // only a fraction of the information, see marginalized_fraction
   double cauchy_squared_ = 1.0;
   double time_offset_ = 0.0;
+  double depth_scale_ = 1.0;
   ReprojectionNoise noise_;
   ObservationModel observation_model_;
   std::vector<VisualLandmark> landmarks_;
@@ -119,6 +128,9 @@ class VisualTerms {
   std::vector<std::uint8_t> pair_used_;
   std::vector<RelativePoseLinearization> relative_poses_;
   std::vector<PairSum> sums_;
+  std::vector<Column8> scale_sums_;   // a_ij
+  double scale_information_ = 0.0;    // H_ss
+  double host_scale_gradient_ = 0.0;  // part of g_s
   int variable_count_ = 0;
   std::vector<int> host_frames_;  // host of each variable landmark
   ReusableVector information_;

@@ -27,7 +27,7 @@ Pose unpack_pose(const double* values) {
 
 void ParameterBlocks::assign(const Window& window) {
   frames_ = window.frames.size();
-  values_.resize(16 * frames_ + 11 + window.landmarks.size());
+  values_.resize(16 * frames_ + 12 + window.landmarks.size());
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     const NavState& state = window.frames[i].state;
     pack_pose(state.T_w_b, pose(i));
@@ -35,6 +35,7 @@ void ParameterBlocks::assign(const Window& window) {
   }
   pack_pose(window.T_b_c, extrinsics());
   *time_offset() = window.time_offset_s;
+  *depth_scale() = window.depth_scale;
   Eigen::Map<Eigen::Vector3d>{gravity()} = window.gravity_w;
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     *inverse_depth(i) = window.landmarks[i].inverse_depth;
@@ -51,6 +52,8 @@ std::size_t ParameterBlocks::offset(BlockRef block) const {
       return 16 * frames_;
     case BlockKind::kGravity:
       return 16 * frames_ + 8;
+    case BlockKind::kDepthScale:
+      return 16 * frames_ + 11;
     case BlockKind::kTimeOffset:
       break;
   }
@@ -62,6 +65,7 @@ Linearization linearize_at(const ParameterBlocks& now, const Window& window, con
   if (!has_consistent_prior(window, config)) return {now, now};
   point = now;
   for (const PriorBlock& block : window.prior.blocks) {
+    if (block.kind == BlockKind::kTimeOffset || block.kind == BlockKind::kDepthScale) continue;
     std::copy_n(block.linearization.data(), global_size(block.kind), point.at({block.kind, block.frame}));
   }
   return {now, point};
@@ -78,6 +82,7 @@ void unpack(const ParameterBlocks& blocks, Window& window) {
   }
   window.T_b_c = unpack_pose(blocks.extrinsics());
   window.time_offset_s = *blocks.time_offset();
+  window.depth_scale = *blocks.depth_scale();
   window.gravity_w = Eigen::Vector3d(blocks.gravity());
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     window.landmarks[i].inverse_depth = *blocks.inverse_depth(i);
@@ -104,12 +109,14 @@ VariableGlobals variable_globals(const Window& window, const BackendConfig& conf
                                           window.frames.back().state.v_w.norm() > kMinSpeedForCalibration);
   return {.extrinsics = config.estimate_extrinsics && moving,
           .time_offset = config.estimate_time_offset && moving,
-          .gravity = window.estimates_gravity()};
+          .gravity = window.estimates_gravity(),
+          .depth_scale = config.depth.estimate_scale && window.inertial};
 }
 
 VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config) {
-  if (has_consistent_prior(window, config)) return variable_globals(window, config);
-  return {.gravity = window.estimates_gravity()};
+  VariableGlobals globals = variable_globals(window, config);
+  if (!has_consistent_prior(window, config)) globals.extrinsics = globals.time_offset = false;
+  return globals;
 }
 
 double marginalized_fraction(const Landmark& landmark, const Window& window, const BackendConfig& config) {
@@ -138,6 +145,7 @@ std::vector<BlockRef> candidate_blocks(const Window& window, const BackendConfig
   if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
   if (globals.gravity) blocks.push_back({BlockKind::kGravity});
   if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
+  if (globals.depth_scale) blocks.push_back({BlockKind::kDepthScale});
   return blocks;
 }
 

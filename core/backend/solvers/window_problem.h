@@ -18,8 +18,8 @@ struct BlockRef {
 };
 
 /// Copies of the window's states in the solver's layout: T_w_b of each frame as (p, q xyzw), then each
-/// frame's v, gyro bias and accel bias, then T_b_c, the time offset, gravity, and the inverse depth of each
-/// landmark, usable or not.
+/// frame's v, gyro bias and accel bias, then T_b_c, the time offset, gravity, the depth scale, and the
+/// inverse depth of each landmark, usable or not.
 ///
 /// A single array: Ceres orders blocks by address, so with separate arrays the elimination order, and thereby
 /// the rounding of the result, would depend on the allocator.
@@ -36,7 +36,8 @@ class ParameterBlocks {
   [[nodiscard]] double* extrinsics() { return &values_[16 * frames_]; }
   [[nodiscard]] double* time_offset() { return &values_[16 * frames_ + 7]; }
   [[nodiscard]] double* gravity() { return &values_[16 * frames_ + 8]; }
-  [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 11 + landmark]; }
+  [[nodiscard]] double* depth_scale() { return &values_[16 * frames_ + 11]; }
+  [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 12 + landmark]; }
   [[nodiscard]] double* at(BlockRef block) { return &values_[offset(block)]; }
 
   [[nodiscard]] const double* pose(std::size_t frame) const { return &values_[7 * frame]; }
@@ -46,8 +47,9 @@ class ParameterBlocks {
   [[nodiscard]] const double* extrinsics() const { return &values_[16 * frames_]; }
   [[nodiscard]] const double* time_offset() const { return &values_[16 * frames_ + 7]; }
   [[nodiscard]] const double* gravity() const { return &values_[16 * frames_ + 8]; }
+  [[nodiscard]] const double* depth_scale() const { return &values_[16 * frames_ + 11]; }
   [[nodiscard]] const double* inverse_depth(std::size_t landmark) const {
-    return &values_[16 * frames_ + 11 + landmark];
+    return &values_[16 * frames_ + 12 + landmark];
   }
   [[nodiscard]] const double* at(BlockRef block) const { return &values_[offset(block)]; }
 
@@ -70,7 +72,8 @@ struct Linearization {
 /// consistent one the states that the prior involves are replaced by their linearization points in the prior
 /// (first-estimates Jacobians, Huang et al. 2009): the null space of the prior is that at its linearization
 /// points, and if the other residuals had another one, the world would gain information about its own
-/// position and orientation.
+/// position and orientation. Time offset and depth scale remain at `now`: a displacement does not change
+/// them.
 /// @param point storage for the point
 [[nodiscard]] Linearization linearize_at(const ParameterBlocks& now, const Window& window,
                                          const BackendConfig& config, ParameterBlocks& point);
@@ -99,10 +102,11 @@ struct VariableGlobals {
   bool extrinsics = false;
   bool time_offset = false;
   bool gravity = false;
+  bool depth_scale = false;
 };
 /// In the solve.
 [[nodiscard]] VariableGlobals variable_globals(const Window& window, const BackendConfig& config);
-/// In marginalize_oldest. With the published prior calibration is constant there.
+/// In marginalize_oldest. With the published prior extrinsics and time offset are constant there.
 [[nodiscard]] VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config);
 
 /// Fraction of the information of a landmark of the oldest frame that marginalize_oldest adds to the prior.

@@ -101,9 +101,10 @@ std::vector<PointObservation> known_points(const Window& window, const DepthConf
   for (const Landmark& landmark : window.landmarks) {
     if (landmark.dynamic || landmark.last() != window.newest() || landmark.host == window.newest()) continue;
     const Observation& host = landmark.observations.front();
-    const bool measured = host.depth > 0.0 && host.depth <= depth.max_m;
+    const double measured_m = host.depth / window.depth_scale;
+    const bool measured = measured_m > 0.0 && measured_m <= depth.max_m;
     double inverse_depth = landmark.inverse_depth;
-    if (inverse_depth <= 0.0 && measured) inverse_depth = 1.0 / host.depth;
+    if (inverse_depth <= 0.0 && measured) inverse_depth = 1.0 / measured_m;
     if (inverse_depth <= 0.0) continue;
     observations.push_back({window.position(landmark, inverse_depth), landmark.observations.back().bearing});
   }

@@ -34,9 +34,10 @@ double confirmed_depth(const Window& window, const Landmark& landmark, const Dep
   int count = 0;
   for (int frame = landmark.host; frame <= landmark.last(); ++frame) {
     const Observation& observation = landmark.observation_in(frame);
-    if (observation.depth <= 0.0 || observation.depth > config.max_m) continue;
+    const double measured = observation.depth / window.depth_scale;
+    if (measured <= 0.0 || measured > config.max_m) continue;
     const Eigen::Vector3d p_w =
-        window.T_w_c(frame) * Eigen::Vector3d(observation.depth * observation.bearing.homogeneous());
+        window.T_w_c(frame) * Eigen::Vector3d(measured * observation.bearing.homogeneous());
     const double depth = (T_chost_w * p_w).z();
     if (depth <= 0.0 || !another_view_agrees(window, landmark, {p_w, frame}, tolerance)) continue;
     sum += depth;

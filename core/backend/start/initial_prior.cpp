@@ -77,11 +77,14 @@ LinearPrior calibration_prior(const Window& window, const BackendConfig& config)
   LinearPrior prior;
   prior.blocks.push_back(prior_block(window, BlockKind::kExtrinsics, -1));
   prior.blocks.push_back(prior_block(window, BlockKind::kTimeOffset, -1));
-  prior.residual = Eigen::VectorXd::Zero(7);
-  prior.jacobian = Eigen::MatrixXd::Zero(7, 7);
+  if (config.depth.estimate_scale) prior.blocks.push_back(prior_block(window, BlockKind::kDepthScale, -1));
+  const Eigen::Index size = config.depth.estimate_scale ? 8 : 7;
+  prior.residual = Eigen::VectorXd::Zero(size);
+  prior.jacobian = Eigen::MatrixXd::Zero(size, size);
   prior.jacobian.topLeftCorner<6, 6>() =
       pose_root_information(config.extrinsics_sigma_m, config.extrinsics_sigma_rad);
   prior.jacobian(6, 6) = 1.0 / config.time_offset_sigma_s;
+  if (config.depth.estimate_scale) prior.jacobian(7, 7) = 1.0 / config.depth.scale_sigma;
   return prior;
 }
 

@@ -12,7 +12,8 @@ namespace stillpoint {
 /// gravity is estimated, it is constrained by `Window::gravity_covariance`.
 [[nodiscard]] LinearPrior initial_prior(const Window& window, const BackendConfig& config);
 
-/// Prior on extrinsics and time offset at their current values, with the configured uncertainty.
+/// Prior on extrinsics, time offset and, if estimated, depth scale at their current values, with the
+/// configured uncertainty.
 [[nodiscard]] LinearPrior calibration_prior(const Window& window, const BackendConfig& config);
 
 /// Restores the gauge after a jump of the whole window. Without inertial data only the marginalization prior

@@ -22,6 +22,9 @@ void check_scale(const BackendConfig& backend, const ImuConfig& imu) {
                      "\"monocular\" requires backend.depth.usage = \"off\"; with depth use \"window\" or "
                      "\"instant\"");
   }
+  if (backend.depth.estimate_scale && backend.depth.usage != DepthUsage::kWeighted) {
+    throw InputError("backend.depth.estimate_scale", "requires backend.depth.usage = \"weighted\"");
+  }
 }
 
 }  // namespace stillpoint

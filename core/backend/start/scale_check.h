@@ -8,7 +8,7 @@
 namespace stillpoint {
 
 /// @throws InputError if depth is off and there is no IMU or no monocular initializer, and for a monocular
-/// initializer with depth
+/// initializer with depth; if the depth scale is to be estimated without depth residuals
 void check_scale(const BackendConfig& backend, const ImuConfig& imu);
 
 }  // namespace stillpoint

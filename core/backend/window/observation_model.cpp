@@ -2,9 +2,18 @@
 #include "core/backend/window/observation_model.h"
 
 namespace stillpoint {
+namespace {
+
+/// A bearing at the time of the middle row, where the state is defined.
+TimedBearing without_readout(const TimedBearing& timed, double readout_offset_s) {
+  return {.bearing = timed.bearing - readout_offset_s * timed.velocity};
+}
+
+}  // namespace
 
 void ObservationModel::read(const Window& window) {
   inertial_ = window.inertial;
+  at_exposure_ = window.time_offset_model == TimeOffsetModel::kInertial;
   cameras_.resize(window.frames.size());
   const Eigen::Matrix3d R_c_b = window.T_b_c.R().transpose();
   const Eigen::Vector3d lever_c = R_c_b * window.T_b_c.p;
@@ -30,11 +39,11 @@ TimedBearing ObservationModel::at(const Landmark& landmark, int frame,
   TimedBearing timed{.bearing = observation.bearing,
                      .velocity = observation.velocity,
                      .exposure_s = observation.readout_offset_s - camera.time_offset_s};
-  if (!inertial_) return timed;
+  if (!inertial_) return at_exposure_ ? without_readout(timed, observation.readout_offset_s) : timed;
   const Eigen::Vector3d p_c = camera.R_c_w * (position_w - camera.p_w);
   const Eigen::Vector3d velocity_c = camera.velocity_c - camera.rate_c.cross(p_c);
   timed.velocity = (velocity_c.head<2>() - p_c.head<2>() / p_c.z() * velocity_c.z()) / p_c.z();
-  return timed;
+  return at_exposure_ ? without_readout(timed, observation.readout_offset_s) : timed;
 }
 
 Eigen::Vector3d ObservationModel::position(const Landmark& landmark) const {

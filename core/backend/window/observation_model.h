@@ -20,6 +20,9 @@ struct TimedBearing {
 /// frame,
 ///
 ///   dp/dt = -v_c - w x p,    du/dt = (dp/dt_xy - u dp/dt_z) / p_z,    u = p_xy / p_z.
+///
+/// With `TimeOffsetModel::kInertial` the states are defined at the exposures: bearings are shifted by the
+/// readout of their rows only, and do not depend on the time offset.
 class ObservationModel {
  public:
   /// Reads the current states of the window; allocates only if it has more frames than all windows before.
@@ -41,6 +44,7 @@ class ObservationModel {
   };
 
   bool inertial_ = false;
+  bool at_exposure_ = false;
   std::vector<Camera> cameras_;
 };
 

@@ -2,12 +2,15 @@
 /// The state that the estimator refines: frames of the sliding window, landmarks, calibration and the prior.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "core/backend/factors/exposure_shift.h"
 #include "core/backend/factors/linear_prior.h"
 #include "core/base/vector_pool.h"
+#include "core/config/backend_config.h"
 #include "core/imu/preintegration.h"
 #include "core/types/nav_state.h"
 #include "core/types/rig.h"
@@ -42,14 +45,16 @@ struct Landmark {
   }
 };
 
-/// One frame of the window. The state is defined at IMU time `state.t + time_offset_s`.
+/// One frame of the window. The state is defined at IMU time `state.t + time_offset_s`; with
+/// `TimeOffsetModel::kInertial` at the exposure, and only the preintegrations end at that time.
 struct WindowFrame {
   std::int64_t id = 0;
   NavState state;
-  double time_offset_s = 0.0;                        ///< estimated offset when the frame was added
-  Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();  ///< angular rate at the exposure, bias included [rad/s]
-  bool at_rest = false;                              ///< the velocity was zero, by `is_at_rest`
-  std::optional<Preintegration> from_previous;       ///< absent in the first frame and without an IMU
+  double time_offset_s = 0.0;                         ///< estimated offset when the frame was added
+  Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();   ///< angular rate at the exposure, bias included [rad/s]
+  Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();  ///< same: specific force [m/s^2]
+  bool at_rest = false;                               ///< the velocity was zero, by `is_at_rest`
+  std::optional<Preintegration> from_previous;        ///< absent in the first frame and without an IMU
   bool imu_is_reliable = true;  ///< false: `from_previous` has the noise of missing or wrong samples
 };
 
@@ -58,17 +63,26 @@ struct Window {
   std::vector<Landmark> landmarks;  ///< sorted by id
   Pose T_b_c;
   double time_offset_s = 0.0;
+  TimeOffsetModel time_offset_model = TimeOffsetModel::kBearing;
+  double depth_scale = 1.0;  ///< ratio of measured to true depth
   Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();
   /// Covariance of the direction of gravity [rad^2] in its tangent space (see gravity_direction.h) when the
   /// current initial prior was built; absent: gravity is constant.
   std::optional<Eigen::Matrix2d> gravity_covariance;
   bool inertial = false;                     ///< IMU initialized: gravity and velocities are valid
   LinearPrior prior;                         ///< marginalization prior on the states
-  LinearPrior calibration;                   ///< prior on extrinsics and time offset
+  LinearPrior calibration;                   ///< prior on extrinsics, time offset and depth scale
   VectorPool<Observation> observation_pool;  ///< of removed landmarks
   VectorPool<ImuSample> sample_pool;         ///< of removed preintegrations
 
   [[nodiscard]] bool estimates_gravity() const { return inertial && gravity_covariance.has_value(); }
+  /// Ends of the preintegration to `frame` >= 1; none if the states are defined there.
+  [[nodiscard]] std::optional<std::array<ImuEnd, 2>> imu_ends(int frame) const {
+    if (time_offset_model == TimeOffsetModel::kBearing) return std::nullopt;
+    const auto end = [](const WindowFrame& f) { return ImuEnd{f.time_offset_s, f.gyro_b, f.accel_b}; };
+    const auto index = static_cast<std::size_t>(frame);
+    return std::array{end(frames[index - 1]), end(frames[index])};
+  }
   [[nodiscard]] int newest() const { return static_cast<int>(frames.size()) - 1; }
   [[nodiscard]] Pose T_w_c(int frame) const {
     return frames[static_cast<std::size_t>(frame)].state.T_w_b * T_b_c;

@@ -97,11 +97,12 @@ class DeviceRun {
   }
 
   void process(FrameJob& job, Time exposed) {
-    const Timestamp imu_end = imu_end_of(job.frame.t, input_.rig);
-    imu_of_tracker_.feed_until(imu_end, stages_.tracking);
-    imu_of_estimator_.feed_until(imu_end, stages_.optimization);
+    const Feedback& feedback = available_feedback();
+    imu_of_tracker_.feed_until(imu_end_of(job.frame.t, feedback.motion.time_offset_s), stages_.tracking);
+    imu_of_estimator_.feed_until(imu_end_of(job.frame.t, stages_.optimization.motion_state().time_offset_s),
+                                 stages_.optimization);
     job.enters_window = stages_.rate.admits(job.frame.t);
-    job.tracked = stages_.tracking.process(job.frame, job.enters_window, available_feedback());
+    job.tracked = stages_.tracking.process(job.frame, job.enters_window, feedback);
     const Time tracked_at =
         cores_.occupy(now_, cost_of(clock_.device.tracking, job.tracked.timings[Module::kTrackingThread]));
     if (job.enters_window) detect(job.frame);

@@ -24,7 +24,7 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
   int resets = 0;
   while (const std::optional<FrameJob> job = loader.next()) {
     const Frame& frame = job->frame;
-    imu.feed_through(imu_end_of(frame.t, input.rig), odometry);
+    imu.feed_through(last_imu_end_of(frame.t, config, input.rig), odometry);
     DetectionJob detections;
     if (odometry.enters_window(frame.t)) detections = detect_objects(*detector, frame);
     OdometryUpdate& update = odometry.track(frame, detections.set);
@@ -35,7 +35,7 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
                      .tracked = odometry.tracked(),
                      .dynamic = odometry.dynamic(),
                      .update = update,
-                     .available = imu_end_of(frame.t, input.rig)});
+                     .available = imu_end_of(frame.t, update.time_offset_s)});
   }
   RunSummary summary = completed(loader.summary(), odometry.imu_health(), *detector);
   summary.resets = resets;
@@ -56,7 +56,9 @@ RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config,
   FrameLoader loader(input, control);
   ImuFeed imu(input.imu);
   while (std::optional<FrameJob> job = loader.next()) {
-    if (!imu.feed_through(imu_end_of(job->frame.t, input.rig), odometry)) odometry.finish_imu();
+    if (!imu.feed_through(last_imu_end_of(job->frame.t, config, input.rig), odometry)) {
+      odometry.finish_imu();
+    }
     odometry.add_frame(std::move(job->frame), job->decoding);
   }
   odometry.finish();

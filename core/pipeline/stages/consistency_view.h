@@ -39,7 +39,7 @@ namespace stillpoint {
     for (int frame = landmark.host; frame <= landmark.last(); ++frame) {
       const Observation& observation = landmark.observation_in(frame);
       view.observations.push_back(
-          {.frame = frame, .bearing = observation.bearing, .depth = observation.depth});
+          {.frame = frame, .bearing = observation.bearing, .depth = observation.depth / window.depth_scale});
     }
   }
   return view;

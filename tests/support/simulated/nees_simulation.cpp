@@ -39,9 +39,12 @@ Rig draw_rig(const NeesDraw& draw) {
   return rig;
 }
 
-/// The truth at the IMU time of a frame of the window; poses are relative to the pose that fixes the gauge.
-NavState truth_at(const WindowFrame& frame) {
-  return SimulatedMotion::state(to_seconds(frame.state.t) + frame.time_offset_s);
+/// The truth at the IMU time at which the state of a frame is defined: that of the exposure, or what the
+/// estimator held for it when the frame was added.
+NavState truth_at(const Window& window, const WindowFrame& frame, const SimulatedMotion& motion) {
+  const bool at_exposure = window.time_offset_model == TimeOffsetModel::kInertial;
+  return SimulatedMotion::state(to_seconds(frame.state.t) +
+                                (at_exposure ? motion.time_offset_s : frame.time_offset_s));
 }
 
 class Comparison {
@@ -51,7 +54,7 @@ class Comparison {
   std::vector<NeesTerm> terms(const StateCovariance& covariance, const SimulatedMotion& motion) {
     const Window& window = estimator_.window();
     const NavState& state = window.frames.back().state;
-    const NavState truth = truth_at(window.frames.back());
+    const NavState truth = truth_at(window, window.frames.back(), motion);
     const Pose true_pose = T_we_wt_ * truth.T_w_b;
     add("position", state.T_w_b.p - true_pose.p, covariance.position());
     add("orientation", log_so3(true_pose.q.conjugate() * state.T_w_b.q), covariance.rotation());
@@ -61,6 +64,8 @@ class Comparison {
     add("gravity", gravity_difference(window.gravity_w, gravity), covariance.gravity);
     add("time offset", Eigen::Matrix<double, 1, 1>(window.time_offset_s - motion.time_offset_s),
         Eigen::Matrix<double, 1, 1>(covariance.time_offset));
+    add("depth scale", Eigen::Matrix<double, 1, 1>(window.depth_scale - motion.depth_factor),
+        Eigen::Matrix<double, 1, 1>(covariance.depth_scale));
     const Pose T_b_c = SimulatedMotion::rig().T_b_c;
     add("extrinsic position", window.T_b_c.p - T_b_c.p, covariance.extrinsics.topLeftCorner<3, 3>());
     add("extrinsic rotation", log_so3(T_b_c.q.conjugate() * window.T_b_c.q),
@@ -98,7 +103,7 @@ std::vector<std::vector<NeesTerm>> simulate_nees(const OdometryConfig& config, c
     const bool valid = update.status == OdometryStatus::kTracking && update.covariance;
     if (valid && !T_we_wt) {
       const WindowFrame& first = estimator.window().frames.front();
-      T_we_wt = first.state.T_w_b * truth_at(first).T_w_b.inverse();
+      T_we_wt = first.state.T_w_b * truth_at(estimator.window(), first, motion).T_w_b.inverse();
     }
     if (t < checkpoints[result.size()]) continue;
     result.emplace_back();

@@ -24,12 +24,18 @@ struct SimulatedWindowOptions {
   bool inertial = true;
   int frames = 20;   ///< at 10 Hz
   int points = 300;  ///< about half of them become landmarks
+  double time_offset_s = 0.0;
+  double depth_factor = 1.0;  ///< ratio of measured to true depth
 };
 
 /// The window after a simulated motion with the noise of a good camera; the newest state is perturbed.
 inline Window simulated_window(const SimulatedWindowOptions& options = {}) {
-  const SimulatedMotion motion{
-      .pixel_noise_px = 0.3, .depth_noise = 0.003, .noisy_imu = true, .points = options.points};
+  const SimulatedMotion motion{.pixel_noise_px = 0.3,
+                               .depth_noise = 0.003,
+                               .depth_factor = options.depth_factor,
+                               .noisy_imu = true,
+                               .time_offset_s = options.time_offset_s,
+                               .points = options.points};
   ImuConfig imu;
   imu.enabled = options.inertial;
   Estimator estimator(options.config, imu, SimulatedMotion::rig(), 1);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/backend/online_calibration.h"
 #include "tests/support/simulated/nees_simulation.h"
 
 namespace stillpoint {
@@ -70,16 +69,6 @@ TEST(EstimatorConsistency, ATimeOffsetFarFromTheCalibratedOneIsFound) {
       EXPECT_LT(term.error, 0.004) << true_s;
     }
   }
-}
-
-TEST(EstimatorConsistency, TheTimeOffsetIsBounded) {
-  BackendConfig config;
-  config.time_offset_max_s = 0.05;
-  Window window;
-  window.time_offset_s = -0.2;
-  EXPECT_TRUE(bound_time_offset(config, 0.01, window));
-  EXPECT_DOUBLE_EQ(window.time_offset_s, -0.04);
-  EXPECT_FALSE(bound_time_offset(config, 0.01, window));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/pipeline/imu_queue.h"
 #include "tests/support/process_frame.h"
 #include "tests/support/simulated/simulated_motion.h"
 
@@ -150,6 +151,33 @@ TEST(Estimator, EstimatesTheTimeOffset) {
       simulate(SimulatedMotion{.pixel_noise_px = 0.2, .time_offset_s = 0.008}, config, {}, 8.0);
   // The published prior does not contain the offset, which therefore stays nearer to the calibrated value 0.
   EXPECT_NEAR(run.time_offset_s, 0.008, 0.0025);
+  config.time_offset_model = TimeOffsetModel::kInertial;
+  config.gravity = GravityModel::kEstimated;
+  config.prior = PriorModel::kConsistent;
+  const SimulatedRun inertial =
+      simulate(SimulatedMotion{.pixel_noise_px = 0.2, .time_offset_s = 0.008}, config, {}, 8.0);
+  EXPECT_NEAR(inertial.time_offset_s, 0.008, 0.001);
+}
+
+TEST(Estimator, LosesNoPoseAtALargeTimeOffsetWithTheSamplesThatRunnersProvide) {
+  const SimulatedMotion motion{.time_offset_s = 0.1};
+  BackendConfig config = every_frame();
+  config.time_offset_sigma_s = 0.1;
+  Estimator estimator(config, {}, SimulatedMotion::rig(), 1);
+  const std::vector<ImuSample> imu = motion.imu(12.0);
+  std::size_t next = 0;
+  int poses = 0;
+  int lost = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double t = 0.1 + i / kRate_hz;
+    const Timestamp end = imu_end_of(from_seconds(t), estimator.motion_state().time_offset_s);
+    for (; imu[next].t <= end; ++next) estimator.add_imu(imu[next]);
+    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
+    poses += update.status == OdometryStatus::kTracking;
+    lost += update.status == OdometryStatus::kLost;
+  }
+  EXPECT_EQ(lost, 0);
+  EXPECT_GT(poses, 280);
 }
 
 TEST(Estimator, IsDeterministic) {

@@ -49,5 +49,12 @@ TEST(LinearPrior, ARandomStepAddsItsVariance) {
   EXPECT_LT((prior.jacobian.fullPivLu().solve(prior.residual) - minimum).norm(), 1e-9);
 }
 
+TEST(LinearPrior, ARandomStepOfAnAbsentBlockChangesNothing) {
+  LinearPrior prior = pose_and_offset_prior();
+  const Eigen::MatrixXd before = prior.jacobian;
+  add_random_step(BlockKind::kDepthScale, std::array{0.3}, prior);
+  EXPECT_EQ(Eigen::MatrixXd(prior.jacobian), before);
+}
+
 }  // namespace
 }  // namespace stillpoint

@@ -30,16 +30,34 @@ ReprojectionMeasurement measurement() {
 }
 const ReprojectionNoise kNoise{.bearing = 0.003, .inverse_depth = 0.01, .depth_outlier = 2.0};
 
+/// With the depth scale 1.
 Blocks blocks_at(double time_offset) {
-  return {block(kTwBi), block(kTwBj), block(kTbC), {time_offset}, {kInverseDepth}};
+  return {block(kTwBi), block(kTwBj), block(kTbC), {time_offset}, {1.0}, {kInverseDepth}};
+}
+Blocks without_depth_scale(Blocks blocks) {
+  blocks.erase(blocks.begin() + 4);
+  return blocks;
 }
 
 TEST(ReprojectionFactor, JacobiansMatchNumericDifferentiationWithoutDepth) {
-  EXPECT_LT(jacobian_error(ReprojectionFactor<2>(measurement(), kNoise), blocks_at(0.002)), 1e-6);
+  EXPECT_LT(
+      jacobian_error(ReprojectionFactor<2>(measurement(), kNoise), without_depth_scale(blocks_at(0.002))),
+      1e-6);
 }
 
 TEST(ReprojectionFactor, JacobiansMatchNumericDifferentiationWithDepth) {
   EXPECT_LT(jacobian_error(ReprojectionFactor<3>(measurement(), kNoise), blocks_at(0.002)), 1e-6);
+}
+
+TEST(ReprojectionFactor, JacobiansMatchNumericDifferentiationWithADepthScale) {
+  Blocks blocks = blocks_at(0.002);
+  blocks[4] = {0.9};
+  const ReprojectionFactor<3> factor(measurement(), kNoise);
+  EXPECT_LT(jacobian_error(factor, blocks), 1e-6);
+  // By the depth scale to 1e-9: Richardson extrapolation of two step sizes.
+  const Eigen::MatrixXd coarse = numeric_jacobians(factor, blocks, 2e-4)[4];
+  const Eigen::MatrixXd numeric = (4.0 * numeric_jacobians(factor, blocks, 1e-4)[4] - coarse) / 3.0;
+  EXPECT_LT((numeric - analytic_jacobians(factor, blocks)[4]).norm(), 1e-9 * numeric.norm());
 }
 
 TEST(ReprojectionFactor, IsSmoothAtInfinity) {
@@ -78,7 +96,7 @@ TEST(ReprojectionFactor, DepthRowIsBounded) {
 }
 
 TEST(HostDepthFactor, JacobianMatchesNumericDifferentiation) {
-  EXPECT_LT(jacobian_error(HostDepthFactor(0.51, kNoise), {{kInverseDepth}}), 1e-6);
+  EXPECT_LT(jacobian_error(HostDepthFactor(0.51, kNoise), {{0.9}, {kInverseDepth}}), 1e-6);
 }
 
 }  // namespace

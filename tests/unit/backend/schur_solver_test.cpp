@@ -68,6 +68,32 @@ const std::vector<Case> kCases = {
                 o.config.estimate_extrinsics = true;
                 o.frames = 24;
               }),
+    make_case(
+        "InertialTimeOffset",
+        [](SimulatedWindowOptions& o) {
+          o.config.time_offset_model = TimeOffsetModel::kInertial;
+          o.config.gravity = GravityModel::kEstimated;
+          o.config.prior = PriorModel::kConsistent;
+          o.time_offset_s = 0.02;
+          o.frames = 24;
+        },
+        0.02),
+    make_case("DepthScale",
+              [](SimulatedWindowOptions& o) {
+                o.config.depth.estimate_scale = true;
+                o.depth_factor = 0.95;
+              }),
+    make_case("AllCalibration",
+              [](SimulatedWindowOptions& o) {
+                o.config.time_offset_model = TimeOffsetModel::kInertial;
+                o.config.gravity = GravityModel::kEstimated;
+                o.config.prior = PriorModel::kConsistent;
+                o.config.estimate_extrinsics = true;
+                o.config.depth.estimate_scale = true;
+                o.depth_factor = 1.03;
+                o.time_offset_s = -0.01;
+                o.frames = 24;
+              }),
     make_case("FewFrames", [](SimulatedWindowOptions& o) { o.frames = 6; })};
 
 class SchurSolverCase : public testing::TestWithParam<Case> {};
@@ -129,7 +155,8 @@ struct ColumnPairs {
 
 ColumnPairs matching_columns(const Window& window, const ReducedLayout& reduced) {
   const StateLayout reference(static_cast<int>(window.frames.size()));
-  std::vector<BlockRef> blocks = {{BlockKind::kExtrinsics}, {BlockKind::kTimeOffset}, {BlockKind::kGravity}};
+  std::vector<BlockRef> blocks = {
+      {BlockKind::kExtrinsics}, {BlockKind::kTimeOffset}, {BlockKind::kGravity}, {BlockKind::kDepthScale}};
   for (int frame = 0; frame <= window.newest(); ++frame) {
     blocks.push_back({BlockKind::kPose, frame});
     blocks.push_back({BlockKind::kSpeedBias, frame});

@@ -103,18 +103,20 @@ TEST(ImuBuffer, SamplesUpToEqualsSamplesBetweenInsideTheBuffer) {
   EXPECT_EQ(milliseconds(buffer.samples_up_to(at_ms(5), at_ms(20))), (Stamps{5, 10, 20}));
 }
 
+TEST(ImuBuffer, AveragesTheSamplesAroundATime) {
+  const ImuBuffer buffer = filled({0, 10, 20, 30, 40});
+  EXPECT_NEAR(buffer.mean_around(at_ms(20), 0.015)->gyro_b.x(), 20.0, 1e-9);
+  EXPECT_NEAR(buffer.mean_around(at_ms(35), 0.02)->gyro_b.x(), 35.0, 1e-9);   // 30 and 40: 5 ms are covered
+  EXPECT_NEAR(buffer.mean_around(at_ms(24), 0.001)->gyro_b.x(), 24.0, 1e-9);  // interpolated
+  EXPECT_FALSE(buffer.mean_around(at_ms(41), 0.02));
+  EXPECT_FALSE(ImuBuffer().mean_around(at_ms(0), 0.02));
+}
+
 TEST(ImuBuffer, DropsOnlySamplesThatAreNoLongerNeeded) {
   ImuBuffer buffer = filled({0, 10, 20, 30});
   buffer.drop_before(at_ms(15));
   EXPECT_EQ(milliseconds(buffer.samples_between(at_ms(15), at_ms(30))), (Stamps{15, 20, 30}));
   EXPECT_TRUE(buffer.samples_between(at_ms(5), at_ms(30)).empty());  // the sample at 0 ms was dropped
-}
-
-TEST(ImuBuffer, TheMeanRateUsesTheSamplesThatItHas) {
-  const ImuBuffer buffer = filled({0, 10, 20, 30});
-  EXPECT_EQ(buffer.mean_rate(at_ms(20), 0.010)->x(), 20.0);  // of 10, 20, 30 ms
-  EXPECT_EQ(buffer.mean_rate(at_ms(30), 0.010)->x(), 25.0);  // of 20, 30 ms
-  EXPECT_FALSE(buffer.mean_rate(at_ms(100), 0.010));
 }
 
 }  // namespace

@@ -23,27 +23,52 @@ ThreadedOdometryOptions recording(Positions& positions) {
   return {.on_update = [&](const OdometryUpdate& update) { positions.push_back(update.T_w_c.p); }};
 }
 
-Positions run_single_threaded(const SlidingPlane& plane, const OdometryConfig& config) {
+Positions run_single_threaded(const SlidingPlane& plane, const std::vector<ImuSample>& imu,
+                              const OdometryConfig& config) {
   Odometry odometry(config, inertial_plane_rig(plane));
-  for (const ImuSample& sample : plane_imu(2.0)) odometry.add_imu(sample);
+  for (const ImuSample& sample : imu) odometry.add_imu(sample);
   Positions positions;
   for (std::size_t i = 0; i < kFrames; ++i) positions.push_back(odometry.track(plane.frame(i)).T_w_c.p);
   return positions;
 }
 
+Positions run_on_threads(const SlidingPlane& plane, const std::vector<ImuSample>& imu,
+                         const OdometryConfig& config) {
+  Positions positions;
+  ThreadedOdometry odometry(config, inertial_plane_rig(plane), recording(positions));
+  std::jthread sensor([&] {
+    for (const ImuSample& sample : imu) odometry.add_imu(sample);
+    odometry.finish_imu();
+  });
+  for (std::size_t i = 0; i < kFrames; ++i) EXPECT_TRUE(odometry.add_frame(plane.frame(i)));
+  sensor.join();  // `finish` would not wait for the rest of the samples
+  odometry.finish();
+  return positions;
+}
+
 TEST(ThreadedOdometry, IsBitEqualToOdometryForEachLag) {
   const SlidingPlane plane(kFrames);
+  const std::vector<ImuSample> imu = plane_imu(2.0);
   for (const int lag : {0, 1, 3}) {
-    Positions positions;
-    ThreadedOdometry odometry(inertial_config(lag), inertial_plane_rig(plane), recording(positions));
-    std::jthread imu([&] {
-      for (const ImuSample& sample : plane_imu(2.0)) odometry.add_imu(sample);
-      odometry.finish_imu();
-    });
-    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_TRUE(odometry.add_frame(plane.frame(i)));
-    imu.join();  // `finish` would not wait for the rest of the samples
-    odometry.finish();
-    EXPECT_EQ(positions, run_single_threaded(plane, inertial_config(lag))) << "lag " << lag;
+    const OdometryConfig config = inertial_config(lag);
+    EXPECT_EQ(run_on_threads(plane, imu, config), run_single_threaded(plane, imu, config)) << "lag " << lag;
+  }
+}
+
+/// The tracker, which gets feedback with a lag, and the optimization use samples up to different times.
+TEST(ThreadedOdometry, IsBitEqualToOdometryWhileTheTimeOffsetChanges) {
+  const SlidingPlane plane(kFrames);
+  Random random(5);
+  std::vector<ImuSample> imu = plane_imu(2.0);
+  for (ImuSample& sample : imu) {
+    for (int k = 0; k < 3; ++k) sample.gyro_b[k] += 0.05 * random.normal();
+    for (int k = 0; k < 3; ++k) sample.accel_b[k] += 0.2 * random.normal();
+  }
+  for (const int lag : {0, 1, 3}) {
+    OdometryConfig config = inertial_config(lag);
+    config.backend.time_offset_model = TimeOffsetModel::kInertial;
+    config.backend.prior = PriorModel::kConsistent;
+    EXPECT_EQ(run_on_threads(plane, imu, config), run_single_threaded(plane, imu, config)) << "lag " << lag;
   }
 }
 

@@ -89,6 +89,18 @@ TEST(RunResult, WarnsOfRepairedFilesGapsAndMissingBoxes) {
   EXPECT_DOUBLE_EQ(json["detector"]["fraction_without_boxes"], 0.25);  // 15 of 60
 }
 
+TEST(RunResult, WarnsOfACalibrationAtItsBound) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  run.calibration = {.time_offset_s = 0.15, .time_offset_sigma_s = 0.002, .time_offset_at_bound = 7};
+  const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, std::move(run))));
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  EXPECT_NE(json["warnings"][0].get<std::string>().find("0.1500 s"), std::string::npos);
+  EXPECT_DOUBLE_EQ(json["calibration"]["time_offset_sigma_s"], 0.002);
+  EXPECT_EQ(json["calibration"]["frames_at_bound"]["time_offset"], 7);
+  EXPECT_DOUBLE_EQ(json["calibration"]["depth_scale"], 1.0);
+}
+
 TEST(RunResult, WithoutRecordedBoxesDoesNotCountFramesWithoutThem) {
   const datasets::SequenceInfo info = straight_sequence();
   const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, perfect_run(info, kFrames))));

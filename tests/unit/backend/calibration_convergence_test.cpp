@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Time offset, extrinsics and depth scale converge on a simulated motion of 20 s, with honest uncertainty.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/geometry/so3.h"
+#include "tests/support/process_frame.h"
+#include "tests/support/simulated/simulated_motion.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kRate_hz = 30.0;
+constexpr double kSeconds = 20.0;
+
+/// Errors of the calibration that the estimator starts with.
+struct CalibrationError {
+  double time_offset_s = 0.0;  ///< true value; the rig's is 0
+  double rotation_rad = 0.0;
+  double translation_m = 0.0;
+  double depth_scale = 1.0;  ///< true value
+
+  [[nodiscard]] Pose extrinsics() const {
+    const Eigen::Vector3d axis = Eigen::Vector3d(1.0, -1.0, 1.0).normalized();
+    return Pose{exp_so3(rotation_rad * axis), translation_m * axis};
+  }
+};
+
+BackendConfig calibrating_config() {
+  BackendConfig config;
+  config.rate_hz = 0.0;
+  config.solver = WindowSolverKind::kSchur;
+  config.max_iterations = 4;
+  config.keyframe_max_interval_s = 0.5;
+  config.gravity = GravityModel::kEstimated;
+  config.prior = PriorModel::kConsistent;
+  config.covariance = true;
+  config.time_offset_model = TimeOffsetModel::kInertial;
+  config.depth.usage = DepthUsage::kWeighted;
+  config.depth.outlier_sigmas = 5.0;
+  config.initializer.kind = InitializerKind::kInstant;
+  return config;
+}
+
+/// Remaining errors, and standard deviations by the estimator.
+struct Calibrated {
+  double time_offset_s = 0.0;
+  double time_offset_sigma_s = 0.0;
+  double rotation_rad = 0.0;
+  double translation_m = 0.0;
+  double translation_sigma_m = 0.0;
+  double depth_scale = 0.0;
+  double depth_scale_sigma = 0.0;
+};
+
+/// The IMU has a noise density of a third of the default.
+Calibrated calibrate(const CalibrationError& error, const BackendConfig& config) {
+  SimulatedMotion motion{.pixel_noise_px = 0.5,
+                         .depth_noise = 0.003,
+                         .depth_factor = error.depth_scale,
+                         .noisy_imu = true,
+                         .time_offset_s = error.time_offset_s};
+  motion.imu_noise.gyro_noise /= 3.0;
+  motion.imu_noise.accel_noise /= 3.0;
+  Rig rig = SimulatedMotion::rig();
+  const Pose T_true = rig.T_b_c;
+  rig.T_b_c = Pose{T_true.q * error.extrinsics().q, T_true.p + error.extrinsics().p};
+  rig.imu_noise = motion.imu_noise;
+  Estimator estimator(config, {}, rig, 1);
+  for (const ImuSample& sample : motion.imu(kSeconds + 0.5)) estimator.add_imu(sample);
+  const int frames = static_cast<int>(kSeconds * kRate_hz);
+  for (int i = 0; i < frames; ++i) process_frame(estimator, motion.frame(i, 0.1 + i / kRate_hz));
+
+  const OdometryUpdate& last = estimator.update();
+  const Pose& T_b_c = estimator.window().T_b_c;
+  Calibrated result{.time_offset_s = last.time_offset_s - error.time_offset_s,
+                    .rotation_rad = T_true.q.angularDistance(T_b_c.q),
+                    .translation_m = (T_b_c.p - T_true.p).norm(),
+                    .depth_scale = last.depth_scale - error.depth_scale};
+  if (!last.covariance) return result;
+  result.time_offset_sigma_s = std::sqrt(last.covariance->time_offset);
+  result.translation_sigma_m = std::sqrt(last.covariance->extrinsics.topLeftCorner<3, 3>().trace());
+  result.depth_scale_sigma = std::sqrt(last.covariance->depth_scale);
+  return result;
+}
+
+class TimeOffset : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(CalibrationConvergence, TimeOffset, testing::Values(-0.04, -0.02, 0.0, 0.02, 0.04),
+                         [](const auto& tested) { return "Case" + std::to_string(tested.index); });
+
+TEST_P(TimeOffset, ConvergesToOneMillisecond) {
+  const Calibrated result = calibrate({.time_offset_s = GetParam()}, calibrating_config());
+  EXPECT_LT(std::abs(result.time_offset_s), 0.001);
+  EXPECT_LT(std::abs(result.time_offset_s), 3.0 * result.time_offset_sigma_s);
+}
+
+class DepthScale : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(CalibrationConvergence, DepthScale, testing::Values(0.85, 1.0, 1.15),
+                         [](const auto& tested) { return "Case" + std::to_string(tested.index); });
+
+TEST_P(DepthScale, ConvergesToOnePercent) {
+  BackendConfig config = calibrating_config();
+  config.depth.estimate_scale = true;
+  const Calibrated result = calibrate({.depth_scale = GetParam()}, config);
+  EXPECT_LT(std::abs(result.depth_scale), 0.01 * GetParam());
+  EXPECT_LT(std::abs(result.depth_scale), 3.0 * result.depth_scale_sigma);
+}
+
+/// The motion turns too little to show the translation: it stays within its uncertainty.
+TEST(CalibrationConvergence, AllConvergeTogether) {
+  BackendConfig config = calibrating_config();
+  config.depth.estimate_scale = true;
+  config.estimate_extrinsics = true;
+  config.extrinsics_sigma_rad = 0.035;
+  const Calibrated result = calibrate(
+      {.time_offset_s = 0.03, .rotation_rad = 2.0 * M_PI / 180.0, .translation_m = 0.02, .depth_scale = 0.9},
+      config);
+  EXPECT_LT(std::abs(result.time_offset_s), 0.001);
+  EXPECT_LT(result.rotation_rad, 0.3 * M_PI / 180.0);
+  EXPECT_LT(result.translation_m, 3.0 * result.translation_sigma_m);
+  EXPECT_LT(std::abs(result.depth_scale), 0.009);
+}
+
+TEST(CalibrationConvergence, WithoutAnImuTheDepthScaleStaysAtOne) {
+  BackendConfig config = calibrating_config();
+  config.depth.estimate_scale = true;
+  ImuConfig no_imu;
+  no_imu.enabled = false;
+  const SimulatedMotion motion{.pixel_noise_px = 0.5, .depth_noise = 0.003, .depth_factor = 0.9};
+  Estimator estimator(config, no_imu, SimulatedMotion::rig(), 1);
+  for (int i = 0; i < 60; ++i) process_frame(estimator, motion.frame(i, 0.1 + i / kRate_hz));
+  EXPECT_EQ(estimator.update().depth_scale, 1.0);
+}
+
+}  // namespace
+}  // namespace stillpoint
