@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The estimator's reaction to failures: relocalization, unreliable inertial data, restart.
 #include <algorithm>
-#include <cmath>
 #include <utility>
-
-#include <Eigen/Eigenvalues>
 
 #include "core/backend/estimator.h"
 #include "core/backend/failure_detection.h"
@@ -122,11 +119,7 @@ bool Estimator::update_status() {
   evidence_.inertial = window_.inertial;
   evidence_.has_start = uses_imu() ? window_.inertial : has_metric_scale();
   evidence_.located = false;
-  if (update_.covariance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(update_.covariance->position(),
-                                                               Eigen::EigenvaluesOnly);
-    evidence_.sigma_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
-  }
+  if (update_.covariance) evidence_.sigma_m = largest_sigma(update_.covariance->position());
   const bool alive = evidence_.failure == StatusReason::kNone;
   if (alive && localized_ && !window_.frames.empty()) assess_newest();
   const bool clear = monitor_.update(evidence_, window_);

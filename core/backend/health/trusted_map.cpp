@@ -35,9 +35,7 @@ void TrustedMap::discard_newest() {
 }
 
 void TrustedMap::clear() {
-  newest_ = {};
-  candidate_ = {};
-  earlier_ = {};
+  for (Version* version : {&newest_, &candidate_, &earlier_}) version->points.clear();
 }
 
 std::optional<CameraPose> TrustedMap::locate(const TrackedFrame& frame, const Pose& prediction,

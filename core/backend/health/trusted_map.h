@@ -25,7 +25,6 @@ class TrustedMap {
 
   void clear();
   [[nodiscard]] bool empty() const { return newest_.points.empty(); }
-  [[nodiscard]] Timestamp time() const { return newest_.t; }
 
   /// Camera pose by the features of a frame that are in the map (PnP).
   /// @param prediction predicted T_w_c

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/health/vision_assessment.h"
 
+#include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -23,12 +23,12 @@ constexpr double kMinDepth = 0.05;  // [m]
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
+}  // namespace
+
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
 }
-
-}  // namespace
 
 bool VisionAssessment::is_located(bool inertial) const {
   return inliers >= kMinInliers &&

@@ -8,24 +8,6 @@
 namespace stillpoint {
 namespace {
 
-NormalEquations linearize_all(const Window& window, const BackendConfig& config, double focal_px) {
-  const ParameterBlocks blocks(window);
-  NormalEquations equations(static_cast<int>(window.frames.size()));
-  ResidualBuilder builder(window, config, focal_px);
-  builder.add_prior();
-  builder.add_calibration();
-  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
-  for (int frame = 0; frame <= window.newest(); ++frame) builder.add_zero_velocity(frame);
-  equations.add(builder.residuals(), blocks, false);
-  for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
-    if (!is_usable(window.landmarks[i])) continue;
-    builder.clear();
-    builder.add_landmark(static_cast<int>(i));
-    equations.add(builder.residuals(), blocks, has_constant_depth(window.landmarks[i], config));
-  }
-  return equations;
-}
-
 /// All variable states; those of `newest_blocks` first.
 std::vector<BlockRef> variable_blocks(const Window& window, const BackendConfig& config) {
   std::vector<BlockRef> blocks = newest_blocks(window, config);
@@ -40,7 +22,7 @@ std::vector<BlockRef> variable_blocks(const Window& window, const BackendConfig&
 
 std::optional<StateCovariance> CeresSolver::newest_covariance(const Window& window,
                                                               const BackendConfig& config, double focal_px) {
-  const NormalEquations equations = linearize_all(window, config, focal_px);
+  const NormalEquations equations = linearize_all(window, config, focal_px, ParameterBlocks(window));
   std::vector<int> columns;
   for (const BlockRef block : variable_blocks(window, config)) {
     for (int i = 0; i < local_size(block.kind); ++i) columns.push_back(equations.layout.column(block) + i);

@@ -94,6 +94,24 @@ void NormalEquations::add(const std::vector<Residual>& group, const ParameterBlo
   b.noalias() -= landmark_column * (landmark_gradient / landmark_information);
 }
 
+NormalEquations linearize_all(const Window& window, const BackendConfig& config, double focal_px,
+                              const ParameterBlocks& blocks) {
+  NormalEquations equations(static_cast<int>(window.frames.size()));
+  ResidualBuilder builder(window, config, focal_px);
+  builder.add_prior();
+  builder.add_calibration();
+  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
+  for (int frame = 0; frame <= window.newest(); ++frame) builder.add_zero_velocity(frame);
+  equations.add(builder.residuals(), blocks, false);
+  for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
+    if (!is_usable(window.landmarks[i])) continue;
+    builder.clear();
+    builder.add_landmark(static_cast<int>(i));
+    equations.add(builder.residuals(), blocks, has_constant_depth(window.landmarks[i], config));
+  }
+  return equations;
+}
+
 SquareRoot eliminate(const Eigen::MatrixXd& H, const Eigen::VectorXd& b, const std::vector<int>& marginalized,
                      const std::vector<int>& remaining) {
   const Eigen::MatrixXd H_rm = select(H, remaining, marginalized);

@@ -53,6 +53,10 @@ struct NormalEquations {
   Eigen::VectorXd b;
 };
 
+/// The normal equations of all residuals of a window, linearized at `blocks`; landmarks are eliminated.
+[[nodiscard]] NormalEquations linearize_all(const Window& window, const BackendConfig& config,
+                                            double focal_px, const ParameterBlocks& blocks);
+
 /// (J, r) with J^T J = H_rr - H_rm H_mm^-1 H_mr and J^T r = b_r - H_rm H_mm^-1 b_m, where m are the columns
 /// `marginalized` and r the columns `remaining`. See
 /// WindowSolver::marginalize_oldest.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/profile/meters/allocation_counter.h"
+#include "core/backend/health/trusted_map.h"
 #include "core/backend/solvers/schur_solver.h"
 #include "tests/support/simulated/simulated_window.h"
 
@@ -25,6 +26,18 @@ TEST(SchurSolver, ASecondSolveDoesNotAllocate) {
   ASSERT_TRUE(solver.newest_covariance(second, options.config, kSimulatedFocal_px));
   EXPECT_EQ(bench::allocation_count(), after_first);
   EXPECT_GT(between, before);  // the counter works
+}
+
+TEST(TrustedMap, AnUpdateAfterAClearDoesNotAllocate) {
+  const Window window = simulated_window({.frames = 14, .points = 80});
+  TrustedMap map;
+  map.update(window);
+  map.clear();
+  EXPECT_TRUE(map.empty());
+  const std::size_t before = bench::allocation_count();
+  map.update(window);
+  EXPECT_EQ(bench::allocation_count(), before);
+  EXPECT_FALSE(map.empty());
 }
 
 }  // namespace

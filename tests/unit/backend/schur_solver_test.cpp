@@ -100,26 +100,7 @@ class SchurSolverCase : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Windows, SchurSolverCase, testing::ValuesIn(kCases),
                          [](const auto& tested) { return tested.param.name; });
 
-/// Normal equations of the Ceres cost functions, landmarks eliminated.
-NormalEquations reference_system(const Window& window, const BackendConfig& config,
-                                 const ParameterBlocks& blocks) {
-  NormalEquations equations(static_cast<int>(window.frames.size()));
-  ResidualBuilder builder(window, config, kSimulatedFocal_px);
-  builder.add_prior();
-  builder.add_calibration();
-  for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
-  for (int frame = 0; frame <= window.newest(); ++frame) builder.add_zero_velocity(frame);
-  equations.add(builder.residuals(), blocks, false);
-  for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
-    if (!is_usable(window.landmarks[i])) continue;
-    builder.clear();
-    builder.add_landmark(static_cast<int>(i));
-    equations.add(builder.residuals(), blocks, has_constant_depth(window.landmarks[i], config));
-  }
-  return equations;
-}
-
-/// Same, by the terms of the Schur solver.
+/// The normal equations by the terms of the Schur solver, landmarks eliminated.
 ReducedSystem reduced_system(const Window& window, const BackendConfig& config,
                              const ParameterBlocks& blocks) {
   VisualTerms visual;
@@ -175,7 +156,7 @@ TEST_P(SchurSolverCase, NormalEquationsEqualThoseOfTheCostFunctions) {
   const Window window = GetParam().window();
   const BackendConfig& config = GetParam().options.config;
   const ParameterBlocks blocks(window);
-  const NormalEquations reference = reference_system(window, config, blocks);
+  const NormalEquations reference = linearize_all(window, config, kSimulatedFocal_px, blocks);
   const ReducedSystem reduced = reduced_system(window, config, blocks);
   const ColumnPairs columns = matching_columns(window, reduced.layout);
 
