@@ -173,7 +173,7 @@ TEST(Estimator, LosesNoPoseAtALargeTimeOffsetWithTheSamplesThatRunnersProvide) {
     const Timestamp end = imu_end_of(from_seconds(t), estimator.motion_state().time_offset_s);
     for (; imu[next].t <= end; ++next) estimator.add_imu(imu[next]);
     const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
-    poses += update.status == OdometryStatus::kTracking;
+    poses += is_located(update.status);
     lost += update.status == OdometryStatus::kLost;
   }
   EXPECT_EQ(lost, 0);

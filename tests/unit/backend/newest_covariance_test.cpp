@@ -69,7 +69,8 @@ class FullInformation {
     };
     return (within(BlockKind::kExtrinsics) && !variable.extrinsics) ||
            (within(BlockKind::kTimeOffset) && !variable.time_offset) ||
-           (within(BlockKind::kGravity) && !variable.gravity);
+           (within(BlockKind::kGravity) && !variable.gravity) ||
+           (within(BlockKind::kDepthScale) && !variable.depth_scale);
   }
 
   void add(const Residual& residual) {
@@ -124,6 +125,7 @@ void expect_covariances(const SimulatedWindowOptions& options) {
     EXPECT_LT(relative_difference(found->gravity, reference.gravity), kRounding);
     EXPECT_LT(relative_difference(found->extrinsics, reference.extrinsics), kRounding);
     EXPECT_NEAR(found->time_offset, reference.time_offset, kRounding * reference.time_offset);
+    EXPECT_NEAR(found->depth_scale, reference.depth_scale, kRounding * reference.depth_scale);
   }
 }
 
@@ -132,6 +134,16 @@ TEST(NewestCovariance, IsTheInverseOfTheInformationOfAllStates) {
   options.config.gravity = GravityModel::kEstimated;
   options.config.prior = PriorModel::kConsistent;
   options.config.estimate_extrinsics = true;
+  expect_covariances(options);
+}
+
+TEST(NewestCovariance, OfTheWholeCalibration) {
+  SimulatedWindowOptions options{.frames = 24, .points = 80};
+  options.config.gravity = GravityModel::kEstimated;
+  options.config.prior = PriorModel::kConsistent;
+  options.config.time_offset_model = TimeOffsetModel::kInertial;
+  options.config.estimate_extrinsics = true;
+  options.config.depth.estimate_scale = true;
   expect_covariances(options);
 }
 
