@@ -175,7 +175,7 @@ libraries=(
 # The files that start threads, or ask for the number of processors.
 threads=(
   'core/frontend/detect/thread_pool\.(h|cpp)'
-  'core/pipeline/threaded_odometry\.(h|cpp)'
+  'core/pipeline/(threaded_odometry|loop_worker)\.(h|cpp)'
   'core/pipeline/runners/(realtime_runner|pacing_clock)\.(h|cpp)'
   'datasets/synthetic/sequence/render_sequence\.cpp'
   'bench/plan/execution/(sequence_renderer|outcome_scorer)\.(h|cpp)'

@@ -5,13 +5,13 @@
 
 #include "bench/model/honesty_metrics.h"
 #include "bench/model/imu_rate_metrics.h"
+#include "bench/model/loop_metrics.h"
 #include "bench/model/metrics.h"
 
 namespace stillpoint::bench {
 namespace {
 
 using Value = std::optional<double>;
-
 constexpr double kMaxQuietLoad = 0.05;  // more disturbs times measurably
 
 const eval::Score* score_of(const Measurements& m) { return m.scored ? &m.scored->score : nullptr; }
@@ -67,7 +67,6 @@ Value stage_instructions(const Measurements& m, std::string_view stage) {
   const auto found = m.instructions.find(stage);
   return found == m.instructions.end() ? std::nullopt : Value(static_cast<double>(found->second));
 }
-
 using enum MetricDirection;
 using enum MetricSource;
 using enum MetricFamily;
@@ -285,13 +284,14 @@ constexpr MetricDescriptor kMetrics[] = {
      .gate = MetricGate{}},
 };
 
-constexpr auto kAllMetrics = [] {
-  std::array<MetricDescriptor, std::size(kMetrics) + std::size(kImuRateMetrics) + std::size(kHonestyMetrics)>
-      all{};
-  const auto end = std::ranges::copy(kImuRateMetrics, std::ranges::copy(kMetrics, all.begin()).out).out;
-  std::ranges::copy(kHonestyMetrics, end);
+template <std::size_t... kSizes>
+constexpr auto joined(const MetricDescriptor (&... lists)[kSizes]) {
+  std::array<MetricDescriptor, (kSizes + ...)> all{};
+  auto end = all.begin();
+  ((end = std::ranges::copy(lists, end).out), ...);
   return all;
-}();
+}
+constexpr auto kAllMetrics = joined(kMetrics, kImuRateMetrics, kHonestyMetrics, kLoopMetrics);
 
 }  // namespace
 

@@ -84,6 +84,16 @@ struct ImuRateScore {
   std::optional<double> frame_rate_rpe_100ms_deg{};
 };
 
+/// Result of loop closure; see bench/model/loop_metrics.h for the definitions.
+struct LoopScore {
+  std::optional<double> optimized_ate_m{};
+  std::optional<double> causal_ate_m{};
+  std::size_t loops = 0;
+  std::size_t candidates = 0;
+  std::size_t keyframes = 0;
+  std::optional<double> median_ms{};
+};
+
 /// What metrics are computed from. Its parts are measured at different places; those that were not measured
 /// are empty.
 struct Measurements {
@@ -91,6 +101,7 @@ struct Measurements {
   std::optional<RunCounts> counts;
   std::optional<ImuRateScore> imu_rate;
   std::optional<eval::Honesty> honesty;  ///< of a run with injected faults
+  std::optional<LoopScore> loops;        ///< of a run with loop closure
   std::optional<ProcessCost> process;
   std::optional<double> other_load;                                 ///< CPU load by other processes, 0 to 1
   std::map<std::string, std::int64_t, std::less<>> instructions{};  ///< executed, by stage of the odometry
@@ -100,6 +111,7 @@ enum class MetricSource {
   kTrajectory,    ///< estimate and ground truth: in result.json, a column of result tables
   kRun,           ///< counts of the run: in result.json
   kHonesty,       ///< run with injected faults: in result.json
+  kLoop,          ///< loop closure: in result.json if it was on
   kImuRate,       ///< poses at IMU rate: in result.json if they were recorded
   kProcess,       ///< the process of the run, measured by its parent
   kMachine,       ///< the machine during a timing run

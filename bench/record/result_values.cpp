@@ -50,6 +50,7 @@ Json metric_members(const Measurements& measurements) {
     const bool is_measured = (metric.source == MetricSource::kTrajectory && measurements.scored) ||
                              (metric.source == MetricSource::kRun && measurements.counts) ||
                              (metric.source == MetricSource::kHonesty && measurements.honesty) ||
+                             (metric.source == MetricSource::kLoop && measurements.loops) ||
                              (metric.source == MetricSource::kImuRate && measurements.imu_rate);
     if (is_measured) json[std::string(metric.id)] = number(metric, metric.value(measurements));
   }

@@ -230,6 +230,23 @@ std::string status_csv(const OdometryRun& run) {
   return text;
 }
 
+/// Recognized places, and what became of them.
+std::string loops_csv(const LoopReport& report) {
+  std::string text =
+      "query_frame,query_t_ns,match_frame,match_t_ns,votes,matches,inliers,residual_px,tx,ty,tz,qx,qy,qz,qw,"
+      "accepted,reason\n";
+  for (const LoopRecord& loop : report.loops) {
+    const Pose& T = loop.T_match_query;
+    const bool accepted = loop.outcome == LoopOutcome::kAccepted;
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{:.4g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}\n",
+                    loop.query_frame, loop.query_t.ns, loop.match_frame, loop.match_t.ns, loop.votes,
+                    loop.matches, loop.inliers, loop.residual_px, T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(),
+                    T.q.z(), T.q.w(), accepted ? 1 : 0, accepted ? "" : outcome_name(loop.outcome));
+  }
+  return text;
+}
+
 std::string trajectory_text(const RunResult& result) {
   const std::string poses = eval::format_tum(result.run.trajectory);
   return result.outcome == Outcome::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
@@ -247,6 +264,11 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   files.push_back({"manifest.json", manifest_json(manifest)});
   if (result.run.imu_rate)
     files.push_back({"trajectory_imu.tum", eval::format_tum(result.run.imu_rate->trajectory)});
+  if (result.run.loops) {
+    files.push_back({"trajectory_loop.tum", eval::format_tum(result.run.loops->causal)});
+    files.push_back({"trajectory_optimized.tum", eval::format_tum(result.run.loops->optimized)});
+    files.push_back({"loops.csv", loops_csv(result.run.loops->report)});
+  }
   write_files(folder, files);
 }
 

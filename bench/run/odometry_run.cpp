@@ -73,6 +73,7 @@ class RunRecorder {
       : stream_(stream), spec_(spec), drifted_(stream.info()) {
     if (spec.config.pipeline.imu_rate) imu_rate_.emplace(spec.config, stream.info().imu);
     run_.trajectory.frame = "camera";
+    if (spec.config.loop.enabled) run_.loops.emplace().causal.frame = "camera";
     run_.frames_planned = frames_to_run(stream.info(), spec.max_frames);
   }
 
@@ -105,6 +106,10 @@ class RunRecorder {
     run_.summary = std::move(summary);
     run_.wall_s = wall_s;
     if (imu_rate_) run_.imu_rate = imu_rate_->take();
+    if (run_.loops && run_.summary.loops) {
+      run_.loops->report = std::move(*run_.summary.loops);
+      run_.loops->optimized = optimized_trajectory(run_.trajectory, run_.loops->report);
+    }
     if (!spec_.deterministic_counts) run_.summary.waits.push_back(decoded_);
     for (const DecodedFrame& frame : prefetcher.decoded()) record_decoding(frame);
     return std::move(run_);
@@ -130,6 +135,7 @@ class RunRecorder {
     run_.claims.push_back(claim_of(update, t));
     if (!is_located(update.status) || update.segment > 0) return;
     run_.trajectory.poses.push_back({t, update.T_w_c});
+    if (run_.loops) run_.loops->causal.poses.push_back({t, update.T_m_w * update.T_w_c});
   }
 
   void record_calibration(const OdometryUpdate& update) {

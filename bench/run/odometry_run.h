@@ -13,6 +13,7 @@
 
 #include "bench/model/stored_run.h"
 #include "bench/run/label_score.h"
+#include "bench/run/loop_run.h"
 #include "bench/run/timing_statistics.h"
 #include "core/pipeline/runners/imu_rate_poses.h"
 #include "core/pipeline/runners/runner.h"
@@ -67,6 +68,7 @@ struct OdometryRun {
   std::vector<eval::ClaimedPose> claims;  ///< per processed frame; the trajectory contains the located ones
                                           ///< of the first segment
   RunSummary summary;
+  std::optional<LoopRun> loops;           ///< if `loop.enabled`
   std::optional<ImuRateOutput> imu_rate;  ///< if `pipeline.imu_rate`
   TimingSamples timings;
   std::int64_t dynamic_features = 0;          ///< features labelled as dynamic, summed over frames

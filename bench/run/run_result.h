@@ -24,6 +24,7 @@ struct RunResult {
   Trajectory gt;                      ///< of the camera, over the processed frames
   eval::Score score;
   std::optional<eval::Honesty> honesty;  ///< if faults were injected
+  std::optional<LoopScore> loops;        ///< if loop closure was on
   std::optional<ImuRateScore> imu_rate;  ///< if poses at IMU rate were recorded
   OdometryRun run;
   double start_s = 0.0;  ///< from the start of the process to that of the run: loading, config, opening

@@ -10,6 +10,7 @@
 #include "core/config/dynamic_config.h"
 #include "core/config/frontend_config.h"
 #include "core/config/imu_config.h"
+#include "core/config/loop_config.h"
 #include "core/config/pipeline_config.h"
 
 namespace stillpoint {
@@ -21,6 +22,7 @@ struct OdometryConfig {
   DetectorConfig detector;
   DynamicConfig dynamic;
   BackendConfig backend;
+  LoopConfig loop;
   PipelineConfig pipeline;
 };
 /// The detector that a run uses: none if there is no mask for its boxes.
@@ -37,6 +39,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("detector", config.detector);
   field("dynamic", config.dynamic);
   field("backend", config.backend);
+  field("loop", config.loop);
   field("pipeline", config.pipeline);
 }
 

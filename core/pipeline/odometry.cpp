@@ -7,6 +7,7 @@
 
 #include "core/pipeline/frame_order.h"
 #include "core/pipeline/imu_queue.h"
+#include "core/pipeline/loop_worker.h"
 #include "core/pipeline/stages/optimization_stage.h"
 #include "core/pipeline/stages/stage_messages.h"
 #include "core/pipeline/stages/tracking_stage.h"
@@ -23,7 +24,9 @@ struct Odometry::Impl {
         tracking(config, rig),
         optimization(config, rig),
         predictor(config.imu.max_gap_s),
-        ring(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1, {optimization.feedback(), {}}) {}
+        ring(static_cast<std::size_t>(config.pipeline.feedback_lag) + 1, {optimization.feedback(), {}}) {
+    if (config.loop.enabled) loop = std::make_unique<LoopWorker>(config, rig, LoopExecution::kInline);
+  }
 
   /// The later one of the estimates that the tracker, whose feedback lags behind, and the optimization use.
   [[nodiscard]] double time_offset() const {
@@ -49,6 +52,7 @@ struct Odometry::Impl {
     OdometryUpdate& update =
         enters_window ? optimization.process(tracked, detections) : optimization.predict(tracked);
     update.timings.add(tracked.timings);
+    if (loop) loop->correct(optimization, update);
     feedback = optimization.feedback(std::move(feedback));
     predictor.set(feedback.motion, update.status);
     newest = std::exchange(oldest, (oldest + 1) % ring.size());
@@ -60,6 +64,7 @@ struct Odometry::Impl {
   WindowRate rate;
   TrackingStage tracking;
   OptimizationStage optimization;
+  std::unique_ptr<LoopWorker> loop;  ///< null if off
   StatePredictor predictor;
   ImuQueue imu_of_tracker, imu_of_estimator;
   FrameOrder order;
@@ -99,5 +104,10 @@ const TrackedFrame& Odometry::tracked() const { return impl_->ring[impl_->newest
 const DynamicReport& Odometry::dynamic() const { return impl_->optimization.dynamic(); }
 
 const ImuHealth& Odometry::imu_health() const { return impl_->optimization.imu_health(); }
+
+std::optional<LoopReport> Odometry::finish_loops() {
+  if (!impl_->loop) return std::nullopt;
+  return impl_->loop->finish(impl_->optimization);
+}
 
 }  // namespace stillpoint

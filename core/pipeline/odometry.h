@@ -12,6 +12,7 @@
 #include "core/types/frame.h"
 #include "core/types/imu_health.h"
 #include "core/types/imu_sample.h"
+#include "core/types/loop_report.h"
 #include "core/types/nav_state.h"
 #include "core/types/odometry_update.h"
 #include "core/types/rig.h"
@@ -80,6 +81,9 @@ class Odometry {
   [[nodiscard]] const DynamicReport& dynamic() const;
 
   [[nodiscard]] const ImuHealth& imu_health() const;
+
+  /// After the last frame, once: optimizes the pose graph with all keyframes. nullopt unless `loop.enabled`.
+  [[nodiscard]] std::optional<LoopReport> finish_loops();
 
  private:
   struct Impl;

@@ -11,6 +11,7 @@
 #include "core/base/thread_name.h"
 #include "core/pipeline/frame_order.h"
 #include "core/pipeline/imu_inbox.h"
+#include "core/pipeline/loop_worker.h"
 #include "core/pipeline/stages/frame_report.h"
 #include "core/pipeline/stages/optimize_frame.h"
 #include "core/pipeline/stages/stage_messages.h"
@@ -44,10 +45,11 @@ struct ThreadedOdometry::Impl {
   OdometryConfig config;
   Rig rig;
   ThreadedOdometryOptions options;
-  WindowRate rate;                 ///< tracking thread only
-  TrackingStage tracking;          ///< tracking thread only
-  OptimizationStage optimization;  ///< optimization thread only
-  FrameOrder order;                ///< thread of `add_frame` only
+  WindowRate rate;                   ///< tracking thread only
+  TrackingStage tracking;            ///< tracking thread only
+  OptimizationStage optimization;    ///< optimization thread only
+  std::unique_ptr<LoopWorker> loop;  ///< same; null if off
+  FrameOrder order;                  ///< thread of `add_frame` only
   ImuInbox imu_of_tracker;
   ImuInbox imu_of_estimator;
   BoundedChannel<FrameJob> frames;
@@ -76,6 +78,7 @@ ThreadedOdometry::Impl::Impl(const OdometryConfig& configuration, const Rig& cal
       frames(options.queue_capacity),
       feedback(static_cast<std::size_t>(config.pipeline.feedback_lag) + 2),
       predictor(config.imu.max_gap_s) {
+  if (config.loop.enabled) loop = std::make_unique<LoopWorker>(config, rig, LoopExecution::kThread);
   // The tracker consumes one message per frame and blocks on an empty channel: the initial messages are the
   // lag.
   for (int i = 0; i <= config.pipeline.feedback_lag; ++i) feedback.push({optimization.feedback(), {}});
@@ -133,7 +136,9 @@ void ThreadedOdometry::Impl::optimize() {
     if (stopped) return;
     imu_of_estimator.feed_until(imu_end_of(job->frame.t, time_offset_s),
                                 [this](const ImuSample& s) { optimization.add_imu(s); });
-    publish(*job, optimize_frame(*job, detections, optimization));
+    OdometryUpdate& update = optimize_frame(*job, detections, optimization);
+    if (loop) loop->correct(optimization, update);
+    publish(*job, update);
     feedback.push({optimization.feedback(std::move(job->feedback)), std::move(job->tracked)});
   }
 }
@@ -231,6 +236,11 @@ std::optional<NavState> ThreadedOdometry::state() const {
 std::optional<NavState> ThreadedOdometry::state_at(Timestamp t) const {
   const std::scoped_lock lock(impl_->mutex);
   return impl_->predictor.state_at(t);
+}
+
+std::optional<LoopReport> ThreadedOdometry::finish_loops() {
+  if (!impl_->loop) return std::nullopt;
+  return impl_->loop->finish(impl_->optimization);
 }
 
 std::size_t ThreadedOdometry::dropped_frames() const { return impl_->dropped; }

@@ -17,6 +17,7 @@
 #include "core/types/frame.h"
 #include "core/types/imu_health.h"
 #include "core/types/imu_sample.h"
+#include "core/types/loop_report.h"
 #include "core/types/nav_state.h"
 #include "core/types/odometry_update.h"
 #include "core/types/rig.h"
@@ -90,6 +91,9 @@ class ThreadedOdometry {
   /// As `Odometry::state` and `Odometry::state_at`.
   [[nodiscard]] std::optional<NavState> state() const;
   [[nodiscard]] std::optional<NavState> state_at(Timestamp t) const;
+
+  /// After `finish`, once; as `Odometry::finish_loops`. The loop closure runs on a thread of its own.
+  [[nodiscard]] std::optional<LoopReport> finish_loops();
 
   [[nodiscard]] std::size_t dropped_frames() const;  ///< by a full queue
   [[nodiscard]] ImuHealth imu_health() const;        ///< after the newest update

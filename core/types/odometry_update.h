@@ -43,6 +43,9 @@ struct OdometryUpdate {
   std::int64_t frame_id = 0;
   NavState state;
   Pose T_w_c;  ///< camera pose, by the extrinsics estimated at this frame
+  /// Pose of the odometry's world in the map, by the loops that are known at this frame (`loop.lag_frames`);
+  /// the identity without loop closure. T_m_w * T_w_c is the corrected pose.
+  Pose T_m_w;
   OdometryStatus status = OdometryStatus::kInitializing;
   StatusReason reason = StatusReason::kNone;
   int segment = 0;  ///< number of the world frame; a new one begins after a loss without relocation

@@ -29,6 +29,7 @@ struct TrackedFrame {
   std::int64_t id = 0;
   Timestamp t;
   std::vector<TrackedFeature> features;
+  cv::Mat gray;   ///< for loop closure, else empty; shares pixels with the Frame
   cv::Mat depth;  ///< registered raw depth image, for the semantic mask; shares pixels with the Frame
   double depth_units_per_m = 1000.0;
   int lost = 0;      ///< features lost in this frame, by KLT or RANSAC

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <memory>
 
 #include "core/base/error.h"
 #include "core/pipeline/assembly.h"
+#include "core/pipeline/loop_worker.h"
 #include "core/pipeline/runners/device_cores.h"
 #include "core/pipeline/runners/runner_parts.h"
 #include "core/pipeline/stages/optimize_frame.h"
@@ -45,6 +47,7 @@ class DeviceRun {
         imu_of_tracker_(input.imu),
         imu_of_estimator_(input.imu) {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / clock.speed;
+    if (config.loop.enabled) loop_ = std::make_unique<LoopWorker>(config, input.rig, LoopExecution::kInline);
     feedback_.push_back({stages_.optimization.feedback(), Time{}});
   }
 
@@ -61,6 +64,7 @@ class DeviceRun {
         summary_.skipped.push_back({*index, std::move(loaded.error)});
       }
     }
+    if (loop_) summary_.loops = loop_->finish(stages_.optimization);
     summary_.realtime = std::move(report_);
     return completed(std::move(summary_), stages_.optimization.imu_health(), *stages_.detector);
   }
@@ -132,8 +136,9 @@ class DeviceRun {
       start = end_of_detection_wait(job.frame.t, start);
       found = take_detection(job.frame.t, start);
     }
-    const OdometryUpdate& update = optimize_frame(job, found, stages_.optimization);
+    OdometryUpdate& update = optimize_frame(job, found, stages_.optimization);
     const ModuleTime measured = update.timings[Module::kOptimizationThread];
+    if (loop_) loop_->correct(stages_.optimization, update);
     summary_.resets += update.counters.reset;
     const bool free = !job.enters_window && clock_.device.optimization.fixed_ms;
     const Time cost = free ? Time{} : cost_of(clock_.device.optimization, measured);
@@ -174,6 +179,7 @@ class DeviceRun {
   const RunControl& control_;
   const DeviceClock& clock_;
   Stages stages_;
+  std::unique_ptr<LoopWorker> loop_;  ///< null if off
   RunSummary summary_;
   RealtimeReport report_;
   DeviceCores cores_;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Real-time runner: frames are delivered at their timestamps; slow stages drop frames instead of blocking.
+#include <memory>
 #include <thread>
 
 #include "core/base/bounded_channel.h"
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
 #include "core/pipeline/assembly.h"
+#include "core/pipeline/loop_worker.h"
 #include "core/pipeline/runners/detection_queue.h"
 #include "core/pipeline/runners/pacing_clock.h"
 #include "core/pipeline/runners/runner_parts.h"
@@ -28,6 +30,8 @@ class RealtimeRun {
         stages_(assemble(input, config)),
         clock_(input.frame_times.empty() ? Timestamp{} : input.frame_times.front(), speed) {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / speed;
+    if (config.loop.enabled)
+      loop_ = std::make_unique<LoopWorker>(config, input.rig, LoopExecution::kRealtime);
     feedback_.push({stages_.optimization.feedback(), {}});
   }
 
@@ -44,6 +48,7 @@ class RealtimeRun {
     errors_.rethrow();
     summary_.waits = {exposed_.waits("exposed frames"), to_detect_.waits("frames to detect"),
                       tracked_.waits("tracked frames")};
+    if (loop_) summary_.loops = loop_->finish(stages_.optimization);
     summary_.realtime = std::move(report_);
     return completed(std::move(summary_), stages_.optimization.imu_health(), *stages_.detector);
   }
@@ -103,7 +108,8 @@ class RealtimeRun {
           after(t, stages_.optimization.motion_state().time_offset_s + kRealtimeImuLookahead_s);
       clock_.wait_until(imu_end, {});
       imu.feed_until(imu_end, stages_.optimization);
-      const OdometryUpdate& update = optimize_frame(*job, detections_for(*job), stages_.optimization);
+      OdometryUpdate& update = optimize_frame(*job, detections_for(*job), stages_.optimization);
+      if (loop_) loop_->correct(stages_.optimization, update);
       summary_.resets += update.counters.reset;
       notify(control_, {.frame = job->frame,
                         .tracked = job->tracked,
@@ -137,6 +143,7 @@ class RealtimeRun {
   const OdometryConfig& config_;
   const RunControl& control_;
   Stages stages_;
+  std::unique_ptr<LoopWorker> loop_;  ///< null if off
   RunSummary summary_;     ///< `frames`, `skipped`, `interrupted`: camera thread only, while it runs
   RealtimeReport report_;  ///< same for `dropped`
   PacingClock clock_;

@@ -39,6 +39,7 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
   }
   RunSummary summary = completed(loader.summary(), odometry.imu_health(), *detector);
   summary.resets = resets;
+  summary.loops = odometry.finish_loops();
   return summary;
 }
 
@@ -64,6 +65,7 @@ RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config,
   odometry.finish();
   RunSummary summary = completed(loader.summary(), odometry.imu_health(), *detector);
   summary.resets = resets;
+  summary.loops = odometry.finish_loops();
   summary.waits = odometry.waits();
   return summary;
 }

@@ -14,6 +14,7 @@
 #include "core/pipeline/sensor_input.h"
 #include "core/pipeline/stages/frame_report.h"
 #include "core/types/imu_health.h"
+#include "core/types/loop_report.h"
 
 namespace stillpoint {
 
@@ -49,6 +50,7 @@ struct RunSummary {
   std::string detector;      ///< description of the detector
   DetectorCounters detector_counters;
   std::vector<ChannelWaits> waits;         ///< blocking times of the channels; empty if single-threaded
+  std::optional<LoopReport> loops;         ///< if `loop.enabled`
   std::optional<RealtimeReport> realtime;  ///< only `run_realtime` and `run_on_device`
 };
 

@@ -39,7 +39,9 @@ OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& ri
       estimator_(config.backend, config.imu, rig, config.seed),
       box_tracker_(config.dynamic),
       recognition_(config.dynamic),
-      static_readmission_(config.dynamic.min_static_frames, config.dynamic.static_residual_px) {}
+      static_readmission_(config.dynamic.min_static_frames, config.dynamic.static_residual_px) {
+  if (config.loop.enabled) keyframes_.emplace(config.loop);
+}
 
 OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const DetectionSet& detections) {
   if (last_frame_ && frame.t <= *last_frame_) return predict(frame);
@@ -56,7 +58,12 @@ OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const Dete
     } else {
       reset_recognition();
     }
+    if (keyframes_) keyframes_->before_slide(estimator_.window());
     estimator_.finish();
+    if (keyframes_) {
+      keyframes_->set_located(is_located(update.status) && update.segment == 0);
+      keyframes_->after_slide(estimator_.window(), frame, dynamic_);
+    }
   }
   dynamic_ids_ = dynamic_ids(dynamic_.labels, std::move(dynamic_ids_));
   update.counters.dynamic_features = static_cast<int>(dynamic_ids_.size());
@@ -79,6 +86,18 @@ Feedback OptimizationStage::feedback(Feedback recycled) const {
   result.motion = estimator_.motion_state();
   result.dynamic_ids = dynamic_ids_;
   return result;
+}
+
+std::optional<DepartedKeyframe> OptimizationStage::take_keyframe() {
+  return keyframes_ ? keyframes_->take() : std::nullopt;
+}
+
+std::optional<DepartedKeyframe> OptimizationStage::take_remaining_keyframe() {
+  return keyframes_ ? keyframes_->take_remaining(estimator_.window()) : std::nullopt;
+}
+
+void OptimizationStage::recycle(DepartedKeyframe keyframe) {
+  if (keyframes_) keyframes_->recycle(std::move(keyframe));
 }
 
 /// Sec. III-C and III-D.

@@ -13,6 +13,7 @@
 #include "core/pipeline/stages/feedback.h"
 #include "core/pipeline/stages/frame_report.h"
 #include "core/pipeline/stages/input_perturbation.h"
+#include "core/pipeline/stages/keyframe_collector.h"
 
 namespace stillpoint {
 
@@ -40,6 +41,13 @@ class OptimizationStage {
   [[nodiscard]] const ImuHealth& imu_health() const { return estimator_.imu_health(); }
   [[nodiscard]] const DynamicReport& dynamic() const { return dynamic_; }
 
+  /// The keyframe that left the window with the last frame, if loop closure is on, see `KeyframeCollector`.
+  [[nodiscard]] std::optional<DepartedKeyframe> take_keyframe();
+  /// At the end of a run: the next keyframe that is still in the window.
+  [[nodiscard]] std::optional<DepartedKeyframe> take_remaining_keyframe();
+  /// Returns a keyframe whose memory is reused.
+  void recycle(DepartedKeyframe keyframe);
+
  private:
   void apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections);
   void check_motion_before_solve();
@@ -57,8 +65,9 @@ class OptimizationStage {
   FeatureRecognition recognition_;
   StaticReadmission static_readmission_;
   DynamicReport dynamic_;
-  std::vector<std::int64_t> dynamic_ids_;  ///< of the last frame that entered the window
-  std::optional<Timestamp> last_frame_;    ///< same
+  std::vector<std::int64_t> dynamic_ids_;       ///< of the last frame that entered the window
+  std::optional<Timestamp> last_frame_;         ///< same
+  std::optional<KeyframeCollector> keyframes_;  ///< if loop closure is on
   // Members only to reuse the memory.
   std::vector<Box> boxes_;
   ConsistencyView view_;

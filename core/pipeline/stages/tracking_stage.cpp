@@ -20,6 +20,7 @@ bool is_repeated(const cv::Mat& before, const cv::Mat& now) {
 
 TrackingStage::TrackingStage(const OdometryConfig& config, const Rig& rig)
     : uses_prediction_(config.frontend.prediction != TrackerPrediction::kNone),
+      keeps_image_(config.loop.enabled),
       perturbation_(config.pipeline.perturbation_seed, rig.camera.focal_px()),
       tracker_(config.frontend, rig.camera),
       imu_(config.imu.max_gap_s) {}
@@ -36,6 +37,7 @@ TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, cons
       recognition_.process(frame.gray, tracker_.track(frame, prior, options, std::move(recycled)));
   perturbation_.perturb(tracked);
   if (is_repeated(last_gray_, frame.gray)) tracked.features.clear();
+  if (keeps_image_) tracked.gray = frame.gray;
   last_gray_ = frame.gray;
   last_frame_ = frame.t;
   return tracked;

@@ -30,6 +30,7 @@ class TrackingStage {
 
  private:
   bool uses_prediction_;
+  bool keeps_image_;  ///< for loop closure
   InputPerturbation perturbation_;
   FeatureTracker tracker_;
   ViewRecognition recognition_;

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Metrics of runs with loop closure.
+#pragma once
+
+#include "bench/model/metrics.h"
+
+namespace stillpoint::bench {
+
+/// The value of one member of `LoopScore`; nullopt for a run without loop closure.
+template <auto kMember>
+[[nodiscard]] std::optional<double> loop_value(const Measurements& m) {
+  if (!m.loops) return std::nullopt;
+  if constexpr (std::is_same_v<std::remove_cvref_t<decltype((*m.loops).*kMember)>, std::size_t>) {
+    return static_cast<double>((*m.loops).*kMember);
+  } else {
+    return (*m.loops).*kMember;
+  }
+}
+
+inline constexpr MetricDescriptor kLoopMetrics[] = {
+    {.id = "ate_optimized_m",
+     .label = "ATE, optimized",
+     .title = "Absolute trajectory error (ATE) after loop closure, RMSE",
+     .description =
+         "Root mean square distance between true positions and those of the pose graph after the last frame",
+     .unit = "m",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .source = MetricSource::kLoop,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 2e-4},
+     .value = loop_value<&LoopScore::optimized_ate_m>},
+    {.id = "ate_loop_m",
+     .label = "ATE, causal",
+     .title = "Absolute trajectory error (ATE) with loop closure while running, RMSE",
+     .description = "Root mean square distance between true positions and those with the corrections known "
+                    "at each frame",
+     .unit = "m",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .source = MetricSource::kLoop,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 2e-4},
+     .value = loop_value<&LoopScore::causal_ate_m>},
+    {.id = "loops",
+     .label = "loops",
+     .description = "Number of accepted loops",
+     .decimals = 0,
+     .source = MetricSource::kLoop,
+     .value = loop_value<&LoopScore::loops>},
+    {.id = "loop_candidates",
+     .label = "loop candidates",
+     .description = "Number of recognized places, accepted or not",
+     .decimals = 0,
+     .source = MetricSource::kLoop,
+     .value = loop_value<&LoopScore::candidates>},
+    {.id = "loop_keyframes",
+     .label = "keyframes",
+     .description = "Number of keyframes in the pose graph",
+     .decimals = 0,
+     .source = MetricSource::kLoop,
+     .value = loop_value<&LoopScore::keyframes>},
+    {.id = "loop_median_ms",
+     .label = "loop closure",
+     .description = "Median time of the loop closure per keyframe",
+     .unit = "ms",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .decimals = 2,
+     .source = MetricSource::kLoop,
+     .value = loop_value<&LoopScore::median_ms>},
+};
+
+}  // namespace stillpoint::bench

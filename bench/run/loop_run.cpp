@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run/loop_run.h"
+
+#include <algorithm>
+
+#include "eval/metrics/statistics.h"
+#include "eval/score.h"
+
+namespace stillpoint::bench {
+namespace {
+
+Pose correction_of(const MapKeyframe& keyframe) { return keyframe.T_m_b * keyframe.T_w_b.inverse(); }
+
+/// ATE of the poses from `begin` on [m].
+std::optional<double> ate_m(const Trajectory& gt, Trajectory trajectory,
+                            Timestamp begin = Timestamp{INT64_MIN}) {
+  std::erase_if(trajectory.poses, [&](const StampedPose& pose) { return pose.t < begin; });
+  if (gt.poses.empty() || trajectory.poses.empty()) return std::nullopt;
+  const eval::Score score = eval::score(gt, trajectory, {});
+  return score.ate ? std::optional<double>(score.ate->translation_m.rmse) : std::nullopt;
+}
+
+}  // namespace
+
+Trajectory optimized_trajectory(const Trajectory& odometry, const LoopReport& report) {
+  Trajectory result{.frame = odometry.frame, .poses = odometry.poses};
+  const std::vector<MapKeyframe>& keyframes = report.keyframes;
+  if (keyframes.empty()) return result;
+  for (StampedPose& pose : result.poses) {
+    const auto next = std::ranges::upper_bound(keyframes, pose.t, {}, &MapKeyframe::t);
+    const auto before = next == keyframes.begin() ? next : next - 1;
+    const Pose by_before = correction_of(*before) * pose.T_w_f;
+    if (next == keyframes.end() || next == before) {
+      pose.T_w_f = by_before;
+      continue;
+    }
+    const double s = seconds_between(before->t, pose.t) / seconds_between(before->t, next->t);
+    pose.T_w_f = interpolate(by_before, correction_of(*next) * pose.T_w_f, s);
+  }
+  return result;
+}
+
+LoopScore score_loops(const Trajectory& gt, const LoopRun& run) {
+  LoopScore score;
+  score.optimized_ate_m = ate_m(gt, run.optimized);
+  score.causal_ate_m = ate_m(gt, run.causal);
+  score.keyframes = run.report.keyframes.size();
+  score.candidates = run.report.loops.size();
+  score.loops = static_cast<std::size_t>(
+      std::ranges::count(run.report.loops, LoopOutcome::kAccepted, &LoopRecord::outcome));
+  std::vector<double> times_ms;
+  for (const MapKeyframe& keyframe : run.report.keyframes) times_ms.push_back(keyframe.processing_ms);
+  score.median_ms = eval::percentile(times_ms, 0.5);
+  return score;
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Trajectories and score of a run with loop closure.
+#pragma once
+
+#include <vector>
+
+#include "bench/model/metrics.h"
+#include "core/types/loop_report.h"
+#include "core/types/trajectory.h"
+
+namespace stillpoint::bench {
+
+struct LoopRun {
+  Trajectory
+      causal;  ///< T_m_c with the correction known at each frame; the frames of the odometry's trajectory
+  Trajectory optimized;  ///< T_m_c after the last frame
+  LoopReport report;
+};
+
+/// The odometry's trajectory with the final corrections: C_k = T_m_b T_w_b^-1 of the keyframes, interpolated
+/// over time between the two next ones: from C_k T to C_k+1 T for a pose T. Equal to the odometry without
+/// keyframes.
+/// @param odometry T_w_c
+[[nodiscard]] Trajectory optimized_trajectory(const Trajectory& odometry, const LoopReport& report);
+
+/// @param gt of the camera
+[[nodiscard]] LoopScore score_loops(const Trajectory& gt, const LoopRun& run);
+
+}  // namespace stillpoint::bench

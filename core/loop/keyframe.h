@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Keyframes of loop closure: what the odometry hands over, and what is kept of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "core/base/timestamp.h"
+#include "core/geometry/pose.h"
+#include "core/loop/descriptor.h"
+#include "core/types/detection.h"
+
+namespace stillpoint {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// Static feature of the odometry.
+struct StaticFeature {
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  ///< [px]
+  float depth_m = 0.0F;                             ///< 0 = not measured
+};
+
+/// Image region that belongs to a dynamic object.
+struct DynamicRegion {
+  Box box;  ///< [px]
+  double near_m = 0.0;
+  double far_m = 0.0;  ///< exclusive
+};
+
+/// A keyframe that leaves the window. Its vectors are reused.
+struct DepartedKeyframe {
+  std::int64_t frame = 0;
+  Timestamp t;
+  Pose T_w_b;
+  Pose T_b_c;
+  std::optional<Eigen::Vector3d> gravity_b;  ///< unit vector; absent without an IMU
+  cv::Mat gray;                              ///< CV_8UC1; shares pixels with the frame
+  cv::Mat depth;                             ///< CV_16UC1, or empty; shares pixels with the frame
+  double depth_units_per_m = 1000.0;
+  std::vector<StaticFeature> features;
+  std::vector<DynamicRegion> regions;
+  std::vector<Eigen::Vector2f> dynamic_pixels;  ///< of dynamic features [px]
+};
+
+struct KeyframeFeature {
+  Descriptor descriptor{};
+  Eigen::Vector3f p_c = Eigen::Vector3f::Zero();  ///< in the camera frame [m], p_c.z() > 0
+};
+
+/// A keyframe in the map.
+struct Keyframe {
+  std::int64_t frame = 0;
+  Timestamp t;
+  Pose T_w_b;  ///< by the odometry
+  Pose T_b_c;
+  std::optional<Eigen::Vector3d> gravity_b;  ///< unit vector
+  std::vector<KeyframeFeature> features;     ///< the most distinctive corners first
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/loop/loop_closure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/loop/keyframe_features.h"
+#include "core/loop/pose_graph.h"
+
+namespace stillpoint {
+namespace {
+
+/// Loops whose queries are at most this many keyframes apart are compared: the drift between them is small.
+constexpr int kComparedKeyframes = 40;
+
+/// Keyframes between two optimizations: at least this many, and this fraction of all, so that the time per
+/// keyframe does not grow with their number.
+constexpr std::size_t kMinInterval = 3;
+constexpr std::size_t kIntervalDivisor = 50;
+
+}  // namespace
+
+LoopClosure::LoopClosure(const LoopConfig& config, const Camera& camera, bool has_imu)
+    : config_(config), camera_(camera), recognition_(config), drift_(config) {
+  if (config.dof != 4 && config.dof != 6) throw InputError("loop.dof", "is neither 4 nor 6; use one of them");
+  if (config.dof == 4 && !has_imu)
+    throw InputError("loop.dof", "4 requires the direction of gravity from an IMU; use 6");
+}
+
+Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
+  const auto start = std::chrono::steady_clock::now();
+  keyframes_.push_back({.frame = keyframe.frame,
+                        .t = keyframe.t,
+                        .T_w_b = keyframe.T_w_b,
+                        .T_b_c = keyframe.T_b_c,
+                        .gravity_b = keyframe.gravity_b,
+                        .features = keyframe_features(keyframe, camera_, config_)});
+  T_w_b_.push_back(keyframe.T_w_b);
+  T_m_b_.push_back(T_m_w_ * keyframe.T_w_b);
+  drift_.add(keyframe.t, keyframe.T_w_b);
+  find_loops();
+  if (is_optimization_due()) optimize();
+  processing_ms_.push_back(
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  return T_m_w_;
+}
+
+void LoopClosure::find_loops() {
+  for (const PlaceVotes& place : recognition_.recognize(keyframes_)) {
+    const Keyframe& match = keyframes_[static_cast<std::size_t>(place.place)];
+    VerifiedLoop verified = verify_loop(keyframes_.back(), match, camera_, config_);
+    verified.record.votes = place.votes;
+    assess(std::move(verified), place.place);
+    if (records_.back().outcome == LoopOutcome::kAccepted) return;
+  }
+}
+
+void LoopClosure::assess(VerifiedLoop verified, int match) {
+  records_.push_back(verified.record);
+  LoopOutcome& outcome = records_.back().outcome;
+  if (outcome != LoopOutcome::kAccepted) return;
+  const GraphLoop loop{.match = match,
+                       .query = static_cast<int>(keyframes_.size()) - 1,
+                       .T_bm_bq = verified.T_bm_bq,
+                       .covariance = verified.covariance};
+  if (odometry_distance(loop, T_w_b_, drift_) > config_.gate_chi2) {
+    outcome = LoopOutcome::kOdometry;
+    return;
+  }
+  outcome = compare_with_others(loop);
+  if (outcome == LoopOutcome::kPairwise) return;
+  const bool confirmed = outcome == LoopOutcome::kAccepted;
+  loops_.push_back({.loop = loop, .record = records_.size() - 1, .confirmed = confirmed});
+  has_new_loop_ = has_new_loop_ || confirmed;
+}
+
+/// A loop is accepted with another one that agrees with it, and refused if more confirmed ones contradict it
+/// than agree.
+LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
+  std::vector<ConsistentLoop*> agreeing;
+  std::size_t contradicting = 0;
+  for (ConsistentLoop& other : loops_) {
+    if (loop.query - other.loop.query > kComparedKeyframes || other.loop.query == loop.query) continue;
+    if (pairwise_distance(loop, other.loop, T_w_b_, drift_) <= config_.gate_chi2) {
+      agreeing.push_back(&other);
+    } else {
+      contradicting += other.confirmed;
+    }
+  }
+  if (contradicting > agreeing.size()) return LoopOutcome::kPairwise;
+  if (agreeing.empty()) return LoopOutcome::kUnconfirmed;
+  for (ConsistentLoop* other : agreeing) {
+    other->confirmed = true;
+    records_[other->record].outcome = LoopOutcome::kAccepted;
+  }
+  return LoopOutcome::kAccepted;
+}
+
+bool LoopClosure::is_optimization_due() const {
+  return has_new_loop_ &&
+         keyframes_.size() >=
+             keyframes_optimized_ + std::max(kMinInterval, keyframes_.size() / kIntervalDivisor);
+}
+
+void LoopClosure::optimize() {
+  PoseGraph graph{.T_m_b = T_m_b_};
+  for (const Keyframe& keyframe : keyframes_) graph.gravity_b.push_back(keyframe.gravity_b);
+  for (std::size_t k = 1; k < keyframes_.size(); ++k) {
+    graph.odometry.push_back({.i = static_cast<int>(k) - 1,
+                              .j = static_cast<int>(k),
+                              .T_i_j = T_w_b_[k - 1].inverse() * T_w_b_[k],
+                              .covariance = drift_.step_covariance(k)});
+  }
+  std::vector<std::size_t> records;  // of the loops of the graph
+  for (const ConsistentLoop& loop : loops_) {
+    if (!loop.confirmed) continue;
+    graph.loops.push_back({.i = loop.loop.match,
+                           .j = loop.loop.query,
+                           .T_i_j = loop.loop.T_bm_bq,
+                           .covariance = loop.loop.covariance});
+    records.push_back(loop.record);
+  }
+  PoseGraphSolution solution = optimize_pose_graph(
+      graph, {.dof = config_.dof, .gravity_sigma_rad = config_.gravity_sigma_deg * std::numbers::pi / 180.0});
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    records_[records[i]].outcome = solution.inliers[i] ? LoopOutcome::kAccepted : LoopOutcome::kPoseGraph;
+  }
+  T_m_b_ = std::move(solution.T_m_b);
+  T_m_w_ = T_m_b_.back() * T_w_b_.back().inverse();
+  keyframes_optimized_ = keyframes_.size();
+  has_new_loop_ = false;
+}
+
+LoopReport LoopClosure::finish() {
+  if (has_new_loop_) optimize();
+  LoopReport report{.loops = records_};
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+    report.keyframes.push_back({.frame = keyframes_[k].frame,
+                                .t = keyframes_[k].t,
+                                .T_w_b = T_w_b_[k],
+                                .T_m_b = T_m_b_[k],
+                                .processing_ms = processing_ms_[k]});
+  }
+  return report;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Loop closure: recognizes places in the keyframes of the odometry and corrects its drift by a pose graph.
+/// The odometry itself is not changed: the correction is a transform from its world to the map.
+#pragma once
+
+#include <vector>
+
+#include "core/config/loop_config.h"
+#include "core/geometry/camera.h"
+#include "core/loop/loop_consistency.h"
+#include "core/loop/loop_verification.h"
+#include "core/loop/place_recognition.h"
+#include "core/types/loop_report.h"
+
+namespace stillpoint {
+
+/// A keyframe is described, looked up, verified against the candidates and, if one is accepted, the graph is
+/// optimized. Deterministic and single-threaded.
+class LoopClosure {
+ public:
+  /// @throws InputError if `loop.dof` is neither 4 nor 6, or 4 without an IMU
+  LoopClosure(const LoopConfig& config, const Camera& camera, bool has_imu);
+
+  /// Adds the next keyframe. @return T_m_w: the pose of the odometry's world in the map, as known now
+  [[nodiscard]] Pose add(const DepartedKeyframe& keyframe);
+
+  /// Optimizes the graph for the last time. @return all candidates, and the keyframes with their final poses
+  [[nodiscard]] LoopReport finish();
+
+ private:
+  /// A loop with good geometry that agrees with the odometry.
+  struct ConsistentLoop {
+    GraphLoop loop;
+    std::size_t record = 0;  ///< index in `records_`
+    bool confirmed = false;  ///< by another loop
+  };
+
+  void find_loops();
+  void assess(VerifiedLoop verified, int match);
+  [[nodiscard]] LoopOutcome compare_with_others(const GraphLoop& loop);
+  [[nodiscard]] bool is_optimization_due() const;
+  void optimize();
+
+  LoopConfig config_;
+  Camera camera_;
+  PlaceRecognition recognition_;
+  OdometryDrift drift_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<Pose> T_w_b_;            ///< of the keyframes, by the odometry
+  std::vector<Pose> T_m_b_;            ///< of the keyframes, in the map
+  std::vector<double> processing_ms_;  ///< of the keyframes
+  Pose T_m_w_;
+  std::vector<LoopRecord> records_;
+  std::vector<ConsistentLoop> loops_;
+  std::size_t keyframes_optimized_ = 0;  ///< number of keyframes at the last optimization
+  bool has_new_loop_ = false;            ///< since then
+};
+
+}  // namespace stillpoint

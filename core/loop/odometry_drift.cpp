@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/loop/odometry_drift.h"
+
+#include <numbers>
+
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr double kMinSigma_m = 0.002;
+constexpr double kMinSigma_rad = 0.02 * kRadians;
+
+double squared(double value) { return value * value; }
+
+}  // namespace
+
+void OdometryDrift::add(Timestamp t, const Pose& T_w_b) {
+  times_.push_back(t);
+  T_w_b_.push_back(T_w_b);
+  if (sums_.empty()) {
+    sums_.emplace_back(Matrix6::Zero());
+    return;
+  }
+  const Pose& before = T_w_b_[T_w_b_.size() - 2];
+  Matrix6 J = Matrix6::Zero();
+  J.topLeftCorner<3, 3>() = before.R();
+  J.topRightCorner<3, 3>() = skew(T_w_b.p) * T_w_b.R();
+  J.bottomRightCorner<3, 3>() = T_w_b.R();
+  sums_.emplace_back(sums_.back() + J * step_covariance(T_w_b_.size() - 1) * J.transpose());
+}
+
+Matrix6 OdometryDrift::step_covariance(std::size_t k) const {
+  const double distance_m = (T_w_b_[k].p - T_w_b_[k - 1].p).norm();
+  const double elapsed_s = seconds_between(times_[k - 1], times_[k]);
+  const double position = squared(config_.drift_m_per_sqrt_m) * distance_m + squared(kMinSigma_m);
+  const double rotation = squared(kRadians * config_.drift_deg_per_sqrt_m) * distance_m +
+                          squared(kRadians * config_.drift_deg_per_sqrt_s) * elapsed_s +
+                          squared(kMinSigma_rad);
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal() << position, position, position, rotation, rotation, rotation;
+  return covariance;
+}
+
+Matrix6 OdometryDrift::covariance(std::size_t i, std::size_t j) const {
+  const Eigen::Matrix3d R_i_w = T_w_b_[i].R().transpose();
+  Matrix6 J = Matrix6::Zero();
+  J.topLeftCorner<3, 3>() = R_i_w;
+  J.topRightCorner<3, 3>() = -R_i_w * skew(T_w_b_[j].p);
+  J.bottomRightCorner<3, 3>() = T_w_b_[j].R().transpose();
+  return J * (sums_[j] - sums_[i]) * J.transpose();
+}
+
+}  // namespace stillpoint

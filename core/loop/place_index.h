@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Incremental index of binary descriptors: locality-sensitive hashing by bit sampling (Indyk and Motwani
+/// 1998, Sec. 4.2). There is no vocabulary: nothing is trained, and nothing is shipped.
+///
+/// Each of kTables tables has as key kKeyBits bits of the descriptor, drawn once. Two descriptors that differ
+/// in a fraction f of their bits share a key of one table with probability (1 - f)^kKeyBits, and one of all
+/// tables with 1 - (1 - (1 - f)^kKeyBits)^kTables: 43 % for f = 0.125, 2e-4 for unrelated ones (f = 0.5).
+/// Entries with a common key are compared by their Hamming distance.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/loop/keyframe.h"
+
+namespace stillpoint {
+
+/// Number of features of a query that are similar to features of a place.
+struct PlaceVotes {
+  int place = 0;
+  int votes = 0;
+};
+
+class PlaceIndex {
+ public:
+  PlaceIndex();
+
+  /// Adds the features of the next place; places are numbered from 0. Uses the first `kMaxFeatures`.
+  void add(std::span<const KeyframeFeature> features);
+
+  /// Votes for each place with at least one, by ascending place. A feature of the query has one vote per
+  /// place.
+  [[nodiscard]] std::vector<PlaceVotes> query(std::span<const KeyframeFeature> features) const;
+
+  [[nodiscard]] int places() const { return places_; }
+
+  static constexpr std::size_t kMaxFeatures = 300;  ///< per place and query: bounds memory and time
+
+ private:
+  static constexpr int kTables = 4;
+  static constexpr int kKeyBits = 16;
+  static constexpr int kMaxEntries = 400;  ///< compared per key: more are a repeated texture
+
+  struct Entry {
+    Descriptor descriptor{};
+    std::int32_t place = 0;
+    std::array<std::int32_t, kTables> next{};  ///< older entry with the same key; -1: none
+  };
+  struct Table {
+    std::array<std::uint8_t, kKeyBits> bits{};
+    std::vector<std::int32_t> newest;  ///< entry of each key; -1: none
+  };
+
+  [[nodiscard]] static std::size_t key_of(const Table& table, const Descriptor& descriptor);
+
+  std::array<Table, kTables> tables_;
+  std::vector<Entry> entries_;
+  int places_ = 0;
+};
+
+}  // namespace stillpoint

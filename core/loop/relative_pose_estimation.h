@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Relative pose of two cameras from corresponding points with depth, some of them wrong.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/loop/keyframe.h"
+
+namespace stillpoint {
+
+/// A point in the coordinates of both cameras [m].
+struct PointPair {
+  Eigen::Vector3d p_q = Eigen::Vector3d::Zero();  ///< query
+  Eigen::Vector3d p_m = Eigen::Vector3d::Zero();  ///< match
+};
+
+struct RelativePoseOptions {
+  double inlier_threshold = 0.006;     ///< largest reprojection error on the normalized image plane
+  double inverse_depth_sigma = 0.004;  ///< [1/m], of one measurement
+  std::uint32_t seed = 1;
+};
+
+struct EstimatedRelativePose {
+  Pose T_m_q;
+  Matrix6 covariance = Matrix6::Zero();  ///< of (p, theta): p + d, q * Exp(theta)
+  std::vector<int> inliers;              ///< indices of the pairs
+  double residual = 0.0;                 ///< RMS reprojection error of the inliers, normalized image plane
+};
+
+/// RANSAC (Fischler and Bolles 1981) over samples of three pairs, aligned in closed form (Umeyama 1991), then
+/// Gauss-Newton over the inliers. An inlier reprojects into the match with an error below the threshold, and
+/// its depth differs by less than three standard deviations. The refinement minimizes
+///
+///   sum_k | pi(X_k) - pi(p_m,k) |^2 / s_b^2 + (1 / z(X_k) - 1 / z(p_m,k))^2 / (2 s_d^2),   X_k = T_m_q p_q,k
+///
+/// with Huber weights, where pi(X) = (x, y) / z, s_b is a third of the threshold, and s_d the
+/// inverse depth sigma. The covariance is the inverse of the information at the solution, times the variance
+/// of the residuals if that is larger than 1.
+/// @return nullopt for fewer than four inliers, or if they do not determine the pose
+[[nodiscard]] std::optional<EstimatedRelativePose> estimate_relative_pose(std::span<const PointPair> pairs,
+                                                                          const RelativePoseOptions& options);
+
+}  // namespace stillpoint

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Executes the loop closure beside the odometry, and determines from which frame on its corrections are
+/// used.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <thread>
+
+#include "core/base/bounded_channel.h"
+#include "core/config/odometry_config.h"
+#include "core/loop/loop_closure.h"
+#include "core/pipeline/stages/optimization_stage.h"
+#include "core/pipeline/thread_errors.h"
+#include "core/types/rig.h"
+
+namespace stillpoint {
+
+enum class LoopExecution {
+  kInline,    ///< on the calling thread, at once
+  kThread,    ///< on a thread of its own
+  kRealtime,  ///< same; corrections are used as soon as they are known, and keyframes are dropped under load
+};
+
+/// One thread at a time may use an object. `kInline` and `kThread` give the same corrections to the bit: that
+/// of a keyframe which left the window with frame k is used from frame k + `loop.lag_frames` on. `kThread`
+/// waits for it there, and not before.
+class LoopWorker {
+ public:
+  /// @throws InputError as the constructor of `LoopClosure`
+  LoopWorker(const OdometryConfig& config, const Rig& rig, LoopExecution execution);
+  ~LoopWorker();
+  LoopWorker(const LoopWorker&) = delete;
+  LoopWorker& operator=(const LoopWorker&) = delete;
+
+  /// Takes the keyframe that left the window with the newest frame, and sets `OdometryUpdate::T_m_w`.
+  /// @throws the exception of the thread, if any
+  void correct(OptimizationStage& optimization, OdometryUpdate& update);
+
+  /// Takes the keyframes that are still in the window. Call it once, after the last frame.
+  /// @throws the exception of the thread, if any
+  [[nodiscard]] LoopReport finish(OptimizationStage& optimization);
+
+ private:
+  struct Result {
+    Pose T_m_w;
+    DepartedKeyframe used;  ///< to be recycled
+  };
+
+  void run();
+  [[nodiscard]] Result process(DepartedKeyframe keyframe);
+  void add(DepartedKeyframe keyframe);
+  void collect(Result result);
+  /// Waits for the result of the oldest outstanding keyframe.
+  void collect_next();
+
+  LoopExecution execution_;
+  std::int64_t lag_frames_;
+  LoopClosure closure_;  ///< of the thread, while it runs
+  std::int64_t frame_ = 0;
+  std::deque<std::int64_t> due_;  ///< frames from which on the corrections of submitted keyframes are used
+  std::deque<Result> results_;    ///< of the oldest of them
+  std::deque<DepartedKeyframe> used_;
+  std::size_t outstanding_ = 0;  ///< keyframes in the thread and its channels
+  int dropped_ = 0;
+  Pose T_m_w_;
+  BoundedChannel<DepartedKeyframe> to_thread_;
+  BoundedChannel<Result> from_thread_;
+  ThreadErrors errors_;
+  std::jthread thread_;  ///< last member: joined before the others are destroyed
+};
+
+}  // namespace stillpoint

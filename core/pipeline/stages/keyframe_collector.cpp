@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/stages/keyframe_collector.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+namespace stillpoint {
+namespace {
+
+bool has_frame(const Window& window, std::int64_t frame) {
+  return std::ranges::any_of(window.frames, [&](const WindowFrame& in) { return in.id == frame; });
+}
+
+/// Copies the images of a frame, which share their pixels, and its static and dynamic features.
+void fill(const TrackedFrame& frame, const DynamicReport& dynamic, DepartedKeyframe& keyframe) {
+  keyframe.frame = frame.id;
+  keyframe.t = frame.t;
+  keyframe.gray = frame.gray;
+  keyframe.depth = frame.depth;
+  keyframe.depth_units_per_m = frame.depth_units_per_m;
+  keyframe.features.clear();
+  keyframe.dynamic_pixels.clear();
+  keyframe.regions.clear();
+  auto label = dynamic.labels.begin();
+  for (const TrackedFeature& feature : frame.features) {
+    while (label != dynamic.labels.end() && label->id < feature.id) ++label;
+    const bool labeled = label != dynamic.labels.end() && label->id == feature.id;
+    const Eigen::Vector2f pixel = feature.pixel.cast<float>();
+    if (labeled && label->label != LabelClass::kStable) {
+      keyframe.dynamic_pixels.push_back(pixel);
+    } else {
+      keyframe.features.push_back({pixel, static_cast<float>(feature.depth)});
+    }
+  }
+  for (const SemanticMask::MaskedBox& box : dynamic.mask.boxes())
+    keyframe.regions.push_back({box.box, box.near_m, box.threshold_m});
+}
+
+}  // namespace
+
+void KeyframeCollector::before_slide(const Window& window) {
+  oldest_.reset();
+  if (window.frames.empty()) return;
+  oldest_ = window.frames.front().id;
+  oldest_T_w_b_ = window.frames.front().state.T_w_b;
+}
+
+void KeyframeCollector::after_slide(const Window& window, const TrackedFrame& frame,
+                                    const DynamicReport& dynamic) {
+  if (departed_) recycle(std::move(*std::exchange(departed_, std::nullopt)));
+  if (oldest_ && !has_frame(window, *oldest_)) depart(*oldest_, oldest_T_w_b_, window);
+  discard_missing(window);
+  if (!has_frame(window, frame.id)) return;
+  DepartedKeyframe keyframe;
+  if (!unused_.empty()) {
+    keyframe = std::move(unused_.back());
+    unused_.pop_back();
+  }
+  fill(frame, dynamic, keyframe);
+  in_window_.push_back(std::move(keyframe));
+}
+
+void KeyframeCollector::depart(std::int64_t frame, const Pose& T_w_b, const Window& window) {
+  const auto found = std::ranges::find(in_window_, frame, &DepartedKeyframe::frame);
+  if (found == in_window_.end() || !located_ || !has_moved(T_w_b)) return;
+  found->T_w_b = T_w_b;
+  found->T_b_c = window.T_b_c;
+  found->gravity_b.reset();
+  if (window.inertial) found->gravity_b = (T_w_b.q.conjugate() * window.gravity_w).normalized();
+  last_T_w_b_ = T_w_b;
+  departed_ = std::move(*found);
+  in_window_.erase(found);
+}
+
+bool KeyframeCollector::has_moved(const Pose& T_w_b) const {
+  if (!last_T_w_b_) return true;
+  const double angle_deg = T_w_b.q.angularDistance(last_T_w_b_->q) * 180.0 / std::numbers::pi;
+  return (T_w_b.p - last_T_w_b_->p).norm() >= config_.min_translation_m ||
+         angle_deg >= config_.min_rotation_deg;
+}
+
+void KeyframeCollector::discard_missing(const Window& window) {
+  for (DepartedKeyframe& keyframe : in_window_) {
+    if (!has_frame(window, keyframe.frame)) recycle(std::move(keyframe));
+  }
+  std::erase_if(in_window_,
+                [&](const DepartedKeyframe& keyframe) { return !has_frame(window, keyframe.frame); });
+}
+
+std::optional<DepartedKeyframe> KeyframeCollector::take() { return std::exchange(departed_, std::nullopt); }
+
+std::optional<DepartedKeyframe> KeyframeCollector::take_remaining(const Window& window) {
+  while (!in_window_.empty() && !departed_) {
+    const std::int64_t frame = in_window_.front().frame;
+    const auto state = std::ranges::find(window.frames, frame, &WindowFrame::id);
+    if (state != window.frames.end()) depart(frame, state->state.T_w_b, window);
+    if (!departed_) in_window_.erase(in_window_.begin());
+  }
+  return take();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Results of loop closure: candidates with their outcome, and the optimized keyframes.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/base/timestamp.h"
+#include "core/geometry/pose.h"
+
+namespace stillpoint {
+
+/// Why a candidate was refused.
+enum class LoopOutcome : std::uint8_t {
+  kAccepted,
+  kFewMatches,   ///< too few similar features
+  kFewInliers,   ///< too few of them agree with one rigid motion
+  kSpread,       ///< the inliers are concentrated in a part of the image
+  kUncertain,    ///< the inliers do not determine the pose
+  kOdometry,     ///< contradicts the odometry
+  kPairwise,     ///< contradicts other loops
+  kUnconfirmed,  ///< no other loop agrees with it
+  kPoseGraph,    ///< outlier of the pose graph
+};
+
+[[nodiscard]] constexpr std::string_view outcome_name(LoopOutcome outcome) {
+  constexpr std::string_view kNames[] = {"accepted", "few_matches", "few_inliers", "spread",    "uncertain",
+                                         "odometry", "pairwise",    "unconfirmed", "pose_graph"};
+  return kNames[static_cast<std::size_t>(outcome)];
+}
+
+/// A place that was recognized.
+struct LoopRecord {
+  std::int64_t query_frame = 0;
+  Timestamp query_t;
+  std::int64_t match_frame = 0;
+  Timestamp match_t;
+  int votes = 0;    ///< features that agree with the place
+  int matches = 0;  ///< similar features
+  int inliers = 0;
+  double residual_px = 0.0;  ///< RMS reprojection error of the inliers [px]
+  Pose T_match_query;        ///< of the cameras; the identity without inliers
+  LoopOutcome outcome = LoopOutcome::kAccepted;
+};
+
+/// A keyframe of the pose graph.
+struct MapKeyframe {
+  std::int64_t frame = 0;
+  Timestamp t;
+  Pose T_w_b;                  ///< by the odometry
+  Pose T_m_b;                  ///< optimized
+  double processing_ms = 0.0;  ///< time of the loop closure for it
+};
+
+struct LoopReport {
+  std::vector<LoopRecord> loops;       ///< by query
+  std::vector<MapKeyframe> keyframes;  ///< by time
+  int dropped_keyframes = 0;           ///< not processed, in real time
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint run --variant loop_closure`: a sequence that returns to its places.
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+#include "tests/support/sequences/rendered_sequence.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string loop_text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Plays the sequence forwards, backwards and forwards again, without its IMU.
+ProgramResult run_with(const fs::path& out, const std::string& variant, const std::string& mode) {
+  return run_program({"run", rendered_sequence().string(), "--out", out.string(), "--passes", "3",
+                      "--variant", variant, "--mode", mode, "--set", "loop.min_gap_s=2", "--set",
+                      "loop.min_translation_m=0.05", "--set", "pipeline.feedback_lag=1"});
+}
+
+TEST(LoopClosureCommand, FindsLoopsAndDoesNotChangeTheOdometry) {
+  const TemporaryFolder out;
+  const ProgramResult with = run_with(out.path() / "with", "vo+ablations/loop_closure", "sequential");
+  ASSERT_EQ(with.exit_code, 0) << with.err;
+  ASSERT_EQ(run_with(out.path() / "without", "vo", "sequential").exit_code, 0);
+  EXPECT_EQ(loop_text_of(out.path() / "with" / "trajectory.tum"),
+            loop_text_of(out.path() / "without" / "trajectory.tum"));
+  EXPECT_FALSE(fs::exists(out.path() / "without" / "trajectory_loop.tum"));
+  const nlohmann::json result = nlohmann::json::parse(loop_text_of(out.path() / "with" / "result.json"));
+  EXPECT_GE(result["loops"], 3);
+  EXPECT_LE(result["ate_optimized_m"], 1.02 * result["ate_rmse_m"].get<double>() + 0.001);
+  EXPECT_LE(result["ate_loop_m"], 1.02 * result["ate_rmse_m"].get<double>() + 0.001);
+}
+
+TEST(LoopClosureCommand, PipelinedAndSequentialModeWriteEqualFiles) {
+  const TemporaryFolder out;
+  for (const char* mode : {"sequential", "pipelined"})
+    ASSERT_EQ(run_with(out.path() / mode, "vo+ablations/loop_closure", mode).exit_code, 0);
+  for (const char* file :
+       {"trajectory.tum", "trajectory_loop.tum", "trajectory_optimized.tum", "loops.csv"}) {
+    EXPECT_EQ(loop_text_of(out.path() / "sequential" / file), loop_text_of(out.path() / "pipelined" / file))
+        << file;
+  }
+}
+
+TEST(LoopClosureCommand, FourDegreesOfFreedomRequireAnImu) {
+  const TemporaryFolder out;
+  const ProgramResult result = run_with(out.path(), "vo+ablations/loop_4dof", "sequential");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("loop.dof"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/loop/loop_consistency.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/simulated/simulated_pose_graph.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kPerLap = 50;
+
+struct Laps {
+  std::vector<Pose> T_w_b;
+  OdometryDrift drift{LoopConfig{}};
+  explicit Laps(int count) {
+    for (int k = 0; k < count; ++k) {
+      T_w_b.push_back(pose_on_circle(k, kPerLap));
+      drift.add(from_seconds(0.2 * k), T_w_b.back());
+    }
+  }
+  [[nodiscard]] GraphLoop loop(int match, int query, const Eigen::Vector3d& error) const {
+    GraphLoop result{
+        .match = match,
+        .query = query,
+        .T_bm_bq = T_w_b[static_cast<std::size_t>(match)].inverse() * T_w_b[static_cast<std::size_t>(query)],
+        .covariance = 1e-4 * Matrix6::Identity()};
+    result.T_bm_bq.p += error;
+    return result;
+  }
+};
+
+TEST(OdometryDrift, TheCovarianceOfTwoStepsIsThatOfTheirComposition) {
+  // Straight motion of 2 m along x in two steps: the rotation of the first step moves the end by 1 m times
+  // theta.
+  const LoopConfig config;
+  OdometryDrift drift(config);
+  for (int k = 0; k < 3; ++k)
+    drift.add(from_seconds(k), {Eigen::Quaterniond::Identity(), {1.0 * k, 0.0, 0.0}});
+  const Matrix6 step = drift.step_covariance(1);
+  const Matrix6 both = drift.covariance(0, 2);
+  EXPECT_NEAR(both(0, 0), 2.0 * step(0, 0), 1e-15);
+  EXPECT_NEAR(both(1, 1), 2.0 * step(1, 1) + step(5, 5), 1e-15);
+  EXPECT_NEAR(both(5, 5), 2.0 * step(5, 5), 1e-15);
+  EXPECT_NEAR(both(1, 5), step(5, 5), 1e-15);
+}
+
+TEST(LoopConsistency, ALoopThatAgreesWithTheOdometryHasNoDistance) {
+  const Laps laps(100);
+  EXPECT_LT(odometry_distance(laps.loop(3, 53, Eigen::Vector3d::Zero()), laps.T_w_b, laps.drift), 1e-12);
+}
+
+TEST(LoopConsistency, AnotherAisleContradictsTheOdometry) {
+  const Laps laps(100);
+  EXPECT_GT(odometry_distance(laps.loop(3, 53, {2.0, 0.0, 0.0}), laps.T_w_b, laps.drift), 100.0);
+}
+
+TEST(LoopConsistency, LoopsAgreeWithEachOtherIfTheirErrorsAreEqual) {
+  // The drift of the odometry over the lap does not enter: both loops measure it.
+  const Laps laps(100);
+  const GraphLoop first = laps.loop(3, 53, Eigen::Vector3d::Zero());
+  EXPECT_LT(pairwise_distance(first, laps.loop(4, 54, Eigen::Vector3d::Zero()), laps.T_w_b, laps.drift),
+            1e-9);
+  EXPECT_GT(pairwise_distance(first, laps.loop(4, 54, {0.3, 0.0, 0.0}), laps.T_w_b, laps.drift), 27.9);
+}
+
+}  // namespace
+}  // namespace stillpoint
