@@ -27,14 +27,14 @@ constexpr auto enum_names(RunKind) {
 struct RenderedGroup {
   std::vector<std::string> sequences;  ///< names of presets, or globs ("walking_*")
   std::vector<std::string> variants;   ///< replaces `BenchPlan::variants` if not empty
-  double seconds = 8.0;                ///< duration of each sequence
+  double seconds = 8.0;                ///< duration of each sequence; 0 = that of its preset
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, RenderedGroup>
 void visit_fields(Visitor&& field, Config& config) {
   field("sequences", config.sequences);
   field("variants", config.variants);
-  field("seconds", config.seconds, 1.0, 3600.0);
+  field("seconds", config.seconds, 0.0, 3600.0);
 }
 
 /// Recorded sequences.

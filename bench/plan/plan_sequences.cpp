@@ -162,7 +162,7 @@ std::vector<std::string> matching_presets(const std::vector<std::string>& patter
 PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset, int seed,
                                const SweepAxis& axis) {
   synth::SynthRequest request = synth::preset_request(preset);
-  request.seconds = plan.rendered.seconds;
+  if (plan.rendered.seconds > 0.0) request.seconds = plan.rendered.seconds;
   request.seed = static_cast<std::uint64_t>(seed);
   for (const SweepAxis& setting : plan.synth_settings) {
     request = with_number(request, setting.key, setting.values.front());

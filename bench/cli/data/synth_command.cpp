@@ -15,6 +15,9 @@
 namespace stillpoint::bench {
 namespace {
 
+constexpr const char* kPresets =
+    "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; flight; with returns to "
+    "places: {office,corridor,market}_laps, twin_aisles, changed_room, each also with _short; home_tour";
 constexpr double kPresetValue = -1.0;  // option not given: use the value of the preset
 
 /// Command line arguments of `data synth`.
@@ -43,7 +46,7 @@ synth::SynthRequest request_of(const SynthArguments& arguments) {
   synth::SynthRequest request = synth::preset_request(arguments.preset);
   request.layout = enum_of<synth::SequenceLayout>("--layout", arguments.layout);
   request.labels = arguments.labels;
-  request.trajectory_file = arguments.trajectory;
+  if (!arguments.trajectory.empty()) request.trajectory_file = arguments.trajectory;
   request.imu_file = arguments.imu;
   request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
   override_with(request.seed, arguments.seed);
@@ -88,42 +91,43 @@ int render(const SynthArguments& arguments) {
 }
 
 std::vector<Option> options_of(SynthArguments& arguments) {
-  return {{"PRESET", "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; flight",
-           &arguments.preset},
-          {"--out", "Output folder [a folder in the cache]", &arguments.out},
-          {"--seed", "Random seed; the output is a function of seed and options", &arguments.seed, {0, 1e9}},
-          {"--seconds", "Duration [s]", &arguments.seconds, {0.01, 36000}},
-          {"--people", "Number of walking people", &arguments.people, {0, 100}},
-          {"--seated", "Number of seated people", &arguments.seated, {0, 100}},
-          {"--unknown", "Number of moving carts and chairs without detections", &arguments.unknown, {0, 100}},
-          {"--layout", "Output layout: " + enum_list<synth::SequenceLayout>(), &arguments.layout},
-          {"--labels", "Also write instance masks", &arguments.labels},
-          {"--trajectory", "Preset flight: IMU poses (TUM text)", &arguments.trajectory},
-          {"--imu", "Preset flight: IMU samples (EuRoC CSV)", &arguments.imu},
-          {"--start", "Preset flight: offset of the first frame [s]", &arguments.start, {0, 1e6}},
-          {"--width", "Image width [px]", &arguments.width, {1, 65535}},
-          {"--height", "Image height [px]", &arguments.height, {1, 65535}},
-          {"--focal", "Focal length [px]", &arguments.focal, {1, 1e6}},
-          {"--rate", "Frame rate [Hz]", &arguments.rate, {0.1, 1000}},
-          {"--exposure-ms", "Exposure time [ms]", &arguments.exposure_ms, {0, 1000}},
-          {"--exposure-swing",
-           "Amplitude of the slow exposure variation [stops]",
-           &arguments.exposure_swing,
-           {0, 10}},
-          {"--rolling-shutter-ms",
-           "Read-out time from the first to the last row [ms]",
-           &arguments.rolling_ms,
-           {0, 1000}},
-          {"--depth-noise",
-           "Standard deviation of depth noise per squared depth [1/m]",
-           &arguments.depth_noise,
-           {0, 1}},
-          {"--time-offset-ms", "Delay of the IMU time stamps [ms]", &arguments.time_offset_ms, {-1e6, 1e6}},
-          {"--dropped", "Fraction of dropped frames", &arguments.dropped, {0, 1}},
-          {"--threads",
-           "Number of threads, 0 = all cores; does not affect the output",
-           &arguments.threads,
-           {0, 1000}}};
+  return {
+      {"PRESET", kPresets, &arguments.preset},
+      {"--out", "Output folder [a folder in the cache]", &arguments.out},
+      {"--seed", "Random seed; the output is a function of seed and options", &arguments.seed, {0, 1e9}},
+      {"--seconds", "Duration [s]", &arguments.seconds, {0.01, 36000}},
+      {"--people", "Number of walking people", &arguments.people, {0, 100}},
+      {"--seated", "Number of seated people", &arguments.seated, {0, 100}},
+      {"--unknown", "Number of moving carts and chairs without detections", &arguments.unknown, {0, 100}},
+      {"--layout", "Output layout: " + enum_list<synth::SequenceLayout>(), &arguments.layout},
+      {"--labels", "Also write instance masks", &arguments.labels},
+      {"--trajectory", "Preset flight: IMU poses (TUM text); home_tour: gt_home_1.txt",
+       &arguments.trajectory},
+      {"--imu", "Preset flight: IMU samples (EuRoC CSV)", &arguments.imu},
+      {"--start", "Presets flight and home_tour: offset of the first frame [s]", &arguments.start, {0, 1e6}},
+      {"--width", "Image width [px]", &arguments.width, {1, 65535}},
+      {"--height", "Image height [px]", &arguments.height, {1, 65535}},
+      {"--focal", "Focal length [px]", &arguments.focal, {1, 1e6}},
+      {"--rate", "Frame rate [Hz]", &arguments.rate, {0.1, 1000}},
+      {"--exposure-ms", "Exposure time [ms]", &arguments.exposure_ms, {0, 1000}},
+      {"--exposure-swing",
+       "Amplitude of the slow exposure variation [stops]",
+       &arguments.exposure_swing,
+       {0, 10}},
+      {"--rolling-shutter-ms",
+       "Read-out time from the first to the last row [ms]",
+       &arguments.rolling_ms,
+       {0, 1000}},
+      {"--depth-noise",
+       "Standard deviation of depth noise per squared depth [1/m]",
+       &arguments.depth_noise,
+       {0, 1}},
+      {"--time-offset-ms", "Delay of the IMU time stamps [ms]", &arguments.time_offset_ms, {-1e6, 1e6}},
+      {"--dropped", "Fraction of dropped frames", &arguments.dropped, {0, 1}},
+      {"--threads",
+       "Number of threads, 0 = all cores; does not affect the output",
+       &arguments.threads,
+       {0, 1000}}};
 }
 
 }  // namespace

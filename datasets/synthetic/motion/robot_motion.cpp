@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "core/base/error.h"
 #include "core/geometry/so3.h"
 #include "datasets/synthetic/counter_random.h"
 #include "datasets/synthetic/motion/closed_route.h"
@@ -20,6 +22,8 @@ constexpr double kVibration_s = 0.01;  // knot interval of the final path
 constexpr double kLookAhead_m = 0.6;   // the robot slows down before turns
 constexpr double kVibration_m = 0.0004;
 constexpr double kVibration_rad = 0.1 * std::numbers::pi / 180.0;
+constexpr double kTrackStep_s = 0.05;  // of the resampled track
+constexpr double kKernelReach = 3.0;   // of the Gaussian, in standard deviations
 
 /// Speed allowed by the route's curvature, averaged over +-kLookAhead_m.
 double speed_at(const ClosedRoute& closed_route, const RobotRoute& route, double distance_m) {
@@ -64,10 +68,58 @@ class Vibration {
   std::array<Wave, 6> waves_;
 };
 
+/// The path of the body for a camera without vibration: a function of time.
+template <class LevelCamera>
+PathSpline vibrating_path(const LevelCamera& level_camera, const Vibration& vibration,
+                          const PathRequest& request) {
+  const Pose& T_b_c = request.T_b_c;
+  const double from_s = request.from_s, to_s = request.to_s;
+  const PathSpline smooth = spline_of(level_camera, from_s - 0.1, to_s + 0.1, kSmoothing_s);
+  return spline_of([&](double t_s) { return smooth.pose_at(t_s) * vibration.at(t_s) * T_b_c.inverse(); },
+                   from_s, to_s, kVibration_s);
+}
+
+/// A track with uniform intervals, filtered by a Gaussian kernel.
+class FilteredTrack {
+ public:
+  FilteredTrack(std::span<const PlanarPose> poses, double sigma_s)
+      : start_s_(poses.front().t_s), sigma_s_(sigma_s) {
+    std::size_t i = 0;
+    for (int k = 0;; ++k) {
+      const double t_s = start_s_ + k * kTrackStep_s;
+      while (i + 2 < poses.size() && poses[i + 1].t_s <= t_s) ++i;
+      const PlanarPose &low = poses[i], &high = poses[i + 1];
+      const double fraction = std::clamp((t_s - low.t_s) / (high.t_s - low.t_s), 0.0, 1.0);
+      samples_.push_back({t_s, low.position + fraction * (high.position - low.position),
+                          std::lerp(low.heading, high.heading, fraction)});
+      if (t_s > poses.back().t_s) return;
+    }
+  }
+  [[nodiscard]] PlanarPose at(double t_s) const {
+    const int last = static_cast<int>(samples_.size()) - 1;
+    const int reach = static_cast<int>(kKernelReach * sigma_s_ / kTrackStep_s);
+    const int middle = static_cast<int>(std::lround((t_s - start_s_) / kTrackStep_s));
+    PlanarPose mean{t_s, Eigen::Vector2d::Zero(), 0.0};
+    double sum = 0.0;
+    for (int k = middle - reach; k <= middle + reach; ++k) {
+      const PlanarPose& sample = samples_[static_cast<std::size_t>(std::clamp(k, 0, last))];
+      const double distance = (start_s_ + k * kTrackStep_s - t_s) / sigma_s_;
+      const double weight = std::exp(-0.5 * distance * distance);
+      mean.position += weight * sample.position;
+      mean.heading += weight * sample.heading;
+      sum += weight;
+    }
+    return {t_s, mean.position / sum, mean.heading / sum};
+  }
+
+ private:
+  std::vector<PlanarPose> samples_;
+  double start_s_, sigma_s_;
+};
+
 }  // namespace
 
 PathSpline robot_path(const RobotRoute& route, const PathRequest& request) {
-  const Pose& T_b_c = request.T_b_c;
   const double from_s = request.from_s, to_s = request.to_s;
   RandomSequence random(random_key(request.seed, RandomStream::kMotion, 100));
   const ClosedRoute closed_route(route.corners, route.turn_radius_m);
@@ -83,9 +135,21 @@ PathSpline robot_path(const RobotRoute& route, const PathRequest& request) {
     return Pose{camera_attitude(point.heading, 0.0, 0.0),
                 {point.position.x(), point.position.y(), route.camera_height_m}};
   };
-  const PathSpline smooth = spline_of(level_camera, from_s - 0.1, to_s + 0.1, kSmoothing_s);
-  return spline_of([&](double t_s) { return smooth.pose_at(t_s) * vibration.at(t_s) * T_b_c.inverse(); },
-                   from_s, to_s, kVibration_s);
+  return vibrating_path(level_camera, vibration, request);
+}
+
+PathSpline robot_path(const RobotTrack& track, const PathRequest& request) {
+  STILLPOINT_CHECK(track.poses.size() >= 2);
+  RandomSequence random(random_key(request.seed, RandomStream::kMotion, 101));
+  const Vibration vibration(random);
+  const FilteredTrack filtered(track.poses, track.smoothing_s);
+  const auto level_camera = [&](double t_s) {
+    const PlanarPose base = filtered.at(t_s);
+    const Eigen::Vector2d forward(std::cos(base.heading), std::sin(base.heading));
+    const Eigen::Vector2d position = base.position + track.camera_forward_m * forward;
+    return Pose{camera_attitude(base.heading, 0.0, 0.0), {position.x(), position.y(), track.camera_height_m}};
+  };
+  return vibrating_path(level_camera, vibration, request);
 }
 
 }  // namespace stillpoint::synth

@@ -95,6 +95,8 @@ class Builder {
   /// A cylinder with a lid.
   void add_cylinder(const Cylinder& cylinder, int texture, double repeat_m);
 
+  [[nodiscard]] World& world() { return world_; }
+
   /// Marks the last added quad as emissive.
   void mark_last_emissive() { world_.quads.back().emissive = true; }
 

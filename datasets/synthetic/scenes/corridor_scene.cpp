@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "datasets/synthetic/render/lightmap.h"
 #include "datasets/synthetic/scenes/scenes.h"
 
@@ -80,6 +82,21 @@ Scene build_corridor(std::uint64_t seed) {
     furnish_wall(context, wall);
   }
   bake_light(scene.world, RayTracer(scene.world), seed);
+  return scene;
+}
+
+Scene build_corridor_laps(std::uint64_t seed) {
+  Scene scene = build_corridor(seed);
+  scene.route.speed = 0.8;
+  // The first corner is the sharpest: not one of a U-turn.
+  std::rotate(scene.route.corners.begin(), scene.route.corners.begin() + 1, scene.route.corners.end());
+  const double middle = kFirstLeg_m - kHalfWidth_m, side = 0.92;
+  scene.walking_routes = {{{3.0, side}, {9.0, side}, {9.0, side - 0.02}, {3.0, side - 0.02}},
+                          {{middle + side, 3.0},
+                           {middle + side, 13.0},
+                           {middle + side - 0.02, 13.0},
+                           {middle + side - 0.02, 3.0}}};
+  scene.cart_routes.clear();
   return scene;
 }
 

@@ -68,6 +68,17 @@ struct WallArea {
 /// Hangs a textured rectangle on a wall.
 void hang(Builder& builder, const Wall& wall, const WallArea& area, int texture);
 
+/// A thin wall inside of a room, from the floor to `height`.
+struct Partition {
+  Eigen::Vector2d from, to;  ///< ends of the center line, distinct
+  double height = 2.5;       ///< [m]
+  double bottom = 0.0;       ///< height of the lower edge, e.g. of a lintel [m]
+};
+
+/// Adds a wall of 12 cm; its two sides are in the order left and right as seen along from - to.
+/// @return both sides, to be decorated
+std::array<Wall, 2> add_partition(const SceneContext& context, const Partition& partition, int texture);
+
 /// Wall decoration: gaps are proportional to 1 / density; the row is `lift` [m] above eye level.
 struct Decoration {
   double density = 1.0;  ///< > 0

@@ -18,10 +18,10 @@ constexpr double kCeilingDistance_m = 1.3;
 constexpr double kFurnitureHeight_m = 1.25;  // a desk with a monitor
 constexpr double kClearance_m = 0.5;
 
-Room room_around(std::span<const Vector3d> path) {
+Room room_around(std::span<const Vector3d> path, double wall_distance_m) {
   Vector3d low = path.front(), high = path.front();
   for (const Vector3d& point : path) low = low.cwiseMin(point), high = high.cwiseMax(point);
-  const Vector2d margin(kWallDistance_m, kWallDistance_m);
+  const Vector2d margin(wall_distance_m, wall_distance_m);
   return {low.head<2>() - margin, high.head<2>() + margin, high.z() + kCeilingDistance_m};
 }
 
@@ -79,6 +79,57 @@ void add_ducts(Builder& builder, const Room& room, const Palette& palette) {
   }
 }
 
+/// Parts of the line between two points that are at least kPartitionClearance_m from all points of `path`.
+std::vector<Partition> free_parts(const Vector2d& from, const Vector2d& to, std::span<const Vector3d> path) {
+  constexpr double kPartitionClearance_m = 0.75, kStep_m = 0.1, kMinLength_m = 0.6;
+  const double length = (to - from).norm();
+  const Vector2d along = (to - from) / length;
+  std::vector<Partition> parts;
+  double start = -1.0;
+  for (double at = 0.0; at <= length + kStep_m; at += kStep_m) {
+    const Vector2d point = from + at * along;
+    const bool free = at <= length && std::all_of(path.begin(), path.end(), [&](const Vector3d& other) {
+                        return (other.head<2>() - point).norm() > kPartitionClearance_m;
+                      });
+    if (free && start < 0.0) start = at;
+    if (free || start < 0.0) continue;
+    if (at - kStep_m - start > kMinLength_m) {
+      parts.push_back({from + start * along, from + (at - kStep_m) * along});
+    }
+    start = -1.0;
+  }
+  return parts;
+}
+
+/// Partitions on a grid of rooms of about 3 m, wherever the path leaves space.
+/// @return points on their center lines
+std::vector<Vector3d> add_partitions(const SceneContext& context, const Room& room,
+                                     std::span<const Vector3d> path) {
+  constexpr double kRoom_m = 3.0;
+  std::vector<Partition> partitions;
+  const Vector2d size = room.high - room.low;
+  for (const int axis : {0, 1}) {
+    const int rooms = static_cast<int>(std::lround(size[axis] / kRoom_m));
+    for (int i = 1; i < rooms; ++i) {
+      Vector2d from = room.low, to = room.high;
+      from[axis] = to[axis] = room.low[axis] + i * size[axis] / rooms;
+      for (Partition& part : free_parts(from, to, path)) partitions.push_back(part);
+    }
+  }
+  std::vector<Vector3d> points;
+  for (Partition& partition : partitions) {
+    partition.height = room.height;
+    for (const Wall& wall : add_partition(context, partition, context.palette.plaster)) {
+      if (wall.length > 1.2) decorate(context, wall, {0.8, 0.0});
+    }
+    for (double share = 0.0; share <= 1.0; share += 0.05) {
+      const Vector2d point = partition.from + share * (partition.to - partition.from);
+      points.emplace_back(point.x(), point.y(), 0.0);
+    }
+  }
+  return points;
+}
+
 }  // namespace
 
 Vector3d hall_shift(std::span<const Vector3d> path) {
@@ -89,7 +140,7 @@ Vector3d hall_shift(std::span<const Vector3d> path) {
 
 Scene build_hall(std::uint64_t seed, std::span<const Vector3d> path) {
   Scene scene;
-  scene.room = room_around(path);
+  scene.room = room_around(path, kWallDistance_m);
   scene.gain = 1.5;
   Builder builder(scene.world);
   const Palette& palette = scene.palette = make_palette(builder, seed);
@@ -99,6 +150,36 @@ Scene build_hall(std::uint64_t seed, std::span<const Vector3d> path) {
   furnish_walls(context, scene.room);
   furnish_floor(context, scene.room, path);
   add_ducts(builder, scene.room, palette);
+  bake_light(scene.world, RayTracer(scene.world), seed);
+  return scene;
+}
+
+Scene build_home(std::uint64_t seed, std::span<const Vector3d> path,
+                 const std::vector<std::vector<Vector2d>>& walking_routes) {
+  constexpr double kHomeWallDistance_m = 1.4, kHomeHeight_m = 2.6, kRouteStep = 0.05;
+  Scene scene;
+  scene.room = room_around(path, kHomeWallDistance_m);
+  scene.room.height = kHomeHeight_m;
+  scene.gain = 1.4;
+  scene.walking_routes = walking_routes;
+  Builder builder(scene.world);
+  const Palette& palette = scene.palette = make_palette(builder, seed);
+  RandomSequence random(random_key(seed, RandomStream::kScene));
+  const SceneContext context{builder, palette, random};
+  std::vector<Vector3d> occupied(path.begin(), path.end());
+  for (const std::vector<Vector2d>& route : walking_routes) {
+    for (std::size_t i = 0; i < route.size(); ++i) {
+      for (double share = 0.0; share < 1.0; share += kRouteStep) {
+        const Vector2d point = route[i] + share * (route[(i + 1) % route.size()] - route[i]);
+        occupied.emplace_back(point.x(), point.y(), 0.0);
+      }
+    }
+  }
+  add_room(context, scene.room, {palette.oak, palette.plaster, palette.ceiling});
+  furnish_walls(context, scene.room);
+  const std::vector<Vector3d> partitions = add_partitions(context, scene.room, occupied);
+  occupied.insert(occupied.end(), partitions.begin(), partitions.end());
+  furnish_floor(context, scene.room, occupied);
   bake_light(scene.world, RayTracer(scene.world), seed);
   return scene;
 }

@@ -91,4 +91,23 @@ Scene build_market(std::uint64_t seed) {
   return scene;
 }
 
+Scene build_market_laps(std::uint64_t seed) {
+  Scene scene = build_market(seed);
+  const double lane = 0.5 * kAisle_m, cross = 1.9;
+  scene.route = RobotRoute{{{-12.3, -lane},
+                            {cross, -lane},
+                            {cross, lane},
+                            {12.3, lane},
+                            {12.3, 3.0 * lane},
+                            {cross, 3.0 * lane},
+                            {cross, lane},
+                            {-12.3, lane}},
+                           1.2,
+                           0.95,
+                           0.6,
+                           1.1};
+  scene.cart_routes = scene.walking_routes;  // beside the robot's lane
+  return scene;
+}
+
 }  // namespace stillpoint::synth

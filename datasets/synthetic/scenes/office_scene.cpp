@@ -52,7 +52,46 @@ void add_furniture_at_walls(const SceneContext& context, const Room& room) {
   add_chair(context, {{2.85, -0.2, 0.0}, kPi / 2.0 + 0.3});
 }
 
+/// Furniture of the large office: at its walls, at least 0.9 m from the robot's route.
+void add_furniture_of_large_office(const SceneContext& context, const Room& room) {
+  Builder& builder = context.builder;
+  const Palette& palette = context.palette;
+  const double north = room.high.y() - 0.32, south = room.low.y() + 0.32;
+  for (const double x : {-4.6, -1.0, 2.4}) add_bookshelf(context, {{x, north, 0.0}, 0.0}, 1.6);
+  for (const double x : {4.2, 1.4}) add_bookshelf(context, {{x, south, 0.0}, kPi}, 1.3);
+  add_bookshelf(context, {{room.low.x() + 0.32, -1.2, 0.0}, kPi / 2.0}, 1.6);
+  for (const double x : {-2.4, 1.4}) add_carton_pile(context, {{x, room.high.y() - 0.45, 0.0}, 0.2});
+  add_carton_pile(context, {{-3.4, room.low.y() + 0.5, 0.0}, -0.3});
+  add_desk(context, {{room.high.x() - 0.02, -0.2, 0.0}, -kPi / 2.0});
+  add_desk(context, {{room.high.x() - 0.02, 2.2, 0.0}, -kPi / 2.0});
+  add_bin(builder, {{1.85, 0.5, 0.0}, 0.0}, palette);
+  add_bin(builder, {{-1.9, -0.6, 0.0}, 0.0}, palette);
+}
+
 }  // namespace
+
+Scene build_large_office(std::uint64_t seed) {
+  Scene scene;
+  scene.room = Room{{-5.5, -4.5}, {5.5, 4.5}, 2.9};
+  scene.gain = 1.5;
+  scene.seats = kSeats;
+  scene.route = RobotRoute{{{-3.0, -2.4}, {3.0, -2.4}, {3.0, 2.4}, {-3.0, 2.4}}, 0.9, 0.8, 0.6, 1.1};
+  // Around the robot's route, and across it.
+  scene.walking_routes = {{{-3.9, -3.3}, {3.9, -3.3}, {3.9, 3.3}, {-3.9, 3.3}},
+                          {{2.2, 3.3}, {2.2, -3.3}, {3.8, -3.3}, {3.8, 3.3}},
+                          {{-3.7, 1.8}, {3.7, 1.8}, {3.7, 3.2}, {-3.7, 3.2}}};
+  scene.cart_routes = {{{-3.6, -3.4}, {3.6, -3.4}, {3.6, -3.2}, {-3.6, -3.2}}};
+  Builder builder(scene.world);
+  const Palette& palette = scene.palette = make_palette(builder, seed);
+  RandomSequence random(random_key(seed, RandomStream::kScene));
+  const SceneContext context{builder, palette, random};
+  add_room(context, scene.room, {palette.carpet, palette.plaster, palette.ceiling});
+  add_walls(context, scene.room);
+  add_furniture_of_large_office(context, scene.room);
+  add_workplaces(context);
+  bake_light(scene.world, RayTracer(scene.world), seed);
+  return scene;
+}
 
 Scene build_office(std::uint64_t seed) {
   Scene scene;

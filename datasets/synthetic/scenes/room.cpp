@@ -58,6 +58,20 @@ void add_floor_and_ceiling(const SceneContext& context, const Room& room, const 
   }
 }
 
+std::array<Wall, 2> add_partition(const SceneContext& context, const Partition& partition, int texture) {
+  constexpr double kHalfThickness_m = 0.06, kRepeat_m = 2.0;
+  Builder& builder = context.builder;
+  const Vector2d along = partition.to - partition.from;
+  const double length = along.norm();
+  const Vector3d from(partition.from.x(), partition.from.y(), 0.0);
+  builder.set_frame(from, std::atan2(along.y(), along.x()));
+  builder.add_box({0.0, -kHalfThickness_m, partition.bottom}, {length, kHalfThickness_m, partition.height},
+                  texture, kRepeat_m);
+  const Vector3d right(along.x() / length, along.y() / length, 0.0);
+  const Vector3d side = kHalfThickness_m * right.cross(Vector3d::UnitZ());
+  return {Wall{from + length * right - side, -right, length}, Wall{from + side, right, length}};
+}
+
 void hang(Builder& builder, const Wall& wall, const WallArea& area, int texture) {
   const auto& [at, size] = area;
   builder.set_frame(Vector3d::Zero(), 0.0);

@@ -11,6 +11,7 @@ namespace {
 constexpr double kTurnRadius_m = 0.5;
 constexpr double kHandheldClearance_m = 0.75;  // minimum distance to a hand-held camera
 constexpr double kRobotClearance_m = 1.2;
+constexpr double kFastRobotClearance_m = 1.8;  // a robot that does not overtake retreating people
 
 Walk make_walk(const std::vector<Eigen::Vector2d>& corners, WalkStyle style, const CameraMotion& camera,
                std::uint64_t key) {
@@ -40,7 +41,9 @@ std::vector<Actor> populate_scene(const SynthRequest& request, Scene& scene, con
   }
   Builder builder(scene.world);
   const bool office = request.preset.starts_with("walking");
-  const double clearance_m = office ? kHandheldClearance_m : kRobotClearance_m;
+  const double clearance_m = office                    ? kHandheldClearance_m
+                             : is_loop_preset(request) ? kFastRobotClearance_m
+                                                       : kRobotClearance_m;
   std::vector<Actor> actors;
   const auto key = [&] { return random_key(request.seed, RandomStream::kPeople, actors.size()); };
   const auto object = [&] { return static_cast<int>(actors.size()) + 1; };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "datasets/synthetic/sequence/home_motion.h"
 
 namespace stillpoint::synth {
 namespace {
@@ -11,6 +12,20 @@ namespace {
 const std::vector<std::string> kBasePresets{"walking_xyz",        "walking_static", "walking_rpy",
                                             "walking_halfsphere", "market",         "corridor"};
 const std::string kEmptySuffix = "_empty";
+const std::string kShortSuffix = "_short";
+const std::string kHomeTour = "home_tour";
+
+/// A preset that returns to places, and its variation with the suffix `_short`. Durations follow from the
+/// lengths of the routes; `loop_presets_test` verifies them.
+struct LoopPreset {
+  std::string name;
+  double seconds, short_seconds;  ///< 0: no short variation
+  int walkers, seated, unknown_movers;
+};
+const std::vector<LoopPreset> kLoopPresets{
+    {"office_laps", 90.0, 36.0, 3, 2, 1},  {"corridor_laps", 110.0, 92.0, 2, 0, 0},
+    {"market_laps", 182.0, 70.0, 9, 0, 2}, {"twin_aisles", 100.0, 32.0, 2, 0, 1},
+    {"changed_room", 75.0, 60.0, 2, 0, 0}, {kHomeTour, 236.0, 0.0, 2, 0, 0}};
 
 void require(bool condition, const std::string& field, const std::string& range) {
   if (!condition) throw InputError("synth: " + field, "is out of range; use " + range);
@@ -23,12 +38,59 @@ void use_robot_camera(SynthRequest& request) {  // D435i as in the OpenLORIS pac
   request.seconds = 30.0;
 }
 
+/// A D435i with a quarter of the pixels: these sequences are long, and a frame of 848x480 takes 1 MB on disk.
+void use_loop_preset(SynthRequest& request) {
+  for (const LoopPreset& preset : kLoopPresets) {
+    if (!is_preset(request, preset.name)) continue;
+    request.width = 424;
+    request.height = 240;
+    request.focal_px = 305.5;
+    request.seconds = is_short(request) ? preset.short_seconds : preset.seconds;
+    request.walkers = preset.walkers;
+    request.seated = preset.seated;
+    request.unknown_movers = preset.unknown_movers;
+  }
+  if (request.preset != kHomeTour) return;
+  request.frames_per_s = 15.0;  // 0.3 m/s on average
+  request.start_s = 1.0;
+  request.trajectory_file = home_ground_truth_file();
+}
+
+void check_files(const SynthRequest& request) {
+  const bool files = !request.trajectory_file.empty() && !request.imu_file.empty();
+  if (request.preset == "flight" && !files) {
+    throw InputError("preset \"flight\"",
+                     "needs a trajectory and its IMU samples; pass --trajectory FILE --imu FILE");
+  }
+  if (request.preset == kHomeTour && !std::filesystem::exists(request.trajectory_file)) {
+    throw InputError("preset \"home_tour\"",
+                     "needs the ground truth of OpenLORIS home, but " + request.trajectory_file.string() +
+                         " does not exist; set STILLPOINT_DATA to the folder of "
+                         "openloris/groundtruth/gt_home_1.txt, or pass --trajectory FILE");
+  }
+}
+
 }  // namespace
+
+bool is_short(const SynthRequest& request) { return request.preset.ends_with(kShortSuffix); }
+
+bool is_preset(const SynthRequest& request, const std::string& name) {
+  return request.preset == name || request.preset == name + kShortSuffix;
+}
+
+bool is_loop_preset(const SynthRequest& request) {
+  return std::any_of(kLoopPresets.begin(), kLoopPresets.end(),
+                     [&](const LoopPreset& preset) { return is_preset(request, preset.name); });
+}
 
 std::vector<std::string> preset_names() {
   std::vector<std::string> names = kBasePresets;
   for (const std::string& preset : kBasePresets) names.push_back(preset + kEmptySuffix);
   names.push_back("flight");
+  for (const LoopPreset& preset : kLoopPresets) {
+    names.push_back(preset.name);
+    if (preset.short_seconds > 0.0) names.push_back(preset.name + kShortSuffix);
+  }
   return names;
 }
 
@@ -41,6 +103,8 @@ SynthRequest preset_request(const std::string& name) {
   }
   SynthRequest request;
   request.preset = name;
+  use_loop_preset(request);
+  if (is_loop_preset(request)) return request;
   if (name.starts_with("market") || name.starts_with("corridor")) use_robot_camera(request);
   if (name == "flight") request.seconds = 25.0;
   if (name == "flight" || name.ends_with(kEmptySuffix)) return request;
@@ -74,11 +138,7 @@ void check_request(const SynthRequest& request) {
   require(request.imu.gyro_rate_hz >= 10.0 && request.imu.accel_rate_hz >= 10.0, "imu rates",
           "10 Hz or more");
   require(request.start_s >= 0.0, "start_s", "0 or more");
-  const bool files = !request.trajectory_file.empty() && !request.imu_file.empty();
-  if (request.preset == "flight" && !files) {
-    throw InputError("preset \"flight\"",
-                     "needs a trajectory and its IMU samples; pass --trajectory FILE --imu FILE");
-  }
+  check_files(request);
 }
 
 Camera camera_of(const SynthRequest& request) {

@@ -59,8 +59,9 @@ struct SynthRequest {
   ImuSensor imu;
   DetectorModel detector;
   double start_s = 5.0;  ///< preset `flight`: offset from the first time that both files cover
-  std::filesystem::path trajectory_file;  ///< preset `flight`: poses T_w_b of the IMU (TUM text)
-  std::filesystem::path imu_file;         ///< preset `flight`: IMU samples (EuRoC CSV)
+  /// Preset `flight`: poses T_w_b of the IMU (TUM text); `home_tour`: ground truth of OpenLORIS home.
+  std::filesystem::path trajectory_file;
+  std::filesystem::path imu_file;  ///< preset `flight`: IMU samples (EuRoC CSV)
 };
 
 /// Visits every field in a fixed order, for printing, hashing and setting by key. The keys are part of the
@@ -134,14 +135,27 @@ void visit_fields(Visitor&& field, Config& request) {
 }
 
 /// Names of all presets: walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with the suffix
-/// `_empty` (static scene), and `flight` (recorded trajectory and IMU samples, static scene).
+/// `_empty` (static scene); `flight` (recorded trajectory and IMU samples, static scene); and those that
+/// return to places, for loop closure: {office,corridor,market}_laps, twin_aisles, changed_room, each also
+/// with the suffix `_short`, and `home_tour` (recorded trajectory of a robot). These have small images,
+/// because they are long: 1 GB at most.
 [[nodiscard]] std::vector<std::string> preset_names();
+
+/// Whether the preset, or the one with the suffix `_short`, is `name`.
+[[nodiscard]] bool is_preset(const SynthRequest& request, const std::string& name);
+
+/// Whether the preset returns to places.
+[[nodiscard]] bool is_loop_preset(const SynthRequest& request);
+
+/// Whether the preset has the suffix `_short`.
+[[nodiscard]] bool is_short(const SynthRequest& request);
 
 /// The request of a preset with its defaults.
 /// @throws InputError if there is no preset of that name
 [[nodiscard]] SynthRequest preset_request(const std::string& name);
 
-/// Checks ranges. @throws InputError naming the first field that is out of range
+/// Checks ranges and that the files of the preset exist.
+/// @throws InputError naming the first field that is out of range, or the file that is missing
 void check_request(const SynthRequest& request);
 
 /// Pinhole camera of the request; the principal point is the image center.

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -79,6 +80,13 @@ class TemporaryFolder {
   fs::path path_;
 };
 
+/// One state of the static world, ready to be rendered.
+struct WorldRenderer {
+  WorldRenderer(const World& world, const Camera& camera) : tracer(world), renderer(world, tracer, camera) {}
+  RayTracer tracer;
+  FrameRenderer renderer;
+};
+
 /// Renders and writes single frames.
 class SequenceRenderer {
  public:
@@ -88,9 +96,10 @@ class SequenceRenderer {
         setup_(setup),
         times_(times),
         writer_(writer),
-        tracer_(setup.scene.world),
-        renderer_(setup.scene.world, tracer_, setup.rig.camera),
-        visible_(times.size()) {}
+        initial_(setup.scene.world, setup.rig.camera),
+        visible_(times.size()) {
+    if (setup.scene.change) changed_.emplace(setup.scene.change->world, setup.rig.camera);
+  }
 
   /// Thread-safe for different frames.
   void render(std::size_t index, const RenderControl& control) {
@@ -115,11 +124,13 @@ class SequenceRenderer {
   [[nodiscard]] RenderedFrame render_ideal_frame(Timestamp t) const {
     const double span_s = std::max(1e-3, request_.color.exposure_s + request_.rolling_shutter_s);
     const Exposure exposure = exposure_at(request_, setup_, t, span_s);
-    if (setup_.actors.empty()) return renderer_.render(exposure, nullptr);
     const double middle_s = seconds_between(setup_.epoch, t);
+    const FrameRenderer& renderer =
+        changed_ && middle_s >= setup_.change_s ? changed_->renderer : initial_.renderer;
+    if (setup_.actors.empty()) return renderer.render(exposure, nullptr);
     const MoverFrame movers =
         assemble_movers(setup_.actors, middle_s - 0.5 * span_s, middle_s + 0.5 * span_s);
-    return renderer_.render(exposure, &movers);
+    return renderer.render(exposure, &movers);
   }
 
   static cv::Mat label_image(const RenderedFrame& frame) {
@@ -141,8 +152,8 @@ class SequenceRenderer {
   const SceneSetup& setup_;
   const std::vector<Timestamp>& times_;
   const SequenceWriter& writer_;
-  RayTracer tracer_;
-  FrameRenderer renderer_;
+  WorldRenderer initial_;
+  std::optional<WorldRenderer> changed_;
   std::vector<std::vector<VisibleObject>> visible_;
 };
 

@@ -45,7 +45,9 @@ class TextCollector {
 
 std::string contents(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string(), "cannot be read; check the path");
+  if (!in)
+    throw InputError(file.string(),
+                     "cannot be read; correct the path, or set STILLPOINT_DATA (preset home_tour)");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "core/base/error.h"
 #include "datasets/synthetic/counter_random.h"
+#include "datasets/synthetic/sequence/home_motion.h"
 #include "datasets/synthetic/sequence/populate_scene.h"
 #include "datasets/synthetic/sequence/recorded_motion.h"
 
@@ -37,26 +41,16 @@ Rig rig_of(const SynthRequest& request) {
 double last_path_time(const SynthRequest& request) { return kFirstFrame_s + request.seconds + kTail_s; }
 
 Scene scene_of(const SynthRequest& request) {
+  constexpr double kLongAisle_m = 8.0, kShortAisle_m = 4.0;
+  if (is_preset(request, "office_laps")) return build_large_office(request.seed);
+  if (is_preset(request, "twin_aisles"))
+    return build_twin_aisles(request.seed, is_short(request) ? kShortAisle_m : kLongAisle_m);
+  if (is_preset(request, "changed_room")) return build_changed_room(request.seed);
+  if (is_preset(request, "market_laps")) return build_market_laps(request.seed);
+  if (is_preset(request, "corridor_laps")) return build_corridor_laps(request.seed);
   if (request.preset.starts_with("market")) return build_market(request.seed);
   if (request.preset.starts_with("corridor")) return build_corridor(request.seed);
   return build_office(request.seed);
-}
-
-SceneSetup simulated_setup(const SynthRequest& request) {
-  const Rig rig = rig_of(request);
-  Scene scene = scene_of(request);
-  const double last_s = last_path_time(request);
-  const bool by_hand = request.preset.starts_with("walking");
-  PathSpline path = by_hand ? hand_path(hand_motion_of(request.preset), scene.viewpoint,
-                                        {rig.T_b_c, request.seed, 0.0, last_s})
-                            : robot_path(scene.route, {rig.T_b_c, request.seed, 0.0, last_s});
-  const Timestamp epoch{kEpoch_ns};
-  ImuRecord imu = simulate_imu(path, request.imu, {epoch, 0.0, last_path_time(request), request.seed});
-  const auto camera_at = [&](double t_s) {
-    return Eigen::Vector2d((path.pose_at(t_s) * rig.T_b_c).p.head<2>());
-  };
-  std::vector<Actor> actors = populate_scene(request, scene, {camera_at, 0.0, last_s});
-  return {std::move(scene), std::move(path), rig, epoch, kFirstFrame_s, std::move(imu), std::move(actors)};
 }
 
 std::vector<Eigen::Vector3d> camera_positions(const PathSpline& path, const Pose& T_b_c) {
@@ -66,6 +60,71 @@ std::vector<Eigen::Vector3d> camera_positions(const PathSpline& path, const Pose
     positions.push_back((path.pose_at(t_s) * T_b_c).p);
   }
   return positions;
+}
+
+/// The motion of the body, and the scene through which it moves.
+struct MovingBody {
+  Scene scene;
+  PathSpline path;
+};
+
+MovingBody simulated_motion(const SynthRequest& request, const PathRequest& path) {
+  Scene scene = scene_of(request);
+  const bool by_hand = request.preset.starts_with("walking");
+  PathSpline spline = by_hand ? hand_path(hand_motion_of(request.preset), scene.viewpoint, path)
+                              : robot_path(scene.route, path);
+  return {std::move(scene), std::move(spline)};
+}
+
+/// The home is built around the whole tour, so that it does not depend on the duration.
+MovingBody home_motion(const SynthRequest& request, const PathRequest& path) {
+  RobotTrack track = load_home_track(request.trajectory_file);
+  const double whole_s = track.poses.back().t_s;
+  if (whole_s < request.start_s + path.to_s) {
+    throw InputError("preset \"home_tour\"",
+                     fmt::format("the tour takes {:.1f} s, but {:.1f} s from {:.1f} s on "
+                                 "are required; reduce --seconds or --start",
+                                 whole_s, request.seconds, request.start_s));
+  }
+  PathRequest whole = path;
+  whole.to_s = whole_s;
+  Scene scene =
+      build_home(request.seed, camera_positions(robot_path(track, whole), path.T_b_c), home_walking_routes());
+  for (PlanarPose& pose : track.poses) pose.t_s -= request.start_s;
+  return {std::move(scene), robot_path(track, path)};
+}
+
+/// Path time at which the camera first enters the part of the floor from which a change is not visible.
+double time_of_change(const SceneChange& change, const CameraMotion& camera) {
+  constexpr double kInterval_s = 0.05;
+  for (double t_s = camera.from_s; t_s < camera.to_s; t_s += kInterval_s) {
+    const Eigen::Vector2d at = camera.camera_at(t_s);
+    if ((at.array() >= change.away_low.array()).all() && (at.array() <= change.away_high.array()).all())
+      return t_s;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+SceneSetup simulated_setup(const SynthRequest& request) {
+  const Rig rig = rig_of(request);
+  const double last_s = last_path_time(request);
+  const PathRequest path_request{rig.T_b_c, request.seed, 0.0, last_s};
+  auto [scene, path] = request.preset == "home_tour" ? home_motion(request, path_request)
+                                                     : simulated_motion(request, path_request);
+  const Timestamp epoch{kEpoch_ns};
+  ImuRecord imu = simulate_imu(path, request.imu, {epoch, 0.0, last_s, request.seed});
+  const CameraMotion camera{[&path = path, &rig](double t_s) {
+                              return Eigen::Vector2d((path.pose_at(t_s) * rig.T_b_c).p.head<2>());
+                            },
+                            0.0, last_s};
+  std::vector<Actor> actors = populate_scene(request, scene, camera);
+  double change_s = std::numeric_limits<double>::infinity();
+  if (scene.change) {
+    scene.change->world.textures = scene.world.textures;  // those of the actors included
+    change_s = time_of_change(*scene.change, camera);
+  }
+  return {std::move(scene), std::move(path),   rig,     epoch, kFirstFrame_s,
+          std::move(imu),   std::move(actors), change_s};
 }
 
 SceneSetup recorded_setup(const SynthRequest& request) {

@@ -2,6 +2,7 @@
 /// Scene, trajectory, IMU samples and actors of a sequence, computed before the first frame is rendered.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "core/types/rig.h"
@@ -23,6 +24,7 @@ struct SceneSetup {
   double first_frame_s = 0;  ///< path time of the first frame
   ImuRecord imu;
   std::vector<Actor> actors;
+  double change_s = std::numeric_limits<double>::infinity();  ///< path time of `Scene::change`
 };
 
 [[nodiscard]] SceneSetup make_scene_setup(const SynthRequest& request);
