@@ -16,8 +16,9 @@ namespace stillpoint::bench {
 namespace {
 
 constexpr const char* kPresets =
-    "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; flight; with returns to "
-    "places: {office,corridor,market}_laps, twin_aisles, changed_room, each also with _short; home_tour";
+    "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; flight"
+    " (recorded motion); with returns to places: {office,corridor,market}_laps, twin_aisles, changed_room, "
+    "each also with _short; home_tour";
 constexpr double kPresetValue = -1.0;  // option not given: use the value of the preset
 
 /// Command line arguments of `data synth`.
@@ -104,7 +105,7 @@ std::vector<Option> options_of(SynthArguments& arguments) {
       {"--trajectory", "Preset flight: IMU poses (TUM text); home_tour: gt_home_1.txt",
        &arguments.trajectory},
       {"--imu", "Preset flight: IMU samples (EuRoC CSV)", &arguments.imu},
-      {"--start", "Presets flight and home_tour: offset of the first frame [s]", &arguments.start, {0, 1e6}},
+      {"--start", "Preset flight or home_tour: offset of the first frame [s]", &arguments.start, {0, 1e6}},
       {"--width", "Image width [px]", &arguments.width, {1, 65535}},
       {"--height", "Image height [px]", &arguments.height, {1, 65535}},
       {"--focal", "Focal length [px]", &arguments.focal, {1, 1e6}},
