@@ -160,6 +160,19 @@ std::optional<ChunkCompression> compression_of(std::string_view name) {
   return std::nullopt;
 }
 
+std::string_view name_of(ChunkCompression compression) {
+  switch (compression) {
+    case ChunkCompression::kBz2:
+      return "bz2";
+    case ChunkCompression::kLz4:
+      return "lz4";
+    case ChunkCompression::kZstd:
+      return "zstd";
+    default:
+      return "none";
+  }
+}
+
 std::string decompress_chunk(ChunkCompression compression, std::string_view stored, std::uint64_t bytes,
                              const std::string& place) {
   Output output(std::min(bytes, kMaxChunkBytes), place);

@@ -2,6 +2,7 @@
 /// Compression of the chunks of bags. The only component that depends on bzip2, LZ4 and zstd.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,11 +12,17 @@
 
 namespace stillpoint::datasets {
 
-/// Largest size of a decompressed chunk. Writers close a chunk after about 1 MB; one message may be larger.
+/// Largest size of a decompressed chunk.
 inline constexpr std::uint64_t kMaxChunkBytes = 1'000'000'000;
+
+/// Writers close a chunk that has reached this size, the default of rosbag; one message may be larger.
+inline constexpr std::size_t kWrittenChunkBytes = 768 * 1024;
 
 /// The method with this name in a bag: none or "", bz2, lz4, zstd.
 [[nodiscard]] std::optional<ChunkCompression> compression_of(std::string_view name);
+
+/// Inverse of `compression_of`.
+[[nodiscard]] std::string_view name_of(ChunkCompression compression);
 
 /// Decompresses a chunk: a bzip2 stream, LZ4 frames, or zstd frames. The memory grows with the decompressed
 /// bytes, not with the expected number.

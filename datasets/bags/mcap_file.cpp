@@ -10,25 +10,14 @@
 #include "core/base/error.h"
 #include "datasets/bags/byte_reader.h"
 #include "datasets/bags/chunk_codec.h"
+#include "datasets/bags/mcap_records.h"
 
 namespace stillpoint::datasets {
 namespace {
 
-constexpr std::string_view kMagic = "\x89MCAP0\r\n";
-constexpr std::uint64_t kRecordHead = 9;            ///< opcode, length
 constexpr std::uint64_t kMessageHead = 22;          ///< channel, sequence number, log time, publish time
 constexpr std::uint64_t kChunkHeadBytes = 4096;     ///< contains the fields of a chunk before its records
 constexpr std::uint64_t kMaxFieldsBytes = 1 << 26;  ///< of a schema, channel or message index
-
-enum Opcode : std::uint8_t {
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7,
-  kDataEnd = 15,
-};
 
 /// The part of the file that is not compressed, as a chunk: positions in it are positions in the file.
 constexpr std::uint32_t kWholeFile = 0;
@@ -44,7 +33,7 @@ RecordHead parse_head(std::string_view head, const std::string& place) {
   return {.opcode = opcode, .bytes = reader.number<std::uint64_t>()};
 }
 
-Timestamp read_time(ByteReader& reader) {
+Timestamp read_mcap_time(ByteReader& reader) {
   return {static_cast<std::int64_t>(reader.number<std::uint64_t>())};
 }
 
@@ -63,15 +52,15 @@ class McapIndexer {
 
   [[nodiscard]] BagIndex run() {
     const ByteFile& file = reader_.file();
-    std::uint64_t position = kMagic.size();
+    std::uint64_t position = mcap::kMagic.size();
     bool complete = false;
     bool at_footer = false;
-    while (!at_footer && position + kRecordHead <= file.size()) {
-      const RecordHead head = parse_head(file.read(position, kRecordHead), place_);
-      const std::uint64_t data = position + kRecordHead;
+    while (!at_footer && position + mcap::kRecordHeadBytes <= file.size()) {
+      const RecordHead head = parse_head(file.read(position, mcap::kRecordHeadBytes), place_);
+      const std::uint64_t data = position + mcap::kRecordHeadBytes;
       if (head.bytes > file.size() - data) break;
-      at_footer = head.opcode == kFooter;
-      complete |= at_footer || head.opcode == kDataEnd;
+      at_footer = head.opcode == mcap::kFooter;
+      complete |= at_footer || head.opcode == mcap::kDataEnd;
       add(head, position);
       position = data + head.bytes;
     }
@@ -87,26 +76,27 @@ class McapIndexer {
   [[nodiscard]] std::string fields_of(const RecordHead& head, std::uint64_t position) const {
     if (head.bytes > kMaxFieldsBytes)
       throw InputError(place_, "contains a record of impossible size; it is damaged, copy the file again");
-    return reader_.file().read(position + kRecordHead, head.bytes);
+    return reader_.file().read(position + mcap::kRecordHeadBytes, head.bytes);
   }
 
   void add(const RecordHead& head, std::uint64_t position) {
     switch (head.opcode) {
-      case kSchema:
+      case mcap::kSchema:
         add_schema(fields_of(head, position));
         break;
-      case kChannel:
+      case mcap::kChannel:
         add_channel(fields_of(head, position));
         break;
-      case kMessage:
-        add_message(reader_.file().read(position + kRecordHead, std::min(head.bytes, kMessageHead)),
-                    kWholeFile, position);
+      case mcap::kMessage:
+        add_message(
+            reader_.file().read(position + mcap::kRecordHeadBytes, std::min(head.bytes, kMessageHead)),
+            kWholeFile, position);
         break;
-      case kChunk:
+      case mcap::kChunk:
         finish_chunk();
-        add_chunk(head, position + kRecordHead);
+        add_chunk(head, position + mcap::kRecordHeadBytes);
         break;
-      case kMessageIndex:
+      case mcap::kMessageIndex:
         add_message_index(fields_of(head, position));
         break;
       default:
@@ -151,8 +141,10 @@ class McapIndexer {
     ByteReader reader(head, place_);
     const std::uint16_t channel = reader.number<std::uint16_t>();
     reader.skip(sizeof(std::uint32_t));
-    index_.messages.push_back(
-        {.t = read_time(reader), .connection = connection_index(channel), .chunk = chunk, .offset = offset});
+    index_.messages.push_back({.t = read_mcap_time(reader),
+                               .connection = connection_index(channel),
+                               .chunk = chunk,
+                               .offset = offset});
   }
 
   void add_chunk(const RecordHead& head, std::uint64_t position) {
@@ -185,7 +177,7 @@ class McapIndexer {
     const std::string_view entries = reader.block();
     ByteReader entry(entries, place_);
     while (entry.remaining() > 0) {
-      const Timestamp t = read_time(entry);
+      const Timestamp t = read_mcap_time(entry);
       index_.messages.push_back({.t = t,
                                  .connection = connection,
                                  .chunk = static_cast<std::uint32_t>(index_.chunks.size() - 1),
@@ -206,11 +198,11 @@ class McapIndexer {
     ByteReader reader(*bytes, place_);
     while (reader.remaining() > 0) {
       const std::uint64_t offset = reader.position();
-      const RecordHead head = parse_head(reader.take(kRecordHead), place_);
+      const RecordHead head = parse_head(reader.take(mcap::kRecordHeadBytes), place_);
       const std::string_view fields = reader.take(head.bytes);
-      if (head.opcode == kSchema) add_schema(fields);
-      if (head.opcode == kChannel) add_channel(fields);
-      if (head.opcode == kMessage && with_messages) add_message(fields, chunk, offset);
+      if (head.opcode == mcap::kSchema) add_schema(fields);
+      if (head.opcode == mcap::kChannel) add_channel(fields);
+      if (head.opcode == mcap::kMessage && with_messages) add_message(fields, chunk, offset);
     }
   }
 
@@ -242,7 +234,7 @@ class McapIndexer {
 };
 
 void require_magic(const ByteFile& file) {
-  if (file.read(0, kMagic.size()) == kMagic) return;
+  if (file.read(0, mcap::kMagic.size()) == mcap::kMagic) return;
   throw InputError(file.path().string(), "is not an MCAP file of version 0; copy the file again");
 }
 
@@ -256,12 +248,12 @@ McapFile::McapFile(const std::filesystem::path& file) : reader_(file) {
 std::string McapFile::payload(const BagMessage& message, std::uint64_t max_bytes) const {
   const BagChunk& chunk = index_.chunks[message.chunk];
   const std::string place = reader_.file().path().string();
-  const std::string bytes = reader_.read(chunk, message.offset, kRecordHead);
+  const std::string bytes = reader_.read(chunk, message.offset, mcap::kRecordHeadBytes);
   const RecordHead head = parse_head(bytes, place);
-  const std::uint64_t available = chunk.bytes - message.offset - kRecordHead;
-  if (head.opcode != kMessage || head.bytes < kMessageHead || head.bytes > available)
+  const std::uint64_t available = chunk.bytes - message.offset - mcap::kRecordHeadBytes;
+  if (head.opcode != mcap::kMessage || head.bytes < kMessageHead || head.bytes > available)
     throw InputError(place, "its index points to no message; it is damaged, restore it with `mcap recover`");
-  return reader_.read(chunk, message.offset + kRecordHead + kMessageHead,
+  return reader_.read(chunk, message.offset + mcap::kRecordHeadBytes + kMessageHead,
                       std::min(max_bytes, head.bytes - kMessageHead));
 }
 

@@ -60,7 +60,7 @@ struct Record {
 };
 
 /// Time stamps of ROS 1: seconds, then nanoseconds.
-Timestamp read_time(ByteReader& reader) {
+Timestamp read_ros1_time(ByteReader& reader) {
   const std::int64_t seconds = reader.number<std::uint32_t>();
   return {seconds * 1'000'000'000 + reader.number<std::uint32_t>()};
 }
@@ -154,7 +154,7 @@ class Ros1Indexer {
     ByteReader entries(data, place_);
     const std::uint32_t connection = connection_index(record.number<std::uint32_t>("conn", place_));
     for (std::uint64_t i = 0; i < data.size() / kIndexEntryBytes; ++i) {
-      const Timestamp t = read_time(entries);
+      const Timestamp t = read_ros1_time(entries);
       add_message(connection, t, entries.number<std::uint32_t>());
     }
     indexed_ = true;
@@ -212,7 +212,7 @@ class Ros1Indexer {
       if (op == kMessage && with_messages) {
         const std::string time = record->text("time", place);
         ByteReader reader(time, place);
-        add_message(connection_index(record->number<std::uint32_t>("conn", place)), read_time(reader),
+        add_message(connection_index(record->number<std::uint32_t>("conn", place)), read_ros1_time(reader),
                     offset);
       }
       offset = record->end();

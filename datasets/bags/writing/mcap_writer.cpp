@@ -4,29 +4,14 @@
 #include <algorithm>
 
 #include "datasets/bags/chunk_codec.h"
+#include "datasets/bags/mcap_records.h"
 #include "datasets/bags/writing/byte_writer.h"
 #include "datasets/bags/writing/serialize.h"
 
 namespace stillpoint::datasets {
 namespace {
 
-constexpr std::string_view kMagic = "\x89MCAP0\r\n";
-constexpr std::size_t kChunkBytes = 768 * 1024;
-
-enum Opcode : std::uint8_t {
-  kHeader = 1,
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7,
-  kChunkIndex = 8,
-  kStatistics = 11,
-  kDataEnd = 15,
-};
-
-std::string record(Opcode opcode, std::string_view fields) {
+std::string record(mcap::Opcode opcode, std::string_view fields) {
   ByteWriter writer;
   writer.number(static_cast<std::uint8_t>(opcode)).number(std::uint64_t{fields.size()}).append(fields);
   return writer.take();
@@ -34,9 +19,9 @@ std::string record(Opcode opcode, std::string_view fields) {
 
 std::uint64_t time_of(Timestamp t) { return static_cast<std::uint64_t>(t.ns); }
 
-std::string_view name_of(ChunkCompression compression) {
-  if (compression == ChunkCompression::kLz4) return "lz4";
-  return compression == ChunkCompression::kZstd ? "zstd" : "";
+/// MCAP has an empty name for no compression.
+std::string_view mcap_name_of(ChunkCompression compression) {
+  return compression == ChunkCompression::kNone ? "" : name_of(compression);
 }
 
 /// "sensor_msgs/msg/Image" of "sensor_msgs/Image".
@@ -49,8 +34,8 @@ std::string ros2_type(std::string_view type) {
 
 McapWriter::McapWriter(const std::filesystem::path& path, ChunkCompression compression)
     : file_(path), compression_(compression) {
-  file_.append(kMagic);
-  file_.append(record(kHeader, ByteWriter().text("ros2").text("stillpoint").bytes()));
+  file_.append(mcap::kMagic);
+  file_.append(record(mcap::kHeader, ByteWriter().text("ros2").text("stillpoint").bytes()));
 }
 
 std::uint32_t McapWriter::add_connection(std::string_view topic, std::string_view type) {
@@ -63,7 +48,8 @@ std::uint32_t McapWriter::add_connection(std::string_view topic, std::string_vie
       .block(definition_of(type, WireFormat::kCdr).text);
   ByteWriter channel_fields;
   channel_fields.number(id).number(schema).text(topic).text("cdr").block("");
-  connections_.push_back(record(kSchema, schema_fields.bytes()) + record(kChannel, channel_fields.bytes()));
+  connections_.push_back(record(mcap::kSchema, schema_fields.bytes()) +
+                         record(mcap::kChannel, channel_fields.bytes()));
   written_.push_back(false);
   counts_.push_back(0);
   return id;
@@ -81,9 +67,9 @@ void McapWriter::write(std::uint32_t connection, Timestamp t, std::string_view b
   index_[channel] += ByteWriter().number(time_of(t)).number(std::uint64_t{chunk_.size()}).bytes();
   ByteWriter fields;
   fields.number(channel).number(sequence_++).number(time_of(t)).number(time_of(t)).append(bytes);
-  chunk_ += record(kMessage, fields.bytes());
+  chunk_ += record(mcap::kMessage, fields.bytes());
   ++counts_[connection];
-  if (chunk_.size() >= kChunkBytes) finish_chunk();
+  if (chunk_.size() >= kWrittenChunkBytes) finish_chunk();
 }
 
 void McapWriter::finish_chunk() {
@@ -93,23 +79,23 @@ void McapWriter::finish_chunk() {
   ByteWriter fields;
   fields.number(time_of(chunk_first_)).number(time_of(chunk_last_)).number(std::uint64_t{chunk_.size()});
   fields.number(crc32_of(chunk_))
-      .text(name_of(compression_))
+      .text(mcap_name_of(compression_))
       .number(std::uint64_t{stored.size()})
       .append(stored);
-  file_.append(record(kChunk, fields.bytes()));
+  file_.append(record(mcap::kChunk, fields.bytes()));
   const std::uint64_t end = file_.position();
   ByteWriter offsets;
   for (const auto& [channel, entries] : index_) {
     offsets.number(channel).number(file_.position());
-    file_.append(record(kMessageIndex, ByteWriter().number(channel).block(entries).bytes()));
+    file_.append(record(mcap::kMessageIndex, ByteWriter().number(channel).block(entries).bytes()));
   }
   ByteWriter index;
   index.number(time_of(chunk_first_)).number(time_of(chunk_last_)).number(position).number(end - position);
-  index.block(offsets.bytes()).number(file_.position() - end).text(name_of(compression_));
+  index.block(offsets.bytes()).number(file_.position() - end).text(mcap_name_of(compression_));
   index.number(std::uint64_t{stored.size()}).number(std::uint64_t{chunk_.size()});
   first_ = chunk_indexes_.empty() ? chunk_first_ : std::min(first_, chunk_first_);
   last_ = chunk_indexes_.empty() ? chunk_last_ : std::max(last_, chunk_last_);
-  chunk_indexes_.push_back(record(kChunkIndex, index.bytes()));
+  chunk_indexes_.push_back(record(mcap::kChunkIndex, index.bytes()));
   chunk_.clear();
   index_.clear();
 }
@@ -125,20 +111,20 @@ std::string McapWriter::statistics_record() const {
   ByteWriter counts;
   for (std::size_t i = 0; i < counts_.size(); ++i)
     counts.number(static_cast<std::uint16_t>(i)).number(counts_[i]);
-  return record(kStatistics, fields.block(counts.bytes()).bytes());
+  return record(mcap::kStatistics, fields.block(counts.bytes()).bytes());
 }
 
 void McapWriter::finish() {
   finish_chunk();
-  file_.append(record(kDataEnd, ByteWriter().number(std::uint32_t{0}).bytes()));
+  file_.append(record(mcap::kDataEnd, ByteWriter().number(std::uint32_t{0}).bytes()));
   const std::uint64_t summary = file_.position();
   for (const std::string& connection : connections_) file_.append(connection);
   file_.append(statistics_record());
   for (const std::string& index : chunk_indexes_) file_.append(index);
   // No summary offsets, no checksum of the summary.
   file_.append(record(
-      kFooter, ByteWriter().number(summary).number(std::uint64_t{0}).number(std::uint32_t{0}).bytes()));
-  file_.append(kMagic);
+      mcap::kFooter, ByteWriter().number(summary).number(std::uint64_t{0}).number(std::uint32_t{0}).bytes()));
+  file_.append(mcap::kMagic);
   file_.finish();
 }
 

@@ -13,7 +13,6 @@ namespace stillpoint::datasets {
 namespace {
 
 constexpr std::string_view kVersion2 = "#ROSBAG V2.0\n";
-constexpr std::size_t kChunkBytes = 768 * 1024;
 constexpr std::size_t kBagHeaderBytes = 4096;  ///< header and padding
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kMaxSeconds = UINT32_MAX;
@@ -37,11 +36,6 @@ std::string time_bytes(Timestamp t) {
 
 std::string record(const std::string& header, std::string_view data) {
   return ByteWriter().block(header).block(data).take();
-}
-
-std::string_view name_of(ChunkCompression compression) {
-  if (compression == ChunkCompression::kBz2) return "bz2";
-  return compression == ChunkCompression::kLz4 ? "lz4" : "none";
 }
 
 }  // namespace
@@ -83,7 +77,7 @@ void Ros1Writer::write(std::uint32_t connection, Timestamp t, std::string_view b
   const std::string time = time_bytes(t);
   chunk_ +=
       record(field("conn", connection) + field("op", std::uint8_t{2}) + text_field("time", time), bytes);
-  if (chunk_.size() >= kChunkBytes) finish_chunk();
+  if (chunk_.size() >= kWrittenChunkBytes) finish_chunk();
 }
 
 void Ros1Writer::finish_chunk() {
