@@ -23,14 +23,14 @@ namespace fs = std::filesystem;
 constexpr std::size_t kBlockBytes = 1U << 20U;
 constexpr double kUnratedBytes = 100e6;                // small archives may be compressed to any extent
 constexpr std::uint64_t kSpaceCheckBytes = 1U << 28U;  // interval of checks of the disk
-constexpr mode_t kFileMode = 0666;
+constexpr mode_t kExtractedMode = 0666;
 
 /// A new file; existing ones are replaced, links are not followed.
 class OutputFileDescriptor {
  public:
   explicit OutputFileDescriptor(const fs::path& file)
       : file_(file),
-        descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, kFileMode)) {
+        descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, kExtractedMode)) {
     if (descriptor_ < 0) fail();
   }
   ~OutputFileDescriptor() {

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBlockBytes = 1U << 18U;
+constexpr std::size_t kReadBytes = 1U << 18U;
 constexpr std::size_t kMaxPathBytes = 1000;
 
 /// Only formats that read nothing but the archive, and run no other program.
@@ -39,7 +39,7 @@ std::string error_of(archive* reader) {
 }  // namespace
 
 ArchiveReader::ArchiveReader(const fs::path& file) : file_(file), archive_(new_reader(), archive_read_free) {
-  if (archive_read_open_filename(archive_.get(), file.c_str(), kBlockBytes) != ARCHIVE_OK)
+  if (archive_read_open_filename(archive_.get(), file.c_str(), kReadBytes) != ARCHIVE_OK)
     fail("is not a readable archive: " + error_of(archive_.get()));
 }
 

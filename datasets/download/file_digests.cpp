@@ -14,7 +14,7 @@
 namespace stillpoint::datasets {
 namespace {
 
-constexpr std::size_t kBlockBytes = 1U << 20U;
+constexpr std::size_t kDigestBytes = 1U << 20U;
 
 /// Incremental digest of OpenSSL.
 class Digest {
@@ -48,7 +48,7 @@ std::optional<CryptographicDigests> digest_file(const std::filesystem::path& fil
   if (input == nullptr || error) throw InputError(file.string(), "cannot be read");
   Digest sha256(EVP_sha256());
   Digest md5(EVP_md5());
-  std::vector<unsigned char> block(kBlockBytes);
+  std::vector<unsigned char> block(kDigestBytes);
   CryptographicDigests digests;
   while (const std::size_t count = std::fread(block.data(), 1, block.size(), input.get())) {
     if (is_stopped(control)) return std::nullopt;

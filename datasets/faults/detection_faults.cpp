@@ -28,7 +28,7 @@ std::vector<DetectionSet> detections_with_fault(std::vector<DetectionSet> sets, 
     DetectionSet& set = sets[i];
     if (!fault.is_active(seconds_between(start, set.t))) continue;
     if (fault.kind == FaultKind::kDetectorHallucinating) {
-      synth::RandomSequence random(synth::random_key(fault.seed, synth::RandomStream::kFaults, i));
+      synth::RandomSequence random = fault.random(i);
       for (int box = 0; box < static_cast<int>(std::lround(fault.amount)); ++box)
         set.detections.push_back(false_person(random, image));
     } else {

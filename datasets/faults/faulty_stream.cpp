@@ -19,8 +19,7 @@ namespace {
 
 bool is_dropped(const SensorFault& fault, double elapsed_s, std::size_t index) {
   if (fault.kind != FaultKind::kDropped || !fault.is_active(elapsed_s)) return false;
-  return synth::RandomSequence(synth::random_key(fault.seed, synth::RandomStream::kFaults, index))
-      .chance(fault.amount);
+  return fault.random(index).chance(fault.amount);
 }
 
 /// The frame with its color image, to which a fault can be applied.

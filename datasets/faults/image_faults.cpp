@@ -14,15 +14,9 @@ namespace stillpoint::datasets {
 namespace {
 
 using synth::RandomSequence;
-using synth::RandomStream;
 
 constexpr int kHoleSize_px = 16;
 constexpr int kSmearSpots = 12;
-
-/// Random numbers that are the same for all frames of a fault, or, with index > 0, for one frame.
-RandomSequence random_of(const SensorFault& fault, std::size_t index = 0) {
-  return RandomSequence(synth::random_key(fault.seed, RandomStream::kFaults, index));
-}
 
 /// Applies `change` to the gray and the color image.
 template <class Change>
@@ -114,14 +108,14 @@ Frame frame_with_fault(Frame frame, const SensorFault& fault, std::size_t index)
     case FaultKind::kExposure:
       return with_images(std::move(frame), [&](const cv::Mat& image) { return exposed(image, amount); });
     case FaultKind::kMotionBlur: {
-      const double angle = random_of(fault).uniform(0.0, std::numbers::pi);
+      const double angle = fault.random().uniform(0.0, std::numbers::pi);
       return with_images(std::move(frame),
                          [&](const cv::Mat& image) { return motion_blurred(image, amount, angle); });
     }
     case FaultKind::kRollingShutter:
       return with_images(std::move(frame), [&](const cv::Mat& image) { return sheared(image, amount); });
     case FaultKind::kLensSmear: {
-      const cv::Mat mask = smear_mask(frame.gray.size(), amount, random_of(fault));
+      const cv::Mat mask = smear_mask(frame.gray.size(), amount, fault.random());
       return with_images(std::move(frame), [&](const cv::Mat& image) { return smeared(image, mask); });
     }
     case FaultKind::kDepthMissing:
@@ -130,7 +124,7 @@ Frame frame_with_fault(Frame frame, const SensorFault& fault, std::size_t index)
       return with_depth(std::move(frame), [&](cv::Mat& depth) { depth.convertTo(depth, -1, amount); });
     case FaultKind::kDepthHoles:
       return with_depth(std::move(frame),
-                        [&](cv::Mat& depth) { cut_holes(depth, amount, random_of(fault, index + 1)); });
+                        [&](cv::Mat& depth) { cut_holes(depth, amount, fault.random(index + 1)); });
     default:
       STILLPOINT_CHECK(false);
   }

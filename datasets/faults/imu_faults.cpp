@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::int64_t kMinStep_ns = 1000;
 
-synth::RandomSequence random_of(const SensorFault& fault, std::size_t index) {
-  return synth::RandomSequence(synth::random_key(fault.seed, synth::RandomStream::kFaults, index));
-}
-
 Eigen::Vector3d random_direction(synth::RandomSequence random) {
   const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
   return direction.normalized();
@@ -41,10 +37,10 @@ ImuSample changed(ImuSample sample, const SensorFault& fault, std::size_t index)
       sample.accel_b.array() += fault.amount;
       break;
     case FaultKind::kShock:
-      sample.accel_b += fault.amount * random_direction(random_of(fault, 0));
+      sample.accel_b += fault.amount * random_direction(fault.random());
       break;
     case FaultKind::kImuJitter:
-      sample.t = after(sample.t, fault.amount * random_of(fault, index).normal());
+      sample.t = after(sample.t, fault.amount * fault.random(index).normal());
       break;
     case FaultKind::kTimeOffset:
     case FaultKind::kClockJump:

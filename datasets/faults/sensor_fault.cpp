@@ -144,6 +144,10 @@ double SensorFault::onset_s(double elapsed_s) const {
   return every_s <= 0.0 ? start_s : start_s + std::floor((elapsed_s - start_s) / every_s) * every_s;
 }
 
+synth::RandomSequence SensorFault::random(std::size_t index) const {
+  return synth::RandomSequence(synth::random_key(seed, synth::RandomStream::kFaults, index));
+}
+
 SensorFault parse_fault(std::string_view text) {
   const std::string place = fmt::format("fault \"{}\"", text);
   const std::size_t colon = text.find(':');

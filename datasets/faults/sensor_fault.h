@@ -2,10 +2,13 @@
 /// Sensor faults that can be injected into a sequence: what, when, and how strong.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "datasets/synthetic/counter_random.h"
 
 namespace stillpoint::datasets {
 
@@ -77,6 +80,9 @@ struct SensorFault {
   [[nodiscard]] bool is_active(double elapsed_s) const;
   /// Start of the interval that contains `elapsed_s`, at which the fault must be active [s].
   [[nodiscard]] double onset_s(double elapsed_s) const;
+  /// Random numbers that depend on `seed`: the same for the whole fault, or with index > 0 for one frame or
+  /// sample.
+  [[nodiscard]] synth::RandomSequence random(std::size_t index = 0) const;
 
   friend bool operator==(const SensorFault&, const SensorFault&) = default;
 };

@@ -13,13 +13,12 @@
 #include "datasets/bags/bag_topics.h"
 #include "datasets/bags/bag_trajectory.h"
 #include "datasets/bags/image_message.h"
+#include "datasets/formats/paired_images.h"
 #include "eval/io/bag_file.h"
-#include "eval/trajectory/association.h"
 
 namespace stillpoint::datasets {
 namespace {
 
-constexpr eval::AssociationOptions kAssociation{.max_difference_s = 0.02};  ///< as for image lists
 constexpr double kRealsenseMaxDepthUnits = 1e6;
 
 /// The images of a sequence in its bag.
@@ -93,7 +92,7 @@ void add_frames(SequenceContent& content, const BagStreams& streams,
   } else {
     // The pairs are in the order of the second list, which the frame times must follow.
     for (const auto& [in_depth, in_color] :
-         eval::associate_tum(times_of(streams.depth), times_of(streams.color), kAssociation))
+         eval::associate_tum(times_of(streams.depth), times_of(streams.color), kImageAssociation))
       add(streams.color[in_color], &streams.depth[in_depth]);
   }
   if (images->color.empty())

@@ -18,7 +18,7 @@ std::filesystem::path sensors_folder(const std::filesystem::path& folder) {
   return std::filesystem::exists(folder / "mav0") ? folder / "mav0" : folder;
 }
 
-Camera camera_of(const SensorYaml& sensor) {
+Camera euroc_camera(const SensorYaml& sensor) {
   Camera camera = sensor.with_distortion(Camera{});
   const std::vector<double> size = sensor.numbers("resolution");
   if (size.size() != 2 || size[0] < 1.0 || size[1] < 1.0)
@@ -64,7 +64,7 @@ SequenceContent with_truth_of(SequenceContent content, const Pose& T_body_b, Fau
   return content;
 }
 
-SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
+SequenceContent read_euroc(const std::filesystem::path& folder, FaultLog& faults) {
   const std::filesystem::path sensors = sensors_folder(folder);
   SequenceContent content;
   content.info.name = folder.filename().string();
@@ -76,7 +76,7 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   const SensorYaml imu(sensors / "imu0" / "sensor.yaml");
   const Pose T_body_b = imu.pose("T_BS");
   Rig& rig = content.info.rig;
-  rig.camera = camera_of(camera);
+  rig.camera = euroc_camera(camera);
   rig.has_imu = true;
   rig.T_b_c = T_body_b.inverse() * camera.pose("T_BS");
   rig.imu_noise = ImuNoise{.gyro_noise = imu.number("gyroscope_noise_density"),
@@ -86,13 +86,13 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   return with_truth_of(std::move(content), T_body_b, faults);
 }
 
-bool recognize(const std::filesystem::path& folder) {
+bool recognize_euroc(const std::filesystem::path& folder) {
   return std::filesystem::exists(sensors_folder(folder) / "cam0" / "data.csv");
 }
 
 }  // namespace
 
 const SequenceFormat kEurocFormat{
-    .name = "euroc", .signature = "mav0/cam0/data.csv", .recognize = recognize, .read = read};
+    .name = "euroc", .signature = "mav0/cam0/data.csv", .recognize = recognize_euroc, .read = read_euroc};
 
 }  // namespace stillpoint::datasets

@@ -38,7 +38,7 @@ std::optional<std::int64_t> number_of(const std::filesystem::path& file) {
   return number;
 }
 
-void add_images(SequenceContent& content) {
+void add_folder_images(SequenceContent& content) {
   std::int64_t last = -1;
   for (const std::filesystem::path& color : sorted_files(content.info.folder / "color")) {
     if (!is_image(color)) continue;
@@ -78,11 +78,11 @@ Camera read_camera(const std::filesystem::path& file) {
                    "is not a camera file; expected width, height and a column-major 3x3 intrinsic_matrix");
 }
 
-SequenceContent read(const std::filesystem::path& folder, FaultLog&) {
+SequenceContent read_folder(const std::filesystem::path& folder, FaultLog&) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  add_images(content);
+  add_folder_images(content);
   for (const std::filesystem::path& file : sorted_files(folder)) {
     if (file.extension() != ".json") continue;
     content.info.rig.camera = read_camera(file);
@@ -95,13 +95,13 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog&) {
   return content;
 }
 
-bool recognize(const std::filesystem::path& folder) {
+bool recognize_folder(const std::filesystem::path& folder) {
   return std::filesystem::is_directory(folder / "color") && std::filesystem::is_directory(folder / "depth");
 }
 
 }  // namespace
 
 const SequenceFormat kFolderFormat{
-    .name = "folder", .signature = "color/ and depth/", .recognize = recognize, .read = read};
+    .name = "folder", .signature = "color/ and depth/", .recognize = recognize_folder, .read = read_folder};
 
 }  // namespace stillpoint::datasets

@@ -40,7 +40,7 @@ std::filesystem::path associations_file(const std::filesystem::path& folder) {
 }
 
 /// Rows `index depth index color`; the indices are frame numbers.
-void add_frames(SequenceContent& content, FaultLog& faults) {
+void add_frame_pairs(SequenceContent& content, FaultLog& faults) {
   const std::filesystem::path& folder = content.info.folder;
   const std::filesystem::path file = associations_file(folder);
   const std::string text = eval::read_text_file(file);
@@ -76,7 +76,7 @@ SequenceContent read_icl(const std::filesystem::path& folder, FaultLog& faults) 
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  add_frames(content, faults);
+  add_frame_pairs(content, faults);
   content.info.rig.camera = kIclCamera;
   content.info.rig.depth_units_per_m = kIclDepthUnitsPerM;
   content.info.notes.emplace_back("timestamps: frame number / 30 s, as the frames have none");

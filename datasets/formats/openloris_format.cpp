@@ -22,7 +22,7 @@ constexpr const char* kAccelerometer = "d400_accelerometer";
 constexpr const char* kGroundTruthFrame = "base_link";
 constexpr double kMaxImuMisalignment = 1e-3;  ///< [m, rad] between the poses of gyroscope and accelerometer
 
-Camera camera_of(const SensorYaml& sensor) {
+Camera openloris_camera(const SensorYaml& sensor) {
   Camera camera = sensor.with_distortion(Camera{});
   camera.width = sensor.positive_int("width");
   camera.height = sensor.positive_int("height");
@@ -89,7 +89,7 @@ void set_extrinsics(SequenceContent& content, const std::filesystem::path& file)
   }
 }
 
-void add_imu(SequenceContent& content, FaultLog& faults) {
+void add_openloris_imu(SequenceContent& content, FaultLog& faults) {
   const std::filesystem::path gyro_file = content.info.folder / "d400_gyroscope.txt";
   const std::filesystem::path accel_file = content.info.folder / "d400_accelerometer.txt";
   if (!std::filesystem::exists(gyro_file) && !std::filesystem::exists(accel_file)) return;
@@ -104,25 +104,25 @@ void add_imu(SequenceContent& content, FaultLog& faults) {
   });
 }
 
-SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
+SequenceContent read_openloris(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
   content = with_frames(std::move(content),
                         pair_images(folder / "color.txt", folder / "aligned_depth.txt", faults));
-  add_imu(content, faults);
+  add_openloris_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {
     content = with_ground_truth(std::move(content), eval::read_tum_ground_truth(folder / "groundtruth.txt",
                                                                                 kGroundTruthFrame, faults));
   }
   const SensorYaml sensors(folder / "sensors.yaml");
-  content.info.rig.camera = camera_of(sensors.child(kCamera));
+  content.info.rig.camera = openloris_camera(sensors.child(kCamera));
   if (content.info.rig.has_imu) content.info.rig.imu_noise = noise_of(sensors);
   set_extrinsics(content, folder / "trans_matrix.yaml");
   return content;
 }
 
-bool recognize(const std::filesystem::path& folder) {
+bool recognize_openloris(const std::filesystem::path& folder) {
   return std::filesystem::exists(folder / "color.txt") &&
          std::filesystem::exists(folder / "aligned_depth.txt");
 }
@@ -131,7 +131,7 @@ bool recognize(const std::filesystem::path& folder) {
 
 const SequenceFormat kOpenLorisFormat{.name = "openloris",
                                       .signature = "color.txt and aligned_depth.txt",
-                                      .recognize = recognize,
-                                      .read = read};
+                                      .recognize = recognize_openloris,
+                                      .read = read_openloris};
 
 }  // namespace stillpoint::datasets

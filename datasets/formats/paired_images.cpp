@@ -5,13 +5,9 @@
 
 #include "core/base/error.h"
 #include "datasets/io/image_list.h"
-#include "eval/trajectory/association.h"
 
 namespace stillpoint::datasets {
 namespace {
-
-constexpr eval::AssociationOptions kAssociation{.max_difference_s =
-                                                    0.02};  ///< default of the TUM RGB-D benchmark tools
 
 std::vector<StampedFile> read_list(const std::filesystem::path& list, FaultLog& faults) {
   return read_image_list(list, list.parent_path(), eval::TimeUnit::kSeconds, faults);
@@ -37,7 +33,7 @@ PairedImages pair_images(const std::filesystem::path& color_list, const std::fil
   PairedImages images{.times = {}, .files = {}, .color_images = color.size(), .missing = dropped};
   // The pairs are in the order of the second list, which the frame times must follow.
   for (const auto& [in_depth, in_color] :
-       eval::associate_tum(stamps_of(depth), stamps_of(color), kAssociation)) {
+       eval::associate_tum(stamps_of(depth), stamps_of(color), kImageAssociation)) {
     images.times.push_back(color[in_color].t);
     images.files.push_back(
         FrameFiles{.color = color[in_color].file,

@@ -8,8 +8,12 @@
 
 #include "core/base/fault_log.h"
 #include "datasets/formats/sequence_content.h"
+#include "eval/trajectory/association.h"
 
 namespace stillpoint::datasets {
+
+/// Of color and depth images: the default of the tools of the TUM RGB-D benchmark.
+inline constexpr eval::AssociationOptions kImageAssociation{.max_difference_s = 0.02};
 
 /// The frames of a sequence.
 struct PairedImages {

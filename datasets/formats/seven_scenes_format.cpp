@@ -83,7 +83,7 @@ void add_frame(const NumberedFrame& frame, SequenceContent& content, FaultLog& f
   });
 }
 
-void set_calibration(SequenceContent& content) {
+void set_seven_scenes_calibration(SequenceContent& content) {
   content.info.rig.camera = kColorCamera;
   content.info.rig.rolling_shutter_s = kRollingShutter_s;
   content.depth_camera = DepthCamera{.camera = kDepthCamera, .T_c_d = depth_to_color()};
@@ -94,7 +94,7 @@ void set_calibration(SequenceContent& content) {
       "unless a rig.toml sets [camera]");
 }
 
-SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
+SequenceContent read_seven_scenes(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
@@ -103,17 +103,19 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
     faults.guard([&] { add_frame(frame, content, faults); });
   }
   if (content.frame_files.empty()) throw InputError(folder.string(), "contains no frame-N.color.png or .jpg");
-  set_calibration(content);
+  set_seven_scenes_calibration(content);
   content.no_depth_value = kNoDepth;
   content.info.notes.emplace_back("timestamps: frame number / 30 s, as the frames have none");
   return content;
 }
 
-bool recognize(const std::filesystem::path& folder) { return !list_frames(folder).empty(); }
+bool recognize_seven_scenes(const std::filesystem::path& folder) { return !list_frames(folder).empty(); }
 
 }  // namespace
 
-const SequenceFormat kSevenScenesFormat{
-    .name = "7scenes", .signature = "frame-N.color.png or .jpg", .recognize = recognize, .read = read};
+const SequenceFormat kSevenScenesFormat{.name = "7scenes",
+                                        .signature = "frame-N.color.png or .jpg",
+                                        .recognize = recognize_seven_scenes,
+                                        .read = read_seven_scenes};
 
 }  // namespace stillpoint::datasets

@@ -96,7 +96,7 @@ void add_imu(SequenceContent& content, FaultLog& faults) {
       "imu: default noise densities, unless a rig.toml sets [imu] gyro_noise etc.");
 }
 
-SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
+SequenceContent read_tum(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
@@ -114,10 +114,13 @@ SequenceContent read(const std::filesystem::path& folder, FaultLog& faults) {
   return content;
 }
 
-bool recognize(const std::filesystem::path& folder) { return std::filesystem::exists(folder / "rgb.txt"); }
+bool recognize_tum(const std::filesystem::path& folder) {
+  return std::filesystem::exists(folder / "rgb.txt");
+}
 
 }  // namespace
 
-const SequenceFormat kTumFormat{.name = "tum", .signature = "rgb.txt", .recognize = recognize, .read = read};
+const SequenceFormat kTumFormat{
+    .name = "tum", .signature = "rgb.txt", .recognize = recognize_tum, .read = read_tum};
 
 }  // namespace stillpoint::datasets

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "reports/drawing/style.h"
 
 namespace stillpoint::report {
 namespace {
@@ -14,13 +15,7 @@ namespace {
 constexpr double kNormal975 = 1.959964;     // 97.5 % quantile of the normal distribution
 constexpr std::size_t kMinForInterval = 5;  // below, the expansion of `student_quantile` is inaccurate
 constexpr double kSecondsPerMinute = 60.0;
-constexpr double kWidth = 800.0;
 constexpr double kHeight = 320.0;
-constexpr double kMargin = 60.0;
-constexpr Color kBlack{20, 20, 20};
-constexpr Color kGray{200, 200, 200};
-constexpr Color kBlue{30, 90, 200};
-constexpr Color kRed{190, 30, 40};
 
 /// 97.5 % quantile of Student's t: Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, 26.7.5.
 /// The error is 0.1 % for 3 degrees of freedom, and smaller for more.
@@ -107,14 +102,14 @@ CostTrend cost_trend(std::span<const FrameCost> costs, double window_s) {
 }
 
 Drawing cost_plot(const CostTrend& trend) {
-  Drawing drawing{kWidth, kHeight, {}};
-  const double bottom = kHeight - kMargin;
+  Drawing drawing{kPlotWidth, kHeight, {}};
+  const double bottom = kHeight - kPlotMargin;
   const double end_s = trend.medians.back().t_s;
   double highest_ms = 0.0;
   for (const FrameCost& one : trend.medians) highest_ms = std::max(highest_ms, one.ms);
   const auto place = [&](double t_s, double ms) {
-    return Point2{kMargin + (kWidth - 2.0 * kMargin) * t_s / end_s,
-                  bottom - (bottom - kMargin) * ms / std::max(highest_ms, 1e-6)};
+    return Point2{kPlotMargin + (kPlotWidth - 2.0 * kPlotMargin) * t_s / end_s,
+                  bottom - (bottom - kPlotMargin) * ms / std::max(highest_ms, 1e-6)};
   };
   drawing.marks.push_back(Polyline{{place(0.0, 0.0), place(end_s, 0.0)}, kGray, 1.5});
   for (const FrameCost& one : trend.medians) {
@@ -123,11 +118,11 @@ Drawing cost_plot(const CostTrend& trend) {
   const double end_ms = trend.start_ms + trend.slope_ms_per_min * end_s / kSecondsPerMinute;
   drawing.marks.push_back(Polyline{{place(0.0, trend.start_ms), place(end_s, end_ms)}, kRed, 2.0});
   drawing.marks.push_back(label(
-      kMargin, bottom + 24.0,
+      kPlotMargin, bottom + 24.0,
       fmt::format("tracking and optimization time per frame over {:.0f} s, medians of 10 s, 0 to {:.2f} ms",
                   end_s, highest_ms),
       Anchor::kLeft));
-  drawing.marks.push_back(label(kMargin, 30.0,
+  drawing.marks.push_back(label(kPlotMargin, 30.0,
                                 fmt::format("slope {:+.4f} ms per minute, n = {}, {}", trend.slope_ms_per_min,
                                             trend.medians.size(), interval_text(trend.slope_interval)),
                                 Anchor::kLeft));

@@ -7,22 +7,23 @@
 
 #include <fmt/format.h>
 
+#include "reports/drawing/style.h"
+
 namespace stillpoint::report {
 namespace {
 
-constexpr double kWidth = 1000.0;
+constexpr double kFigureWidth = 1000.0;
 constexpr double kNameWidth = 176.0;
 constexpr double kGap = 14.0;  // between scenes
 constexpr double kHeader = 70.0;
 constexpr double kRow = 92.0;
 constexpr double kFooter = 34.0;
 constexpr double kFontSize = 21.0;  // 5.3 pt at the column width of 252 pt
-constexpr Color kBlack{20, 20, 20};
-constexpr Color kGray{215, 215, 215};
-constexpr Color kBlue{20, 70, 180};         // first poses
-constexpr Color kLightBlue{120, 170, 240};  // tracked spans
+constexpr Color kDivider{215, 215, 215};
+constexpr Color kCorrectPose{20, 70, 180};
+constexpr Color kTracked{120, 170, 240};
 constexpr double kBarWidth = 7.0;
-constexpr Color kRed{200, 40, 40};
+constexpr Color kWrongPose{200, 40, 40};
 
 struct DisplayName {
   std::string_view system;
@@ -118,17 +119,17 @@ void draw_header(Drawing& drawing, const Panel& panel, const std::string& scene)
 }
 
 void draw_runs(Drawing& drawing, const Panel& panel, const eval::OpenlorisScene& scene, double y) {
-  drawing.marks.push_back(Polyline{{{panel.left, y}, {panel.left + panel.width, y}}, kGray, 2.0});
+  drawing.marks.push_back(Polyline{{{panel.left, y}, {panel.left + panel.width, y}}, kDivider, 2.0});
   for (const auto& [sequence, run] : scene.runs) {
     const double begin_s = panel.begins_s.at(sequence);
     for (const eval::TrackedSpan& span : run.score.tracked_spans) {
       drawing.marks.push_back(Polyline{
-          {{panel.x(begin_s + span.begin_s), y}, {panel.x(begin_s + span.end_s), y}}, kLightBlue, kBarWidth});
+          {{panel.x(begin_s + span.begin_s), y}, {panel.x(begin_s + span.end_s), y}}, kTracked, kBarWidth});
     }
     if (!run.score.relocalization_time_s) continue;
     const bool correct = run.score.relocalization_score > 0.0;
-    drawing.marks.push_back(
-        Disc{{panel.x(begin_s + *run.score.relocalization_time_s), y}, 5.0, correct ? kBlue : kRed});
+    drawing.marks.push_back(Disc{
+        {panel.x(begin_s + *run.score.relocalization_time_s), y}, 5.0, correct ? kCorrectPose : kWrongPose});
   }
 }
 
@@ -162,9 +163,9 @@ Drawing openloris_figure(const eval::OpenlorisBenchmark& benchmark) {
   const std::vector<std::string> systems = ordered_systems(benchmark);
   const std::vector<std::string> scenes = ordered_scenes(benchmark);
   const double rows = static_cast<double>(systems.size());
-  Drawing drawing{kWidth, kHeader + kRow * rows + kFooter, {}};
+  Drawing drawing{kFigureWidth, kHeader + kRow * rows + kFooter, {}};
   const double count = static_cast<double>(scenes.size());
-  const double width = (kWidth - kNameWidth - kGap * count) / count;
+  const double width = (kFigureWidth - kNameWidth - kGap * count) / count;
   double left = kNameWidth;
   for (const std::string& scene : scenes) {
     const Panel panel = panel_of(benchmark.gt_durations_s.at(scene), left, width);

@@ -6,18 +6,14 @@
 
 #include <fmt/format.h>
 
+#include "reports/drawing/style.h"
+
 namespace stillpoint::report {
 namespace {
 
-constexpr double kWidth = 800.0;
 constexpr double kPathHeight = 560.0;
 constexpr double kErrorHeight = 240.0;
-constexpr double kMargin = 60.0;
 constexpr std::size_t kMaxPoints = 2000;  // per line; more than a plot can resolve
-constexpr Color kBlack{20, 20, 20};
-constexpr Color kGray{200, 200, 200};
-constexpr std::array<Color, 6> kColors{
-    {{30, 90, 200}, {220, 110, 20}, {40, 150, 60}, {170, 50, 160}, {190, 30, 40}, {100, 100, 100}}};
 
 /// Linear map from data to drawing coordinates.
 struct Axis {
@@ -65,20 +61,20 @@ void draw_paths(Drawing& drawing, const Trajectory& gt, const std::vector<Plotte
     bounds.add(estimates.back());
   }
   const Eigen::Vector3d shown = bounds.high - bounds.low;
-  const double scale = std::min((kWidth - 2.0 * kMargin) / std::max(shown(order[0]), 1e-3),
-                                (kPathHeight - 2.0 * kMargin) / std::max(shown(order[1]), 1e-3));
-  const Axis across{bounds.low(order[0]), scale, kMargin};
-  const Axis up{bounds.low(order[1]), -scale, kPathHeight - kMargin};
+  const double scale = std::min((kPlotWidth - 2.0 * kPlotMargin) / std::max(shown(order[0]), 1e-3),
+                                (kPathHeight - 2.0 * kPlotMargin) / std::max(shown(order[1]), 1e-3));
+  const Axis across{bounds.low(order[0]), scale, kPlotMargin};
+  const Axis up{bounds.low(order[1]), -scale, kPathHeight - kPlotMargin};
   const auto draw = [&](const std::vector<Eigen::Vector3d>& positions, Color color) {
     Polyline line{{}, color, 2.0};
     for (const Eigen::Vector3d& p : positions) line.points.push_back({across(p(order[0])), up(p(order[1]))});
     drawing.marks.push_back(line);
   };
   draw(truth, kBlack);
-  for (std::size_t i = 0; i < estimates.size(); ++i) draw(estimates[i], kColors[i % kColors.size()]);
+  for (std::size_t i = 0; i < estimates.size(); ++i) draw(estimates[i], kLineColors[i % kLineColors.size()]);
   constexpr std::array<char, 3> kNames{'x', 'y', 'z'};
   drawing.marks.push_back(
-      Label{{kMargin, kPathHeight - 20.0},
+      Label{{kPlotMargin, kPathHeight - 20.0},
             fmt::format("{} to the right, {} up; the ground truth spans {:.2f} x {:.2f} m",
                         kNames[static_cast<std::size_t>(order[0])],
                         kNames[static_cast<std::size_t>(order[1])], extent(order[0]), extent(order[1])),
@@ -96,19 +92,19 @@ void draw_errors(Drawing& drawing, const Trajectory& gt, const std::vector<Plott
       highest = std::max(highest, error.translation_m);
   }
   const double bottom = kPathHeight + kErrorHeight - 40.0;
-  const Axis time{0.0, (kWidth - 2.0 * kMargin) / duration_s, kMargin};
+  const Axis time{0.0, (kPlotWidth - 2.0 * kPlotMargin) / duration_s, kPlotMargin};
   const Axis up{0.0, -(kErrorHeight - 70.0) / highest, bottom};
-  drawing.marks.push_back(Polyline{{{kMargin, bottom}, {kWidth - kMargin, bottom}}, kGray, 1.5});
+  drawing.marks.push_back(Polyline{{{kPlotMargin, bottom}, {kPlotWidth - kPlotMargin, bottom}}, kGray, 1.5});
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::vector<eval::PoseError>& errors = runs[i].evaluation->per_pose;
-    Polyline line{{}, kColors[i % kColors.size()], 1.5};
+    Polyline line{{}, kLineColors[i % kLineColors.size()], 1.5};
     for (std::size_t k = 0; k < errors.size(); k += errors.size() / kMaxPoints + 1) {
       line.points.push_back({time(seconds_between(start, errors[k].t)), up(errors[k].translation_m)});
     }
     if (!line.points.empty()) drawing.marks.push_back(line);
   }
   drawing.marks.push_back(
-      Label{{kMargin, bottom + 24.0},
+      Label{{kPlotMargin, bottom + 24.0},
             fmt::format("position error over {:.1f} s, at most {:.3f} m", duration_s, highest),
             16.0,
             Anchor::kLeft,
@@ -118,15 +114,18 @@ void draw_errors(Drawing& drawing, const Trajectory& gt, const std::vector<Plott
 }  // namespace
 
 Drawing trajectory_plot(const Trajectory& gt, const std::vector<PlottedRun>& runs) {
-  Drawing drawing{kWidth, kPathHeight + kErrorHeight, {}};
+  Drawing drawing{kPlotWidth, kPathHeight + kErrorHeight, {}};
   if (gt.poses.empty()) return drawing;
   draw_paths(drawing, gt, runs);
   draw_errors(drawing, gt, runs);
   double y = 24.0;
-  drawing.marks.push_back(Label{{kMargin, y}, "ground truth", 16.0, Anchor::kLeft, kBlack});
+  drawing.marks.push_back(Label{{kPlotMargin, y}, "ground truth", 16.0, Anchor::kLeft, kBlack});
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    drawing.marks.push_back(
-        Label{{kWidth - kMargin, y}, runs[i].name, 16.0, Anchor::kRight, kColors[i % kColors.size()]});
+    drawing.marks.push_back(Label{{kPlotWidth - kPlotMargin, y},
+                                  runs[i].name,
+                                  16.0,
+                                  Anchor::kRight,
+                                  kLineColors[i % kLineColors.size()]});
     y += 20.0;
   }
   return drawing;

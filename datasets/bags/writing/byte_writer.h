@@ -9,8 +9,11 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/timestamp.h"
 
 namespace stillpoint::datasets {
+
+inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 class ByteWriter {
  public:
@@ -40,6 +43,12 @@ class ByteWriter {
 
   ByteWriter& text(std::string_view value) {
     return terminated_texts_ ? block(std::string(value) + '\0') : block(value);
+  }
+
+  /// Seconds and nanoseconds of 32 bits each, as in records and messages of ROS.
+  ByteWriter& time(Timestamp t) {
+    return number(static_cast<std::uint32_t>(t.ns / kSecond_ns))
+        .number(static_cast<std::uint32_t>(t.ns % kSecond_ns));
   }
 
   [[nodiscard]] const std::string& bytes() const { return bytes_; }

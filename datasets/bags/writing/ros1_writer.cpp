@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::string_view kVersion2 = "#ROSBAG V2.0\n";
 constexpr std::size_t kBagHeaderBytes = 4096;  ///< header and padding
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kMaxSeconds = UINT32_MAX;
 
 template <class Number>
@@ -25,13 +24,6 @@ std::string field(std::string_view name, Number value) {
 
 std::string text_field(std::string_view name, std::string_view value) {
   return ByteWriter().block(std::string(name) + "=" + std::string(value)).take();
-}
-
-std::string time_bytes(Timestamp t) {
-  ByteWriter writer;
-  writer.number(static_cast<std::uint32_t>(t.ns / kSecond_ns))
-      .number(static_cast<std::uint32_t>(t.ns % kSecond_ns));
-  return writer.take();
 }
 
 std::string record(const std::string& header, std::string_view data) {
@@ -74,7 +66,7 @@ void Ros1Writer::write(std::uint32_t connection, Timestamp t, std::string_view b
     written_[connection] = true;
   }
   index_[connection].push_back({.t = t, .offset = static_cast<std::uint32_t>(chunk_.size())});
-  const std::string time = time_bytes(t);
+  const std::string time = ByteWriter().time(t).take();
   chunk_ +=
       record(field("conn", connection) + field("op", std::uint8_t{2}) + text_field("time", time), bytes);
   if (chunk_.size() >= kWrittenChunkBytes) finish_chunk();
@@ -92,7 +84,7 @@ void Ros1Writer::finish_chunk() {
   for (const auto& [connection, entries] : index_) {
     ByteWriter data;
     for (const IndexEntry& entry : entries) {
-      data.append(time_bytes(entry.t)).number(entry.offset);
+      data.time(entry.t).number(entry.offset);
       info.first = std::min(info.first, entry.t);
       info.last = std::max(info.last, entry.t);
     }
@@ -110,11 +102,11 @@ void Ros1Writer::finish_chunk() {
 std::string Ros1Writer::chunk_info_record(const ChunkInfo& info) {
   ByteWriter data;
   for (const auto& [connection, count] : info.counts) data.number(connection).number(count);
-  return record(field("chunk_pos", info.position) +
-                    field("count", static_cast<std::uint32_t>(info.counts.size())) +
-                    text_field("end_time", time_bytes(info.last)) + field("op", std::uint8_t{6}) +
-                    text_field("start_time", time_bytes(info.first)) + field("ver", std::uint32_t{1}),
-                data.bytes());
+  return record(
+      field("chunk_pos", info.position) + field("count", static_cast<std::uint32_t>(info.counts.size())) +
+          text_field("end_time", ByteWriter().time(info.last).take()) + field("op", std::uint8_t{6}) +
+          text_field("start_time", ByteWriter().time(info.first).take()) + field("ver", std::uint32_t{1}),
+      data.bytes());
 }
 
 void Ros1Writer::finish() {

@@ -20,11 +20,8 @@ class FieldWriter {
   [[nodiscard]] ByteWriter& writer() { return writer_; }
 
   FieldWriter& header(const MessageHeader& header) {
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
     if (format_ == WireFormat::kRos1) writer_.number(std::uint32_t{0});
-    writer_.number(static_cast<std::uint32_t>(header.stamp.ns / kSecond_ns));
-    writer_.number(static_cast<std::uint32_t>(header.stamp.ns % kSecond_ns));
-    writer_.text(header.frame);
+    writer_.time(header.stamp).text(header.frame);
     return *this;
   }
 
