@@ -17,6 +17,17 @@ template <auto kMember>
   }
 }
 
+/// The value of one member of `eval::RevisitScore`; nullopt for a run without loop closure or ground truth.
+template <auto kMember>
+[[nodiscard]] std::optional<double> revisit_value(const Measurements& m) {
+  if (!m.loops || !m.loops->revisits) return std::nullopt;
+  if constexpr (std::is_same_v<decltype(kMember), std::size_t eval::RevisitScore::*>) {
+    return static_cast<double>((*m.loops->revisits).*kMember);
+  } else {
+    return (*m.loops->revisits).*kMember;
+  }
+}
+
 inline constexpr MetricDescriptor kLoopMetrics[] = {
     {.id = "ate_optimized_m",
      .label = "ATE, optimized",
@@ -64,6 +75,33 @@ inline constexpr MetricDescriptor kLoopMetrics[] = {
      .decimals = 2,
      .source = MetricSource::kLoop,
      .value = loop_value<&LoopScore::median_ms>},
+    {.id = "false_loops",
+     .label = "false loops",
+     .description = "Number of accepted loops that are off by more than 20 cm or 5 degrees",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .decimals = 0,
+     .source = MetricSource::kLoop,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.0, 0.5},
+     .value = revisit_value<&eval::RevisitScore::false_loops>},
+    {.id = "missed_loops",
+     .label = "missed loops",
+     .description = "Number of candidates that were refused although they are within 20 cm and 5 degrees",
+     .decimals = 0,
+     .source = MetricSource::kLoop,
+     .value = revisit_value<&eval::RevisitScore::missed_loops>},
+    {.id = "revisits",
+     .label = "revisits",
+     .description = "Number of keyframes within 1 m and 30 degrees of an earlier visit",
+     .decimals = 0,
+     .source = MetricSource::kLoop,
+     .value = revisit_value<&eval::RevisitScore::revisits>},
+    {.id = "revisit_recall",
+     .label = "recall of revisits",
+     .description = "Fraction of the revisits with an accepted loop that is not false",
+     .direction = MetricDirection::kLargerIsBetter,
+     .source = MetricSource::kLoop,
+     .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 0.02},
+     .value = revisit_value<&eval::RevisitScore::recall>},
 };
 
 }  // namespace stillpoint::bench

@@ -16,6 +16,7 @@
 #include "bench/model/stored_run.h"
 #include "core/types/trajectory.h"
 #include "eval/metrics/honesty.h"
+#include "eval/metrics/revisits.h"
 #include "eval/score.h"
 
 namespace stillpoint::bench {
@@ -92,6 +93,7 @@ struct LoopScore {
   std::size_t candidates = 0;
   std::size_t keyframes = 0;
   std::optional<double> median_ms{};
+  std::optional<eval::RevisitScore> revisits{};  ///< with a ground truth
 };
 
 /// What metrics are computed from. Its parts are measured at different places; those that were not measured

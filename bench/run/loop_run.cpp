@@ -11,6 +11,16 @@ namespace {
 
 Pose correction_of(const MapKeyframe& keyframe) { return keyframe.T_m_b * keyframe.T_w_b.inverse(); }
 
+eval::RevisitScore revisits_of(const Trajectory& gt, const LoopReport& report) {
+  std::vector<Timestamp> keyframes;
+  for (const MapKeyframe& keyframe : report.keyframes) keyframes.push_back(keyframe.t);
+  std::vector<eval::ReportedLoop> loops;
+  for (const LoopRecord& loop : report.loops) {
+    loops.push_back({loop.query_t, loop.match_t, loop.T_match_query, loop.outcome == LoopOutcome::kAccepted});
+  }
+  return eval::score_revisits(gt, keyframes, loops);
+}
+
 /// ATE of the poses from `begin` on [m].
 std::optional<double> ate_m(const Trajectory& gt, Trajectory trajectory,
                             Timestamp begin = Timestamp{INT64_MIN}) {
@@ -51,6 +61,7 @@ LoopScore score_loops(const Trajectory& gt, const LoopRun& run) {
   std::vector<double> times_ms;
   for (const MapKeyframe& keyframe : run.report.keyframes) times_ms.push_back(keyframe.processing_ms);
   score.median_ms = eval::percentile(times_ms, 0.5);
+  if (!gt.poses.empty()) score.revisits = revisits_of(gt, run.report);
   return score;
 }
 
