@@ -17,8 +17,12 @@ namespace {
 constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr double kMaxSigma_m = 0.1;
 constexpr double kMaxSigma_rad = 2.0 * kRadians;
+// Errors of depth and calibration are correlated: they do not average out over the inliers, and have no
+// effect if both images are taken from the same pose.
 constexpr double kMinSigma_m = 0.01;
 constexpr double kMinSigma_rad = 0.2 * kRadians;
+constexpr double kSigmaPerDistance = 0.03;  // of the translation between the cameras
+constexpr double kSigmaPerAngle = 0.02;     // of their rotation
 
 std::vector<PointPair> point_pairs(const Keyframe& query, const Keyframe& match) {
   std::vector<PointPair> pairs;
@@ -66,8 +70,11 @@ Matrix6 body_covariance(const Pose& A, const EstimatedRelativePose& T, const Pos
   J.topRightCorner<3, 3>() = -A.R() * T.T_m_q.R() * skew(B.p);
   J.bottomRightCorner<3, 3>() = B.R().transpose();
   Matrix6 covariance = J * T.covariance * J.transpose();
-  covariance.diagonal().head<3>().array() += kMinSigma_m * kMinSigma_m;
-  covariance.diagonal().tail<3>().array() += kMinSigma_rad * kMinSigma_rad;
+  const double sigma_m = kMinSigma_m + kSigmaPerDistance * T.T_m_q.p.norm();
+  const double sigma_rad =
+      kMinSigma_rad + kSigmaPerAngle * T.T_m_q.q.angularDistance(Eigen::Quaterniond::Identity());
+  covariance.diagonal().head<3>().array() += sigma_m * sigma_m;
+  covariance.diagonal().tail<3>().array() += sigma_rad * sigma_rad;
   return covariance;
 }
 
