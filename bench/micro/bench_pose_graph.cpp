@@ -13,7 +13,7 @@ void optimize_graph(benchmark::State& state) {
   const SimulatedPoseGraph simulated = simulated_pose_graph({.keyframes = static_cast<int>(state.range(0)),
                                                              .keyframes_per_lap = 500,
                                                              .loops = loops,
-                                                             .false_loops = loops / 10,
+                                                             .false_every = 10,
                                                              .gravity = true});
   PoseGraphSolution solution;
   for (auto _ : state) solution = optimize_pose_graph(simulated.graph, {});

@@ -23,7 +23,7 @@ struct SimulatedGraphOptions {
   int keyframes = 200;
   int keyframes_per_lap = 50;
   int loops = 20;
-  int false_loops = 0;  ///< of them
+  int false_every = 0;  ///< each of so many loops is false; 0: none
   double sigma_m = 0.005;
   double sigma_rad = 0.002;  ///< per step of the odometry
   bool gravity = false;
@@ -77,7 +77,7 @@ inline SimulatedPoseGraph simulated_pose_graph(const SimulatedGraphOptions& opti
     const int span = options.keyframes - options.keyframes_per_lap;
     const int match = static_cast<int>(static_cast<std::int64_t>(n) * span / options.loops);
     const int query = match + options.keyframes_per_lap;
-    const bool is_true = n % std::max(1, options.loops) >= options.false_loops;
+    const bool is_true = options.false_every == 0 || n % options.false_every != 0;
     Pose T = result.truth[static_cast<std::size_t>(match)].inverse() *
              result.truth[static_cast<std::size_t>(query)];
     if (!is_true) T.p += Eigen::Vector3d(1.5, -0.5, 0.0) + normal_vector(random, 0.5);

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/loop_worker.h"
+
+#include <gtest/gtest.h>
+
+#include "core/pipeline/odometry.h"
+#include "core/pipeline/threaded_odometry.h"
+#include "tests/support/simulated/inertial_plane.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kFrames = 120;  // 60 to the right, 60 back
+
+struct Corrected {
+  std::vector<Eigen::Vector3d> odometry;
+  std::vector<Eigen::Vector3d> corrections;
+  std::vector<LoopRecord> loops;
+
+  void add(const OdometryUpdate& update) {
+    odometry.push_back(update.T_w_c.p);
+    corrections.push_back(update.T_m_w.p);
+  }
+  [[nodiscard]] std::ptrdiff_t first_correction() const {
+    return std::ranges::find_if(corrections, [](const auto& p) { return !p.isZero(0.0); }) -
+           corrections.begin();
+  }
+};
+
+Frame returning_frame(const SlidingPlane& plane, int k) {
+  Frame frame = plane.frame(static_cast<std::size_t>(std::min(k, kFrames - k)));
+  frame.id = k;
+  frame.t = after(Timestamp{1'000'000'000}, k / 30.0);
+  return frame;
+}
+
+OdometryConfig loop_config(int lag_frames) {
+  OdometryConfig config = visual_config(1);
+  config.loop = {.enabled = true,
+                 .lag_frames = lag_frames,
+                 .min_translation_m = 0.05,
+                 .min_gap_s = 0.3,
+                 .min_votes = 5,
+                 .min_inliers = 12};
+  return config;
+}
+
+Corrected run_inline(const SlidingPlane& plane, const OdometryConfig& config) {
+  Corrected result;
+  Odometry odometry(config, plane.input().rig);
+  for (int k = 0; k < kFrames; ++k) result.add(odometry.track(returning_frame(plane, k)));
+  if (const auto report = odometry.finish_loops()) result.loops = report->loops;
+  return result;
+}
+
+TEST(LoopWorker, AThreadGivesTheSameCorrectionsToTheBit) {
+  const SlidingPlane plane(kFrames / 2 + 1);
+  const Corrected expected = run_inline(plane, loop_config(10));
+  ASSERT_LT(expected.first_correction(), kFrames) << "no loop was found";
+  Corrected threaded;
+  ThreadedOdometry odometry(loop_config(10), plane.input().rig,
+                            {.on_update = [&](const OdometryUpdate& update) { threaded.add(update); }});
+  odometry.finish_imu();
+  for (int k = 0; k < kFrames; ++k) odometry.add_frame(returning_frame(plane, k));
+  odometry.finish();
+  threaded.loops = odometry.finish_loops()->loops;
+  EXPECT_EQ(threaded.odometry, expected.odometry);
+  EXPECT_EQ(threaded.corrections, expected.corrections);
+  EXPECT_EQ(threaded.loops.size(), expected.loops.size());
+}
+
+TEST(LoopWorker, CorrectionsAreAppliedAfterTheLag) {
+  const SlidingPlane plane(kFrames / 2 + 1);
+  EXPECT_EQ(run_inline(plane, loop_config(7)).first_correction(),
+            run_inline(plane, loop_config(3)).first_correction() + 4);
+}
+
+TEST(LoopWorker, TheOdometryDoesNotDependOnLoopClosure) {
+  const SlidingPlane plane(kFrames / 2 + 1);
+  OdometryConfig off = loop_config(0);
+  off.loop.enabled = false;
+  const Corrected without = run_inline(plane, off);
+  EXPECT_EQ(without.odometry, run_inline(plane, loop_config(0)).odometry);
+  EXPECT_EQ(without.first_correction(), kFrames);
+}
+
+TEST(LoopWorker, AcceptedLoopsAreTrue) {
+  const SlidingPlane plane(kFrames / 2 + 1);
+  int accepted = 0;
+  for (const LoopRecord& loop : run_inline(plane, loop_config(0)).loops) {
+    if (loop.outcome != LoopOutcome::kAccepted) continue;
+    const auto x_m = [](std::int64_t k) {
+      return SlidingPlane::camera_x_m(std::min<std::int64_t>(k, kFrames - k));
+    };
+    EXPECT_NEAR(loop.T_match_query.p.x(), x_m(loop.query_frame) - x_m(loop.match_frame), 0.02);
+    ++accepted;
+  }
+  EXPECT_GE(accepted, 3);
+}
+
+}  // namespace
+}  // namespace stillpoint
