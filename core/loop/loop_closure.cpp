@@ -31,6 +31,9 @@ LoopClosure::LoopClosure(const LoopConfig& config, const Camera& camera, bool ha
 }
 
 Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
+  if (keyframe.depth.empty())
+    throw InputError("loop.enabled",
+                     "requires depth images, which the sequence lacks; switch loop closure off");
   const auto start = std::chrono::steady_clock::now();
   keyframes_.push_back({.frame = keyframe.frame,
                         .t = keyframe.t,

@@ -22,6 +22,7 @@ class LoopClosure {
   LoopClosure(const LoopConfig& config, const Camera& camera, bool has_imu);
 
   /// Adds the next keyframe. @return T_m_w: the pose of the odometry's world in the map, as known now
+  /// @throws InputError if it has no depth image
   [[nodiscard]] Pose add(const DepartedKeyframe& keyframe);
 
   /// Optimizes the graph for the last time. @return all candidates, and the keyframes with their final poses

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/pipeline/stages/keyframe_collector.h"
+
+#include <gtest/gtest.h>
+
+namespace stillpoint {
+namespace {
+
+/// A window of at most three frames, one step of `step_m` apart, and the frames that enter it.
+class KeyframeCollectorTest : public testing::Test {
+ protected:
+  explicit KeyframeCollectorTest(double step_m = 0.2) : step_m_(step_m) {}
+
+  /// Appends frame `id`; the oldest of more than three leaves the window.
+  std::optional<DepartedKeyframe> append(std::int64_t id) {
+    WindowFrame frame;
+    frame.id = id;
+    frame.state.T_w_b.p = {step_m_ * static_cast<double>(id), 0.0, 0.0};
+    window_.frames.push_back(frame);
+    collector_.before_slide(window_);
+    if (window_.frames.size() > 3) window_.frames.erase(window_.frames.begin());
+    TrackedFrame tracked{.id = id, .t = from_seconds(static_cast<double>(id))};
+    tracked.features = {{.id = 1, .pixel = {10.0, 20.0}, .depth = 1.5}, {.id = 4, .pixel = {30.0, 40.0}}};
+    collector_.set_located(located_);
+    collector_.after_slide(window_, tracked, {.labels = {{.id = 4, .label = LabelClass::kDynamicMotion}}});
+    return collector_.take();
+  }
+
+  double step_m_;
+  bool located_ = true;
+  Window window_;
+  KeyframeCollector collector_{LoopConfig{}};
+};
+
+class SlowKeyframeCollectorTest : public KeyframeCollectorTest {
+ protected:
+  SlowKeyframeCollectorTest() : KeyframeCollectorTest(0.1) {}
+};
+
+TEST_F(KeyframeCollectorTest, AFrameIsHandedOverWhenItLeavesTheWindow) {
+  for (std::int64_t id = 0; id < 3; ++id) EXPECT_FALSE(append(id));
+  window_.frames.front().state.T_w_b.p.x() = 0.01;  // refined until it leaves
+  const std::optional<DepartedKeyframe> departed = append(3);
+  ASSERT_TRUE(departed);
+  EXPECT_EQ(departed->frame, 0);
+  EXPECT_EQ(departed->T_w_b.p.x(), 0.01);
+  EXPECT_EQ(departed->t, from_seconds(0.0));
+}
+
+TEST_F(KeyframeCollectorTest, DynamicFeaturesAreSeparated) {
+  std::optional<DepartedKeyframe> departed;
+  for (std::int64_t id = 0; id < 4; ++id) departed = append(id);
+  ASSERT_TRUE(departed);
+  ASSERT_EQ(departed->features.size(), 1u);
+  EXPECT_EQ(departed->features.front().pixel, Eigen::Vector2f(10.0F, 20.0F));
+  ASSERT_EQ(departed->dynamic_pixels.size(), 1u);
+  EXPECT_EQ(departed->dynamic_pixels.front(), Eigen::Vector2f(30.0F, 40.0F));
+}
+
+TEST_F(KeyframeCollectorTest, AFrameThatIsRemovedAsNoKeyframeIsDiscarded) {
+  append(0);
+  append(1);
+  window_.frames.erase(window_.frames.begin() + 1);  // the second-newest of the next slide
+  for (std::int64_t id = 2; id < 4; ++id) append(id);
+  EXPECT_EQ(append(4)->frame, 0);
+  EXPECT_EQ(append(5)->frame, 2);
+}
+
+TEST_F(SlowKeyframeCollectorTest, FramesCloseToTheLastKeyframeAreDiscarded) {
+  std::vector<std::int64_t> departed;
+  for (std::int64_t id = 0; id < 8; ++id) {
+    if (const auto keyframe = append(id)) departed.push_back(keyframe->frame);
+  }
+  EXPECT_EQ(departed, (std::vector<std::int64_t>{0, 2, 4}));  // 0.15 m apart at least
+}
+
+TEST_F(KeyframeCollectorTest, NothingIsHandedOverWhileThePoseIsLost) {
+  located_ = false;
+  for (std::int64_t id = 0; id < 6; ++id) EXPECT_FALSE(append(id));
+}
+
+TEST_F(KeyframeCollectorTest, TheRemainingFramesAreHandedOverAtTheEnd) {
+  for (std::int64_t id = 0; id < 3; ++id) append(id);
+  std::vector<std::int64_t> remaining;
+  while (const auto keyframe = collector_.take_remaining(window_)) remaining.push_back(keyframe->frame);
+  EXPECT_EQ(remaining, (std::vector<std::int64_t>{0, 1, 2}));
+}
+
+}  // namespace
+}  // namespace stillpoint
