@@ -26,10 +26,13 @@ struct PublishedReader {
     return node->as_string()->get();
   }
 
-  [[nodiscard]] PublishedRow row(const toml::node& node) const {
+  /// @param root contains the default of `input`
+  [[nodiscard]] PublishedRow row(const toml::node& node, const toml::table& root) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) fail(node, "a row must be a table: [[row]]");
     PublishedRow row{.system = text(*table, "system"), .source = text(*table, "source")};
+    const bool has_default = !table->contains("input") && root.contains("input");
+    row.input = text(has_default ? root : *table, "input");
     if (table->contains("note")) row.note = text(*table, "note");
     const toml::node* values = table->get("values");
     if (values == nullptr || !values->is_table()) fail(*table, "requires values = {sequence = number, ...}");
@@ -72,7 +75,7 @@ struct PublishedReader {
     }
     if (const toml::array* rows = root["row"].as_array()) {
       for (const toml::node& node : *rows) {
-        table.rows.push_back(row(node));
+        table.rows.push_back(row(node, root));
         if (!table.sources.contains(table.rows.back().source)) {
           fail(node, "source \"" + table.rows.back().source + "\" is not in [sources]; add it there");
         }
@@ -93,6 +96,8 @@ PublishedTable load_published(const std::string& name) {
                      "not valid TOML: " + std::string(error.description()));
   }
 }
+
+std::string system_label(const PublishedRow& row) { return row.system + " (" + row.input + ")"; }
 
 std::vector<std::string> published_names() { return embedded_names(TomlKind::kPublished); }
 

@@ -12,6 +12,7 @@ namespace stillpoint::bench {
 struct PublishedRow {
   std::string system;
   std::string source;  ///< short name, a key of `PublishedTable::sources`
+  std::string input;   ///< sensors that were used, e.g. "RGB-D, IMU", or "not stated"
   std::string note;    ///< remark on the row; may be empty
   /// By sequence, under the name of the table and that of the registered recording; by module in cost tables.
   std::map<std::string, double> values;
@@ -31,8 +32,12 @@ struct PublishedTable {
 };
 
 /// @param name embedded name ("tum_fr3_ate") or a TOML file
-/// @throws InputError if there is no such file, it is malformed, or a source is not listed in [sources]
+/// @throws InputError if there is no such file, it is malformed, a source is not listed in [sources], or a
+/// row has no input and the table has no default
 [[nodiscard]] PublishedTable load_published(const std::string& name);
+
+/// The system with its input: "NGD-SLAM (RGB-D)".
+[[nodiscard]] std::string system_label(const PublishedRow& row);
 
 /// Names of all embedded tables.
 [[nodiscard]] std::vector<std::string> published_names();

@@ -10,22 +10,22 @@
 namespace stillpoint::eval {
 namespace {
 
-constexpr double kMaxTruthDistance_s = 0.05;
+constexpr double kMaxTrueStep_s = 0.05;
 constexpr double kLeft = 2.0;  // a place is left at this multiple of its extent
 
-/// True pose at `t`, interpolated between two poses that are at most twice `kMaxTruthDistance_s` apart, or
+/// True pose at `t`, interpolated between two poses that are at most twice `kMaxTrueStep_s` apart, or
 /// that of the nearest one.
 std::optional<Pose> true_pose(const Trajectory& gt, Timestamp t) {
   const auto later = std::ranges::lower_bound(gt.poses, t, {}, &StampedPose::t);
   if (later == gt.poses.end() || later == gt.poses.begin()) {
     if (gt.poses.empty()) return std::nullopt;
     const StampedPose& end = later == gt.poses.end() ? gt.poses.back() : gt.poses.front();
-    if (std::abs(seconds_between(end.t, t)) > kMaxTruthDistance_s) return std::nullopt;
+    if (std::abs(seconds_between(end.t, t)) > kMaxTrueStep_s) return std::nullopt;
     return end.T_w_f;
   }
   const StampedPose& before = *std::prev(later);
   const double interval_s = seconds_between(before.t, later->t);
-  if (interval_s > 2.0 * kMaxTruthDistance_s && later->t != t) return std::nullopt;
+  if (interval_s > 2.0 * kMaxTrueStep_s && later->t != t) return std::nullopt;
   return interpolate(before.T_w_f, later->T_w_f, seconds_between(before.t, t) / interval_s);
 }
 

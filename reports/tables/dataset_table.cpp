@@ -59,7 +59,7 @@ ReportTable dataset_table(const DatasetTableLayout& layout, std::span<const benc
                              .tooltip = table.description});
   };
   for (const bench::PublishedRow& system : systems)
-    add_column("published", system.system + ", " + system.source);
+    add_column("published", bench::system_label(system) + ", " + system.source);
   for (const std::string& variant : layout.variants) add_column("ours", variant);
   for (const std::string& sequence : layout.sequences) {
     TableRow row{.label = sequence, .source = "", .cells = {}};

@@ -102,7 +102,8 @@ std::vector<std::string> shared_columns(std::span<const bench::StoredRun> runs,
 }
 
 TableRow published_row(const bench::PublishedRow& published, const std::vector<std::string>& columns) {
-  TableRow row{.label = published.system + ", " + published.source, .source = "published", .cells = {}};
+  TableRow row{
+      .label = bench::system_label(published) + ", " + published.source, .source = "published", .cells = {}};
   for (const std::string& column : columns) {
     TableCell& cell = row.cells.emplace_back();
     const auto found = published.values.find(column);

@@ -62,7 +62,7 @@ std::string number(double value) { return fmt::format("{:.4f}", value); }
 
 std::vector<std::string> published_cells(const bench::PublishedRow& row,
                                          const std::vector<std::string>& columns) {
-  std::vector<std::string> cells = {row.system, "published, " + row.source};
+  std::vector<std::string> cells = {bench::system_label(row), "published, " + row.source};
   for (const std::string& column : columns) {
     const auto found = row.values.find(column);
     cells.push_back(found == row.values.end() ? "-" : number(found->second));

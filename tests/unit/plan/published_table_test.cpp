@@ -27,6 +27,7 @@ TEST(PublishedTable, EveryEmbeddedTableHasComparabilityNotes) {
     EXPECT_FALSE(table.comparability.empty()) << name;
     EXPECT_FALSE(table.alignment.empty()) << name;
     EXPECT_FALSE(table.rows.empty()) << name;
+    for (const PublishedRow& row : table.rows) EXPECT_FALSE(row.input.empty()) << row.system;
   }
 }
 
@@ -47,16 +48,32 @@ TEST(PublishedTable, SeparatesSim3AlignedFromRigidlyAlignedNumbers) {
                            [](const PublishedRow& row) { return row.system == "WildGS-SLAM"; }));
 }
 
-TEST(PublishedTable, RejectsANumberWithoutItsSource) {
+TEST(PublishedTable, NamesTheInputOfARow) {
   const TemporaryFolder folder;
   const std::string head = "title = \"t\"\nmetric = \"m\"\nunit = \"\"\nalignment = \"rigid\"\n";
+  const std::string rows =
+      "sources = {A = \"a\"}\n[[row]]\nsystem = \"s\"\nsource = \"A\"\nvalues = {a = 1}\n"
+      "[[row]]\nsystem = \"t\"\nsource = \"A\"\ninput = \"RGB-D, IMU\"\nvalues = {a = 1}\n";
+  const PublishedTable table =
+      load_published(folder.write("p.toml", head + "input = \"stereo\"\n" + rows).string());
+  EXPECT_EQ(system_label(table.rows[0]), "s (stereo)");
+  EXPECT_EQ(system_label(table.rows[1]), "t (RGB-D, IMU)");
+  const auto without = folder.write("q.toml", head + rows);
+  expect_input_error([&] { static_cast<void>(load_published(without.string())); },
+                     {"q.toml:6: requires a string \"input\""});
+}
+
+TEST(PublishedTable, RejectsANumberWithoutItsSource) {
+  const TemporaryFolder folder;
+  const std::string head =
+      "title = \"t\"\nmetric = \"m\"\nunit = \"\"\nalignment = \"rigid\"\ninput = \"RGB-D\"\n";
   const auto file =
       folder.write("p.toml", head + "[[row]]\nsystem = \"s\"\nsource = \"A\"\nvalues = {a = 1}\n");
-  expect_input_error([&] { static_cast<void>(load_published(file.string())); }, {"p.toml:5: source \"A\""});
+  expect_input_error([&] { static_cast<void>(load_published(file.string())); }, {"p.toml:6: source \"A\""});
   const auto text =
       folder.write("q.toml", head + "[[row]]\nsystem = \"s\"\nsource = \"A\"\nvalues = {a = \"1\"}\n");
   expect_input_error([&] { static_cast<void>(load_published(text.string())); },
-                     {"q.toml:8: \"a\" must be a number"});
+                     {"q.toml:9: \"a\" must be a number"});
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(DatasetTable, KeepsSequencesWithoutDataOutOfTheMeans) {
   EXPECT_NEAR(*table.rows[3].cells.back().number, 0.03, 1e-12);
   EXPECT_NE(table.notes.back().find("dynamic_vins_vo 2 of 3"), std::string::npos) << table.notes.back();
   // DynaSLAM, source A: crowd 0.016 under the name of the recording.
-  EXPECT_EQ(table.columns.front().name, "DynaSLAM, A");
+  EXPECT_EQ(table.columns.front().name, "DynaSLAM (RGB-D), A");
   EXPECT_EQ(table.rows[0].cells.front().number, 0.016);
 }
 

@@ -14,27 +14,30 @@ bench::StoredRun run_of(const std::string& variant, const std::string& sequence,
 }
 
 bench::PublishedTable table() {
-  return {.name = "t",
-          .title = "Errors",
-          .metric = "ate_rmse_m",
-          .unit = "m",
-          .alignment = "rigid",
-          .comparability = {"Other images."},
-          .sources = {{"A", "A paper"}},
-          .rows = {{.system = "Quoted",
-                    .source = "A",
-                    .note = "odd",
-                    .values = {{"walking_xyz", 0.05}, {"desk", 1.0}}},
-                   {.system = "Elsewhere", .source = "A", .note = "", .values = {{"desk", 2.0}}}}};
+  return {
+      .name = "t",
+      .title = "Errors",
+      .metric = "ate_rmse_m",
+      .unit = "m",
+      .alignment = "rigid",
+      .comparability = {"Other images."},
+      .sources = {{"A", "A paper"}},
+      .rows = {
+          {.system = "Quoted",
+           .source = "A",
+           .input = "RGB-D",
+           .note = "odd",
+           .values = {{"walking_xyz", 0.05}, {"desk", 1.0}}},
+          {.system = "Elsewhere", .source = "A", .input = "RGB-D", .note = "", .values = {{"desk", 2.0}}}}};
 }
 
 TEST(PublishedComparison, MarksPublishedRowsAndCitesTheirSource) {
   const std::vector<bench::StoredRun> runs = {
       run_of("vo", "walking_xyz", 0.02), run_of("vo", "walking_xyz", 0.04), run_of("vo", "market", 0.01)};
   const std::string text = published_comparison(runs, table());
-  EXPECT_NE(text.find("| vo     | measured     | 0.0300"), std::string::npos)
+  EXPECT_NE(text.find("| vo             | measured     | 0.0300"), std::string::npos)
       << text;  // the median of the measured values only
-  EXPECT_NE(text.find("| Quoted | published, A | 0.0500"), std::string::npos) << text;
+  EXPECT_NE(text.find("| Quoted (RGB-D) | published, A | 0.0500"), std::string::npos) << text;
   EXPECT_EQ(text.find("Elsewhere"), std::string::npos);  // shares no sequence
   EXPECT_EQ(text.find("market"), std::string::npos);     // no published value
   for (const char* line : {"- Other images.", "- Quoted (A): odd", "- A: A paper", "alignment rigid"}) {
@@ -49,7 +52,11 @@ TEST(PublishedComparison, IsEmptyWithoutSharedColumns) {
 TEST(PublishedComparison, ComparesOnlyUndisturbedTimes) {
   bench::PublishedTable times = table();
   times.metric = "mean_ms";
-  times.rows = {{.system = "Quoted", .source = "A", .note = "", .values = {{"feature_tracking", 5.0}}}};
+  times.rows = {{.system = "Quoted",
+                 .source = "A",
+                 .input = "RGB-D",
+                 .note = "",
+                 .values = {{"feature_tracking", 5.0}}}};
   bench::StoredRun run = run_of("vo", "market", 0.01);
   run.costs = {{"feature_tracking", "call", 10, 2.0, 2.0, 2.0, 2.0}};
   const std::string omitted = published_comparison(std::vector{run}, times);
@@ -57,7 +64,7 @@ TEST(PublishedComparison, ComparesOnlyUndisturbedTimes) {
   EXPECT_NE(omitted.find("The times of 1 run are not compared"), std::string::npos) << omitted;
   run.identity.kind = "timing";
   const std::string compared = published_comparison(std::vector{run}, times);
-  EXPECT_NE(compared.find("| vo     | measured     | 2.0000"), std::string::npos) << compared;
+  EXPECT_NE(compared.find("| vo             | measured     | 2.0000"), std::string::npos) << compared;
 }
 
 TEST(PublishedComparison, NamesAStrictProtocolThatDiffersByAFactorOfTwo) {
