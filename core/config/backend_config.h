@@ -141,7 +141,7 @@ struct BackendConfig {
   int keyframe_min_tracked = 20;       ///< fewer static features shared with the last keyframe trigger one
   double keyframe_min_shared_ratio = 0.5;  ///< same, relative to all static features; 0 = off, as in the
                                            ///< published code (there dynamic features add parallax)
-  double pixel_sigma_px = 1.5;             ///< standard deviation of a feature position
+  double pixel_sigma_px = 1.5;             ///< standard deviation of a reprojection residual
   double reprojection_error_px = 0.0;      ///< nominal median; a larger one inflates pixel_sigma_px; 0 = off
   double cauchy_scale = 1.0;               ///< scale of the Cauchy loss, in standard deviations
   WindowSolverKind solver = WindowSolverKind::kCeres;  ///< both minimize the same residuals

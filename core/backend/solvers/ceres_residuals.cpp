@@ -21,7 +21,7 @@ Residual prior_residual(const LinearPrior& prior) {
 ResidualBuilder::ResidualBuilder(const Window& window, const BackendConfig& config, double focal_px)
     : window_(window),
       config_(config),
-      noise_(reprojection_noise(window, config, focal_px)),
+      noise_(reprojection_noise(config, focal_px)),
       loss_(std::make_unique<ceres::CauchyLoss>(config.cauchy_scale)) {
   observation_model_.read(window);
 }

@@ -17,7 +17,7 @@ Eigen::Vector2d at_state(const TimedBearing& timed, double time_offset_s) {
 void VisualTerms::read(const Window& window, const BackendConfig& config, double focal_px,
                        LandmarkSelection selection) {
   frames_ = static_cast<int>(window.frames.size());
-  noise_ = reprojection_noise(window, config, focal_px);
+  noise_ = reprojection_noise(config, focal_px);
   cauchy_squared_ = config.cauchy_scale * config.cauchy_scale;
   marginalizes_ = selection == LandmarkSelection::kHostedByOldest;
   observation_model_.read(window);

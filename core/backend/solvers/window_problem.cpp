@@ -2,7 +2,6 @@
 #include "core/backend/solvers/window_problem.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace stillpoint {
@@ -89,9 +88,8 @@ void unpack(const ParameterBlocks& blocks, Window& window) {
   }
 }
 
-ReprojectionNoise reprojection_noise(const Window& window, const BackendConfig& config, double focal_px) {
-  const double bearings = has_consistent_prior(window, config) ? std::sqrt(2.0) : 1.0;
-  return {.bearing = bearings * config.pixel_sigma_px / focal_px,
+ReprojectionNoise reprojection_noise(const BackendConfig& config, double focal_px) {
+  return {.bearing = config.pixel_sigma_px / focal_px,
           .inverse_depth = config.depth.inverse_sigma,
           .depth_outlier = config.depth.outlier_sigmas};
 }

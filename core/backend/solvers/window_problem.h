@@ -81,10 +81,8 @@ struct Linearization {
 /// Writes the values of the blocks back to the states of the window.
 void unpack(const ParameterBlocks& blocks, Window& window);
 
-/// Standard deviations of the visual residuals. That of a bearing is the one of a single observation, and
-/// with the consistent prior that of the difference of two: the bearing in the host is no state.
-[[nodiscard]] ReprojectionNoise reprojection_noise(const Window& window, const BackendConfig& config,
-                                                   double focal_px);
+/// Standard deviations of the visual residuals.
+[[nodiscard]] ReprojectionNoise reprojection_noise(const BackendConfig& config, double focal_px);
 
 /// Whether a landmark's inverse depth is constant at its measured value (as in the published system).
 [[nodiscard]] bool has_constant_depth(const Landmark& landmark, const BackendConfig& config);

@@ -21,7 +21,7 @@ OdometryConfig simulated_config(PriorModel prior) {
   config.backend.covariance = true;
   config.backend.max_iterations = 4;
   config.backend.keyframe_max_interval_s = 0.5;
-  config.backend.pixel_sigma_px = 0.5;
+  config.backend.pixel_sigma_px = std::sqrt(2.0) * NeesDraw{}.pixel_noise_px;  // difference of two bearings
   config.backend.cauchy_scale = 3.0;
   config.backend.depth.usage = DepthUsage::kWeighted;
   config.backend.depth.outlier_sigmas = 5.0;
