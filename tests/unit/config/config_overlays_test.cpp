@@ -58,6 +58,12 @@ TEST(ConfigOverlays, DepthBandSetsTheMaskOfStillpoint) {
   EXPECT_EQ(changes("stillpoint", "depth_band"), Entries{});
 }
 
+TEST(ConfigOverlays, ConsistentPriorAndInertialTimeOffsetChangeNothingElse) {
+  EXPECT_EQ(changes("stillpoint", "consistent_prior"),
+            (Entries{{"backend.prior", "\"consistent\""}, {"backend.time_offset_walk", "0.001"}}));
+  expect_one_change("inertial_time_offset", {"backend.time_offset_model", "\"inertial\""});
+}
+
 TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
   EXPECT_EQ(changes("stillpoint", "vo"),
             (Entries{{"imu.enabled", "false"}, {"backend.keyframe_min_shared_ratio", "0.7"}}));
