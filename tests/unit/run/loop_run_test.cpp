@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run/loop_run.h"
+
+#include <gtest/gtest.h>
+
+namespace stillpoint::bench {
+namespace {
+
+Pose at_x(double x) { return {Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}}; }
+
+/// Poses at 1 Hz, 1 m apart.
+Trajectory straight(int count, double scale = 1.0) {
+  Trajectory trajectory{.frame = "camera", .poses = {}};
+  for (int k = 0; k < count; ++k) trajectory.poses.push_back({from_seconds(k), at_x(scale * k)});
+  return trajectory;
+}
+
+/// A keyframe whose odometry drifted to `x_w`, and is corrected to `x_m`.
+MapKeyframe keyframe(int k, double x_w, double x_m) {
+  return {.frame = k, .t = from_seconds(k), .T_w_b = at_x(x_w), .T_m_b = at_x(x_m)};
+}
+
+TEST(LoopRun, CorrectionsAreInterpolatedBetweenKeyframes) {
+  // Corrections: none at 1 s, -0.4 m at 3 s; constant outside.
+  const LoopReport report{.loops = {}, .keyframes = {keyframe(1, 1.0, 1.0), keyframe(3, 3.0, 2.6)}};
+  const Trajectory optimized = optimized_trajectory(straight(5), report);
+  const std::vector<double> expected = {0.0, 1.0, 1.8, 2.6, 3.6};
+  ASSERT_EQ(optimized.poses.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    EXPECT_NEAR(optimized.poses[k].T_w_f.p.x(), expected[k], 1e-12);
+}
+
+TEST(LoopRun, WithoutKeyframesTheTrajectoryIsThatOfTheOdometry) {
+  const Trajectory optimized = optimized_trajectory(straight(3), {});
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(optimized.poses[k].T_w_f.p, straight(3).poses[k].T_w_f.p);
+}
+
+}  // namespace
+}  // namespace stillpoint::bench
