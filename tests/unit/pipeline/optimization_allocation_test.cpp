@@ -119,8 +119,12 @@ TEST_P(OptimizationStageWith, IsAllocationFreeInTheSteadyState) {
   EXPECT_GT(counts.moving, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Settings, OptimizationStageWith, testing::Values("", "vo"),
-                         [](const auto& variant) { return variant.param.empty() ? "Inertial" : "Visual"; });
+INSTANTIATE_TEST_SUITE_P(Settings, OptimizationStageWith,
+                         testing::Values("", "vo", "consistent_prior+inertial_time_offset"),
+                         [](const auto& variant) {
+                           if (variant.param.empty()) return "Inertial";
+                           return variant.param == "vo" ? "Visual" : "Consistent";
+                         });
 
 }  // namespace
 }  // namespace stillpoint
