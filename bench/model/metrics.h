@@ -94,6 +94,7 @@ struct LoopScore {
   std::size_t keyframes = 0;
   std::optional<double> median_ms{};
   std::optional<eval::RevisitScore> revisits{};  ///< with a ground truth
+  std::optional<double> relocalization_s{};      ///< in a loaded map
 };
 
 /// What metrics are computed from. Its parts are measured at different places; those that were not measured

@@ -234,15 +234,15 @@ std::string status_csv(const OdometryRun& run) {
 std::string loops_csv(const LoopReport& report) {
   std::string text =
       "query_frame,query_t_ns,match_frame,match_t_ns,votes,matches,inliers,residual_px,tx,ty,tz,qx,qy,qz,qw,"
-      "accepted,reason\n";
+      "accepted,reason,in_map\n";
   for (const LoopRecord& loop : report.loops) {
     const Pose& T = loop.T_match_query;
     const bool accepted = loop.outcome == LoopOutcome::kAccepted;
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{:.4g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}\n",
-                    loop.query_frame, loop.query_t.ns, loop.match_frame, loop.match_t.ns, loop.votes,
-                    loop.matches, loop.inliers, loop.residual_px, T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(),
-                    T.q.z(), T.q.w(), accepted ? 1 : 0, accepted ? "" : outcome_name(loop.outcome));
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{:.4g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{}\n",
+        loop.query_frame, loop.query_t.ns, loop.match_frame, loop.match_t.ns, loop.votes, loop.matches,
+        loop.inliers, loop.residual_px, T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w(),
+        accepted ? 1 : 0, accepted ? "" : outcome_name(loop.outcome), loop.in_map ? 1 : 0);
   }
   return text;
 }

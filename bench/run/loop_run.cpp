@@ -16,6 +16,7 @@ eval::RevisitScore revisits_of(const Trajectory& gt, const LoopReport& report) {
   for (const MapKeyframe& keyframe : report.keyframes) keyframes.push_back(keyframe.t);
   std::vector<eval::ReportedLoop> loops;
   for (const LoopRecord& loop : report.loops) {
+    if (loop.in_map) continue;  // its true pose is that of another run
     loops.push_back({loop.query_t, loop.match_t, loop.T_match_query, loop.outcome == LoopOutcome::kAccepted});
   }
   return eval::score_revisits(gt, keyframes, loops);
@@ -54,6 +55,9 @@ LoopScore score_loops(const Trajectory& gt, const LoopRun& run) {
   LoopScore score;
   score.optimized_ate_m = ate_m(gt, run.optimized);
   score.causal_ate_m = ate_m(gt, run.causal);
+  if (run.has_map && !run.causal.poses.empty()) {
+    score.relocalization_s = seconds_between(run.optimized.poses.front().t, run.causal.poses.front().t);
+  }
   score.keyframes = run.report.keyframes.size();
   score.candidates = run.report.loops.size();
   score.loops = static_cast<std::size_t>(

@@ -11,10 +11,12 @@
 namespace stillpoint::bench {
 
 struct LoopRun {
-  Trajectory
-      causal;  ///< T_m_c with the correction known at each frame; the frames of the odometry's trajectory
+  /// T_m_c with the correction known at each frame; the frames of the odometry's trajectory, with a loaded
+  /// map from the relocalization on.
+  Trajectory causal;
   Trajectory optimized;  ///< T_m_c after the last frame
   LoopReport report;
+  bool has_map = false;  ///< a map of an earlier run was loaded
 };
 
 /// The odometry's trajectory with the final corrections: C_k = T_m_b T_w_b^-1 of the keyframes, interpolated

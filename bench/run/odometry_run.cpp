@@ -27,13 +27,14 @@ std::size_t frames_to_run(const datasets::SequenceInfo& info, std::size_t max_fr
   return max_frames == 0 ? info.frame_times.size() : std::min(max_frames, info.frame_times.size());
 }
 
-SensorInput input_of(const datasets::SequenceInfo& info, std::size_t frames, FramePrefetcher& prefetcher) {
+SensorInput input_of(const datasets::SequenceInfo& info, const RunSpec& spec, FramePrefetcher& prefetcher) {
   return {.rig = info.rig,
-          .frame_times = std::span(info.frame_times).first(frames),
+          .frame_times = std::span(info.frame_times).first(frames_to_run(info, spec.max_frames)),
           .imu = info.imu,
           .detections = info.detections,
           .true_boxes = info.true_boxes,
-          .load_frame = [&prefetcher](std::size_t index) { return prefetcher.take(index); }};
+          .load_frame = [&prefetcher](std::size_t index) { return prefetcher.take(index); },
+          .map = spec.map};
 }
 
 FrameCounters counters_of(const OdometryUpdate& update, Timestamp t) {
@@ -66,6 +67,11 @@ eval::ClaimedPose claim_of(const OdometryUpdate& update, Timestamp t) {
   return claim;
 }
 
+/// With a loaded map: before the relocalization T_m_w is the identity.
+bool is_located_in_map(const OdometryUpdate& update) {
+  return !update.T_m_w.p.isZero(0.0) || update.T_m_w.q.w() != 1.0;
+}
+
 /// Records the output of a runner.
 class RunRecorder {
  public:
@@ -73,7 +79,10 @@ class RunRecorder {
       : stream_(stream), spec_(spec), drifted_(stream.info()) {
     if (spec.config.pipeline.imu_rate) imu_rate_.emplace(spec.config, stream.info().imu);
     run_.trajectory.frame = "camera";
-    if (spec.config.loop.enabled) run_.loops.emplace().causal.frame = "camera";
+    if (spec.config.loop.enabled) {
+      run_.loops.emplace().causal.frame = "camera";
+      run_.loops->has_map = spec.map != nullptr;
+    }
     run_.frames_planned = frames_to_run(stream.info(), spec.max_frames);
   }
 
@@ -135,7 +144,8 @@ class RunRecorder {
     run_.claims.push_back(claim_of(update, t));
     if (!is_located(update.status) || update.segment > 0) return;
     run_.trajectory.poses.push_back({t, update.T_w_c});
-    if (run_.loops) run_.loops->causal.poses.push_back({t, update.T_m_w * update.T_w_c});
+    if (run_.loops && (!spec_.map || is_located_in_map(update)))
+      run_.loops->causal.poses.push_back({t, update.T_m_w * update.T_w_c});
   }
 
   void record_calibration(const OdometryUpdate& update) {
@@ -230,7 +240,7 @@ OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& sp
   const auto start = std::chrono::steady_clock::now();
   const auto work = [&] {
     return run_in_mode(
-        spec, input_of(stream.info(), recorder.frames_planned(), prefetcher),
+        spec, input_of(stream.info(), spec, prefetcher),
         {.on_update = on_update, .on_frame = on_frame, .stop_requested = control.stop_requested});
   };
   RunSummary summary = spec.deterministic_counts ? on_fresh_thread(stream, work) : work();

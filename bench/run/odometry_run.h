@@ -39,10 +39,11 @@ struct RunSpec {
   double speed = 1.0;                 ///< clock rate of "realtime" and of a device
   std::optional<DeviceModel> device;  ///< simulate the timing of that device; `mode` must be "sequential"
   std::size_t max_frames = 0;         ///< frames from the start; 0 = all
-  bool decode_color = false;          ///< the color image of every frame will be used, e.g. for a video
-  bool keep_spans = false;            ///< record time spans, for timelines
-  bool deterministic_counts = false;  ///< without prefetching and on a thread with a separate heap, for
-                                      ///< reproducible instruction counts
+  std::shared_ptr<const KeyframeMap> map;  ///< of an earlier run, for relocalization; requires `loop.enabled`
+  bool decode_color = false;               ///< the color image of every frame will be used, e.g. for a video
+  bool keep_spans = false;                 ///< record time spans, for timelines
+  bool deterministic_counts = false;       ///< without prefetching and on a thread with a separate heap, for
+                                           ///< reproducible instruction counts
 };
 
 /// Time span of a module, and the frame that it processed.

@@ -2,13 +2,11 @@
 /// Binary descriptors of 256 bits.
 #pragma once
 
-#include <array>
 #include <bit>
-#include <cstdint>
+
+#include "core/types/keyframe_map.h"
 
 namespace stillpoint {
-
-using Descriptor = std::array<std::uint64_t, 4>;
 
 /// Number of different bits, 0 to 256.
 [[nodiscard]] inline int hamming_distance(const Descriptor& a, const Descriptor& b) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Keyframes of loop closure: what the odometry hands over, and what is kept of it.
+/// Keyframes of loop closure, as the odometry hands them over; see core/types/keyframe_map.h for what is
+/// kept.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "core/geometry/pose.h"
 #include "core/loop/descriptor.h"
 #include "core/types/detection.h"
+#include "core/types/keyframe_map.h"
 
 namespace stillpoint {
 
@@ -44,21 +46,6 @@ struct DepartedKeyframe {
   std::vector<StaticFeature> features;
   std::vector<DynamicRegion> regions;
   std::vector<Eigen::Vector2f> dynamic_pixels;  ///< of dynamic features [px]
-};
-
-struct KeyframeFeature {
-  Descriptor descriptor{};
-  Eigen::Vector3f p_c = Eigen::Vector3f::Zero();  ///< in the camera frame [m], p_c.z() > 0
-};
-
-/// A keyframe in the map.
-struct Keyframe {
-  std::int64_t frame = 0;
-  Timestamp t;
-  Pose T_w_b;  ///< by the odometry
-  Pose T_b_c;
-  std::optional<Eigen::Vector3d> gravity_b;  ///< unit vector
-  std::vector<KeyframeFeature> features;     ///< the most distinctive corners first
 };
 
 }  // namespace stillpoint

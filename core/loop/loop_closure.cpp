@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <numbers>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/loop/keyframe_features.h"
-#include "core/loop/pose_graph.h"
 
 namespace stillpoint {
 namespace {
@@ -30,6 +30,18 @@ LoopClosure::LoopClosure(const LoopConfig& config, const Camera& camera, bool ha
     throw InputError("loop.dof", "4 requires the direction of gravity from an IMU; use 6");
 }
 
+void LoopClosure::use_map(const KeyframeMap& map) {
+  STILLPOINT_CHECK(keyframes_.empty());
+  keyframes_ = map.keyframes;
+  map_size_ = keyframes_.size();
+  recognition_.add_map(keyframes_);
+  for (const Keyframe& keyframe : keyframes_) {
+    T_w_b_.push_back(keyframe.T_w_b);
+    drift_.add(keyframe.t, keyframe.T_w_b);
+  }
+  T_m_b_ = T_w_b_;
+}
+
 Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
   if (keyframe.depth.empty())
     throw InputError("loop.enabled",
@@ -43,7 +55,11 @@ Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
                         .features = keyframe_features(keyframe, camera_, config_)});
   T_w_b_.push_back(keyframe.T_w_b);
   T_m_b_.push_back(T_m_w_ * keyframe.T_w_b);
-  drift_.add(keyframe.t, keyframe.T_w_b);
+  if (map_size_ > 0 && keyframes_.size() == map_size_ + 1) {
+    drift_.add_unrelated(keyframe.t, keyframe.T_w_b);
+  } else {
+    drift_.add(keyframe.t, keyframe.T_w_b);
+  }
   find_loops();
   if (is_optimization_due()) optimize();
   processing_ms_.push_back(
@@ -56,6 +72,7 @@ void LoopClosure::find_loops() {
     const Keyframe& match = keyframes_[static_cast<std::size_t>(place.place)];
     VerifiedLoop verified = verify_loop(keyframes_.back(), match, camera_, config_);
     verified.record.votes = place.votes;
+    verified.record.in_map = is_in_map(place.place);
     assess(std::move(verified), place.place);
     if (records_.back().outcome == LoopOutcome::kAccepted) return;
   }
@@ -87,6 +104,7 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
   std::size_t contradicting = 0;
   for (ConsistentLoop& other : loops_) {
     if (loop.query - other.loop.query > kComparedKeyframes || other.loop.query == loop.query) continue;
+    if (is_in_map(loop.match) != is_in_map(other.loop.match)) continue;  // the motion between both is unknown
     if (pairwise_distance(loop, other.loop, T_w_b_, drift_) <= config_.gate_chi2) {
       agreeing.push_back(&other);
     } else {
@@ -103,12 +121,32 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
 }
 
 bool LoopClosure::is_optimization_due() const {
+  if (has_new_loop_ && map_size_ > 0 && !relocalized_) return true;
   return has_new_loop_ &&
          keyframes_.size() >=
              keyframes_optimized_ + std::max(kMinInterval, keyframes_.size() / kIntervalDivisor);
 }
 
-void LoopClosure::optimize() {
+void LoopClosure::relocalize() {
+  if (relocalized_) return;
+  const auto found = std::find_if(loops_.rbegin(), loops_.rend(), [this](const ConsistentLoop& loop) {
+    return loop.confirmed && is_in_map(loop.loop.match);
+  });
+  if (found == loops_.rend()) return;
+  const auto match = static_cast<std::size_t>(found->loop.match);
+  const auto query = static_cast<std::size_t>(found->loop.query);
+  T_m_w_ = T_m_b_[match] * found->loop.T_bm_bq * T_w_b_[query].inverse();
+  for (std::size_t k = map_size_; k < T_m_b_.size(); ++k) T_m_b_[k] = T_m_w_ * T_w_b_[k];
+  relocalized_ = true;
+}
+
+bool LoopClosure::has_inlier_in_map() const {
+  return std::ranges::any_of(loops_, [this](const ConsistentLoop& loop) {
+    return is_in_map(loop.loop.match) && records_[loop.record].outcome == LoopOutcome::kAccepted;
+  });
+}
+
+PoseGraph LoopClosure::build_graph() const {
   PoseGraph graph{.T_m_b = T_m_b_};
   for (const Keyframe& keyframe : keyframes_) graph.gravity_b.push_back(keyframe.gravity_b);
   for (std::size_t k = 1; k < keyframes_.size(); ++k) {
@@ -117,17 +155,25 @@ void LoopClosure::optimize() {
                               .T_i_j = T_w_b_[k - 1].inverse() * T_w_b_[k],
                               .covariance = drift_.step_covariance(k)});
   }
-  std::vector<std::size_t> records;  // of the loops of the graph
   for (const ConsistentLoop& loop : loops_) {
     if (!loop.confirmed) continue;
     graph.loops.push_back({.i = loop.loop.match,
                            .j = loop.loop.query,
                            .T_i_j = loop.loop.T_bm_bq,
                            .covariance = loop.loop.covariance});
-    records.push_back(loop.record);
+  }
+  return graph;
+}
+
+void LoopClosure::optimize() {
+  relocalize();
+  std::vector<std::size_t> records;  // of the loops of the graph
+  for (const ConsistentLoop& loop : loops_) {
+    if (loop.confirmed) records.push_back(loop.record);
   }
   PoseGraphSolution solution = optimize_pose_graph(
-      graph, {.dof = config_.dof, .gravity_sigma_rad = config_.gravity_sigma_deg * std::numbers::pi / 180.0});
+      build_graph(),
+      {.dof = config_.dof, .gravity_sigma_rad = config_.gravity_sigma_deg * std::numbers::pi / 180.0});
   for (std::size_t i = 0; i < records.size(); ++i) {
     records_[records[i]].outcome = solution.inliers[i] ? LoopOutcome::kAccepted : LoopOutcome::kPoseGraph;
   }
@@ -135,18 +181,22 @@ void LoopClosure::optimize() {
   T_m_w_ = T_m_b_.back() * T_w_b_.back().inverse();
   keyframes_optimized_ = keyframes_.size();
   has_new_loop_ = false;
+  if (relocalized_ && !has_inlier_in_map()) relocalized_ = false;
 }
 
 LoopReport LoopClosure::finish() {
   if (has_new_loop_) optimize();
-  LoopReport report{.loops = records_};
-  for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+  LoopReport report{.loops = records_, .relocalized = relocalized_};
+  for (std::size_t k = map_size_; k < keyframes_.size(); ++k) {
     report.keyframes.push_back({.frame = keyframes_[k].frame,
                                 .t = keyframes_[k].t,
                                 .T_w_b = T_w_b_[k],
                                 .T_m_b = T_m_b_[k],
-                                .processing_ms = processing_ms_[k]});
+                                .processing_ms = processing_ms_[k - map_size_]});
   }
+  if (map_size_ > 0) return report;
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) keyframes_[k].T_w_b = T_m_b_[k];
+  report.map = std::make_shared<KeyframeMap>(KeyframeMap{std::move(keyframes_)});
   return report;
 }
 

@@ -10,6 +10,7 @@
 #include "core/loop/loop_consistency.h"
 #include "core/loop/loop_verification.h"
 #include "core/loop/place_recognition.h"
+#include "core/loop/pose_graph.h"
 #include "core/types/loop_report.h"
 
 namespace stillpoint {
@@ -21,9 +22,17 @@ class LoopClosure {
   /// @throws InputError if `loop.dof` is neither 4 nor 6, or 4 without an IMU
   LoopClosure(const LoopConfig& config, const Camera& camera, bool has_imu);
 
+  /// Adds the keyframes of an earlier run. From the first keyframe on whose place is recognized and confirmed
+  /// (relocalization), the map of this run is that of the earlier one; until then, it is the odometry's
+  /// world. Call it before `add`.
+  void use_map(const KeyframeMap& map);
+
   /// Adds the next keyframe. @return T_m_w: the pose of the odometry's world in the map, as known now
   /// @throws InputError if it has no depth image
   [[nodiscard]] Pose add(const DepartedKeyframe& keyframe);
+
+  /// Whether the poses refer to the loaded map.
+  [[nodiscard]] bool is_relocalized() const { return relocalized_; }
 
   /// Optimizes the graph for the last time. @return all candidates, and the keyframes with their final poses
   [[nodiscard]] LoopReport finish();
@@ -41,6 +50,11 @@ class LoopClosure {
   [[nodiscard]] LoopOutcome compare_with_others(const GraphLoop& loop);
   [[nodiscard]] bool is_optimization_due() const;
   void optimize();
+  [[nodiscard]] PoseGraph build_graph() const;
+  [[nodiscard]] bool is_in_map(int keyframe) const { return static_cast<std::size_t>(keyframe) < map_size_; }
+  /// Moves this run into the loaded map by the newest confirmed loop to it, if it is the first one.
+  void relocalize();
+  [[nodiscard]] bool has_inlier_in_map() const;
 
   LoopConfig config_;
   Camera camera_;
@@ -55,6 +69,8 @@ class LoopClosure {
   std::vector<ConsistentLoop> loops_;
   std::size_t keyframes_optimized_ = 0;  ///< number of keyframes at the last optimization
   bool has_new_loop_ = false;            ///< since then
+  std::size_t map_size_ = 0;             ///< number of keyframes of the loaded map, the first ones
+  bool relocalized_ = false;             ///< in the loaded map
 };
 
 }  // namespace stillpoint

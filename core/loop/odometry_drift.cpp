@@ -11,6 +11,8 @@ namespace {
 constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr double kMinSigma_m = 0.002;
 constexpr double kMinSigma_rad = 0.02 * kRadians;
+constexpr double kUnknown_m = 1000.0;
+constexpr double kUnknown_rad = 10.0;
 
 double squared(double value) { return value * value; }
 
@@ -31,7 +33,18 @@ void OdometryDrift::add(Timestamp t, const Pose& T_w_b) {
   sums_.emplace_back(sums_.back() + J * step_covariance(T_w_b_.size() - 1) * J.transpose());
 }
 
+void OdometryDrift::add_unrelated(Timestamp t, const Pose& T_w_b) {
+  unrelated_ = T_w_b_.size();
+  add(t, T_w_b);
+}
+
 Matrix6 OdometryDrift::step_covariance(std::size_t k) const {
+  if (k == unrelated_) {
+    Matrix6 unknown = Matrix6::Zero();
+    unknown.diagonal() << Eigen::Vector3d::Constant(squared(kUnknown_m)),
+        Eigen::Vector3d::Constant(squared(kUnknown_rad));
+    return unknown;
+  }
   const double distance_m = (T_w_b_[k].p - T_w_b_[k - 1].p).norm();
   const double elapsed_s = seconds_between(times_[k - 1], times_[k]);
   const double position = squared(config_.drift_m_per_sqrt_m) * distance_m + squared(kMinSigma_m);

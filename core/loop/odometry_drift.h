@@ -30,6 +30,10 @@ class OdometryDrift {
   /// Appends the next keyframe: its pose by the odometry.
   void add(Timestamp t, const Pose& T_w_b);
 
+  /// Appends the first keyframe of another run, whose pose relative to the previous ones is unknown: Q has
+  /// standard deviations of 1 km and 10 rad.
+  void add_unrelated(Timestamp t, const Pose& T_w_b);
+
   /// Covariance Q of the motion from keyframe k - 1 to k, k > 0.
   [[nodiscard]] Matrix6 step_covariance(std::size_t k) const;
 
@@ -41,6 +45,7 @@ class OdometryDrift {
   std::vector<Timestamp> times_;
   std::vector<Pose> T_w_b_;
   std::vector<Matrix6> sums_;  ///< of (v, phi), from keyframe 0
+  std::size_t unrelated_ = 0;  ///< keyframe of `add_unrelated`; 0: none
 };
 
 }  // namespace stillpoint

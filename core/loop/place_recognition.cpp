@@ -31,6 +31,10 @@ std::vector<PlaceVotes> vote_maxima(std::span<const PlaceVotes> votes) {
   return maxima;
 }
 
+void PlaceRecognition::add_map(std::span<const Keyframe> keyframes) {
+  for (const Keyframe& keyframe : keyframes) index_.add(keyframe.features);
+}
+
 std::vector<PlaceVotes> PlaceRecognition::recognize(std::span<const Keyframe> keyframes) {
   const Keyframe& query = keyframes.back();
   while (index_.places() + 1 < static_cast<int>(keyframes.size())) {

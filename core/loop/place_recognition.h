@@ -16,6 +16,9 @@ class PlaceRecognition {
  public:
   explicit PlaceRecognition(const LoopConfig& config) : config_(config) {}
 
+  /// Adds keyframes of an earlier run as the first places; their times are not compared.
+  void add_map(std::span<const Keyframe> keyframes);
+
   /// Places that look like the newest keyframe, the most similar first, at most `loop.max_candidates`. Each
   /// is a maximum of the votes among its neighbors, older than the newest keyframe by `loop.min_gap_s`, and
   /// close to a candidate of one of the two previous queries.

@@ -34,6 +34,9 @@ class LoopWorker {
   LoopWorker(const LoopWorker&) = delete;
   LoopWorker& operator=(const LoopWorker&) = delete;
 
+  /// As `LoopClosure::use_map`. Call it before the first frame.
+  void use_map(const KeyframeMap& map) { closure_.use_map(map); }
+
   /// Takes the keyframe that left the window with the newest frame, and sets `OdometryUpdate::T_m_w`.
   /// @throws the exception of the thread, if any
   void correct(OptimizationStage& optimization, OdometryUpdate& update);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/pipeline/frame_order.h"
 #include "core/pipeline/imu_queue.h"
 #include "core/pipeline/loop_worker.h"
@@ -104,6 +105,12 @@ const TrackedFrame& Odometry::tracked() const { return impl_->ring[impl_->newest
 const DynamicReport& Odometry::dynamic() const { return impl_->optimization.dynamic(); }
 
 const ImuHealth& Odometry::imu_health() const { return impl_->optimization.imu_health(); }
+
+void Odometry::use_map(const KeyframeMap& map) {
+  if (!impl_->loop)
+    throw InputError("loop.enabled", "is off, but a map requires loop closure; set it to true");
+  impl_->loop->use_map(map);
+}
 
 std::optional<LoopReport> Odometry::finish_loops() {
   if (!impl_->loop) return std::nullopt;

@@ -82,6 +82,10 @@ class Odometry {
 
   [[nodiscard]] const ImuHealth& imu_health() const;
 
+  /// Loads the map of an earlier run; once the place of a keyframe is recognized in it, `T_m_w` refers to
+  /// that map. Call it before the first frame. @throws InputError unless `loop.enabled`
+  void use_map(const KeyframeMap& map);
+
   /// After the last frame, once: optimizes the pose graph with all keyframes. nullopt unless `loop.enabled`.
   [[nodiscard]] std::optional<LoopReport> finish_loops();
 

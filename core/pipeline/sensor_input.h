@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 
 #include "core/types/detection.h"
 #include "core/types/frame.h"
 #include "core/types/imu_sample.h"
+#include "core/types/keyframe_map.h"
 #include "core/types/rig.h"
 
 namespace stillpoint {
@@ -22,6 +24,7 @@ struct SensorInput {
   /// Decodes a frame; called by one thread at a time, with ascending index.
   /// @throws InputError for a frame that cannot be read
   std::function<Frame(std::size_t index)> load_frame;
+  std::shared_ptr<const KeyframeMap> map;  ///< of an earlier run, for relocalization; may be null
 };
 
 }  // namespace stillpoint

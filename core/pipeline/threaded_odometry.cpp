@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/bounded_channel.h"
+#include "core/base/error.h"
 #include "core/base/thread_name.h"
 #include "core/pipeline/frame_order.h"
 #include "core/pipeline/imu_inbox.h"
@@ -236,6 +237,12 @@ std::optional<NavState> ThreadedOdometry::state() const {
 std::optional<NavState> ThreadedOdometry::state_at(Timestamp t) const {
   const std::scoped_lock lock(impl_->mutex);
   return impl_->predictor.state_at(t);
+}
+
+void ThreadedOdometry::use_map(const KeyframeMap& map) {
+  if (!impl_->loop)
+    throw InputError("loop.enabled", "is off, but a map requires loop closure; set it to true");
+  impl_->loop->use_map(map);
 }
 
 std::optional<LoopReport> ThreadedOdometry::finish_loops() {

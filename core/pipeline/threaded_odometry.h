@@ -92,6 +92,9 @@ class ThreadedOdometry {
   [[nodiscard]] std::optional<NavState> state() const;
   [[nodiscard]] std::optional<NavState> state_at(Timestamp t) const;
 
+  /// As `Odometry::use_map`. Call it before the first frame.
+  void use_map(const KeyframeMap& map);
+
   /// After `finish`, once; as `Odometry::finish_loops`. The loop closure runs on a thread of its own.
   [[nodiscard]] std::optional<LoopReport> finish_loops();
 

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
 #include "core/base/timestamp.h"
 #include "core/geometry/pose.h"
+#include "core/types/keyframe_map.h"
 
 namespace stillpoint {
 
@@ -41,10 +43,12 @@ struct LoopRecord {
   int inliers = 0;
   double residual_px = 0.0;  ///< RMS reprojection error of the inliers [px]
   Pose T_match_query;        ///< of the cameras; the identity without inliers
+  bool in_map =
+      false;  ///< the match is a keyframe of the loaded map; its frame and time are those of that run
   LoopOutcome outcome = LoopOutcome::kAccepted;
 };
 
-/// A keyframe of the pose graph.
+/// A keyframe of the pose graph, of this run.
 struct MapKeyframe {
   std::int64_t frame = 0;
   Timestamp t;
@@ -57,6 +61,9 @@ struct LoopReport {
   std::vector<LoopRecord> loops;       ///< by query
   std::vector<MapKeyframe> keyframes;  ///< by time
   int dropped_keyframes = 0;           ///< not processed, in real time
+  bool relocalized = false;            ///< keyframes were located in the loaded map
+  /// All keyframes with optimized poses, for later runs; null in a run with a loaded map.
+  std::shared_ptr<const KeyframeMap> map;
 };
 
 }  // namespace stillpoint

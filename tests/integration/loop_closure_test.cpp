@@ -51,6 +51,38 @@ TEST(LoopClosureCommand, PipelinedAndSequentialModeWriteEqualFiles) {
   }
 }
 
+TEST(LoopClosureCommand, ALaterRunIsLocatedInASavedMap) {
+  const TemporaryFolder out;
+  const std::string map = (out.path() / "room.map").string();
+  const auto run_map = [&](const std::string& folder, const std::string& option) {
+    return run_program({"run", rendered_sequence().string(), "--out", (out.path() / folder).string(),
+                        "--variant", "vo+ablations/loop_closure", option, map, "--passes", "3", "--set",
+                        "loop.min_gap_s=2", "--set", "loop.min_translation_m=0.05", "--set",
+                        "loop.lag_frames=5"});
+  };
+  const ProgramResult saved = run_map("first", "--save-map");
+  ASSERT_EQ(saved.exit_code, 0) << saved.err;
+  const ProgramResult located = run_map("second", "--map");
+  ASSERT_EQ(located.exit_code, 0) << located.err;
+  const nlohmann::json result = nlohmann::json::parse(loop_text_of(out.path() / "second" / "result.json"));
+  ASSERT_TRUE(result["relocalization_s"].is_number());
+  EXPECT_LT(result["ate_loop_m"], 1.02 * result["ate_rmse_m"].get<double>() + 0.005);
+  EXPECT_EQ(run_map("third", "--save-map").exit_code, 2);  // the file exists
+  std::ofstream(map, std::ios::app) << "more";
+  const ProgramResult refused = run_map("fourth", "--map");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("is damaged"), std::string::npos) << refused.err;
+}
+
+TEST(LoopClosureCommand, MapsRequireLoopClosure) {
+  const TemporaryFolder out;
+  const ProgramResult result =
+      run_program({"run", rendered_sequence().string(), "--out", (out.path() / "run").string(), "--variant",
+                   "vo", "--save-map", (out.path() / "a.map").string()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("requires loop closure"), std::string::npos) << result.err;
+}
+
 TEST(LoopClosureCommand, FourDegreesOfFreedomRequireAnImu) {
   const TemporaryFolder out;
   const ProgramResult result = run_with(out.path(), "vo+ablations/loop_4dof", "sequential");

@@ -11,6 +11,7 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
+#include "bench/cli/run/map_options.h"
 #include "bench/cli/run/open_with_progress.h"
 #include "bench/cli/run/run_dumps.h"
 #include "bench/cli/run/run_layout.h"
@@ -40,25 +41,13 @@ namespace fs = std::filesystem;
 struct RunArguments {
   std::string sequence;
   std::string base = "stillpoint";
-  std::vector<std::string> variants;
-  std::vector<std::string> settings;
-  std::vector<std::string> faults;
+  std::vector<std::string> variants, settings, faults, topics, dumps;
   std::string mode = "sequential";
-  std::string out;
-  std::string format;
-  std::string rig;
-  std::vector<std::string> topics;
-  std::string heartbeat;
-  std::string sequence_id;
-  int max_frames = 0;
-  bool deterministic_counts = false;
-  bool no_frame_cache = false;
-  bool imu_rate = false;
+  std::string out, format, rig, heartbeat, sequence_id, video;
+  int max_frames = 0, passes = 1, images = 0;
+  bool deterministic_counts = false, no_frame_cache = false, imu_rate = false;
   double speed = 1.0;
-  std::vector<std::string> dumps;
-  int passes = 1;
-  std::string video;
-  int images = 0;
+  MapOptions map;
 };
 
 /// A run to execute; one for each --variant.
@@ -84,6 +73,7 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   const std::vector<datasets::SensorFault> faults = faults_of(arguments);
   std::vector<std::string> settings = arguments.settings;
   if (arguments.imu_rate) settings.emplace_back("pipeline.imu_rate=true");
+  const std::shared_ptr<const KeyframeMap> map = load_map(arguments.map);
   std::vector<ConfiguredRun> runs;
   for (const std::string& variant : variants) {
     runs.push_back({.variant = variant.empty() ? arguments.base : variant,
@@ -91,12 +81,14 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
                              .mode = arguments.mode,
                              .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames),
+                             .map = map,
                              .decode_color = !arguments.video.empty(),
                              .keep_spans = true,
                              .deterministic_counts = arguments.deterministic_counts},
                     .faults = faults,
                     .folder = {},
                     .video = arguments.video});
+    require_map_options(arguments.map, runs.back().spec.config, variants.size());
   }
   return runs;
 }
@@ -230,6 +222,7 @@ int run_configured(const datasets::SensorStream& stream, const RunArguments& arg
   RunDumps dumps(dump_request(arguments, configured), stream.info(), configured.spec.config.frontend);
   const RunResult result = execute(stream, arguments, configured, dumps);
   write_run(configured.folder, result, manifest_of(stream.info(), arguments, configured));
+  if (result.run.loops) save_map(arguments.map, result.run.loops->report);
   print_result(result, configured.folder);
   const auto failures = dumps.finish(interrupt_requested() ? nullptr : &result.run);
   for (const std::string& failure : failures) spdlog::warn("{}", failure);
@@ -287,6 +280,8 @@ Command run_command() {
             {1, 1000}},
            {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
            {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
+           {"--map", "Map of an earlier run, in which this one is located", &arguments->map.load},
+           {"--save-map", "Write a map for later runs into this file", &arguments->map.save},
            {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
            {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
            {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},

@@ -48,6 +48,7 @@ class DeviceRun {
         imu_of_estimator_(input.imu) {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / clock.speed;
     if (config.loop.enabled) loop_ = std::make_unique<LoopWorker>(config, input.rig, LoopExecution::kInline);
+    if (loop_ && input.map) loop_->use_map(*input.map);
     feedback_.push_back({stages_.optimization.feedback(), Time{}});
   }
 

@@ -32,6 +32,7 @@ class RealtimeRun {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / speed;
     if (config.loop.enabled)
       loop_ = std::make_unique<LoopWorker>(config, input.rig, LoopExecution::kRealtime);
+    if (loop_ && input.map) loop_->use_map(*input.map);
     feedback_.push({stages_.optimization.feedback(), {}});
   }
 

@@ -19,6 +19,7 @@ int RealtimeReport::deadline_misses() const {
 RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config, const RunControl& control) {
   const std::unique_ptr<ObjectDetector> detector = make_detector(input, config);
   Odometry odometry(config, input.rig);
+  if (input.map) odometry.use_map(*input.map);
   FrameLoader loader(input, control);
   ImuFeed imu(input.imu);
   int resets = 0;
@@ -54,6 +55,7 @@ RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config,
                                    if (control.on_update) control.on_update(update);
                                  },
                              .on_frame = control.on_frame});
+  if (input.map) odometry.use_map(*input.map);
   FrameLoader loader(input, control);
   ImuFeed imu(input.imu);
   while (std::optional<FrameJob> job = loader.next()) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Two laps of 40 s around a circle of 3 m, looking ahead, at 10 Hz.
-Pose on_circle(double t_s) {
+Pose pose_on_lap(double t_s) {
   const double angle = 2.0 * std::numbers::pi * t_s / 40.0;
   return {exp_so3(Eigen::Vector3d(0.0, 0.0, angle)),
           3.0 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)};
@@ -22,7 +22,7 @@ Pose on_circle(double t_s) {
 
 Trajectory two_laps() {
   Trajectory gt{"camera", {}};
-  for (int i = 0; i <= 800; ++i) gt.poses.push_back({from_seconds(0.1 * i), on_circle(0.1 * i)});
+  for (int i = 0; i <= 800; ++i) gt.poses.push_back({from_seconds(0.1 * i), pose_on_lap(0.1 * i)});
   return gt;
 }
 
@@ -34,7 +34,7 @@ std::vector<Timestamp> keyframes_at(double interval_s) {
 
 /// A loop whose translation is off by `error_m` and whose rotation is off by `error_deg`.
 ReportedLoop loop_between(double query_s, double match_s, double error_m, double error_deg) {
-  Pose T = on_circle(match_s).inverse() * on_circle(query_s);
+  Pose T = pose_on_lap(match_s).inverse() * pose_on_lap(query_s);
   T.p.x() += error_m;
   T.q = T.q * exp_so3(Eigen::Vector3d(0.0, error_deg * kDegree, 0.0));
   return {from_seconds(query_s), from_seconds(match_s), T, true};

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Relocalization in the map of an earlier run, before a textured wall.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include <opencv2/imgproc.hpp>
+
+#include "core/geometry/so3.h"
+#include "core/loop/loop_closure.h"
+
+namespace stillpoint {
+namespace {
+
+const Camera kCamera{.width = 424, .height = 240, .fx = 305.5, .fy = 305.5, .cx = 211.5, .cy = 119.5};
+constexpr double kPixelsPerMeter = 150.0;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// A wall in the plane z = 0 that extends 16 m along x and 3 m along y, with random rectangles.
+cv::Mat painted_wall(std::uint64_t seed) {
+  cv::RNG random(seed);
+  cv::Mat wall(450, 2400, CV_8UC1, cv::Scalar(128));
+  for (int i = 0; i < 4000; ++i) {
+    const cv::Point corner(random.uniform(0, wall.cols), random.uniform(0, wall.rows));
+    const cv::Size size(random.uniform(6, 60), random.uniform(6, 60));
+    cv::rectangle(wall, cv::Rect(corner, size), cv::Scalar(random.uniform(20, 235)), cv::FILLED);
+  }
+  return wall;
+}
+
+/// The wall as seen by a camera at `T_w_c`; the body is the camera.
+DepartedKeyframe keyframe_at(const cv::Mat& wall, const Pose& T_w_c, std::int64_t frame) {
+  Eigen::Matrix3d K = Eigen::Matrix3d::Identity();
+  K << kCamera.fx, 0.0, kCamera.cx, 0.0, kCamera.fy, kCamera.cy, 0.0, 0.0, 1.0;
+  const Pose T_c_w = T_w_c.inverse();
+  Eigen::Matrix3d from_wall;  // metric wall coordinates to the camera frame
+  from_wall << T_c_w.R().leftCols<2>(), T_c_w.p;
+  const Eigen::Matrix3d H =
+      K * from_wall * Eigen::Vector3d(1.0 / kPixelsPerMeter, 1.0 / kPixelsPerMeter, 1.0).asDiagonal();
+  cv::Mat homography(3, 3, CV_64F);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) homography.at<double>(row, column) = H(row, column);
+  }
+  DepartedKeyframe keyframe{.frame = frame, .t = from_seconds(0.1 * static_cast<double>(frame))};
+  cv::warpPerspective(wall, keyframe.gray, homography, {kCamera.width, kCamera.height}, cv::INTER_AREA);
+  keyframe.depth.create(kCamera.height, kCamera.width, CV_16UC1);
+  for (int v = 0; v < kCamera.height; ++v) {
+    for (int u = 0; u < kCamera.width; ++u) {
+      const Eigen::Vector3d ray((u - kCamera.cx) / kCamera.fx, (v - kCamera.cy) / kCamera.fy, 1.0);
+      const double depth_m = -T_w_c.p.z() / (T_w_c.q * ray).z();
+      keyframe.depth.at<std::uint16_t>(v, u) = cv::saturate_cast<std::uint16_t>(1000.0 * depth_m);
+    }
+  }
+  return keyframe;
+}
+
+KeyframeMap map_of(const cv::Mat& wall) {
+  LoopClosure closure({.enabled = true}, kCamera, false);
+  for (int i = 0; i < 42; ++i) {
+    const Pose T_w_c{Eigen::Quaterniond::Identity(), {1.8 + 0.3 * i, 1.5, -2.5}};
+    DepartedKeyframe keyframe = keyframe_at(wall, T_w_c, i);
+    keyframe.T_w_b = T_w_c;
+    static_cast<void>(closure.add(keyframe));
+  }
+  return *closure.finish().map;
+}
+
+/// A second run from a random place, whose odometry has an unknown origin and heading.
+struct SecondRun {
+  int keyframes = 0;  ///< until it was located; 0: never
+  double error_m = 0.0;
+  double error_deg = 0.0;
+};
+
+SecondRun second_run(const KeyframeMap& map, const cv::Mat& wall, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const Pose T_o_w{exp_so3({0.0, 0.0, 3.0 * unit(random)}),
+                   10.0 * Eigen::Vector3d(unit(random), unit(random), unit(random))};
+  const Eigen::Vector3d start(7.8 + 5.0 * unit(random), 1.5 + 0.15 * unit(random), -2.5 + 0.3 * unit(random));
+  const Eigen::Quaterniond turn = exp_so3({0.05 * unit(random), 0.12 * unit(random), 0.05 * unit(random)});
+  LoopClosure closure({.enabled = true}, kCamera, false);
+  closure.use_map(map);
+  for (int i = 0; i < 6; ++i) {
+    const Pose T_w_c{turn, start + Eigen::Vector3d(0.15 * i, 0.0, 0.0)};
+    DepartedKeyframe keyframe = keyframe_at(wall, T_w_c, i);
+    keyframe.T_w_b = T_o_w * T_w_c;
+    const Pose T_m_o = closure.add(keyframe);
+    if (!closure.is_relocalized()) continue;
+    const Pose error = T_w_c.inverse() * T_m_o * keyframe.T_w_b;
+    return {i + 1, error.p.norm(), error.q.angularDistance(Eigen::Quaterniond::Identity()) / kDegree};
+  }
+  return {};
+}
+
+TEST(Relocalization, LocatesAtLeastNinetyPercentOfRandomStartsAndNoneFalsely) {
+  const cv::Mat wall = painted_wall(1);
+  const KeyframeMap map = map_of(wall);
+  std::mt19937_64 random(5);
+  int located = 0;
+  for (int start = 0; start < 50; ++start) {
+    const SecondRun run = second_run(map, wall, random);
+    if (run.keyframes == 0) continue;
+    ++located;
+    EXPECT_LT(run.error_m, 0.05) << start;
+    EXPECT_LT(run.error_deg, 2.0) << start;
+  }
+  EXPECT_GE(located, 45);
+}
+
+TEST(Relocalization, IsNotLocatedInTheMapOfAnotherPlace) {
+  const KeyframeMap map = map_of(painted_wall(1));
+  const cv::Mat other = painted_wall(2);
+  std::mt19937_64 random(6);
+  for (int start = 0; start < 10; ++start) EXPECT_EQ(second_run(map, other, random).keyframes, 0);
+}
+
+TEST(Relocalization, TheReportContainsTheKeyframesOfThisRunOnly) {
+  const cv::Mat wall = painted_wall(1);
+  const KeyframeMap map = map_of(wall);
+  LoopClosure closure({.enabled = true}, kCamera, false);
+  closure.use_map(map);
+  for (int i = 0; i < 4; ++i) {
+    const Pose T_w_c{Eigen::Quaterniond::Identity(), {6.0 + 0.15 * i, 1.5, -2.5}};
+    DepartedKeyframe keyframe = keyframe_at(wall, T_w_c, 100 + i);
+    keyframe.T_w_b = T_w_c;
+    static_cast<void>(closure.add(keyframe));
+  }
+  const LoopReport report = closure.finish();
+  ASSERT_EQ(report.keyframes.size(), 4U);
+  EXPECT_EQ(report.keyframes.front().frame, 100);
+  EXPECT_TRUE(report.relocalized);
+  EXPECT_EQ(report.map, nullptr);
+  for (const LoopRecord& loop : report.loops) EXPECT_TRUE(loop.in_map);
+}
+
+}  // namespace
+}  // namespace stillpoint
