@@ -15,8 +15,8 @@ namespace stillpoint {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
-constexpr double kMaxSigma_m = 0.1;
-constexpr double kMaxSigma_rad = 2.0 * kRadians;
+constexpr double kMaxSigma_m = 0.05;
+constexpr double kMaxSigma_rad = 1.0 * kRadians;
 // Errors of depth and calibration are correlated: they do not average out over the inliers, and have no
 // effect if both images are taken from the same pose.
 constexpr double kMinSigma_m = 0.01;

@@ -18,7 +18,7 @@ struct VerifiedLoop {
 
 /// Matches the features of two keyframes and estimates their relative pose by RANSAC, see
 /// relative_pose_estimation.h. Refused are candidates with too few matches or inliers, inliers on a small
-/// part of either image, and poses with a standard deviation above 0.1 m or 2 degrees. The seed is the frame
+/// part of either image, and poses with a standard deviation above 0.05 m or 1 degree. The seed is the frame
 /// of the query. The covariance includes 1 cm and 0.2 degrees, 3 % of the translation and 2 % of the
 /// rotation, as errors of depth and calibration are correlated.
 [[nodiscard]] VerifiedLoop verify_loop(const Keyframe& query, const Keyframe& match, const Camera& camera,

@@ -76,5 +76,25 @@ TEST(LoopVerification, RefusesInliersOnASmallPartOfTheImage) {
   EXPECT_EQ(verify_loop(query, match, kCamera, {}).record.outcome, LoopOutcome::kSpread);
 }
 
+/// The points on a wall at the distance `z_m`.
+std::vector<KeyframeFeature> wall(std::vector<KeyframeFeature> features, float z_m) {
+  for (KeyframeFeature& feature : features) feature.p_c *= 0.4F * z_m / feature.p_c.z();
+  for (KeyframeFeature& feature : features) feature.p_c.z() = z_m;
+  return features;
+}
+
+TEST(LoopVerification, RefusesAPoseThatIsNotCertainToFiveCentimeters) {
+  // 40 points on the middle of a wall; at 4 m a rotation can hardly be distinguished from a translation.
+  std::mt19937_64 random(7);
+  const std::vector<KeyframeFeature> features = random_features(40, random);
+  const auto outcome_at = [&](float z_m) {
+    const Keyframe match{.frame = 3, .features = wall(features, z_m)};
+    const Keyframe query{.frame = 90, .features = revisited(match.features, kT_m_q, random)};
+    return verify_loop(query, match, kCamera, {}).record.outcome;
+  };
+  EXPECT_EQ(outcome_at(1.5F), LoopOutcome::kAccepted);
+  EXPECT_EQ(outcome_at(4.0F), LoopOutcome::kUncertain);
+}
+
 }  // namespace
 }  // namespace stillpoint
