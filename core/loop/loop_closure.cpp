@@ -64,7 +64,8 @@ Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
   if (is_optimization_due()) optimize();
   processing_ms_.push_back(
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-  return T_m_w_;
+  // Corrections by loops within this run do not locate it in the loaded map.
+  return map_size_ > 0 && !relocalized_ ? Pose{} : T_m_w_;
 }
 
 void LoopClosure::find_loops() {

@@ -27,7 +27,8 @@ class LoopClosure {
   /// world. Call it before `add`.
   void use_map(const KeyframeMap& map);
 
-  /// Adds the next keyframe. @return T_m_w: the pose of the odometry's world in the map, as known now
+  /// Adds the next keyframe. @return T_m_w: the pose of the odometry's world in the map, as known now; with a
+  /// loaded map the identity until the relocalization
   /// @throws InputError if it has no depth image
   [[nodiscard]] Pose add(const DepartedKeyframe& keyframe);
 

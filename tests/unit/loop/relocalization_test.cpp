@@ -2,6 +2,7 @@
 // Relocalization in the map of an earlier run, before a textured wall.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <random>
 
@@ -113,6 +114,23 @@ TEST(Relocalization, IsNotLocatedInTheMapOfAnotherPlace) {
   const cv::Mat other = painted_wall(2);
   std::mt19937_64 random(6);
   for (int start = 0; start < 10; ++start) EXPECT_EQ(second_run(map, other, random).keyframes, 0);
+}
+
+TEST(Relocalization, LoopsOfThisRunAreNoPositionInTheMap) {
+  const cv::Mat other = painted_wall(2);
+  LoopClosure closure({.enabled = true}, kCamera, false);
+  closure.use_map(map_of(painted_wall(1)));
+  for (int i = 0; i < 16; ++i) {  // two visits, 9 s apart, between which the odometry drifts by 2 cm
+    const bool second = i >= 8;
+    const Pose T_w_c{Eigen::Quaterniond::Identity(), {6.0 + 0.15 * (i % 8), 1.5, -2.5}};
+    DepartedKeyframe keyframe = keyframe_at(other, T_w_c, i + (second ? 82 : 0));
+    keyframe.T_w_b = {T_w_c.q, T_w_c.p + Eigen::Vector3d(second ? 0.02 : 0.0, 0.0, 0.0)};
+    const Pose T_m_w = closure.add(keyframe);
+    EXPECT_EQ(T_m_w.p, Eigen::Vector3d::Zero()) << i;
+  }
+  const LoopReport report = closure.finish();
+  EXPECT_FALSE(report.relocalized);
+  EXPECT_GT(std::ranges::count(report.loops, LoopOutcome::kAccepted, &LoopRecord::outcome), 0);
 }
 
 TEST(Relocalization, TheReportContainsTheKeyframesOfThisRunOnly) {
