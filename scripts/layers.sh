@@ -122,7 +122,7 @@ row reports/drawing core/base core/types datasets/io eval/io eval/openloris eval
   reports/tables
 row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
-row reports/page/charts $stored eval/io eval/metrics eval/openloris eval/protocols reports/tables
+row reports/page/charts $stored core/types eval/io eval/metrics eval/openloris eval/protocols reports/tables
 row reports/page $stored bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/tables/formats \
   reports/drawing reports/page/charts
 row reports/dashboard $stored bench/record reports/tables reports/page
@@ -135,7 +135,7 @@ row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/m
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/tables/formats reports/text reports/page
-row bench/cli/analysis $execution datasets/bags eval/io eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/plan \
+row bench/cli/analysis $execution datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/plan \
   bench/plan/execution bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Metrics of runs with injected sensor faults; definitions in eval/metrics/honesty.h.
+/// Metrics of claimed errors, and of runs with injected sensor faults; definitions in eval/metrics/honesty.h.
 #pragma once
 
 #include "bench/model/metrics.h"
@@ -12,7 +12,20 @@ template <auto kMember>
   return m.honesty ? std::optional<double>((*m.honesty).*kMember) : std::nullopt;
 }
 
+/// nullopt for a system that claims no standard deviations.
+[[nodiscard]] inline std::optional<double> claimed_three_sigma(const Measurements& m) {
+  return m.counts ? m.counts->claimed_three_sigma_m : std::nullopt;
+}
+
 inline constexpr MetricDescriptor kHonestyMetrics[] = {
+    {.id = metric_id::kClaimedThreeSigma,
+     .label = "claimed 3 sigma",
+     .description = "Median over the located frames of three claimed standard deviations of the position, "
+                    "along its least certain direction",
+     .unit = "m",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .source = MetricSource::kRun,
+     .value = claimed_three_sigma},
     {.id = metric_id::kFalseConfidence,
      .label = "false confidence",
      .title = "False confidence: fraction of the frames called located with a wrong pose",

@@ -45,6 +45,7 @@ inline constexpr std::string_view kMissedAvailability = "missed_availability";
 inline constexpr std::string_view kTimeToDetect = "time_to_detect_s";
 inline constexpr std::string_view kTimeToRecover = "time_to_recover_s";
 inline constexpr std::string_view kErrorAfterRecovery = "error_after_recovery_m";
+inline constexpr std::string_view kClaimedThreeSigma = "claimed_three_sigma_m";
 }  // namespace metric_id
 
 /// A trajectory, its ground truth in the same coordinate frame, and their score.
@@ -61,6 +62,7 @@ struct RunCounts {
   int resets = 0;
   std::optional<std::int64_t> frames_without_boxes{};  ///< nullopt unless the run used recorded boxes
   double wall_s = 0.0;
+  std::optional<double> claimed_three_sigma_m{};  ///< see eval/metrics/honesty.h
 };
 
 /// Resources used by the process of a run.

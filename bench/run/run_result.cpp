@@ -105,7 +105,8 @@ Measurements measurements_of(const RunResult& result) {
                               .poses = run.trajectory.poses.size(),
                               .resets = run.summary.resets,
                               .frames_without_boxes = run.summary.detector_counters.unrecorded,
-                              .wall_s = run.wall_s},
+                              .wall_s = run.wall_s,
+                              .claimed_three_sigma_m = eval::claimed_three_sigma_m(run.claims)},
           .imu_rate = result.imu_rate,
           .honesty = result.honesty,
           .loops = result.loops};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/metrics/statistics.h"
+
 namespace stillpoint::eval {
 namespace {
 
@@ -138,6 +140,14 @@ std::optional<Honesty> honesty(const Trajectory& gt, std::span<const ClaimedPose
   }
   add_recovery(frames, end, result);
   return result;
+}
+
+std::optional<double> claimed_three_sigma_m(std::span<const ClaimedPose> claims) {
+  std::vector<double> bounds;
+  for (const ClaimedPose& claim : claims) {
+    if (claim.claim == PoseClaim::kLocated && claim.sigma_m > 0.0) bounds.push_back(kSigmas * claim.sigma_m);
+  }
+  return percentile(bounds, 0.5);
 }
 
 }  // namespace stillpoint::eval

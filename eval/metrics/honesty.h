@@ -54,4 +54,7 @@ struct Honesty {
 [[nodiscard]] std::optional<Honesty> honesty(const Trajectory& gt, std::span<const ClaimedPose> claims,
                                              std::span<const TimeSpan> faults);
 
+/// Median over the located frames of 3 s_k [m]; nullopt if no standard deviation is claimed.
+[[nodiscard]] std::optional<double> claimed_three_sigma_m(std::span<const ClaimedPose> claims);
+
 }  // namespace stillpoint::eval

@@ -32,15 +32,23 @@
     return gaps.length ? 1000 * gaps[Math.floor(gaps.length / 2)] : null;
   };
 
-  // Red background where the odometry has no pose.
-  function shadeLost(plot, series) {
-    const lost = series.columns.x;
-    if (!lost) return;
+  page.STATUS = ["initializing", "tracking", "degraded", "dead reckoning", "lost", "relocated"];
+  const STATUS_COLORS = ["bad", null, "c4", "c3", "bad", "c2"];
+
+  // Color of the background of a frame: its status; without one red where the odometry has no pose.
+  function shade(series, i) {
+    const status = series.columns.status ? series.columns.status[i] : null;
+    if (status !== null) return STATUS_COLORS[status];
+    return series.columns.x && series.columns.x[i] === null ? "bad" : null;
+  }
+
+  function shadeStatus(plot, series) {
     const { ctx, bbox } = plot;
     ctx.save();
-    ctx.fillStyle = page.color("bad") + "33";
-    lost.forEach((x, i) => {
-      if (x !== null) return;
+    series.t.forEach((t, i) => {
+      const color = shade(series, i);
+      if (!color) return;
+      ctx.fillStyle = page.color(color) + "33";
       const until = series.t[Math.min(i + 1, series.frames - 1)];
       const left = Math.max(plot.valToPos(series.t[i], "x", true), bbox.left), right = Math.min(plot.valToPos(until, "x", true), bbox.left + bbox.width);
       if (right > left) ctx.fillRect(left, bbox.top, right - left, bbox.height);
@@ -52,7 +60,7 @@
     const has = (name) => series.columns[name] !== undefined;
     const charts = [];
     if (has("error_m"))
-      charts.push({ id: "error", title: "Position error after alignment (ATE)", unit: "m", lines: [line("error [m]", "c0")], data: [series.columns.error_m] });
+      charts.push({ id: "error", title: "Position error after alignment (ATE); background: degraded amber, dead reckoning violet, relocated green, lost or initializing red", unit: "m", lines: [line("error [m]", "c0")], data: [series.columns.error_m] });
     if (has("features"))
       charts.push({ id: "features", title: "Features", unit: "count", lines: [line("tracked", "c0"), line("landmarks in the window", "c2")],
         data: [series.columns.features, series.columns.landmarks] });
@@ -91,7 +99,7 @@
         cursor: { sync: { key: cursor.key }, drag: { x: true, y: false } },
         scales: { x: { time: false } }, axes: page.axes(chart.unit), series: [{ label: "time [s]", value: number }, ...chart.lines],
         hooks: {
-          drawClear: [(u) => shadeLost(u, series)],
+          drawClear: [(u) => shadeStatus(u, series)],
           setCursor: [(u) => { if (u.cursor.left >= 0 && u.cursor.idx !== null) onFrame(u.cursor.idx); }],
           setScale: [(u, key) => { if (key === "x" && plots.includes(u)) zoomAll(u.scales.x.min, u.scales.x.max); }],
         },

@@ -15,6 +15,8 @@
     const add = (label, text) => { const part = page.element("span"); part.append(page.element("b", {}, label + " "), text); place.append(part); };
     add("frame", String(frame));
     add("time", series.t[frame].toFixed(3) + " s");
+    const status = series.columns.status ? series.columns.status[frame] : null;
+    if (status !== null) add("status", page.STATUS[status]);
     const shown = { error_m: "error [m]", frame_to_frame_error_m: "frame-to-frame error [m]", error_deg: "error [deg]", features: "features", landmarks: "landmarks in the window", dynamic: "dynamic fraction" };
     for (const [column, values] of Object.entries(series.columns)) {
       const label = column.startsWith("ms:") ? column.slice(3) + " [ms]" : shown[column];

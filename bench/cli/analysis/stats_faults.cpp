@@ -10,6 +10,7 @@
 #include "bench/model/metrics.h"
 #include "bench/plan/bench_plan.h"
 #include "core/base/error.h"
+#include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 constexpr double kMaxErrorRatio = 3.0;
 constexpr double kMinError_m = 0.02;
 constexpr double kMaxFalseConfidence = 0.005;
+constexpr double kMaxTimeToDetect_s = 0.5;
 
 /// What became of a run, and whether that was expected.
 struct FaultOutcome {
@@ -28,6 +30,7 @@ struct FaultOutcome {
 struct FaultTally {
   int runs = 0;
   int as_expected = 0;
+  int late = 0;                      ///< runs in which a wrong pose was called located for too long
   double false_confidence = 0.0;     ///< sum over runs of the same length
   double missed_availability = 0.0;  ///< same
 };
@@ -63,18 +66,71 @@ std::string cell_of(const RunGroup& group, const RunIdentity& identity, const st
   const FaultOutcome outcome = outcome_of(*run, std::max(kMinError_m, kMaxErrorRatio * ate), expected);
   ++tally.runs;
   tally.as_expected += outcome.as_expected;
+  tally.late += metric_value(*run, metric_id::kTimeToDetect).value_or(0.0) > kMaxTimeToDetect_s;
   tally.false_confidence += metric_value(*run, metric_id::kFalseConfidence).value_or(0.0);
   tally.missed_availability += metric_value(*run, metric_id::kMissedAvailability).value_or(0.0);
   return outcome.text + (outcome.as_expected ? "" : " (!)");
 }
 
-std::string tally_text(const std::string& variant, const FaultTally& tally) {
-  const double runs = std::max(1, tally.runs);
-  return fmt::format(
-      "{}: {} of {} runs as expected; {:.2f} % false confidence, {:.2f} % missed availability.", variant,
-      tally.as_expected, tally.runs, 100.0 * tally.false_confidence / runs,
-      100.0 * tally.missed_availability / runs);
+/// Median over the undisturbed sequences of the plan.
+std::string claim_text(const RunGroup& group, const std::string& variant, const BenchPlan& plan) {
+  std::vector<double> claims;
+  for (const std::string& sequence : plan.rendered.sequences) {
+    const StoredRun* run = find_run(group, variant, sequence);
+    const auto claim = run == nullptr ? std::nullopt : metric_value(*run, metric_id::kClaimedThreeSigma);
+    if (claim) claims.push_back(*claim);
+  }
+  const std::optional<double> median = eval::percentile(claims, 0.5);
+  return median ? fmt::format("{:.3f} m", *median) : "-";
 }
+
+/// Matrix and totals of one group of runs.
+class FaultMatrix {
+ public:
+  FaultMatrix(const BenchPlan& plan, const RunGroup& group)
+      : plan_(plan), group_(group), tallies_(plan.variants.size()) {
+    for (const std::string& sequence : plan.rendered.sequences) {
+      for (std::size_t i = 0; i < plan.faults.size(); ++i) {
+        if (plan.faults[i] != kNoFault) add_row(sequence, plan.faults[i], plan.expected[i]);
+      }
+    }
+  }
+
+  [[nodiscard]] GroupRows rows() const { return {.group = &group_, .rows = rows_}; }
+
+  /// One row per variant.
+  [[nodiscard]] report::TableRows totals() const {
+    report::TableRows rows = {{"variant", "runs", "as expected", "false confidence", "missed availability",
+                               "detected after 0.5 s", "3 sigma, undisturbed"}};
+    for (std::size_t v = 0; v < tallies_.size(); ++v) {
+      const FaultTally& tally = tallies_[v];
+      const double runs = std::max(1, tally.runs);
+      rows.push_back({plan_.variants[v], fmt::format("{}", tally.runs),
+                      fmt::format("{} ({:.0f} %)", tally.as_expected, 100.0 * tally.as_expected / runs),
+                      fmt::format("{:.2f} %", 100.0 * tally.false_confidence / runs),
+                      fmt::format("{:.2f} %", 100.0 * tally.missed_availability / runs),
+                      fmt::format("{}", tally.late), claim_text(group_, plan_.variants[v], plan_)});
+    }
+    return rows;
+  }
+
+  /// Whether all runs of the first variant did as expected.
+  [[nodiscard]] bool is_as_expected() const { return tallies_.front().as_expected == tallies_.front().runs; }
+
+ private:
+  void add_row(const std::string& sequence, const std::string& fault, const std::string& expected) {
+    rows_.push_back({sequence, fault, expected});
+    for (std::size_t v = 0; v < plan_.variants.size(); ++v) {
+      const RunIdentity identity{.variant = plan_.variants[v], .sequence = sequence + " + " + fault};
+      rows_.back().push_back(cell_of(group_, identity, expected, tallies_[v]));
+    }
+  }
+
+  const BenchPlan& plan_;
+  const RunGroup& group_;
+  std::vector<FaultTally> tallies_;  ///< per variant
+  report::TableRows rows_;
+};
 
 }  // namespace
 
@@ -88,30 +144,22 @@ int stats_faults(const StatsArguments& arguments) {
   std::vector<std::string> header = {"sequence", "fault", "expected"};
   header.insert(header.end(), plan.variants.begin(), plan.variants.end());
   std::vector<GroupRows> groups;
-  std::vector<std::string> notes = {
-      "Cells: outcome, error after recovery, false confidence; (!): not as expected. The expectation is that "
-      "of the first variant."};
+  report::TableRows totals;
   bool all_expected = true;
   for (const RunGroup& group : selection.groups) {
-    GroupRows rows{.group = &group, .rows = {}};
-    std::vector<FaultTally> tallies(plan.variants.size());
-    for (const std::string& sequence : plan.rendered.sequences) {
-      for (std::size_t i = 0; i < plan.faults.size(); ++i) {
-        if (plan.faults[i] == kNoFault) continue;
-        rows.rows.push_back({sequence, plan.faults[i], plan.expected[i]});
-        for (std::size_t v = 0; v < plan.variants.size(); ++v) {
-          const RunIdentity identity{.variant = plan.variants[v],
-                                     .sequence = sequence + " + " + plan.faults[i]};
-          rows.rows.back().push_back(cell_of(group, identity, plan.expected[i], tallies[v]));
-        }
-      }
-    }
-    for (std::size_t v = 0; v < tallies.size(); ++v)
-      notes.push_back(tally_text(plan.variants[v], tallies[v]));
-    all_expected = all_expected && tallies.front().as_expected == tallies.front().runs;
-    groups.push_back(std::move(rows));
+    const FaultMatrix matrix(plan, group);
+    groups.push_back(matrix.rows());
+    const report::TableRows rows = matrix.totals();
+    totals.insert(totals.end(), rows.begin() + (totals.empty() ? 0 : 1), rows.end());
+    all_expected = all_expected && matrix.is_as_expected();
   }
-  print_groups(header, groups, notes, chosen);
+  print_groups(
+      header, groups,
+      {"Cells: outcome, error after recovery, false confidence; (!): not as expected. The expectation "
+       "is that of the first variant."},
+      chosen);
+  std::ostream& remarks = chosen.csv ? std::cerr : std::cout;
+  remarks << '\n' << report::format_table(totals, report::TableStyle::kMarkdown);
   return all_expected ? kExitOk : kExitFindings;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/base/timestamp.h"
+#include "core/types/odometry_status.h"
 #include "eval/metrics/frame_to_frame_error.h"
 #include "eval/metrics/strict_rpe.h"
 #include "eval/protocols/protocol.h"
@@ -82,9 +83,18 @@ void fill_path(SeriesTable& table, const std::vector<Timestamp>& stamps, const T
   }
 }
 
+/// Position of a status in `OdometryStatus`; NaN for the names of other systems.
+double status_number(const std::string& name) {
+  for (int i = 0; i <= static_cast<int>(OdometryStatus::kRelocated); ++i) {
+    if (status_name(static_cast<OdometryStatus>(i)) == name) return i;
+  }
+  return kNone;
+}
+
 void fill_counters(SeriesTable& table, const std::vector<bench::FrameCounters>& counters) {
   for (std::size_t i = 0; i < counters.size(); ++i) {
     const bench::FrameCounters& frame = counters[i];
+    table.set("status", i, status_number(frame.status));
     table.set("features", i, static_cast<double>(frame.tracked_features));
     table.set("landmarks", i, static_cast<double>(frame.window_landmarks));
     const double all = static_cast<double>(frame.tracked_features);

@@ -21,7 +21,7 @@ struct RunSeries {
   std::vector<double> t_s;  ///< since the first frame
   /// x, y, z [m] aligned to the ground truth (unaligned without one), error_m, error_deg,
   /// frame_to_frame_error_m (see eval/metrics/frame_to_frame_error.h), features, landmarks, dynamic (fraction
-  /// of the features), ms:MODULE. Empty columns are omitted.
+  /// of the features), status (position in `OdometryStatus`), ms:MODULE. Empty columns are omitted.
   std::vector<SeriesColumn> columns;
   /// Indices into `t_s` by falling frame-to-frame error: the frames that have an image, else the 20 worst.
   std::vector<std::size_t> worst;

@@ -91,6 +91,15 @@ TEST_F(HonestyTest, MeasuresTheErrorAfterTheRecovery) {
   EXPECT_NEAR(*result.error_after_recovery_m, 0.03, 1e-9);
 }
 
+TEST_F(HonestyTest, TheClaimIsThatOfLocatedFramesWithACovariance) {
+  EXPECT_DOUBLE_EQ(*claimed_three_sigma_m(claims_), 3.0 * kClaimed_m);
+  for (std::size_t i = 0; i < 60; ++i) claims_[i].sigma_m = i < 30 ? 0.0 : 0.02;
+  claim(60, 95, PoseClaim::kDeadReckoning);
+  EXPECT_DOUBLE_EQ(*claimed_three_sigma_m(claims_), 0.06);
+  claim(0, kFrames, PoseClaim::kLost);
+  EXPECT_FALSE(claimed_three_sigma_m(claims_));
+}
+
 TEST_F(HonestyTest, NeedsAReferenceBeforeTheFault) {
   claim(0, kFault - 5, PoseClaim::kNone);
   EXPECT_FALSE(honesty(gt_, claims_, fault_));

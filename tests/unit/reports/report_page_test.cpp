@@ -84,6 +84,7 @@ TEST(RunSeries, LinksPosesErrorsCountersAndTimesByFrame) {
   EXPECT_EQ(column(series, "dynamic")[0], 0.25);         // 25 of 100 features
   EXPECT_TRUE(std::isnan(column(series, "dynamic")[1]));
   EXPECT_EQ(column(series, "ms:feature_tracking")[2], 3.0);
+  EXPECT_EQ(column(series, "status"), (std::vector<double>{1.0, 4.0, 1.0}));  // tracking, lost
 }
 
 TEST(ReportPage, IsAPureFunctionOfTheStore) {
