@@ -30,9 +30,11 @@ std::size_t frames_to_run(const datasets::SequenceInfo& info, std::size_t max_fr
 SensorInput input_of(const datasets::SequenceInfo& info, const RunSpec& spec, FramePrefetcher& prefetcher) {
   return {.rig = info.rig,
           .frame_times = std::span(info.frame_times).first(frames_to_run(info, spec.max_frames)),
+          .arrivals = info.arrivals,
           .imu = info.imu,
           .detections = info.detections,
           .true_boxes = info.true_boxes,
+          .change_detections = info.change_detections,
           .load_frame = [&prefetcher](std::size_t index) { return prefetcher.take(index); },
           .map = spec.map};
 }

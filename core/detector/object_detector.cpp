@@ -53,6 +53,23 @@ class SparseDetector final : public ObjectDetector {
   DetectorCounters counters_;
 };
 
+/// Another detector with changed results.
+class ChangedDetector final : public ObjectDetector {
+ public:
+  ChangedDetector(std::unique_ptr<ObjectDetector> detector, std::function<DetectionSet(DetectionSet)> change)
+      : detector_(std::move(detector)), change_(std::move(change)) {}
+
+  [[nodiscard]] DetectionSet detect(const Frame& frame) override { return change_(detector_->detect(frame)); }
+  [[nodiscard]] std::string description() const override {
+    return detector_->description() + ", with injected faults";
+  }
+  [[nodiscard]] const DetectorCounters& counters() const override { return detector_->counters(); }
+
+ private:
+  std::unique_ptr<ObjectDetector> detector_;
+  std::function<DetectionSet(DetectionSet)> change_;
+};
+
 std::unique_ptr<ObjectDetector> make_for_every_frame(const DetectorConfig& config,
                                                      const DetectorInput& input) {
   switch (config.kind) {
@@ -73,6 +90,9 @@ std::unique_ptr<ObjectDetector> make_for_every_frame(const DetectorConfig& confi
 std::unique_ptr<ObjectDetector> make_object_detector(const DetectorConfig& config,
                                                      const DetectorInput& input) {
   std::unique_ptr<ObjectDetector> detector = make_for_every_frame(config, input);
+  const bool computes = config.kind == DetectorKind::kNetwork || config.kind == DetectorKind::kSimulated;
+  if (computes && input.change)
+    detector = std::make_unique<ChangedDetector>(std::move(detector), input.change);
   if (config.every_n_frames == 1) return detector;
   return std::make_unique<SparseDetector>(std::move(detector), config.every_n_frames);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -55,6 +56,8 @@ struct DetectorInput {
                                                  ///< ascending time; must outlive the detector
   std::span<const std::string> dynamic_classes;  ///< of dynamic.classes
   int seed = 1;
+  /// Injected faults: applied to each result of a network or a simulation; may be empty.
+  std::function<DetectionSet(DetectionSet)> change{};
 };
 
 /// Creates the detector selected by the config.

@@ -17,7 +17,8 @@ std::unique_ptr<ObjectDetector> make_detector(const SensorInput& input, const Od
   }
   return make_object_detector(detector, {.boxes = simulated ? input.true_boxes : input.detections,
                                          .dynamic_classes = config.dynamic.classes,
-                                         .seed = config.seed});
+                                         .seed = config.seed,
+                                         .change = input.change_detections});
 }
 
 Stages assemble(const SensorInput& input, const OdometryConfig& config) {

@@ -22,21 +22,18 @@ Detection false_person(synth::RandomSequence& random, cv::Size image) {
 
 }  // namespace
 
-std::vector<DetectionSet> detections_with_fault(std::vector<DetectionSet> sets, const SensorFault& fault,
-                                                Timestamp start, cv::Size image) {
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    DetectionSet& set = sets[i];
-    if (!fault.is_active(seconds_between(start, set.t))) continue;
-    if (fault.kind == FaultKind::kDetectorHallucinating) {
-      synth::RandomSequence random = fault.random(i);
-      for (int box = 0; box < static_cast<int>(std::lround(fault.amount)); ++box)
-        set.detections.push_back(false_person(random, image));
-    } else {
-      const bool late = fault.kind == FaultKind::kDetectorLate;
-      set = {.t = set.t, .state = late ? DetectionState::kLate : DetectionState::kNone, .detections = {}};
-    }
+DetectionSet detections_with_fault(DetectionSet set, const SensorFault& fault, Timestamp start,
+                                   cv::Size image) {
+  if (!fault.is_active(seconds_between(start, set.t))) return set;
+  if (fault.kind != FaultKind::kDetectorHallucinating) {
+    const bool late = fault.kind == FaultKind::kDetectorLate;
+    return {.t = set.t, .state = late ? DetectionState::kLate : DetectionState::kNone, .detections = {}};
   }
-  return sets;
+  const auto index = static_cast<std::size_t>(set.t.ns - start.ns);
+  synth::RandomSequence random = fault.random(index);
+  for (int box = 0; box < static_cast<int>(std::lround(fault.amount)); ++box)
+    set.detections.push_back(false_person(random, image));
+  return set;
 }
 
 }  // namespace stillpoint::datasets

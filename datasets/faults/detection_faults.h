@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Faults of recorded boxes.
+/// Faults of detectors.
 #pragma once
-
-#include <vector>
 
 #include <opencv2/core/types.hpp>
 
@@ -11,11 +9,11 @@
 
 namespace stillpoint::datasets {
 
-/// Detections with a fault of target `kDetections`: active sets become `kNone` or `kLate`, or get `amount`
-/// additional boxes of class "person" at random places, each a tenth to a half of the image wide and high.
+/// The result of a detector for one frame, with a fault of target `kDetections`: while it is active, the set
+/// becomes `kNone` or `kLate`, or gets `amount` additional boxes of class "person" at random places, each a
+/// tenth to a half of the image wide and high. The places depend on the fault and the time only.
 /// @param start time of the first frame
-[[nodiscard]] std::vector<DetectionSet> detections_with_fault(std::vector<DetectionSet> sets,
-                                                              const SensorFault& fault, Timestamp start,
-                                                              cv::Size image);
+[[nodiscard]] DetectionSet detections_with_fault(DetectionSet set, const SensorFault& fault, Timestamp start,
+                                                 cv::Size image);
 
 }  // namespace stillpoint::datasets

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "datasets/faults/arrival_faults.h"
 #include "datasets/faults/detection_faults.h"
 #include "datasets/faults/image_faults.h"
 #include "datasets/faults/imu_faults.h"
@@ -41,9 +42,9 @@ class FaultyStream final : public SensorStream {
         occluders_.emplace(&fault, Occluder(image, fault.amount, fault.seed));
       const FaultTarget target = descriptor_of(fault.kind).target;
       if (target == FaultTarget::kImu) info_.imu = samples_with_fault(std::move(info_.imu), fault, start_);
-      if (target == FaultTarget::kDetections) {
-        info_.detections = detections_with_fault(std::move(info_.detections), fault, start_, image);
-      }
+      if (target == FaultTarget::kDetections) add_detection_fault(fault, image);
+      if (target == FaultTarget::kArrival)
+        info_.arrivals = arrivals_with_fault(std::move(info_.arrivals), fault, info_.frame_times);
       info_.notes.push_back("injected fault: " + fault_text(fault));
     }
   }
@@ -76,6 +77,17 @@ class FaultyStream final : public SensorStream {
   }
 
  private:
+  /// Changes recorded boxes, and later the results of a detector.
+  void add_detection_fault(const SensorFault& fault, cv::Size image) {
+    for (DetectionSet& set : info_.detections)
+      set = detections_with_fault(std::move(set), fault, start_, image);
+    info_.change_detections = [before = info_.change_detections, fault, start = start_,
+                               image](DetectionSet set) {
+      if (before) set = before(std::move(set));
+      return detections_with_fault(std::move(set), fault, start, image);
+    };
+  }
+
   /// Lists the frames that are not dropped.
   void keep_frames() {
     info_.frame_times.clear();
@@ -139,8 +151,6 @@ void require_target(const SensorFault& fault, const SequenceInfo& info) {
     throw InputError(fmt::format("fault \"{}\"", descriptor.name), info.folder.string() + problem);
   };
   if (descriptor.target == FaultTarget::kImu && info.imu.empty()) reject(" has no inertial data");
-  if (descriptor.target == FaultTarget::kDetections && info.detections.empty())
-    reject(" has no recorded boxes; write them with `stillpoint detect`");
 }
 
 }  // namespace

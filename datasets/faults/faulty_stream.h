@@ -23,7 +23,7 @@ struct FaultInterval {
 /// The stream as damaged sensors would have recorded it: the faults are applied in their order. Ground truth
 /// and labels stay those of the undisturbed sequence. The result is a function of stream and faults only.
 /// @param stream with at least one frame
-/// @throws InputError for faults of data that the stream does not have (IMU, depth, recorded boxes)
+/// @throws InputError for faults of inertial data if the stream has none
 [[nodiscard]] std::unique_ptr<SensorStream> with_faults(std::unique_ptr<SensorStream> stream,
                                                         std::vector<SensorFault> faults);
 

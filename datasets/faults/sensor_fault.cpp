@@ -57,6 +57,12 @@ constexpr FaultDescriptor kDescriptors[] = {
     {kDetectorLate, "detector_late", kDetections, "boxes arrive too late to be used", ""},
     {kDetectorHallucinating, "detector_hallucinating", kDetections, "boxes of persons where there are none",
      "additional boxes per frame", 2.0, 0.0, 100.0},
+    {kFrameLate, "frame_late", kArrival, "frames arrive late; in real time, and overtaken by later ones",
+     "delay [s]", 0.1, 0.0, 10.0},
+    {kFrameReordered, "frame_reordered", kArrival, "frames arrive after their successor",
+     "fraction of frames", 0.3, 0.0, 1.0},
+    {kFrameDuplicated, "frame_duplicated", kArrival, "frames arrive again, with their successor",
+     "fraction of frames", 0.3, 0.0, 1.0},
 };
 
 std::string kind_names() {

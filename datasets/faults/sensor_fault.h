@@ -42,10 +42,14 @@ enum class FaultKind {
   kDetectorSilent,
   kDetectorLate,
   kDetectorHallucinating,
+  // arrival of frames
+  kFrameLate,
+  kFrameReordered,
+  kFrameDuplicated,
 };
 
 /// The data that a fault changes.
-enum class FaultTarget { kImages, kDepth, kImu, kDetections };
+enum class FaultTarget { kImages, kDepth, kImu, kDetections, kArrival };
 
 /// One entry of the list of kinds.
 struct FaultDescriptor {

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/base/timestamp.h"
 #include "core/types/detection.h"
 #include "core/types/frame.h"
+#include "core/types/frame_arrival.h"
 #include "core/types/imu_sample.h"
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"
@@ -32,8 +34,11 @@ struct SequenceInfo {
   GroundTruth ground_truth;
   std::vector<DetectionSet> detections;  ///< recorded boxes in order of time; empty when there are none
   std::vector<DetectionSet> true_boxes;  ///< of all moving objects, in order of time; rendered sequences only
-  std::vector<std::string> notes;        ///< assumptions made by the reader, one sentence each, to be shown
-  std::vector<std::string> warnings;     ///< repaired faults of the files, as "LOCATION: FAULT", to be shown
+  /// Injected faults of a detector, for the results of a network or a simulation; empty without such faults.
+  std::function<DetectionSet(DetectionSet)> change_detections;
+  std::vector<FrameArrival> arrivals;  ///< injected faults, in order of time; empty: at the timestamps
+  std::vector<std::string> notes;      ///< assumptions made by the reader, one sentence each, to be shown
+  std::vector<std::string> warnings;   ///< repaired faults of the files, as "LOCATION: FAULT", to be shown
 };
 
 /// Per-pixel ground truth of a rendered frame.

@@ -42,6 +42,7 @@ class DeviceRun {
         config_(config),
         control_(control),
         clock_(clock),
+        order_(input),
         stages_(assemble(input, config)),
         cores_(clock.device.cores),
         imu_of_tracker_(input.imu),
@@ -49,20 +50,21 @@ class DeviceRun {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / clock.speed;
     if (config.loop.enabled) loop_ = std::make_unique<LoopWorker>(config, input.rig, LoopExecution::kInline);
     if (loop_ && input.map) loop_->use_map(*input.map);
+    summary_.skipped = order_.skipped();
     feedback_.push_back({stages_.optimization.feedback(), Time{}});
   }
 
   RunSummary run() {
-    while (const std::optional<std::size_t> index = next_frame()) {
+    while (const std::optional<FrameArrival> arrival = next_frame()) {
       if (control_.stop_requested && control_.stop_requested()) {
         summary_.interrupted = true;
         break;
       }
-      LoadedFrame loaded = load_frame(input_, *index);
+      LoadedFrame loaded = load_frame(input_, arrival->index);
       if (loaded.job) {
-        process(*loaded.job, exposure(*index));
+        process(*loaded.job, virtual_time(loaded.job->frame.t));
       } else {
-        summary_.skipped.push_back({*index, std::move(loaded.error)});
+        summary_.skipped.push_back({arrival->index, std::move(loaded.error)});
       }
     }
     if (loop_) summary_.loops = loop_->finish(stages_.optimization);
@@ -71,8 +73,8 @@ class DeviceRun {
   }
 
  private:
-  [[nodiscard]] Time exposure(std::size_t index) const {
-    const double seconds = seconds_between(input_.frame_times.front(), input_.frame_times[index]);
+  [[nodiscard]] Time virtual_time(Timestamp t) const {
+    const double seconds = seconds_between(input_.frame_times.front(), t);
     return Time(std::llround(1e9 * seconds / clock_.speed));
   }
 
@@ -81,18 +83,18 @@ class DeviceRun {
     return after(input_.frame_times.front(), 1e-9 * clock_.speed * static_cast<double>(time.count()));
   }
 
-  /// Index of the next frame that the tracker accepts; advances `now_` to that time.
-  std::optional<std::size_t> next_frame() {
-    const std::size_t count = input_.frame_times.size();
+  /// The next frame that the tracker accepts; advances `now_` to that time.
+  std::optional<FrameArrival> next_frame() {
+    const std::size_t count = order_.count();
     if (next_ >= count) return std::nullopt;
-    now_ = std::max(now_, exposure(next_));
-    std::size_t exposed = next_;
-    while (exposed < count && exposure(exposed) <= now_) ++exposed;
-    const std::size_t queued = std::min(exposed - next_, kMaxQueuedFrames);
-    report_.dropped += static_cast<int>(exposed - next_ - queued);
-    next_ = exposed - queued;
-    summary_.frames = std::max(summary_.frames, exposed);
-    return next_++;
+    now_ = std::max(now_, virtual_time(order_[next_].t));
+    std::size_t arrived = next_;
+    while (arrived < count && virtual_time(order_[arrived].t) <= now_) ++arrived;
+    const std::size_t queued = std::min(arrived - next_, kMaxQueuedFrames);
+    report_.dropped += static_cast<int>(arrived - next_ - queued);
+    next_ = arrived - queued;
+    summary_.frames = std::max(summary_.frames, order_[arrived - 1].index + 1);
+    return order_[next_++];
   }
 
   /// Newest feedback that is available at `now_`.
@@ -179,6 +181,7 @@ class DeviceRun {
   const OdometryConfig& config_;
   const RunControl& control_;
   const DeviceClock& clock_;
+  ArrivalOrder order_;
   Stages stages_;
   std::unique_ptr<LoopWorker> loop_;  ///< null if off
   RunSummary summary_;
@@ -186,7 +189,7 @@ class DeviceRun {
   DeviceCores cores_;
   ImuFeed imu_of_tracker_;
   ImuFeed imu_of_estimator_;
-  std::size_t next_ = 0;  ///< frame index
+  std::size_t next_ = 0;  ///< in `order_`
   Time now_{};            ///< of the tracker
   Time detector_free_{};
   Time optimizer_free_{};

@@ -28,11 +28,13 @@ class RealtimeRun {
         config_(config),
         control_(control),
         stages_(assemble(input, config)),
+        order_(input),
         clock_(input.frame_times.empty() ? Timestamp{} : input.frame_times.front(), speed) {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / speed;
     if (config.loop.enabled)
       loop_ = std::make_unique<LoopWorker>(config, input.rig, LoopExecution::kRealtime);
     if (loop_ && input.map) loop_->use_map(*input.map);
+    summary_.skipped = order_.skipped();
     feedback_.push({stages_.optimization.feedback(), {}});
   }
 
@@ -57,12 +59,13 @@ class RealtimeRun {
  private:
   void expose() {
     name_this_thread("camera");
-    for (std::size_t i = 0; i < input_.frame_times.size(); ++i) {
-      if (!clock_.wait_until(input_.frame_times[i], control_.stop_requested)) {
+    for (std::size_t k = 0; k < order_.count(); ++k) {
+      const std::size_t i = order_[k].index;
+      if (!clock_.wait_until(order_[k].t, control_.stop_requested)) {
         summary_.interrupted = true;
         break;
       }
-      ++summary_.frames;
+      summary_.frames = i + 1;
       LoadedFrame loaded = load_frame(input_, i);
       if (loaded.job) {
         report_.dropped += exposed_.push_dropping_oldest(std::move(*loaded.job)).has_value();
@@ -147,6 +150,7 @@ class RealtimeRun {
   std::unique_ptr<LoopWorker> loop_;  ///< null if off
   RunSummary summary_;     ///< `frames`, `skipped`, `interrupted`: camera thread only, while it runs
   RealtimeReport report_;  ///< same for `dropped`
+  ArrivalOrder order_;
   PacingClock clock_;
   BoundedChannel<FrameJob> exposed_{kMaxQueuedFrames};
   BoundedChannel<Frame> to_detect_{1};

@@ -31,12 +31,13 @@ LoadedFrame load_frame(const SensorInput& input, std::size_t index) {
 }
 
 std::optional<FrameJob> FrameLoader::next() {
-  while (summary_.frames < input_.frame_times.size()) {
+  while (next_ < order_.count()) {
     if (control_.stop_requested && control_.stop_requested()) {
       summary_.interrupted = true;
       return std::nullopt;
     }
-    const std::size_t index = summary_.frames++;
+    const std::size_t index = order_[next_++].index;
+    summary_.frames = index + 1;
     LoadedFrame loaded = load_frame(input_, index);
     if (loaded.job) return std::move(loaded.job);
     summary_.skipped.push_back({index, std::move(loaded.error)});

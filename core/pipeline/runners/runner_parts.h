@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/pipeline/imu_queue.h"
+#include "core/pipeline/runners/arrival_order.h"
 #include "core/pipeline/runners/runner.h"
 #include "core/pipeline/stages/stage_messages.h"
 
@@ -57,7 +58,11 @@ struct LoadedFrame {
 class FrameLoader {
  public:
   /// @param input, control must outlive this object
-  FrameLoader(const SensorInput& input, const RunControl& control) : input_(input), control_(control) {}
+  /// @throws InputError as `ArrivalOrder`
+  FrameLoader(const SensorInput& input, const RunControl& control)
+      : input_(input), control_(control), order_(input) {
+    summary_.skipped = order_.skipped();
+  }
 
   /// @return nullopt at the end of the sequence and after `stop_requested`
   [[nodiscard]] std::optional<FrameJob> next();
@@ -68,6 +73,8 @@ class FrameLoader {
  private:
   const SensorInput& input_;
   const RunControl& control_;
+  ArrivalOrder order_;
+  std::size_t next_ = 0;  ///< in `order_`
   RunSummary summary_;
 };
 

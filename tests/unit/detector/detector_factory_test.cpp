@@ -29,6 +29,19 @@ TEST(MakeObjectDetector, CreatesTheConfiguredDetector) {
                      {"detector.names"});
 }
 
+TEST(MakeObjectDetector, InjectsFaultsIntoComputedResults) {
+  const auto sets = recorded(2);
+  const auto silenced = [](DetectionSet set) {
+    return DetectionSet{.t = set.t, .state = DetectionState::kNone, .detections = {}};
+  };
+  DetectorConfig config;
+  config.kind = DetectorKind::kSimulated;
+  const auto detector = make_object_detector(config, {.boxes = sets, .change = silenced});
+  EXPECT_EQ(detector->detect(blank_frame(0)).state, DetectionState::kNone);
+  EXPECT_EQ(detector->counters().processed, 1);
+  EXPECT_NE(detector->description().find("injected faults"), std::string::npos);
+}
+
 TEST(MakeObjectDetector, NoneSkipsEveryFrame) {
   DetectorConfig config;
   config.kind = DetectorKind::kNone;

@@ -185,6 +185,35 @@ TEST(FaultyStream, ChangesRecordedBoxes) {
   EXPECT_EQ(set_at("detector_hallucinating:start=2,amount=3", 25).detections.size(), 3U);
 }
 
+TEST(FaultyStream, ChangesResultsOfADetectorAsRecordedBoxes) {
+  for (const char* fault :
+       {"detector_silent:start=2", "detector_late:start=2", "detector_hallucinating:start=2,amount=3"}) {
+    const auto stream = stream_with(fault);
+    const DetectionSet& recorded = stream->info().detections[25];
+    const DetectionSet found = stream->info().change_detections(
+        {.t = recorded.t, .state = DetectionState::kPresent, .detections = {}});
+    EXPECT_EQ(found.state, recorded.state) << fault;
+    ASSERT_EQ(found.detections.size(), recorded.detections.size()) << fault;
+    for (std::size_t i = 0; i < found.detections.size(); ++i)
+      EXPECT_EQ(found.detections[i].box.x_min, recorded.detections[i].box.x_min) << fault;
+  }
+}
+
+TEST(FaultyStream, ChangesTheArrivalOfFrames) {
+  EXPECT_TRUE(stream_with("blank")->info().arrivals.empty());
+  const auto late = stream_with("frame_late:start=2,duration=1,amount=0.25")->info();
+  ASSERT_EQ(late.arrivals.size(), late.frame_times.size());
+  EXPECT_EQ(late.arrivals[25].index, 25U);
+  EXPECT_EQ(late.arrivals[25].t, after(late.frame_times[25], 0.25));
+  EXPECT_EQ(late.arrivals[31].index, 29U);  // after frames 30 and 31
+  const auto swapped = stream_with("frame_reordered:start=2,duration=0.1,amount=1")->info();
+  EXPECT_EQ(swapped.arrivals[20].index, 21U);
+  EXPECT_EQ(swapped.arrivals[21].index, 20U);
+  const auto repeated = stream_with("frame_duplicated:start=2,duration=0.1,amount=1")->info();
+  ASSERT_EQ(repeated.arrivals.size(), repeated.frame_times.size() + 1);
+  EXPECT_EQ(repeated.arrivals[22].index, 20U);
+}
+
 TEST(FaultyStream, IsAFunctionOfItsFaults) {
   for (const FaultDescriptor& descriptor : fault_descriptors()) {
     const auto text = std::string(descriptor.name) + ":start=1,duration=2,seed=5";
@@ -210,7 +239,7 @@ TEST(FaultyStream, RejectsFaultsOfMissingData) {
    private:
     SequenceInfo info_;
   };
-  for (const char* fault : {"shock", "imu_gap", "detector_silent"})
+  for (const char* fault : {"shock", "imu_gap"})
     EXPECT_THROW(static_cast<void>(with_faults(std::make_unique<WithoutImu>(), {parse_fault(fault)})),
                  InputError);
 }

@@ -14,7 +14,7 @@ TEST(SensorFault, ListsEveryKindOnceAndInOrder) {
     EXPECT_GE(descriptor.typical, descriptor.min) << descriptor.name;
     EXPECT_LE(descriptor.typical, descriptor.max) << descriptor.name;
   }
-  EXPECT_EQ(fault_descriptors().back().kind, FaultKind::kDetectorHallucinating);
+  EXPECT_EQ(fault_descriptors().back().kind, FaultKind::kFrameDuplicated);
 }
 
 TEST(SensorFault, ParsesItsOwnText) {

@@ -69,6 +69,30 @@ TEST(Runner, SkipsAndReportsFramesThatCannotBeRead) {
   }
 }
 
+TEST(Runner, SkipsFramesThatArriveAfterLaterOnesOrTwice) {
+  const SlidingPlane plane(kFrames);
+  SensorInput input = plane.input();
+  std::vector<FrameArrival> arrivals;
+  for (std::size_t i = 0; i < kFrames; ++i) arrivals.push_back({i, input.frame_times[i]});
+  std::swap(arrivals[5].index, arrivals[6].index);
+  arrivals[6].t = arrivals[5].t = input.frame_times[6];
+  arrivals.insert(arrivals.begin() + 9, {8, input.frame_times[9]});
+  input.arrivals = arrivals;
+  for (const auto& run : {run_sequential, run_pipelined}) {
+    PositionRecorder recorder;
+    const RunSummary summary = run(input, visual_config(), recorder.control());
+    ASSERT_EQ(summary.skipped.size(), 1U);
+    EXPECT_EQ(summary.skipped[0].index, 5U);
+    EXPECT_EQ(summary.frames, kFrames);
+    EXPECT_EQ(recorder.positions.size(), kFrames - 1U);
+  }
+  PositionRecorder recorder;
+  const RunSummary summary = run_realtime(input, visual_config(), recorder.control(), 1.0);
+  EXPECT_EQ(summary.skipped.size(), 1U);
+  arrivals.front().t = after(input.frame_times[0], -1.0);
+  EXPECT_THROW(static_cast<void>(run_sequential(input, visual_config(), {})), InputError);
+}
+
 TEST(Runner, StopsOnRequest) {
   const SlidingPlane plane(kFrames);
   for (const auto& run : {run_sequential, run_pipelined}) {
