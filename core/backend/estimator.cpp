@@ -19,9 +19,6 @@
 namespace stillpoint {
 namespace {
 
-/// Inlier threshold of camera localization.
-constexpr double kLocalizationInlier_px = 5.0;
-
 /// Largest bias change from the linearization point for which the first-order correction is used.
 constexpr double kRepropagateGyro = 0.01;  // [rad/s]
 constexpr double kRepropagateAccel = 0.1;  // [m/s^2]
@@ -48,7 +45,9 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
       seed_(static_cast<std::uint32_t>(seed)),
       imu_(imu.max_gap_s),
       solver_(make_window_solver(backend.solver)),
-      monitor_(monitor_options(backend, imu, rig, seed)) {
+      monitor_(monitor_options(backend, imu, rig, seed)),
+      step_check_(rig.camera.focal_px()),
+      bias_check_(rig.camera.focal_px()) {
   if (imu.enabled && !rig.has_imu) {
     throw InputError("imu.enabled", "the sequence has no inertial data; run with --variant vo");
   }
@@ -93,6 +92,7 @@ void Estimator::integrate_samples(const WindowFrame& last, WindowFrame& next) {
   const Timestamp end = after(next.state.t, next.time_offset_s);
   const std::vector<ImuSample>& samples = imu_.samples_up_to(begin, end);
   evidence_.imu_defect = inspector_.inspect(samples, imu_config_.max_gap_s);
+  if (evidence_.imu_defect == StatusReason::kImuGap) inertial_check_.missing(end);
   if (evidence_.imu_defect == StatusReason::kNone && !inertial_check_.is_consistent()) {
     evidence_.imu_defect = StatusReason::kImuInconsistent;
   }
@@ -110,26 +110,6 @@ void Estimator::integrate_samples(const WindowFrame& last, WindowFrame& next) {
   next.gyro_b = next.from_previous->samples().back().gyro_b;
   next.accel_b = next.from_previous->samples().back().accel_b;
   if (next.imu_is_reliable && averages_imu()) average_imu_at_exposure(imu_, next);
-}
-
-/// Without inertial prediction: estimates the newest camera pose from known points (PnP).
-/// @return whether inertial data or vision located the newest frame
-bool Estimator::localize_newest() {
-  WindowFrame& newest = window_.frames.back();
-  if (has_inertial_prediction()) return newest.from_previous.has_value();
-  if (window_.newest() == 0 || !has_metric_scale()) return true;
-  Pose prediction = newest.state.T_w_b;
-  if (newest.from_previous && newest.imu_is_reliable) {
-    const NavState& before = window_.frames[window_.frames.size() - 2].state;
-    prediction.q = before.T_w_b.q * newest.from_previous->delta_q(before.gyro_bias);
-  }
-  const CameraPoseOptions options{.inlier_threshold = kLocalizationInlier_px / rig_.camera.focal_px(),
-                                  .seed = seed_ + static_cast<std::uint32_t>(newest.id)};
-  known_points_ = known_points(window_, backend_.depth, std::move(known_points_));
-  const std::optional<CameraPose> found =
-      estimate_camera_pose(known_points_, prediction * window_.T_b_c, options);
-  newest.state.T_w_b = found ? found->T_w_c * window_.T_b_c.inverse() : prediction;
-  return found.has_value();
 }
 
 void Estimator::repropagate_preintegrations() {
@@ -200,6 +180,7 @@ void Estimator::add(const TrackedFrame& frame) {
   push_frame(frame);
   const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
   add_observations(frame, rig_, backend_.depth, window_);
+  reject_depth_of_another_scale();
 }
 
 void Estimator::mark_dynamic(std::span<const DynamicLabel> labels) {
@@ -242,6 +223,7 @@ bool Estimator::refine() {
   const ScopedTimer timer(update_.timings, Module::kStateOptimization);
   keyframe_ = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
   check_inertial_data();
+  check_biases();
   localized_ = localize_newest();
   update_.counters.keyframe = keyframe_;
   if (!localized_) {

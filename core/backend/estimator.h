@@ -7,8 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "core/backend/health/depth_scale.h"
 #include "core/backend/health/inertial_check.h"
 #include "core/backend/health/inertial_interval.h"
+#include "core/backend/health/step_check.h"
 #include "core/backend/health/tracking_monitor.h"
 #include "core/backend/marginalization/frame_marginalizer.h"
 #include "core/backend/solvers/window_solver.h"
@@ -51,6 +53,11 @@ class Estimator {
   /// @param labels sorted by id; landmarks without a label are unchanged
   void mark_dynamic(std::span<const DynamicLabel> labels);
 
+  /// Before labels are derived from the predicted pose of the newest frame: recognizes inertial data that
+  /// became wrong abruptly (StepCheck). Vision then determines the pose, and `has_inertial_prediction` is
+  /// false.
+  void check_prediction();
+
   /// Optimizes the window, including the pose of the newest frame.
   /// A frame that neither vision nor inertial data locates is removed again.
   /// @return false after a failure: the window has been cleared and restarts with the next frame
@@ -91,10 +98,13 @@ class Estimator {
   void relocalize(const TrackedFrame& frame);
   [[nodiscard]] Window calibrated_window() const;
   void push_frame(const TrackedFrame& frame);
+  void reject_depth_of_another_scale();
   void integrate_samples(const WindowFrame& last, WindowFrame& next);
   [[nodiscard]] bool localize_newest();
   void check_inertial_data();
   void distrust_recent_samples();
+  void check_biases();
+  void enlarge_bias_walk(const InertialError& error);
   void solve();
   void discard_newest();
   [[nodiscard]] StatusReason failure() const;
@@ -127,6 +137,12 @@ class Estimator {
   TrackingMonitor monitor_;
   SampleInspector inspector_;
   InertialCheck inertial_check_;
+  StepCheck step_check_;
+  BiasCheck bias_check_;
+  int bias_steps_ = 0;       ///< successive checks of the biases with an error
+  int agreeing_checks_ = 0;  ///< same without an error
+  DepthScale depth_scale_;
+  std::optional<Timestamp> depth_rejected_since_;
   FrameEvidence evidence_;   ///< of the last frame that was added
   int unusable_solves_ = 0;  ///< in succession
   OdometryUpdate update_;

@@ -20,12 +20,22 @@ constexpr double kMinAgreeing = 0.7;
 /// Inertial data that contradicts vision was wrong before it was recognized.
 constexpr double kRecognitionDelay_s = 0.15;
 
+/// Age of a step of the biases when it is recognized, at most.
+constexpr double kBiasStepDelay_s = 0.5;
+
+/// Successive checks with an error, a quarter of a second apart, that are no step of a bias; and without an
+/// error, after which the data is used again.
+constexpr int kMaxBiasSteps = 4;
+constexpr int kMinAgreeingChecks = 4;
+
 /// A pose from the map this close to the inertial one confirms it.
 constexpr double kConfirmed_m = 0.02;
 constexpr double kConfirmed_rad = 0.01;
 
 /// Solver failures in succession after which the window is given up.
 constexpr int kMaxUnusableSolves = 3;
+
+constexpr double kMaxDepthRejection_s = 10.0;
 
 /// Features with a measured depth from which a window can start.
 constexpr int kMinFirstFeatures = 8;
@@ -52,6 +62,20 @@ void Estimator::relocalize(const TrackedFrame& frame) {
   newest_.t = frame.t;
   previous_ = newest_;
   monitor_.relocated();
+}
+
+/// For a limited time: if the contradiction persists, the landmarks are wrong.
+void Estimator::reject_depth_of_another_scale() {
+  if (backend_.depth.max_scale_error <= 0.0) return;
+  const std::optional<double> scale = depth_scale_.of_newest(window_);
+  const Timestamp t = window_.frames.back().state.t;
+  if (scale && std::abs(*scale - 1.0) <= backend_.depth.max_scale_error) depth_rejected_since_.reset();
+  if (scale && std::abs(*scale - 1.0) > backend_.depth.max_scale_error && !depth_rejected_since_)
+    depth_rejected_since_ = t;
+  if (!depth_rejected_since_ || seconds_between(*depth_rejected_since_, t) > kMaxDepthRejection_s) return;
+  for (Landmark& landmark : window_.landmarks) {
+    if (landmark.last() == window_.newest()) landmark.observations.back().depth = 0.0;
+  }
 }
 
 /// Compares inertial data with the pose by vision alone. Wrong data of the last frames is replaced. Inertial
@@ -84,6 +108,49 @@ void Estimator::check_inertial_data() {
   distrust_recent_samples();
 }
 
+void Estimator::check_prediction() {
+  if (!has_inertial_prediction() || !window_.frames.back().from_previous) return;
+  if (!step_check_.is_wrong(window_, imu_)) return;
+  inertial_check_.contradict();
+  evidence_.imu_defect = StatusReason::kImuInconsistent;
+  distrust_recent_samples();
+}
+
+/// A step of the biases: their random walk in the samples that it was recognized by is enlarged, so that the
+/// solver follows it. Errors that persist are not those of a bias: the data is not used until they end.
+void Estimator::check_biases() {
+  const WindowFrame& newest = window_.frames.back();
+  if (!backend_.bias_steps || !window_.inertial || !newest.from_previous) return;
+  const std::optional<InertialError> error = bias_check_.error_at(window_, imu_);
+  if (!error) return;
+  bias_steps_ = BiasCheck::is_step(*error) ? bias_steps_ + 1 : 0;
+  agreeing_checks_ = bias_steps_ > 0 ? 0 : agreeing_checks_ + 1;
+  if (bias_steps_ >= kMaxBiasSteps) {
+    inertial_check_.contradict();
+    inertial_check_.hold(true);
+    evidence_.imu_defect = StatusReason::kImuInconsistent;
+    distrust_recent_samples();
+  } else if (agreeing_checks_ >= kMinAgreeingChecks) {
+    inertial_check_.hold(false);
+  }
+  if (bias_steps_ > 0 && has_inertial_prediction()) enlarge_bias_walk(*error);
+}
+
+void Estimator::enlarge_bias_walk(const InertialError& error) {
+  const Timestamp newest = window_.frames.back().state.t;
+  for (WindowFrame& frame : window_.frames) {
+    if (!frame.from_previous || !frame.imu_is_reliable ||
+        seconds_between(frame.state.t, newest) > kBiasStepDelay_s) {
+      continue;
+    }
+    const double root_s = std::sqrt(frame.from_previous->duration_s());
+    ImuNoise noise = rig_.imu_noise;
+    noise.gyro_walk = std::max(noise.gyro_walk, error.gyro_b.norm() / root_s);
+    noise.accel_walk = std::max(noise.accel_walk, error.accel_w.norm() / root_s);
+    frame.from_previous->set_noise(noise);
+  }
+}
+
 void Estimator::distrust_recent_samples() {
   const Timestamp newest = window_.frames.back().state.t;
   for (WindowFrame& frame : window_.frames) {
@@ -91,6 +158,26 @@ void Estimator::distrust_recent_samples() {
     frame.imu_is_reliable = false;
     frame.from_previous->set_noise(unreliable_noise(rig_.imu_noise));
   }
+}
+
+/// Without inertial prediction: estimates the newest camera pose from known points (PnP).
+/// @return whether inertial data or vision located the newest frame
+bool Estimator::localize_newest() {
+  WindowFrame& newest = window_.frames.back();
+  if (has_inertial_prediction()) return newest.from_previous.has_value();
+  if (window_.newest() == 0 || !has_metric_scale()) return true;
+  Pose prediction = newest.state.T_w_b;
+  if (newest.from_previous && newest.imu_is_reliable) {
+    const NavState& before = window_.frames[window_.frames.size() - 2].state;
+    prediction.q = before.T_w_b.q * newest.from_previous->delta_q(before.gyro_bias);
+  }
+  const CameraPoseOptions options{.inlier_threshold = kLocalizationInlier_px / rig_.camera.focal_px(),
+                                  .seed = seed_ + static_cast<std::uint32_t>(newest.id)};
+  known_points_ = known_points(window_, backend_.depth, std::move(known_points_));
+  const std::optional<CameraPose> found =
+      estimate_camera_pose(known_points_, prediction * window_.T_b_c, options);
+  newest.state.T_w_b = found ? found->T_w_c * window_.T_b_c.inverse() : prediction;
+  return found.has_value();
 }
 
 /// The newest frame was located by neither vision nor inertial data. A window that has not started begins
@@ -162,6 +249,8 @@ void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   previous_ = newest_;
   unusable_solves_ = 0;
   inertial_check_.reset();
+  step_check_.reset();
+  bias_check_.reset();
 }
 
 /// After a divergence, which the biases were part of.

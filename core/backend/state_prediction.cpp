@@ -7,8 +7,8 @@
 namespace stillpoint {
 namespace {
 
-/// Margin for later changes of the estimated time offset.
-constexpr double kRetention_s = 0.2;
+/// Margin for later changes of the estimated time offset (0.2 s) and for the comparison with vision.
+constexpr double kRetention_s = 0.9;
 
 Pose constant_velocity(const NavState& previous, const NavState& newest, Timestamp t) {
   const double fraction = seconds_between(newest.t, t) / seconds_between(previous.t, newest.t);

@@ -62,11 +62,13 @@ constexpr auto enum_names(TimeOffsetModel) {
 /// How measured depth enters the estimate.
 struct DepthConfig {
   DepthUsage usage = DepthUsage::kFixed;
-  double min_m = 0.3;                   ///< smaller measured depths are ignored
-  double max_m = 8.0;                   ///< larger measured depths are not used to initialize a landmark
-  double inverse_sigma = 0.003;         ///< standard deviation of 1/depth [1/m]: sigma_Z = this * Z^2
-  double outlier_sigmas = 2.0;          ///< kWeighted: bound of the depth residual, in standard deviations
-  double agreement_px = 10.0;           ///< largest reprojection error of a depth accepted from one view
+  double min_m = 0.3;            ///< smaller measured depths are ignored
+  double max_m = 8.0;            ///< larger measured depths are not used to initialize a landmark
+  double inverse_sigma = 0.003;  ///< standard deviation of 1/depth [1/m]: sigma_Z = this * Z^2
+  double outlier_sigmas = 2.0;   ///< kWeighted: bound of the depth residual, in standard deviations
+  double agreement_px = 10.0;    ///< largest reprojection error of a depth accepted from one view
+  double max_scale_error = 0.0;  ///< depth whose scale differs by more from that of known landmarks is not
+                                 ///< used; 0 = no check
   double max_landmark_depth_m = 100.0;  ///< landmarks triangulated or estimated farther away are discarded
   bool estimate_scale = false;          ///< ratio of measured to true depth; constant 1 without an IMU
   double scale_sigma = 0.1;             ///< prior standard deviation around 1
@@ -82,6 +84,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("inverse_sigma", config.inverse_sigma, 1e-5, 1.0);
   field("outlier_sigmas", config.outlier_sigmas, 0.1, 1000.0);
   field("agreement_px", config.agreement_px, 0.1, 100.0);
+  field("max_scale_error", config.max_scale_error, 0.0, 1.0);
   field("max_landmark_depth_m", config.max_landmark_depth_m, 10.0, 10000.0);
   field("estimate_scale", config.estimate_scale);
   field("scale_sigma", config.scale_sigma, 1e-6, 1.0);
@@ -152,6 +155,7 @@ struct BackendConfig {
   PriorModel prior =
       PriorModel::kPublished;  ///< once the IMU is initialized; before and without one published
   bool covariance = false;     ///< compute the covariance of the newest state with each frame
+  bool bias_steps = false;     ///< follow steps of the biases, which their random walk does not allow for
   bool estimate_time_offset = true;
   TimeOffsetModel time_offset_model = TimeOffsetModel::kBearing;
   double time_offset_sigma_s = 0.01;  ///< prior standard deviation around the calibrated value
@@ -188,6 +192,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("gravity", config.gravity);
   field("prior", config.prior);
   field("covariance", config.covariance);
+  field("bias_steps", config.bias_steps);
   field("estimate_time_offset", config.estimate_time_offset);
   field("time_offset_model", config.time_offset_model);
   field("time_offset_sigma_s", config.time_offset_sigma_s, 1e-6, 1.0);

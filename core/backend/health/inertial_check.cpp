@@ -3,20 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
-#include "core/imu/preintegration.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr double kMinInterval_s = 0.05;
 constexpr double kHistory_s = 0.2;
-constexpr double kMaxAccelError = 3.0;  // [m/s^2]
-constexpr double kMaxGyroError = 0.1;   // [rad/s]
-constexpr double kSigmas = 4.0;
 constexpr int kAgreeingFrames = 6;
 constexpr double kSettling_s = 0.5;
+constexpr double kAfterGap_s = 0.5;
+constexpr double kAfterChange_s = 0.3;
+constexpr double kMinChangeSeverity = 0.4;
 
 }  // namespace
 
@@ -27,50 +24,32 @@ std::optional<std::size_t> InertialCheck::pose_before(Timestamp t) const {
   return std::nullopt;
 }
 
-/// Largest ratio of an error to its limit.
-std::optional<double> InertialCheck::severity(const VisualPose& pose, const NavState& state,
-                                              const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
+/// Of the error over the last two intervals.
+std::optional<InertialError> InertialCheck::error_at(const VisualPose& pose, const NavState& state,
+                                                     const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
   const std::optional<std::size_t> middle = pose_before(pose.t);
   if (!middle) return std::nullopt;
   const VisualPose& B = poses_[*middle];
   const std::optional<std::size_t> first = pose_before(B.t);
   if (!first) return std::nullopt;
-  const VisualPose& A = poses_[*first];
-  Preintegration ab({}, state.gyro_bias, state.accel_bias, std::move(first_samples_));
-  Preintegration bc({}, state.gyro_bias, state.accel_bias, std::move(second_samples_));
-  ab.integrate(imu.samples_up_to(A.t, B.t));
-  bc.integrate(imu.samples_up_to(B.t, pose.t));
-  const double T1 = ab.duration_s(), T2 = bc.duration_s();
-  const Eigen::Vector3d dp1 = ab.delta_p(state.gyro_bias, state.accel_bias);
-  const Eigen::Vector3d dv1 = ab.delta_v(state.gyro_bias, state.accel_bias);
-  const Eigen::Vector3d dp2 = bc.delta_p(state.gyro_bias, state.accel_bias);
-  const Eigen::Vector3d v_1 =
-      (B.T_w_b.p - A.T_w_b.p) / T1 + 0.5 * T1 * gravity_w + A.T_w_b.q * Eigen::Vector3d(dv1 - dp1 / T1);
-  const Eigen::Vector3d v_2 =
-      (pose.T_w_b.p - B.T_w_b.p) / T2 - 0.5 * T2 * gravity_w - B.T_w_b.q * Eigen::Vector3d(dp2 / T2);
-  const double T = T1 + T2;
-  const Eigen::Quaterniond q_C = A.T_w_b.q * ab.delta_q(state.gyro_bias) * bc.delta_q(state.gyro_bias);
-  const double sigma_m = std::max({A.sigma_m, B.sigma_m, pose.sigma_m});
-  const double sigma_rad = std::max(A.sigma_rad, pose.sigma_rad);
-  const double accel_sigma = 2.0 * sigma_m * std::sqrt(2.0 / (T1 * T1) + 2.0 / (T2 * T2)) / T;
-  const double gyro_sigma = sigma_rad * std::sqrt(2.0) / T;
-  first_samples_ = ab.release_samples();
-  second_samples_ = bc.release_samples();
-  if (T1 <= 0.0 || T2 <= 0.0) return std::nullopt;
-  return std::max((v_1 - v_2).norm() * 2.0 / T / (kMaxAccelError + kSigmas * accel_sigma),
-                  q_C.angularDistance(pose.T_w_b.q) / T / (kMaxGyroError + kSigmas * gyro_sigma));
+  return comparison_.compare({.A = poses_[*first], .B = B, .C = pose}, state, gravity_w, imu);
 }
 
 bool InertialCheck::update(const VisualPose& pose, const NavState& state, const Eigen::Vector3d& gravity_w,
                            ImuBuffer& imu) {
   if (resume_at_ && pose.t < *resume_at_) return consistent_;
-  const std::optional<double> ratio = severity(pose, state, gravity_w, imu);
+  const std::optional<InertialError> error = error_at(pose, state, gravity_w, imu);
   std::erase_if(poses_, [&](const VisualPose& old) { return seconds_between(old.t, pose.t) > kHistory_s; });
   poses_.push_back(pose);
-  if (!ratio) return consistent_;
-  agreeing_frames_ = *ratio < 0.5 ? agreeing_frames_ + 1 : 0;
-  if (!(*ratio <= 1.0)) consistent_ = false;
-  if (agreeing_frames_ >= kAgreeingFrames) consistent_ = true;
+  if (!error) return consistent_;
+  const double severity = error->severity();
+  agreeing_frames_ = severity < 0.5 ? agreeing_frames_ + 1 : 0;
+  if (severity > kMinChangeSeverity && error->is_explained()) changed_at_ = pose.t;
+  const bool changed = changed_at_ && seconds_between(*changed_at_, pose.t) < kAfterChange_s;
+  const bool was_missing = missing_at_ && seconds_between(*missing_at_, pose.t) < kAfterGap_s;
+  const bool has_reason = changed || was_missing || !std::isfinite(severity);
+  if (!(severity <= 1.0) && has_reason) consistent_ = false;
+  if (agreeing_frames_ >= kAgreeingFrames && !held_) consistent_ = true;
   return consistent_;
 }
 
@@ -79,9 +58,16 @@ void InertialCheck::interrupt(Timestamp t) {
   resume_at_ = after(t, kSettling_s);
 }
 
+void InertialCheck::contradict() {
+  consistent_ = false;
+  agreeing_frames_ = 0;
+}
+
 void InertialCheck::reset() {
   resume_at_.reset();
+  changed_at_.reset();
   poses_.clear();
+  held_ = false;
   consistent_ = true;
   agreeing_frames_ = 0;
 }

@@ -10,6 +10,9 @@ namespace {
 constexpr double kUnreliableGyro = 1.0;    // [rad/s/sqrt(Hz)]
 constexpr double kUnreliableAccel = 20.0;  // [m/s^2/sqrt(Hz)]
 constexpr int kSaturatedSamples = 4;
+constexpr int kPlateauSamples = 8;
+constexpr double kPlateau_s = 0.03;
+constexpr double kRounding = 1e-12;
 
 /// Whether one axis is at the limit for some samples, while the others vary.
 template <class Vector>
@@ -33,6 +36,28 @@ ImuNoise unreliable_noise(const ImuNoise& noise) {
           .accel_walk = noise.accel_walk};
 }
 
+/// Interpolated samples at the ends of an interval have rounding errors.
+bool SampleInspector::has_plateau(std::span<const ImuSample> samples) {
+  bool found = false;
+  for (const ImuSample& sample : samples) {
+    for (std::size_t i = 0; i < plateaus_.size(); ++i) {
+      const auto axis = static_cast<Eigen::Index>(i % 3);
+      const Eigen::Vector3d& values = i < 3 ? sample.gyro_b : sample.accel_b;
+      const Eigen::Vector3d& last = i < 3 ? last_gyro_ : last_accel_;
+      Plateau& plateau = plateaus_[i];
+      if (!(std::abs(values[axis] - plateau.value) <= kRounding * std::abs(plateau.value)))
+        plateau = {.value = values[axis], .begin = sample.t};
+      ++plateau.samples;
+      plateau.others_vary |= plateau.samples > 1 && (values - last).norm() > 1e-6;
+      found |= plateau.samples >= kPlateauSamples && plateau.value != 0.0 && plateau.others_vary &&
+               seconds_between(plateau.begin, sample.t) >= kPlateau_s;
+    }
+    last_gyro_ = sample.gyro_b;
+    last_accel_ = sample.accel_b;
+  }
+  return found;
+}
+
 StatusReason SampleInspector::inspect(std::span<const ImuSample> samples, double max_gap_s) {
   for (const ImuSample& sample : samples) {
     largest_gyro_ = std::max(largest_gyro_, sample.gyro_b.cwiseAbs().maxCoeff());
@@ -44,8 +69,8 @@ StatusReason SampleInspector::inspect(std::span<const ImuSample> samples, double
   }
   const auto gyro = [](const ImuSample& sample) -> const Eigen::Vector3d& { return sample.gyro_b; };
   const auto accel = [](const ImuSample& sample) -> const Eigen::Vector3d& { return sample.accel_b; };
-  const bool saturated =
-      is_saturated(samples, largest_gyro_, gyro) || is_saturated(samples, largest_accel_, accel);
+  const bool saturated = has_plateau(samples) || is_saturated(samples, largest_gyro_, gyro) ||
+                         is_saturated(samples, largest_accel_, accel);
   return saturated ? StatusReason::kImuSaturated : StatusReason::kNone;
 }
 

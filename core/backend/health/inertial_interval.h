@@ -2,6 +2,7 @@
 /// Inertial data between two frames, with a noise that covers missing and wrong samples.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "core/imu/preintegration.h"
@@ -17,14 +18,27 @@ namespace stillpoint {
 class SampleInspector {
  public:
   /// A gap is longer than `max_gap_s`. Saturation: in four successive samples, one axis of a sensor has
-  /// exactly the largest magnitude of the run, while another axis varies.
+  /// exactly the largest magnitude of the run, while another axis varies; or in 30 ms and eight samples
+  /// exactly the same value.
   /// @param samples of the next interval, sorted by time; fewer than two are a gap
   /// @return kNone, kImuGap or kImuSaturated
   [[nodiscard]] StatusReason inspect(std::span<const ImuSample> samples, double max_gap_s);
 
  private:
-  double largest_gyro_ = 0.0;   ///< magnitude of a component [rad/s]
-  double largest_accel_ = 0.0;  ///< same [m/s^2]
+  /// Successive samples with the same value of one axis.
+  struct Plateau {
+    double value = 0.0;
+    Timestamp begin;
+    int samples = 0;
+    bool others_vary = false;
+  };
+  [[nodiscard]] bool has_plateau(std::span<const ImuSample> samples);
+
+  Eigen::Vector3d last_gyro_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last_accel_ = Eigen::Vector3d::Zero();
+  std::array<Plateau, 6> plateaus_;  ///< of the axes of gyroscope and accelerometer
+  double largest_gyro_ = 0.0;        ///< magnitude of a component [rad/s]
+  double largest_accel_ = 0.0;       ///< same [m/s^2]
 };
 
 /// Samples of a motion with constant velocity, in place of missing ones.

@@ -19,6 +19,9 @@ struct PointObservation {
   Eigen::Vector2d bearing;  ///< normalized image plane
 };
 
+/// Inlier threshold of camera localization by the window or the map.
+inline constexpr double kLocalizationInlier_px = 5.0;
+
 struct CameraPoseOptions {
   double inlier_threshold = 0.01;  ///< bearing error [normalized image plane]
   int iterations = 60;             ///< RANSAC hypotheses

@@ -114,8 +114,9 @@ void OptimizationStage::apply_semantic_mask(const TrackedFrame& frame, const Det
 
 /// Sec. III-E at the predicted pose, which requires inertial data.
 void OptimizationStage::check_motion_before_solve() {
-  if (!config_.moving_consistency || !config_.gate_before_solve || !estimator_.has_inertial_prediction())
-    return;
+  if (!config_.moving_consistency || !config_.gate_before_solve) return;
+  estimator_.check_prediction();
+  if (!estimator_.has_inertial_prediction()) return;
   const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition, Kind::kPart);
   residuals_ = gate_on_prediction(update_view(), std::move(residuals_));
   apply_labels(recognition_.gate(residuals_));

@@ -69,13 +69,24 @@ struct FaultyRun {
   }
 };
 
-/// Frames at 30 Hz from 0.1 s on; the samples of a frame end 20 ms after it, as in the runners.
-inline FaultyRun run_with_faults(const FaultyScenario& scenario) {
-  ImuConfig imu_config;
-  imu_config.enabled = scenario.uses_imu;
+/// The sensors of a scenario.
+inline Rig rig_of(const FaultyScenario& scenario) {
   Rig rig = SimulatedMotion::rig();
   rig.imu_noise = scenario.motion.imu_noise;
-  Estimator estimator(scenario.backend, imu_config, rig, 1);
+  return rig;
+}
+
+inline ImuConfig imu_config_of(const FaultyScenario& scenario) {
+  ImuConfig config;
+  config.enabled = scenario.uses_imu;
+  return config;
+}
+
+/// Frames at 30 Hz from 0.1 s on; the samples of a frame end 20 ms after it, as in the runners.
+/// @param odometry has `add_imu`
+/// @param process  from a frame to its OdometryUpdate, by that odometry
+template <class Odometry, class Process>
+FaultyRun run_with_faults(const FaultyScenario& scenario, Odometry& odometry, const Process& process) {
   std::vector<ImuSample> imu = scenario.motion.imu(scenario.seconds + 0.5, scenario.imu_rate_hz);
   if (scenario.change_imu) scenario.change_imu(imu);
   std::size_t next = 0;
@@ -83,10 +94,10 @@ inline FaultyRun run_with_faults(const FaultyScenario& scenario) {
   FaultyRun run;
   for (int i = 0; i < static_cast<int>(30.0 * scenario.seconds); ++i) {
     const double t = 0.1 + i / 30.0;
-    for (; next < imu.size() && to_seconds(imu[next].t) < t + 0.02; ++next) estimator.add_imu(imu[next]);
+    for (; next < imu.size() && to_seconds(imu[next].t) < t + 0.02; ++next) odometry.add_imu(imu[next]);
     TrackedFrame frame = scenario.motion.frame(i, t);
     if (scenario.change_frame) scenario.change_frame(frame);
-    const OdometryUpdate& update = process_frame(estimator, frame);
+    const OdometryUpdate& update = process(frame);
     const Pose truth = SimulatedMotion::state(t + scenario.motion.time_offset_s).T_w_b;
     if (!T_first && is_located(update.status)) {
       T_first = update.state.T_w_b;
@@ -99,6 +110,14 @@ inline FaultyRun run_with_faults(const FaultyScenario& scenario) {
     run.frames.push_back({.t = t, .update = update, .error_m = error_m});
   }
   return run;
+}
+
+/// Same by the estimator alone.
+inline FaultyRun run_with_faults(const FaultyScenario& scenario) {
+  Estimator estimator(scenario.backend, imu_config_of(scenario), rig_of(scenario), 1);
+  return run_with_faults(scenario, estimator, [&](const TrackedFrame& frame) -> const OdometryUpdate& {
+    return process_frame(estimator, frame);
+  });
 }
 
 /// No features in [begin, end) s. Afterwards the tracks have new ids, unless they are recognized again.

@@ -220,6 +220,39 @@ TEST(EstimatorFaults, AStraightLineAcrossAGapOfAShakingImuIsNotBelieved) {
   EXPECT_LT(run.worst_error_m(0.0, kEnd_s), 0.03);
 }
 
+TEST(EstimatorFaults, StepsOfTheBiasesAreFollowed) {
+  for (const bool of_gyro : {true, false}) {
+    FaultyScenario scenario;
+    scenario.change_imu = [&](std::vector<ImuSample>& samples) {
+      for (ImuSample& sample : samples) {
+        if (to_seconds(sample.t) < kBegin_s) continue;
+        (of_gyro ? sample.gyro_b : sample.accel_b).array() += of_gyro ? 0.02 : 0.5;
+      }
+    };
+    EXPECT_GT(run_with_faults(scenario).worst_error_m(0.0, kEnd_s), of_gyro ? 0.015 : 0.05);
+    scenario.backend.bias_steps = true;
+    const FaultyRun run = run_with_faults(scenario);
+    EXPECT_LT(run.worst_error_m(0.0, kEnd_s), of_gyro ? 0.015 : 0.03);
+    const NavState& last = run.frames.back().update.state;
+    EXPECT_LT((last.gyro_bias - Eigen::Vector3d::Constant(of_gyro ? 0.04 : 0.02)).norm(), 0.005);
+    EXPECT_LT((last.accel_bias - Eigen::Vector3d::Constant(of_gyro ? 0.05 : 0.55)).norm(), 0.1);
+  }
+}
+
+TEST(EstimatorFaults, DepthWhoseScaleChangesIsNotUsed) {
+  for (const bool uses_imu : {true, false}) {
+    FaultyScenario scenario;
+    scenario.uses_imu = uses_imu;
+    scenario.change_frame = [](TrackedFrame& frame) {
+      if (to_seconds(frame.t) < kBegin_s || to_seconds(frame.t) >= 8.0) return;
+      for (TrackedFeature& feature : frame.features) feature.depth *= 0.85;
+    };
+    EXPECT_GT(run_with_faults(scenario).worst_error_m(0.0, kEnd_s), 0.03);
+    scenario.backend.depth.max_scale_error = 0.04;
+    EXPECT_LT(run_with_faults(scenario).worst_error_m(0.0, kEnd_s), 0.02);
+  }
+}
+
 TEST(EstimatorFaults, AWrongTimeOffsetLosesNoPose) {
   FaultyScenario scenario;
   scenario.motion.time_offset_s = 0.1;
