@@ -6,7 +6,7 @@
 namespace stillpoint {
 namespace {
 
-void check(const SensorInput& input) {
+void require_order_of_arrivals(const SensorInput& input) {
   const FrameArrival* before = nullptr;
   for (const FrameArrival& arrival : input.arrivals) {
     const bool exists = arrival.index < input.frame_times.size();
@@ -22,7 +22,7 @@ void check(const SensorInput& input) {
 }  // namespace
 
 ArrivalOrder::ArrivalOrder(const SensorInput& input) {
-  check(input);
+  require_order_of_arrivals(input);
   if (input.arrivals.empty()) {
     for (std::size_t i = 0; i < input.frame_times.size(); ++i) entering_.push_back({i, input.frame_times[i]});
     return;
