@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The estimator's reaction to failures: relocalization, unreliable inertial data, restart.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/backend/estimator.h"
