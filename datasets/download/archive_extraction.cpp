@@ -30,7 +30,8 @@ class OutputFileDescriptor {
  public:
   explicit OutputFileDescriptor(const fs::path& file)
       : file_(file),
-        descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, kExtractedMode)) {
+        descriptor_(
+            open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, kExtractedMode)) {
     if (descriptor_ < 0) fail();
   }
   ~OutputFileDescriptor() {
