@@ -47,6 +47,8 @@ struct RevisitScore {
 /// Loops and keyframes without a true pose within 50 ms are left out. Time is quadratic in the keyframes.
 /// @param gt true poses T_w_c of the camera, in order of time
 /// @param keyframes times at which places are recognized, in order
+/// @param loops in any order
+/// @param limits all > 0
 [[nodiscard]] RevisitScore score_revisits(const Trajectory& gt, std::span<const Timestamp> keyframes,
                                           std::span<const ReportedLoop> loops,
                                           const RevisitLimits& limits = {});
