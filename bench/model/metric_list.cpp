@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bench/model/cost_metrics.h"
 #include "bench/model/honesty_metrics.h"
 #include "bench/model/imu_rate_metrics.h"
 #include "bench/model/loop_metrics.h"
@@ -12,7 +13,6 @@ namespace stillpoint::bench {
 namespace {
 
 using Value = std::optional<double>;
-constexpr double kMaxQuietLoad = 0.05;  // more disturbs times measurably
 
 const eval::Score* score_of(const Measurements& m) { return m.scored ? &m.scored->score : nullptr; }
 
@@ -45,28 +45,6 @@ Value frames_without_boxes(const Measurements& m) {
   return static_cast<double>(*m.counts->frames_without_boxes);
 }
 
-Value process_wall(const Measurements& m) { return m.process ? Value(m.process->wall_s) : std::nullopt; }
-Value process_cpu(const Measurements& m) { return m.process ? Value(m.process->cpu_s) : std::nullopt; }
-Value peak_memory(const Measurements& m) {
-  return m.process ? Value(static_cast<double>(m.process->peak_memory_bytes) / 1048576.0) : std::nullopt;
-}
-
-Value other_load(const Measurements& m) { return m.other_load; }
-Value quiet(const Measurements& m) {
-  return m.other_load ? Value(*m.other_load < kMaxQuietLoad ? 1.0 : 0.0) : std::nullopt;
-}
-
-Value instructions(const Measurements& m) {
-  if (m.instructions.empty()) return std::nullopt;
-  double sum = 0.0;
-  for (const auto& [stage, executed] : m.instructions)
-    sum += static_cast<double>(executed);  // exact below 2^53
-  return sum;
-}
-Value stage_instructions(const Measurements& m, std::string_view stage) {
-  const auto found = m.instructions.find(stage);
-  return found == m.instructions.end() ? std::nullopt : Value(static_cast<double>(found->second));
-}
 using enum MetricDirection;
 using enum MetricSource;
 using enum MetricFamily;
@@ -76,8 +54,6 @@ constexpr MetricProtocol kRpeProtocol{"rpe", "compat:tum, fixed delta of 1 s, al
 constexpr MetricProtocol kCorrectProtocol{metric_id::kCorrectRate,
                                           "openloris, 1 m, 30 deg, over the time of the ground truth"};
 constexpr MetricProtocol kCoverageProtocol{metric_id::kCoverage, "fraction of frames with a pose"};
-constexpr MetricProtocol kProcessProtocol{"", "wait4"};
-constexpr MetricProtocol kInstructionProtocol{"", "valgrind callgrind, sequential, one thread"};
 
 // Accuracy margin: the smallest practically relevant change. Cost margin: the smallest change that ten to
 // twenty pairs can resolve on a shared machine. Floor: the precision of the ground truth.
@@ -167,86 +143,10 @@ constexpr MetricDescriptor kMetrics[] = {
      .decimals = 2,
      .source = kRun,
      .value = count<&RunCounts::wall_s>},
-    {.id = "process_cpu_s",
-     .label = "CPU time",
-     .title = "CPU time per run",
-     .description = "User and system time of all threads of the process",
-     .unit = "s",
-     .direction = kSmallerIsBetter,
-     .decimals = 2,
-     .source = kProcess,
-     .protocol = kProcessProtocol,
-     .gate = MetricGate{kCost, 0.03, 0.02, false},
-     .value = process_cpu},
-    {.id = "process_wall_s",
-     .label = "process time",
-     .description = "Time from start to end of the process",
-     .unit = "s",
-     .decimals = 2,
-     .source = kProcess,
-     .protocol = kProcessProtocol,
-     .value = process_wall},
-    {.id = "peak_memory_mb",
-     .label = "peak memory",
-     .title = "Peak memory per run",
-     .description = "Largest resident memory of the process",
-     .unit = "MB",
-     .direction = kSmallerIsBetter,
-     .decimals = 1,
-     .source = kProcess,
-     .protocol = kProcessProtocol,
-     .gate = MetricGate{kCost, 0.05, 2.0, false},
-     .value = peak_memory},
-    // Counted, not timed: no measurement noise, but they also change with the compiler or a library update.
-    {.id = "instructions",
-     .label = "instructions",
-     .description = "Executed instructions of all stages of the odometry",
-     .direction = kSmallerIsBetter,
-     .decimals = 0,
-     .source = kInstructions,
-     .protocol = kInstructionProtocol,
-     .gate = MetricGate{kCost, 0.01, 0.0},
-     .value = instructions},
-    {.id = "instructions_tracking",
-     .label = "instructions, tracking",
-     .description = "Executed instructions of feature tracking",
-     .direction = kSmallerIsBetter,
-     .decimals = 0,
-     .source = kInstructions,
-     .protocol = kInstructionProtocol,
-     .gate = MetricGate{kCost, 0.01, 0.0},
-     .value = [](const Measurements& m) { return stage_instructions(m, "tracking"); }},
-    {.id = "instructions_detection",
-     .label = "instructions, detection",
-     .description = "Executed instructions of object detection",
-     .direction = kSmallerIsBetter,
-     .decimals = 0,
-     .source = kInstructions,
-     .protocol = kInstructionProtocol,
-     .gate = MetricGate{kCost, 0.01, 1e6},
-     .value = [](const Measurements& m) { return stage_instructions(m, "detection"); }},
-    {.id = "instructions_optimization",
-     .label = "instructions, optimization",
-     .description = "Executed instructions of state optimization",
-     .direction = kSmallerIsBetter,
-     .decimals = 0,
-     .source = kInstructions,
-     .protocol = kInstructionProtocol,
-     .gate = MetricGate{kCost, 0.01, 0.0},
-     .value = [](const Measurements& m) { return stage_instructions(m, "optimization"); }},
-    {.id = metric_id::kOtherLoad,
-     .label = "other load",
-     .description = "Fraction of the CPU time of the machine that other processes used during the run",
-     .source = kMachine,
-     .protocol = {"", "/proc/stat"},
-     .value = other_load},
-    {.id = metric_id::kQuiet,
-     .label = "quiet",
-     .description = "1 if other processes used less than 5 % of the CPU during the run, else 0",
-     .decimals = 0,
-     .source = kMachine,
-     .protocol = {"", "other_load below 0.05"},
-     .value = quiet},
+};
+
+/// Computed by evaluation protocols, or from stored runs.
+constexpr MetricDescriptor kDerivedMetrics[] = {
     {.id = metric_id::kAteRotation,
      .label = "ATE, rotation",
      .description = "Root mean square rotation between estimated and true orientations after alignment",
@@ -291,7 +191,8 @@ constexpr auto joined(const MetricDescriptor (&... lists)[kSizes]) {
   ((end = std::ranges::copy(lists, end).out), ...);
   return all;
 }
-constexpr auto kAllMetrics = joined(kMetrics, kImuRateMetrics, kHonestyMetrics, kLoopMetrics);
+constexpr auto kAllMetrics =
+    joined(kMetrics, kCostMetrics, kDerivedMetrics, kImuRateMetrics, kHonestyMetrics, kLoopMetrics);
 
 }  // namespace
 
