@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint stats`: selection of runs, number of values, and missing intervals.
+#include <fstream>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -90,6 +92,23 @@ TEST_F(StatsCommand, AblationWithoutABaseListsTheVariants) {
   fill(2, "variants = [\"vo\", \"wo\"]\n");
   expect_rejected(stats({"ablation"}), {"--base", "ablation_base", "vo, wo"});
   expect_rejected(stats({"ablation", "--base", "full"}), {"--base", "\"full\"", "vo, wo"});
+}
+
+TEST_F(StatsCommand, FindsTheRunsOfAFaultPlanFileByItsName) {
+  const std::string text =
+      "variants = [\"vo\"]\nfaults = [\"blank:start=1,duration=1\"]\nexpected = [\"survive\"]\n"
+      "[rendered]\nsequences = [\"market\"]\n";
+  std::ofstream(folder_.path() / "my_faults.toml") << text;
+  bench::StoreWriter writer(file_);
+  const bench::RunIdentity identity{.variant = "vo", .sequence = "market + blank:start=1,duration=1"};
+  static_cast<void>(writer.acquire(identity));
+  writer.finish(identity,
+                {.metrics = {{"false_confidence", "", "", 0.0}, {"error_after_recovery_m", "", "m", 0.005}}});
+  writer.record_plan(
+      {.name = "my_faults", .title = "", .text = text, .run_keys = {bench::run_key(identity)}});
+  const ProgramResult result = stats({"faults", "--plan", (folder_.path() / "my_faults.toml").string()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("survive, 0.005 m, 0.0 %"), std::string::npos) << result.out;
 }
 
 TEST_F(StatsCommand, RejectsAMetricThatNoRunHas) {

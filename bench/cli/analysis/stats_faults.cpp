@@ -138,6 +138,7 @@ int stats_faults(const StatsArguments& arguments) {
   StatsArguments chosen = arguments;
   if (chosen.plan.empty()) chosen.plan = "faults";
   const BenchPlan plan = load_plan(chosen.plan);
+  chosen.plan = plan.name;  // runs are stored under it, also those of a plan file
   if (plan.expected.empty()) throw InputError(plan.path, "has no key \"expected\"");
   const Store store(chosen.store);
   const RunSelection selection = chosen_runs(store, chosen);
