@@ -7,6 +7,7 @@
 #include "core/backend/estimator.h"
 #include "core/backend/failure_detection.h"
 #include "core/backend/window/landmark_tracks.h"
+#include "core/geometry/covariance.h"
 #include "core/imu/zero_velocity.h"
 
 namespace stillpoint {

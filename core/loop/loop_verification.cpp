@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
 #include "core/loop/feature_matching.h"
 #include "core/loop/relative_pose_estimation.h"
@@ -55,11 +56,6 @@ double min_spread(const std::vector<PointPair>& pairs, const std::vector<int>& i
     match.emplace_back(pair.p_m.hnormalized());
   }
   return std::min(spread_of(query), spread_of(match));
-}
-
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
 }
 
 /// Covariance of A T B, given that of T, with A = T_bm_cm and B = T_cq_bq:

@@ -1,38 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/health/vision_assessment.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kMinInliers = 8;
-constexpr double kMinInlierRatio = 0.3;
+constexpr double kMinVisualInlierRatio = 0.3;
 constexpr double kMinInertialInlierRatio = 0.1;
 constexpr int kFewInliers = 15;
 constexpr double kWeak_m = 0.1;
 constexpr double kWeak_rad = 0.05;
-constexpr double kInlierSigmas = 5.0;
-constexpr double kMinDepth = 0.05;  // [m]
+constexpr double kMaxBearingError_sigmas = 5.0;
+constexpr double kMinPointDepth = 0.05;  // [m]
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 }  // namespace
 
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
-}
-
 bool VisionAssessment::is_located(bool inertial) const {
   return inliers >= kMinInliers &&
-         inliers >= (inertial ? kMinInertialInlierRatio : kMinInlierRatio) * features;
+         inliers >= (inertial ? kMinInertialInlierRatio : kMinVisualInlierRatio) * features;
 }
 
 bool VisionAssessment::has_few_features() const { return inliers < kFewInliers; }
@@ -46,9 +38,9 @@ VisionAssessment assess_vision(const std::vector<PointObservation>& points, cons
   Matrix6 H = Matrix6::Zero();
   for (const PointObservation& point : points) {
     const Eigen::Vector3d p_c = T_c_w * point.p_w;
-    if (p_c.z() < kMinDepth) continue;
+    if (p_c.z() < kMinPointDepth) continue;
     const Eigen::Vector2d projected = p_c.hnormalized();
-    if (!((projected - point.bearing).norm() <= kInlierSigmas * bearing_sigma)) continue;
+    if (!((projected - point.bearing).norm() <= kMaxBearingError_sigmas * bearing_sigma)) continue;
     ++assessment.inliers;
     Eigen::Matrix<double, 2, 3> J_point;
     J_point << 1.0, 0.0, -projected.x(), 0.0, 1.0, -projected.y();

@@ -26,9 +26,6 @@ struct VisionAssessment {
   [[nodiscard]] bool has_weak_geometry() const;
 };
 
-/// Standard deviation along the least certain direction: the root of the largest eigenvalue.
-[[nodiscard]] double largest_sigma(const Eigen::Matrix3d& covariance);
-
 /// @param bearing_sigma standard deviation s of a bearing; inliers are within five times of it
 [[nodiscard]] VisionAssessment assess_vision(const std::vector<PointObservation>& points, const Pose& T_w_c,
                                              double bearing_sigma);
