@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/pipeline/frame_order.h"
 #include "core/pipeline/imu_queue.h"
 #include "core/pipeline/loop_worker.h"
@@ -106,15 +105,10 @@ const DynamicReport& Odometry::dynamic() const { return impl_->optimization.dyna
 
 const ImuHealth& Odometry::imu_health() const { return impl_->optimization.imu_health(); }
 
-void Odometry::use_map(const KeyframeMap& map) {
-  if (!impl_->loop)
-    throw InputError("loop.enabled", "is off, but a map requires loop closure; set it to true");
-  impl_->loop->use_map(map);
-}
+void Odometry::use_map(const KeyframeMap& map) { stillpoint::use_map(impl_->loop.get(), map); }
 
 std::optional<LoopReport> Odometry::finish_loops() {
-  if (!impl_->loop) return std::nullopt;
-  return impl_->loop->finish(impl_->optimization);
+  return stillpoint::finish_loops(impl_->loop.get(), impl_->optimization);
 }
 
 }  // namespace stillpoint

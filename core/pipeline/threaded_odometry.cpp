@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/bounded_channel.h"
-#include "core/base/error.h"
 #include "core/base/thread_name.h"
 #include "core/pipeline/frame_order.h"
 #include "core/pipeline/imu_inbox.h"
@@ -239,15 +238,10 @@ std::optional<NavState> ThreadedOdometry::state_at(Timestamp t) const {
   return impl_->predictor.state_at(t);
 }
 
-void ThreadedOdometry::use_map(const KeyframeMap& map) {
-  if (!impl_->loop)
-    throw InputError("loop.enabled", "is off, but a map requires loop closure; set it to true");
-  impl_->loop->use_map(map);
-}
+void ThreadedOdometry::use_map(const KeyframeMap& map) { stillpoint::use_map(impl_->loop.get(), map); }
 
 std::optional<LoopReport> ThreadedOdometry::finish_loops() {
-  if (!impl_->loop) return std::nullopt;
-  return impl_->loop->finish(impl_->optimization);
+  return stillpoint::finish_loops(impl_->loop.get(), impl_->optimization);
 }
 
 std::size_t ThreadedOdometry::dropped_frames() const { return impl_->dropped; }
