@@ -8,9 +8,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180.0;
-constexpr double kMinSigma_m = 0.002;
-constexpr double kMinSigma_rad = 0.02 * kRadians;
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kMinStepSigma_m = 0.002;
+constexpr double kMinStepSigma_rad = 0.02 * kDegree;
 constexpr double kUnknown_m = 1000.0;
 constexpr double kUnknown_rad = 10.0;
 
@@ -47,10 +47,10 @@ Matrix6 OdometryDrift::step_covariance(std::size_t k) const {
   }
   const double distance_m = (T_w_b_[k].p - T_w_b_[k - 1].p).norm();
   const double elapsed_s = seconds_between(times_[k - 1], times_[k]);
-  const double position = squared(config_.drift_m_per_sqrt_m) * distance_m + squared(kMinSigma_m);
-  const double rotation = squared(kRadians * config_.drift_deg_per_sqrt_m) * distance_m +
-                          squared(kRadians * config_.drift_deg_per_sqrt_s) * elapsed_s +
-                          squared(kMinSigma_rad);
+  const double position = squared(config_.drift_m_per_sqrt_m) * distance_m + squared(kMinStepSigma_m);
+  const double rotation = squared(kDegree * config_.drift_deg_per_sqrt_m) * distance_m +
+                          squared(kDegree * config_.drift_deg_per_sqrt_s) * elapsed_s +
+                          squared(kMinStepSigma_rad);
   Matrix6 covariance = Matrix6::Zero();
   covariance.diagonal() << position, position, position, rotation, rotation, rotation;
   return covariance;

@@ -45,8 +45,8 @@ function(stillpoint_precompile target set)
 endfunction()
 
 # stillpoint_group(TARGET [EXCEPT regex]): compiles the sources of TARGET in groups of one folder. Left out are sources
-# with results that must not depend on it (inlining between sources lets the compiler fuse other products, which changes
-# last bits) and sources that use the same names for helpers, as readers of formats and tests do.
+# with results that would depend on it: inlining between sources can let the compiler fuse other products, which changes
+# last bits. Names of helpers must differ within a folder.
 option(STILLPOINT_UNITY "compile sources in groups: half the time from scratch, longer after a change of one file" OFF)
 function(stillpoint_group target)
   cmake_parse_arguments(ARG "" "EXCEPT" "" ${ARGN})

@@ -4,17 +4,17 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kMinInterval_s = 0.05;
+constexpr double kMinViewInterval_s = 0.05;
 constexpr double kMinAccelChange = 1.5;  // [m/s^2]
 constexpr double kMinGyroChange = 0.05;  // [rad/s]
 
-constexpr double kMaxAccelError = 1.5;  // [m/s^2]
-constexpr double kMaxGyroError = 0.05;  // [rad/s]
+constexpr double kMaxStepAccelError = 1.5;  // [m/s^2]
+constexpr double kMaxStepGyroError = 0.05;  // [rad/s]
 
 constexpr double kBiasInterval_s = 0.24;
 constexpr double kMinAccelStep = 0.15;  // [m/s^2]
 constexpr double kMinGyroStep = 0.01;   // [rad/s]
-constexpr double kSigmas = 2.0;
+constexpr double kStepSigmas = 2.0;
 
 /// Between the three views at these indices.
 struct Views {
@@ -62,12 +62,12 @@ bool StepCheck::data_changed(std::size_t first, std::size_t middle) const {
 
 bool StepCheck::is_wrong(const Window& window, ImuBuffer& imu) {
   static_cast<void>(views_.add(window));
-  const std::optional<Views> chosen = spaced(views_, kMinInterval_s);
+  const std::optional<Views> chosen = spaced(views_, kMinViewInterval_s);
   if (!chosen || !data_changed(chosen->first, chosen->middle)) return false;
   const std::optional<InertialError> error = error_between(*chosen, views_, comparison_, window, imu);
   return error && error->is_explained() &&
-         (error->accel_w.norm() > kMaxAccelError + kSigmas * error->accel_sigma ||
-          error->gyro_b.norm() > kMaxGyroError + kSigmas * error->gyro_sigma);
+         (error->accel_w.norm() > kMaxStepAccelError + kStepSigmas * error->accel_sigma ||
+          error->gyro_b.norm() > kMaxStepGyroError + kStepSigmas * error->gyro_sigma);
 }
 
 std::optional<InertialError> BiasCheck::error_at(const Window& window, ImuBuffer& imu) {
@@ -78,8 +78,8 @@ std::optional<InertialError> BiasCheck::error_at(const Window& window, ImuBuffer
 }
 
 bool BiasCheck::is_step(const InertialError& error) {
-  return error.accel_w.norm() > kMinAccelStep + kSigmas * error.accel_sigma ||
-         error.gyro_b.norm() > kMinGyroStep + kSigmas * error.gyro_sigma;
+  return error.accel_w.norm() > kMinAccelStep + kStepSigmas * error.accel_sigma ||
+         error.gyro_b.norm() > kMinGyroStep + kStepSigmas * error.gyro_sigma;
 }
 
 }  // namespace stillpoint
