@@ -99,7 +99,9 @@ class ArchiveFetch {
       return true;
     }
     const datasets::TransferControl step = control_.step("extracting " + file.filename().string());
-    totals_ = datasets::extract_archive(file, staging_, options_.limits, step, totals_);
+    datasets::ExtractionLimits limits = options_.limits;
+    limits.before = totals_;
+    totals_ = datasets::extract_archive(file, staging_, limits, step);
     return !totals_.stopped;
   }
 

@@ -68,13 +68,12 @@ fs::path without_archive_extension(fs::path file) {
 /// Extraction of one archive file, without the archives in it.
 class Extraction {
  public:
-  Extraction(const fs::path& archive, const ExtractionLimits& limits, const TransferControl& control,
-             ExtractionTotals totals)
+  Extraction(const fs::path& archive, const ExtractionLimits& limits, const TransferControl& control)
       : archive_(archive),
         limits_(limits),
         control_(control),
-        totals_(totals),
-        before_(totals.bytes),
+        totals_(limits.before),
+        before_(limits.before.bytes),
         archive_bytes_(fs::file_size(archive)),
         reader_(archive),
         block_(kBlockBytes) {}
@@ -157,34 +156,39 @@ class Extraction {
   std::vector<fs::path> nested_;
 };
 
-/// @param depth number of archives around this one
-ExtractionTotals extract(const fs::path& archive, const fs::path& folder, const ExtractionLimits& limits,
-                         const TransferControl& control, ExtractionTotals totals, int depth) {
+/// An archive, and the folder for its content.
+struct ArchiveToExtract {
+  fs::path archive;
+  fs::path folder;
+  int depth = 0;  ///< number of archives around this one
+};
+
+ExtractionTotals extract(const ArchiveToExtract& source, ExtractionLimits limits,
+                         const TransferControl& control) {
   std::vector<fs::path> nested;
   {
-    Extraction extraction(archive, limits, control, totals);
-    extraction.extract_to(folder, depth == 0 ? fs::path() : folder.filename());
-    totals = extraction.totals();
+    Extraction extraction(source.archive, limits, control);
+    extraction.extract_to(source.folder, source.depth == 0 ? fs::path() : source.folder.filename());
+    limits.before = extraction.totals();
     nested = extraction.nested();
   }
   for (const fs::path& file : nested) {
-    if (totals.stopped) return totals;
-    if (depth >= limits.max_depth)
+    if (limits.before.stopped) break;
+    if (source.depth >= limits.max_depth)
       throw InputError(
           file.string(),
           fmt::format("is an archive in more than {} archives; extract it by hand", limits.max_depth));
-    totals = extract(file, without_archive_extension(file), limits, control, totals, depth + 1);
-    if (!totals.stopped) fs::remove(file);
+    limits.before = extract({file, without_archive_extension(file), source.depth + 1}, limits, control);
+    if (!limits.before.stopped) fs::remove(file);
   }
-  return totals;
+  return limits.before;
 }
 
 }  // namespace
 
 ExtractionTotals extract_archive(const fs::path& archive, const fs::path& folder,
-                                 const ExtractionLimits& limits, const TransferControl& control,
-                                 ExtractionTotals totals) {
-  return extract(archive, folder, limits, control, totals, 0);
+                                 const ExtractionLimits& limits, const TransferControl& control) {
+  return extract({archive, folder}, limits, control);
 }
 
 }  // namespace stillpoint::datasets

@@ -41,7 +41,7 @@ TransferResult transfer_with_retries(const std::string& url, PartialFile& part,
                                      const DownloadRequest& request, const TransferControl& control) {
   for (int attempt = 1;; ++attempt) {
     const std::uint64_t before = part.state().url == url ? part.bytes() : 0;
-    TransferResult result = transfer(url, part, request.bytes, request.settings, control);
+    TransferResult result = transfer({url, request.bytes}, part, request.settings, control);
     if (result.outcome != TransferOutcome::kTemporary) return result;
     if (part.bytes() > before) attempt = 1;
     if (attempt >= request.attempts) return result;
@@ -79,7 +79,7 @@ std::string published_md5(const std::string& url, const DownloadRequest& request
     PartialFile part(file);
     part.restart({});
     const TransferControl quiet{.progress = {}, .stop = control.stop, .report = {}};
-    if (transfer(url + request.md5_suffix, part, 0, request.settings, quiet).outcome ==
+    if (transfer({.url = url + request.md5_suffix}, part, request.settings, quiet).outcome ==
         TransferOutcome::kComplete) {
       std::ifstream input(part.path());
       text.assign(std::istreambuf_iterator<char>(input), {});

@@ -214,20 +214,20 @@ TransferResult result_of(const Attempt& attempt, CURLcode code) {
 
 }  // namespace
 
-TransferResult transfer(const std::string& url, PartialFile& part, std::uint64_t expected_bytes,
-                        const TransferSettings& settings, const TransferControl& control) {
+TransferResult transfer(const TransferSource& source, PartialFile& part, const TransferSettings& settings,
+                        const TransferControl& control) {
   const Handle curl(curl_easy_init(), curl_easy_cleanup);
   STILLPOINT_CHECK(curl != nullptr);
-  if (part.state().url != url) part.restart({});
+  if (part.state().url != source.url) part.restart({});
   Attempt attempt{.handle = curl.get(),
-                  .url = url,
+                  .url = source.url,
                   .part = part,
-                  .expected_bytes = expected_bytes,
+                  .expected_bytes = source.expected_bytes,
                   .control = control,
                   .headers = {},
                   .rejection = {},
                   .error = {}};
-  curl_easy_setopt(curl.get(), CURLOPT_URL, url.c_str());
+  curl_easy_setopt(curl.get(), CURLOPT_URL, source.url.c_str());
   set_limits(curl.get(), settings);
   set_callbacks(curl.get(), attempt);
   const std::string range = fmt::format("{}-", part.bytes());

@@ -19,6 +19,12 @@ struct TransferSettings {
   int max_redirects = 10;
 };
 
+/// What is transferred.
+struct TransferSource {
+  std::string url;
+  std::uint64_t expected_bytes = 0;  ///< content of another size is rejected; 0 = any
+};
+
 enum class TransferOutcome {
   kComplete,
   kStopped,    ///< by `TransferControl::stop`; the next attempt continues
@@ -34,9 +40,8 @@ struct TransferResult {
 
 /// Continues at the end of the partial file if the server confirms by status 206, Content-Range, ETag,
 /// Last-Modified and size that the content is the same; begins again otherwise.
-/// @param expected_bytes rejects content of another size; 0 = any
 /// @throws InputError if the disk is full, before the transfer where the size is known
-[[nodiscard]] TransferResult transfer(const std::string& url, PartialFile& part, std::uint64_t expected_bytes,
+[[nodiscard]] TransferResult transfer(const TransferSource& source, PartialFile& part,
                                       const TransferSettings& settings, const TransferControl& control);
 
 }  // namespace stillpoint::datasets

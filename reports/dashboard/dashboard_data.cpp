@@ -97,6 +97,19 @@ Json shift_json(const bench::LevelShift& shift) {
   return json;
 }
 
+Json drifts_json(const std::vector<bench::MetricDrift>& found) {
+  Json drifts = Json::array();
+  for (const bench::MetricDrift& drift : found) {
+    drifts.push_back({{"series", drift.series},
+                      {"first", drift.first},
+                      {"last", drift.last},
+                      {"from", rounded(drift.start)},
+                      {"to", rounded(drift.end)},
+                      {"worse", drift.worse}});
+  }
+  return drifts;
+}
+
 }  // namespace
 
 std::string commit_file(const bench::Commit& commit) {
@@ -136,15 +149,6 @@ std::string dashboard_data(const bench::CommitHistory& history, const bench::His
   }
   Json shifts = Json::array();
   for (const bench::LevelShift& shift : changes.shifts) shifts.push_back(shift_json(shift));
-  Json drifts = Json::array();
-  for (const bench::MetricDrift& drift : changes.drifts) {
-    drifts.push_back({{"series", drift.series},
-                      {"first", drift.first},
-                      {"last", drift.last},
-                      {"from", rounded(drift.start)},
-                      {"to", rounded(drift.end)},
-                      {"worse", drift.worse}});
-  }
   const Json json = {{"commits", commits_json(history.commits)},
                      {"plans", plans.all()},
                      {"hosts", hosts.all()},
@@ -153,7 +157,7 @@ std::string dashboard_data(const bench::CommitHistory& history, const bench::His
                      {"tooltips", tooltips_json(history)},
                      {"series", all_series},
                      {"shifts", shifts},
-                     {"drifts", drifts}};
+                     {"drifts", drifts_json(changes.drifts)}};
   return json.dump();
 }
 

@@ -186,6 +186,16 @@ std::vector<Command> run_subcommands(const std::shared_ptr<StoreArguments>& argu
                        arguments, extract)};
 }
 
+Command salvage_command(const std::shared_ptr<StoreArguments>& arguments) {
+  return {
+      .name = "salvage",
+      .summary = "Copy what is readable of a damaged store into a new one; exit code 1 if something is lost",
+      .example = "store salvage damaged.sqlite new.sqlite",
+      .options = {{"STORE", "The damaged store; it is not changed", &arguments->store},
+                  {"OUT", "The new store; must not exist", &arguments->file}},
+      .action = [arguments] { return salvage(*arguments); }};
+}
+
 /// Subcommands that check, clean, merge and transfer whole stores.
 std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArguments>& arguments) {
   const Option without_blobs{"--numbers",
@@ -222,12 +232,7 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
                         .example = "store import runs.json",
                         .options = {{"FILE", "Input file", &arguments->file}}},
                        arguments, import_from),
-      {.name = "salvage",
-       .summary = "Copy what is readable of a damaged store into a new one; exit code 1 if something is lost",
-       .example = "store salvage damaged.sqlite new.sqlite",
-       .options = {{"STORE", "The damaged store; it is not changed", &arguments->store},
-                   {"OUT", "The new store; must not exist", &arguments->file}},
-       .action = [arguments] { return salvage(*arguments); }}};
+      salvage_command(arguments)};
 }
 
 }  // namespace

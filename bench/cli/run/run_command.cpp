@@ -245,51 +245,53 @@ int run(const RunArguments& arguments) {
   return code;
 }
 
+std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) {
+  return {{"SEQ", "Sequence folder, bag or preset name", &arguments->sequence},
+          {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+          {"--variant", "Overlays joined by +; may be repeated, each --variant is a separate run",
+           &arguments->variants},
+          {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+          {"--fault",
+           "Inject a sensor fault: KIND or KIND:key=value,... with the keys start, duration, every [s], "
+           "amount, seed; may be repeated; kinds: `stillpoint data faults`",
+           &arguments->faults},
+          {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
+          {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed, {1e-3, 1e3}},
+          {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
+          {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
+           &arguments->format},
+          {"--topics", kTopicsHelp, &arguments->topics},
+          {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
+          {"--dump",
+           "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
+           "processing time of each frame); may be repeated",
+           &arguments->dumps},
+          {"--passes",
+           "Number of passes, alternately forward and backward, without IMU data [1]",
+           &arguments->passes,
+           {1, 1000}},
+          {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
+          {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
+          {"--map", "Map of an earlier run, in which this one is located", &arguments->map.load},
+          {"--save-map", "Write a map for later runs into this file", &arguments->map.save},
+          {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
+          {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
+          {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
+          {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
+          {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
+          {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
+           &arguments->deterministic_counts}};
+}
+
 }  // namespace
 
 Command run_command() {
   const auto arguments = std::make_shared<RunArguments>();
-  return {
-      .name = "run",
-      .summary = "Run the odometry on one sequence; write trajectory, scores and manifest",
-      .example = "run walking_xyz --variant wo_circular_mask --out /tmp/run",
-      .options =
-          {{"SEQ", "Sequence folder, bag or preset name", &arguments->sequence},
-           {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
-           {"--variant", "Overlays joined by +; may be repeated, each --variant is a separate run",
-            &arguments->variants},
-           {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
-           {"--fault",
-            "Inject a sensor fault: KIND or KIND:key=value,... with the keys start, duration, every [s], "
-            "amount, seed; may be repeated; kinds: `stillpoint data faults`",
-            &arguments->faults},
-           {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
-           {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed, {1e-3, 1e3}},
-           {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
-           {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
-            &arguments->format},
-           {"--topics", kTopicsHelp, &arguments->topics},
-           {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
-           {"--dump",
-            "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
-            "processing time of each frame); may be repeated",
-            &arguments->dumps},
-           {"--passes",
-            "Number of passes, alternately forward and backward, without IMU data [1]",
-            &arguments->passes,
-            {1, 1000}},
-           {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
-           {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
-           {"--map", "Map of an earlier run, in which this one is located", &arguments->map.load},
-           {"--save-map", "Write a map for later runs into this file", &arguments->map.save},
-           {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
-           {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
-           {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
-           {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
-           {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
-           {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
-            &arguments->deterministic_counts}},
-      .action = [arguments] { return run(*arguments); }};
+  return {.name = "run",
+          .summary = "Run the odometry on one sequence; write trajectory, scores and manifest",
+          .example = "run walking_xyz --variant wo_circular_mask --out /tmp/run",
+          .options = run_options(arguments),
+          .action = [arguments] { return run(*arguments); }};
 }
 
 }  // namespace stillpoint::bench
