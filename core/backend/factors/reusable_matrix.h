@@ -2,6 +2,7 @@
 /// A dynamic matrix that keeps its allocation when its size changes.
 #pragma once
 
+#include <algorithm>
 #include <new>
 #include <utility>
 #include <vector>
@@ -17,7 +18,7 @@ class ReusableMatrix : public Eigen::Map<Plain> {
  public:
   using Base = Eigen::Map<Plain>;
 
-  ReusableMatrix() : Base(nullptr, 0, Plain::ColsAtCompileTime == 1 ? 1 : 0) {}
+  ReusableMatrix() : Base(nullptr, 0, std::max<int>(Plain::ColsAtCompileTime, 0)) {}
   template <class Expression>
   ReusableMatrix(const Eigen::MatrixBase<Expression>& other) : ReusableMatrix() {  // NOLINT: as Eigen's own
     *this = other;

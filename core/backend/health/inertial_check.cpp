@@ -32,7 +32,7 @@ std::optional<InertialError> InertialCheck::error_at(const VisualPose& pose, con
   const VisualPose& B = poses_[*middle];
   const std::optional<std::size_t> first = pose_before(B.t);
   if (!first) return std::nullopt;
-  return comparison_.compare({.A = poses_[*first], .B = B, .C = pose}, state, gravity_w, imu);
+  return inertial_error({.A = poses_[*first], .B = B, .C = pose}, state, gravity_w, imu);
 }
 
 bool InertialCheck::update(const VisualPose& pose, const NavState& state, const Eigen::Vector3d& gravity_w,

@@ -10,7 +10,7 @@
 namespace stillpoint {
 
 /// Compares the inertial data between three visual poses, each at least 50 ms apart, with these poses, see
-/// `InertialComparison`. The data is inconsistent if the severity is above 1 and the change of the data
+/// `inertial_error`. The data is inconsistent if the severity is above 1 and the change of the data
 /// explained an error in the last 0.3 s, or samples were missing in the last 0.5 s; and consistent again
 /// after six frames with half of that severity. Without such a reason vision is wrong, e.g. because it
 /// follows a person in front of the camera.
@@ -42,7 +42,6 @@ class InertialCheck {
                                                       const Eigen::Vector3d& gravity_w, ImuBuffer& imu);
 
   std::vector<VisualPose> poses_;  ///< of the last 0.2 s
-  InertialComparison comparison_;
   std::optional<Timestamp> resume_at_;
   std::optional<Timestamp> missing_at_;
   std::optional<Timestamp> changed_at_;

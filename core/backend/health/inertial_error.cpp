@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/geometry/so3.h"
-#include "core/imu/preintegration.h"
+#include "core/imu/propagation.h"
 
 namespace stillpoint {
 namespace {
@@ -22,6 +21,15 @@ bool explains(const Eigen::Vector3d& change, const Eigen::Vector3d& error) {
          change.norm() >= kMinChangeRatio * error.norm();
 }
 
+/// The motion due to the specific force alone: T_w_b = (dq, dp), v_w = dv. Absent without samples.
+std::optional<NavState> preintegrated(Timestamp begin, Timestamp end, const NavState& biases,
+                                      ImuBuffer& imu) {
+  const std::vector<ImuSample>& samples = imu.samples_up_to(begin, end);
+  if (samples.size() < 2) return std::nullopt;
+  const NavState start{.t = begin, .gyro_bias = biases.gyro_bias, .accel_bias = biases.accel_bias};
+  return propagate(start, samples, Eigen::Vector3d::Zero());
+}
+
 }  // namespace
 
 bool InertialError::is_explained() const {
@@ -33,29 +41,23 @@ double InertialError::severity() const {
                   gyro_b.norm() / (kMaxGyroError + kSigmas * gyro_sigma));
 }
 
-std::optional<InertialError> InertialComparison::compare(const Poses& poses, const NavState& state,
-                                                         const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
+std::optional<InertialError> inertial_error(const VisualPoses& poses, const NavState& state,
+                                            const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
   const auto& [A, B, C] = poses;
-  Preintegration ab({}, state.gyro_bias, state.accel_bias, std::move(first_samples_));
-  Preintegration bc({}, state.gyro_bias, state.accel_bias, std::move(second_samples_));
-  ab.integrate(imu.samples_up_to(A.t, B.t));
-  bc.integrate(imu.samples_up_to(B.t, C.t));
-  const double T1 = ab.duration_s(), T2 = bc.duration_s();
-  const Eigen::Vector3d dp1 = ab.delta_p(state.gyro_bias, state.accel_bias);
-  const Eigen::Vector3d dv1 = ab.delta_v(state.gyro_bias, state.accel_bias);
-  const Eigen::Vector3d dp2 = bc.delta_p(state.gyro_bias, state.accel_bias);
-  const Eigen::Vector3d dv2 = bc.delta_v(state.gyro_bias, state.accel_bias);
+  const std::optional<NavState> ab = preintegrated(A.t, B.t, state, imu);
+  const std::optional<NavState> bc = preintegrated(B.t, C.t, state, imu);
+  if (!ab || !bc) return std::nullopt;
+  const double T1 = seconds_between(A.t, B.t), T2 = seconds_between(B.t, C.t);
+  const auto& [dq1, dp1] = ab->T_w_b;
+  const auto& [dq2, dp2] = bc->T_w_b;
+  const Eigen::Vector3d &dv1 = ab->v_w, &dv2 = bc->v_w;
   const Eigen::Vector3d v_1 =
       (B.T_w_b.p - A.T_w_b.p) / T1 + 0.5 * T1 * gravity_w + A.T_w_b.q * Eigen::Vector3d(dv1 - dp1 / T1);
   const Eigen::Vector3d v_2 =
       (C.T_w_b.p - B.T_w_b.p) / T2 - 0.5 * T2 * gravity_w - B.T_w_b.q * Eigen::Vector3d(dp2 / T2);
   const double T = T1 + T2;
-  const Eigen::Quaterniond dq1 = ab.delta_q(state.gyro_bias), dq2 = bc.delta_q(state.gyro_bias);
   const double sigma_m = std::max({A.sigma_m, B.sigma_m, C.sigma_m});
   const double sigma_rad = std::max(A.sigma_rad, C.sigma_rad);
-  first_samples_ = ab.release_samples();
-  second_samples_ = bc.release_samples();
-  if (T1 <= 0.0 || T2 <= 0.0) return std::nullopt;
   return InertialError{
       .accel_w = (v_1 - v_2) * 2.0 / T,
       .gyro_b = log_so3(C.T_w_b.q.conjugate() * (A.T_w_b.q * dq1 * dq2)) / T,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "core/imu/imu_buffer.h"
 #include "core/types/nav_state.h"
@@ -40,6 +39,13 @@ struct InertialError {
   [[nodiscard]] bool is_explained() const;
 };
 
+/// Three poses in temporal order.
+struct VisualPoses {
+  const VisualPose& A;
+  const VisualPose& B;
+  const VisualPose& C;
+};
+
 /// Compares the preintegrated motion between three visual poses A, B, C with these poses; independent of the
 /// estimated velocity. With the intervals T1, T2, gravity g, and the preintegrated dp1, dv1 (A to B) and dp2
 /// (B to C), the velocity at B follows from either interval:
@@ -49,22 +55,9 @@ struct InertialError {
 ///
 /// A constant error a of the accelerometer gives v_1 - v_2 = a (T1 + T2) / 2; an error w of the gyroscope
 /// turns R_C by w (T1 + T2).
-class InertialComparison {
- public:
-  struct Poses {
-    const VisualPose& A;
-    const VisualPose& B;
-    const VisualPose& C;
-  };
-
-  /// @param state biases
-  /// @return nullopt if samples are missing
-  [[nodiscard]] std::optional<InertialError> compare(const Poses& poses, const NavState& state,
-                                                     const Eigen::Vector3d& gravity_w, ImuBuffer& imu);
-
- private:
-  std::vector<ImuSample> first_samples_;  ///< buffers of `compare`
-  std::vector<ImuSample> second_samples_;
-};
+/// @param state biases
+/// @return nullopt if samples are missing
+[[nodiscard]] std::optional<InertialError> inertial_error(const VisualPoses& poses, const NavState& state,
+                                                          const Eigen::Vector3d& gravity_w, ImuBuffer& imu);
 
 }  // namespace stillpoint

@@ -33,15 +33,14 @@ std::optional<Views> spaced(const FeatureViews& views, double interval_s) {
   return Views{*first, *middle, last};
 }
 
-std::optional<InertialError> error_between(const Views& chosen, FeatureViews& views,
-                                           InertialComparison& comparison, const Window& window,
+std::optional<InertialError> error_between(const Views& chosen, FeatureViews& views, const Window& window,
                                            ImuBuffer& imu) {
   const VisualPose A{.t = views[chosen.first].t, .T_w_b = views[chosen.first].T_w_b};
   const std::optional<VisualPose> B = views.pose_after(A, chosen.first, chosen.middle, window.T_b_c);
   if (!B) return std::nullopt;
   const std::optional<VisualPose> C = views.pose_after(*B, chosen.middle, chosen.last, window.T_b_c);
   if (!C) return std::nullopt;
-  return comparison.compare({.A = A, .B = *B, .C = *C}, window.frames.back().state, window.gravity_w, imu);
+  return inertial_error({.A = A, .B = *B, .C = *C}, window.frames.back().state, window.gravity_w, imu);
 }
 
 }  // namespace
@@ -64,7 +63,7 @@ bool StepCheck::is_wrong(const Window& window, ImuBuffer& imu) {
   static_cast<void>(views_.add(window));
   const std::optional<Views> chosen = spaced(views_, kMinViewInterval_s);
   if (!chosen || !data_changed(chosen->first, chosen->middle)) return false;
-  const std::optional<InertialError> error = error_between(*chosen, views_, comparison_, window, imu);
+  const std::optional<InertialError> error = error_between(*chosen, views_, window, imu);
   return error && error->is_explained() &&
          (error->accel_w.norm() > kMaxStepAccelError + kStepSigmas * error->accel_sigma ||
           error->gyro_b.norm() > kMaxStepGyroError + kStepSigmas * error->gyro_sigma);
@@ -74,7 +73,7 @@ std::optional<InertialError> BiasCheck::error_at(const Window& window, ImuBuffer
   if (!views_.add(window)) return std::nullopt;
   const std::optional<Views> chosen = spaced(views_, kBiasInterval_s);
   if (!chosen) return std::nullopt;
-  return error_between(*chosen, views_, comparison_, window, imu);
+  return error_between(*chosen, views_, window, imu);
 }
 
 bool BiasCheck::is_step(const InertialError& error) {

@@ -25,7 +25,6 @@ class StepCheck {
   [[nodiscard]] bool data_changed(std::size_t first, std::size_t middle) const;
 
   FeatureViews views_;
-  InertialComparison comparison_;
 };
 
 /// Recognizes a step of the biases, by the data of half a second, after labels were derived from it. Half of
@@ -48,7 +47,6 @@ class BiasCheck {
 
  private:
   FeatureViews views_;
-  InertialComparison comparison_;
 };
 
 }  // namespace stillpoint

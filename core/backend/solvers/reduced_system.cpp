@@ -9,6 +9,8 @@
 namespace stillpoint {
 namespace {
 
+constexpr int kMaxBlock = 9;  // columns of the largest block: velocity and biases
+
 /// The blocks whose Jacobians ImuLinearization::jacobian stacks.
 std::array<BlockRef, 4> imu_blocks(int frame) {
   return {{{BlockKind::kPose, frame - 1},
@@ -96,7 +98,8 @@ void ReducedSystem::reset(const ReducedLayout& new_layout) {
   layout = new_layout;
   const int size = layout.size();
   H.resize(size, size);
-  H.setZero();
+  // The lower triangle, and all of the blocks on the diagonal.
+  for (int row = 0; row < size; ++row) H.row(row).head(std::min(row + kMaxBlock, size)).setZero();
   g.resize(size);
   g.setZero();
   first.resize(static_cast<std::size_t>(size / kTile));

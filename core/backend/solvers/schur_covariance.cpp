@@ -19,14 +19,15 @@ std::optional<StateCovariance> SchurSolver::newest_covariance(const Window& wind
   prior_blocks_ = newest_blocks(window, config, std::move(prior_blocks_));
   columns_.clear();
   for (const BlockRef block : prior_blocks_) append_columns(block);
-  unit_columns_.resize(layout_.size(), static_cast<Eigen::Index>(columns_.size()));
+  unit_columns_.resize(layout_.size(), ForwardColumns::ColsAtCompileTime);
   unit_columns_.setZero();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     unit_columns_(columns_[i], static_cast<Eigen::Index>(i)) = 1.0;
   }
   const int begin = *std::min_element(columns_.begin(), columns_.end()) / kTile * kTile;
   skyline_forward(system_.first, S_, begin, unit_columns_);
-  const NewestMatrix covariance = unit_columns_.transpose().lazyProduct(unit_columns_);
+  const auto used = unit_columns_.leftCols(static_cast<Eigen::Index>(columns_.size()));
+  const NewestMatrix covariance = used.transpose().lazyProduct(used);
   if (!covariance.allFinite()) return std::nullopt;
   return state_covariance(prior_blocks_, covariance);
 }

@@ -90,7 +90,7 @@ class SchurSolver final : public WindowSolver {
   std::vector<int> columns_;         // marginalization: marginalized columns, then remaining ones
   std::vector<int> dense_;           // skyline profile of a dense matrix
   std::vector<BlockRef> prior_blocks_;
-  ReusableMatrix<RowMajorMatrix> unit_columns_;  // covariance: E_I, then L^-1 E_I
+  ReusableMatrix<ForwardColumns> unit_columns_;  // covariance: E_I, then L^-1 E_I
   ReusableVector diagonal_;
 };
 

@@ -104,12 +104,23 @@ void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajor
 }
 
 void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor, int begin,
-                     Eigen::Ref<RowMajorMatrix> X) {
+                     Eigen::Map<ForwardColumns> X) {
+  constexpr std::size_t kGroups = ForwardColumns::ColsAtCompileTime / kLanes;
   for (int row = begin; row < static_cast<int>(X.rows()); ++row) {
-    for (int k = std::max(begin, first[static_cast<std::size_t>(row / kTile)]); k < row; ++k) {
-      X.row(row) -= factor(row, k) * X.row(k);
+    std::array<Lanes, kGroups> sums;  // stay in registers
+    double* const to = X.row(row).data();
+    for (std::size_t group = 0; group < kGroups; ++group) {
+      sums[group] = Eigen::Map<const Lanes>(to + kLanes * group);
     }
-    X.row(row) *= factor(row, row);
+    for (int k = std::max(begin, first[static_cast<std::size_t>(row / kTile)]); k < row; ++k) {
+      const double* const from = X.row(k).data();
+      for (std::size_t group = 0; group < kGroups; ++group) {
+        sums[group] -= factor(row, k) * Eigen::Map<const Lanes>(from + kLanes * group);
+      }
+    }
+    for (std::size_t group = 0; group < kGroups; ++group) {
+      Eigen::Map<Lanes>(to + kLanes * group) = sums[group] * factor(row, row);
+    }
   }
 }
 

@@ -25,9 +25,12 @@ inline constexpr int kTile = 3;
 void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor,
                      Eigen::Ref<Eigen::VectorXd> x);
 
-/// X <- L^-1 X for several columns. Rows of X before `begin` are zero; a multiple of kTile.
+/// Several right-hand sides; unused columns are zero.
+using ForwardColumns = Eigen::Matrix<double, Eigen::Dynamic, 28, Eigen::RowMajor>;
+
+/// X <- L^-1 X. Rows of X before `begin` are zero; a multiple of kTile.
 void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor, int begin,
-                     Eigen::Ref<RowMajorMatrix> X);
+                     Eigen::Map<ForwardColumns> X);
 
 /// x <- S^-1 x = L^-T L^-1 x.
 void skyline_solve(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor,
