@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-constexpr double kPi = std::numbers::pi;
 constexpr double kWallDistance_m = 2.0;
 constexpr double kFloorDistance_m = 0.9;
 constexpr double kCeilingDistance_m = 1.3;
@@ -54,13 +53,13 @@ void furnish_floor(const SceneContext& context, const Room& room, std::span<cons
   constexpr double kSpacing_m = 2.1;
   for (double x = room.low.x() + 1.6; x < room.high.x() - 1.4; x += kSpacing_m) {
     for (double y = room.low.y() + 1.6; y < room.high.y() - 1.4; y += kSpacing_m) {
-      const double yaw = 0.5 * kPi * random.index(4);
+      const double yaw = 0.5 * std::numbers::pi * random.index(4);
       const Vector3d position(x, y, 0.0);
       const Vector3d center = position + Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * Vector3d(0.0, -0.4, 0.0);
       if (random.chance(0.7) && is_free(path, center.head<2>(), 0.9, kFurnitureHeight_m)) {
         add_desk(context, {position, yaw});
       } else if (is_free(path, position.head<2>(), 0.4, 1.0)) {
-        add_chair(context, {position, random.uniform(0.0, 2.0 * kPi)});
+        add_chair(context, {position, random.uniform(0.0, 2.0 * std::numbers::pi)});
       }
     }
   }

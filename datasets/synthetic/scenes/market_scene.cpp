@@ -8,7 +8,6 @@ namespace stillpoint::synth {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPi = std::numbers::pi;
 constexpr double kShelfLength_m = 9.0;
 constexpr double kAisle_m = 3.2;  // distance between shelf centers
 
@@ -25,7 +24,7 @@ void add_signs_and_stacks(const SceneContext& context) {
   const auto& [builder, palette, random] = context;
   for (int row = -2; row <= 1; ++row) {
     for (const double x : {-10.5, -3.5, 3.5, 10.5}) {
-      builder.set_frame({x, (row + 0.5) * kAisle_m, 2.6}, 0.5 * kPi);
+      builder.set_frame({x, (row + 0.5) * kAisle_m, 2.6}, 0.5 * std::numbers::pi);
       const int sign = pick_random(palette.posters, random);
       builder.add_textured_quad({{-0.5, -0.01, 0.5}, {1.0, 0.0, 0.0}, {0.0, 0.0, -0.5}}, sign);
       builder.add_textured_quad({{0.5, 0.01, 0.5}, {-1.0, 0.0, 0.0}, {0.0, 0.0, -0.5}}, sign);

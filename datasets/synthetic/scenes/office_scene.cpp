@@ -8,20 +8,19 @@ namespace stillpoint::synth {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPi = std::numbers::pi;
 
 /// Chairs at the desks, in the order in which seated people occupy them.
 const std::vector<Placement> kSeats{
-    {{-0.62, -0.98, 0.0}, kPi + 0.3}, {{0.75, 1.2, 0.0}, -0.2}, {{-0.8, 1.25, 0.0}, 0.35}};
+    {{-0.62, -0.98, 0.0}, std::numbers::pi + 0.3}, {{0.75, 1.2, 0.0}, -0.2}, {{-0.8, 1.25, 0.0}, 0.35}};
 
 void add_workplaces(const SceneContext& context) {
   const auto& [builder, palette, random] = context;
   for (const double x : {-0.82, 0.82}) {
     add_desk(context, {{x, 0.0, 0.0}, 0.0});
-    add_desk(context, {{x, 0.04, 0.0}, kPi});
+    add_desk(context, {{x, 0.04, 0.0}, std::numbers::pi});
     add_chair(context, {{x + random.uniform(-0.2, 0.2), 1.25, 0.0}, random.uniform(-0.5, 0.5)});
   }
-  add_chair(context, {{-1.1, -1.15, 0.0}, kPi + random.uniform(-0.6, 0.6)});
+  add_chair(context, {{-1.1, -1.15, 0.0}, std::numbers::pi + random.uniform(-0.6, 0.6)});
   builder.set_frame(Vector3d::Zero(), 0.0);
   builder.add_box({-1.62, 0.0, 0.5}, {1.62, 0.04, 1.02}, palette.fabrics[1], 0.5);
 }
@@ -42,14 +41,14 @@ void add_furniture_at_walls(const SceneContext& context, const Room& room) {
   const double north = room.high.y() - 0.32;
   add_bookshelf(context, {{-3.4, north, 0.0}, 0.0}, 1.2);
   add_bookshelf(context, {{1.6, north, 0.0}, 0.0}, 1.6);
-  add_bookshelf(context, {{room.low.x() + 0.32, -1.2, 0.0}, kPi / 2.0}, 1.6);
+  add_bookshelf(context, {{room.low.x() + 0.32, -1.2, 0.0}, std::numbers::pi / 2.0}, 1.6);
   add_carton_pile(context, {{-1.4, room.high.y() - 0.45, 0.0}, 0.2});
   add_carton_pile(context, {{3.3, -2.9, 0.0}, -0.3});
   add_carton_pile(context, {{3.5, 2.2, 0.0}, 0.5});
   add_bin(builder, {{2.0, 0.5, 0.0}, 0.0}, palette);
   add_bin(builder, {{-2.1, -0.6, 0.0}, 0.0}, palette);
-  add_desk(context, {{3.98, -0.2, 0.0}, -kPi / 2.0});
-  add_chair(context, {{2.85, -0.2, 0.0}, kPi / 2.0 + 0.3});
+  add_desk(context, {{3.98, -0.2, 0.0}, -std::numbers::pi / 2.0});
+  add_chair(context, {{2.85, -0.2, 0.0}, std::numbers::pi / 2.0 + 0.3});
 }
 
 /// Furniture of the large office: at its walls, at least 0.9 m from the robot's route.
@@ -58,12 +57,12 @@ void add_furniture_of_large_office(const SceneContext& context, const Room& room
   const Palette& palette = context.palette;
   const double north = room.high.y() - 0.32, south = room.low.y() + 0.32;
   for (const double x : {-4.6, -1.0, 2.4}) add_bookshelf(context, {{x, north, 0.0}, 0.0}, 1.6);
-  for (const double x : {4.2, 1.4}) add_bookshelf(context, {{x, south, 0.0}, kPi}, 1.3);
-  add_bookshelf(context, {{room.low.x() + 0.32, -1.2, 0.0}, kPi / 2.0}, 1.6);
+  for (const double x : {4.2, 1.4}) add_bookshelf(context, {{x, south, 0.0}, std::numbers::pi}, 1.3);
+  add_bookshelf(context, {{room.low.x() + 0.32, -1.2, 0.0}, std::numbers::pi / 2.0}, 1.6);
   for (const double x : {-2.4, 1.4}) add_carton_pile(context, {{x, room.high.y() - 0.45, 0.0}, 0.2});
   add_carton_pile(context, {{-3.4, room.low.y() + 0.5, 0.0}, -0.3});
-  add_desk(context, {{room.high.x() - 0.02, -0.2, 0.0}, -kPi / 2.0});
-  add_desk(context, {{room.high.x() - 0.02, 2.2, 0.0}, -kPi / 2.0});
+  add_desk(context, {{room.high.x() - 0.02, -0.2, 0.0}, -std::numbers::pi / 2.0});
+  add_desk(context, {{room.high.x() - 0.02, 2.2, 0.0}, -std::numbers::pi / 2.0});
   add_bin(builder, {{1.85, 0.5, 0.0}, 0.0}, palette);
   add_bin(builder, {{-1.9, -0.6, 0.0}, 0.0}, palette);
 }

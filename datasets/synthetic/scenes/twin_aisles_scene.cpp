@@ -7,7 +7,7 @@
 namespace stillpoint::synth {
 namespace {
 
-constexpr double kAisle_m = 3.2;                      // distance between the two shelves of an aisle
+constexpr double kAisleWidth_m = 3.2;                 // distance between the two shelves of an aisle
 constexpr double kFirstLane_m = -0.5 * kTwinShift_m;  // y of the first aisle
 constexpr double kEnd_m = 2.4;                        // floor between the shelves' ends and the walls
 
@@ -36,7 +36,7 @@ void add_aisles(const SceneContext& context, double aisle_length) {
   World& world = context.builder.world();
   const std::size_t first = world.quads.size();
   for (const double side : {-0.5, 0.5}) {
-    add_market_shelf(context, {{0.0, kFirstLane_m + side * kAisle_m, 0.0}, 0.0}, aisle_length);
+    add_market_shelf(context, {{0.0, kFirstLane_m + side * kAisleWidth_m, 0.0}, 0.0}, aisle_length);
   }
   repeat_in_second_aisle(world, first);
 }
