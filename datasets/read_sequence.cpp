@@ -147,6 +147,7 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   content.info.true_boxes = read_optional_boxes(companion_file(root, "true_boxes.txt"), faults);
   override_rig(content, options.rig_file);
   check_rig(content);
+  if (&format == &kBagFormat) content = with_metric_accelerations(std::move(content));
   check_overlap(content.info, faults);
   return content;
 }

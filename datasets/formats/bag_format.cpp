@@ -156,27 +156,6 @@ void set_cameras(SequenceContent& content, const BagFile& bag, const BagTopics& 
         "\" and \"" + frames.depth + "\"; it is registered as if both were at the same place");
 }
 
-/// Accelerations in g, as in VCU-RVI, are converted to m/s^2. There, their sign is inverted as well: the
-/// specific force of a camera that is held upright points along -y of the camera, not along y.
-void correct_accelerations(SequenceContent& content) {
-  constexpr double kGravity = 9.80665;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double norms = 0.0;
-  for (const ImuSample& sample : content.info.imu) {
-    sum += sample.accel_b;
-    norms += sample.accel_b.norm();
-  }
-  const double mean_norm = norms / static_cast<double>(content.info.imu.size());
-  if (mean_norm < 0.8 || mean_norm > 1.2) return;
-  const Eigen::Vector3d force_c = content.info.rig.T_b_c.R().transpose() * sum;
-  const bool inverted = content.extrinsic_known && force_c.y() > 0.7 * force_c.norm();
-  for (ImuSample& sample : content.info.imu) sample.accel_b *= inverted ? -kGravity : kGravity;
-  content.info.warnings.push_back(
-      "imu: the mean acceleration is " + std::to_string(mean_norm) +
-      ", that is, the unit is g; accelerations are converted to m/s^2" +
-      (inverted ? ", and their sign is inverted, as gravity points up in the images" : ""));
-}
-
 void set_imu(SequenceContent& content, const BagFrames& frames) {
   content.info.rig.has_imu = true;
   const std::optional<Pose> T_b_c = find_transform(frames.links, frames.imu, frames.color);
@@ -184,7 +163,6 @@ void set_imu(SequenceContent& content, const BagFrames& frames) {
   if (T_b_c) content.info.rig.T_b_c = *T_b_c;
   content.info.notes.emplace_back(
       "imu: default noise densities, unless a rig.toml sets [imu] gyro_noise etc.");
-  correct_accelerations(content);
 }
 
 void set_ground_truth(SequenceContent& content, const BagFile& bag, const std::string& topic,
@@ -227,6 +205,27 @@ SequenceContent read_bag_sequence(const std::filesystem::path& path, std::span<c
   content.info.imu = streams.imu;
   if (!streams.imu.empty()) set_imu(content, frames);
   if (!topics.truth.empty()) faults.guard([&] { set_ground_truth(content, *bag, topics.truth, frames); });
+  return content;
+}
+
+SequenceContent with_metric_accelerations(SequenceContent content) {
+  if (content.info.imu.empty()) return content;
+  constexpr double kGravity = 9.80665;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double norms = 0.0;
+  for (const ImuSample& sample : content.info.imu) {
+    sum += sample.accel_b;
+    norms += sample.accel_b.norm();
+  }
+  const double mean_norm = norms / static_cast<double>(content.info.imu.size());
+  if (mean_norm < 0.8 || mean_norm > 1.2) return content;
+  const Eigen::Vector3d force_c = content.info.rig.T_b_c.R().transpose() * sum;
+  const bool inverted = content.extrinsic_known && force_c.y() > 0.7 * force_c.norm();
+  for (ImuSample& sample : content.info.imu) sample.accel_b *= inverted ? -kGravity : kGravity;
+  content.info.warnings.push_back(
+      "imu: the mean acceleration is " + std::to_string(mean_norm) +
+      ", that is, the unit is g; accelerations are converted to m/s^2" +
+      (inverted ? ", and their sign is inverted, as gravity points up in the images" : ""));
   return content;
 }
 

@@ -17,4 +17,9 @@ namespace stillpoint::datasets {
 [[nodiscard]] SequenceContent read_bag_sequence(const std::filesystem::path& path,
                                                 std::span<const std::string> requested, FaultLog& faults);
 
+/// Accelerations in g, as in VCU-RVI, are converted to m/s^2, with a warning. There, their sign is inverted
+/// as well: the specific force of a camera that is held upright points along -y of the camera, not along y.
+/// @param content with its final calibration: a bag without transforms has its extrinsic in a rig.toml
+[[nodiscard]] SequenceContent with_metric_accelerations(SequenceContent content);
+
 }  // namespace stillpoint::datasets
