@@ -10,6 +10,7 @@
 #include "bench/record/sequence_checksum.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
+#include "datasets/sequence_validator.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -18,10 +19,19 @@ namespace fs = std::filesystem;
 using datasets::CatalogueDataset;
 using datasets::CatalogueSequence;
 
-/// Opens the sequence. @return its format
-std::string validated(const CatalogueDataset& dataset, const fs::path& folder) {
-  if (fs::is_regular_file(folder)) return dataset.layout;
-  return datasets::open_sequence(folder)->info().format;
+/// Opens the sequence, and the index of a bag. @return its format
+/// @throws InputError if it cannot be read, and for a bag that ends early
+std::string validated(const InstalledSequence& place, const fs::path& path) {
+  if (!datasets::ends_completely(path)) {
+    throw InputError(
+        datasets::catalogue_name(place.dataset, place.sequence),
+        path.filename().string() +
+            " is not complete: it ends early, so that it is not registered; the file of the host "
+            "is damaged, use another one with --mirror");
+  }
+  // The calibration of a bag may be in a rig.toml that the user has yet to write.
+  if (fs::is_regular_file(path)) return place.dataset.layout;
+  return datasets::open_sequence(path)->info().format;
 }
 
 /// The calibration of the catalogue, for formats without one.
@@ -67,7 +77,7 @@ fs::path extracted_folder(const InstalledSequence& place) {
 std::string install_sequence(const InstalledSequence& place) {
   const auto& [dataset, sequence, staging, folder] = place;
   const fs::path extracted = extracted_folder(place);
-  const std::string format = validated(dataset, extracted);
+  const std::string format = validated(place, extracted);
   const std::string checksum = sequence_checksum(extracted);
   const fs::path target = folder / sequence.folder;
   move_sequence(extracted, target, checksum);

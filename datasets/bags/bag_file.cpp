@@ -83,6 +83,7 @@ void BagFile::add_file(const fs::path& path) {
     message.connection += file.first_connection;
     messages_.push_back({.message = message, .file = static_cast<std::uint32_t>(files_.size())});
   }
+  complete_ &= index.complete;
   for (const std::string& warning : index.warnings) warnings_.push_back(path.string() + ": " + warning);
   files_.push_back(std::move(file));
 }

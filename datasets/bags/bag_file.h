@@ -40,6 +40,10 @@ class BagFile {
   /// Repaired faults, as "FILE: FAULT".
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
+  /// Whether no file ends early; a bag that was recorded, but not closed, is complete if no record is cut
+  /// off.
+  [[nodiscard]] bool is_complete() const { return complete_; }
+
   /// The connection of a message.
   [[nodiscard]] const BagConnection& connection(const MessageReference& reference) const {
     return connections_[reference.message.connection];
@@ -72,6 +76,7 @@ class BagFile {
   std::vector<BagConnection> connections_;
   std::vector<MessageReference> messages_;
   std::vector<std::string> warnings_;
+  bool complete_ = true;
 };
 
 /// The messages in the order of their bytes in the files, so that each chunk is decompressed once.

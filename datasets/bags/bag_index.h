@@ -45,6 +45,7 @@ struct BagIndex {
   std::vector<BagChunk> chunks;  ///< empty for a database
   std::vector<BagMessage> messages;
   std::vector<std::string> warnings;  ///< repaired faults of the file, without its name
+  bool complete = true;               ///< false: the file ends early, or was not closed
 };
 
 }  // namespace stillpoint::datasets

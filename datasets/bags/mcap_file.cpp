@@ -64,6 +64,7 @@ class McapIndexer {
       add(head, position);
       position = data + head.bytes;
     }
+    index_.complete = complete;
     if (!complete)
       index_.warnings.emplace_back(
           "is not complete: it ends without its end mark; the records before are read");

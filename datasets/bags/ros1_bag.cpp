@@ -105,6 +105,7 @@ class Ros1Indexer {
       add(*record);
       position = record->end();
     }
+    truncated_ |= index_position_ >= file.size();  // it may end between two records
     finish();
     return std::move(index_);
   }
@@ -115,6 +116,8 @@ class Ros1Indexer {
       case kBagHeader:
         if (record.fields.contains("encryptor") && !record.fields.at("encryptor").empty())
           throw InputError(place_, "is encrypted; decrypt it with `rosbag decrypt`");
+        if (record.fields.contains("index_pos"))
+          index_position_ = record.number<std::uint64_t>("index_pos", place_);
         break;
       case kChunk:
         finish_chunk();
@@ -223,7 +226,8 @@ class Ros1Indexer {
     finish_chunk();
     find_missing_connections();
     if (truncated_) {
-      index_.warnings.push_back("is not complete: it ends within a record after " +
+      index_.complete = false;
+      index_.warnings.push_back("is not complete: it ends early, after " +
                                 std::to_string(index_.chunks.size()) + " chunks; those are read");
     }
   }
@@ -249,6 +253,7 @@ class Ros1Indexer {
   std::size_t first_of_chunk_ = 0;              ///< index of the first message of the last chunk
   bool indexed_ = true;                         ///< whether index records followed the last chunk
   bool truncated_ = false;
+  std::uint64_t index_position_ = 0;  ///< of the connections at the end; 0 = the bag was not closed
 };
 
 void require_version(const ByteFile& file) {

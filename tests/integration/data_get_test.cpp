@@ -9,6 +9,8 @@
 #include <sys/mount.h>
 #include <unistd.h>
 
+#include "datasets/bags/writing/bag_writer.h"
+#include "datasets/bags/writing/serialize.h"
 #include "tests/support/sequences/dataset_host.h"
 #include "tests/support/sequences/sequence_folders.h"
 #include "tests/support/test_data.h"
@@ -48,6 +50,36 @@ TEST(DataGet, RegistersASequenceThatVerifyAndRunUse) {
   const ProgramResult verified = host.run({"data", "verify", "mini_*"});
   EXPECT_EQ(verified.exit_code, 1);
   EXPECT_NE(verified.out.find("CHANGED"), std::string::npos);
+}
+
+std::string bytes_of_small_bag() {
+  const TemporaryFolder folder;
+  datasets::BagWriter bag(folder.path() / "a.bag", datasets::ChunkCompression::kNone);
+  const std::uint32_t imu = bag.add_connection("/imu", "sensor_msgs/Imu");
+  for (int i = 0; i < 100; ++i) {
+    const Timestamp t{1'000'000'000 + 1'000'000 * i};
+    bag.write(imu, t, serialize(datasets::ImuMessage{.header = {.stamp = t, .frame = "imu"}}, bag.format()));
+  }
+  bag.finish();
+  std::ifstream input(folder.path() / "a.bag", std::ios::binary);
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+TEST(DataGet, ABagThatEndsEarlyIsNotRegistered) {
+  const DatasetHost host;
+  const std::string bag = bytes_of_small_bag();
+  fs::create_directories(host.path() / "host/lab");
+  std::ofstream(host.path() / "host/lab/whole.bag", std::ios::binary) << bag;
+  std::ofstream(host.path() / "host/lab/cut.bag", std::ios::binary) << bag.substr(0, bag.size() / 2);
+  host.add_dataset("lab",
+                   "[[sequences]]\nfiles = [\"{}.bag\"]\nfolder = \"{}.bag\"\n"
+                   "members = [\"whole\", \"cut\"]\n");
+  const ProgramResult whole = host.get({"lab/whole"});
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+  const ProgramResult cut = host.get({"lab/cut"});
+  EXPECT_EQ(cut.exit_code, 2) << cut.out;
+  EXPECT_NE(cut.err.find("cut.bag is not complete"), std::string::npos) << cut.err;
+  EXPECT_EQ(host.registered(), 1U);
 }
 
 TEST(DataGet, ReadsTheArchivesOfAllHosts) {

@@ -104,6 +104,7 @@ TEST(BagContainers, AnInterruptedRos1BagIsReadUpToItsLastCompleteChunk) {
   expect_content(bag, 28);
   ASSERT_EQ(bag.warnings().size(), 1U);
   EXPECT_NE(bag.warnings()[0].find("a.bag: is not complete"), std::string::npos) << bag.warnings()[0];
+  EXPECT_FALSE(bag.is_complete());
 }
 
 TEST(BagContainers, AnInterruptedMcapFileIsReadUpToItsLastCompleteChunk) {
