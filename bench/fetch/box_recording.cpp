@@ -32,6 +32,12 @@ OdometryConfig network_config(const CatalogueDataset& network, const fs::path& r
   return config;
 }
 
+const CatalogueDataset& network_of(const std::vector<CatalogueDataset>& catalogues) {
+  const auto network = std::ranges::find(catalogues, kDetectorLayout, &CatalogueDataset::layout);
+  STILLPOINT_CHECK(network != catalogues.end());
+  return *network;
+}
+
 }  // namespace
 
 std::vector<DetectionSet> detect_boxes(const datasets::SensorStream& stream, ObjectDetector& detector,
@@ -58,15 +64,24 @@ bool fetch_detector(const CatalogueDataset& network, const FetchOptions& options
   });
 }
 
+std::optional<DetectorConfig> downloaded_network(const fs::path& root) {
+  const std::vector<CatalogueDataset> catalogues = load_catalogues();
+  const DetectorConfig detector = network_config(network_of(catalogues), root).detector;
+  for (const std::string& file : {detector.weights, detector.cfg, detector.names}) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) return std::nullopt;
+  }
+  return detector;
+}
+
 bool record_missing_boxes(const InstalledSequence& place, const FetchOptions& options,
                           const FetchControl& control) {
   const fs::path folder = extracted_folder(place);
   if (!fs::is_directory(folder) || fs::exists(folder / "detections.txt")) return true;
   const std::vector<CatalogueDataset> catalogues = load_catalogues();
-  const auto network = std::ranges::find(catalogues, kDetectorLayout, &CatalogueDataset::layout);
-  STILLPOINT_CHECK(network != catalogues.end());
-  if (!fetch_detector(*network, options, control)) return false;
-  const OdometryConfig config = network_config(*network, options.root);
+  const CatalogueDataset& network = network_of(catalogues);
+  if (!fetch_detector(network, options, control)) return false;
+  const OdometryConfig config = network_config(network, options.root);
   const std::unique_ptr<ObjectDetector> detector =
       make_object_detector(config.detector, {.dynamic_classes = config.dynamic.classes});
   const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(folder);

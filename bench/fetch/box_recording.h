@@ -2,7 +2,9 @@
 /// Records the boxes of a detection network beside the images of a sequence.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +38,11 @@ struct DetectionControl {
 /// @throws InputError as `datasets::download`
 [[nodiscard]] bool fetch_detector(const datasets::CatalogueDataset& network, const FetchOptions& options,
                                   const FetchControl& control);
+
+/// The network of the catalogue, if `fetch_detector` has downloaded it.
+/// @param root folder of downloads
+/// @return the default detector with the files of the network; nullopt unless all of them exist
+[[nodiscard]] std::optional<DetectorConfig> downloaded_network(const std::filesystem::path& root);
 
 /// Writes detections.txt of an extracted sequence that has none, with the network of the catalogue, which is
 /// downloaded first. Does nothing for files, i.e. bags.

@@ -55,6 +55,18 @@ TEST(DetectCommand, RequiresANetwork) {
       {"detect", rendered_sequence().string(), "--out", (folder.path() / "detections.txt").string()});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("detector.names"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("data get yolo_fastest/coco"), std::string::npos) << result.err;
+}
+
+TEST(DetectCommand, UsesTheDownloadedNetworkWithoutOptions) {
+  const TemporaryFolder folder;
+  for (const std::string name : {"yolo-fastest-1.1.weights", "yolo-fastest-1.1.cfg", "coco.names"})
+    folder.write("yolo_fastest/downloads/" + name, "person\n");  // not a network: the error names the file
+  const ProgramResult result = run_program(
+      {"detect", rendered_sequence().string(), "--out", (folder.path() / "detections.txt").string()},
+      {.environment = {"STILLPOINT_DATA=" + folder.path().string()}});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("yolo_fastest/downloads/yolo-fastest-1.1"), std::string::npos) << result.err;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "bench/cli/progress.h"
 #include "bench/config/config_file.h"
 #include "bench/fetch/box_recording.h"
+#include "bench/fetch/fetch_sequences.h"
 #include "bench/plan/sequence_argument.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/output_guard.h"
@@ -35,6 +36,21 @@ struct DetectArguments {
   bool force = false;
 };
 
+/// The downloaded network, if neither the options nor the config name one.
+/// @throws InputError if there is none
+OdometryConfig with_downloaded_network(OdometryConfig config) {
+  const std::optional<DetectorConfig> network = downloaded_network(download_root());
+  if (!network)
+    throw InputError(
+        "detector.weights and detector.names",
+        "are not set; pass --weights, --cfg and --names, or download a network: `stillpoint data "
+        "get yolo_fastest/coco`");
+  config.detector.weights = network->weights;
+  config.detector.cfg = network->cfg;
+  config.detector.names = network->names;
+  return config;
+}
+
 /// The config with the detection network of the options.
 OdometryConfig config_of(const DetectArguments& arguments) {
   OdometryConfig config = load_config({arguments.base, "", arguments.settings});
@@ -44,6 +60,8 @@ OdometryConfig config_of(const DetectArguments& arguments) {
   override_with(config.detector.weights, arguments.weights);
   override_with(config.detector.cfg, arguments.cfg);
   override_with(config.detector.names, arguments.names);
+  if (config.detector.weights.empty() && config.detector.cfg.empty() && config.detector.names.empty())
+    config = with_downloaded_network(std::move(config));
   config.detector.kind = DetectorKind::kNetwork;
   return config;
 }
@@ -107,7 +125,8 @@ Command detect_command() {
                   {"--out", "Output file; `run` reads detections.txt of the sequence folder",
                    &arguments->out},
                   {"--force", "Replace an existing file of detections", &arguments->force},
-                  {"--weights", "Network file: Darknet .weights or .onnx [detector.weights]",
+                  {"--weights",
+                   "Network file: Darknet .weights or .onnx [detector.weights, else the downloaded network]",
                    &arguments->weights},
                   {"--cfg", "Darknet network description [detector.cfg]", &arguments->cfg},
                   {"--names", "Class names, one per line [detector.names]", &arguments->names},
