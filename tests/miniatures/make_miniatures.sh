@@ -6,22 +6,32 @@
 #   build/dev/tests/mirror_server OUT/host 8099 &
 #   STILLPOINT_CATALOGUE=OUT/catalogue STILLPOINT_MIRROR=http://127.0.0.1:8099 STILLPOINT_DATA=OUT/data \
 #     STILLPOINT_REGISTRY=OUT/registry.json build/dev/stillpoint reproduce table1 --real --get --accept-licence
+# reproduce_miniatures.sh does all of this. STILLPOINT_RECORDINGS names a folder of recorded motion (default: shared/data
+# beside the checkout); what it contains replaces rendered motion: frame times of fr3 (tum_fr3_times), ground truth of
+# OpenLORIS (openloris/groundtruth), inertial data and ground truth of TUM VI, for VCU-RVI (imu/tum_vi).
 # The images differ from the recordings: the tables test the chain of commands, not the odometry.
 set -euo pipefail
 program="$(realpath "$1")"
 out="$(realpath -m "$2")"
 seconds="${3:-2}"
-datasets="${4:-tum bonn openloris}"
+datasets="${4:-tum bonn openloris vcu_rvi}"
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+recordings="${STILLPOINT_RECORDINGS:-$root/../shared/data}"
 mkdir -p "$out/host" "$out/catalogue" "$out/work"
 seed=0
 
-# render PRESET LAYOUT FOLDER: a sequence of its own seed
+# render PRESET LAYOUT FOLDER [OPTIONS...]: a sequence of its own seed
 render() {
+  local preset="$1" layout="$2" folder="$3" source=rendered
+  shift 3
+  case "$*" in
+    *--times*) source="recorded times" ;;
+    *--trajectory*) source="recorded motion" ;;
+  esac
   seed=$((seed + 1))
-  "$program" data synth "$1" --layout "$2" --seconds "$seconds" --seed "$seed" --width 320 --height 240 --focal 267.5 \
-    --out "$out/work/$3" >/dev/null
-  echo "miniatures: $3"
+  "$program" data synth "$preset" --layout "$layout" --seconds "$seconds" --seed "$seed" --width 160 --height 120 \
+    --out "$out/work/$folder" "$@" >/dev/null
+  echo "miniatures: $folder ($source)"
 }
 
 # embed NAME: the catalogue file of the project with the digests of the archives in OUT/host/NAME
@@ -37,9 +47,11 @@ make_tum() {
   mkdir -p "$out/host/tum/freiburg3"
   for motion in xyz static rpy halfsphere; do
     for people in walking sitting; do
-      local name="rgbd_dataset_freiburg3_${people}_$motion" preset="walking_$motion"
+      local name="rgbd_dataset_freiburg3_${people}_$motion" preset="walking_$motion" options=()
+      local times="$recordings/tum_fr3_times/fr3_${people}_$motion.txt"
       [[ $people == walking ]] || preset+=_empty
-      render "$preset" tum "$name"
+      [[ ! -f $times ]] || options=(--times "$times")
+      render "$preset" tum "$name" --depth-units 5000 "${options[@]}"
       tar -C "$out/work" -czf "$out/host/tum/freiburg3/$name.tgz" "$name"
     done
   done
@@ -47,13 +59,37 @@ make_tum() {
   catalogue tum
 }
 
+# The names of the sequences in the catalogue of the project.
+bonn_names() {
+  sed -n '/^members = \[/,/\]/p' "$root/datasets/catalogue/bonn.toml" | grep -o '"[a-z0-9_]*"' | tr -d '"'
+}
+
 make_bonn() {
   mkdir -p "$out/host/bonn"
-  for name in crowd crowd2 crowd3 person_tracking person_tracking2 synchronous synchronous2; do
-    render walking_halfsphere tum "rgbd_bonn_$name"
+  for name in $(bonn_names); do
+    local preset=walking_halfsphere
+    case "$name" in
+      static*) preset=walking_static_empty ;;
+      *box*) preset=walking_xyz ;;
+    esac
+    render "$preset" tum "rgbd_bonn_$name" --depth-units 5000
+    # The lists of the real archives name images that they do not contain.
+    echo "1700009999.000000 depth/1700009999.000000.png" >>"$out/work/rgbd_bonn_$name/depth.txt"
     (cd "$out/work" && cmake -E tar cf "$out/host/bonn/rgbd_bonn_$name.zip" --format=zip "rgbd_bonn_$name")
   done
   catalogue bonn
+}
+
+# openloris_sequence NAME: along the recorded ground truth of NAME, five seconds after its start, or rendered motion
+openloris_sequence() {
+  local scene="${1%1-*}" number="${1##*-}" preset=corridor
+  local truth="$recordings/openloris/groundtruth/gt_${scene}_1.txt"
+  [[ $scene != market ]] || preset=market
+  if [[ -f $truth ]]; then
+    render track openloris "$1" --trajectory "$truth" --track-sequence "$number" --start 5
+  else
+    render "$preset" openloris "$1"
+  fi
 }
 
 # nested ARCHIVE SEQUENCES...: a tar with one 7z per sequence
@@ -61,9 +97,7 @@ nested() {
   local archive="$1" sequence
   shift
   for sequence in "$@"; do
-    local preset=corridor
-    [[ $sequence != market* ]] || preset=market
-    render "$preset" openloris "$sequence"
+    openloris_sequence "$sequence"
     (cd "$out/work" && cmake -E tar cf "$sequence.7z" --format=7zip "$sequence")
   done
   if [[ "$archive" == *.7z ]]; then
@@ -82,6 +116,23 @@ make_openloris() {
   nested corridor1-2_5-package.tar corridor1-{2..5}
   nested market1-1_3-package.tar market1-{1..3}
   catalogue openloris
+}
+
+# Bags as a user downloads them with a browser: OUT/by_hand.
+make_vcu_rvi() {
+  local number name options
+  mkdir -p "$out/by_hand"
+  for number in 1 2 3 4 5; do
+    name="lab-dynamic-0$number"
+    options=(walking_xyz openloris "$name")
+    # Preset flight: hand-held.
+    if [[ -f "$recordings/imu/tum_vi/room1_imu.csv" ]]; then
+      options=("flight" openloris "$name" --trajectory "$recordings/imu/tum_vi/room1_groundtruth.txt"
+        --imu "$recordings/imu/tum_vi/room1_imu.csv" --start "$((10 * number))")
+    fi
+    render "${options[@]}"
+    "$(dirname "$program")/tests/device_bag" vcu_rvi "$out/work/$name" "$out/by_hand/$name.bag"
+  done
 }
 
 for dataset in $datasets; do "make_$dataset"; done

@@ -16,8 +16,9 @@ namespace stillpoint::bench {
 namespace {
 
 constexpr const char* kPresets =
-    "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; flight"
-    " (recorded motion); with returns to places: {office,corridor,market}_laps, twin_aisles, changed_room, "
+    "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; track; flight"
+    " (both recorded motion); with returns to places: {office,corridor,market}_laps, twin_aisles, "
+    "changed_room, "
     "each also with _short; home_tour";
 constexpr double kPresetValue = -1.0;  // option not given: use the value of the preset
 
@@ -26,7 +27,8 @@ struct SynthArguments {
   std::string preset;
   std::string out;
   std::string layout = "openloris";
-  std::string trajectory, imu;
+  std::string trajectory, imu, times;
+  int track_sequence = 0;
   bool labels = false;
   int seed = 1;
   int threads = 0;
@@ -35,7 +37,7 @@ struct SynthArguments {
   double seconds = kPresetValue, rate = kPresetValue, focal = kPresetValue;
   double exposure_ms = kPresetValue, exposure_swing = kPresetValue, rolling_ms = kPresetValue;
   double start = kPresetValue;
-  double depth_noise = kPresetValue, time_offset_ms = 0.0, dropped = kPresetValue;
+  double depth_noise = kPresetValue, depth_units = kPresetValue, time_offset_ms = 0.0, dropped = kPresetValue;
 };
 
 template <class Value, class Given>
@@ -49,6 +51,8 @@ synth::SynthRequest request_of(const SynthArguments& arguments) {
   request.labels = arguments.labels;
   if (!arguments.trajectory.empty()) request.trajectory_file = arguments.trajectory;
   request.imu_file = arguments.imu;
+  request.times_file = arguments.times;
+  request.track_sequence = arguments.track_sequence;
   request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
   override_with(request.seed, arguments.seed);
   override_with(request.seconds, arguments.seconds);
@@ -66,6 +70,7 @@ synth::SynthRequest request_of(const SynthArguments& arguments) {
   override_with(request.color.exposure_swing, arguments.exposure_swing);
   override_with(request.rolling_shutter_s, arguments.rolling_ms, 1e-3);
   override_with(request.depth.noise_per_m, arguments.depth_noise);
+  override_with(request.depth.units_per_m, arguments.depth_units);
   override_with(request.dropped_fraction, arguments.dropped);
   return request;
 }
@@ -102,10 +107,19 @@ std::vector<Option> options_of(SynthArguments& arguments) {
       {"--unknown", "Number of moving carts and chairs without detections", &arguments.unknown, {0, 100}},
       {"--layout", "Output layout: " + enum_list<synth::SequenceLayout>(), &arguments.layout},
       {"--labels", "Also write instance masks", &arguments.labels},
-      {"--trajectory", "Preset flight: IMU poses (TUM text); home_tour: gt_home_1.txt",
+      {"--trajectory", "Preset flight: IMU poses (TUM text); home_tour, track: gt_SCENE_1.txt of OpenLORIS",
        &arguments.trajectory},
       {"--imu", "Preset flight: IMU samples (EuRoC CSV)", &arguments.imu},
-      {"--start", "Preset flight or home_tour: offset of the first frame [s]", &arguments.start, {0, 1e6}},
+      {"--track-sequence",
+       "Preset track: number of the sequence in the file",
+       &arguments.track_sequence,
+       {0, 1000}},
+      {"--times", "Recorded frame times, one per line [s]; a third field is the time of the depth image",
+       &arguments.times},
+      {"--start",
+       "Preset flight, track or home_tour: offset of the first frame [s]",
+       &arguments.start,
+       {0, 1e6}},
       {"--width", "Image width [px]", &arguments.width, {1, 65535}},
       {"--height", "Image height [px]", &arguments.height, {1, 65535}},
       {"--focal", "Focal length [px]", &arguments.focal, {1, 1e6}},
@@ -123,6 +137,10 @@ std::vector<Option> options_of(SynthArguments& arguments) {
        "Standard deviation of depth noise per squared depth [1/m]",
        &arguments.depth_noise,
        {0, 1}},
+      {"--depth-units",
+       "Units of depth per meter: 1000 = mm, 5000 = as TUM RGB-D",
+       &arguments.depth_units,
+       {100, 60000}},
       {"--time-offset-ms", "Delay of the IMU time stamps [ms]", &arguments.time_offset_ms, {-1e6, 1e6}},
       {"--dropped", "Fraction of dropped frames", &arguments.dropped, {0, 1}},
       {"--threads",

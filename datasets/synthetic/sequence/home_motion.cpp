@@ -22,9 +22,12 @@ struct Piece {
 };
 constexpr std::array<Piece, 3> kPieces{{{2, 0.0}, {5, 0.0}, {1, 37.0}}};
 
-// Pose of d400_color in base_link: 0.23 m in front of it at a height of 0.92 m, 1 degree from level.
+// Pose of d400_color in base_link, 1 degree from level: robot of office, home, cafe and corridor.
 constexpr double kCameraForward_m = 0.23;
 constexpr double kCameraHeight_m = 0.92;
+// Robot of market.
+constexpr double kMarketCameraForward_m = 0.4;
+constexpr double kMarketCameraHeight_m = 1.2;
 
 constexpr double kJoinSpeed = 0.25;    // [m/s]
 constexpr double kJoinTurnRate = 0.5;  // [rad/s]
@@ -98,6 +101,22 @@ RobotTrack load_home_track(const std::filesystem::path& file) {
     append(track.poses, sequence->second, from_s);
   }
   return track;
+}
+
+RecordedTrack load_track(const std::filesystem::path& file, int sequence) {
+  const eval::OpenlorisFile truth = eval::read_openloris(file, eval::RepeatedPoses::kKeep);
+  const auto found = truth.sequences.find(sequence);
+  if (found == truth.sequences.end() || found->second.poses.size() < 2) {
+    throw InputError(file.string(), "sequence " + std::to_string(sequence) +
+                                        " is missing or has fewer than two poses; choose another one");
+  }
+  const bool market = truth.scene == "market";
+  RecordedTrack recorded{{.poses = {},
+                          .camera_forward_m = market ? kMarketCameraForward_m : kCameraForward_m,
+                          .camera_height_m = market ? kMarketCameraHeight_m : kCameraHeight_m},
+                         found->second.poses.front().t};
+  append(recorded.track.poses, found->second, 0.0);
+  return recorded;
 }
 
 std::vector<std::vector<Vector2d>> home_walking_routes() {

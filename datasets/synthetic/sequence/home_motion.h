@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Motion of the OpenLORIS robot through a home, from the ground truth of the data set (Shi et al. 2020).
+/// Motion of the OpenLORIS robots, from the ground truth of the data set (Shi et al. 2020).
 #pragma once
 
 #include <filesystem>
 #include <vector>
 
+#include "core/base/timestamp.h"
 #include "datasets/synthetic/motion/robot_motion.h"
 
 namespace stillpoint::synth {
@@ -19,6 +20,18 @@ namespace stillpoint::synth {
 /// @return times from 0; the camera is mounted as on the robot, but looks exactly forward
 /// @throws InputError if the file cannot be read or lacks a sequence
 [[nodiscard]] RobotTrack load_home_track(const std::filesystem::path& file);
+
+/// One recorded sequence, and the timestamp of its first pose.
+struct RecordedTrack {
+  RobotTrack track;  ///< times from 0
+  Timestamp first;
+};
+
+/// A sequence of any scene. The camera looks exactly forward, at the height of that of the robot of the
+/// scene.
+/// @param file OpenLORIS text, poses of base_link @param sequence its number
+/// @throws InputError if the file cannot be read, or the sequence is missing or has fewer than two poses
+[[nodiscard]] RecordedTrack load_track(const std::filesystem::path& file, int sequence);
 
 /// Closed routes of two people on floor that the tour does not cross.
 [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> home_walking_routes();

@@ -14,6 +14,7 @@ const std::vector<std::string> kBasePresets{"walking_xyz",        "walking_stati
 const std::string kEmptySuffix = "_empty";
 const std::string kShortSuffix = "_short";
 const std::string kHomeTour = "home_tour";
+const std::string kTrack = "track";
 
 /// A preset that returns to places, and its variation with the suffix `_short`. Durations follow from the
 /// lengths of the routes; `loop_presets_test` verifies them.
@@ -68,6 +69,15 @@ void check_files(const SynthRequest& request) {
                          " does not exist; set STILLPOINT_DATA to the folder of "
                          "openloris/groundtruth/gt_home_1.txt, or pass --trajectory FILE");
   }
+  if (request.preset == kTrack && (request.trajectory_file.empty() || request.track_sequence < 1)) {
+    throw InputError(
+        "preset \"track\"",
+        "needs a ground truth of OpenLORIS and the number of a sequence in it; pass --trajectory "
+        "FILE --track-sequence N");
+  }
+  if (request.preset == "flight" && !request.times_file.empty()) {
+    throw InputError("preset \"flight\"", "has the times of its recording; remove --times");
+  }
 }
 
 }  // namespace
@@ -87,6 +97,7 @@ std::vector<std::string> preset_names() {
   std::vector<std::string> names = kBasePresets;
   for (const std::string& preset : kBasePresets) names.push_back(preset + kEmptySuffix);
   names.push_back("flight");
+  names.push_back(kTrack);
   for (const LoopPreset& preset : kLoopPresets) {
     names.push_back(preset.name);
     if (preset.short_seconds > 0.0) names.push_back(preset.name + kShortSuffix);
@@ -106,8 +117,9 @@ SynthRequest preset_request(const std::string& name) {
   use_loop_preset(request);
   if (is_loop_preset(request)) return request;
   if (name.starts_with("market") || name.starts_with("corridor")) use_robot_camera(request);
+  if (name == kTrack) use_robot_camera(request);
   if (name == "flight") request.seconds = 25.0;
-  if (name == "flight" || name.ends_with(kEmptySuffix)) return request;
+  if (name == "flight" || name == kTrack || name.ends_with(kEmptySuffix)) return request;
   const bool market = name == "market";
   request.walkers = market ? 9 : 2;
   request.seated = name.starts_with("walking") ? 1 : 0;

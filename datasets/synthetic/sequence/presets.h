@@ -59,13 +59,19 @@ struct SynthRequest {
   ImuSensor imu;
   DetectorModel detector;
   double start_s = 5.0;  ///< preset `flight`: offset from the first time that both files cover
-  /// Preset `flight`: poses T_w_b of the IMU (TUM text); `home_tour`: ground truth of OpenLORIS home.
+  /// Preset `flight`: poses T_w_b of the IMU (TUM text); `home_tour`: ground truth of OpenLORIS home;
+  /// `track`: ground truth of any scene of OpenLORIS.
   std::filesystem::path trajectory_file;
   std::filesystem::path imu_file;  ///< preset `flight`: IMU samples (EuRoC CSV)
+  int track_sequence = 0;          ///< preset `track`: number of the sequence in `trajectory_file`, from 1
+  /// Recorded frame times, see `load_recorded_times`; they replace equal intervals. Not for the preset
+  /// `flight`.
+  std::filesystem::path times_file;
 };
 
 /// Visits every field in a fixed order, for printing, hashing and setting by key. The keys are part of the
-/// cache key of a sequence. The two file names are passed as temporary strings.
+/// cache key of a sequence; those added later are visited only if they are set, so that the keys of other
+/// sequences do not change. File names are passed as temporary strings.
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, ColorSensor>
 void visit_fields(Visitor&& field, Config& sensor) {
@@ -132,13 +138,16 @@ void visit_fields(Visitor&& field, Config& request) {
   field("start_s", request.start_s);
   field("trajectory_file", request.trajectory_file.string());
   field("imu_file", request.imu_file.string());
+  if (request.track_sequence > 0) field("track_sequence", request.track_sequence);
+  if (!request.times_file.empty()) field("times_file", request.times_file.string());
 }
 
 /// Names of all presets: walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with the suffix
-/// `_empty` (static scene); `flight` (recorded trajectory and IMU samples, static scene); and those that
-/// return to places, for loop closure: {office,corridor,market}_laps, twin_aisles, changed_room, each also
-/// with the suffix `_short`, and `home_tour` (recorded trajectory of a robot). These have small images,
-/// because they are long: 1 GB at most.
+/// `_empty` (static scene); `flight` (recorded trajectory and IMU samples, static scene); `track` (recorded
+/// trajectory of a robot, static scene); and those that return to places, for loop closure:
+/// {office,corridor,market}_laps, twin_aisles, changed_room, each also with the suffix `_short`, and
+/// `home_tour` (recorded trajectory of a robot). These have small images, because they are long: 1 GB at
+/// most.
 [[nodiscard]] std::vector<std::string> preset_names();
 
 /// Whether the preset, or the one with the suffix `_short`, is `name`.

@@ -90,28 +90,29 @@ struct WorldRenderer {
 /// Renders and writes single frames.
 class SequenceRenderer {
  public:
-  SequenceRenderer(const SynthRequest& request, const SceneSetup& setup, const std::vector<Timestamp>& times,
+  SequenceRenderer(const SynthRequest& request, const SceneSetup& setup, const FrameTimes& times,
                    const SequenceWriter& writer)
       : request_(request),
         setup_(setup),
         times_(times),
         writer_(writer),
         initial_(setup.scene.world, setup.rig.camera),
-        visible_(times.size()) {
+        visible_(times.color.size()) {
     if (setup.scene.change) changed_.emplace(setup.scene.change->world, setup.rig.camera);
   }
 
   /// Thread-safe for different frames.
   void render(std::size_t index, const RenderControl& control) {
-    const Timestamp t = times_[index];
+    const Timestamp t = times_.color[index];
     const RenderedFrame frame = render_ideal_frame(t);
-    const double gain = setup_.scene.gain * exposure_gain(request_.color, seconds_between(times_.front(), t));
+    const double gain =
+        setup_.scene.gain * exposure_gain(request_.color, seconds_between(times_.color.front(), t));
     const std::uint64_t color_key = random_key(request_.seed, RandomStream::kColorNoise, index);
     const std::uint64_t depth_key = random_key(request_.seed, RandomStream::kDepthNoise, index);
     const cv::Mat color = simulate_color(frame, setup_.rig.camera, request_.color, {gain, color_key});
     const cv::Mat depth =
         simulate_depth({frame.depth_m, frame.width, frame.height}, request_.depth, depth_key);
-    writer_.write_images(t, color, depth);
+    writer_.write_images({t, times_.depth[index]}, color, depth);
     if (control.on_images) control.on_images(index, color, depth);
     if (request_.labels) writer_.write_labels(t, label_image(frame), speed_image(frame));
     visible_[index] = visible_objects(frame);
@@ -150,7 +151,7 @@ class SequenceRenderer {
 
   const SynthRequest& request_;
   const SceneSetup& setup_;
-  const std::vector<Timestamp>& times_;
+  const FrameTimes& times_;
   const SequenceWriter& writer_;
   WorldRenderer initial_;
   std::optional<WorldRenderer> changed_;
@@ -185,14 +186,14 @@ bool render_sequence(const SynthRequest& request, const fs::path& folder, const 
   if (fs::exists(folder))
     throw InputError(folder.string(), "already exists; remove it or choose another folder");
   const SceneSetup setup = make_scene_setup(request);
-  const std::vector<Timestamp> times = frame_times(request, setup);
+  const FrameTimes times = frame_times(request, setup);
 
   TemporaryFolder partial(folder.string() + ".partial-" + std::to_string(::getpid()));
   const SequenceWriter writer(partial.path(), request.layout, request.labels);
   SequenceRenderer work(request, setup, times, writer);
   const auto render = [&](int index) { work.render(static_cast<std::size_t>(index), control); };
-  if (!for_each_frame(static_cast<int>(times.size()), control, render)) return false;
-  const SequenceBoxes boxes = boxes_of(request, setup, times, work.visible());
+  if (!for_each_frame(static_cast<int>(times.color.size()), control, render)) return false;
+  const SequenceBoxes boxes = boxes_of(request, setup, times.color, work.visible());
   writer.write_boxes("true_boxes.txt", boxes.truth);
   writer.write_boxes("detections.txt", boxes.detections);
   writer.write_lists(times);

@@ -70,8 +70,9 @@ std::string request_key(const SynthRequest& request) {
   SynthRequest nameless = request;  // the key depends on the contents of the files, not on their paths
   nameless.trajectory_file.clear();
   nameless.imu_file.clear();
+  nameless.times_file.clear();
   std::uint64_t hash = fnv1a(request_text(nameless), 0xcbf29ce484222325ULL);
-  for (const std::filesystem::path& file : {request.trajectory_file, request.imu_file}) {
+  for (const std::filesystem::path& file : {request.trajectory_file, request.imu_file, request.times_file}) {
     if (!file.empty()) hash = fnv1a(contents(file), hash);
   }
   return fmt::format("{:016x}", hash);

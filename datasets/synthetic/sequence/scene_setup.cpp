@@ -66,6 +66,7 @@ std::vector<Eigen::Vector3d> camera_positions(const PathSpline& path, const Pose
 struct MovingBody {
   Scene scene;
   PathSpline path;
+  Timestamp epoch{kEpoch_ns};
 };
 
 MovingBody simulated_motion(const SynthRequest& request, const PathRequest& path) {
@@ -94,6 +95,28 @@ MovingBody home_motion(const SynthRequest& request, const PathRequest& path) {
   return {std::move(scene), robot_path(track, path)};
 }
 
+/// A hall around the part of a recorded track that is rendered.
+MovingBody track_motion(const SynthRequest& request, const PathRequest& path) {
+  RecordedTrack recorded = load_track(request.trajectory_file, request.track_sequence);
+  const double whole_s = recorded.track.poses.back().t_s;
+  if (whole_s < request.start_s + path.to_s) {
+    throw InputError("preset \"track\"",
+                     fmt::format("the sequence takes {:.1f} s, but {:.1f} s from {:.1f} s on "
+                                 "are required; reduce --seconds or --start",
+                                 whole_s, request.seconds, request.start_s));
+  }
+  for (PlanarPose& pose : recorded.track.poses) pose.t_s -= request.start_s;
+  PathSpline spline = robot_path(recorded.track, path);
+  Scene scene = build_hall(request.seed, camera_positions(spline, path.T_b_c));
+  return {std::move(scene), std::move(spline), after(recorded.first, request.start_s)};
+}
+
+MovingBody motion_of(const SynthRequest& request, const PathRequest& path) {
+  if (request.preset == "home_tour") return home_motion(request, path);
+  if (request.preset == "track") return track_motion(request, path);
+  return simulated_motion(request, path);
+}
+
 /// Path time at which the camera first enters the part of the floor from which a change is not visible.
 double time_of_change(const SceneChange& change, const CameraMotion& camera) {
   constexpr double kInterval_s = 0.05;
@@ -109,9 +132,11 @@ SceneSetup simulated_setup(const SynthRequest& request) {
   const Rig rig = rig_of(request);
   const double last_s = last_path_time(request);
   const PathRequest path_request{rig.T_b_c, request.seed, 0.0, last_s};
-  auto [scene, path] = request.preset == "home_tour" ? home_motion(request, path_request)
-                                                     : simulated_motion(request, path_request);
-  const Timestamp epoch{kEpoch_ns};
+  auto [scene, path, motion_epoch] = motion_of(request, path_request);
+  const Timestamp epoch =
+      request.times_file.empty()
+          ? motion_epoch
+          : after(load_recorded_times(request.times_file, request.seconds).color.front(), -kFirstFrame_s);
   ImuRecord imu = simulate_imu(path, request.imu, {epoch, 0.0, last_s, request.seed});
   const CameraMotion camera{[&path = path, &rig](double t_s) {
                               return Eigen::Vector2d((path.pose_at(t_s) * rig.T_b_c).p.head<2>());
@@ -144,7 +169,8 @@ SceneSetup make_scene_setup(const SynthRequest& request) {
   return request.preset == "flight" ? recorded_setup(request) : simulated_setup(request);
 }
 
-std::vector<Timestamp> frame_times(const SynthRequest& request, const SceneSetup& setup) {
+FrameTimes frame_times(const SynthRequest& request, const SceneSetup& setup) {
+  if (!request.times_file.empty()) return load_recorded_times(request.times_file, request.seconds);
   RandomSequence random(random_key(request.seed, RandomStream::kDroppedFrames));
   // A run has (1 + kMaxDropRun) / 2 frames on average.
   const double start_chance =
@@ -161,7 +187,7 @@ std::vector<Timestamp> frame_times(const SynthRequest& request, const SceneSetup
     const double since_epoch_s = setup.first_frame_s + i / request.frames_per_s;
     times.push_back({setup.epoch.ns / 1000 * 1000 + std::llround(since_epoch_s * 1e6) * 1000});
   }
-  return times;
+  return {times, times};
 }
 
 Exposure exposure_at(const SynthRequest& request, const SceneSetup& setup, Timestamp t, double span_s) {

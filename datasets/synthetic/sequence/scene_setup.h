@@ -13,6 +13,7 @@
 #include "datasets/synthetic/render/frame_renderer.h"
 #include "datasets/synthetic/scenes/scenes.h"
 #include "datasets/synthetic/sequence/presets.h"
+#include "datasets/synthetic/sequence/recorded_times.h"
 
 namespace stillpoint::synth {
 
@@ -30,7 +31,8 @@ struct SceneSetup {
 [[nodiscard]] SceneSetup make_scene_setup(const SynthRequest& request);
 
 /// Timestamps of all frames that are not dropped, in whole microseconds.
-[[nodiscard]] std::vector<Timestamp> frame_times(const SynthRequest& request, const SceneSetup& setup);
+/// @throws InputError if the recorded times of the request cannot be read
+[[nodiscard]] FrameTimes frame_times(const SynthRequest& request, const SceneSetup& setup);
 
 /// Camera poses of the frame with timestamp `t`, the middle of the middle row's exposure.
 /// @param span_s length of the time interval, centered on `t`, over which actor motion is interpolated

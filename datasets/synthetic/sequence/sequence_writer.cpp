@@ -93,10 +93,10 @@ SequenceWriter::SequenceWriter(const fs::path& folder, SequenceLayout layout, bo
   }
 }
 
-void SequenceWriter::write_images(Timestamp t, const cv::Mat& color, const cv::Mat& depth) const {
-  const std::string name = image_stamp(t) + ".png";
-  datasets::write_png(folder_ / color_folder(layout_) / name, color);
-  datasets::write_png(folder_ / depth_folder(layout_) / name, depth);
+void SequenceWriter::write_images(const ImageStamps& stamps, const cv::Mat& color,
+                                  const cv::Mat& depth) const {
+  datasets::write_png(folder_ / color_folder(layout_) / (image_stamp(stamps.color) + ".png"), color);
+  datasets::write_png(folder_ / depth_folder(layout_) / (image_stamp(stamps.depth) + ".png"), depth);
 }
 
 void SequenceWriter::write_labels(Timestamp t, const cv::Mat& labels, const cv::Mat& motion) const {
@@ -105,10 +105,11 @@ void SequenceWriter::write_labels(Timestamp t, const cv::Mat& labels, const cv::
   datasets::write_png(folder_ / "motion" / name, motion);
 }
 
-void SequenceWriter::write_lists(const std::vector<Timestamp>& frames) const {
+void SequenceWriter::write_lists(const FrameTimes& frames) const {
   const bool tum = layout_ == SequenceLayout::kTum;
-  write_text(folder_ / (tum ? "rgb.txt" : "color.txt"), image_list(color_folder(layout_), frames));
-  write_text(folder_ / (tum ? "depth.txt" : "aligned_depth.txt"), image_list(depth_folder(layout_), frames));
+  write_text(folder_ / (tum ? "rgb.txt" : "color.txt"), image_list(color_folder(layout_), frames.color));
+  write_text(folder_ / (tum ? "depth.txt" : "aligned_depth.txt"),
+             image_list(depth_folder(layout_), frames.depth));
 }
 
 void SequenceWriter::write_rig(const Rig& rig, const SynthRequest& request) const {

@@ -11,11 +11,18 @@
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"
 #include "datasets/synthetic/sequence/presets.h"
+#include "datasets/synthetic/sequence/recorded_times.h"
 
 namespace stillpoint::synth {
 
 /// Timestamp in whole microseconds as used in image file names: "1700000000.033333".
 [[nodiscard]] std::string image_stamp(Timestamp t);
+
+/// Timestamps of the two images of a frame.
+struct ImageStamps {
+  Timestamp color;
+  Timestamp depth;
+};
 
 /// Writes one sequence folder.
 class SequenceWriter {
@@ -24,10 +31,10 @@ class SequenceWriter {
   SequenceWriter(const std::filesystem::path& folder, SequenceLayout layout, bool labels);
 
   /// Thread-safe.
-  void write_images(Timestamp t, const cv::Mat& color, const cv::Mat& depth) const;
+  void write_images(const ImageStamps& stamps, const cv::Mat& color, const cv::Mat& depth) const;
   void write_labels(Timestamp t, const cv::Mat& labels, const cv::Mat& motion) const;
 
-  void write_lists(const std::vector<Timestamp>& frames) const;
+  void write_lists(const FrameTimes& frames) const;
   void write_rig(const Rig& rig, const SynthRequest& request) const;
   void write_imu(const ImuRecord& record) const;
   /// @param camera_path poses of the camera
