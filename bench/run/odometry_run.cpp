@@ -6,11 +6,10 @@
 #include <cmath>
 #include <future>
 
-#include <Eigen/Eigenvalues>
-
 #include "bench/run/frame_prefetcher.h"
 #include "bench/run/recorded_boxes.h"
 #include "core/base/error.h"
+#include "core/geometry/covariance.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -63,9 +62,8 @@ eval::ClaimedPose claim_of(const OdometryUpdate& update, Timestamp t) {
   eval::ClaimedPose claim{
       .t = t, .T_w_c = update.T_w_c, .claim = claim_of(update.status), .segment = update.segment};
   if (!update.covariance) return claim;
-  using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
-  claim.sigma_m = std::sqrt(std::max(0.0, Solver(update.covariance->position()).eigenvalues()[2]));
-  claim.sigma_rad = std::sqrt(std::max(0.0, Solver(update.covariance->rotation()).eigenvalues()[2]));
+  claim.sigma_m = largest_sigma(update.covariance->position());
+  claim.sigma_rad = largest_sigma(update.covariance->rotation());
   return claim;
 }
 
