@@ -41,6 +41,16 @@ Eigen::Vector3d mean_gravity(const PoseGraph& graph) {
   return sum.norm() > 0.0 ? sum.normalized() : sum;
 }
 
+/// The rotation by the smallest angle that takes `from` to `to`, unit vectors that are not opposite. Not
+/// Eigen's FromTwoVectors, which compiles a singular value decomposition for opposite vectors.
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const double scale = std::sqrt(2.0 * (1.0 + from.dot(to)));  // twice the cosine of half the angle
+  Eigen::Quaterniond q;
+  q.vec() = from.cross(to) / scale;
+  q.w() = 0.5 * scale;
+  return q;
+}
+
 /// The Ceres problem of a pose graph.
 class GraphProblem {
  public:
@@ -105,9 +115,7 @@ class GraphProblem {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       if (!graph_.gravity_b[i]) continue;
       Pose pose = graph_.T_m_b[i];
-      const Eigen::Quaterniond correction =
-          Eigen::Quaterniond::FromTwoVectors(pose.q * *graph_.gravity_b[i], gravity_m_);
-      pose.q = (correction * pose.q).normalized();
+      pose.q = (rotation_between(pose.q * *graph_.gravity_b[i], gravity_m_) * pose.q).normalized();
       blocks_[i] = block_of(pose);
     }
   }
