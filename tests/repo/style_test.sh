@@ -26,4 +26,21 @@ expect_fault style.sh "core/imu/a.cpp: using namespace at file scope" "using nam
 tree_with tests/unit/a.cpp "$licence
 // TODO tidy up"
 expect_fault style.sh "tests/unit/a.cpp: TODO" "a debt without an issue"
+tree_with core/imu/a.cpp "$licence
+int a() {
+$(yes '  step();' | head -n 38)
+}"
+expect_clean style.sh "a function of 40 lines"
+tree_with core/imu/a.cpp "$licence
+int a() {
+$(yes '  step();' | head -n 39)
+}"
+expect_fault style.sh "core/imu/a.cpp:2 a: more than 40 lines" "a function of 41 lines"
+tree_with core/imu/a.cpp "$licence
+double a(int b, const std::map<int, int>& c, double (*f)(int, int), int d = g(1, 2)) { return 0.0; }
+int callback(void* context, const char* name, long, long, unsigned, void**) { return 0; }"
+expect_clean style.sh "four parameters, and a callback with unnamed ones"
+tree_with core/imu/a.cpp "$licence
+int a(int b, const std::map<int, int>& c, double d, int e, Pose&& f) { return 0; }"
+expect_fault style.sh "core/imu/a.cpp:2 a: more than 4 parameters" "five parameters"
 finish

@@ -5,17 +5,17 @@
 
 namespace stillpoint {
 
-ExposureShift::ExposureShift(const ImuEnd& end, double time_offset_s, const double* pose,
-                             const double* speed_bias, const Eigen::Vector3d& gravity_w)
+ExposureShift::ExposureShift(const ImuEnd& end, double time_offset_s, StateBlocks state,
+                             const Eigen::Vector3d& gravity_w)
     : d_(time_offset_s - end.time_offset_s),
-      R_(Eigen::Quaterniond(pose + 3).toRotationMatrix()),
-      rate_b_(end.gyro_b - Eigen::Vector3d(speed_bias + 3)),
-      force_b_(end.accel_b - Eigen::Vector3d(speed_bias + 6)),
+      R_(Eigen::Quaterniond(state.pose + 3).toRotationMatrix()),
+      rate_b_(end.gyro_b - Eigen::Vector3d(state.speed_bias + 3)),
+      force_b_(end.accel_b - Eigen::Vector3d(state.speed_bias + 6)),
       acceleration_(R_ * force_b_ + gravity_w),
-      speed_bias_(speed_bias) {
-  const Eigen::Vector3d v(speed_bias);
-  pose_.head<3>() = Eigen::Vector3d(pose) - d_ * v + 0.5 * d_ * d_ * acceleration_;
-  pose_.tail<4>() = (Eigen::Quaterniond(pose + 3) * exp_so3(-d_ * rate_b_)).coeffs();
+      speed_bias_(state.speed_bias) {
+  const Eigen::Vector3d v(state.speed_bias);
+  pose_.head<3>() = Eigen::Vector3d(state.pose) - d_ * v + 0.5 * d_ * d_ * acceleration_;
+  pose_.tail<4>() = (Eigen::Quaterniond(state.pose + 3) * exp_so3(-d_ * rate_b_)).coeffs();
   speed_bias_.head<3>() = v - d_ * acceleration_;
 }
 

@@ -13,6 +13,12 @@ struct ImuEnd {
   Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();  ///< specific force, bias included [m/s^2]
 };
 
+/// Parameter blocks of a state.
+struct StateBlocks {
+  const double* pose;        ///< p, q xyzw
+  const double* speed_bias;  ///< v, gyro bias, accel bias
+};
+
 /// A state x = (p, q, v, b_g, b_a) is defined at the exposure of its frame, that is, at IMU time t + td. A
 /// preintegration ends at t + td_k, with td_k the estimate of td when it was computed. With d = td - td_k,
 /// w = gyro - b_g, f = accel - b_a and gravity g, the state at that end is
@@ -38,9 +44,8 @@ class ExposureShift {
   using SpeedBiasJacobian = Eigen::Map<Eigen::Matrix<double, 15, 9, Eigen::RowMajor>>;
   using Vector15 = Eigen::Matrix<double, 15, 1>;
 
-  /// @param pose, speed_bias parameter blocks (p, q xyzw) and (v, gyro bias, accel bias) at the exposure
-  ExposureShift(const ImuEnd& end, double time_offset_s, const double* pose, const double* speed_bias,
-                const Eigen::Vector3d& gravity_w);
+  /// @param state at the exposure
+  ExposureShift(const ImuEnd& end, double time_offset_s, StateBlocks state, const Eigen::Vector3d& gravity_w);
 
   /// Parameter blocks at the end of the preintegration.
   [[nodiscard]] const double* pose() const { return pose_.data(); }

@@ -73,6 +73,15 @@ PointJacobians point_jacobians_at(const std::array<const double*, 3>& poses, con
   return {J * relative.J_pose_i, J * relative.J_pose_j, J * relative.J_extrinsics};
 }
 
+/// One of the two. @param x parameter blocks @param first where the relative pose is linearized, null: at `x`
+PointJacobians point_jacobians_at(double const* const* x, const std::array<const double*, 3>& first,
+                                  const TransferredPoint& t) {
+  if (first == std::array<const double*, 3>{}) return point_jacobians(t);
+  return point_jacobians_at({first[0] != nullptr ? first[0] : x[0], first[1] != nullptr ? first[1] : x[1],
+                             first[2] != nullptr ? first[2] : x[2]},
+                            t);
+}
+
 /// Writes d residual / d pose; the tangent space is in the first six of seven columns.
 template <int Rows>
 void write_pose_jacobian(double* out, const Eigen::Matrix<double, Rows, 3>& J_point,
@@ -103,12 +112,7 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   const Eigen::Matrix<double, Rows, 3> J_point = rows.J_point.template topRows<Rows>();
   if (jacobians == nullptr) return true;
 
-  const PointJacobians J_poses = first_ == FirstEstimates{}
-                                     ? point_jacobians(t)
-                                     : point_jacobians_at({first_[0] != nullptr ? first_[0] : x[0],
-                                                           first_[1] != nullptr ? first_[1] : x[1],
-                                                           first_[2] != nullptr ? first_[2] : x[2]},
-                                                          t);
+  const PointJacobians J_poses = point_jacobians_at(x, first_, t);
   for (std::size_t i = 0; i < J_poses.size(); ++i) {
     if (jacobians[i] != nullptr) write_pose_jacobian<Rows>(jacobians[i], J_point, J_poses[i]);
   }

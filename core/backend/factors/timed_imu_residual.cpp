@@ -48,8 +48,8 @@ void TimedImuResidual::evaluate(double const* const* x, double* residuals, doubl
 
 void TimedImuResidual::evaluate_shifted(double const* const* x, double* residuals, double** jacobians) const {
   const Eigen::Vector3d gravity_w(x[4]);
-  const ExposureShift shift_i((*ends_)[0], *x[5], x[0], x[1], gravity_w);
-  const ExposureShift shift_j((*ends_)[1], *x[5], x[2], x[3], gravity_w);
+  const ExposureShift shift_i((*ends_)[0], *x[5], {x[0], x[1]}, gravity_w);
+  const ExposureShift shift_j((*ends_)[1], *x[5], {x[2], x[3]}, gravity_w);
   const std::array<const double*, 4> shifted = {shift_i.pose(), shift_i.speed_bias(), shift_j.pose(),
                                                 shift_j.speed_bias()};
   const ImuResidual residual(imu_, gravity_w);

@@ -80,7 +80,7 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
   prior_.add_to(system_, blocks_);
   const Linearization at = linearize_at(blocks_, window, config, point_);
   if (window.newest() >= 1 && has_imu_term(window, 1)) add_imu_term(window, 1, at, system_);
-  add_zero_velocity_term(window, 0, config, blocks_, system_);
+  if (has_zero_velocity_term(window, 0)) add_zero_velocity_term(0, config, blocks_, system_);
   visual_.add_to(system_, at);
   newton_.states = -system_.g;
   visual_.eliminate(0.0, system_.H, newton_.states);

@@ -27,6 +27,7 @@ std::array<const double*, 6> imu_parameters(int frame, const ParameterBlocks& bl
 
 /// The residual and its Jacobians as written by the factor; `jacobian` stacks the tangent columns of states.
 struct ImuLinearization {
+  int frame;  ///< the factor is between it and the previous one
   Vector15 residual;
   Eigen::Matrix<double, 15, 7, Eigen::RowMajor> J_pose_i, J_pose_j;
   Eigen::Matrix<double, 15, 9, Eigen::RowMajor> J_speed_bias_i, J_speed_bias_j;
@@ -45,6 +46,7 @@ ImuLinearization linearize_imu(const Window& window, int frame, const Linearizat
   const TimedImuResidual residual(*window.frames[static_cast<std::size_t>(frame)].from_previous,
                                   ends ? &*ends : nullptr);
   ImuLinearization out;
+  out.frame = frame;
   std::array<double*, 6> jacobians = {out.J_pose_i.data(),  out.J_speed_bias_i.data(),
                                       out.J_pose_j.data(),  out.J_speed_bias_j.data(),
                                       out.J_gravity.data(), out.J_time_offset.data()};
@@ -55,19 +57,19 @@ ImuLinearization linearize_imu(const Window& window, int frame, const Linearizat
   return out;
 }
 
-/// Adds the rows of a global state in J^T J and J^T r of the factor between frame - 1 and frame, without its
-/// blocks with other global states. @param J derivative of the residual by the state
+/// Adds the rows of a global state in J^T J and J^T r of the factor, without its blocks with other global
+/// states. @param J derivative of the residual by the state
 template <int Columns>
-void add_global_rows(BlockKind kind, int frame, const Eigen::Matrix<double, 15, Columns>& J,
+void add_global_rows(BlockKind kind, const Eigen::Matrix<double, 15, Columns>& J,
                      const ImuLinearization& linear, ReducedSystem& system) {
   const int row = system.layout.column({kind});
-  const std::array<BlockRef, 2> profile = {{{BlockKind::kSpeedBias, frame}, {kind}}};
+  const std::array<BlockRef, 2> profile = {{{BlockKind::kSpeedBias, linear.frame}, {kind}}};
   system.widen_profile(profile);
   system.g.segment<Columns>(row) += J.transpose() * linear.residual;
   system.add(row, row, J.transpose() * J);
   const Eigen::Matrix<double, Columns, 30> H = J.transpose() * linear.jacobian();
   int column = 0;
-  for (const BlockRef block : imu_blocks(frame)) {
+  for (const BlockRef block : imu_blocks(linear.frame)) {
     const int size = local_size(block.kind);
     system.add(row, system.layout.column(block), H.middleCols(column, size));
     column += size;
@@ -157,9 +159,9 @@ double add_imu_term(const Window& window, int frame, const Linearization& at, Re
   }
   const Eigen::Matrix<double, 15, 2> J_gravity = linear.J_gravity.leftCols<2>();
   const VariableGlobals& variable = system.layout.variable_globals();
-  if (variable.gravity) add_global_rows(BlockKind::kGravity, frame, J_gravity, linear, system);
+  if (variable.gravity) add_global_rows(BlockKind::kGravity, J_gravity, linear, system);
   if (variable.time_offset && window.time_offset_model == TimeOffsetModel::kInertial) {
-    add_global_rows(BlockKind::kTimeOffset, frame, linear.J_time_offset, linear, system);
+    add_global_rows(BlockKind::kTimeOffset, linear.J_time_offset, linear, system);
     system.add(system.layout.column({BlockKind::kTimeOffset}), system.layout.column({BlockKind::kGravity}),
                linear.J_time_offset.transpose() * J_gravity);
   }

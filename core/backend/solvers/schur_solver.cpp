@@ -49,8 +49,10 @@ double SchurSolver::linearize(const Window& window, const BackendConfig& config)
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) cost += add_imu_term(window, frame, at, system_);
   }
-  for (int frame = 0; frame <= window.newest(); ++frame)
-    cost += add_zero_velocity_term(window, frame, config, blocks_, system_);
+  for (int frame = 0; frame <= window.newest(); ++frame) {
+    if (has_zero_velocity_term(window, frame))
+      cost += add_zero_velocity_term(frame, config, blocks_, system_);
+  }
   cost += visual_.add_to(system_, at);
   scale_squared_.states = system_.H.diagonal().cwiseMax(kMinCurvature);
   scale_squared_.landmarks = visual_.information().cwiseMax(kMinCurvature);

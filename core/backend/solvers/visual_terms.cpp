@@ -202,16 +202,16 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
   for (int frame = landmark.host + 1; frame <= landmark.last; ++frame) {
     const std::size_t shared = pair(landmark.host, frame);
     const TimedObservation& observation = observation_of(landmark, frame);
-    const ObservationTerm term = linearize(observation, relative_poses_[shared], state);
+    ObservationTerm term = linearize(observation, relative_poses_[shared], state);
     const double inner = 1.0 + term.rows.row(7).squaredNorm() / cauchy_squared_;
     total += observation.information * cauchy_squared_ * std::log(inner);
-    const double inverse_weight = inner / observation.information;
-    const Eigen::Matrix<double, 8, 3> weighted = term.rows / inverse_weight;
+    term.inverse_weight = inner / observation.information;
+    const Eigen::Matrix<double, 8, 3> weighted = term.rows / term.inverse_weight;
     sums_[shared].noalias() += weighted * term.rows.transpose();
-    if (with_scale) add_scale_terms(landmark, frame, term, 1.0 / inverse_weight, layout);
+    if (with_scale) add_scale_terms(landmark, frame, term, layout);
     if (landmark.column < 0) continue;
     const Column8 column = weighted * term.J_lambda;
-    information += term.J_lambda.squaredNorm() / inverse_weight;
+    information += term.J_lambda.squaredNorm() / term.inverse_weight;
     gradient += column[7];
     add_coupling(landmark, frame, column, layout);
   }
@@ -221,10 +221,10 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
   return total;
 }
 
-/// H_ps, H_ss, g_s and H_ls of the depth row of one observation. @param weight w
+/// H_ps, H_ss, g_s and H_ls of the depth row of one observation.
 void VisualTerms::add_scale_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term,
-                                  double weight, const ReducedLayout& layout) {
-  const double weighted = weight * term.J_scale;
+                                  const ReducedLayout& layout) {
+  const double weighted = 1.0 / term.inverse_weight * term.J_scale;
   scale_sums_[pair(landmark.host, frame)] += weighted * term.rows.col(2);
   scale_information_ += weighted * term.J_scale;
   if (landmark.column < 0) return;

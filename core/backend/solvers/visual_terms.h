@@ -87,7 +87,8 @@ class VisualTerms {
   struct ObservationTerm {
     Eigen::Matrix<double, 8, 3> rows;  // [J_y r]^T
     Eigen::Vector3d J_lambda;
-    double J_scale;  // of the depth row
+    double J_scale;         // of the depth row
+    double inverse_weight;  // 1 / w
   };
 
   void add_landmark(const Window& window, std::size_t index, const BackendConfig& config);
@@ -99,7 +100,7 @@ class VisualTerms {
     return timed_observations_[landmark.first_observation +
                                static_cast<std::size_t>(frame - landmark.host - 1)];
   }
-  void add_scale_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term, double weight,
+  void add_scale_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term,
                        const ReducedLayout& layout);
   void add_host_scale_terms(const VisualLandmark& landmark, double lambda, const BoundedError& depth,
                             const ReducedLayout& layout);

@@ -21,9 +21,8 @@ double zero_velocity_cost(const Window& window, const BackendConfig& config, con
   return cost;
 }
 
-double add_zero_velocity_term(const Window& window, int frame, const BackendConfig& config,
-                              const ParameterBlocks& blocks, ReducedSystem& system) {
-  if (!has_zero_velocity_term(window, frame)) return 0.0;
+double add_zero_velocity_term(int frame, const BackendConfig& config, const ParameterBlocks& blocks,
+                              ReducedSystem& system) {
   const Eigen::Vector3d residual = zero_velocity_residual(blocks, frame, config);
   const double sigma = config.zero_velocity.sigma_m_per_s;
   const int column = system.layout.column({BlockKind::kSpeedBias, frame});

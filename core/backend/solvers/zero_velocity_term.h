@@ -15,8 +15,8 @@ namespace stillpoint {
 [[nodiscard]] double zero_velocity_cost(const Window& window, const BackendConfig& config,
                                         const ParameterBlocks& blocks);
 
-/// Adds J^T J and J^T r of the factor of one frame, if it has one. @return the cost
-double add_zero_velocity_term(const Window& window, int frame, const BackendConfig& config,
-                              const ParameterBlocks& blocks, ReducedSystem& system);
+/// Adds J^T J and J^T r of the factor of a frame that has one. @return the cost
+double add_zero_velocity_term(int frame, const BackendConfig& config, const ParameterBlocks& blocks,
+                              ReducedSystem& system);
 
 }  // namespace stillpoint

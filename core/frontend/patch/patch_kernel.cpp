@@ -77,8 +77,7 @@ struct MomentRow {
 /// Bilinearly interpolated intensities and central-difference gradients, without removing the means.
 Moments Patch::sample(const PatchSampler& sampler) {
   const Row row;
-  const Vector frac_x = hn::Set(row, sampler.frac_x);
-  const Vector frac_y = hn::Set(row, sampler.frac_y);
+  const Vector frac_x = hn::Set(row, sampler.frac_x), frac_y = hn::Set(row, sampler.frac_y);
   const Vector half = hn::Set(row, 0.5F);
   std::array<Columns, kMoments> columns;
   for (std::size_t x = 0; x < kSide; x += hn::Lanes(row)) {
@@ -86,11 +85,8 @@ Moments Patch::sample(const PatchSampler& sampler) {
     MomentRow moments;
     moments.sums.fill(hn::Zero(row));
     // Rows of the patch are interpolated between rows of pixels; grad_y of a row needs the next one.
-    Vector upper = hn::Zero(row);
-    Vector middle = hn::Zero(row);
-    Vector diff_x_middle = hn::Zero(row);
-    Vector previous = hn::Zero(row);
-    Vector diff_x_last = hn::Zero(row);
+    Vector upper, middle, diff_x_middle, previous, diff_x_last;
+    upper = middle = diff_x_middle = previous = diff_x_last = hn::Zero(row);
     for (std::size_t y = 0; y < kSide + 3; ++y, pixels += sampler.stride) {
       const Vector p0 = load(row, pixels);
       const Vector p1 = load(row, pixels + 1);

@@ -119,8 +119,9 @@ ReducedSystem reduced_system(const Window& window, const BackendConfig& config,
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) add_imu_term(window, frame, at, system);
   }
-  for (int frame = 0; frame <= window.newest(); ++frame)
-    add_zero_velocity_term(window, frame, config, blocks, system);
+  for (int frame = 0; frame <= window.newest(); ++frame) {
+    if (has_zero_velocity_term(window, frame)) add_zero_velocity_term(frame, config, blocks, system);
+  }
   visual.add_to(system, at);
   Eigen::VectorXd rhs = -system.g;
   visual.eliminate(0.0, system.H, rhs);
