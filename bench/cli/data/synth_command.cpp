@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
@@ -96,8 +98,39 @@ int render(const SynthArguments& arguments) {
   return kExitOk;
 }
 
+/// Camera, inertial sensor and rendering.
+std::vector<Option> sensor_options_of(SynthArguments& arguments) {
+  return {{"--width", "Image width [px]", &arguments.width, {1, 65535}},
+          {"--height", "Image height [px]", &arguments.height, {1, 65535}},
+          {"--focal", "Focal length [px]", &arguments.focal, {1, 1e6}},
+          {"--rate", "Frame rate [Hz]", &arguments.rate, {0.1, 1000}},
+          {"--exposure-ms", "Exposure time [ms]", &arguments.exposure_ms, {0, 1000}},
+          {"--exposure-swing",
+           "Amplitude of the slow exposure variation [stops]",
+           &arguments.exposure_swing,
+           {0, 10}},
+          {"--rolling-shutter-ms",
+           "Read-out time from the first to the last row [ms]",
+           &arguments.rolling_ms,
+           {0, 1000}},
+          {"--depth-noise",
+           "Standard deviation of depth noise per squared depth [1/m]",
+           &arguments.depth_noise,
+           {0, 1}},
+          {"--depth-units",
+           "Units of depth per meter: 1000 = mm, 5000 = as TUM RGB-D",
+           &arguments.depth_units,
+           {100, 60000}},
+          {"--time-offset-ms", "Delay of the IMU time stamps [ms]", &arguments.time_offset_ms, {-1e6, 1e6}},
+          {"--dropped", "Fraction of dropped frames", &arguments.dropped, {0, 1}},
+          {"--threads",
+           "Number of threads, 0 = all cores; does not affect the output",
+           &arguments.threads,
+           {0, 1000}}};
+}
+
 std::vector<Option> options_of(SynthArguments& arguments) {
-  return {
+  std::vector<Option> options = {
       {"PRESET", kPresets, &arguments.preset},
       {"--out", "Output folder [a folder in the cache]", &arguments.out},
       {"--seed", "Random seed; the output is a function of seed and options", &arguments.seed, {0, 1e9}},
@@ -119,34 +152,9 @@ std::vector<Option> options_of(SynthArguments& arguments) {
       {"--start",
        "Preset flight, track or home_tour: offset of the first frame [s]",
        &arguments.start,
-       {0, 1e6}},
-      {"--width", "Image width [px]", &arguments.width, {1, 65535}},
-      {"--height", "Image height [px]", &arguments.height, {1, 65535}},
-      {"--focal", "Focal length [px]", &arguments.focal, {1, 1e6}},
-      {"--rate", "Frame rate [Hz]", &arguments.rate, {0.1, 1000}},
-      {"--exposure-ms", "Exposure time [ms]", &arguments.exposure_ms, {0, 1000}},
-      {"--exposure-swing",
-       "Amplitude of the slow exposure variation [stops]",
-       &arguments.exposure_swing,
-       {0, 10}},
-      {"--rolling-shutter-ms",
-       "Read-out time from the first to the last row [ms]",
-       &arguments.rolling_ms,
-       {0, 1000}},
-      {"--depth-noise",
-       "Standard deviation of depth noise per squared depth [1/m]",
-       &arguments.depth_noise,
-       {0, 1}},
-      {"--depth-units",
-       "Units of depth per meter: 1000 = mm, 5000 = as TUM RGB-D",
-       &arguments.depth_units,
-       {100, 60000}},
-      {"--time-offset-ms", "Delay of the IMU time stamps [ms]", &arguments.time_offset_ms, {-1e6, 1e6}},
-      {"--dropped", "Fraction of dropped frames", &arguments.dropped, {0, 1}},
-      {"--threads",
-       "Number of threads, 0 = all cores; does not affect the output",
-       &arguments.threads,
-       {0, 1000}}};
+       {0, 1e6}}};
+  std::ranges::move(sensor_options_of(arguments), std::back_inserter(options));
+  return options;
 }
 
 }  // namespace
