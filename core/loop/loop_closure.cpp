@@ -24,7 +24,11 @@ constexpr std::size_t kIntervalDivisor = 50;
 }  // namespace
 
 LoopClosure::LoopClosure(const LoopConfig& config, const Camera& camera, bool has_imu)
-    : config_(config), camera_(camera), recognition_(config), drift_(config) {
+    : config_(config),
+      camera_(camera),
+      recognition_(config),
+      relocalization_(config, camera),
+      drift_(config) {
   if (config.dof != 4 && config.dof != 6) throw InputError("loop.dof", "is neither 4 nor 6; use one of them");
   if (config.dof == 4 && !has_imu)
     throw InputError("loop.dof", "4 requires the direction of gravity from an IMU; use 6");
@@ -42,17 +46,21 @@ void LoopClosure::use_map(const KeyframeMap& map) {
   T_m_b_ = T_w_b_;
 }
 
-Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
+Keyframe LoopClosure::describe(const DepartedKeyframe& keyframe) const {
   if (keyframe.depth.empty())
     throw InputError("loop.enabled",
                      "requires depth images, which the sequence lacks; switch loop closure off");
+  return {.frame = keyframe.frame,
+          .t = keyframe.t,
+          .T_w_b = keyframe.T_w_b,
+          .T_b_c = keyframe.T_b_c,
+          .gravity_b = keyframe.gravity_b,
+          .features = keyframe_features(keyframe, camera_, config_)};
+}
+
+Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
   const auto start = std::chrono::steady_clock::now();
-  keyframes_.push_back({.frame = keyframe.frame,
-                        .t = keyframe.t,
-                        .T_w_b = keyframe.T_w_b,
-                        .T_b_c = keyframe.T_b_c,
-                        .gravity_b = keyframe.gravity_b,
-                        .features = keyframe_features(keyframe, camera_, config_)});
+  keyframes_.push_back(describe(keyframe));
   T_w_b_.push_back(keyframe.T_w_b);
   T_m_b_.push_back(T_m_w_ * keyframe.T_w_b);
   if (map_size_ > 0 && keyframes_.size() == map_size_ + 1) {
@@ -60,12 +68,39 @@ Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
   } else {
     drift_.add(keyframe.t, keyframe.T_w_b);
   }
+  constrain_by_start();
   find_loops();
   if (is_optimization_due()) optimize();
   processing_ms_.push_back(
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   // Corrections by loops within this run do not locate it in the loaded map.
   return map_size_ > 0 && !relocalized_ ? Pose{} : T_m_w_;
+}
+
+Pose LoopClosure::locate(const DepartedKeyframe& frame) {
+  if (map_size_ == 0 || relocalized_) return T_m_w_;
+  start_ = relocalization_.locate(describe(frame), std::span(keyframes_).first(map_size_), recognition_);
+  if (start_) start_->record += records_.size();
+  records_.insert(records_.end(), relocalization_.records().begin(), relocalization_.records().end());
+  if (!start_) return {};
+  move_into_map(T_m_b_[static_cast<std::size_t>(start_->match)] * start_->T_bm_bq * start_->T_w_b.inverse());
+  return T_m_w_;
+}
+
+void LoopClosure::constrain_by_start() {
+  if (!start_) return;
+  const Keyframe& keyframe = keyframes_.back();
+  OdometryDrift between(config_);  // the keyframe may be earlier than the frame
+  between.add(std::min(start_->t, keyframe.t), start_->T_w_b);
+  between.add(std::max(start_->t, keyframe.t), keyframe.T_w_b);
+  const GraphLoop location{
+      .match = start_->match, .T_bm_bq = start_->T_bm_bq, .covariance = start_->covariance};
+  loops_.push_back({.loop = with_query(location, static_cast<int>(keyframes_.size()) - 1,
+                                       start_->T_w_b.inverse() * keyframe.T_w_b, between.covariance(0, 1)),
+                    .record = start_->record,
+                    .confirmed = true,
+                    .is_start = true});
+  start_.reset();
 }
 
 void LoopClosure::find_loops() {
@@ -109,7 +144,8 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
     if (pairwise_distance(loop, other.loop, T_w_b_, drift_) <= config_.gate_chi2) {
       agreeing.push_back(&other);
     } else {
-      contradicting += other.confirmed;
+      // A wrong start must not refuse all loops that would correct it.
+      contradicting += other.confirmed && !other.is_start;
     }
   }
   if (contradicting > agreeing.size()) return LoopOutcome::kPairwise;
@@ -136,7 +172,11 @@ void LoopClosure::relocalize() {
   if (found == loops_.rend()) return;
   const auto match = static_cast<std::size_t>(found->loop.match);
   const auto query = static_cast<std::size_t>(found->loop.query);
-  T_m_w_ = T_m_b_[match] * found->loop.T_bm_bq * T_w_b_[query].inverse();
+  move_into_map(T_m_b_[match] * found->loop.T_bm_bq * T_w_b_[query].inverse());
+}
+
+void LoopClosure::move_into_map(const Pose& T_m_w) {
+  T_m_w_ = T_m_w;
   for (std::size_t k = map_size_; k < T_m_b_.size(); ++k) T_m_b_[k] = T_m_w_ * T_w_b_[k];
   relocalized_ = true;
 }
@@ -195,7 +235,7 @@ LoopReport LoopClosure::finish() {
                                 .T_m_b = T_m_b_[k],
                                 .processing_ms = processing_ms_[k - map_size_]});
   }
-  if (map_size_ > 0) return report;
+  if (map_size_ > 0 && !relocalized_) return report;
   for (std::size_t k = 0; k < keyframes_.size(); ++k) keyframes_[k].T_w_b = T_m_b_[k];
   report.map = std::make_shared<KeyframeMap>(KeyframeMap{std::move(keyframes_)});
   return report;

@@ -3,6 +3,7 @@
 /// The odometry itself is not changed: the correction is a transform from its world to the map.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/config/loop_config.h"
@@ -11,6 +12,7 @@
 #include "core/loop/loop_verification.h"
 #include "core/loop/place_recognition.h"
 #include "core/loop/pose_graph.h"
+#include "core/loop/relocalization.h"
 #include "core/types/loop_report.h"
 
 namespace stillpoint {
@@ -32,6 +34,11 @@ class LoopClosure {
   /// @throws InputError if it has no depth image
   [[nodiscard]] Pose add(const DepartedKeyframe& keyframe);
 
+  /// Looks up a frame in the loaded map, unless this run is located in it already. The frame does not become
+  /// a keyframe; its location constrains the next one. @return as `add`
+  /// @param frame a current one, with its present pose by the odometry
+  [[nodiscard]] Pose locate(const DepartedKeyframe& frame);
+
   /// Whether the poses refer to the loaded map.
   [[nodiscard]] bool is_relocalized() const { return relocalized_; }
 
@@ -44,8 +51,10 @@ class LoopClosure {
     GraphLoop loop;
     std::size_t record = 0;  ///< index in `records_`
     bool confirmed = false;  ///< by another loop
+    bool is_start = false;   ///< location of the run in the loaded map
   };
 
+  [[nodiscard]] Keyframe describe(const DepartedKeyframe& keyframe) const;
   void find_loops();
   void assess(VerifiedLoop verified, int match);
   [[nodiscard]] LoopOutcome compare_with_others(const GraphLoop& loop);
@@ -55,11 +64,14 @@ class LoopClosure {
   [[nodiscard]] bool is_in_map(int keyframe) const { return static_cast<std::size_t>(keyframe) < map_size_; }
   /// Moves this run into the loaded map by the newest confirmed loop to it, if it is the first one.
   void relocalize();
+  void move_into_map(const Pose& T_m_w);
+  void constrain_by_start();
   [[nodiscard]] bool has_inlier_in_map() const;
 
   LoopConfig config_;
   Camera camera_;
   PlaceRecognition recognition_;
+  Relocalization relocalization_;
   OdometryDrift drift_;
   std::vector<Keyframe> keyframes_;
   std::vector<Pose> T_w_b_;            ///< of the keyframes, by the odometry
@@ -68,6 +80,7 @@ class LoopClosure {
   Pose T_m_w_;
   std::vector<LoopRecord> records_;
   std::vector<ConsistentLoop> loops_;
+  std::optional<MapLocation> start_;  ///< in the map, until the next keyframe; `record` is that in `records_`
   std::size_t keyframes_optimized_ = 0;  ///< number of keyframes at the last optimization
   bool has_new_loop_ = false;            ///< since then
   std::size_t map_size_ = 0;             ///< number of keyframes of the loaded map, the first ones

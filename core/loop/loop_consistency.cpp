@@ -55,6 +55,12 @@ double distance_from_identity(const UncertainPose& cycle) {
 
 }  // namespace
 
+GraphLoop with_query(const GraphLoop& loop, int query, const Pose& T_bq_bk, const Matrix6& covariance) {
+  const UncertainPose moved =
+      compose({.T = loop.T_bm_bq, .covariance = loop.covariance}, {.T = T_bq_bk, .covariance = covariance});
+  return {.match = loop.match, .query = query, .T_bm_bq = moved.T, .covariance = moved.covariance};
+}
+
 double odometry_distance(const GraphLoop& loop, std::span<const Pose> T_w_b, const OdometryDrift& drift) {
   const UncertainPose measured{.T = loop.T_bm_bq, .covariance = loop.covariance};
   return distance_from_identity(compose(inverse(motion(loop.match, loop.query, T_w_b, drift)), measured));

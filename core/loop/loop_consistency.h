@@ -18,6 +18,12 @@ struct GraphLoop {
   Matrix6 covariance = Matrix6::Identity();  ///< p + rho, q * Exp(theta)
 };
 
+/// The loop from another query: T_bm_bk = T_bm_bq T_bq_bk.
+/// @param query the keyframe k
+/// @param covariance of `T_bq_bk`: p + rho, q * Exp(theta)
+[[nodiscard]] GraphLoop with_query(const GraphLoop& loop, int query, const Pose& T_bq_bk,
+                                   const Matrix6& covariance);
+
 /// Squared Mahalanobis distance between a loop and the motion of the odometry. Chi-square distributed with 6
 /// degrees of freedom if the loop is true.
 /// @param T_w_b poses of the keyframes by the odometry

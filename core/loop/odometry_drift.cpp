@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/loop/odometry_drift.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "core/geometry/so3.h"
@@ -46,7 +47,8 @@ Matrix6 OdometryDrift::step_covariance(std::size_t k) const {
     return unknown;
   }
   const double distance_m = (T_w_b_[k].p - T_w_b_[k - 1].p).norm();
-  const double elapsed_s = seconds_between(times_[k - 1], times_[k]);
+  // A map may contain several runs, each with a clock of its own.
+  const double elapsed_s = std::max(0.0, seconds_between(times_[k - 1], times_[k]));
   const double position = squared(config_.drift_m_per_sqrt_m) * distance_m + squared(kMinStepSigma_m);
   const double rotation = squared(kDegree * config_.drift_deg_per_sqrt_m) * distance_m +
                           squared(kDegree * config_.drift_deg_per_sqrt_s) * elapsed_s +

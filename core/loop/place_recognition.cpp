@@ -42,8 +42,7 @@ std::vector<PlaceVotes> PlaceRecognition::recognize(std::span<const Keyframe> ke
     if (seconds_between(next.t, query.t) < config_.min_gap_s) break;
     index_.add(next.features);
   }
-  std::vector<PlaceVotes> maxima = vote_maxima(index_.query(query.features));
-  std::erase_if(maxima, [&](const PlaceVotes& place) { return place.votes < config_.min_votes; });
+  std::vector<PlaceVotes> maxima = similar_places(query);
   std::vector<PlaceVotes> candidates;
   for (const PlaceVotes& place : maxima) {
     if (static_cast<int>(candidates.size()) == config_.max_candidates) break;
@@ -52,6 +51,12 @@ std::vector<PlaceVotes> PlaceRecognition::recognize(std::span<const Keyframe> ke
   recent_.push_back(std::move(maxima));
   if (recent_.size() > kRecentQueries) recent_.pop_front();
   return candidates;
+}
+
+std::vector<PlaceVotes> PlaceRecognition::similar_places(const Keyframe& query) const {
+  std::vector<PlaceVotes> maxima = vote_maxima(index_.query(query.features));
+  std::erase_if(maxima, [&](const PlaceVotes& place) { return place.votes < config_.min_votes; });
+  return maxima;
 }
 
 bool PlaceRecognition::is_consistent(int place) const {

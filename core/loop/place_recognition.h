@@ -25,6 +25,10 @@ class PlaceRecognition {
   /// @param keyframes all, by time; the newest is the query. Earlier calls passed the same ones without it.
   [[nodiscard]] std::vector<PlaceVotes> recognize(std::span<const Keyframe> keyframes);
 
+  /// Places that look like a single frame, the most similar first, without temporal consistency: maxima of at
+  /// least `loop.min_votes` among the places of the map and the keyframes that `recognize` has indexed.
+  [[nodiscard]] std::vector<PlaceVotes> similar_places(const Keyframe& query) const;
+
  private:
   [[nodiscard]] bool is_consistent(int place) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/loop_worker.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/base/error.h"
@@ -13,6 +14,13 @@ namespace {
 /// blocks.
 constexpr std::size_t kMaxOutstanding = 8;
 constexpr std::size_t kMaxOutstandingRealtime = 2;
+
+/// Until the run is located in the loaded map: largest lag, and frames between two that are looked up. After
+/// a number of unsuccessful ones, the place is probably not in the map.
+constexpr std::int64_t kLookUpLag = 5;
+constexpr std::int64_t kLookUpInterval = 3;
+constexpr std::int64_t kLaterLookUpInterval = 15;
+constexpr int kEarlyLookUps = 60;
 
 }  // namespace
 
@@ -39,20 +47,35 @@ LoopWorker::~LoopWorker() {
 
 void LoopWorker::run() {
   name_this_thread("loop");
-  while (std::optional<DepartedKeyframe> keyframe = to_thread_.pop()) {
-    if (!from_thread_.push(process(std::move(*keyframe)))) return;
+  while (std::optional<Job> job = to_thread_.pop()) {
+    if (!from_thread_.push(process(std::move(*job)))) return;
   }
 }
 
-LoopWorker::Result LoopWorker::process(DepartedKeyframe keyframe) {
-  const Pose T_m_w = closure_.add(keyframe);
-  keyframe.gray.release();  // not until it is recycled
-  keyframe.depth.release();
-  return {T_m_w, std::move(keyframe)};
+void LoopWorker::use_map(const KeyframeMap& map) {
+  closure_.use_map(map);
+  has_map_ = true;
+  unlocated_ = true;
+}
+
+LoopWorker::Result LoopWorker::process(Job job) {
+  const Pose T_m_w = job.is_current ? closure_.locate(job.keyframe) : closure_.add(job.keyframe);
+  job.keyframe.gray.release();  // not until it is recycled
+  job.keyframe.depth.release();
+  return {T_m_w, closure_.is_relocalized(), std::move(job.keyframe)};
+}
+
+void LoopWorker::look_up(OptimizationStage& optimization, const OdometryUpdate& update) {
+  if (!unlocated_ || frame_ < next_look_up_) return;
+  std::optional<DepartedKeyframe> frame = optimization.current_frame(update.frame_id);
+  if (!frame) return;
+  next_look_up_ = frame_ + (++look_ups_ < kEarlyLookUps ? kLookUpInterval : kLaterLookUpInterval);
+  add({.keyframe = std::move(*frame), .is_current = true});
 }
 
 void LoopWorker::correct(OptimizationStage& optimization, OdometryUpdate& update) {
-  if (std::optional<DepartedKeyframe> keyframe = optimization.take_keyframe()) add(std::move(*keyframe));
+  if (std::optional<DepartedKeyframe> keyframe = optimization.take_keyframe()) add({std::move(*keyframe)});
+  look_up(optimization, update);
   if (execution_ == LoopExecution::kRealtime) {
     while (std::optional<Result> result = from_thread_.pop_for({})) collect(std::move(*result));
   }
@@ -63,6 +86,7 @@ void LoopWorker::correct(OptimizationStage& optimization, OdometryUpdate& update
   while (is_due()) {
     if (results_.empty()) collect_next();
     T_m_w_ = results_.front().T_m_w;
+    unlocated_ = has_map_ && !results_.front().relocalized;
     optimization.recycle(std::move(results_.front().used));
     results_.pop_front();
     due_.pop_front();
@@ -71,19 +95,20 @@ void LoopWorker::correct(OptimizationStage& optimization, OdometryUpdate& update
   ++frame_;
 }
 
-void LoopWorker::add(DepartedKeyframe keyframe) {
+void LoopWorker::add(Job job) {
   if (execution_ == LoopExecution::kRealtime && outstanding_ >= kMaxOutstandingRealtime) {
-    ++dropped_;
+    dropped_ += !job.is_current;
     return;
   }
-  due_.push_back(frame_ + lag_frames_);
+  const std::int64_t due = frame_ + (unlocated_ ? std::min(lag_frames_, kLookUpLag) : lag_frames_);
+  due_.push_back(due_.empty() ? due : std::max(due, due_.back()));
   if (execution_ == LoopExecution::kInline) {
-    results_.push_back(process(std::move(keyframe)));
+    results_.push_back(process(std::move(job)));
     return;
   }
   while (outstanding_ >= kMaxOutstanding) collect_next();
   ++outstanding_;
-  to_thread_.push(std::move(keyframe));
+  to_thread_.push(std::move(job));
 }
 
 void LoopWorker::collect(Result result) {
@@ -95,7 +120,7 @@ void LoopWorker::collect_next() {
   std::optional<Result> result = from_thread_.pop();
   if (!result) {
     errors_.rethrow();
-    return collect({T_m_w_, {}});
+    return collect({T_m_w_, !unlocated_, {}});
   }
   collect(std::move(*result));
 }
@@ -103,7 +128,7 @@ void LoopWorker::collect_next() {
 LoopReport LoopWorker::finish(OptimizationStage& optimization) {
   while (std::optional<DepartedKeyframe> keyframe = optimization.take_remaining_keyframe()) {
     while (outstanding_ > 0) collect_next();
-    add(std::move(*keyframe));
+    add({std::move(*keyframe)});
     results_.clear();  // later corrections are not causal
   }
   to_thread_.close();

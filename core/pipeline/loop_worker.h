@@ -25,7 +25,8 @@ enum class LoopExecution {
 
 /// One thread at a time may use an object. `kInline` and `kThread` give the same corrections to the bit: that
 /// of a keyframe which left the window with frame k is used from frame k + `loop.lag_frames` on. `kThread`
-/// waits for it there, and not before.
+/// waits for it there, and not before. With a loaded map, and until the run is located in it, current frames
+/// are looked up at a fixed cadence, and all lags are at most 5 frames.
 class LoopWorker {
  public:
   /// @throws InputError as the constructor of `LoopClosure`
@@ -35,7 +36,7 @@ class LoopWorker {
   LoopWorker& operator=(const LoopWorker&) = delete;
 
   /// As `LoopClosure::use_map`. Call it before the first frame.
-  void use_map(const KeyframeMap& map) { closure_.use_map(map); }
+  void use_map(const KeyframeMap& map);
 
   /// Takes the keyframe that left the window with the newest frame, and sets `OdometryUpdate::T_m_w`.
   /// @throws the exception of the thread, if any
@@ -46,14 +47,20 @@ class LoopWorker {
   [[nodiscard]] LoopReport finish(OptimizationStage& optimization);
 
  private:
+  struct Job {
+    DepartedKeyframe keyframe;
+    bool is_current = false;  ///< a frame to locate in the map, not a keyframe
+  };
   struct Result {
     Pose T_m_w;
+    bool relocalized = false;
     DepartedKeyframe used;  ///< to be recycled
   };
 
   void run();
-  [[nodiscard]] Result process(DepartedKeyframe keyframe);
-  void add(DepartedKeyframe keyframe);
+  [[nodiscard]] Result process(Job job);
+  void add(Job job);
+  void look_up(OptimizationStage& optimization, const OdometryUpdate& update);
   void collect(Result result);
   /// Waits for the result of the oldest outstanding keyframe.
   void collect_next();
@@ -62,13 +69,16 @@ class LoopWorker {
   std::int64_t lag_frames_;
   LoopClosure closure_;  ///< of the thread, while it runs
   std::int64_t frame_ = 0;
-  std::deque<std::int64_t> due_;  ///< frames from which on the corrections of submitted keyframes are used
+  std::deque<std::int64_t> due_;  ///< frames from which on the corrections of submitted jobs are used
   std::deque<Result> results_;    ///< of the oldest of them
-  std::deque<DepartedKeyframe> used_;
-  std::size_t outstanding_ = 0;  ///< keyframes in the thread and its channels
+  std::size_t outstanding_ = 0;   ///< jobs in the thread and its channels
   int dropped_ = 0;
+  bool has_map_ = false;
+  bool unlocated_ = false;         ///< a map is loaded, and the run is not located in it
+  std::int64_t next_look_up_ = 0;  ///< frame
+  int look_ups_ = 0;
   Pose T_m_w_;
-  BoundedChannel<DepartedKeyframe> to_thread_;
+  BoundedChannel<Job> to_thread_;
   BoundedChannel<Result> from_thread_;
   ThreadErrors errors_;
   std::jthread thread_;  ///< last member: joined before the others are destroyed

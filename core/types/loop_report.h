@@ -62,7 +62,8 @@ struct LoopReport {
   std::vector<MapKeyframe> keyframes;  ///< by time
   int dropped_keyframes = 0;           ///< not processed, in real time
   bool relocalized = false;            ///< keyframes were located in the loaded map
-  /// All keyframes with optimized poses, for later runs; null in a run with a loaded map.
+  /// All keyframes with optimized poses, for later runs: those of a loaded map, which this run extends, and
+  /// of this run. Null if a map was loaded and the run was not located in it.
   std::shared_ptr<const KeyframeMap> map;
 };
 

@@ -37,6 +37,13 @@ void fill(const TrackedFrame& frame, const DynamicReport& dynamic, DepartedKeyfr
     keyframe.regions.push_back({box.box, box.near_m, box.threshold_m});
 }
 
+void set_pose(const Pose& T_w_b, const Window& window, DepartedKeyframe& keyframe) {
+  keyframe.T_w_b = T_w_b;
+  keyframe.T_b_c = window.T_b_c;
+  keyframe.gravity_b.reset();
+  if (window.inertial) keyframe.gravity_b = (T_w_b.q.conjugate() * window.gravity_w).normalized();
+}
+
 }  // namespace
 
 void KeyframeCollector::before_slide(const Window& window) {
@@ -52,22 +59,22 @@ void KeyframeCollector::after_slide(const Window& window, const TrackedFrame& fr
   if (oldest_ && !has_frame(window, *oldest_)) depart(*oldest_, oldest_T_w_b_, window);
   discard_missing(window);
   if (!has_frame(window, frame.id)) return;
-  DepartedKeyframe keyframe;
-  if (!unused_.empty()) {
-    keyframe = std::move(unused_.back());
-    unused_.pop_back();
-  }
+  DepartedKeyframe keyframe = unused();
   fill(frame, dynamic, keyframe);
   in_window_.push_back(std::move(keyframe));
+}
+
+DepartedKeyframe KeyframeCollector::unused() {
+  if (unused_.empty()) return {};
+  DepartedKeyframe keyframe = std::move(unused_.back());
+  unused_.pop_back();
+  return keyframe;
 }
 
 void KeyframeCollector::depart(std::int64_t frame, const Pose& T_w_b, const Window& window) {
   const auto found = std::ranges::find(in_window_, frame, &DepartedKeyframe::frame);
   if (found == in_window_.end() || !located_ || !has_moved(T_w_b)) return;
-  found->T_w_b = T_w_b;
-  found->T_b_c = window.T_b_c;
-  found->gravity_b.reset();
-  if (window.inertial) found->gravity_b = (T_w_b.q.conjugate() * window.gravity_w).normalized();
+  set_pose(T_w_b, window, *found);
   last_T_w_b_ = T_w_b;
   departed_ = std::move(*found);
   in_window_.erase(found);
@@ -89,6 +96,16 @@ void KeyframeCollector::discard_missing(const Window& window) {
 }
 
 std::optional<DepartedKeyframe> KeyframeCollector::take() { return std::exchange(departed_, std::nullopt); }
+
+std::optional<DepartedKeyframe> KeyframeCollector::newest(const Window& window, std::int64_t frame) {
+  if (!located_ || in_window_.empty() || in_window_.back().frame != frame) return std::nullopt;
+  const auto state = std::ranges::find(window.frames, frame, &WindowFrame::id);
+  if (state == window.frames.end()) return std::nullopt;
+  DepartedKeyframe copy = unused();
+  copy = in_window_.back();
+  set_pose(state->state.T_w_b, window, copy);
+  return copy;
+}
 
 std::optional<DepartedKeyframe> KeyframeCollector::take_remaining(const Window& window) {
   while (!in_window_.empty() && !departed_) {

@@ -35,12 +35,17 @@ class KeyframeCollector {
   /// The next keyframe that is still in the window, the oldest first; for the end of a run.
   [[nodiscard]] std::optional<DepartedKeyframe> take_remaining(const Window& window);
 
+  /// A copy of the newest frame with its present pose, for relocalization; nullopt if it is not located.
+  /// @param frame the newest one; others are not returned
+  [[nodiscard]] std::optional<DepartedKeyframe> newest(const Window& window, std::int64_t frame);
+
   /// Returns a keyframe whose vectors are reused.
   void recycle(DepartedKeyframe keyframe) { unused_.push_back(std::move(keyframe)); }
 
  private:
   [[nodiscard]] bool has_moved(const Pose& T_w_b) const;
   void depart(std::int64_t frame, const Pose& T_w_b, const Window& window);
+  [[nodiscard]] DepartedKeyframe unused();
   void discard_missing(const Window& window);
 
   LoopConfig config_;

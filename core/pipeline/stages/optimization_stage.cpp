@@ -96,6 +96,10 @@ std::optional<DepartedKeyframe> OptimizationStage::take_remaining_keyframe() {
   return keyframes_ ? keyframes_->take_remaining(estimator_.window()) : std::nullopt;
 }
 
+std::optional<DepartedKeyframe> OptimizationStage::current_frame(std::int64_t frame) {
+  return keyframes_ ? keyframes_->newest(estimator_.window(), frame) : std::nullopt;
+}
+
 void OptimizationStage::recycle(DepartedKeyframe keyframe) {
   if (keyframes_) keyframes_->recycle(std::move(keyframe));
 }

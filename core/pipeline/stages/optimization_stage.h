@@ -45,6 +45,8 @@ class OptimizationStage {
   [[nodiscard]] std::optional<DepartedKeyframe> take_keyframe();
   /// At the end of a run: the next keyframe that is still in the window.
   [[nodiscard]] std::optional<DepartedKeyframe> take_remaining_keyframe();
+  /// Frame `frame`, if it is the newest one, entered the window and is located, see `KeyframeCollector`.
+  [[nodiscard]] std::optional<DepartedKeyframe> current_frame(std::int64_t frame);
   /// Returns a keyframe whose memory is reused.
   void recycle(DepartedKeyframe keyframe);
 

@@ -79,6 +79,19 @@ TEST_F(KeyframeCollectorTest, NothingIsHandedOverWhileThePoseIsLost) {
   for (std::int64_t id = 0; id < 6; ++id) EXPECT_FALSE(append(id));
 }
 
+TEST_F(KeyframeCollectorTest, TheNewestFrameIsCopiedAndStaysInTheWindow) {
+  append(0);
+  append(1);
+  const std::optional<DepartedKeyframe> newest = collector_.newest(window_, 1);
+  ASSERT_TRUE(newest);
+  EXPECT_EQ(newest->T_w_b.p.x(), 0.2);
+  EXPECT_EQ(newest->features.size(), 1u);
+  EXPECT_FALSE(collector_.newest(window_, 0));  // not the newest
+  append(2);
+  append(3);
+  EXPECT_EQ(append(4)->frame, 1);
+}
+
 TEST_F(KeyframeCollectorTest, TheRemainingFramesAreHandedOverAtTheEnd) {
   for (std::int64_t id = 0; id < 3; ++id) append(id);
   std::vector<std::int64_t> remaining;

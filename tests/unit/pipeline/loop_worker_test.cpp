@@ -75,6 +75,31 @@ TEST(LoopWorker, CorrectionsAreAppliedAfterTheLag) {
             run_inline(plane, loop_config(3)).first_correction() + 4);
 }
 
+TEST(LoopWorker, CurrentFramesAreLocatedInAMapWithinASecondWithAndWithoutAThread) {
+  const SlidingPlane plane(kFrames / 2 + 1);
+  Odometry first(loop_config(10), plane.input().rig);
+  for (int k = 0; k < kFrames; ++k) static_cast<void>(first.track(returning_frame(plane, k)));
+  const LoopReport mapped = *first.finish_loops();
+  constexpr int kStart = 20;  // the world of the second run begins here
+  Corrected expected;
+  Odometry second(loop_config(30), plane.input().rig);
+  second.use_map(*mapped.map);
+  for (int k = kStart; k < kFrames; ++k) expected.add(second.track(returning_frame(plane, k)));
+  EXPECT_TRUE(second.finish_loops()->relocalized);
+  ASSERT_LT(expected.first_correction(), 30) << "not located within one second";
+  EXPECT_NEAR(expected.corrections[30].x(), SlidingPlane::camera_x_m(kStart) - SlidingPlane::camera_x_m(0),
+              0.02);
+  Corrected threaded;
+  ThreadedOdometry odometry(loop_config(30), plane.input().rig,
+                            {.on_update = [&](const OdometryUpdate& update) { threaded.add(update); }});
+  odometry.use_map(*mapped.map);
+  odometry.finish_imu();
+  for (int k = kStart; k < kFrames; ++k) odometry.add_frame(returning_frame(plane, k));
+  odometry.finish();
+  EXPECT_EQ(threaded.corrections, expected.corrections);
+  EXPECT_EQ(threaded.odometry, expected.odometry);
+}
+
 TEST(LoopWorker, TheOdometryDoesNotDependOnLoopClosure) {
   const SlidingPlane plane(kFrames / 2 + 1);
   OdometryConfig off = loop_config(0);
