@@ -121,6 +121,8 @@ std::string map_bytes(const KeyframeMap& map) {
   return writer.take();
 }
 
+std::string map_checksum(const KeyframeMap& map) { return hash_text(content_hash(map_bytes(map))); }
+
 KeyframeMap parse_map(const std::string& bytes, const std::string& name) {
   if (!bytes.starts_with(kMapMagic)) {
     throw InputError(name, "is not a map; specify a file of `stillpoint run --save-map`");

@@ -23,6 +23,9 @@ inline constexpr const char* kMapMagic = "stillmap";
 
 [[nodiscard]] std::string map_bytes(const KeyframeMap& map);
 
+/// Checksum of the file that contains a map: sixteen hexadecimal digits.
+[[nodiscard]] std::string map_checksum(const KeyframeMap& map);
+
 /// @param name of the file, for messages
 /// @throws InputError if the bytes are not a map, of another version, or damaged
 [[nodiscard]] KeyframeMap parse_map(const std::string& bytes, const std::string& name);

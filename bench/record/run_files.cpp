@@ -175,6 +175,8 @@ std::string manifest_json(const RunManifest& manifest) {
                     {"variant", manifest.variant},
                     {"hash", config_hash(manifest.config)},
                     {"resolved", config}};
+  json["map"] = nullptr;
+  if (!manifest.map_checksum.empty()) json["map"] = {{"checksum", manifest.map_checksum}};
   json["mode"] = manifest.mode;
   json["seed"] = manifest.config.seed;
   json["weights"] = weights_json(manifest.config.detector);

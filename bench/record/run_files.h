@@ -24,6 +24,7 @@ struct RunManifest {
   std::string base;
   std::string variant;
   OdometryConfig config;
+  std::string map_checksum;  ///< of the loaded map, see `map_checksum`; empty without one
   std::string mode;
   BuildInfo build;
   HostInfo host;

@@ -67,11 +67,39 @@ TEST(LoopClosureCommand, ALaterRunIsLocatedInASavedMap) {
   const nlohmann::json result = nlohmann::json::parse(loop_text_of(out.path() / "second" / "result.json"));
   ASSERT_TRUE(result["relocalization_s"].is_number());
   EXPECT_LT(result["ate_loop_m"], 1.02 * result["ate_rmse_m"].get<double>() + 0.005);
+  // Located by current frames: before a keyframe has left the window.
+  EXPECT_LE(result["relocalization_s"], 1.0);
+  const nlohmann::json manifest =
+      nlohmann::json::parse(loop_text_of(out.path() / "second" / "manifest.json"));
+  EXPECT_EQ(manifest["map"]["checksum"].get<std::string>().size(), 16U);
   EXPECT_EQ(run_map("third", "--save-map").exit_code, 2);  // the file exists
   std::ofstream(map, std::ios::app) << "more";
   const ProgramResult refused = run_map("fourth", "--map");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.err.find("is damaged"), std::string::npos) << refused.err;
+}
+
+TEST(LoopClosureCommand, ALocatedRunExtendsTheMapIntoANewFile) {
+  const TemporaryFolder out;
+  const fs::path first = out.path() / "first.map", both = out.path() / "both.map";
+  const auto run_map = [&](const std::string& folder, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {
+        "run",       rendered_sequence().string(), "--out",    (out.path() / folder).string(),
+        "--variant", "vo+ablations/loop_closure",  "--passes", "3",
+        "--set",     "loop.min_translation_m=0.05"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_program(arguments);
+  };
+  ASSERT_EQ(run_map("first", {"--save-map", first.string()}).exit_code, 0);
+  const ProgramResult extended = run_map("second", {"--map", first.string(), "--save-map", both.string()});
+  ASSERT_EQ(extended.exit_code, 0) << extended.err;
+  EXPECT_GT(fs::file_size(both), fs::file_size(first));
+  const ProgramResult unlocated =
+      run_map("third", {"--map", first.string(), "--save-map", (out.path() / "none.map").string(), "--set",
+                        "loop.min_votes=10000"});
+  EXPECT_EQ(unlocated.exit_code, 2);
+  EXPECT_NE(unlocated.err.find("was not located in the map"), std::string::npos) << unlocated.err;
+  EXPECT_FALSE(fs::exists(out.path() / "none.map"));
 }
 
 TEST(LoopClosureCommand, MapsRequireLoopClosure) {

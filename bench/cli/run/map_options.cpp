@@ -19,7 +19,6 @@ void require_map_options(const MapOptions& options, const OdometryConfig& config
                      "requires loop closure; add --variant ablations/loop_closure");
   }
   if (options.save.empty()) return;
-  if (!options.load.empty()) throw InputError("--save-map", "excludes --map; save the map in another run");
   if (runs > 1) throw InputError("--save-map", "requires a single run; pass one --variant");
   require_safe_output(options.save, rules_of(options));
 }
@@ -29,7 +28,12 @@ std::shared_ptr<const KeyframeMap> load_map(const MapOptions& options) {
 }
 
 void save_map(const MapOptions& options, const LoopReport& report) {
-  if (options.save.empty() || !report.map) return;
+  if (options.save.empty()) return;
+  if (!report.map) {
+    throw InputError("--save-map",
+                     "the run was not located in the map of --map, so it cannot extend it; run without --map "
+                     "for a map of its own");
+  }
   write_output(options.save, map_bytes(*report.map), rules_of(options));
 }
 

@@ -20,6 +20,7 @@
 #include "bench/model/utc_time.h"
 #include "bench/plan/sequence_argument.h"
 #include "bench/profile/meters/process_usage.h"
+#include "bench/record/map_file.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/output_guard.h"
 #include "bench/record/remembered_checksum.h"
@@ -166,6 +167,7 @@ RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& 
           .base = arguments.base,
           .variant = configured.variant,
           .config = configured.spec.config,
+          .map_checksum = configured.spec.map ? map_checksum(*configured.spec.map) : "",
           .mode = configured.spec.mode,
           .build = build_info(),
           .host = host_info(),
@@ -222,8 +224,9 @@ int run_configured(const datasets::SensorStream& stream, const RunArguments& arg
   RunDumps dumps(dump_request(arguments, configured), stream.info(), configured.spec.config.frontend);
   const RunResult result = execute(stream, arguments, configured, dumps);
   write_run(configured.folder, result, manifest_of(stream.info(), arguments, configured));
-  if (result.run.loops) save_map(arguments.map, result.run.loops->report);
   print_result(result, configured.folder);
+  if (result.run.loops && (result.run.loops->report.map || !interrupt_requested()))
+    save_map(arguments.map, result.run.loops->report);
   const auto failures = dumps.finish(interrupt_requested() ? nullptr : &result.run);
   for (const std::string& failure : failures) spdlog::warn("{}", failure);
   return std::max(exit_code(result.outcome), failures.empty() ? kExitOk : kExitFindings);
@@ -273,7 +276,7 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
           {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
           {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
           {"--map", "Map of an earlier run, in which this one is located", &arguments->map.load},
-          {"--save-map", "Write a map for later runs into this file", &arguments->map.save},
+          {"--save-map", "Write a map for later runs, with --map an extended one", &arguments->map.save},
           {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
           {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
           {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},

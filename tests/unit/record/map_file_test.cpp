@@ -24,6 +24,14 @@ KeyframeMap small_map() {
   return map;
 }
 
+TEST(MapFile, TheChecksumIsThatOfTheContent) {
+  KeyframeMap map = small_map();
+  const std::string checksum = map_checksum(map);
+  EXPECT_EQ(checksum, map_checksum(parse_map(map_bytes(map), "map")));
+  map.keyframes[1].T_w_b.p.x() += 1e-9;
+  EXPECT_NE(checksum, map_checksum(map));
+}
+
 TEST(MapFile, ReadsWhatWasWritten) {
   const KeyframeMap map = small_map(), read = parse_map(map_bytes(map), "map");
   ASSERT_EQ(read.keyframes.size(), 3U);
