@@ -56,6 +56,8 @@ const NumberOption kOptions[] = {
     {{"data", "synth", "market"}, "--depth-noise", "nan"},
     {{"data", "synth", "market"}, "--time-offset-ms", "nan"},
     {{"data", "synth", "market"}, "--dropped", "-1"},
+    {{"data", "synth", "market"}, "--depth-units", "nan"},
+    {{"data", "synth", "market"}, "--track-sequence", "-1"},
     {{"data", "synth", "market"}, "--threads", "-1"},
 };
 
