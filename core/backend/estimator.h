@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/backend/health/bias_check.h"
 #include "core/backend/health/depth_scale.h"
 #include "core/backend/health/inertial_check.h"
 #include "core/backend/health/inertial_interval.h"
@@ -104,7 +105,7 @@ class Estimator {
   void check_inertial_data();
   void distrust_recent_samples();
   void check_biases();
-  void enlarge_bias_walk(const InertialError& error);
+  void enlarge_bias_walk(const MeasuredBiases& measured);
   void solve();
   void discard_newest();
   [[nodiscard]] StatusReason failure() const;
@@ -139,8 +140,8 @@ class Estimator {
   InertialCheck inertial_check_;
   StepCheck step_check_;
   BiasCheck bias_check_;
-  int bias_steps_ = 0;       ///< successive checks of the biases with an error
-  int agreeing_checks_ = 0;  ///< same without an error
+  std::optional<Timestamp> biases_differ_since_;  ///< by successive checks of the biases
+  std::optional<Timestamp> biases_agree_since_;   ///< same
   DepthScale depth_scale_;
   std::optional<Timestamp> depth_rejected_since_;
   FrameEvidence evidence_;   ///< of the last frame that was added

@@ -23,12 +23,11 @@ constexpr double kMinAgreeing = 0.7;
 constexpr double kRecognitionDelay_s = 0.15;
 
 /// Age of a step of the biases when it is recognized, at most.
-constexpr double kBiasStepDelay_s = 0.5;
+constexpr double kBiasStepDelay_s = 0.6;
 
-/// Successive checks with an error, a quarter of a second apart, that are no step of a bias; and without an
-/// error, after which the data is used again.
-constexpr int kMaxBiasSteps = 4;
-constexpr int kMinAgreeingChecks = 4;
+/// Duration of errors that are not those of a bias, and of agreement after which the data is used again.
+constexpr double kMaxDifference_s = 1.0;
+constexpr double kMinAgreement_s = 0.7;
 
 /// A pose from the map this close to the inertial one confirms it.
 constexpr double kConfirmed_m = 0.02;
@@ -123,32 +122,36 @@ void Estimator::check_prediction() {
 void Estimator::check_biases() {
   const WindowFrame& newest = window_.frames.back();
   if (!backend_.bias_steps || !window_.inertial || !newest.from_previous) return;
-  const std::optional<InertialError> error = bias_check_.error_at(window_, imu_);
-  if (!error) return;
-  bias_steps_ = BiasCheck::is_step(*error) ? bias_steps_ + 1 : 0;
-  agreeing_checks_ = bias_steps_ > 0 ? 0 : agreeing_checks_ + 1;
-  if (bias_steps_ >= kMaxBiasSteps) {
+  const BiasCheck::Result result = bias_check_.update(window_, imu_);
+  if (result == BiasCheck::Result::kUnknown) return;
+  const Timestamp t = newest.state.t;
+  std::optional<Timestamp>& since =
+      result == BiasCheck::Result::kAgrees ? biases_agree_since_ : biases_differ_since_;
+  if (!since) since = t;
+  (result == BiasCheck::Result::kAgrees ? biases_differ_since_ : biases_agree_since_).reset();
+  if (biases_differ_since_ && seconds_between(*biases_differ_since_, t) > kMaxDifference_s) {
     inertial_check_.contradict();
     inertial_check_.hold(true);
     evidence_.imu_defect = StatusReason::kImuInconsistent;
     distrust_recent_samples();
-  } else if (agreeing_checks_ >= kMinAgreeingChecks) {
+  } else if (biases_agree_since_ && seconds_between(*biases_agree_since_, t) > kMinAgreement_s) {
     inertial_check_.hold(false);
   }
-  if (bias_steps_ > 0 && has_inertial_prediction()) enlarge_bias_walk(*error);
+  if (result == BiasCheck::Result::kStep && has_inertial_prediction())
+    enlarge_bias_walk(bias_check_.measured());
 }
 
-void Estimator::enlarge_bias_walk(const InertialError& error) {
-  const Timestamp newest = window_.frames.back().state.t;
+void Estimator::enlarge_bias_walk(const MeasuredBiases& measured) {
+  const NavState& newest = window_.frames.back().state;
   for (WindowFrame& frame : window_.frames) {
     if (!frame.from_previous || !frame.imu_is_reliable ||
-        seconds_between(frame.state.t, newest) > kBiasStepDelay_s) {
+        seconds_between(frame.state.t, newest.t) > kBiasStepDelay_s) {
       continue;
     }
     const double root_s = std::sqrt(frame.from_previous->duration_s());
     ImuNoise noise = rig_.imu_noise;
-    noise.gyro_walk = std::max(noise.gyro_walk, error.gyro_b.norm() / root_s);
-    noise.accel_walk = std::max(noise.accel_walk, error.accel_w.norm() / root_s);
+    noise.gyro_walk = std::max(noise.gyro_walk, (measured.gyro - newest.gyro_bias).norm() / root_s);
+    noise.accel_walk = std::max(noise.accel_walk, (measured.accel - newest.accel_bias).norm() / root_s);
     frame.from_previous->set_noise(noise);
   }
 }
@@ -253,6 +256,8 @@ void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   inertial_check_.reset();
   step_check_.reset();
   bias_check_.reset();
+  biases_differ_since_.reset();
+  biases_agree_since_.reset();
 }
 
 /// After a divergence, which the biases were part of.

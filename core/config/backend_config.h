@@ -155,9 +155,7 @@ struct BackendConfig {
   PriorModel prior =
       PriorModel::kPublished;  ///< once the IMU is initialized; before and without one published
   bool covariance = false;     ///< compute the covariance of the newest state with each frame
-  /// Follow steps of the biases, which their random walk does not allow for. Off in all configs: among people
-  /// it has taken sound data for a step.
-  bool bias_steps = false;
+  bool bias_steps = false;     ///< follow steps of the biases, which their random walk does not allow for
   bool estimate_time_offset = true;
   TimeOffsetModel time_offset_model = TimeOffsetModel::kBearing;
   double time_offset_sigma_s = 0.01;  ///< prior standard deviation around the calibrated value

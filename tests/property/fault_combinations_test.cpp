@@ -95,6 +95,7 @@ FaultyScenario random_scenario(int seed) {
     scenario.backend.rate_hz = 0.0;
   }
   scenario.backend.window_size = 5;
+  scenario.backend.bias_steps = seed % 2 == 0;
   scenario.backend.max_dead_reckoning_s = random.uniform(0.0, 1.0);
   scenario.backend.max_relocalization_s = random.uniform(0.0, 0.5);
   std::vector<FrameChange> frames;

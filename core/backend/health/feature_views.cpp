@@ -72,7 +72,7 @@ std::optional<VisualPose> FeatureViews::pose_after(const VisualPose& before, std
   const double inlier = kInlier_px / options_.focal_px;
   const Pose found = refine_camera_pose(observations_, predicted, inlier);
   const VisionAssessment vision = assess_vision(observations_, found, inlier / kInlierSigmas);
-  if (vision.has_few_features() || vision.has_weak_geometry() ||
+  if (vision.has_few_features() || vision.has_weak_geometry() || vision.inliers < options_.min_agreeing ||
       vision.inliers < kMinAgreeing * vision.features ||
       vision.inliers < options_.min_static_ratio * views_[to].tracked) {
     return std::nullopt;

@@ -36,6 +36,7 @@ class FeatureViews {
     double min_interval_s = 0.0;  ///< between successive views; earlier frames are left out
     double history_s = 0.2;       ///< age of the oldest view
     double min_static_ratio = 0;  ///< of the tracked features, that must agree with a motion
+    int min_agreeing = 0;         ///< features that must agree with a motion
   };
   explicit FeatureViews(const Options& options) : options_(options) {}
 

@@ -11,9 +11,6 @@ constexpr double kMinGyroChange = 0.05;  // [rad/s]
 constexpr double kMaxStepAccelError = 1.5;  // [m/s^2]
 constexpr double kMaxStepGyroError = 0.05;  // [rad/s]
 
-constexpr double kBiasInterval_s = 0.24;
-constexpr double kMinAccelStep = 0.15;  // [m/s^2]
-constexpr double kMinGyroStep = 0.01;   // [rad/s]
 constexpr double kStepSigmas = 2.0;
 
 /// Between the three views at these indices.
@@ -67,18 +64,6 @@ bool StepCheck::is_wrong(const Window& window, ImuBuffer& imu) {
   return error && error->is_explained() &&
          (error->accel_w.norm() > kMaxStepAccelError + kStepSigmas * error->accel_sigma ||
           error->gyro_b.norm() > kMaxStepGyroError + kStepSigmas * error->gyro_sigma);
-}
-
-std::optional<InertialError> BiasCheck::error_at(const Window& window, ImuBuffer& imu) {
-  if (!views_.add(window)) return std::nullopt;
-  const std::optional<Views> chosen = spaced(views_, kBiasInterval_s);
-  if (!chosen) return std::nullopt;
-  return error_between(*chosen, views_, window, imu);
-}
-
-bool BiasCheck::is_step(const InertialError& error) {
-  return error.accel_w.norm() > kMinAccelStep + kStepSigmas * error.accel_sigma ||
-         error.gyro_b.norm() > kMinGyroStep + kStepSigmas * error.gyro_sigma;
 }
 
 }  // namespace stillpoint

@@ -27,26 +27,4 @@ class StepCheck {
   FeatureViews views_;
 };
 
-/// Recognizes a step of the biases, by the data of half a second, after labels were derived from it. Half of
-/// the features must agree with the visual motion, so that a person in front of the camera is not mistaken
-/// for the static scene.
-class BiasCheck {
- public:
-  /// @param focal_px of the camera, > 0
-  explicit BiasCheck(double focal_px)
-      : views_({.focal_px = focal_px, .min_interval_s = 0.24, .history_s = 0.9, .min_static_ratio = 0.33}) {}
-
-  /// Processes the newest frame of an inertial window.
-  /// @return nullopt if it is too early for another check, or vision does not determine the motion
-  [[nodiscard]] std::optional<InertialError> error_at(const Window& window, ImuBuffer& imu);
-
-  /// Beyond 0.15 m/s^2 or 0.01 rad/s, plus two standard deviations.
-  [[nodiscard]] static bool is_step(const InertialError& error);
-
-  void reset() { views_.reset(); }
-
- private:
-  FeatureViews views_;
-};
-
 }  // namespace stillpoint

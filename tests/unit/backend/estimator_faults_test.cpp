@@ -239,6 +239,33 @@ TEST(EstimatorFaults, StepsOfTheBiasesAreFollowed) {
   }
 }
 
+/// Two pixels of noise are more than the check of the biases expects: an error of vision, not of the sensor.
+TEST(EstimatorFaults, NoisyFeaturesAreNoStepOfTheBiases) {
+  FaultyScenario scenario;
+  scenario.motion.pixel_noise_px = 2.0;
+  const FaultyRun without = run_with_faults(scenario);
+  scenario.backend.bias_steps = true;
+  const FaultyRun with = run_with_faults(scenario);
+  for (std::size_t i = 0; i < with.frames.size(); ++i) {
+    ASSERT_EQ(with.frames[i].update.state.T_w_b.p, without.frames[i].update.state.T_w_b.p)
+        << with.frames[i].t;
+  }
+}
+
+TEST(EstimatorFaults, SamplesWithAWrongTimeAreNotUsed) {
+  FaultyScenario scenario;
+  scenario.change_imu = [](std::vector<ImuSample>& samples) {
+    for (ImuSample& sample : samples) {
+      if (to_seconds(sample.t) >= kBegin_s) sample.t = after(sample.t, 0.1);
+    }
+  };
+  const double error_m = run_with_faults(scenario).worst_error_m(0.0, kEnd_s);
+  scenario.backend.bias_steps = true;
+  const double checked_m = run_with_faults(scenario).worst_error_m(0.0, kEnd_s);
+  EXPECT_LT(checked_m, 0.05);
+  EXPECT_LT(checked_m, error_m);
+}
+
 TEST(EstimatorFaults, DepthWhoseScaleChangesIsNotUsed) {
   for (const bool uses_imu : {true, false}) {
     FaultyScenario scenario;

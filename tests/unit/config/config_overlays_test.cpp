@@ -116,6 +116,7 @@ TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {
                      {"backend.keyframe_max_interval_s", "0.5"},
                      {"backend.gravity", "\"estimated\""},
                      {"backend.covariance", "true"},
+                     {"backend.bias_steps", "true"},
                      {"backend.time_offset_sigma_s", "0.01"},
                      {"backend.time_offset_bound_s", "0.15"},
                      {"backend.extrinsics_bound_m", "0.1"},
