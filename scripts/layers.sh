@@ -99,7 +99,7 @@ row bench/run $common core/pipeline/runners datasets datasets/cache datasets/fau
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
   bench/profile/meters
-row bench/record $common core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/model/csv bench/config bench/run \
+row bench/record $common bench/profile/meters core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/model/csv bench/config bench/run \
   bench/profile
 row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record
@@ -146,7 +146,7 @@ libraries=(
   '<libdeflate       ^datasets/(io/png_decoder|bags/chunk_codec)\.cpp$'
   '<(bzlib|lz4)       ^datasets/bags/chunk_codec\.cpp$'
   '<turbojpeg        ^datasets/io/jpeg_encoder\.cpp$'
-  '<embree3/          ^datasets/synthetic/render/'
+  '<embree[34]/        ^datasets/synthetic/render/embree\.h$'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
@@ -180,6 +180,7 @@ threads=(
   'datasets/synthetic/sequence/render_sequence\.cpp'
   'bench/plan/execution/(sequence_renderer|outcome_scorer)\.(h|cpp)'
   'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'
+  'bench/profile/meters/run_monitor\.(h|cpp)'
   'bench/record/host_info\.cpp'
   'bench/cli/plan/reproduce_command\.cpp'
 )

@@ -12,6 +12,10 @@ inline constexpr const char* kTopicsHelp =
     "type and "
     "name]";
 
+/// Help of the option --sysfs-root.
+inline constexpr const char* kSysfsRootHelp =
+    "Folder with recorded sys, proc, etc and var instead of those of this machine [/]";
+
 [[nodiscard]] Command run_command();             ///< `stillpoint run`: odometry on one sequence
 [[nodiscard]] Command eval_command();            ///< `stillpoint eval`: score trajectory files
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: score result files by scene
@@ -38,6 +42,7 @@ inline constexpr const char* kTopicsHelp =
 [[nodiscard]] Command check_command();        ///< `stillpoint data check`: validate a sequence
 [[nodiscard]] Command faults_command();       ///< `stillpoint data faults`: list injectable sensor faults
 [[nodiscard]] Command export_command();       ///< `stillpoint data export`: write other layouts
+[[nodiscard]] Command device_command();       ///< `stillpoint device`: cores, temperatures, power rails
 [[nodiscard]] Command detect_command();       ///< `stillpoint detect`: record boxes of a detection network
 [[nodiscard]] Command synth_command();        ///< `stillpoint data synth`: render a sequence
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The list of metrics and the functions that compute them.
 #include <algorithm>
 #include <array>
 
 #include "bench/model/cost_metrics.h"
+#include "bench/model/device_metrics.h"
 #include "bench/model/honesty_metrics.h"
 #include "bench/model/imu_rate_metrics.h"
 #include "bench/model/loop_metrics.h"
@@ -191,8 +191,8 @@ constexpr auto joined(const MetricDescriptor (&... lists)[kSizes]) {
   ((end = std::ranges::copy(lists, end).out), ...);
   return all;
 }
-constexpr auto kAllMetrics =
-    joined(kMetrics, kCostMetrics, kDerivedMetrics, kImuRateMetrics, kHonestyMetrics, kLoopMetrics);
+constexpr auto kAllMetrics = joined(kMetrics, kCostMetrics, kDerivedMetrics, kImuRateMetrics, kHonestyMetrics,
+                                    kLoopMetrics, kDeviceMetrics);
 
 }  // namespace
 

@@ -99,6 +99,17 @@ struct LoopScore {
   std::optional<double> relocalization_s{};      ///< in a loaded map
 };
 
+/// Energy and throttling of the machine during a run; see bench/model/device_metrics.h for the definitions.
+struct DeviceScore {
+  std::optional<double> joules_per_frame{};
+  std::optional<double> joules_per_frame_sd{};
+  std::optional<double> power_w{};
+  std::optional<double> idle_w{};
+  std::optional<double> energy_rate_hz{};
+  std::optional<double> throttled{};  ///< 1 or 0
+  std::optional<double> temperature_c{};
+};
+
 /// What metrics are computed from. Its parts are measured at different places; those that were not measured
 /// are empty.
 struct Measurements {
@@ -107,6 +118,7 @@ struct Measurements {
   std::optional<ImuRateScore> imu_rate;
   std::optional<eval::Honesty> honesty;  ///< of a run with injected faults
   std::optional<LoopScore> loops;        ///< of a run with loop closure
+  std::optional<DeviceScore> device{};   ///< if energy or throttling could be read
   std::optional<ProcessCost> process;
   std::optional<double> other_load;                                 ///< CPU load by other processes, 0 to 1
   std::map<std::string, std::int64_t, std::less<>> instructions{};  ///< executed, by stage of the odometry
@@ -117,6 +129,7 @@ enum class MetricSource {
   kRun,           ///< counts of the run: in result.json
   kHonesty,       ///< run with injected faults: in result.json
   kLoop,          ///< loop closure: in result.json if it was on
+  kDevice,        ///< energy and throttling: in result.json if they could be read
   kImuRate,       ///< poses at IMU rate: in result.json if they were recorded
   kProcess,       ///< the process of the run, measured by its parent
   kMachine,       ///< the machine during a timing run

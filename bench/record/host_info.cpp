@@ -24,25 +24,22 @@ std::string kernel_release() {
   return uname(&names) == 0 ? std::string(names.sysname) + " " + names.release : "unknown";
 }
 
-std::optional<std::string> clock_governor() {
-  std::ifstream file("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
-  std::string governor;
-  return std::getline(file, governor) ? std::optional(governor) : std::nullopt;
-}
-
 }  // namespace
 
-HostInfo host_info() {
+HostInfo host_info(const std::filesystem::path& root) {
+  DeviceInfo device = device_info(root);
   return {.cpu = cpu_model(),
           .logical_cpus = std::thread::hardware_concurrency(),
           .kernel = kernel_release(),
-          .governor = clock_governor()};
+          .governor = device.governor,
+          .device = device};
 }
 
 nlohmann::ordered_json host_json(const HostInfo& host) {
   nlohmann::ordered_json json = {
       {"cpu", host.cpu}, {"logical_cpus", host.logical_cpus}, {"kernel", host.kernel}};
   json["governor"] = host.governor ? nlohmann::ordered_json(*host.governor) : nlohmann::ordered_json(nullptr);
+  json["device"] = device_json(host.device);
   return json;
 }
 

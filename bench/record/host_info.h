@@ -7,16 +7,20 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "bench/profile/meters/device_info.h"
+
 namespace stillpoint::bench {
 
 struct HostInfo {
   std::string cpu;  ///< model name; "unknown" if not available
   unsigned logical_cpus = 0;
   std::string kernel;
-  std::optional<std::string> governor;  ///< frequency scaling governor of the first CPU, if available
+  std::optional<std::string> governor;  ///< frequency scaling governor, if available
+  DeviceInfo device;
 };
 
-[[nodiscard]] HostInfo host_info();
+/// @param root "/", or a folder with a recorded "sys", of which governor and device are read
+[[nodiscard]] HostInfo host_info(const std::filesystem::path& root = "/");
 
 /// JSON of manifests.
 [[nodiscard]] nlohmann::ordered_json host_json(const HostInfo& host);

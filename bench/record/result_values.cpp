@@ -51,6 +51,7 @@ Json metric_members(const Measurements& measurements) {
                              (metric.source == MetricSource::kRun && measurements.counts) ||
                              (metric.source == MetricSource::kHonesty && measurements.honesty) ||
                              (metric.source == MetricSource::kLoop && measurements.loops) ||
+                             (metric.source == MetricSource::kDevice && measurements.device) ||
                              (metric.source == MetricSource::kImuRate && measurements.imu_rate);
     if (is_measured) json[std::string(metric.id)] = number(metric, metric.value(measurements));
   }

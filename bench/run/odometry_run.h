@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/model/metrics.h"
 #include "bench/model/stored_run.h"
 #include "bench/run/label_score.h"
 #include "bench/run/loop_run.h"
@@ -81,6 +82,7 @@ struct OdometryRun {
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();  ///< of the last update
   std::optional<Eigen::Matrix2d> level_covariance;  ///< of that rotation: `StateCovariance::gravity` [rad^2]
   EstimatedCalibration calibration;
+  std::optional<DeviceScore> device;  ///< of the machine, if the caller measured it
   std::size_t frames_planned = 0;
   std::chrono::nanoseconds recording{};  ///< time spent on recording this
   double wall_s = 0.0;                   ///< from the request of the first frame to the last update

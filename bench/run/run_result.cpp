@@ -77,6 +77,10 @@ std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const O
     warnings.push_back(fmt::format("imu: {} sample(s) rejected: not finite, or not later than the one before",
                                    summary.imu_health.rejected_samples));
   }
+  if (run.device && run.device->throttled.value_or(0.0) > 0.0) {
+    warnings.emplace_back(
+        "machine: the processor was throttled during the run; its times are not comparable with others");
+  }
   for (std::string& warning : calibration_warnings(run.calibration)) warnings.push_back(std::move(warning));
   return warnings;
 }
@@ -109,7 +113,8 @@ Measurements measurements_of(const RunResult& result) {
                               .claimed_three_sigma_m = eval::claimed_three_sigma_m(run.claims)},
           .imu_rate = result.imu_rate,
           .honesty = result.honesty,
-          .loops = result.loops};
+          .loops = result.loops,
+          .device = run.device};
 }
 
 RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,

@@ -28,7 +28,8 @@ INSTANTIATE_TEST_SUITE_P(EveryCommand, HelpOf,
                                          std::vector<std::string>{"config", "list"},
                                          std::vector<std::string>{"config", "reference"},
                                          std::vector<std::string>{"data", "check"},
-                                         std::vector<std::string>{"data", "synth"}));
+                                         std::vector<std::string>{"data", "synth"},
+                                         std::vector<std::string>{"device", "info"}));
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 

@@ -18,7 +18,9 @@
 #include "bench/config/config_file.h"
 #include "bench/plan/bench_plan.h"
 #include "bench/plan/sequence_argument.h"
+#include "bench/profile/meters/device_info.h"
 #include "bench/profile/meters/process_usage.h"
+#include "bench/profile/meters/throttling.h"
 #include "bench/profile/profile_table.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
@@ -49,6 +51,8 @@ struct ProfileArguments {
   std::string device;
   double speed = 1.0;
   std::string tegrastats;
+  std::string duration;
+  std::string sysfs_root = "/";
 };
 
 /// Samples the CPU times of all threads, during the run as its threads end with it.
@@ -88,7 +92,7 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
   ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
   AllocationWatch allocations;
   ThreadUsageSampler thread_usage;
-  EnergyMeter energy("/", arguments.tegrastats, std::chrono::steady_clock::now());
+  EnergyMeter energy(arguments.sysfs_root, arguments.tegrastats, std::chrono::steady_clock::now());
   const HardwareCounters counters;
   const ProcessUsage before = process_usage();
   const auto on_update = [&](const OdometryUpdate& update) {
@@ -114,6 +118,26 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
   profile.allocations = allocations.counts();
   profile.recorder = recorder_cost(profile.run);
   return profile;
+}
+
+/// Repeats the run for --duration. @return the last repetition, with the drift over all
+Profile measure_drift(const datasets::SensorStream& stream, const ProfileArguments& arguments) {
+  const double duration_s = parse_duration_s(arguments.duration);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  std::vector<DriftRow> drift;
+  while (true) {
+    const ThrottleState before = read_throttle_state(arguments.sysfs_root);
+    Profile profile = measure(stream, arguments);
+    const double t_s = std::chrono::duration<double>(Clock::now() - start).count();
+    drift.push_back({.t_s = t_s,
+                     .frame_ms = profile.misses.whole_frame ? profile.misses.whole_frame->mean : 0.0,
+                     .temperature_c = hottest_celsius(arguments.sysfs_root),
+                     .throttled = throttled_between(before, read_throttle_state(arguments.sysfs_root))});
+    if (t_s < duration_s && !interrupt_requested()) continue;
+    profile.drift = std::move(drift);
+    return profile;
+  }
 }
 
 /// Default number of frames with --instructions: about one minute.
@@ -143,13 +167,18 @@ DeviceRequest device_request(const ProfileArguments& arguments, const fs::path& 
           .folder = folder};
 }
 
+/// @throws InputError for options that are invalid whatever the sequence is
+void require_valid(const ProfileArguments& arguments) {
+  if (!arguments.duration.empty()) static_cast<void>(parse_duration_s(arguments.duration));
+  if (arguments.tegrastats.empty()) return;
+  require_regular_file(arguments.tegrastats);
+  if (!std::ifstream(arguments.tegrastats))
+    throw InputError(arguments.tegrastats,
+                     "cannot be read; first start `tegrastats --logfile` with this file");
+}
+
 int run_profile(const ProfileArguments& arguments) {
-  if (!arguments.tegrastats.empty()) {
-    require_regular_file(arguments.tegrastats);
-    if (!std::ifstream(arguments.tegrastats))
-      throw InputError(arguments.tegrastats,
-                       "cannot be read; first start `tegrastats --logfile` with this file");
-  }
+  require_valid(arguments);
   if (!arguments.cores.empty()) pin_to(parse_cpu_list(arguments.cores));
   install_interrupt_handlers();
   const auto stream = find_sequence(resolve_sequence(arguments.sequence),
@@ -166,7 +195,8 @@ int run_profile(const ProfileArguments& arguments) {
   if (arguments.instructions) {
     return profile_instructions(instruction_request(stream->info(), arguments, folder));
   }
-  const Profile profile = measure(*stream, arguments);
+  const Profile profile =
+      arguments.duration.empty() ? measure(*stream, arguments) : measure_drift(*stream, arguments);
   if (interrupt_requested()) return kExitInterrupted;
   const ProfileTitle title{.sequence = name,
                            .base = arguments.base,
@@ -177,49 +207,56 @@ int run_profile(const ProfileArguments& arguments) {
                        {"trace.json", chrome_trace(profile.run.spans, "stillpoint " + name)},
                        {"stacks.folded", folded_stacks(profile.run.spans)}});
   print_profile(profile);
+  std::cout << drift_text(profile.drift);
   std::cout << fmt::format("{} (open trace.json in ui.perfetto.dev)\n", folder.string());
   return kExitOk;
+}
+
+std::vector<Option> profile_options(const std::shared_ptr<ProfileArguments>& arguments) {
+  return {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
+          {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+          {"--variant", "Overlays joined by +", &arguments->variant},
+          {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+          {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
+          {"--frame-budget-ms",
+           "Frames that take longer are counted as deadline misses [ms]",
+           &arguments->budget_ms,
+           {1e-3, 1e6}},
+          {"--cores", "CPU affinity, e.g. 0,1 [all]", &arguments->cores},
+          {"--out", "Output folder of profile.json, trace.json and stacks.folded [build/profile/SEQ]",
+           &arguments->out},
+          {"--format", "Sequence format [detected]", &arguments->format},
+          {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
+          {"--max-frames",
+           "Maximum number of frames; 0 = all, or 30 with --instructions",
+           &arguments->max_frames,
+           {0, 1e9}},
+          {"--device",
+           "Simulate this target device on a virtual clock: dropped frames, latency, accuracy (name "
+           "or file)",
+           &arguments->device},
+          {"--speed",
+           "Playback speed in realtime mode and with --device; 1 = as recorded",
+           &arguments->speed,
+           {1e-3, 1e3}},
+          {"--tegrastats", "Log file of a running tegrastats, for the energy of Jetson devices",
+           &arguments->tegrastats},
+          {"--duration", "Repeat the run for this time, e.g. 10m, and show the drift of time and temperature",
+           &arguments->duration},
+          {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
+          {"--instructions", "Count instructions with callgrind instead of measuring times",
+           &arguments->instructions}};
 }
 
 }  // namespace
 
 Command profile_command() {
   const auto arguments = std::make_shared<ProfileArguments>();
-  return {
-      .name = "profile",
-      .summary = "Profile one run: table of stage times, timeline, folded stacks",
-      .example = "profile market --frame-budget-ms 33 --out /tmp/profile",
-      .options = {{"SEQ", "Sequence folder or preset name", &arguments->sequence},
-                  {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
-                  {"--variant", "Overlays joined by +", &arguments->variant},
-                  {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
-                  {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
-                  {"--frame-budget-ms",
-                   "Frames that take longer are counted as deadline misses [ms]",
-                   &arguments->budget_ms,
-                   {1e-3, 1e6}},
-                  {"--cores", "CPU affinity, e.g. 0,1 [all]", &arguments->cores},
-                  {"--out", "Output folder of profile.json, trace.json and stacks.folded [build/profile/SEQ]",
-                   &arguments->out},
-                  {"--format", "Sequence format [detected]", &arguments->format},
-                  {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
-                  {"--max-frames",
-                   "Maximum number of frames; 0 = all, or 30 with --instructions",
-                   &arguments->max_frames,
-                   {0, 1e9}},
-                  {"--device",
-                   "Simulate this target device on a virtual clock: dropped frames, latency, accuracy (name "
-                   "or file)",
-                   &arguments->device},
-                  {"--speed",
-                   "Playback speed in realtime mode and with --device; 1 = as recorded",
-                   &arguments->speed,
-                   {1e-3, 1e3}},
-                  {"--tegrastats", "Log file of a running tegrastats, for the energy of Jetson devices",
-                   &arguments->tegrastats},
-                  {"--instructions", "Count instructions with callgrind instead of measuring times",
-                   &arguments->instructions}},
-      .action = [arguments] { return run_profile(*arguments); }};
+  return {.name = "profile",
+          .summary = "Profile one run: table of stage times, timeline, folded stacks",
+          .example = "profile market --frame-budget-ms 33 --out /tmp/profile",
+          .options = profile_options(arguments),
+          .action = [arguments] { return run_profile(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

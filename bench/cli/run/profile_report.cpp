@@ -89,12 +89,12 @@ std::string counters_text(const Profile& profile) {
 
 void print_machine(const Profile& profile) {
   std::cout << "hardware counters: " << counters_text(profile) << '\n';
-  std::cout << "energy: "
-            << (profile.energy
-                    ? fmt::format("{:.2f} J, whole machine ({})", profile.energy->joules,
-                                  profile.energy->source)
-                    : "n/a: neither RAPL nor INA3221 is readable (on Jetson devices: --tegrastats LOG)")
-            << '\n';
+  std::cout
+      << "energy: "
+      << (profile.energy
+              ? fmt::format("{:.2f} J, whole machine ({})", profile.energy->joules, profile.energy->source)
+              : "n/a: neither RAPL nor a power sensor is readable (on Jetson devices: --tegrastats LOG)")
+      << '\n';
   std::cout << "allocations: "
             << (profile.allocations
                     ? fmt::format("{} per frame (median), {} at most; all threads, including the recorder",
@@ -124,6 +124,7 @@ std::string profile_text(const Profile& profile, const ProfileTitle& title) {
                                                              {"largest", profile.allocations->largest}}
                                                       : Json(nullptr);
   json["recorder"] = recorder_json(profile.recorder);
+  if (!profile.drift.empty()) json["drift"] = drift_json(profile.drift);
   return json.dump(2);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/cli/run/profile_drift.h"
 #include "bench/profile/meters/allocation_watch.h"
 #include "bench/profile/meters/energy_meter.h"
 #include "bench/profile/meters/hardware_counters.h"
@@ -28,6 +29,7 @@ struct Profile {
   std::string counters_missing;     ///< reason if `counters` is empty
   std::optional<EnergyUse> energy;  ///< if the machine has a readable energy counter
   RecorderCost recorder;
+  std::vector<DriftRow> drift;  ///< with --duration
 };
 
 /// Identification of the profiled run.

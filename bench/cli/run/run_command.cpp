@@ -20,6 +20,7 @@
 #include "bench/model/utc_time.h"
 #include "bench/plan/sequence_argument.h"
 #include "bench/profile/meters/process_usage.h"
+#include "bench/profile/meters/run_monitor.h"
 #include "bench/record/map_file.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/output_guard.h"
@@ -38,20 +39,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Command line arguments of `run`.
 struct RunArguments {
-  std::string sequence;
-  std::string base = "stillpoint";
+  std::string sequence, base = "stillpoint", mode = "sequential";
   std::vector<std::string> variants, settings, faults, topics, dumps;
-  std::string mode = "sequential";
-  std::string out, format, rig, heartbeat, sequence_id, video;
+  std::string out, format, rig, heartbeat, sequence_id, video, sysfs_root = "/";
   int max_frames = 0, passes = 1, images = 0;
   bool deterministic_counts = false, no_frame_cache = false, imu_rate = false;
   double speed = 1.0;
   MapOptions map;
 };
 
-/// A run to execute; one for each --variant.
 struct ConfiguredRun {
   std::string variant;
   RunSpec spec;
@@ -133,16 +130,19 @@ RunResult execute(const datasets::SensorStream& stream, const RunArguments& argu
       arguments.heartbeat.empty() ? std::nullopt : std::make_optional<Heartbeat>(arguments.heartbeat);
   ProgressLine progress(stream.info().name + " " + configured.variant, stream.info().frame_times.size(),
                         "frames");
+  RunMonitor monitor(arguments.deterministic_counts ? "" : arguments.sysfs_root);
   const auto on_update = [&](const OdometryUpdate& update) {
     log_update(update);
+    monitor.frame_done();
     if (heartbeat) heartbeat->beat(update.frame_id);
     progress.update(static_cast<std::size_t>(update.frame_id) + 1);
   };
   RunControl control{.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested};
   if (dumps.needs_frames()) control.on_frame = [&](const FrameReport& report) { dumps.add(report); };
   const double start_s = process_age_s();
-  RunResult result =
-      score_run(stream.info(), run_odometry(stream, configured.spec, control), configured.faults);
+  OdometryRun odometry_run = run_odometry(stream, configured.spec, control);
+  odometry_run.device = monitor.finish();
+  RunResult result = score_run(stream.info(), std::move(odometry_run), configured.faults);
   result.start_s = start_s;
   result.variant = configured.variant;
   result.mode = configured.spec.mode;
@@ -170,7 +170,7 @@ RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& 
           .map_checksum = configured.spec.map ? map_checksum(*configured.spec.map) : "",
           .mode = configured.spec.mode,
           .build = build_info(),
-          .host = host_info(),
+          .host = host_info(arguments.sysfs_root),
           .started = utc_now()};
 }
 
@@ -281,6 +281,7 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
           {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
           {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
           {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
+          {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
           {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
           {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
            &arguments->deterministic_counts}};

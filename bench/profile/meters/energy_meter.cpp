@@ -6,33 +6,47 @@
 namespace stillpoint::bench {
 
 EnergyMeter::EnergyMeter(std::filesystem::path root, std::filesystem::path tegrastats, Time now)
-    : root_(std::move(root)), tegrastats_(std::move(tegrastats)), start_(read_rapl(root_)), last_(now) {
-  if (start_.empty()) sample(now);
+    : root_(std::move(root)), tegrastats_(std::move(tegrastats)), source_("RAPL"), last_(now) {
+  counters_ = read_rapl(root_);
+  if (joules_between(counters_, counters_)) return;
+  counters_.clear();
+  power_w_ = power_w();
+  is_valid_ = power_w_.has_value();
 }
 
-std::vector<RailPower> EnergyMeter::rails() {
-  std::vector<RailPower> found = read_ina3221(root_);
+std::optional<double> EnergyMeter::power_w() {
   source_ = "INA3221";
-  if (!found.empty() || tegrastats_.empty()) return found;
+  const std::vector<RailPower> sensors = read_power_sensors(root_);
+  if (!sensors.empty() || tegrastats_.empty()) return device_power_w(sensors);
   source_ = "tegrastats";
-  return read_tegrastats(tegrastats_);
+  return device_power_w(read_tegrastats(tegrastats_));
 }
 
 void EnergyMeter::sample(Time now) {
-  if (!start_.empty()) return;
-  const std::vector<RailPower> current = rails();
-  if (current.empty()) return;
-  joules_ += power_w_ * std::chrono::duration<double>(now - last_).count();
-  power_w_ = device_power_w(current);
+  if (!is_valid_) return;
+  std::optional<double> joules;
+  if (!counters_.empty()) {
+    std::vector<EnergyCounter> counters = read_rapl(root_);
+    joules = joules_between(counters_, counters);
+    counters_ = std::move(counters);
+  } else {
+    joules = *power_w_ * std::chrono::duration<double>(now - last_).count();
+    power_w_ = power_w();
+    if (!power_w_) joules.reset();
+  }
   last_ = now;
-  has_power_ = true;
+  is_valid_ = joules.has_value();
+  if (joules) joules_ += *joules;
+}
+
+std::optional<EnergyUse> EnergyMeter::so_far() const {
+  if (!is_valid_) return std::nullopt;
+  return EnergyUse{joules_, source_};
 }
 
 std::optional<EnergyUse> EnergyMeter::use(Time now) {
-  if (!start_.empty()) return EnergyUse{joules_between(start_, read_rapl(root_)), "RAPL"};
   sample(now);
-  if (!has_power_) return std::nullopt;
-  return EnergyUse{joules_, source_};
+  return so_far();
 }
 
 }  // namespace stillpoint::bench

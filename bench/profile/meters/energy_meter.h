@@ -17,7 +17,7 @@ struct EnergyUse {
   std::string source;   ///< "RAPL", "INA3221" or "tegrastats"
 };
 
-/// Energy counters are read at start and end. Without them power samples are integrated as piecewise
+/// Adds the differences of energy counters. Without them power samples are integrated as piecewise
 /// constant: E = sum_k P_k (t_{k+1} - t_k), P_k = power [W] at time t_k [s].
 class EnergyMeter {
  public:
@@ -28,23 +28,27 @@ class EnergyMeter {
   ///                   none
   EnergyMeter(std::filesystem::path root, std::filesystem::path tegrastats, Time now);
 
-  /// Samples the power, unless there are energy counters.
+  /// Must be called more often than a counter wraps around, which takes a minute at high power.
   void sample(Time now);
 
-  /// Energy since construction; nothing if neither energy nor power is available.
+  /// Energy from the construction to the last sample; nothing without a source, or if any reading since then
+  /// was not valid.
+  [[nodiscard]] std::optional<EnergyUse> so_far() const;
+
+  /// Samples; then as `so_far`.
   [[nodiscard]] std::optional<EnergyUse> use(Time now);
 
  private:
-  /// Rails of the first available source, sensors first; sets `source_`.
-  [[nodiscard]] std::vector<RailPower> rails();
+  /// Power by the first available source, sensors first; sets `source_`.
+  [[nodiscard]] std::optional<double> power_w();
 
   std::filesystem::path root_;
   std::filesystem::path tegrastats_;
   std::string source_;
-  std::vector<EnergyCounter> start_;
+  std::vector<EnergyCounter> counters_;  ///< at the last sample; empty if power is sampled
   Time last_;
-  double power_w_ = 0.0;  ///< at `last_`
-  bool has_power_ = false;
+  std::optional<double> power_w_;  ///< at `last_`
+  bool is_valid_ = true;
   double joules_ = 0.0;
 };
 

@@ -40,24 +40,24 @@ TEST(Rapl, CountsPackagesWithoutSubzones) {
   ASSERT_EQ(before.size(), 1u);
   EXPECT_EQ(before[0].name, "package-0");
   record_rapl(root, "7500000");
-  EXPECT_DOUBLE_EQ(joules_between(before, read_rapl(root.path())), 2.5);
+  EXPECT_DOUBLE_EQ(joules_between(before, read_rapl(root.path())).value(), 2.5);
 }
 
 TEST(Rapl, HandlesCounterWrapAround) {
   const std::vector<EnergyCounter> before = {{.name = "package-0", .energy_uj = 900, .range_uj = 1000}};
   const std::vector<EnergyCounter> after = {{.name = "package-0", .energy_uj = 50, .range_uj = 1000}};
-  EXPECT_DOUBLE_EQ(joules_between(before, after), 150e-6);  // 100 to the end of the range, then 50
+  EXPECT_DOUBLE_EQ(joules_between(before, after).value(), 150e-6);  // 100 to the end of the range, then 50
 }
 
 TEST(Ina3221, IsReadWithTheHwmonDriver) {
   const TemporaryFolder root;
   record_hwmon(root);
-  const std::vector<RailPower> rails = read_ina3221(root.path());
+  const std::vector<RailPower> rails = read_power_sensors(root.path());
   ASSERT_EQ(rails.size(), 2u);
   EXPECT_EQ(rails[0].rail, "VDD_IN");
-  EXPECT_DOUBLE_EQ(rails[0].power_w, 4.96);  // 4.96 V x 1 A
-  EXPECT_DOUBLE_EQ(rails[1].power_w, 1.238);
-  EXPECT_DOUBLE_EQ(device_power_w(rails), 4.96);  // the other rail is fed by it
+  EXPECT_DOUBLE_EQ(rails[0].power_w.value(), 4.96);  // 4.96 V x 1 A
+  EXPECT_DOUBLE_EQ(rails[1].power_w.value(), 1.238);
+  EXPECT_DOUBLE_EQ(device_power_w(rails).value(), 4.96);  // the other rail is fed by it
 }
 
 TEST(Ina3221, IsReadWithTheIioDriver) {
@@ -67,7 +67,8 @@ TEST(Ina3221, IsReadWithTheIioDriver) {
   record(root, folder + "in_power0_input", "1242");
   record(root, folder + "rail_name_1", "CPU");
   record(root, folder + "in_power1_input", "621");
-  EXPECT_DOUBLE_EQ(device_power_w(read_ina3221(root.path())), 1.863);  // no rail feeds the others
+  EXPECT_DOUBLE_EQ(device_power_w(read_power_sensors(root.path())).value(),
+                   1.863);  // no rail feeds the others
 }
 
 TEST(Tegrastats, ParsesTheFormatOfJetPack5) {
@@ -77,8 +78,8 @@ TEST(Tegrastats, ParsesTheFormatOfJetPack5) {
       "VDD_IN 4060mW/4120mW VDD_CPU_GPU_CV 500mW/512mW VDD_SOC 1216mW/1216mW");
   ASSERT_EQ(rails.size(), 3u);  // without memory usage
   EXPECT_EQ(rails[0].rail, "VDD_IN");
-  EXPECT_DOUBLE_EQ(rails[0].power_w, 4.06);
-  EXPECT_DOUBLE_EQ(device_power_w(rails), 4.06);
+  EXPECT_DOUBLE_EQ(rails[0].power_w.value(), 4.06);
+  EXPECT_DOUBLE_EQ(device_power_w(rails).value(), 4.06);
 }
 
 TEST(Tegrastats, ParsesTheFormatOfJetPack4) {
@@ -87,7 +88,7 @@ TEST(Tegrastats, ParsesTheFormatOfJetPack4) {
       "GPU 0/0 CPU 621/595 SOC 932/932 CV 0/0 VDDRQ 155/142 SYS5V 1400/1400");
   ASSERT_EQ(rails.size(), 6u);
   EXPECT_EQ(rails[5].rail, "SYS5V");
-  EXPECT_NEAR(device_power_w(rails), 3.108, 1e-12);  // 0 + 621 + 932 + 0 + 155 + 1400 mW
+  EXPECT_NEAR(device_power_w(rails).value(), 3.108, 1e-12);  // 0 + 621 + 932 + 0 + 155 + 1400 mW
 }
 
 TEST(EnergyMeter, IntegratesPowerOverTime) {

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Energy per frame and throttling during a run.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "bench/model/metrics.h"
+#include "bench/profile/meters/energy_meter.h"
+#include "bench/profile/meters/throttling.h"
+
+namespace stillpoint::bench {
+
+/// State of a run at one moment.
+struct EnergySample {
+  double t_s = 0.0;     ///< since the start of the run
+  double joules = 0.0;  ///< of the machine, since then
+  std::int64_t frames = 0;
+};
+
+/// Lowest rate of valid results [Hz].
+inline constexpr double kLowestEnergyRateHz = 10.0;
+
+/// Energy per frame above idle: (E - P_idle T) / n with the energy E [J], the duration T [s], and n frames;
+/// its spread is the standard deviation of that quotient over intervals of 1 s. Values are left out with less
+/// than two samples, without frames, at a rate below `kLowestEnergyRateHz`, and if the run used less than
+/// idle.
+/// @param idle_w power before the run
+[[nodiscard]] DeviceScore energy_score(std::span<const EnergySample> samples, double idle_w);
+
+/// Measures idle power when it is constructed, for 1 s, if the machine has readable power rails or counters;
+/// then a thread samples the energy 20 times per second until `finish`. Without, it only compares throttling.
+class RunMonitor {
+ public:
+  /// @param root "/", or a folder with a recorded "sys"; empty: nothing is measured, as for instruction
+  /// counts
+  explicit RunMonitor(std::filesystem::path root);
+  ~RunMonitor() = default;
+  RunMonitor(const RunMonitor&) = delete;
+  RunMonitor& operator=(const RunMonitor&) = delete;
+
+  void frame_done() { ++frames_; }
+
+  /// Nothing if neither energy nor throttling can be read. The energy is left out if any reading during the
+  /// run was not valid.
+  [[nodiscard]] std::optional<DeviceScore> finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// @return whether to go on
+  bool wait_until(Clock::time_point time, const std::stop_token& stop);
+  void sample_until_stopped(const std::stop_token& stop);
+  void add_sample(Clock::time_point now);
+
+  std::filesystem::path root_;
+  std::optional<double> idle_w_;
+  ThrottleState before_;
+  bool throttled_ = false;
+  std::atomic<std::int64_t> frames_ = 0;
+  std::mutex mutex_;
+  std::condition_variable_any stopped_;
+  Clock::time_point start_;
+  std::optional<EnergyMeter> meter_;  ///< used by the thread until it ends
+  std::vector<EnergySample> samples_;
+  bool is_valid_ = true;
+  std::jthread thread_;  ///< the last member: it uses the others
+};
+
+}  // namespace stillpoint::bench
