@@ -8,6 +8,7 @@
 #   scripts/setup.sh --oracles also the ROS 1 bag library of Debian, which tests compare the own reader with
 #   scripts/setup.sh --cluster also Slurm, sshd, GNU parallel and rsync, for the tests of `bench --executor`; the packages
 #                            start their services under systemd, which the tests do not use
+#   scripts/setup.sh --list  only prints the names of the packages that building, testing and running need
 #   scripts/setup.sh --all   all of these, as CI does: no test is skipped for want of a package
 set -euo pipefail
 
@@ -32,13 +33,14 @@ oracles=(python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-ms
 cluster=(munge slurm-wlm openssh-server parallel rsync)
 case "${1:-}" in
   "") ;;
+  --list) printf '%s\n' "${packages[@]}"; exit 0 ;;
   --dev) packages+=("${dev[@]}") ;;
   --pages) packages+=("${pages[@]}") ;;
   --docs) packages+=("${docs[@]}") ;;
   --oracles) packages+=("${oracles[@]}") ;;
   --cluster) packages+=("${cluster[@]}") ;;
   --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}" "${oracles[@]}" "${cluster[@]}") ;;
-  *) echo "setup: error: unknown option \"$1\"; the options are --dev, --pages, --docs, --oracles, --cluster and --all" >&2; exit 2 ;;
+  *) echo "setup: error: unknown option \"$1\"; the options are --dev, --pages, --docs, --oracles, --cluster, --list and --all" >&2; exit 2 ;;
 esac
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }

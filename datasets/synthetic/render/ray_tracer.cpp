@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/synthetic/render/ray_tracer.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "datasets/synthetic/render/embree.h"
 
 namespace stillpoint::synth {
 namespace {
@@ -95,10 +94,7 @@ void trace_scene(RTCScene scene, RayPacket& packet, bool moving) {
     hits.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     hits.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(valid, scene, &context, &hits);
+  intersect_similar_rays(valid, scene, hits);
   for (int lane = 0; lane < kPacket; ++lane) {
     if (valid[lane] == 0 || hits.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
     packet.far[lane] = hits.ray.tfar[lane];
@@ -144,9 +140,7 @@ bool RayTracer::is_unoccluded(const Eigen::Vector3f& from, const Eigen::Vector3f
   ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
   ray.tfar = 1.0F;
   ray.mask = ~0U;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene_->scene, &context, &ray);
+  find_occlusion(scene_->scene, ray);
   return ray.tfar >= 0.0F;
 }
 
