@@ -53,8 +53,7 @@ struct ConfiguredRun {
   std::string variant;
   RunSpec spec;
   std::vector<datasets::SensorFault> faults;  ///< the same for all runs
-  fs::path folder;
-  fs::path video;  ///< folder of annotated frames; empty = none
+  fs::path folder, video;                     ///< of the files, and of annotated frames; empty = none
 };
 
 std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
