@@ -9,7 +9,28 @@
 namespace stillpoint::bench {
 namespace {
 
-Pose correction_of(const MapKeyframe& keyframe) { return keyframe.T_m_b * keyframe.T_w_b.inverse(); }
+/// Correction of the output at a time.
+struct Correction {
+  Timestamp t;
+  Pose T_m_w;
+};
+
+/// Of the keyframes. The output at the time of a keyframe was not yet that of its final pose by the odometry,
+/// which the window refined afterwards: if its extrinsics are known, the difference is corrected, too.
+std::vector<Correction> corrections_of(const Trajectory& odometry, const LoopReport& report) {
+  std::vector<Correction> corrections;
+  const std::size_t count = report.keyframes.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const MapKeyframe& keyframe = report.keyframes[k];
+    corrections.push_back({keyframe.t, keyframe.T_m_b * keyframe.T_w_b.inverse()});
+    const auto output = std::ranges::lower_bound(odometry.poses, keyframe.t, {}, &StampedPose::t);
+    const bool has_output = output != odometry.poses.end() && output->t == keyframe.t;
+    if (!has_output || !report.map || report.map->keyframes.size() < count) continue;
+    const Pose& T_b_c = report.map->keyframes[report.map->keyframes.size() - count + k].T_b_c;
+    corrections.back().T_m_w = keyframe.T_m_b * T_b_c * output->T_w_f.inverse();
+  }
+  return corrections;
+}
 
 eval::RevisitScore revisits_of(const Trajectory& gt, const LoopReport& report) {
   std::vector<Timestamp> keyframes;
@@ -35,18 +56,18 @@ std::optional<double> ate_m(const Trajectory& gt, Trajectory trajectory,
 
 Trajectory optimized_trajectory(const Trajectory& odometry, const LoopReport& report) {
   Trajectory result{.frame = odometry.frame, .poses = odometry.poses};
-  const std::vector<MapKeyframe>& keyframes = report.keyframes;
-  if (keyframes.empty()) return result;
+  const std::vector<Correction> corrections = corrections_of(odometry, report);
+  if (corrections.empty()) return result;
   for (StampedPose& pose : result.poses) {
-    const auto next = std::ranges::upper_bound(keyframes, pose.t, {}, &MapKeyframe::t);
-    const auto before = next == keyframes.begin() ? next : next - 1;
-    const Pose by_before = correction_of(*before) * pose.T_w_f;
-    if (next == keyframes.end() || next == before) {
+    const auto next = std::ranges::upper_bound(corrections, pose.t, {}, &Correction::t);
+    const auto before = next == corrections.begin() ? next : next - 1;
+    const Pose by_before = before->T_m_w * pose.T_w_f;
+    if (next == corrections.end() || next == before) {
       pose.T_w_f = by_before;
       continue;
     }
     const double s = seconds_between(before->t, pose.t) / seconds_between(before->t, next->t);
-    pose.T_w_f = interpolate(by_before, correction_of(*next) * pose.T_w_f, s);
+    pose.T_w_f = interpolate(by_before, next->T_m_w * pose.T_w_f, s);
   }
   return result;
 }

@@ -19,9 +19,10 @@ struct LoopRun {
   bool has_map = false;  ///< a map of an earlier run was loaded
 };
 
-/// The odometry's trajectory with the final corrections: C_k = T_m_b T_w_b^-1 of the keyframes, interpolated
-/// over time between the two next ones: from C_k T to C_k+1 T for a pose T. Equal to the odometry without
-/// keyframes.
+/// The odometry's trajectory with the final corrections, interpolated over time between the two next
+/// keyframes: from C_k T to C_k+1 T for a pose T. C_k moves the pose that was the output at the time of the
+/// keyframe to the final one, T_m_b T_b_c. If no map is reported or the output lacks that time, C_k = T_m_b
+/// T_w_b^-1. Equal to the odometry without keyframes.
 /// @param odometry T_w_c
 [[nodiscard]] Trajectory optimized_trajectory(const Trajectory& odometry, const LoopReport& report);
 

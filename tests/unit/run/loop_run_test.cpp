@@ -30,6 +30,19 @@ TEST(LoopRun, CorrectionsAreInterpolatedBetweenKeyframes) {
     EXPECT_NEAR(optimized.poses[k].T_w_f.p.x(), expected[k], 1e-12);
 }
 
+TEST(LoopRun, TheOutputAtAKeyframeIsMovedToItsFinalPose) {
+  // The output at 1 s was 1.0 m; the window refined it to 0.9 m, and the loops to 0.8 m. The camera is 0.1 m
+  // before the body.
+  LoopReport report{.loops = {}, .keyframes = {keyframe(0, -0.1, -0.1), keyframe(1, 0.8, 0.7)}};
+  const Keyframe described{.T_b_c = at_x(0.1)};
+  report.map = std::make_shared<KeyframeMap>(KeyframeMap{{described, described}});
+  const Trajectory optimized = optimized_trajectory(straight(3), report);
+  const std::vector<double> expected = {0.0, 0.8, 1.8};
+  ASSERT_EQ(optimized.poses.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    EXPECT_NEAR(optimized.poses[k].T_w_f.p.x(), expected[k], 1e-12);
+}
+
 TEST(LoopRun, WithoutKeyframesTheTrajectoryIsThatOfTheOdometry) {
   const Trajectory optimized = optimized_trajectory(straight(3), {});
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(optimized.poses[k].T_w_f.p, straight(3).poses[k].T_w_f.p);
