@@ -109,7 +109,7 @@ forbidden core/imu/a.cpp '"core/imu/no_such_file.h"'
 
 # libraries
 allowed datasets/io/image_module.cpp '<OpenImageIO/imageio.h>'
-allowed datasets/synthetic/render/ray_tracer.cpp '<embree3/rtcore.h>'
+allowed datasets/synthetic/render/embree.h '<embree3/rtcore.h>'
 allowed core/frontend/patch/patch_kernel.cpp '<hwy/highway.h>'
 allowed core/backend/factors/a.cpp '<ceres/ceres.h>'
 allowed core/frontend/klt/a.cpp '<opencv2/video/tracking.hpp>'
