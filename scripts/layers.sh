@@ -89,7 +89,7 @@ row core/examples $core $eval $datasets
 
 # --- bench: each folder includes those above it ---
 row bench/model $messages eval eval/metrics eval/trajectory
-row bench/model/csv core/base bench/model
+row bench/model/csv core/base core/geometry core/types bench/model
 row bench/config core/base core/config bench/model
 row bench/store core/base core/types eval/io bench/model bench/model/csv
 row bench/store/maintenance core/base eval/io bench/model bench/store
@@ -123,7 +123,7 @@ row reports/drawing core/base core/types datasets/io eval/io eval/openloris eval
 row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
 row reports/page/charts $stored core/types eval/io eval/metrics eval/openloris eval/protocols reports/tables
-row reports/page $stored bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/tables/formats \
+row reports/page $stored bench/model/csv bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/tables/formats \
   reports/drawing reports/page/charts
 row reports/dashboard $stored bench/record reports/tables reports/page
 

@@ -10,6 +10,7 @@
 
 #include "bench/config/config_text.h"
 #include "bench/model/csv/counter_text.h"
+#include "bench/model/csv/loop_text.h"
 #include "bench/model/csv/timing_text.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
@@ -232,23 +233,6 @@ std::string status_csv(const OdometryRun& run) {
   return text;
 }
 
-/// Recognized places, and what became of them.
-std::string loops_csv(const LoopReport& report) {
-  std::string text =
-      "query_frame,query_t_ns,match_frame,match_t_ns,votes,matches,inliers,residual_px,tx,ty,tz,qx,qy,qz,qw,"
-      "accepted,reason,in_map\n";
-  for (const LoopRecord& loop : report.loops) {
-    const Pose& T = loop.T_match_query;
-    const bool accepted = loop.outcome == LoopOutcome::kAccepted;
-    text += fmt::format(
-        "{},{},{},{},{},{},{},{:.4g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{}\n",
-        loop.query_frame, loop.query_t.ns, loop.match_frame, loop.match_t.ns, loop.votes, loop.matches,
-        loop.inliers, loop.residual_px, T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w(),
-        accepted ? 1 : 0, accepted ? "" : outcome_name(loop.outcome), loop.in_map ? 1 : 0);
-  }
-  return text;
-}
-
 std::string trajectory_text(const RunResult& result) {
   const std::string poses = eval::format_tum(result.run.trajectory);
   return result.outcome == Outcome::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
@@ -269,7 +253,7 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   if (result.run.loops) {
     files.push_back({"trajectory_loop.tum", eval::format_tum(result.run.loops->causal)});
     files.push_back({"trajectory_optimized.tum", eval::format_tum(result.run.loops->optimized)});
-    files.push_back({"loops.csv", loops_csv(result.run.loops->report)});
+    files.push_back({"loops.csv", loop_text(result.run.loops->report.loops)});
   }
   write_files(folder, files);
 }

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/model/csv/loop_text.h"
 #include "bench/model/metrics.h"
 #include "bench/model/missing_boxes.h"
 #include "bench/model/protocol_difference.h"
@@ -91,15 +92,26 @@ Json truth_json(const Trajectory& truth) {
           {"z", packed_series(p[2])}};
 }
 
-Json series_json(const RunSeries& series) {
+/// Recognized places of this run: times since the first frame [s], inliers, residual [px], and why it was
+/// refused. Matches in a loaded map are not on the trajectory.
+Json loops_json(const bench::Store& store, const bench::StoredRun& run, double start_s) {
+  Json loops = Json::array();
+  const std::string text = store.attachment(run, "loops");
+  if (text.empty()) return loops;
+  for (const bench::StoredLoop& loop : bench::parse_loops(text, "loops of run " + run.key)) {
+    if (loop.in_map) continue;
+    loops.push_back({to_seconds(loop.query_t) - start_s, to_seconds(loop.match_t) - start_s, loop.inliers,
+                     loop.residual_px, loop.reason});
+  }
+  return loops;
+}
+
+Json series_json(const RunSeries& series, Json loops) {
   Json columns = Json::object();
   for (const SeriesColumn& column : series.columns)
     columns[clean_line(column.name)] = packed_series(column.values);
-  return {{"start", series.start_s},
-          {"frames", series.t_s.size()},
-          {"t", packed_series(series.t_s)},
-          {"worst", series.worst},
-          {"columns", columns}};
+  return {{"start", series.start_s}, {"frames", series.t_s.size()}, {"t", packed_series(series.t_s)},
+          {"worst", series.worst},   {"loops", std::move(loops)},   {"columns", columns}};
 }
 
 /// Times [ms] of all frames by module and variant.
@@ -192,7 +204,8 @@ PageData page_data(const bench::Store& store, std::span<const bench::StoredRun> 
     Json& entry = index["runs"].emplace_back(run_json(run));
     entry["frames"] = series.t_s.size();
     entry["images"] = series.images.size();
-    data.series.push_back(dump_replacing_invalid_utf8(series_json(series)));
+    data.series.push_back(
+        dump_replacing_invalid_utf8(series_json(series, loops_json(store, run, series.start_s))));
     if (has_shown_times(runs, run)) {
       times = with_times(std::move(times), series, system_label(run.identity));
       if (const std::string folded = store.attachment(run, "stacks"); !folded.empty()) {

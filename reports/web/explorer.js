@@ -51,6 +51,22 @@
     byId("metrics").replaceChildren(table);
   }
 
+  // Lists the recognized places of the run; a click selects the frame.
+  function showLoops(series) {
+    const table = page.element("table"), head = page.element("tr");
+    for (const title of ["time [s]", "earlier visit [s]", "inliers", "residual [px]", "result"]) head.append(page.element("th", { scope: "col" }, title));
+    table.append(head);
+    for (const loop of series.loops) {
+      const row = page.element("tr");
+      for (const text of [loop.at.toFixed(2), loop.back.toFixed(2), loop.inliers, loop.residual.toFixed(2), loop.reason === "" ? "accepted" : "refused: " + loop.reason.replaceAll("_", " ")])
+        row.append(page.element("td", {}, text));
+      row.addEventListener("click", () => { if (loop.query >= 0) point(loop.query, false); });
+      table.append(row);
+    }
+    byId("loops").replaceChildren(table);
+    byId("loops").closest("details").hidden = series.loops.length === 0;
+  }
+
   // Command that repeats this run with its seeds and repetitions; empty for runs without a plan.
   function command(run) {
     const plan = JSON.parse(byId("plans").textContent).find((candidate) => candidate.runs.includes(run.key));
@@ -70,6 +86,7 @@
     const outcome = run.outcome === "ok" ? (series.frames ? "" : "The store has no frames of this run.") : run.outcome + ": " + run.detail;
     byId("outcome").textContent = [outcome, ...run.notes].filter((text) => text).join(" ");
     showMetrics(run);
+    showLoops(series);
     byId("repeat-run").textContent = command(run);
     byId("manifest").textContent = JSON.stringify(page.index.manifests[run.manifest] || null, null, 2);
     state.charts = page.drawCharts(byId("series"), series, (frame) => point(frame, true), (min, max) => {

@@ -30,12 +30,6 @@
     return { x: (value) => x0 + scale * value, y: (value) => y0 - scale * value, scale };
   }
 
-  const nearest = (list, value) => {
-    let best = -1, distance = Infinity;
-    list.forEach((item, i) => { const d = Math.abs(item - value); if (d < distance) { distance = d; best = i; } });
-    return best;
-  };
-
   function strokeLine(context, xs, ys, view) {
     context.beginPath();
     let pen = false;
@@ -94,6 +88,7 @@
       this.shown = projection(canvas, across, up);
       if (truth) this.drawTruth(context);
       if (columns.x) this.drawPath(context);
+      if (columns.x && series.loops.length) this.drawLoops(context);
       if (this.frame !== null) this.drawFrame(context);
       scaleBar(context, canvas, this.shown);
     }
@@ -131,6 +126,26 @@
       if (error) this.drawLegend(context, largest);
     }
 
+    // Lines from each frame to the place that was recognized in it; refused ones are dashed, and below.
+    drawLoops(context) {
+      const { series, view, shown } = this;
+      const xs = series.columns[view.across], ys = series.columns[view.up];
+      for (const accepted of [false, true]) {
+        context.strokeStyle = page.color(accepted ? "better" : "bad");
+        context.globalAlpha = accepted ? 0.8 : 0.35;
+        context.lineWidth = accepted ? 1.2 : 1;
+        context.setLineDash(accepted ? [] : [3, 3]);
+        for (const { query, match, reason } of series.loops) {
+          if ((reason === "") !== accepted || query < 0 || match < 0 || xs[query] === null || xs[match] === null) continue;
+          context.beginPath(); context.moveTo(shown.x(xs[query]), shown.y(ys[query])); context.lineTo(shown.x(xs[match]), shown.y(ys[match])); context.stroke();
+        }
+      }
+      context.setLineDash([]);
+      context.globalAlpha = 1;
+      context.fillStyle = page.color("faint");
+      context.fillText("loops: solid accepted, dashed refused", 120, 32);
+    }
+
     drawLegend(context, largest) {
       for (let i = 0; i < 100; ++i) { context.fillStyle = rampColor(i / 99); context.fillRect(12 + i, 10, 1.5, 8); }
       context.fillStyle = page.color("faint");
@@ -140,7 +155,7 @@
     drawFrame(context) {
       const { series, truth, view, shown, frame } = this;
       const x = series.columns.x ? series.columns[view.across][frame] : null;
-      const at = truth ? nearest(truth.t, series.t[frame]) : -1;
+      const at = truth ? page.nearest(truth.t, series.t[frame]) : -1;
       const dot = (px, py, color) => { context.fillStyle = color; context.beginPath(); context.arc(shown.x(px), shown.y(py), 5, 0, 7); context.fill(); };
       if (at >= 0) dot(truth[view.across][at], truth[view.up][at], page.color("faint"));
       if (x !== null) dot(x, series.columns[view.up][frame], page.color("bad"));

@@ -20,7 +20,15 @@ window.stillpoint = {};
     return numbers;
   };
 
-  // Series of a run: {start, frames, t, worst, columns: {name: numbers}}; a few are cached.
+  // Index of the nearest number; -1 in an empty list.
+  page.nearest = function (list, value) {
+    let best = -1, distance = Infinity;
+    list.forEach((item, i) => { const d = Math.abs(item - value); if (d < distance) { distance = d; best = i; } });
+    return best;
+  };
+
+  // Series of a run: {start, frames, t, worst, loops, columns: {name: numbers}}; a few are cached.
+  // A loop: {query, match: frames or -1; at, back: times; inliers, residual, reason: empty if it is accepted}.
   const cache = new Map();
   page.series = function (run) {
     if (!cache.has(run)) {
@@ -28,7 +36,10 @@ window.stillpoint = {};
       const packed = parse("series-" + run);
       const columns = {};
       for (const [name, column] of Object.entries(packed.columns)) columns[name] = page.unpack(column);
-      cache.set(run, { start: packed.start, frames: packed.frames, t: page.unpack(packed.t), worst: packed.worst, columns });
+      const t = page.unpack(packed.t);
+      const loops = packed.loops.map(([at, back, inliers, residual, reason]) =>
+        ({ at, back, inliers, residual, reason, query: page.nearest(t, at), match: page.nearest(t, back) }));
+      cache.set(run, { start: packed.start, frames: packed.frames, t, worst: packed.worst, loops, columns });
     }
     return cache.get(run);
   };

@@ -2,12 +2,14 @@
 #include "reports/page/report_page.h"
 #include "bench/model/metrics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/model/csv/loop_text.h"
 #include "bench/model/metrics.h"
 #include "bench/store/store_writer.h"
 #include "reports/page/charts/run_series.h"
@@ -55,6 +57,12 @@ void fill_store(const std::filesystem::path& file, const bench::RunIdentity& ide
       "iterations,"
       "keyframe,reset\n0,1000000000,tracking,100,50,40,25,3,1,0\n1,1100000000,lost,0,0,0,0,0,0,0\n"
       "2,1200000000,tracking,80,50,40,0,3,0,0\n";
+  outcome.attachments["loops"] =
+      "query_frame,query_t_ns,match_frame,match_t_ns,votes,matches,inliers,residual_px,tx,ty,tz,qx,qy,qz,qw,"
+      "accepted,reason,in_map\n"
+      "2,1200000000,0,1000000000,30,90,60,1.5,0,0,0,0,0,0,1,1,,0\n"
+      "2,1200000000,0,1100000000,30,90,10,2,0,0,0,0,0,0,1,0,few_inliers,0\n"
+      "2,1200000000,7,9000000000,30,90,60,1.5,0,0,0,0,0,0,1,1,,1\n";
   outcome.attachments["timings"] =
       "frame,module,ns,calls\n0,feature_tracking,2000000,1\n2,feature_tracking,3000000,1\n";
   outcome.manifest = "{\"host\": {\"cpu\": \"</script><b>\"}}";
@@ -85,6 +93,25 @@ TEST(RunSeries, LinksPosesErrorsCountersAndTimesByFrame) {
   EXPECT_TRUE(std::isnan(column(series, "dynamic")[1]));
   EXPECT_EQ(column(series, "ms:feature_tracking")[2], 3.0);
   EXPECT_EQ(column(series, "status"), (std::vector<double>{1.0, 4.0, 1.0}));  // tracking, lost
+}
+
+TEST(ReportPage, ContainsTheLoopsOfTheRunButNotThoseToALoadedMap) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const bench::Store store(folder.path() / "s");
+  const std::vector<bench::StoredLoop> loops =
+      bench::parse_loops(store.attachment(store.runs().front(), "loops"), "loops.csv");
+  ASSERT_EQ(loops.size(), 3u);
+  EXPECT_TRUE(loops[0].accepted);
+  EXPECT_EQ(loops[1].reason, "few_inliers");
+  EXPECT_TRUE(loops[2].in_map);
+  const std::string page = report_html(store, report_subject(store, "p"));
+  const std::size_t begin = page.find("\"loops\":[[");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string embedded = page.substr(begin, page.find("]]", begin) - begin);
+  EXPECT_NE(embedded.find(",60,1.5,\"\"]"), std::string::npos) << embedded;
+  EXPECT_NE(embedded.find(",10,2.0,\"few_inliers\""), std::string::npos) << embedded;
+  EXPECT_EQ(std::ranges::count(embedded, '['), 3) << embedded;  // the list and two loops
 }
 
 TEST(ReportPage, IsAPureFunctionOfTheStore) {
