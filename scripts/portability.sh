@@ -1,39 +1,34 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds and tests on another distribution or architecture than that of this machine, in a chroot that mmdebstrap makes
-# from the Debian mirror of this machine's apt. Needs root, mmdebstrap, and for arm64 also qemu-user. The chroots remain in
-# $STILLPOINT_CHROOTS (default: build/chroots), and are used again.
-#   scripts/portability.sh debian13             Debian 13: configure, build the program, run the fast tests
-#   scripts/portability.sh debian13 configure   only up to this step; the steps are chroot, configure, build, test
-#   scripts/portability.sh arm64                cross build of the SIMD kernels for 64-bit ARM, and their test under
-#                                               qemu-user: same bits as on amd64. The rest of the project is not built yet
+# from the Debian mirror of this machine's apt. Needs root and mmdebstrap. The chroots with their build folders remain in
+# $STILLPOINT_CHROOTS (default: build/chroots), and are used again. Prints the time of each step and the sizes.
+#   scripts/portability.sh debian13             Debian 13: build of the program and of the fast tests, which are run
+#   scripts/portability.sh arm64                the same for 64-bit ARM: cross build (preset release-arm64); tests under
+#                                               qemu-user. Before all else the SIMD kernels: same bits as on amd64
+#   scripts/portability.sh TARGET STEP          only up to this step: chroot, configure, kernels, build or test
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 target="${1:-}"
 last="${2:-test}"
-root="$PWD"
-chroots="${STILLPOINT_CHROOTS:-$root/build/chroots}"
+chroots="${STILLPOINT_CHROOTS:-$PWD/build/chroots}"
 jobs="${STILLPOINT_JOBS:-$(nproc)}"
+folder="$chroots/$target"
 fail() { echo "portability: error: $*" >&2; exit 2; }
+packages() { scripts/setup.sh --list | grep -vxF -e "${1:-}" | paste -sd,; }
 
 case "$target" in
-  debian13)
-    suite=trixie architectures=amd64
-    packages="$(scripts/setup.sh --list | paste -sd,)"
-    configure=(-S /src --preset release)
-    build=(--target stillpoint fast_tests)
-    tests=(-L fast)
-    ;;
+  debian13) suite=trixie preset=release tools="$(packages)" ;;
   arm64)
-    suite=bookworm architectures=amd64,arm64
-    packages=g++,g++-aarch64-linux-gnu,libc6-dev:arm64,libhwy-dev:arm64,cmake,ninja-build,qemu-user
-    configure=(-S /src/tests/kernel_digest -G Ninja -DCMAKE_BUILD_TYPE=Release --toolchain /src/scripts/cmake/aarch64.cmake)
-    build=()
-    tests=()
+    suite=bookworm preset=release-arm64
+    tools=g++,g++-aarch64-linux-gnu,cmake,ninja-build,git,pkg-config,ccache,qemu-user
+    # A BLAS that needs no alternatives: packages of a sysroot are only extracted.
+    libraries="$(packages $'g++\ncmake\nninja-build\ngit\nmake\npkg-config\nccache\nopenimageio-tools\nuniversal-ctags'),libblas-dev,liblapack-dev"
     ;;
   *) fail "unknown target \"$target\"; the targets are debian13 and arm64" ;;
 esac
-[[ "$last" =~ ^(chroot|configure|build|test)$ ]] || fail "unknown step \"$last\"; the steps are chroot, configure, build and test"
+[[ "$last" =~ ^(chroot|configure|kernels|build|test)$ ]] ||
+  fail "unknown step \"$last\"; the steps are chroot, configure, kernels, build and test"
 ((EUID == 0)) || fail "a chroot needs root"
 command -v mmdebstrap >/dev/null || fail "mmdebstrap is missing; run apt-get install mmdebstrap"
 
@@ -42,36 +37,45 @@ mirror="$(apt-get indextargets --format '$(ORIGIN)|$(SITE)|$(RELEASE)' 'Origin: 
   awk -F'|' '$3 !~ /-/ { print $2; exit }')"
 [[ -n "$mirror" ]] || fail "apt has no lists of a Debian mirror; run apt-get update"
 
-chroot_folder="$chroots/$target"
+# make_chroot FOLDER VARIANT ARCHITECTURE PACKAGES
 make_chroot() {
-  [[ -e "$chroot_folder/.complete" ]] && return
-  rm -rf "$chroot_folder"
+  local log="portability-${1##*/}"
+  [[ ! -e "$1.complete" ]] || return 0
+  rm -rf "$1"
   mkdir -p "$chroots"
-  mmdebstrap --mode=root --variant=minbase --architectures="$architectures" --include="$packages" \
-    --aptopt='APT::Install-Recommends "false"' "$suite" "$chroot_folder" "$mirror" >"$(log_file "$target-chroot")" 2>&1 ||
-    show_failure "$target-chroot"
-  touch "$chroot_folder/.complete"
+  mmdebstrap --mode=root --variant="$2" --architectures="$3" --include="$4" \
+    --aptopt='APT::Install-Recommends "false"' "$suite" "$1" "$mirror" >"$(log_file "$log")" 2>&1 || show_failure "$log"
+  touch "$1.complete"
 }
 
-# inside COMMAND...: runs it in the chroot, with the sources read-only at /src.
-inside() {
-  mkdir -p "$chroot_folder/src"
-  unshare -m bash -euc '
-    mount --bind "$1" "$2/src" && mount -o remount,bind,ro "$2/src" && mount -t proc proc "$2/proc"
-    folder=$2; shift 2
-    exec chroot "$folder" env LC_ALL=C.UTF-8 HOME=/root "$@"' _ "$root" "$chroot_folder" "$@"
+# Extracted packages have no alternatives: the reference BLAS and LAPACK take their place.
+link_blas() {
+  local libraries="$1/usr/lib/aarch64-linux-gnu" name
+  for name in blas lapack; do
+    ln -sf "$name/lib$name.so.3" "$libraries/lib$name.so.3"
+    ln -sf "$name/lib$name.so" "$libraries/lib$name.so"
+  done
 }
 
-until_step() { [[ "$last" != "$1" ]] || { echo "portability: $target: $1 completed"; exit 0; }; }
+chroot_step() {
+  make_chroot "$folder" minbase amd64 "$tools"
+  [[ "$target" != arm64 ]] || { make_chroot "$folder-sysroot" extract arm64 "$libraries" && link_blas "$folder-sysroot"; }
+  du -shc "$folder" "$folder-sysroot" 2>/dev/null | tail -n 1
+}
+inside() { scripts/in_chroot.sh "$folder" "$@"; }
+build_targets() { inside cmake --build /build --parallel "$jobs" --target "$@"; }
+configure_step() { inside env STILLPOINT_SYSROOT=/sysroot cmake -S /src --preset "$preset" -B /build; }
+kernels_step() { build_targets kernel_digest && inside ctest --test-dir /build --output-on-failure -R kernel_digest; }
+build_step() {
+  build_targets stillpoint fast_tests
+  inside du -h --apparent-size /build/stillpoint
+}
+test_step() { inside ctest --test-dir /build --output-on-failure --parallel "$jobs" -L fast; }
 
-step "$target: chroot"
-make_chroot
-until_step chroot
-step "$target: configure"
-inside cmake "${configure[@]}" -B /build
-until_step configure
-step "$target: build"
-inside cmake --build /build --parallel "$jobs" "${build[@]}"
-until_step build
-step "$target: test"
-inside ctest --test-dir /build --output-on-failure "${tests[@]}"
+for name in chroot configure kernels build test; do
+  step "$target: $name"
+  SECONDS=0
+  "${name}_step"
+  echo "portability: $target: $name completed in $SECONDS s"
+  [[ "$last" != "$name" ]] || exit 0
+done

@@ -1,8 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Toolchain of 64-bit ARM with Debian's cross compiler; programs are executed by qemu-user.
+# STILLPOINT_SYSROOT: folder with the libraries of that architecture; "" = those of this system (multiarch).
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64)
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES STILLPOINT_SYSROOT)
+if(STILLPOINT_SYSROOT)
+  set(CMAKE_SYSROOT ${STILLPOINT_SYSROOT})
+  set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+  set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+  set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+  set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+  list(APPEND CMAKE_CROSSCOMPILING_EMULATOR -L ${STILLPOINT_SYSROOT})
+  set(ENV{PKG_CONFIG_SYSROOT_DIR} ${STILLPOINT_SYSROOT})
+  set(ENV{PKG_CONFIG_LIBDIR} ${STILLPOINT_SYSROOT}/usr/lib/aarch64-linux-gnu/pkgconfig:${STILLPOINT_SYSROOT}/usr/share/pkgconfig)
+endif()
