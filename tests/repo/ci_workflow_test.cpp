@@ -33,19 +33,22 @@ void expect_scripts_exist(const YAML::Node& job, const std::string& main_script)
   for (const std::string& script : scripts) EXPECT_EQ(access((kRoot / script).c_str(), X_OK), 0) << script;
 }
 
-TEST(CiExample, GithubRunsTheGateAndTheHistory) {
+TEST(CiExample, GithubRunsTheGateTheHistoryAndThePortability) {
   const YAML::Node jobs = YAML::LoadFile(kRoot / "scripts/ci_example/github.yml")["jobs"];
   ASSERT_TRUE(jobs);
   expect_scripts_exist(jobs["gate"], "scripts/ci_example/gate.sh");
   expect_scripts_exist(jobs["history"], "scripts/ci_example/history.sh");
+  expect_scripts_exist(jobs["portability"], "scripts/portability.sh");
 }
 
-TEST(CiExample, GitlabRunsTheGateAndTheHistory) {
+TEST(CiExample, GitlabRunsTheGateTheHistoryAndThePortability) {
   const YAML::Node file = YAML::LoadFile(kRoot / "scripts/ci_example/gitlab.yml");
   for (const char* job : {"gate", "history"}) {
     EXPECT_TRUE(file[file[job]["extends"].Scalar()]) << job;
     expect_scripts_exist(file[job], std::string("scripts/ci_example/") + job + ".sh");
   }
+  EXPECT_TRUE(file[file["portability"]["extends"].Scalar()]);
+  expect_scripts_exist(file["portability"], "scripts/portability.sh");
 }
 
 }  // namespace
