@@ -17,6 +17,12 @@ template <auto kMember>
   return m.counts ? m.counts->claimed_three_sigma_m : std::nullopt;
 }
 
+/// The value of one member of `eval::MeanNees`; nullopt without claimed covariances or ground truth.
+template <auto kMember>
+[[nodiscard]] std::optional<double> nees_value(const Measurements& m) {
+  return m.counts && m.counts->nees ? std::optional<double>((*m.counts->nees).*kMember) : std::nullopt;
+}
+
 inline constexpr MetricDescriptor kHonestyMetrics[] = {
     {.id = metric_id::kClaimedThreeSigma,
      .label = "claimed 3 sigma",
@@ -26,6 +32,19 @@ inline constexpr MetricDescriptor kHonestyMetrics[] = {
      .direction = MetricDirection::kSmallerIsBetter,
      .source = MetricSource::kRun,
      .value = claimed_three_sigma},
+    {.id = metric_id::kNeesPosition,
+     .label = "NEES position",
+     .description = "Mean over the frames from 3 s on of the squared position error relative to the first "
+                    "pose, normalized by its claimed covariance, divided by 3; 1 is consistent",
+     .decimals = 2,
+     .source = MetricSource::kRun,
+     .value = nees_value<&eval::MeanNees::position>},
+    {.id = metric_id::kNeesRotation,
+     .label = "NEES rotation",
+     .description = "As NEES position, of the rotation",
+     .decimals = 2,
+     .source = MetricSource::kRun,
+     .value = nees_value<&eval::MeanNees::rotation>},
     {.id = metric_id::kFalseConfidence,
      .label = "false confidence",
      .title = "False confidence: fraction of the frames called located with a wrong pose",

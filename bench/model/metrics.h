@@ -16,6 +16,7 @@
 #include "bench/model/stored_run.h"
 #include "core/types/trajectory.h"
 #include "eval/metrics/honesty.h"
+#include "eval/metrics/nees.h"
 #include "eval/metrics/revisits.h"
 #include "eval/score.h"
 
@@ -46,6 +47,8 @@ inline constexpr std::string_view kTimeToDetect = "time_to_detect_s";
 inline constexpr std::string_view kTimeToRecover = "time_to_recover_s";
 inline constexpr std::string_view kErrorAfterRecovery = "error_after_recovery_m";
 inline constexpr std::string_view kClaimedThreeSigma = "claimed_three_sigma_m";
+inline constexpr std::string_view kNeesPosition = "nees_position";
+inline constexpr std::string_view kNeesRotation = "nees_rotation";
 }  // namespace metric_id
 
 /// A trajectory, its ground truth in the same coordinate frame, and their score.
@@ -63,6 +66,7 @@ struct RunCounts {
   std::optional<std::int64_t> frames_without_boxes{};  ///< nullopt unless the run used recorded boxes
   double wall_s = 0.0;
   std::optional<double> claimed_three_sigma_m{};  ///< see eval/metrics/honesty.h
+  std::optional<eval::MeanNees> nees{};           ///< with a ground truth
 };
 
 /// Resources used by the process of a run.

@@ -10,6 +10,7 @@
 #include "bench/run/recorded_boxes.h"
 #include "core/base/error.h"
 #include "core/geometry/covariance.h"
+#include "core/geometry/so3.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -64,6 +65,11 @@ eval::ClaimedPose claim_of(const OdometryUpdate& update, Timestamp t) {
   if (!update.covariance) return claim;
   claim.sigma_m = largest_sigma(update.covariance->position());
   claim.sigma_rad = largest_sigma(update.covariance->rotation());
+  const Eigen::Matrix3d R_w_b = update.state.T_w_b.R();
+  Eigen::Matrix<double, 3, 6> J;  // of the position of the camera
+  J << Eigen::Matrix3d::Identity(), -R_w_b * skew((update.state.T_w_b.inverse() * update.T_w_c).p);
+  claim.position_covariance = J * update.covariance->pose() * J.transpose();
+  claim.rotation_covariance = R_w_b * update.covariance->rotation() * R_w_b.transpose();
   return claim;
 }
 

@@ -104,13 +104,15 @@ std::vector<eval::TimeSpan> fault_spans(std::span<const datasets::SensorFault> f
 
 Measurements measurements_of(const RunResult& result) {
   const OdometryRun& run = result.run;
+  const std::optional<eval::MeanNees> nees = eval::mean_nees(result.gt, run.claims);
   return {.scored = ScoredTrajectory{.gt = result.gt, .est = run.trajectory, .score = result.score},
           .counts = RunCounts{.frames = run.summary.frames,
                               .poses = run.trajectory.poses.size(),
                               .resets = run.summary.resets,
                               .frames_without_boxes = run.summary.detector_counters.unrecorded,
                               .wall_s = run.wall_s,
-                              .claimed_three_sigma_m = eval::claimed_three_sigma_m(run.claims)},
+                              .claimed_three_sigma_m = eval::claimed_three_sigma_m(run.claims),
+                              .nees = nees},
           .imu_rate = result.imu_rate,
           .honesty = result.honesty,
           .loops = result.loops,

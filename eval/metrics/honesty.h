@@ -22,6 +22,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "core/types/trajectory.h"
 #include "eval/metrics/coverage.h"
 
@@ -37,6 +39,9 @@ struct ClaimedPose {
   int segment = 0;
   double sigma_m = 0.0;    ///< along the least certain direction; 0 = not reported
   double sigma_rad = 0.0;  ///< same
+  /// Of the position [m^2] and of the rotation Exp(e) R_w_c [rad^2], in the world frame; zero = not reported.
+  Eigen::Matrix3d position_covariance = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
 };
 
 struct Honesty {

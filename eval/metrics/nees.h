@@ -8,9 +8,14 @@
 /// and Navigation", 2001, Sec. 5.4.
 #pragma once
 
+#include <optional>
+#include <span>
+
 #include <Eigen/Core>
 
 #include "core/geometry/pose.h"
+#include "core/types/trajectory.h"
+#include "eval/metrics/honesty.h"
 
 namespace stillpoint::eval {
 
@@ -26,5 +31,19 @@ struct Nees {
 /// @throws InputError if a covariance is not positive definite
 [[nodiscard]] Nees nees(const Pose& gt, const Pose& est, const Eigen::Matrix3d& rotation_covariance,
                         const Eigen::Matrix3d& position_covariance);
+
+/// Means over frames of NEES / 3: 1 for a consistent estimator, more if it claims too small an error.
+struct MeanNees {
+  double rotation = 0.0;
+  double position = 0.0;
+};
+
+/// Mean over the located poses E_k of the first segment from 3 s after the first one, E_0, on. Claimed
+/// covariances are relative to the first pose, so the true poses are E_0 G_0^-1 G_k, without an alignment
+/// over the trajectory; they are interpolated to the time of the frame.
+/// @param gt true poses of the same body frame
+/// @param claims one per frame, in order of time; those without a positive definite covariance do not count
+/// @return nullopt if no frame counts
+[[nodiscard]] std::optional<MeanNees> mean_nees(const Trajectory& gt, std::span<const ClaimedPose> claims);
 
 }  // namespace stillpoint::eval

@@ -4,7 +4,6 @@
 #include "eval/io/any_trajectory.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
-#include "eval/metrics/nees.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/simulated/smooth_path.h"
 #include "tests/support/temporary_folder.h"
@@ -106,17 +105,6 @@ TEST(Formats, ReportTheLineOfAMalformedRow) {
   expect_input_error([] { static_cast<void>(parse_openloris("seq: 1\nseq: 1\n", "o")); },
                      {"o:2", "duplicate"});
   expect_input_error([] { static_cast<void>(read_trajectory({.path = "/none"})); }, {"/none", "opened"});
-}
-
-TEST(Nees, IsTheSquaredErrorNormalizedByTheCovariance) {
-  // 0.2 rad about x with a standard deviation of 0.1 rad: 4. 3 m along y with 1.5 m: 4.
-  const Pose est{exp_so3({0.2, 0.0, 0.0}), {0.0, 3.0, 0.0}};
-  const Nees result =
-      nees(Pose{}, est, 0.01 * Eigen::Matrix3d::Identity(), 2.25 * Eigen::Matrix3d::Identity());
-  EXPECT_NEAR(result.rotation, 4.0, 1e-9);
-  EXPECT_NEAR(result.position, 4.0, 1e-12);
-  EXPECT_THROW(static_cast<void>(nees(Pose{}, est, Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Identity())),
-               InputError);
 }
 
 }  // namespace

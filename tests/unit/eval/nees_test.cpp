@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/metrics/nees.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/geometry/so3.h"
+#include "tests/support/simulated/smooth_path.h"
+
+namespace stillpoint::eval {
+namespace {
+
+constexpr std::size_t kFrames = 60;  // at 10 Hz
+
+TEST(Nees, IsTheSquaredErrorNormalizedByTheCovariance) {
+  // 0.2 rad about x with a standard deviation of 0.1 rad: 4. 3 m along y with 1.5 m: 4.
+  const Pose est{exp_so3({0.2, 0.0, 0.0}), {0.0, 3.0, 0.0}};
+  const Nees result =
+      nees(Pose{}, est, 0.01 * Eigen::Matrix3d::Identity(), 2.25 * Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(result.rotation, 4.0, 1e-9);
+  EXPECT_NEAR(result.position, 4.0, 1e-12);
+  EXPECT_THROW(static_cast<void>(nees(Pose{}, est, Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Identity())),
+               InputError);
+}
+
+/// A run in another world, whose covariances are those of 0.1 m and 0.01 rad.
+std::vector<ClaimedPose> perfect_claims(const Trajectory& gt) {
+  const Pose T_v_w{exp_so3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}};
+  std::vector<ClaimedPose> claims;
+  for (const StampedPose& pose : gt.poses) {
+    claims.push_back({.t = pose.t,
+                      .T_w_c = T_v_w * pose.T_w_f,
+                      .claim = PoseClaim::kLocated,
+                      .position_covariance = 0.01 * Eigen::Matrix3d::Identity(),
+                      .rotation_covariance = 1e-4 * Eigen::Matrix3d::Identity()});
+  }
+  return claims;
+}
+
+TEST(MeanNees, IsRelativeToTheFirstPoseAndCountsFromThreeSecondsOn) {
+  const Trajectory gt = test::smooth_path(kFrames, 0.1);
+  std::vector<ClaimedPose> claims = perfect_claims(gt);
+  EXPECT_NEAR(mean_nees(gt, claims)->position, 0.0, 1e-12);
+  for (std::size_t i = 1; i < kFrames; ++i) {
+    // 0.3 m and 0.03 rad are three standard deviations each: NEES 9, divided by 3.
+    claims[i].T_w_c.p.x() += i < 30 ? 5.0 : 0.3;
+    claims[i].T_w_c.q = Eigen::Quaterniond(exp_so3({0.0, i < 30 ? 1.0 : 0.03, 0.0})) * claims[i].T_w_c.q;
+  }
+  EXPECT_NEAR(mean_nees(gt, claims)->position, 3.0, 1e-6);
+  EXPECT_NEAR(mean_nees(gt, claims)->rotation, 3.0, 1e-6);
+}
+
+TEST(MeanNees, NeedsLocatedPosesWithACovariance) {
+  const Trajectory gt = test::smooth_path(kFrames, 0.1);
+  std::vector<ClaimedPose> claims = perfect_claims(gt);
+  EXPECT_FALSE(mean_nees({}, claims));
+  for (std::size_t i = 30; i < 45; ++i) claims[i].position_covariance.setZero();
+  for (std::size_t i = 45; i < kFrames; ++i) claims[i].claim = PoseClaim::kLost;
+  EXPECT_FALSE(mean_nees(gt, claims));
+}
+
+}  // namespace
+}  // namespace stillpoint::eval
