@@ -64,6 +64,12 @@ TEST(ConfigOverlays, ConsistentPriorAndInertialTimeOffsetChangeNothingElse) {
   expect_one_change("inertial_time_offset", {"backend.time_offset_model", "\"inertial\""});
 }
 
+TEST(ConfigOverlays, ConsistentAddsTheTruePixelNoiseToThem) {
+  Entries expected = changes("stillpoint", "consistent_prior+inertial_time_offset");
+  expected.insert(expected.begin(), {"backend.pixel_sigma_px", "0.5"});
+  EXPECT_EQ(changes("stillpoint", "consistent"), expected);
+}
+
 TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
   EXPECT_EQ(changes("stillpoint", "vo"),
             (Entries{{"imu.enabled", "false"}, {"backend.keyframe_min_shared_ratio", "0.7"}}));
