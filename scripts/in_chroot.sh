@@ -12,6 +12,7 @@ mount_folders() {
   mkdir -p "$1/src"
   mount --bind "$PWD" "$1/src" && mount -o remount,bind,ro "$1/src"
   mount -t proc proc "$1/proc"
+  mount -t sysfs -o ro sysfs "$1/sys"
   [[ ! -d "$1-sysroot" ]] || { mkdir -p "$1/sysroot" && mount --bind "$1-sysroot" "$1/sysroot"; }
 }
 

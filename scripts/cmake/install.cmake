@@ -3,6 +3,13 @@
 # scripts/cmake/stillpointConfig.cmake.in finds the libraries that the components link.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
+# Set to e.g. lib/stillpoint where the folder of libraries is for libraries with versions only, as
+# in Debian packages. Modules then belong to the program, on which the package of the libraries depends.
+set(STILLPOINT_MODULE_FOLDER "" CACHE STRING "folder of the modules; \"\" = the folder of libraries")
+set(stillpoint_module_folder ${CMAKE_INSTALL_LIBDIR})
+if(STILLPOINT_MODULE_FOLDER)
+  set(stillpoint_module_folder ${STILLPOINT_MODULE_FOLDER})
+endif()
 set(stillpoint_package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/stillpoint)
 
 # stillpoint_component(NAME MODULES targets... [PUBLIC libs...] [PRIVATE libs...]): joins the objects of internal libraries
@@ -34,8 +41,11 @@ function(stillpoint_module name)
   add_library(${target} MODULE ${ARG_SOURCE})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME stillpoint_${name} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
   target_link_libraries(${target} PRIVATE stillpoint_options stillpoint_warnings ${ARG_LIBRARIES})
+  if(STILLPOINT_MODULE_FOLDER)
+    set(ARG_COMPONENTS program)
+  endif()
   foreach(component IN LISTS ARG_COMPONENTS)
-    install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component})
+    install(TARGETS ${target} LIBRARY DESTINATION ${stillpoint_module_folder} COMPONENT ${component})
   endforeach()
 endfunction()
 

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Debian packages by CPack: "stillpoint" (program, modules, man page, completion) and "stillpoint-dev" (static libraries,
+# headers, package config, examples). scripts/package.sh sets STILLPOINT_PACKAGES, and generates the documents.
+set(STILLPOINT_PACKAGES OFF CACHE BOOL "prepare the installation for Debian packages")
+set(STILLPOINT_CONTACT "The Stillpoint developers <developers@stillpoint.example.org>" CACHE STRING "maintainer of the packages")
+
+if(NOT STILLPOINT_PACKAGES)
+  return()
+endif()
+
+set(package_documents ${PROJECT_BINARY_DIR}/package_documents)
+foreach(component program library)
+  set(package stillpoint)
+  if(component STREQUAL library)
+    set(package stillpoint-dev)
+  endif()
+  install(FILES ${package_documents}/copyright ${package_documents}/changelog.gz
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+endforeach()
+install(FILES ${package_documents}/stillpoint.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/scripts/package/completion.bash RENAME stillpoint
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL program library)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
+    WORLD_EXECUTE)
+set(CPACK_PACKAGE_CONTACT "${STILLPOINT_CONTACT}")
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME stillpoint)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "RGB-D inertial odometry for dynamic scenes
+Estimates the motion of an RGB-D camera in scenes with moving people, and
+benchmarks such systems: readers of datasets, rendered sequences with ground
+truth, trajectory evaluation, and plans of experiments.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME stillpoint-dev)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+string(CONCAT library_depends "stillpoint (= ${PROJECT_VERSION}), libeigen3-dev, libceres-dev, libsuitesparse-dev, libopencv-dev, "
+       "libhwy-dev, libfmt-dev, libtomlplusplus-dev, libyaml-cpp-dev, libsqlite3-dev, libturbojpeg0-dev, libdeflate-dev, "
+       "libblosc-dev, libbz2-dev, liblz4-dev, libzstd-dev, pkg-config")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${library_depends}")
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "RGB-D inertial odometry for dynamic scenes (development files)
+Static libraries and headers of the odometry, of the trajectory evaluation
+and of the readers of datasets, for find_package(stillpoint) of CMake.")
+include(CPack)
