@@ -38,6 +38,10 @@ constexpr int kMaxUnusableSolves = 3;
 
 constexpr double kMaxDepthRejection_s = 10.0;
 
+/// Part of the limit below which a rejected scale agrees again: near the limit it would be accepted in single
+/// frames, which pull the landmarks to it.
+constexpr double kAgreeingScale = 0.5;
+
 /// Features with a measured depth from which a window can start.
 constexpr int kMinFirstFeatures = 8;
 
@@ -70,7 +74,8 @@ void Estimator::reject_depth_of_another_scale() {
   if (backend_.depth.max_scale_error <= 0.0) return;
   const std::optional<double> scale = depth_scale_.of_newest(window_);
   const Timestamp t = window_.frames.back().state.t;
-  if (scale && std::abs(*scale - 1.0) <= backend_.depth.max_scale_error) depth_rejected_since_.reset();
+  if (scale && std::abs(*scale - 1.0) <= kAgreeingScale * backend_.depth.max_scale_error)
+    depth_rejected_since_.reset();
   if (scale && std::abs(*scale - 1.0) > backend_.depth.max_scale_error && !depth_rejected_since_)
     depth_rejected_since_ = t;
   if (!depth_rejected_since_ || seconds_between(*depth_rejected_since_, t) > kMaxDepthRejection_s) return;

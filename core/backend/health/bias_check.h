@@ -13,17 +13,27 @@ struct MeasuredBiases {
   Eigen::Vector3d accel;    ///< same [m/s^2]
   double gyro_sigma = 0.0;  ///< due to the visual poses
   double accel_sigma = 0.0;
+  bool certain = false;          ///< whether vision was certain
+  bool gyro_explained = false;   ///< whether the data changed by a vector that explains it, see InertialError
+  bool accel_explained = false;  ///< same
 };
 
-/// Compares the biases of the newest state with those measured between three visual poses, 0.24 s apart:
+/// Compares the biases of the newest state with those measured between three visual poses, 0.24 s apart. The
+/// errors e of a sensor, with standard deviation s due to the poses, are those of a step if successive
+/// intervals, each 0.12 s later, have one of the same direction (cosine 0.9), because a step is constant in
+/// the body frame:
 ///
-///   error of the gyroscope        e > 0.006 rad/s + 8 sigma
-///   error of the accelerometer    e > 0.05 m/s^2 + 4 sigma
+///   intervals   gyroscope [rad/s], vision is certain   accelerometer [m/s^2]
+///       1       |e| > 0.05 + 16 s, explained           |e| > 0.2 + 4 s, explained, vision is certain
+///       2       |e| > 0.006 + 8 s                      |e| > 0.2 + 3 s, one is explained
+///       3                                              |e| > 0.05 + 1.5 s
 ///
-/// Such an error is a step of the bias if the previous interval, which began 0.12 s before, had one of the
-/// same direction (cosine 0.9), because a step is constant in the body frame. Vision must be certain: each
-/// pose is determined by 40 features, a third of all that are tracked, else people who cover the image look
-/// like a step. Errors below 0.008 rad/s and 0.15 m/s^2, plus one sigma, are agreement.
+/// An explained error is one by which the data changed, see InertialError. An image that jumps gives two
+/// errors of one direction, and then two of the opposite one. Each pose is determined by 20 features, an
+/// eighth of all that are tracked; vision is certain with 40, a third of all, else people who cover the image
+/// look like a step. Features that were labeled static at the earlier pose are used: a step of the
+/// accelerometer makes them appear to move, and they lose their label. Errors below 0.008 rad/s and 0.15
+/// m/s^2, plus one s, are agreement if vision is certain.
 class BiasCheck {
  public:
   enum class Result { kUnknown, kAgrees, kDiffers, kStep };
@@ -33,26 +43,28 @@ class BiasCheck {
       : views_({.focal_px = focal_px,
                 .min_interval_s = 0.12,
                 .history_s = 0.9,
-                .min_static_ratio = 0.33,
-                .min_agreeing = 40}) {}
+                .uses_relabeled = true,
+                .min_static_ratio = 0.125,
+                .min_agreeing = 20}) {}
 
   /// Processes the newest frame of an inertial window.
-  /// @return kUnknown if it is too early for another check, vision is not certain, or the error is neither
+  /// @return kUnknown if it is too early for another check, vision is not certain and there is no step, or
+  /// the error is neither
   [[nodiscard]] Result update(const Window& window, ImuBuffer& imu);
 
   /// The biases measured last; after a result other than kUnknown.
-  [[nodiscard]] const MeasuredBiases& measured() const { return *measured_; }
+  [[nodiscard]] const MeasuredBiases& measured() const { return measured_.back(); }
 
   void reset() {
     views_.reset();
-    measured_.reset();
+    measured_.clear();
   }
 
  private:
   [[nodiscard]] std::optional<MeasuredBiases> measure(const Window& window, ImuBuffer& imu);
 
   FeatureViews views_;
-  std::optional<MeasuredBiases> measured_;
+  std::vector<MeasuredBiases> measured_;  ///< in succession, the newest ones
 };
 
 }  // namespace stillpoint

@@ -22,12 +22,10 @@ FeatureView view_of(const Window& window, Timestamp t, FeatureView view) {
   view.velocity_w = before.T_w_b.q * newest.from_previous->delta_v(before.gyro_bias, before.accel_bias);
   view.rotation_b = log_so3(newest.from_previous->delta_q(before.gyro_bias));
   view.points.clear();
-  view.tracked = 0;
   for (const Landmark& landmark : window.landmarks) {
     if (landmark.last() != window.newest()) continue;
-    ++view.tracked;
     const Observation& last = landmark.observations.back();
-    if (!landmark.dynamic) view.points.push_back({landmark.id, last.bearing, last.depth});
+    view.points.push_back({landmark.id, last.bearing, last.depth, !landmark.dynamic});
   }
   return view;
 }
@@ -65,7 +63,8 @@ std::optional<VisualPose> FeatureViews::pose_after(const VisualPose& before, std
   for (const FeatureView::Point& point : views_[from].points) {
     while (later != views_[to].points.end() && later->id < point.id) ++later;
     if (later == views_[to].points.end()) break;
-    if (later->id != point.id || point.depth <= 0.0) continue;
+    if (later->id != point.id || point.depth <= 0.0 || !point.is_static) continue;
+    if (!later->is_static && !options_.uses_relabeled) continue;
     observations_.push_back({point.depth * point.bearing.homogeneous(), later->bearing});
   }
   const Pose predicted = T_b_c.inverse() * (views_[from].T_w_b.inverse() * views_[to].T_w_b) * T_b_c;
@@ -74,13 +73,14 @@ std::optional<VisualPose> FeatureViews::pose_after(const VisualPose& before, std
   const VisionAssessment vision = assess_vision(observations_, found, inlier / kInlierSigmas);
   if (vision.has_few_features() || vision.has_weak_geometry() || vision.inliers < options_.min_agreeing ||
       vision.inliers < kMinAgreeing * vision.features ||
-      vision.inliers < options_.min_static_ratio * views_[to].tracked) {
+      vision.inliers < options_.min_static_ratio * static_cast<double>(views_[to].points.size())) {
     return std::nullopt;
   }
   return VisualPose{.t = views_[to].t,
                     .T_w_b = before.T_w_b * (T_b_c * found * T_b_c.inverse()),
                     .sigma_m = vision.sigma_m,
-                    .sigma_rad = vision.sigma_rad};
+                    .sigma_rad = vision.sigma_rad,
+                    .features = vision.inliers};
 }
 
 }  // namespace stillpoint

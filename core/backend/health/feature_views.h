@@ -12,19 +12,19 @@
 
 namespace stillpoint {
 
-/// The features of a frame that are labeled static, and the inertial data before it.
+/// The features of a frame, and the inertial data before it.
 struct FeatureView {
   struct Point {
     std::int64_t id = 0;
     Eigen::Vector2d bearing;
     double depth = 0.0;  ///< measured [m]; 0 = not measured
+    bool is_static = true;
   };
   Timestamp t;                 ///< on the IMU clock
   Pose T_w_b;                  ///< estimated so far
   Eigen::Vector3d velocity_w;  ///< change by the specific force since the previous frame [m/s]
   Eigen::Vector3d rotation_b;  ///< since the previous frame [rad]
   std::vector<Point> points;   ///< sorted by id
-  int tracked = 0;             ///< features with any label
 };
 
 /// The views of the last frames, and their motion by PnP: features of one frame with measured depth, and
@@ -35,6 +35,7 @@ class FeatureViews {
     double focal_px = 500.0;      ///< of the camera
     double min_interval_s = 0.0;  ///< between successive views; earlier frames are left out
     double history_s = 0.2;       ///< age of the oldest view
+    bool uses_relabeled = false;  ///< motion of features that are labeled static in the earlier view alone
     double min_static_ratio = 0;  ///< of the tracked features, that must agree with a motion
     int min_agreeing = 0;         ///< features that must agree with a motion
   };

@@ -32,9 +32,9 @@ std::optional<NavState> preintegrated(Timestamp begin, Timestamp end, const NavS
 
 }  // namespace
 
-bool InertialError::is_explained() const {
-  return explains(accel_change_w, accel_w) || explains(gyro_change_b, gyro_b);
-}
+bool InertialError::accel_is_explained() const { return explains(accel_change_w, accel_w); }
+
+bool InertialError::gyro_is_explained() const { return explains(gyro_change_b, gyro_b); }
 
 double InertialError::severity() const {
   return std::max(accel_w.norm() / (kMaxAccelError + kSigmas * accel_sigma),

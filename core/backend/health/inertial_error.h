@@ -15,6 +15,7 @@ struct VisualPose {
   Pose T_w_b;
   double sigma_m = 0.0;
   double sigma_rad = 0.0;
+  int features = 0;  ///< that agree with it
 };
 
 struct InertialError {
@@ -29,14 +30,17 @@ struct InertialError {
   /// deviations.
   [[nodiscard]] double severity() const;
 
-  /// Whether the data changed as it does when the sensor becomes wrong, during a shock or after a step of a
-  /// bias. With the changes f of the specific force and r of the angular rate:
+  /// Whether the data of a sensor changed as it does when it becomes wrong, during a shock or after a step of
+  /// a bias. With the changes f of the specific force and r of the angular rate:
   ///
-  ///   a.f >= 0.7 |a| |f|,  |f| >= 0.4 |a|    or the same for w and r
+  ///   a.f >= 0.7 |a| |f|,  |f| >= 0.4 |a|    and the same for w and r
   ///
   /// A person who starts to move in front of the camera contradicts sound inertial data, too, but does not
-  /// change it.
-  [[nodiscard]] bool is_explained() const;
+  /// change it. The small error of a sound sensor is sometimes explained by chance.
+  [[nodiscard]] bool accel_is_explained() const;
+  [[nodiscard]] bool gyro_is_explained() const;
+  /// Either of them.
+  [[nodiscard]] bool is_explained() const { return accel_is_explained() || gyro_is_explained(); }
 };
 
 /// Three poses in temporal order.

@@ -61,9 +61,10 @@ bool StepCheck::is_wrong(const Window& window, ImuBuffer& imu) {
   const std::optional<Views> chosen = spaced(views_, kMinViewInterval_s);
   if (!chosen || !data_changed(chosen->first, chosen->middle)) return false;
   const std::optional<InertialError> error = error_between(*chosen, views_, window, imu);
-  return error && error->is_explained() &&
-         (error->accel_w.norm() > kMaxStepAccelError + kStepSigmas * error->accel_sigma ||
-          error->gyro_b.norm() > kMaxStepGyroError + kStepSigmas * error->gyro_sigma);
+  if (!error) return false;
+  const bool accel = error->accel_w.norm() > kMaxStepAccelError + kStepSigmas * error->accel_sigma;
+  const bool gyro = error->gyro_b.norm() > kMaxStepGyroError + kStepSigmas * error->gyro_sigma;
+  return (accel && error->accel_is_explained()) || (gyro && error->gyro_is_explained());
 }
 
 }  // namespace stillpoint

@@ -16,6 +16,25 @@ bool is_repeated(const cv::Mat& before, const cv::Mat& now) {
   return true;
 }
 
+/// Without features.
+TrackedFrame empty_frame(const Frame& frame, TrackedFrame recycled) {
+  recycled.id = frame.id;
+  recycled.t = frame.t;
+  recycled.features.clear();
+  recycled.depth = frame.depth;
+  recycled.depth_units_per_m = frame.depth_units_per_m;
+  recycled.lost = recycled.detected = 0;
+  recycled.timings.clear();
+  return recycled;
+}
+
+/// The motion `first`, and then `second`.
+MotionPrior composed(const MotionPrior& first, const MotionPrior& second) {
+  return {.T_ccur_cprev = second.T_ccur_cprev * first.T_ccur_cprev,
+          .has_rotation = first.has_rotation && second.has_rotation,
+          .has_translation = first.has_translation && second.has_translation};
+}
+
 }  // namespace
 
 TrackingStage::TrackingStage(const OdometryConfig& config, const Rig& rig)
@@ -25,21 +44,28 @@ TrackingStage::TrackingStage(const OdometryConfig& config, const Rig& rig)
       tracker_(config.frontend, rig.camera),
       imu_(config.imu.max_gap_s) {}
 
+/// The predicted motion since the image that the tracker knows.
+MotionPrior TrackingStage::prior_since_tracked(const MotionState& motion, Timestamp t) {
+  MotionPrior prior;
+  if (uses_prediction_ && last_frame_) prior = motion_prior(motion, imu_, *last_frame_, t);
+  drop_old_samples(motion, imu_);
+  last_frame_ = t;
+  return since_tracked_ ? composed(*since_tracked_, prior) : prior;
+}
+
 TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, const Feedback& feedback,
                                     TrackedFrame recycled) {
-  const MotionState& motion = feedback.motion;
-  MotionPrior prior;
-  if (uses_prediction_ && last_frame_) prior = motion_prior(motion, imu_, *last_frame_, frame.t);
-  drop_old_samples(motion, imu_);
+  const MotionPrior prior = prior_since_tracked(feedback.motion, frame.t);
+  const bool repeated = is_repeated(last_gray_, frame.gray);
+  last_gray_ = frame.gray;
+  since_tracked_ = repeated ? std::optional(prior) : std::nullopt;
   dynamic_ids_ = recognition_.tracker_ids(feedback.dynamic_ids, std::move(dynamic_ids_));
   const TrackingOptions options{.detect = enters_window, .dynamic_ids = dynamic_ids_};
   TrackedFrame tracked =
-      recognition_.process(frame.gray, tracker_.track(frame, prior, options, std::move(recycled)));
+      repeated ? empty_frame(frame, std::move(recycled))
+               : recognition_.process(frame.gray, tracker_.track(frame, prior, options, std::move(recycled)));
   perturbation_.perturb(tracked);
-  if (is_repeated(last_gray_, frame.gray)) tracked.features.clear();
   if (keeps_image_) tracked.gray = frame.gray;
-  last_gray_ = frame.gray;
-  last_frame_ = frame.t;
   return tracked;
 }
 

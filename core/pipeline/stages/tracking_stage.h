@@ -9,6 +9,7 @@
 #include "core/frontend/view_recognition.h"
 #include "core/pipeline/stages/feedback.h"
 #include "core/pipeline/stages/input_perturbation.h"
+#include "core/types/motion_prior.h"
 
 namespace stillpoint {
 
@@ -21,7 +22,8 @@ class TrackingStage {
   /// Samples in temporal order; samples up to the exposure of a frame must be added before the frame.
   void add_imu(const ImuSample& sample) { imu_.add(perturbation_.of(sample)); }
 
-  /// An image that is bit-equal to the previous one is no new observation: its features are left out.
+  /// An image that is bit-equal to the previous one is no new observation: it has no features, and the next
+  /// image is compared with the one before the repetition.
   /// @param enters_window whether the frame enters the window; if so, lost features are replaced by new ones
   /// @param feedback      newest available feedback of the optimization stage
   /// @param recycled      a result that is no longer needed; its memory is reused
@@ -29,6 +31,8 @@ class TrackingStage {
                                      TrackedFrame recycled = {});
 
  private:
+  [[nodiscard]] MotionPrior prior_since_tracked(const MotionState& motion, Timestamp t);
+
   bool uses_prediction_;
   bool keeps_image_;  ///< for loop closure
   InputPerturbation perturbation_;
@@ -37,6 +41,7 @@ class TrackingStage {
   std::vector<std::int64_t> dynamic_ids_;  ///< of the tracker; a member only to reuse the memory
   ImuBuffer imu_;
   std::optional<Timestamp> last_frame_;
+  std::optional<MotionPrior> since_tracked_;  ///< from the last tracked image to the last, repeated one
   cv::Mat last_gray_;
 };
 

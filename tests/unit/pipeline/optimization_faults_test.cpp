@@ -85,5 +85,38 @@ TEST(OptimizationFaults, APersonWhoFillsTheImageDoesNotContradictASoundImu) {
             0);
 }
 
+/// Fewer than the 40 features of certain vision. A step makes them appear to move, and the check before the
+/// solve labels them.
+TEST(OptimizationFaults, AStepOfTheAccelerometerIsFollowedByFewFeatures) {
+  for (const double step : {0.3, 1.0}) {
+    FaultyScenario scenario;
+    scenario.change_frame = [](TrackedFrame& frame) {
+      std::erase_if(frame.features, [](const TrackedFeature& feature) { return feature.id % 3 != 0; });
+    };
+    scenario.change_imu = [&](std::vector<ImuSample>& samples) {
+      for (ImuSample& sample : samples) {
+        if (to_seconds(sample.t) >= kBegin_s) sample.accel_b.array() += step;
+      }
+    };
+    scenario.backend.bias_steps = true;
+    const FaultyRun run = run_stage(scenario);
+    const Eigen::Vector3d bias = run.frames.back().update.state.accel_bias;
+    EXPECT_LT((bias - Eigen::Vector3d::Constant(0.05 + step)).norm(), 0.1) << step;
+    EXPECT_LT(run.worst_error_m(0.0, kEnd_s), 0.1) << step;
+  }
+}
+
+/// The gyroscope of a sound IMU errs by little, and its data often changes by chance in that direction.
+TEST(InertialErrors, AreExplainedByTheirOwnSensor) {
+  InertialError error{.accel_w = {10.0, 0.0, 0.0},
+                      .gyro_b = {0.001, 0.0, 0.0},
+                      .accel_change_w = {0.0, 3.0, 0.0},
+                      .gyro_change_b = {0.01, 0.0, 0.0}};
+  EXPECT_FALSE(error.accel_is_explained());
+  EXPECT_TRUE(error.gyro_is_explained());
+  error.accel_change_w = {9.0, 1.0, 0.0};
+  EXPECT_TRUE(error.accel_is_explained());
+}
+
 }  // namespace
 }  // namespace stillpoint
