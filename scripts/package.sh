@@ -51,7 +51,9 @@ all_files >/root/before
 apt-get install -q -y "$1"/stillpoint_*.deb >/root/log 2>&1 || { cat /root/log; exit 1; }
 stillpoint --version
 stillpoint device info | head -n 3
-mkdir /root/runs && cd /root/runs && stillpoint bench quick
+mkdir /root/runs
+cd /root/runs
+stillpoint bench quick
 apt-get purge -q -y stillpoint >/root/log 2>&1 || { cat /root/log; exit 1; }
 all_files >/root/after
 if dpkg-query -W stillpoint >/dev/null 2>&1; then echo "package: still registered"; exit 1; fi
