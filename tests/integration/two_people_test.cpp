@@ -51,7 +51,7 @@ LabelCounts count_labels(const fs::path& dump) {
     std::istringstream text(row);
     std::vector<std::string> cells;
     for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
-    for (const LabelledFrame& labels : two_people_labels()) {
+    for (const LabelledFrame& labels : kTwoPeopleLabels) {
       if (std::stoi(cells[0]) != labels.frame) continue;
       const double inside = inside_people(labels, std::stod(cells[3]), std::stod(cells[4]));
       if (std::abs(inside) < kOutlineMargin_px) continue;

@@ -48,6 +48,14 @@ inline Pose pose_on_circle(int keyframe, int keyframes_per_lap) {
   return {heading * exp_so3(Eigen::Vector3d(0.1 * std::sin(5.0 * angle), 0.05, 0.0)), p};
 }
 
+/// Covariance of a relative pose, translation first.
+inline Matrix6 pose_covariance(double sigma_m, double sigma_rad) {
+  Matrix6 matrix = Matrix6::Zero();
+  matrix.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
+      Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
+  return matrix;
+}
+
 inline SimulatedPoseGraph simulated_pose_graph(const SimulatedGraphOptions& options) {
   std::mt19937 random(7);
   SimulatedPoseGraph result;
@@ -56,12 +64,6 @@ inline SimulatedPoseGraph simulated_pose_graph(const SimulatedGraphOptions& opti
     const Eigen::Vector3d gravity_b = result.truth.back().q.conjugate() * -Eigen::Vector3d::UnitZ();
     result.graph.gravity_b.push_back(options.gravity ? std::optional(gravity_b) : std::nullopt);
   }
-  const auto covariance = [](double sigma_m, double sigma_rad) {
-    Matrix6 matrix = Matrix6::Zero();
-    matrix.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
-        Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
-    return matrix;
-  };
   result.graph.T_m_b.push_back(result.truth.front());
   for (int k = 1; k < options.keyframes; ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -70,7 +72,7 @@ inline SimulatedPoseGraph simulated_pose_graph(const SimulatedGraphOptions& opti
     result.graph.odometry.push_back({.i = k - 1,
                                      .j = k,
                                      .T_i_j = measured,
-                                     .covariance = covariance(options.sigma_m, options.sigma_rad)});
+                                     .covariance = pose_covariance(options.sigma_m, options.sigma_rad)});
     result.graph.T_m_b.push_back(result.graph.T_m_b.back() * measured);
   }
   for (int n = 0; n < options.loops; ++n) {
@@ -84,7 +86,7 @@ inline SimulatedPoseGraph simulated_pose_graph(const SimulatedGraphOptions& opti
     result.graph.loops.push_back({.i = match,
                                   .j = query,
                                   .T_i_j = disturbed(T, random, 0.01, 0.004),
-                                  .covariance = covariance(0.01, 0.004)});
+                                  .covariance = pose_covariance(0.01, 0.004)});
     result.true_loops.push_back(is_true);
   }
   return result;

@@ -15,9 +15,7 @@ void expect_rejected(const std::string& text, const std::vector<std::string>& pa
   expect_input_error([&] { static_cast<void>(apply_rig_file(file, Rig{})); }, parts);
 }
 
-TEST(RigFile, ReadsEveryKey) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.write("rig.toml", R"(
+constexpr const char* kEveryKey = R"(
 [camera]
 width = 640
 height = 480
@@ -37,7 +35,11 @@ accel_noise = 0.01
 gyro_walk = 0.0001
 accel_walk = 0.002
 time_offset_s = -0.005
-)");
+)";
+
+TEST(RigFile, ReadsEveryKey) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.write("rig.toml", kEveryKey);
   const OverriddenRig result = apply_rig_file(file, Rig{});
   const Rig& rig = result.rig;
   EXPECT_TRUE(result.has_extrinsic);
