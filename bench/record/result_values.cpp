@@ -44,6 +44,8 @@ std::vector<ModuleCost> costs_of(const Json& timings, const char* group, const c
 
 }  // namespace
 
+Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
 Json metric_members(const Measurements& measurements) {
   Json json;
   for (const MetricDescriptor& metric : all_metrics()) {

@@ -2,6 +2,7 @@
 /// Metrics and module times of a run in result.json, and their conversion to those of a store.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "bench/model/metrics.h"
 
 namespace stillpoint::bench {
+
+/// The number; null without one.
+[[nodiscard]] nlohmann::ordered_json number_or_null(const std::optional<double>& number);
 
 /// Members of result.json: each metric of the measured parts (null without data), the numbers of matched
 /// pairs, and "protocols", how the metrics are evaluated.

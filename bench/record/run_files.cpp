@@ -54,8 +54,6 @@ Json matrix_json(const std::optional<Eigen::Matrix2d>& matrix) {
   return {{m(0, 0), m(0, 1)}, {m(1, 0), m(1, 1)}};
 }
 
-Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
-
 /// Fraction of the frames that the recorded boxes lack; nullopt without recorded boxes or frames.
 std::optional<double> fraction_without_boxes(const RunSummary& summary) {
   const std::optional<std::int64_t>& unrecorded = summary.detector_counters.unrecorded;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-std::vector<Timestamp> stamps_of(const Trajectory& trajectory) {
+std::vector<Timestamp> timestamps_of(const Trajectory& trajectory) {
   std::vector<Timestamp> stamps;
   stamps.reserve(trajectory.poses.size());
   for (const StampedPose& pose : trajectory.poses) stamps.push_back(pose.t);
@@ -122,7 +122,7 @@ std::vector<IndexPair> associate_tum(std::span<const Timestamp> gt, std::span<co
 
 std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
                                      const AssociationOptions& options) {
-  return associate_tum(stamps_of(gt), stamps_of(est), options);
+  return associate_tum(timestamps_of(gt), timestamps_of(est), options);
 }
 
 std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est,

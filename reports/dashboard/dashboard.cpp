@@ -18,10 +18,8 @@ namespace stillpoint::report {
 namespace {
 
 constexpr std::size_t kMaxMembers = 20;  // of a group that are listed individually
-
-std::string counted(std::size_t count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
+constexpr std::string_view kScripts[] = {"vendor/uPlot.iife.min.js", "unpack.js",
+                                         "dashboard/history_charts.js", "dashboard/dashboard.js"};
 
 std::string commit_link(const bench::CommitHistory& history, std::size_t commit) {
   const bench::Commit& target = history.commits[commit];
@@ -121,13 +119,6 @@ std::set<std::string> metric_names(const bench::CommitHistory& history) {
   return names;
 }
 
-std::string scripts_html() {
-  std::string text = fmt::format("<script>{}</script>\n", web_file("vendor/uPlot.iife.min.js"));
-  for (const char* name : {"unpack.js", "dashboard/history_charts.js", "dashboard/dashboard.js"})
-    text += fmt::format("<script>\n{}</script>\n", web_file(name));
-  return text;
-}
-
 std::string index_html(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   std::string styles;
   for (const char* name : {"vendor/uPlot.min.css", "page.css", "dashboard/dashboard.css"})
@@ -144,7 +135,7 @@ std::string index_html(const bench::CommitHistory& history, const bench::History
        {"drifts", drifts_html(history, changes)},
        {"licenses", preformatted(std::string(web_file("vendor/LICENSE.uPlot")))},
        {"data", data_script("index", dashboard_data(history, changes)) + data_script("files", "[]")},
-       {"scripts", scripts_html()}});
+       {"scripts", scripts_html(kScripts)}});
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ double student_quantile(double degrees) {
   return quantile;
 }
 
-std::string interval_text(const std::optional<eval::Interval>& interval) {
+std::string interval_line(const std::optional<eval::Interval>& interval) {
   return interval ? fmt::format("95 %: {:+.4f} to {:+.4f}", interval->low, interval->high) : "no interval";
 }
 
@@ -124,7 +124,7 @@ Drawing cost_plot(const CostTrend& trend) {
       Anchor::kLeft));
   drawing.marks.push_back(label(kPlotMargin, 30.0,
                                 fmt::format("slope {:+.4f} ms per minute, n = {}, {}", trend.slope_ms_per_min,
-                                            trend.medians.size(), interval_text(trend.slope_interval)),
+                                            trend.medians.size(), interval_line(trend.slope_interval)),
                                 Anchor::kLeft));
   return drawing;
 }

@@ -21,12 +21,12 @@ const cv::Scalar kCompensated(60, 140, 255);
 const cv::Scalar kText(255, 255, 255);
 const cv::Scalar kShadow(0, 0, 0);
 
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr int kTextFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.5;
-constexpr int kShift = 4;  // OpenCV takes coordinates in 1/16 px
+constexpr int kFractionBits = 4;  // OpenCV takes coordinates in 1/16 px
 
 cv::Point fixed(const cv::Point2d& pixel) {
-  return {cvRound(pixel.x * (1 << kShift)), cvRound(pixel.y * (1 << kShift))};
+  return {cvRound(pixel.x * (1 << kFractionBits)), cvRound(pixel.y * (1 << kFractionBits))};
 }
 
 cv::Mat canvas_of(const Frame& frame) {
@@ -53,8 +53,8 @@ void draw_mask(const Frame& frame, const SemanticMask& mask, cv::Mat& canvas) {
 }
 
 void write_line(const std::string& text, const cv::Point& at, cv::Mat& canvas) {
-  cv::putText(canvas, text, at + cv::Point(1, 1), kFont, kFontScale, kShadow, 2, cv::LINE_AA);
-  cv::putText(canvas, text, at, kFont, kFontScale, kText, 1, cv::LINE_AA);
+  cv::putText(canvas, text, at + cv::Point(1, 1), kTextFont, kFontScale, kShadow, 2, cv::LINE_AA);
+  cv::putText(canvas, text, at, kTextFont, kFontScale, kText, 1, cv::LINE_AA);
 }
 
 void draw_boxes(const std::vector<TrackedBox>& boxes, cv::Mat& canvas) {
@@ -62,7 +62,7 @@ void draw_boxes(const std::vector<TrackedBox>& boxes, cv::Mat& canvas) {
     const cv::Point2d low(tracked.box.x_min, tracked.box.y_min);
     const cv::Point2d high(tracked.box.x_max, tracked.box.y_max);
     const cv::Scalar& color = tracked.compensated ? kCompensated : kDetected;
-    cv::rectangle(canvas, fixed(low), fixed(high), color, 2, cv::LINE_AA, kShift);
+    cv::rectangle(canvas, fixed(low), fixed(high), color, 2, cv::LINE_AA, kFractionBits);
     const std::string label = tracked.class_name + (tracked.compensated ? " (compensated)" : "");
     write_line(label, cv::Point(std::max(cvRound(low.x), 0) + 4, std::max(cvRound(low.y), 0) + 16), canvas);
   }
@@ -97,7 +97,8 @@ FrameAnnotator::Tracks FrameAnnotator::extended_tracks(const FrameReport& report
 
 void FrameAnnotator::draw_circles(const Tracks& now, cv::Mat& canvas) const {
   const auto draw = [&canvas](const cv::Point2d& at, int radius_px, const cv::Scalar& color) {
-    if (radius_px > 0) cv::circle(canvas, fixed(at), radius_px << kShift, color, 1, cv::LINE_AA, kShift);
+    if (radius_px > 0)
+      cv::circle(canvas, fixed(at), radius_px << kFractionBits, color, 1, cv::LINE_AA, kFractionBits);
   };
   for (const auto& [id, track] : now) draw(track.pixels.back(), style_.stable_radius_px, kStableCircle);
   for (const auto& [id, track] : tracks_) {
@@ -118,8 +119,8 @@ cv::Mat FrameAnnotator::annotate(const FrameReport& report) {
                                                                           : kStable;
     std::vector<cv::Point> points;
     for (const cv::Point2d& pixel : track.pixels) points.push_back(fixed(pixel));
-    cv::polylines(canvas, points, false, color, 1, cv::LINE_AA, kShift);
-    cv::circle(canvas, points.back(), 3 << kShift, color, cv::FILLED, cv::LINE_AA, kShift);
+    cv::polylines(canvas, points, false, color, 1, cv::LINE_AA, kFractionBits);
+    cv::circle(canvas, points.back(), 3 << kFractionBits, color, cv::FILLED, cv::LINE_AA, kFractionBits);
   }
   write_status(report.update, canvas);
   tracks_ = std::move(now);

@@ -19,6 +19,12 @@ std::string_view web_file(std::string_view name) {
   return {};
 }
 
+std::string scripts_html(std::span<const std::string_view> names) {
+  std::string text;
+  for (const std::string_view name : names) text += fmt::format("<script>\n{}</script>\n", web_file(name));
+  return text;
+}
+
 std::string filled_template(std::string_view text, const TemplateParts& parts) {
   constexpr std::string_view kOpen = "<!--";
   constexpr std::string_view kClose = "-->";
@@ -61,6 +67,10 @@ std::string metric_heading(const std::string& name) {
   return fmt::format("<th scope=\"row\"{}>{}</th>",
                      tooltip.empty() ? "" : fmt::format(" title=\"{}\"", escape_html(tooltip)),
                      escape_html(name));
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 std::string glossary_html(const std::set<std::string>& names) {

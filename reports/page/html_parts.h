@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,10 @@ namespace stillpoint::report {
 /// A file of reports/web, embedded in the binary: template, style sheet, script, library or license.
 /// @param name relative to reports/web, e.g. "page.css"; must be listed in reports/CMakeLists.txt
 [[nodiscard]] std::string_view web_file(std::string_view name);
+
+/// Script elements with the files, in this order.
+/// @param names see `web_file`
+[[nodiscard]] std::string scripts_html(std::span<const std::string_view> names);
 
 /// Texts by placeholder name.
 using TemplateParts = std::map<std::string, std::string, std::less<>>;
@@ -38,6 +43,9 @@ struct ColumnHead {
 
 /// Row heading with the name of a metric or module, and its description as a tooltip.
 [[nodiscard]] std::string metric_heading(const std::string& name);
+
+/// "1 run", "2 runs".
+[[nodiscard]] std::string counted(std::size_t count, const std::string& noun);
 
 /// Collapsed list of metrics and modules with their descriptions; names without one are omitted.
 [[nodiscard]] std::string glossary_html(const std::set<std::string>& names);

@@ -23,12 +23,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kLibraries[] = {"vendor/uPlot.iife.min.js", "vendor/d3-flamegraph.iife.min.js"};
 constexpr const char* kLicenses[] = {"vendor/LICENSE.uPlot", "vendor/LICENSE.d3-flame-graph",
                                      "vendor/LICENSE.d3"};
-constexpr const char* kScripts[] = {"unpack.js",    "charts.js",     "curves.js",   "paths.js",
-                                    "inspector.js", "histograms.js", "explorer.js", "flames.js",
-                                    "downloads.js", "page.js"};
+constexpr std::string_view kScripts[] = {"vendor/uPlot.iife.min.js",
+                                         "vendor/d3-flamegraph.iife.min.js",
+                                         "unpack.js",
+                                         "charts.js",
+                                         "curves.js",
+                                         "paths.js",
+                                         "inspector.js",
+                                         "histograms.js",
+                                         "explorer.js",
+                                         "flames.js",
+                                         "downloads.js",
+                                         "page.js"};
 
 /// Runs of the latest other build, the baseline of the change summary; empty without one.
 std::vector<bench::StoredRun> previous_runs(const ReportSubject& subject) {
@@ -144,13 +152,6 @@ std::string data_html(const PageData& data, const ReportSubject& subject,
   return text;
 }
 
-std::string scripts_html() {
-  std::string text;
-  for (const char* name : kLibraries) text += fmt::format("<script>{}</script>\n", web_file(name));
-  for (const char* name : kScripts) text += fmt::format("<script>\n{}</script>\n", web_file(name));
-  return text;
-}
-
 std::string licenses_html() {
   std::string text;
   for (const char* name : kLicenses) text += preformatted(std::string(web_file(name))) + "\n";
@@ -177,7 +178,7 @@ std::string report_html(const bench::Store& store, const ReportSubject& subject)
        {"plans", plans_html(store, subject)},
        {"licenses", licenses_html()},
        {"data", data_html(data, subject, tables)},
-       {"scripts", scripts_html()}});
+       {"scripts", scripts_html(kScripts)}});
 }
 
 }  // namespace stillpoint::report

@@ -11,7 +11,7 @@
 namespace stillpoint::report {
 namespace {
 
-constexpr std::uint16_t kNone = 0xFFFF;
+constexpr std::uint16_t kNoValue = 0xFFFF;
 constexpr double kSteps = 65534.0;
 
 }  // namespace
@@ -43,7 +43,7 @@ nlohmann::ordered_json packed_series(std::span<const double> values) {
   std::vector<unsigned char> bytes;
   for (const double value : values) {
     const auto number =
-        std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - low) / step)) : kNone;
+        std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - low) / step)) : kNoValue;
     bytes.push_back(static_cast<unsigned char>(number & 0xFF));
     bytes.push_back(static_cast<unsigned char>(number >> 8));
   }

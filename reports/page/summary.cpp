@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/model/metrics.h"
+#include "reports/page/html_parts.h"
 #include "reports/tables/change_text.h"
 #include "reports/tables/run_cells.h"
 
@@ -16,18 +17,10 @@ namespace {
 
 constexpr std::size_t kMaxListed = 5;
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 std::string failure_sentence(const bench::StoredRun& run) {
   std::string text =
       system_label(run.identity) + " on " + run.identity.sequence + ": " + bench::outcome_name(run.outcome);
   return run.detail.empty() ? text + "." : text + ", " + run.detail + ".";
-}
-
-std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
-  return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
 }
 
 /// Label with the smallest median error on a sequence.

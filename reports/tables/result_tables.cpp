@@ -21,9 +21,6 @@ bool has_metric(std::span<const bench::StoredRun> runs, std::string_view name) {
 std::vector<std::string> labels_of(std::span<const bench::StoredRun> runs) {
   return distinct(runs, system_label);
 }
-std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
-  return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
-}
 
 /// The table with the best number of each column marked, and what the marks mean.
 ReportTable with_best_in_columns(ReportTable table, bool larger_is_better) {

@@ -49,6 +49,10 @@ std::vector<std::string> distinct(std::span<const bench::StoredRun> runs,
   return names;
 }
 
+std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
+  return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
+}
+
 TableCell run_cell(const std::vector<const bench::StoredRun*>& runs, const RunNumber& number) {
   TableCell cell;
   std::vector<double> values;

@@ -21,6 +21,9 @@ namespace stillpoint::report {
     std::span<const bench::StoredRun> runs,
     const std::function<std::string(const bench::RunIdentity&)>& name);
 
+/// Names of the sequences in the order of first appearance.
+[[nodiscard]] std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs);
+
 /// A number of a run; nullopt if it has none.
 using RunNumber = std::function<std::optional<double>(const bench::StoredRun&)>;
 

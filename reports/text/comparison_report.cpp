@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 std::string percent(double ratio) { return fmt::format("{:+.1f} %", 100.0 * ratio); }
 
-std::string interval_text(const bench::MetricChange& change) {
+std::string change_interval_text(const bench::MetricChange& change) {
   if (change.test == bench::ChangeTest::kExact) return "exact";
   const std::optional<eval::Interval>& interval = change.change.interval;
   if (!interval) return fmt::format("- (n = {})", change.change.count);
@@ -57,7 +57,7 @@ std::vector<std::string> cells_of(const bench::MetricChange& change) {
           fmt::format("{:.4g} {}", change.base_median, change.unit),
           fmt::format("{:.4g} {}", change.head_median, change.unit),
           percent(change.change.median),
-          interval_text(change),
+          change_interval_text(change),
           p_text(change),
           result_text(change)};
 }

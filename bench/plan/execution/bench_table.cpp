@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/model/metrics.h"
+#include "bench/record/result_values.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -106,10 +107,6 @@ std::string separator_line(const std::vector<std::size_t>& widths, std::size_t t
     text += std::string(widths[i] + 1, '-') + (i < text_columns ? "-|" : ":|");
   }
   return text + "\n";
-}
-
-nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
 nlohmann::ordered_json row_json(const BenchRow& row) {

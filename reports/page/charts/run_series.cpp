@@ -16,7 +16,7 @@
 namespace stillpoint::report {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMaxWorstFrames = 20;
 constexpr double kStampToleranceS = 1e-3;  // some files round their stamps
 /// As in the tables: TUM's association and rigid alignment over all pairs.
@@ -48,7 +48,7 @@ class SeriesTable {
                                     [&](const SeriesColumn& column) { return column.name == name; });
     SeriesColumn& column = found != columns_.end()
                                ? *found
-                               : columns_.emplace_back(SeriesColumn{name, std::vector(frames_, kNone)});
+                               : columns_.emplace_back(SeriesColumn{name, std::vector(frames_, kNan)});
     column.values[frame] = value;
   }
 
@@ -88,7 +88,7 @@ double status_number(const std::string& name) {
   for (int i = 0; i <= static_cast<int>(OdometryStatus::kRelocated); ++i) {
     if (status_name(static_cast<OdometryStatus>(i)) == name) return i;
   }
-  return kNone;
+  return kNan;
 }
 
 void fill_counters(SeriesTable& table, const std::vector<bench::FrameCounters>& counters) {
@@ -98,7 +98,7 @@ void fill_counters(SeriesTable& table, const std::vector<bench::FrameCounters>& 
     table.set("features", i, static_cast<double>(frame.tracked_features));
     table.set("landmarks", i, static_cast<double>(frame.window_landmarks));
     const double all = static_cast<double>(frame.tracked_features);
-    table.set("dynamic", i, all > 0.0 ? static_cast<double>(frame.dynamic_features) / all : kNone);
+    table.set("dynamic", i, all > 0.0 ? static_cast<double>(frame.dynamic_features) / all : kNan);
   }
 }
 
