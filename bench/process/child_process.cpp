@@ -86,7 +86,7 @@ std::int64_t resident_bytes(pid_t pid) {
   return resident_pages * sysconf(_SC_PAGESIZE);
 }
 
-double seconds(const timeval& time) {
+double cpu_seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
@@ -209,8 +209,8 @@ ProcessResult ChildProcess::wait() {
   pid_ = -1;
   result_.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   result_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
-  result_.user_s = seconds(usage.ru_utime);
-  result_.system_s = seconds(usage.ru_stime);
+  result_.user_s = cpu_seconds(usage.ru_utime);
+  result_.system_s = cpu_seconds(usage.ru_stime);
   result_.peak_memory_bytes = std::int64_t{usage.ru_maxrss} * 1024;
   return result_;
 }

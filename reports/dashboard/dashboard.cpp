@@ -18,8 +18,8 @@ namespace stillpoint::report {
 namespace {
 
 constexpr std::size_t kMaxMembers = 20;  // of a group that are listed individually
-constexpr std::string_view kScripts[] = {"vendor/uPlot.iife.min.js", "unpack.js",
-                                         "dashboard/history_charts.js", "dashboard/dashboard.js"};
+constexpr std::string_view kDashboardScripts[] = {"vendor/uPlot.iife.min.js", "unpack.js",
+                                                  "dashboard/history_charts.js", "dashboard/dashboard.js"};
 
 std::string commit_link(const bench::CommitHistory& history, std::size_t commit) {
   const bench::Commit& target = history.commits[commit];
@@ -135,7 +135,7 @@ std::string index_html(const bench::CommitHistory& history, const bench::History
        {"drifts", drifts_html(history, changes)},
        {"licenses", preformatted(std::string(web_file("vendor/LICENSE.uPlot")))},
        {"data", data_script("index", dashboard_data(history, changes)) + data_script("files", "[]")},
-       {"scripts", scripts_html(kScripts)}});
+       {"scripts", scripts_html(kDashboardScripts)}});
 }
 
 }  // namespace

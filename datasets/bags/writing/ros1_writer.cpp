@@ -12,7 +12,7 @@
 namespace stillpoint::datasets {
 namespace {
 
-constexpr std::string_view kVersion2 = "#ROSBAG V2.0\n";
+constexpr std::string_view kFirstLine = "#ROSBAG V2.0\n";
 constexpr std::size_t kBagHeaderBytes = 4096;  ///< header and padding
 constexpr std::int64_t kMaxSeconds = UINT32_MAX;
 
@@ -34,7 +34,7 @@ std::string record(const std::string& header, std::string_view data) {
 
 Ros1Writer::Ros1Writer(const std::filesystem::path& path, ChunkCompression compression)
     : file_(path), path_(path.string()), compression_(compression) {
-  file_.append(kVersion2);
+  file_.append(kFirstLine);
   file_.append(bag_header(0));
 }
 
@@ -114,7 +114,7 @@ void Ros1Writer::finish() {
   const std::uint64_t index_position = file_.position();
   for (const std::string& connection : connections_) file_.append(connection);
   for (const ChunkInfo& info : chunks_) file_.append(chunk_info_record(info));
-  file_.overwrite(kVersion2.size(), bag_header(index_position));
+  file_.overwrite(kFirstLine.size(), bag_header(index_position));
   file_.finish();
 }
 
