@@ -21,6 +21,18 @@ std::vector<std::int64_t> ids_of(const TrackedFrame& frame) {
   return ids;
 }
 
+bool is_frozen(std::size_t frame) { return frame >= kMoving && frame < kMoving + kFrozen; }
+
+/// Inertial data of one second, in which the camera turns while the image is frozen.
+void add_turns(TrackingStage& stage) {
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 1.0 + 0.001 * i;
+    const auto frame = static_cast<std::size_t>((t - 1.0) * 30.0);
+    const double rate = !is_frozen(frame) ? 0.0 : frame % 2 == 0 ? kRate : -kRate;
+    stage.add_imu({.t = from_seconds(t), .gyro_b = {0.0, rate, 0.0}, .accel_b = {0.0, 0.0, 9.8}});
+  }
+}
+
 /// The camera turns left and right while it delivers the same image. In half of the frames the prediction of
 /// the tracker differs from that image by 30 px.
 TEST(TrackingStage, KeepsItsFeaturesWhileTheImageIsFrozen) {
@@ -31,27 +43,20 @@ TEST(TrackingStage, KeepsItsFeaturesWhileTheImageIsFrozen) {
   config.frontend.min_distance_px = 15;
   config.frontend.prediction = TrackerPrediction::kFull;
   TrackingStage stage(config, input.rig);
+  add_turns(stage);
   Feedback feedback;
   feedback.motion.initialized = true;
   feedback.motion.uses_imu = true;
-  for (int i = 0; i < 1000; ++i) {
-    const double t = 1.0 + 0.001 * i;
-    const auto frame = static_cast<int>((t - 1.0) * 30.0);
-    const bool frozen = frame >= static_cast<int>(kMoving) && frame < static_cast<int>(kMoving + kFrozen);
-    const double rate = !frozen ? 0.0 : frame % 2 == 0 ? kRate : -kRate;
-    stage.add_imu({.t = from_seconds(t), .gyro_b = {0.0, rate, 0.0}, .accel_b = {0.0, 0.0, 9.8}});
-  }
   std::vector<std::int64_t> before;
   for (std::size_t i = 0; i < kMoving + kFrozen + 1; ++i) {
-    const bool frozen = i >= kMoving && i < kMoving + kFrozen;
-    const std::size_t shown = i < kMoving ? i : frozen ? kMoving - 1 : kMoving;
+    const std::size_t shown = i < kMoving ? i : is_frozen(i) ? kMoving - 1 : kMoving;
     Frame frame = plane.frame(shown);
     frame.id = static_cast<std::int64_t>(i);
     frame.t = input.frame_times[i];
     feedback.motion.newest.t = input.frame_times[i];
     const TrackedFrame tracked = stage.process(frame, true, feedback);
     EXPECT_EQ(tracked.id, frame.id);
-    if (frozen) {
+    if (is_frozen(i)) {
       EXPECT_TRUE(tracked.features.empty()) << i;
       continue;
     }
