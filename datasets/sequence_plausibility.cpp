@@ -18,10 +18,11 @@ constexpr double kMaxDepth_m = 12.0;       ///< and at most to about 10 m
 constexpr double kMaxClockOffset_s = 0.5;  ///< searched range
 constexpr double kClockStep_s = 0.005;
 constexpr double kMinClockFinding_s = 0.03;
+constexpr double kMaxClockDisagreement_s = 0.03;  ///< of a half with the whole
 constexpr double kMinCorrelation = 0.7;
 constexpr double kMinGain = 0.05;     ///< of the correlation over that without offset
 constexpr double kMinTurnRate = 0.1;  ///< standard deviation [rad/s]
-constexpr std::size_t kMinTurns = 30;
+constexpr std::size_t kMinTurns = 60;
 
 /// Means of the columns without their own mean.
 std::vector<double> column_profile(const cv::Mat& gray) {
@@ -157,9 +158,10 @@ std::optional<std::string> ImagePlausibility::depth_unit_finding() const {
       far_m / factor);
 }
 
-double ImagePlausibility::correlation_at(double offset_s, const std::vector<double>& angle) const {
+double ImagePlausibility::correlation_at(double offset_s, std::span<const Turn> turns,
+                                         const std::vector<double>& angle) const {
   std::vector<double> by_images, by_gyro;
-  for (const Turn& turn : turns_) {
+  for (const Turn& turn : turns) {
     const double change =
         angle_at(info_, angle, after(turn.to, offset_s)) - angle_at(info_, angle, after(turn.from, offset_s));
     by_images.push_back(turn.rate);
@@ -168,29 +170,41 @@ double ImagePlausibility::correlation_at(double offset_s, const std::vector<doub
   return correlation(by_images, by_gyro);
 }
 
+ImagePlausibility::ClockOffset ImagePlausibility::best_offset(std::span<const Turn> turns,
+                                                              const std::vector<double>& angle) const {
+  const double known_s = info_.rig.time_offset_s;
+  const double without = correlation_at(known_s, turns, angle);
+  ClockOffset best{.offset_s = 0.0, .correlation = without, .without = without};
+  for (double candidate = -kMaxClockOffset_s; candidate <= kMaxClockOffset_s; candidate += kClockStep_s) {
+    const double value = correlation_at(known_s + candidate, turns, angle);
+    if (value > best.correlation) {
+      best.correlation = value;
+      best.offset_s = candidate;
+    }
+  }
+  return best;
+}
+
 std::optional<std::string> ImagePlausibility::clock_finding() const {
   if (turns_.size() < kMinTurns) return std::nullopt;
   double squares = 0.0;
   for (const Turn& turn : turns_) squares += turn.rate * turn.rate / static_cast<double>(turns_.size());
   if (std::sqrt(squares) < kMinTurnRate) return std::nullopt;
   const std::vector<double> angle = integrated_angle(info_);
-  const double known_s = info_.rig.time_offset_s;
-  const double without = correlation_at(known_s, angle);
-  double best = without;
-  double offset_s = 0.0;
-  for (double candidate = -kMaxClockOffset_s; candidate <= kMaxClockOffset_s; candidate += kClockStep_s) {
-    const double value = correlation_at(known_s + candidate, angle);
-    if (value > best) {
-      best = value;
-      offset_s = candidate;
-    }
-  }
-  if (best < kMinCorrelation || best - without < kMinGain || std::abs(offset_s) < kMinClockFinding_s)
+  const ClockOffset found = best_offset(turns_, angle);
+  if (found.correlation < kMinCorrelation || found.correlation - found.without < kMinGain ||
+      std::abs(found.offset_s) < kMinClockFinding_s)
     return std::nullopt;
+  // A chance correlation of a short or disturbed sequence differs between its halves.
+  const std::span<const Turn> turns(turns_);
+  for (const auto half : {turns.first(turns.size() / 2), turns.subspan(turns.size() / 2)}) {
+    if (std::abs(best_offset(half, angle).offset_s - found.offset_s) > kMaxClockDisagreement_s)
+      return std::nullopt;
+  }
   return fmt::format(
       "the rotation in the images follows the gyroscope best (correlation {:.2f}, {:.2f} without) if [imu] "
       "time_offset_s = {:.3f}; are the clocks offset?",
-      best, without, known_s + offset_s);
+      found.correlation, found.without, info_.rig.time_offset_s + found.offset_s);
 }
 
 }  // namespace stillpoint::datasets

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,8 @@ class ImagePlausibility {
   /// Compares the clocks of camera and IMU. The horizontal shift d [px] between the column means of two
   /// images is d = -fx w_y dt for a rotation with the rate w_y about the y axis of the camera. The offset of
   /// the clocks maximizes the correlation of -d / (fx dt) with the mean of w_y over the interval, shifted by
-  /// the offset. Sequences that turn too little, or whose images do not follow the rotation, have no result.
+  /// the offset. Sequences with fewer than 60 pairs of images, that turn too little, whose images do not
+  /// follow the rotation, or whose halves disagree about the offset, have no result.
   /// @return the finding if the offset exceeds 30 ms
   [[nodiscard]] std::optional<std::string> clock_finding() const;
 
@@ -45,7 +47,16 @@ class ImagePlausibility {
     double rate = 0.0;  ///< about the y axis of the camera [rad/s]
   };
 
-  [[nodiscard]] double correlation_at(double offset_s, const std::vector<double>& angle) const;
+  /// Correlation of the images with the gyroscope.
+  struct ClockOffset {
+    double offset_s = 0.0;     ///< beyond the known one, with the largest correlation
+    double correlation = 0.0;  ///< with it
+    double without = 0.0;      ///< with the known offset
+  };
+
+  [[nodiscard]] double correlation_at(double offset_s, std::span<const Turn> turns,
+                                      const std::vector<double>& angle) const;
+  [[nodiscard]] ClockOffset best_offset(std::span<const Turn> turns, const std::vector<double>& angle) const;
 
   const SequenceInfo& info_;
   std::vector<double> last_profile_;  ///< column means of the last frame

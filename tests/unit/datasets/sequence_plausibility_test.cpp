@@ -56,18 +56,19 @@ TEST(DepthUnitFinding, MillimetersAreNotFiveThousandths) {
 }
 
 /// Frames at 30 Hz of a camera that turns about its y axis by 0.2 sin(3 t) rad, and a gyroscope at 200 Hz
-/// whose stamps are late by `offset_s`.
-std::optional<std::string> finding_of_clocks(double offset_s) {
+/// whose stamps are late by `offset_s`, in the second half by `later_offset_s` if that is given.
+std::optional<std::string> finding_of_clocks(double offset_s, int frames = 115, double later_offset_s = NAN) {
   SequenceInfo info;
   info.rig.camera.fx = kFocal_px;
   for (int i = 0; i < 1000; ++i) {
     const double t = 0.005 * i;
+    const double delay_s = std::isnan(later_offset_s) || t < 2.4 ? offset_s : later_offset_s;
     info.imu.push_back({.t = from_seconds(t),
-                        .gyro_b = {0.0, 0.6 * std::cos(3.0 * (t - offset_s)), 0.0},
+                        .gyro_b = {0.0, 0.6 * std::cos(3.0 * (t - delay_s)), 0.0},
                         .accel_b = {0, -9.8, 0}});
   }
   ImagePlausibility plausibility(info);
-  for (int i = 15; i < 130; ++i) {
+  for (int i = 15; i < 15 + frames; ++i) {
     const double t = i / 30.0;
     const double shift_px = -kFocal_px * 0.2 * std::sin(3.0 * t);
     Frame frame;
@@ -88,6 +89,11 @@ TEST(ClockFinding, TheOffsetIsThatOfTheBestCorrelation) {
   const std::optional<std::string> finding = finding_of_clocks(0.12);
   ASSERT_TRUE(finding);
   EXPECT_NE(finding->find("time_offset_s = 0.12"), std::string::npos) << *finding;
+}
+
+TEST(ClockFinding, NothingIsClaimedFromOneSecondOrIfTheHalvesDisagree) {
+  EXPECT_FALSE(finding_of_clocks(0.12, 45));  // frames
+  EXPECT_FALSE(finding_of_clocks(0.20, 115, 0.04));
 }
 
 }  // namespace
