@@ -153,6 +153,14 @@ TableRow with_best_systems(TableRow row) {
   return row;
 }
 
+/// Whether a number can come from a rendered sequence, which has the name of the row, and not from a
+/// recording.
+bool contain_rendered(std::span<const bench::StoredRun> runs) {
+  return std::ranges::any_of(runs, [](const bench::StoredRun& run) {
+    return std::ranges::find(kSequences, run.identity.sequence) != std::end(kSequences);
+  });
+}
+
 ReportTable accuracy_table(ReportTable table, std::span<const bench::StoredRun> runs,
                            const PaperMetrics& metrics, std::span<const PaperSystem> systems) {
   table.row_heading = "sequence";
@@ -174,9 +182,10 @@ ReportTable accuracy_table(ReportTable table, std::span<const bench::StoredRun> 
   table.notes.emplace_back("Rows \"ours\": medians over runs.");
   if (std::string note = best_note(table, "row", false); !note.empty())
     table.notes.push_back(std::move(note));
-  table.notes.emplace_back(
-      "Rendered sequences reproduce the motions of the recordings but not their images; results on them are "
-      "not directly comparable with the published ones.");
+  if (contain_rendered(runs))
+    table.notes.emplace_back(
+        "Rendered sequences reproduce the motions of the recordings but not their images; results "
+        "on them are not directly comparable with the published ones.");
   return table;
 }
 

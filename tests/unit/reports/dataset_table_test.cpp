@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "reports/tables/paper_tables.h"
 
 namespace stillpoint::report {
@@ -55,6 +57,16 @@ TEST(PaperTable, ShowsRecordingsAndTheMeanOfThoseWithData) {
   EXPECT_EQ(table.rows[12].label, "mean of 2 of 4 sequences");
   EXPECT_NEAR(*table.rows[12].cells[9].number, 0.5 * (0.0486 + 0.0629), 1e-12);  // published
   EXPECT_NEAR(*table.rows[13].cells[9].number, 0.06, 1e-12);
+}
+
+TEST(PaperTable, NotesThatSequencesAreRenderedOnlyIfTheyAre) {
+  const auto has_note = [](const std::vector<bench::StoredRun>& runs) {
+    return std::ranges::any_of(paper_table(PaperTable::kTable1, runs).notes, [](const std::string& note) {
+      return note.find("Rendered sequences") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(has_note({run_on("tum_fr3_walking_xyz", 0.05)}));
+  EXPECT_TRUE(has_note({run_on("walking_xyz", 0.05)}));
 }
 
 }  // namespace
