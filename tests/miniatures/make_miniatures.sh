@@ -6,14 +6,17 @@
 #   build/dev/tests/mirror_server OUT/host 8099 &
 #   STILLPOINT_CATALOGUE=OUT/catalogue STILLPOINT_MIRROR=http://127.0.0.1:8099 STILLPOINT_DATA=OUT/data \
 #     STILLPOINT_REGISTRY=OUT/registry.json build/dev/stillpoint reproduce table1 --real --get --accept-licence
-# reproduce_miniatures.sh does all of this. STILLPOINT_RECORDINGS names a folder of recorded motion (default: shared/data
-# beside the checkout); what it contains replaces rendered motion: frame times of fr3 (tum_fr3_times), ground truth of
-# OpenLORIS (openloris/groundtruth), inertial data and ground truth of TUM VI, for VCU-RVI (imu/tum_vi).
+# reproduce_miniatures.sh does all of this. STILLPOINT_MINIATURE_WIDTH (default: 160) is the width of the images in
+# pixels; the published configs with an IMU initialize from 320 on, the monocular one from 640. STILLPOINT_RECORDINGS
+# names a folder of recorded motion (default: shared/data beside the checkout); what it contains replaces rendered
+# motion: frame times of fr3 (tum_fr3_times), ground truth of OpenLORIS (openloris/groundtruth), inertial data and
+# ground truth of TUM VI, for VCU-RVI (imu/tum_vi).
 # The images differ from the recordings: the tables test the chain of commands, not the odometry.
 set -euo pipefail
 program="$(realpath "$1")"
 out="$(realpath -m "$2")"
 seconds="${3:-2}"
+width="${STILLPOINT_MINIATURE_WIDTH:-160}"
 datasets="${4:-tum bonn openloris vcu_rvi}"
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 recordings="${STILLPOINT_RECORDINGS:-$root/../shared/data}"
@@ -29,8 +32,8 @@ render() {
     *--trajectory*) source="recorded motion" ;;
   esac
   seed=$((seed + 1))
-  "$program" data synth "$preset" --layout "$layout" --seconds "$seconds" --seed "$seed" --width 160 --height 120 \
-    --out "$out/work/$folder" "$@" >/dev/null
+  "$program" data synth "$preset" --layout "$layout" --seconds "$seconds" --seed "$seed" --width "$width" \
+    --height "$((width * 3 / 4))" --out "$out/work/$folder" "$@" >/dev/null
   echo "miniatures: $folder ($source)"
 }
 
