@@ -3,7 +3,9 @@
 /// fixed random seed.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <random>
@@ -53,11 +55,15 @@ std::string mutated(std::string bytes, std::mt19937& random) {
   }
 }
 
+/// STILLPOINT_FUZZ_SECONDS extends the test, e.g. under the address sanitizer.
 TEST(DownloadTarget, MutatedSeedsAreAcceptedOrRejected) {
+  const char* const seconds = std::getenv("STILLPOINT_FUZZ_SECONDS");
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::seconds(seconds == nullptr ? 0 : std::atoi(seconds));
+  const std::vector<std::string> all = seeds();
   std::mt19937 random(1);
-  for (const std::string& seed : seeds()) {
-    for (int round = 0; round < 100; ++round) {
-      std::string bytes = seed;
+  for (int round = 0; round < 100 || std::chrono::steady_clock::now() < end; ++round) {
+    for (std::string bytes : all) {
       for (int i = 0; i < round % 5; ++i) bytes = mutated(std::move(bytes), random);
       ASSERT_EQ(LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), 0);
     }
