@@ -18,10 +18,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kReplay = STILLPOINT_BINARY_DIR "/tests/replay_program";
 
-/// A script that calls the replay program with additional options.
+/// A script that calls the replay program with additional options. Its content is part of the seed of the
+/// simulated times, and therefore contains no path.
 std::string write_program(const TemporaryFolder& folder, const std::string& name, const std::string& flags) {
-  const fs::path file =
-      folder.write(name, "#!/bin/sh\nexec " + std::string(kReplay) + " " + flags + " \"$@\"\n");
+  const fs::path replay = folder.path() / "replay";
+  if (!fs::exists(replay)) fs::create_symlink(kReplay, replay);
+  const fs::path file = folder.write(name, "#!/bin/sh\nexec \"${0%/*}/replay\" " + flags + " \"$@\"\n");
   fs::permissions(file, fs::perms::owner_all);
   return file.string();
 }
