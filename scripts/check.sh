@@ -16,7 +16,7 @@ deep() {
 }
 if [[ "${1:-}" == --deep ]]; then
   deep debug
-  TSAN_OPTIONS=halt_on_error=1 deep tsan
+  TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/scripts/threads.supp" deep tsan
   exit 0
 fi
 base="${1:-main}"
