@@ -2,6 +2,8 @@
 /// Recognition of steps of the inertial biases, by the motion of features between frames.
 #pragma once
 
+#include <vector>
+
 #include "core/backend/health/feature_views.h"
 
 namespace stillpoint {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/simulated/located_claims.h"
 #include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint::eval {
@@ -12,25 +13,11 @@ constexpr std::size_t kFrames = 100;  // at 10 Hz
 constexpr std::size_t kFault = 40;    // frames 40 to 49
 constexpr double kClaimed_m = 0.01;
 
-/// A run in a rotated and displaced world, without an error.
-std::vector<ClaimedPose> perfect_claims(const Trajectory& gt) {
-  const Pose T_v_w{exp_so3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}};
-  std::vector<ClaimedPose> claims;
-  for (const StampedPose& pose : gt.poses) {
-    claims.push_back({.t = pose.t,
-                      .T_w_c = T_v_w * pose.T_w_f,
-                      .claim = PoseClaim::kLocated,
-                      .sigma_m = kClaimed_m,
-                      .sigma_rad = 0.001});
-  }
-  return claims;
-}
-
 class HonestyTest : public testing::Test {
  protected:
   const Trajectory gt_ = test::smooth_path(kFrames, 0.1);
   const std::vector<TimeSpan> fault_{{gt_.poses[kFault].t, gt_.poses[kFault + 10].t}};
-  std::vector<ClaimedPose> claims_ = perfect_claims(gt_);
+  std::vector<ClaimedPose> claims_ = test::located_claims(gt_, {.sigma_m = kClaimed_m, .sigma_rad = 0.001});
 
   void displace(std::size_t begin, std::size_t end, double metres) {
     for (std::size_t i = begin; i < end; ++i) claims_[i].T_w_c.p.x() += metres;

@@ -5,12 +5,13 @@
 
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
+#include "tests/support/simulated/located_claims.h"
 #include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint::eval {
 namespace {
 
-constexpr std::size_t kFrames = 60;  // at 10 Hz
+constexpr std::size_t kPoses = 60;  // at 10 Hz
 
 TEST(Nees, IsTheSquaredErrorNormalizedByTheCovariance) {
   // 0.2 rad about x with a standard deviation of 0.1 rad: 4. 3 m along y with 1.5 m: 4.
@@ -23,25 +24,15 @@ TEST(Nees, IsTheSquaredErrorNormalizedByTheCovariance) {
                InputError);
 }
 
-/// A run in another world, whose covariances are those of 0.1 m and 0.01 rad.
-std::vector<ClaimedPose> perfect_claims(const Trajectory& gt) {
-  const Pose T_v_w{exp_so3({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}};
-  std::vector<ClaimedPose> claims;
-  for (const StampedPose& pose : gt.poses) {
-    claims.push_back({.t = pose.t,
-                      .T_w_c = T_v_w * pose.T_w_f,
-                      .claim = PoseClaim::kLocated,
-                      .position_covariance = 0.01 * Eigen::Matrix3d::Identity(),
-                      .rotation_covariance = 1e-4 * Eigen::Matrix3d::Identity()});
-  }
-  return claims;
-}
+/// Sigmas of 0.1 m and 0.01 rad.
+const ClaimedPose kClaimed{.position_covariance = 0.01 * Eigen::Matrix3d::Identity(),
+                           .rotation_covariance = 1e-4 * Eigen::Matrix3d::Identity()};
 
 TEST(MeanNees, IsRelativeToTheFirstPoseAndCountsFromThreeSecondsOn) {
-  const Trajectory gt = test::smooth_path(kFrames, 0.1);
-  std::vector<ClaimedPose> claims = perfect_claims(gt);
+  const Trajectory gt = test::smooth_path(kPoses, 0.1);
+  std::vector<ClaimedPose> claims = test::located_claims(gt, kClaimed);
   EXPECT_NEAR(mean_nees(gt, claims)->position, 0.0, 1e-12);
-  for (std::size_t i = 1; i < kFrames; ++i) {
+  for (std::size_t i = 1; i < kPoses; ++i) {
     // 0.3 m and 0.03 rad are three standard deviations each: NEES 9, divided by 3.
     claims[i].T_w_c.p.x() += i < 30 ? 5.0 : 0.3;
     claims[i].T_w_c.q = Eigen::Quaterniond(exp_so3({0.0, i < 30 ? 1.0 : 0.03, 0.0})) * claims[i].T_w_c.q;
@@ -51,11 +42,11 @@ TEST(MeanNees, IsRelativeToTheFirstPoseAndCountsFromThreeSecondsOn) {
 }
 
 TEST(MeanNees, NeedsLocatedPosesWithACovariance) {
-  const Trajectory gt = test::smooth_path(kFrames, 0.1);
-  std::vector<ClaimedPose> claims = perfect_claims(gt);
+  const Trajectory gt = test::smooth_path(kPoses, 0.1);
+  std::vector<ClaimedPose> claims = test::located_claims(gt, kClaimed);
   EXPECT_FALSE(mean_nees({}, claims));
   for (std::size_t i = 30; i < 45; ++i) claims[i].position_covariance.setZero();
-  for (std::size_t i = 45; i < kFrames; ++i) claims[i].claim = PoseClaim::kLost;
+  for (std::size_t i = 45; i < kPoses; ++i) claims[i].claim = PoseClaim::kLost;
   EXPECT_FALSE(mean_nees(gt, claims));
 }
 
