@@ -6,11 +6,11 @@
 
 #include "core/base/error.h"
 #include "core/base/utf8_text.h"
+#include "datasets/calibration/rig_file.h"
 #include "datasets/formats/bag_format.h"
 #include "datasets/formats/formats.h"
 #include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
-#include "datasets/io/rig_file.h"
 #include "eval/io/bag_file.h"
 
 namespace stillpoint::datasets {
@@ -48,6 +48,9 @@ void override_rig(SequenceContent& content, const std::filesystem::path& request
     content.info.rig = overridden.rig;
     content.extrinsic_known |= overridden.has_extrinsic;
     content.info.notes.push_back("calibration: overridden by " + file.string());
+    if (!overridden.depth_camera) return;
+    content.depth_camera = overridden.depth_camera;
+    content.info.notes.emplace_back("depth is registered to the color camera by [depth] of this file");
   }
 }
 
@@ -101,18 +104,21 @@ void check_overlap(const SequenceInfo& info, FaultLog& faults) {
   });
 }
 
-void require_size(const std::filesystem::path& file, const cv::Mat& image, const Camera& camera) {
+void require_size(const std::filesystem::path& file, const cv::Mat& image, const Camera& camera,
+                  const std::string& remedy = "correct [camera] in rig.toml") {
   if (image.cols == camera.width && image.rows == camera.height) return;
   throw InputError(file.string(), "is " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
                                       ", but the calibration is for " + std::to_string(camera.width) + "x" +
-                                      std::to_string(camera.height) + "; correct [camera] in rig.toml");
+                                      std::to_string(camera.height) + "; " + remedy);
 }
 
 cv::Mat load_depth(const SequenceContent& content, std::size_t index) {
   const std::filesystem::path& file = content.frame_files[index].depth;
   cv::Mat depth = content.images ? content.images->depth(index) : read_depth(file);
   const Rig& rig = content.info.rig;
-  require_size(file, depth, content.depth_camera ? content.depth_camera->camera : rig.camera);
+  require_size(file, depth, content.depth_camera ? content.depth_camera->camera : rig.camera,
+               "if it is the image of another camera, write width, height, fx, fy, cx, cy and T_c_d of that "
+               "camera into [depth] in rig.toml, and it is registered");
   if (content.no_depth_value != 0) {
     std::replace(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>(), content.no_depth_value,
                  std::uint16_t{0});

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "datasets/calibration/rig_file.h"
 #include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
-#include "datasets/io/rig_file.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::datasets {

@@ -13,7 +13,7 @@ constexpr double kMaxTilt =
     0.5;  ///< cosine of the angle between "up" and the mean specific force: 60 degrees
 constexpr int kMaxShift_px = 48;           ///< between two frames
 constexpr int kDepthStep_px = 16;          ///< every 16th pixel of both directions is sampled
-constexpr double kMinDepth_m = 0.2;        ///< RealSense and Kinect measure from 0.3 m on
+constexpr double kMinDepth_m = 0.3;        ///< RealSense and Kinect measure from 0.3 m on
 constexpr double kMaxDepth_m = 12.0;       ///< and at most to about 10 m
 constexpr double kMaxClockOffset_s = 0.5;  ///< searched range
 constexpr double kClockStep_s = 0.005;

@@ -63,7 +63,7 @@ eval="eval eval/io eval/trajectory eval/metrics eval/statistics eval/compare eva
 # --- datasets: no odometry ---
 trajectories="eval/io eval/trajectory"
 row datasets/io $messages $trajectories
-row datasets/calibration $messages datasets/io
+row datasets/calibration $messages eval/io datasets/io
 row datasets/bags $messages $trajectories datasets/io datasets/calibration
 row datasets/bags/writing $messages datasets/bags datasets/io
 row datasets/formats $messages $trajectories datasets/io datasets/calibration datasets/bags
@@ -162,7 +162,7 @@ libraries=(
   '<microhttpd        ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
   '<spdlog/           ^bench/cli/'
-  '<toml\+\+/         ^bench/(config|systems)/|^datasets/(io|catalogue)/'
+  '<toml\+\+/         ^bench/(config|systems)/|^datasets/(calibration|catalogue)/'
   '<curl/            ^datasets/download/http_transfer\.cpp$'
   '<archive          ^datasets/download/archive_reader\.cpp$'
   '<openssl/         ^datasets/download/file_digests\.cpp$'

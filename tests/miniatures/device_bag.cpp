@@ -16,8 +16,8 @@
 #include "datasets/bags/chunk_codec.h"
 #include "datasets/bags/writing/bag_writer.h"
 #include "datasets/bags/writing/serialize.h"
+#include "datasets/calibration/rig_file.h"
 #include "datasets/io/detections_file.h"
-#include "datasets/io/rig_file.h"
 #include "datasets/open_sequence.h"
 #include "eval/io/text_reader.h"
 

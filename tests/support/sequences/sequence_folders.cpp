@@ -54,7 +54,7 @@ std::string link(const std::string& parent, const std::string& child, const std:
 
 }  // namespace
 
-void write_tum_folder(const TemporaryFolder& folder) {
+void write_tum_folder(const TemporaryFolder& folder, int depth_width, int depth_height) {
   std::string color = "# color images\n";
   std::string depth = "# depth maps\n";
   for (int i = 0; i < kFrames; ++i) {
@@ -63,7 +63,7 @@ void write_tum_folder(const TemporaryFolder& folder) {
     color += fmt::format("{0} rgb/{0}.png\n", color_stamp);
     depth += fmt::format("{0} depth/{0}.png\n", depth_stamp);
     write_color(folder.path() / "rgb" / (color_stamp + ".png"), 8, 6);
-    write_depth(folder.path() / "depth" / (depth_stamp + ".png"), 8, 6, 5000);
+    write_depth(folder.path() / "depth" / (depth_stamp + ".png"), depth_width, depth_height, 5000);
   }
   folder.write("rgb.txt", color);
   folder.write("depth.txt", depth);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/io/rig_file.h"
+#include "datasets/calibration/rig_file.h"
 
 #include <gtest/gtest.h>
 
@@ -102,6 +102,24 @@ TEST(RigFile, ACameraThatTheFormatDoesNotKnowMustBeComplete) {
   const TemporaryFolder folder;
   const Rig known{.camera = {.width = 640, .height = 480, .fx = 500, .fy = 500, .cx = 320, .cy = 240}};
   EXPECT_EQ(apply_rig_file(folder.write("rig.toml", "[camera]\nfx = 510\n"), known).rig.camera.cy, 240.0);
+}
+
+TEST(RigFile, TheCameraOfUnregisteredDepthMustBeComplete) {
+  const TemporaryFolder folder;
+  const auto depth_camera = [&](const std::string& text) {
+    return apply_rig_file(folder.write("rig.toml", text), Rig{}).depth_camera;
+  };
+  EXPECT_FALSE(depth_camera("[depth]\nscale = 1000\n"));
+  const std::string intrinsics = "[depth]\nwidth = 4\nheight = 3\nfx = 5\nfy = 6\ncx = 1.5\n";
+  const std::string pose = "T_c_d = [1,0,0,0.1, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n";
+  const auto known = depth_camera(intrinsics + "cy = 1\n" + pose);
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->camera.width, 4);
+  EXPECT_EQ(known->camera.fy, 6.0);
+  EXPECT_EQ(known->T_c_d.p.x(), 0.1);
+  expect_rejected(intrinsics + pose, {"rig.toml:1", "\"cy\" is missing"});
+  expect_rejected(intrinsics + "cy = 1\n", {"rig.toml:1", "\"T_c_d\" is missing"});
+  expect_rejected(intrinsics + "cy = 1\nT_c_d = [1]\n", {"rig.toml:8", "\"T_c_d\"", "16 numbers"});
 }
 
 TEST(RigFile, InvalidTomlAndMissingFilesAreErrors) {

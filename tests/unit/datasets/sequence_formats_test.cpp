@@ -103,6 +103,23 @@ TEST(TumFormat, ReadsAnImuIfTheRigFileHasTheExtrinsic) {
   EXPECT_EQ(stream->info().imu[0].accel_b, Eigen::Vector3d(4, 5, 6));
 }
 
+/// Depth images of 4x3 beside color images of 8x6 with twice the focal length.
+TEST(TumFormat, RegistersDepthOfAnotherCameraIfTheRigFileHasThatCamera) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder, 4, 3);
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())->load_frame(0)); },
+                     {"is 4x3", "[depth] in rig.toml", "T_c_d"});
+  folder.write("rig.toml",
+               "[camera]\nwidth = 8\nheight = 6\nfx = 10\nfy = 10\ncx = 3.5\ncy = 2.5\n"
+               "[depth]\nwidth = 4\nheight = 3\nfx = 5\nfy = 5\ncx = 1.5\ncy = 1\n"
+               "T_c_d = [1,0,0,0, 0,1,0,0, 0,0,1,0.5, 0,0,0,1]\n");
+  const auto stream = open_sequence(folder.path());
+  EXPECT_TRUE(has_note(stream->info(), "depth is registered"));
+  const Frame frame = stream->load_frame(0);
+  ASSERT_EQ(frame.depth.size(), cv::Size(8, 6));
+  EXPECT_DOUBLE_EQ(depth_at(frame.depth, frame.depth_units_per_m, 3, 2), 1.5);
+}
+
 TEST(OpenLorisFormat, ReadsCalibrationAndChainsTheTransforms) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);

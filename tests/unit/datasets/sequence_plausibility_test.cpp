@@ -50,7 +50,7 @@ TEST(DepthUnitFinding, MillimetersAreNotFiveThousandths) {
   };
   EXPECT_FALSE(finding_of(2000, 1000.0));
   EXPECT_FALSE(finding_of(10000, 5000.0));
-  EXPECT_NE(finding_of(900, 5000.0)->find("scale = 1000 "), std::string::npos);    // 0.18 m instead of 0.9 m
+  EXPECT_NE(finding_of(1400, 5000.0)->find("scale = 1000 "), std::string::npos);   // 0.28 m instead of 1.4 m
   EXPECT_NE(finding_of(15000, 1000.0)->find("scale = 5000 "), std::string::npos);  // 15 m instead of 3 m
   EXPECT_FALSE(finding_of(0, 1000.0));
 }

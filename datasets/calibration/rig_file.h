@@ -3,25 +3,29 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/types/rig.h"
+#include "datasets/calibration/depth_registration.h"
 
 namespace stillpoint::datasets {
 
-/// A rig, and whether the file contains the camera-IMU extrinsic.
 struct OverriddenRig {
   Rig rig;
-  bool has_extrinsic = false;
+  bool has_extrinsic = false;               ///< whether the file contains the camera-IMU extrinsic
+  std::optional<DepthCamera> depth_camera;  ///< set if the depth images are those of another camera
 };
 
 /// Replaces the values of `rig` that the file sets:
 ///   [camera] width height fx fy cx cy model distortion rolling_shutter_s    (px, s; model as in enum_names)
 ///   [depth]  scale                                                          (raw units per meter)
+///            width height fx fy cx cy T_c_d          (camera of depth images that are not registered; px)
 ///   [imu]    T_b_c gyro_noise accel_noise gyro_walk accel_walk time_offset_s
-/// T_b_c is a 4x4 matrix in row-major order; the units of the others are those of `ImuNoise` and `Rig`.
+/// T_b_c and T_c_d are 4x4 matrices in row-major order; the units of the others are those of `ImuNoise` and
+/// `Rig`.
 /// @throws InputError with file and line on an unknown key, a wrong type, a value out of range, or a missing
-/// value of a camera of which `rig` contains nothing
+/// value of a depth camera, or of a color camera of which `rig` contains nothing
 [[nodiscard]] OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig);
 
 /// A rig file with all values of `rig`; numbers are exact.

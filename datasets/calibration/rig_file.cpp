@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/io/rig_file.h"
+#include "datasets/calibration/rig_file.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -70,9 +70,13 @@ class Section {
     throw InputError(file_, node.source().begin.line, "\"" + std::string(key) + "\" " + problem);
   }
 
-  [[noreturn]] void fail_missing(std::string_view key) const {
-    throw InputError(file_, table_->source().begin.line,
-                     "\"" + std::string(key) + "\" is missing; the format of the sequence does not know it");
+  void require(const std::vector<std::string_view>& keys) const {
+    for (const std::string_view key : keys) {
+      if (find(key) != nullptr) continue;
+      throw InputError(
+          file_, table_->source().begin.line,
+          "\"" + std::string(key) + "\" is missing; the format of the sequence does not know it");
+    }
   }
 
   [[nodiscard]] bool is_empty() const { return table_ == nullptr; }
@@ -121,19 +125,22 @@ CameraModel model_of(const Section& camera, CameraModel fallback) {
 /// A camera that the format does not know must be given completely: 0 is no sensible default of a value.
 void require_complete(const Section& section, const Camera& known) {
   if (section.is_empty() || known.width > 0 || known.fx > 0.0) return;
-  for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"}) {
-    if (section.find(key) == nullptr) section.fail_missing(key);
-  }
+  section.require({"width", "height", "fx", "fy", "cx", "cy"});
 }
 
-Camera override_camera(const Section& section, Camera camera) {
-  section.allow_only({"width", "height", "fx", "fy", "cx", "cy", "model", "distortion", "rolling_shutter_s"});
+Camera override_intrinsics(const Section& section, Camera camera) {
   camera.width = section.image_size("width", camera.width);
   camera.height = section.image_size("height", camera.height);
   camera.fx = section.positive("fx", camera.fx);
   camera.fy = section.positive("fy", camera.fy);
   camera.cx = section.number("cx", camera.cx);
   camera.cy = section.number("cy", camera.cy);
+  return camera;
+}
+
+Camera override_camera(const Section& section, const Camera& known) {
+  section.allow_only({"width", "height", "fx", "fy", "cx", "cy", "model", "distortion", "rolling_shutter_s"});
+  Camera camera = override_intrinsics(section, known);
   camera.model = model_of(section, camera.model);
   const toml::node* const distortion = section.find("distortion");
   if (distortion == nullptr) return camera;
@@ -145,12 +152,23 @@ Camera override_camera(const Section& section, Camera camera) {
   return camera;
 }
 
-Pose extrinsic_of(const Section& imu, const toml::node& node) {
-  const std::vector<double> values = imu.numbers(node, "T_b_c");
-  if (values.size() != 16) imu.fail(node, "T_b_c", "must have 16 numbers (4x4, row-major)");
+Pose pose_of(const Section& section, std::string_view key) {
+  const toml::node& node = *section.find(key);
+  const std::vector<double> values = section.numbers(node, key);
+  if (values.size() != 16) section.fail(node, key, "must have 16 numbers (4x4, row-major)");
   const std::optional<Pose> pose = eval::rigid_pose(std::span<const double, 16>(values));
-  if (!pose) imu.fail(node, "T_b_c", "is not a rigid transform; the last row must be 0 0 0 1");
+  if (!pose) section.fail(node, key, "is not a rigid transform; the last row must be 0 0 0 1");
   return *pose;
+}
+
+/// The camera of depth images that are not registered; must be given completely.
+std::optional<DepthCamera> depth_camera_of(const Section& depth) {
+  depth.allow_only({"scale", "width", "height", "fx", "fy", "cx", "cy", "T_c_d"});
+  const std::vector<std::string_view> keys = {"width", "height", "fx", "fy", "cx", "cy", "T_c_d"};
+  const auto is_given = [&](std::string_view key) { return depth.find(key) != nullptr; };
+  if (std::ranges::none_of(keys, is_given)) return {};
+  depth.require(keys);
+  return DepthCamera{.camera = override_intrinsics(depth, Camera{}), .T_c_d = pose_of(depth, "T_c_d")};
 }
 
 }  // namespace
@@ -163,10 +181,10 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
   const Section camera = section(file.string(), root, "camera");
   const Section depth = section(file.string(), root, "depth");
   const Section imu = section(file.string(), root, "imu");
-  depth.allow_only({"scale"});
   imu.allow_only({"T_b_c", "gyro_noise", "accel_noise", "gyro_walk", "accel_walk", "time_offset_s"});
 
-  OverriddenRig result{.rig = rig, .has_extrinsic = imu.find("T_b_c") != nullptr};
+  OverriddenRig result{
+      .rig = rig, .has_extrinsic = imu.find("T_b_c") != nullptr, .depth_camera = depth_camera_of(depth)};
   result.rig.camera = override_camera(camera, rig.camera);
   const toml::node* const shutter = camera.find("rolling_shutter_s");
   result.rig.rolling_shutter_s = camera.number("rolling_shutter_s", rig.rolling_shutter_s);
@@ -174,7 +192,7 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
     camera.fail(*shutter, "rolling_shutter_s", "must not be negative");
   }
   result.rig.depth_units_per_m = depth.positive("scale", rig.depth_units_per_m);
-  if (result.has_extrinsic) result.rig.T_b_c = extrinsic_of(imu, *imu.find("T_b_c"));
+  if (result.has_extrinsic) result.rig.T_b_c = pose_of(imu, "T_b_c");
   result.rig.imu_noise = ImuNoise{.gyro_noise = imu.positive("gyro_noise", rig.imu_noise.gyro_noise),
                                   .accel_noise = imu.positive("accel_noise", rig.imu_noise.accel_noise),
                                   .gyro_walk = imu.positive("gyro_walk", rig.imu_noise.gyro_walk),
