@@ -12,6 +12,9 @@
 
 namespace stillpoint {
 
+inline constexpr double kBegin_s = 4.0;  ///< of faults
+inline constexpr double kEnd_s = 100.0;  ///< after the runs
+
 /// The settings of bench/configs/stillpoint.toml that matter to the backend.
 inline BackendConfig default_backend() {
   BackendConfig config;
@@ -41,6 +44,10 @@ struct FaultyFrame {
   OdometryUpdate update;
   double error_m = 0.0;  ///< of the motion since the first located frame
 };
+
+inline bool is_finite(const FaultyFrame& frame) {
+  return frame.update.state.T_w_b.p.allFinite() && frame.update.state.T_w_b.q.coeffs().allFinite();
+}
 
 struct FaultyRun {
   std::vector<FaultyFrame> frames;

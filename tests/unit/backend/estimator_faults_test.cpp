@@ -12,13 +12,6 @@ namespace {
 
 using enum OdometryStatus;
 
-constexpr double kBegin_s = 4.0;  ///< of the faults
-constexpr double kEnd_s = 100.0;  ///< of the runs
-
-bool is_finite(const FaultyFrame& frame) {
-  return frame.update.state.T_w_b.p.allFinite() && frame.update.state.T_w_b.q.coeffs().allFinite();
-}
-
 /// No depth before `end`.
 std::function<void(TrackedFrame&)> no_depth(double end) {
   return [=](TrackedFrame& frame) {

@@ -11,9 +11,6 @@ namespace {
 
 using enum OdometryStatus;
 
-constexpr double kBegin_s = 4.0;  ///< of the faults
-constexpr double kEnd_s = 100.0;  ///< of the runs
-
 /// The settings of bench/configs/stillpoint.toml that matter here.
 OdometryConfig stage_config(const FaultyScenario& scenario) {
   OdometryConfig config;
