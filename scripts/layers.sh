@@ -122,7 +122,7 @@ row reports/drawing core/base core/types datasets/io eval/io eval/openloris eval
   reports/tables
 row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
-row reports/page/charts $stored core/types eval/io eval/metrics eval/openloris eval/protocols reports/tables
+row reports/page/charts $stored bench/model/csv core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols reports/tables
 row reports/page $stored bench/model/csv bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/tables/formats \
   reports/drawing reports/page/charts
 row reports/dashboard $stored bench/record reports/tables reports/page

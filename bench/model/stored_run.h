@@ -105,9 +105,9 @@ struct RunOutcome {
   std::vector<Metric> metrics;
   std::vector<ModuleCost> costs;
   /// Content by kind: "trajectory" (TUM text), "truth" (TUM text, ground truth in the same coordinate frame),
-  /// "timings" (CSV of `TimingSample`), "counters" (CSV of `FrameCounters`), "frames" (CSV: hash of each
-  /// module's state after each frame), "stacks" (folded stacks), "image:000042" (annotated JPEG of frame 42),
-  /// "result" (JSON), "log".
+  /// "timings" (CSV of `TimingSample`), "counters" (CSV of `FrameCounters`), "claims" (CSV of `FrameClaim`),
+  /// "frames" (CSV: hash of each module's state after each frame), "stacks" (folded stacks), "image:000042"
+  /// (annotated JPEG of frame 42), "result" (JSON), "log".
   std::map<std::string, std::string> attachments;
   std::string manifest;  ///< JSON; empty when the run did not write one
 };

@@ -5,12 +5,12 @@
 #include <fstream>
 #include <iterator>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/config/config_text.h"
 #include "bench/model/csv/counter_text.h"
 #include "bench/model/csv/loop_text.h"
+#include "bench/model/csv/status_text.h"
 #include "bench/model/csv/timing_text.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
@@ -219,16 +219,18 @@ std::string frames_csv(const OdometryRun& run) {
 
 /// Claims about all frames, with the poses that the trajectory does not contain.
 std::string status_csv(const OdometryRun& run) {
-  std::string text = "frame,t_ns,status,segment,x,y,z,qx,qy,qz,qw,sigma_m,sigma_rad\n";
+  std::vector<FrameClaim> claims;
   for (std::size_t i = 0; i < run.claims.size(); ++i) {
     const eval::ClaimedPose& claim = run.claims[i];
-    const Pose& T = claim.T_w_c;
-    text += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g}\n",
-                        run.frame_counters[i].frame, claim.t.ns, run.frame_counters[i].status, claim.segment,
-                        T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w(), claim.sigma_m,
-                        claim.sigma_rad);
+    claims.push_back({.frame = run.frame_counters[i].frame,
+                      .t_ns = claim.t.ns,
+                      .status = run.frame_counters[i].status,
+                      .segment = claim.segment,
+                      .T_w_c = claim.T_w_c,
+                      .sigma_m = claim.sigma_m,
+                      .sigma_rad = claim.sigma_rad});
   }
-  return text;
+  return claim_text(claims);
 }
 
 std::string trajectory_text(const RunResult& result) {

@@ -106,12 +106,19 @@ Json loops_json(const bench::Store& store, const bench::StoredRun& run, double s
   return loops;
 }
 
+Json faults_json(const std::vector<FaultBand>& faults) {
+  Json list = Json::array();
+  for (const FaultBand& band : faults) list.push_back({band.begin_s, band.end_s, clean_line(band.fault)});
+  return list;
+}
+
 Json series_json(const RunSeries& series, Json loops) {
   Json columns = Json::object();
   for (const SeriesColumn& column : series.columns)
     columns[clean_line(column.name)] = packed_series(column.values);
   return {{"start", series.start_s}, {"frames", series.t_s.size()}, {"t", packed_series(series.t_s)},
-          {"worst", series.worst},   {"loops", std::move(loops)},   {"columns", columns}};
+          {"worst", series.worst},   {"loops", std::move(loops)},   {"faults", faults_json(series.faults)},
+          {"columns", columns}};
 }
 
 /// Times [ms] of all frames by module and variant.

@@ -56,11 +56,32 @@
     ctx.restore();
   }
 
+  // A bar at the upper edge of the chart while a fault was injected, and its limits.
+  function drawFaults(plot, series) {
+    const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.fillStyle = page.color("bad");
+    for (const { begin, end } of series.faults) {
+      const at = (t) => Math.min(Math.max(plot.valToPos(t, "x", true), bbox.left), bbox.left + bbox.width);
+      const left = at(begin), right = at(Math.min(end, series.t[series.frames - 1]));
+      ctx.fillRect(left, bbox.top, right - left, 5 * devicePixelRatio);
+      for (const x of [left, right]) ctx.fillRect(x, bbox.top, 1, bbox.height);
+    }
+    ctx.restore();
+  }
+
   function definitions(series) {
     const has = (name) => series.columns[name] !== undefined;
     const charts = [];
-    if (has("error_m"))
-      charts.push({ id: "error", title: "Position error after alignment (ATE); background: degraded amber, dead reckoning violet, relocated green, lost or initializing red", unit: "m", lines: [line("error [m]", "c0")], data: [series.columns.error_m] });
+    if (has("error_m")) {
+      const error = { id: "error", title: "Position error after alignment (ATE); background: degraded amber, dead reckoning violet, relocated green, lost or initializing red", unit: "m", lines: [line("error [m]", "c0")], data: [series.columns.error_m] };
+      if (has("three_sigma_m")) {
+        error.title += "; band: three claimed standard deviations, relative to the first pose";
+        error.lines.unshift(line("3 sigma, claimed [m]", "c2", { width: 0.7, fill: page.color("c2") + "22" }));
+        error.data.unshift(series.columns.three_sigma_m);
+      }
+      charts.push(error);
+    }
     if (has("features"))
       charts.push({ id: "features", title: "Features", unit: "count", lines: [line("tracked", "c0"), line("landmarks in the window", "c2")],
         data: [series.columns.features, series.columns.landmarks] });
@@ -99,7 +120,7 @@
         cursor: { sync: { key: cursor.key }, drag: { x: true, y: false } },
         scales: { x: { time: false } }, axes: page.axes(chart.unit), series: [{ label: "time [s]", value: number }, ...chart.lines],
         hooks: {
-          drawClear: [(u) => shadeStatus(u, series)],
+          drawClear: [(u) => shadeStatus(u, series)], draw: [(u) => drawFaults(u, series)],
           setCursor: [(u) => { if (u.cursor.left >= 0 && u.cursor.idx !== null) onFrame(u.cursor.idx); }],
           setScale: [(u, key) => { if (key === "x" && plots.includes(u)) zoomAll(u.scales.x.min, u.scales.x.max); }],
         },

@@ -17,7 +17,8 @@
     add("time", series.t[frame].toFixed(3) + " s");
     const status = series.columns.status ? series.columns.status[frame] : null;
     if (status !== null) add("status", page.STATUS[status]);
-    const shown = { error_m: "error [m]", frame_to_frame_error_m: "frame-to-frame error [m]", error_deg: "error [deg]", features: "features", landmarks: "landmarks in the window", dynamic: "dynamic fraction" };
+    for (const fault of series.faults) if (fault.begin <= series.t[frame] && series.t[frame] < fault.end) add("fault", fault.text);
+    const shown = { error_m: "error [m]", three_sigma_m: "3 sigma, claimed [m]", three_sigma_deg: "3 sigma, claimed [deg]", frame_to_frame_error_m: "frame-to-frame error [m]", error_deg: "error [deg]", features: "features", landmarks: "landmarks in the window", dynamic: "dynamic fraction" };
     for (const [column, values] of Object.entries(series.columns)) {
       const label = column.startsWith("ms:") ? column.slice(3) + " [ms]" : shown[column];
       if (label) add(label, values[frame] === null ? "-" : Number(values[frame].toPrecision(4)).toString());

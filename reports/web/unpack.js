@@ -27,7 +27,8 @@ window.stillpoint = {};
     return best;
   };
 
-  // Series of a run: {start, frames, t, worst, loops, columns: {name: numbers}}; a few are cached.
+  // Series of a run: {start, frames, t, worst, loops, faults, columns: {name: numbers}}; a few are cached.
+  // A fault: {begin, end: times; text}.
   // A loop: {query, match: frames or -1; at, back: times; inliers, residual, reason: empty if it is accepted}.
   const cache = new Map();
   page.series = function (run) {
@@ -39,7 +40,8 @@ window.stillpoint = {};
       const t = page.unpack(packed.t);
       const loops = packed.loops.map(([at, back, inliers, residual, reason]) =>
         ({ at, back, inliers, residual, reason, query: page.nearest(t, at), match: page.nearest(t, back) }));
-      cache.set(run, { start: packed.start, frames: packed.frames, t, worst: packed.worst, loops, columns });
+      const faults = packed.faults.map(([begin, end, text]) => ({ begin, end, text }));
+      cache.set(run, { start: packed.start, frames: packed.frames, t, worst: packed.worst, loops, faults, columns });
     }
     return cache.get(run);
   };

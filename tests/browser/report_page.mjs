@@ -28,6 +28,27 @@ await test("hovering one chart moves the cursor of all charts and shows the fram
   assert.equal(new Set(cursors).size, 1);
 });
 
+await test("the error has a band of three claimed standard deviations, and faults a bar", async () => {
+  const fault = await page.evaluate(() => {
+    const { index, series, selectRun } = window.stillpoint;
+    selectRun(index.runs.findIndex((run) => run.sequence.includes("blank")));
+    return series(window.stillpoint.selectedRun()).faults[0];
+  });
+  assert.deepEqual([fault.begin, fault.end], [1.5, 2]);
+  assert.match(await page.textContent("[data-chart=error] .u-legend"), /3 sigma, claimed/);
+  const bar = await page.evaluate(() => {
+    const canvas = document.querySelector("[data-chart=error] canvas"), over = document.querySelector("[data-chart=error] .u-over");
+    const left = parseFloat(over.style.left), width = parseFloat(over.style.width), top = parseFloat(over.style.top);
+    const times = window.stillpoint.series(window.stillpoint.selectedRun()).t;
+    const pixel = (t) => [...canvas.getContext("2d").getImageData((left + width * t / times.at(-1)) * devicePixelRatio, (top + 2) * devicePixelRatio, 1, 1).data].join();
+    return [pixel(1.75), pixel(1.75) === pixel(1)];
+  });
+  assert.equal(bar[1], false, "the fault has the color " + bar[0] + " of a time without one");
+  for (let i = 0; i < 6; ++i) await page.keyboard.press("Shift+ArrowRight");
+  assert.match(await page.textContent("#readout"), /fault blank:.*3 sigma, claimed \[m\]/);
+  await page.evaluate(() => window.stillpoint.selectRun(0));
+});
+
 await test("hovering the path selects a frame", async () => {
   const canvas = page.locator("#path-plan");
   await canvas.scrollIntoViewIfNeeded();

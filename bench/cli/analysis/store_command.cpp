@@ -95,6 +95,7 @@ int show(const StoreArguments& arguments) {
 std::string file_name(const std::string& kind) {
   if (kind == "trajectory") return "trajectory.tum";
   if (kind == "timings" || kind == "frames" || kind == "counters") return kind + ".csv";
+  if (kind == "claims") return "status.csv";
   if (kind == "stacks") return "stacks.folded";
   if (kind.starts_with(kImageKind)) return "image_" + kind.substr(kImageKind.size()) + ".jpg";
   return kind + (kind == "result" ? ".json" : ".txt");

@@ -11,6 +11,9 @@
 
 namespace stillpoint::bench {
 
+/// Columns x, y, z, qx, qy, qz, qw.
+inline constexpr int kPoseColumns = 7;
+
 /// Cuts the part before `separator` off the front of `text`.
 inline std::string_view cut_front(std::string_view& text, char separator) {
   const std::size_t end = text.find(separator);
@@ -32,6 +35,14 @@ struct CsvRows {
     if (error == std::errc{} && end == text.data() + text.size()) return value;
     const std::string problem = "\"" + std::string(text) + "\" is not an integer";
     throw InputError(place, line, problem + "; expected columns: " + std::string(header));
+  }
+
+  /// @throws InputError unless `text` is a number
+  [[nodiscard]] double real(std::string_view text) const {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc{} && end == text.data() + text.size()) return value;
+    throw InputError(place, line, "'" + std::string(text) + "' is not a number");
   }
 
   /// Calls `take` with every row after the header line.

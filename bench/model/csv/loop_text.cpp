@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/model/csv/loop_text.h"
 
-#include <charconv>
-
 #include <fmt/format.h>
 
 #include "bench/model/csv/csv_rows.h"
@@ -13,15 +11,6 @@ namespace {
 constexpr std::string_view kLoopHeader =
     "query_frame,query_t_ns,match_frame,match_t_ns,votes,matches,inliers,residual_px,tx,ty,tz,qx,qy,qz,qw,"
     "accepted,reason,in_map";
-constexpr int kPoseColumns = 7;
-
-double real(const CsvRows& rows, std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw InputError(rows.place, rows.line, "'" + std::string(text) + "' is not a number");
-  return value;
-}
 
 StoredLoop loop_of(const CsvRows& rows, std::string_view text) {
   StoredLoop loop;
@@ -32,7 +21,7 @@ StoredLoop loop_of(const CsvRows& rows, std::string_view text) {
   cut_front(text, ',');  // votes
   cut_front(text, ',');  // matches
   loop.inliers = rows.number(cut_front(text, ','));
-  loop.residual_px = real(rows, cut_front(text, ','));
+  loop.residual_px = rows.real(cut_front(text, ','));
   for (int i = 0; i < kPoseColumns; ++i) cut_front(text, ',');
   loop.accepted = rows.number(cut_front(text, ',')) != 0;
   loop.reason = std::string(cut_front(text, ','));

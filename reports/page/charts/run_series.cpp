@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
 #include <optional>
 
+#include "bench/model/csv/status_text.h"
 #include "core/base/timestamp.h"
 #include "core/types/odometry_status.h"
 #include "eval/metrics/frame_to_frame_error.h"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMaxWorstFrames = 20;
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 constexpr double kStampToleranceS = 1e-3;  // some files round their stamps
 /// As in the tables: TUM's association and rigid alignment over all pairs.
 constexpr const char* kProtocol = "compat:tum";
@@ -102,6 +105,18 @@ void fill_counters(SeriesTable& table, const std::vector<bench::FrameCounters>& 
   }
 }
 
+/// Runs of other systems, and of older versions, have no claims.
+void fill_claims(SeriesTable& table, const bench::Store& store, const bench::StoredRun& run) {
+  const std::string text = store.attachment(run, "claims");
+  if (text.empty()) return;
+  const std::vector<bench::FrameClaim> claims = bench::parse_claims(text, "claims of run " + run.key);
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    if (claims[i].sigma_m <= 0.0) continue;  // not reported
+    table.set("three_sigma_m", i, 3.0 * claims[i].sigma_m);
+    table.set("three_sigma_deg", i, 3.0 * claims[i].sigma_rad * kDegreesPerRadian);
+  }
+}
+
 /// Attachment kinds of the run's images by frame index.
 std::map<std::size_t, std::string> images_of(const bench::StoredRun& run,
                                              const std::vector<bench::FrameCounters>& counters) {
@@ -149,6 +164,8 @@ RunSeries run_series(const bench::Store& store, const bench::StoredRun& run) {
   fill_path(table, stamps, path, truth);
   fill_worst(series, table, stamps, eval::strict_matches(truth, path));
   fill_counters(table, counters);
+  fill_claims(table, store, run);
+  series.faults = fault_bands(store.manifest(run), stamps.front(), stamps.back());
   if (!counters.empty()) {
     for (const bench::TimingSample& sample : store.timing_samples(run)) {
       table.set("ms:" + sample.module, static_cast<std::size_t>(sample.frame),

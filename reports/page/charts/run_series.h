@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/store/store.h"
+#include "reports/page/charts/fault_bands.h"
 
 namespace stillpoint::report {
 
@@ -19,12 +20,14 @@ struct SeriesColumn {
 struct RunSeries {
   double start_s = 0.0;     ///< stamp of the first frame
   std::vector<double> t_s;  ///< since the first frame
-  /// x, y, z [m] aligned to the ground truth (unaligned without one), error_m, error_deg,
-  /// frame_to_frame_error_m (see eval/metrics/frame_to_frame_error.h), features, landmarks, dynamic (fraction
-  /// of the features), status (position in `OdometryStatus`), ms:MODULE. Empty columns are omitted.
+  /// x, y, z [m] aligned to the ground truth (unaligned without one), error_m, error_deg, three_sigma_m and
+  /// three_sigma_deg (claimed, along the least certain direction), frame_to_frame_error_m (see
+  /// eval/metrics/frame_to_frame_error.h), features, landmarks, dynamic (fraction of the features), status
+  /// (position in `OdometryStatus`), ms:MODULE. Empty columns are omitted.
   std::vector<SeriesColumn> columns;
   /// Indices into `t_s` by falling frame-to-frame error: the frames that have an image, else the 20 worst.
   std::vector<std::size_t> worst;
+  std::vector<FaultBand> faults;              ///< injected ones
   std::map<std::size_t, std::string> images;  ///< attachment kind by index into `t_s`
 };
 

@@ -63,9 +63,15 @@ void fill_store(const std::filesystem::path& file, const bench::RunIdentity& ide
       "2,1200000000,0,1000000000,30,90,60,1.5,0,0,0,0,0,0,1,1,,0\n"
       "2,1200000000,0,1100000000,30,90,10,2,0,0,0,0,0,0,1,0,few_inliers,0\n"
       "2,1200000000,7,9000000000,30,90,60,1.5,0,0,0,0,0,0,1,1,,1\n";
+  outcome.attachments["claims"] =
+      "frame,t_ns,status,segment,x,y,z,qx,qy,qz,qw,sigma_m,sigma_rad\n"
+      "0,1000000000,tracking,0,0,0,0,0,0,0,1,0,0\n1,1100000000,lost,0,0,0,0,0,0,0,1,0.5,0.1\n"
+      "2,1200000000,tracking,0,1,0,0,0,0,0,1,0.01,0.002\n";
   outcome.attachments["timings"] =
       "frame,module,ns,calls\n0,feature_tracking,2000000,1\n2,feature_tracking,3000000,1\n";
-  outcome.manifest = "{\"host\": {\"cpu\": \"</script><b>\"}}";
+  outcome.manifest =
+      "{\"host\": {\"cpu\": \"</script><b>\"}, \"faults\": "
+      "[\"blank:start=0.05,duration=0.05,every=0.1\"]}";
   writer.finish(identity, outcome);
   writer.record_plan({.name = "p",
                       .title = "Plan <p>",
@@ -93,6 +99,27 @@ TEST(RunSeries, LinksPosesErrorsCountersAndTimesByFrame) {
   EXPECT_TRUE(std::isnan(column(series, "dynamic")[1]));
   EXPECT_EQ(column(series, "ms:feature_tracking")[2], 3.0);
   EXPECT_EQ(column(series, "status"), (std::vector<double>{1.0, 4.0, 1.0}));  // tracking, lost
+}
+
+TEST(RunSeries, ContainsThreeClaimedStandardDeviationsWhereTheyAreReported) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const bench::Store store(folder.path() / "s");
+  const RunSeries series = run_series(store, store.runs().front());
+  EXPECT_TRUE(std::isnan(column(series, "three_sigma_m")[0]));
+  EXPECT_NEAR(column(series, "three_sigma_m")[1], 1.5, 1e-12);
+  EXPECT_NEAR(column(series, "three_sigma_deg")[2], 0.006 * 180.0 / M_PI, 1e-12);
+}
+
+TEST(RunSeries, ContainsTheTimesOfInjectedFaults) {
+  const TemporaryFolder folder;
+  fill_store(folder.path() / "s", {.variant = "vo", .sequence = "a"});
+  const bench::Store store(folder.path() / "s");
+  const std::vector<FaultBand> faults = run_series(store, store.runs().front()).faults;
+  ASSERT_EQ(faults.size(), 2u);  // frames from 0 to 0.2 s: the third one would begin at 0.25 s
+  EXPECT_NEAR(faults[1].begin_s, 0.15, 1e-9);
+  EXPECT_NEAR(faults[1].end_s, 0.2, 1e-9);
+  EXPECT_EQ(faults[1].fault, "blank:start=0.05,duration=0.05,every=0.1");
 }
 
 TEST(ReportPage, ContainsTheLoopsOfTheRunButNotThoseToALoadedMap) {
