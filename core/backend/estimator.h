@@ -21,6 +21,7 @@
 #include "core/backend/window/window.h"
 #include "core/config/backend_config.h"
 #include "core/config/imu_config.h"
+#include "core/geometry/uncertain_pose.h"
 #include "core/imu/imu_buffer.h"
 #include "core/types/dynamic_label.h"
 #include "core/types/odometry_update.h"
@@ -97,6 +98,7 @@ class Estimator {
   }
   [[nodiscard]] bool is_full() const { return window_.newest() == backend_.window_size; }
   void relocalize(const TrackedFrame& frame);
+  [[nodiscard]] std::optional<UncertainPose> dead_reckoned_pose(Timestamp t);
   [[nodiscard]] Window calibrated_window() const;
   void push_frame(const TrackedFrame& frame);
   void reject_depth_of_another_scale();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The estimator's reaction to failures: relocalization, unreliable inertial data, restart.
+// The estimator's reaction to failures: unreliable inertial data, loss of vision, restart.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -29,10 +29,6 @@ constexpr double kBiasStepDelay_s = 0.6;
 constexpr double kMaxDifference_s = 1.0;
 constexpr double kMinAgreement_s = 0.7;
 
-/// A pose from the map this close to the inertial one confirms it.
-constexpr double kConfirmed_m = 0.02;
-constexpr double kConfirmed_rad = 0.01;
-
 /// Solver failures in succession after which the window is given up.
 constexpr int kMaxUnusableSolves = 3;
 
@@ -52,22 +48,6 @@ bool has_depth(const Landmark& landmark) {
 bool is_finite(const LinearPrior& prior) { return prior.jacobian.allFinite() && prior.residual.allFinite(); }
 
 }  // namespace
-
-/// While dead reckoning or lost: restarts the window at the pose found in the map of trusted landmarks.
-void Estimator::relocalize(const TrackedFrame& frame) {
-  const Pose predicted = extrapolate(motion_state(), imu_, frame.t).T_w_b;
-  const std::optional<Pose> found = monitor_.relocalize(frame, predicted * window_.T_b_c);
-  if (!found) return;
-  const Pose T_w_b = *found * window_.T_b_c.inverse();
-  const bool confirmed = !monitor_.awaits_map() && (T_w_b.p - predicted.p).norm() < kConfirmed_m &&
-                         T_w_b.q.angularDistance(predicted.q) < kConfirmed_rad;
-  if (confirmed) return;
-  restart(window_.gravity_w);
-  newest_.T_w_b = T_w_b;
-  newest_.t = frame.t;
-  previous_ = newest_;
-  monitor_.relocated();
-}
 
 /// For a limited time: if the contradiction persists, the landmarks are wrong.
 void Estimator::reject_depth_of_another_scale() {

@@ -9,37 +9,30 @@ namespace {
 using enum OdometryStatus;
 
 /// Limits of the distance between a pose found by the map and the predicted one: constant and per second.
-struct PoseGate {
-  double base_m;
-  double rate_m;
-  double base_rad;
-  double rate_rad;
-};
-constexpr PoseGate kInertialGate{.base_m = 0.1, .rate_m = 0.3, .base_rad = 0.05, .rate_rad = 0.05};
-constexpr PoseGate kVisualGate{.base_m = 0.5, .rate_m = 2.0, .base_rad = 0.5, .rate_rad = 1.5};
+constexpr double kGate_m = 0.5;
+constexpr double kGateRate_m = 2.0;
+constexpr double kGate_rad = 0.5;
+constexpr double kGateRate_rad = 1.5;
 
 /// Features in a frame from which a new segment can begin.
 constexpr int kVisibleFeatures = 20;
 
-bool agrees(const Pose& predicted, const Pose& found, const PoseGate& gate, double seconds) {
-  return (predicted.p - found.p).norm() <= gate.base_m + gate.rate_m * seconds &&
-         predicted.q.angularDistance(found.q) <= gate.base_rad + gate.rate_rad * seconds;
+bool is_plausible(const Pose& predicted, const Pose& found, double seconds) {
+  return (predicted.p - found.p).norm() <= kGate_m + kGateRate_m * seconds &&
+         predicted.q.angularDistance(found.q) <= kGate_rad + kGateRate_rad * seconds;
 }
 
 }  // namespace
 
-std::optional<Pose> TrackingMonitor::relocalize(const TrackedFrame& frame, const Pose& T_w_c) {
+std::optional<UncertainPose> TrackingMonitor::relocalize(const TrackedFrame& frame, const Pose& T_w_c) {
   relocated_ = false;
-  const bool dead_reckoning = status_ == kDeadReckoning;
-  if (map_.empty() || !(dead_reckoning || awaits_map_)) return std::nullopt;
+  if (map_.empty() || !(status_ == kDeadReckoning || awaits_map_)) return std::nullopt;
   const CameraPoseOptions options{.inlier_threshold = options_.inlier_threshold,
                                   .seed = options_.seed + static_cast<std::uint32_t>(frame.id)};
-  const std::optional<CameraPose> found = map_.locate(frame, T_w_c, options);
-  if (!found) return std::nullopt;
-  const double seconds = seconds_between(located_at_, frame.t);
-  const PoseGate& gate = dead_reckoning ? kInertialGate : kVisualGate;
-  if (!agrees(T_w_c, found->T_w_c, gate, seconds)) return std::nullopt;
-  return found->T_w_c;
+  std::optional<UncertainPose> found = map_.locate(frame, T_w_c, options, options_.bearing_sigma);
+  if (!found || !is_plausible(T_w_c, found->T_w_f, seconds_between(located_at_, frame.t)))
+    return std::nullopt;
+  return found;
 }
 
 /// Located by vision, in the world of the segment.

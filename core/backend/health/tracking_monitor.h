@@ -28,6 +28,7 @@ struct FrameEvidence {
 struct MonitorOptions {
   bool uses_imu = true;
   double inlier_threshold = 0.01;  ///< of relocalization [normalized image plane]
+  double bearing_sigma = 0.003;    ///< standard deviation of a bearing [normalized image plane]
   double max_dead_reckoning_s = 6.0;
   double max_dead_reckoning_sigma_m = 0.5;  ///< since vision last located the camera
   double max_relocalization_s = 1.0;
@@ -39,10 +40,11 @@ class TrackingMonitor {
  public:
   explicit TrackingMonitor(const MonitorOptions& options) : options_(options) {}
 
-  /// Camera pose by the map of trusted landmarks, while dead reckoning or lost. The pose must be plausible:
-  /// the distance to the prediction is limited by the time since vision last located the camera.
+  /// Camera pose by the map of trusted landmarks, while dead reckoning or lost. The distance to the
+  /// prediction is limited by the time since vision last located the camera and the speed of a camera in the
+  /// hand; with a covariance of the prediction, the caller decides by that.
   /// @param T_w_c predicted
-  [[nodiscard]] std::optional<Pose> relocalize(const TrackedFrame& frame, const Pose& T_w_c);
+  [[nodiscard]] std::optional<UncertainPose> relocalize(const TrackedFrame& frame, const Pose& T_w_c);
 
   /// The window was restarted at a pose found by `relocalize`.
   void relocated() { relocated_ = true; }

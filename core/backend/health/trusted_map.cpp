@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/backend/health/vision_assessment.h"
+
 namespace stillpoint {
 namespace {
 
@@ -38,8 +40,8 @@ void TrustedMap::clear() {
   for (Version* version : {&newest_, &candidate_, &earlier_}) version->points.clear();
 }
 
-std::optional<CameraPose> TrustedMap::locate(const TrackedFrame& frame, const Pose& prediction,
-                                             CameraPoseOptions options) {
+std::optional<UncertainPose> TrustedMap::locate(const TrackedFrame& frame, const Pose& prediction,
+                                                CameraPoseOptions options, double bearing_sigma) {
   observations_.clear();
   auto point = newest_.points.begin();
   for (const TrackedFeature& feature : frame.features) {
@@ -50,7 +52,9 @@ std::optional<CameraPose> TrustedMap::locate(const TrackedFrame& frame, const Po
   const auto matched = static_cast<int>(observations_.size());
   if (matched < kMinFeatures) return std::nullopt;
   options.min_inliers = std::max(options.min_inliers, static_cast<int>(kMinInlierRatio * matched));
-  return estimate_camera_pose(observations_, prediction, options);
+  const std::optional<CameraPose> found = estimate_camera_pose(observations_, prediction, options);
+  if (!found) return std::nullopt;
+  return with_covariance(observations_, found->T_w_c, bearing_sigma, options.inlier_threshold);
 }
 
 }  // namespace stillpoint

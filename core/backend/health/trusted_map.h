@@ -8,6 +8,7 @@
 
 #include "core/backend/start/camera_pose.h"
 #include "core/backend/window/window.h"
+#include "core/geometry/uncertain_pose.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {
@@ -26,11 +27,12 @@ class TrustedMap {
   void clear();
   [[nodiscard]] bool empty() const { return newest_.points.empty(); }
 
-  /// Camera pose by the features of a frame that are in the map (PnP).
-  /// @param prediction predicted T_w_c
+  /// Camera pose by the features of a frame that are in the map (PnP), with its covariance.
+  /// @param prediction    predicted T_w_c
+  /// @param bearing_sigma standard deviation of a bearing
   /// @return nothing for fewer than twelve features of the map, or if fewer than half of them agree
-  [[nodiscard]] std::optional<CameraPose> locate(const TrackedFrame& frame, const Pose& prediction,
-                                                 CameraPoseOptions options);
+  [[nodiscard]] std::optional<UncertainPose> locate(const TrackedFrame& frame, const Pose& prediction,
+                                                    CameraPoseOptions options, double bearing_sigma);
 
  private:
   struct Point {

@@ -2,9 +2,11 @@
 /// How well vision determines the newest camera pose.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/backend/start/camera_pose.h"
+#include "core/geometry/uncertain_pose.h"
 
 namespace stillpoint {
 
@@ -25,6 +27,17 @@ struct VisionAssessment {
   [[nodiscard]] bool has_few_features() const;
   [[nodiscard]] bool has_weak_geometry() const;
 };
+
+/// Camera pose with its covariance, in the frame of the camera. The standard deviation of the bearings
+/// follows from their residuals, because the positions of the points have errors, too: for n inliers
+///
+///   s^2 = max(bearing_sigma^2, sum_k |r_k|^2 / (2 n - 6)).
+/// @param bearing_sigma claimed standard deviation of a bearing
+/// @param threshold     of inliers [normalized image plane]
+/// @return nothing if fewer than four inliers remain, or if they leave a direction undetermined
+[[nodiscard]] std::optional<UncertainPose> with_covariance(const std::vector<PointObservation>& points,
+                                                           const Pose& T_w_c, double bearing_sigma,
+                                                           double threshold);
 
 /// @param bearing_sigma standard deviation s of a bearing; inliers are within five times of it
 [[nodiscard]] VisionAssessment assess_vision(const std::vector<PointObservation>& points, const Pose& T_w_c,

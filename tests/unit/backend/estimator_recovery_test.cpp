@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the estimator keeps and what it gives up after failures, on simulated motion: biases and prior.
+// What the estimator keeps and what it gives up after failures, on simulated motion: the map of trusted
+// landmarks, biases, prior.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -10,6 +11,54 @@ namespace stillpoint {
 namespace {
 
 using enum OdometryStatus;
+
+/// No features in [begin, end) s; then the same landmarks, moved by `shift_w`.
+std::function<void(TrackedFrame&)> blank_while_landmarks_move(double begin, double end,
+                                                              const Eigen::Vector3d& shift_w) {
+  return [=](TrackedFrame& frame) {
+    const double t = to_seconds(frame.t);
+    if (t >= begin && t < end) frame.features.clear();
+    if (t < end) return;
+    const Pose T_w_c = SimulatedMotion::state(t).T_w_b * SimulatedMotion::rig().T_b_c;
+    for (TrackedFeature& feature : frame.features) {
+      const Eigen::Vector3d p_c =
+          feature.depth * Eigen::Vector3d(feature.bearing.homogeneous()) + T_w_c.q.conjugate() * shift_w;
+      feature.bearing = p_c.hnormalized();
+      feature.depth = p_c.z();
+    }
+  };
+}
+
+/// After 1 s, dead reckoning errs by at most 0.032 m in ten runs (scripts/fault_scenarios.sh).
+TEST(EstimatorRecovery, AMapThatMovedDoesNotReplaceDeadReckoning) {
+  FaultyScenario scenario;
+  scenario.change_frame = blank_while_landmarks_move(kBegin_s, kBegin_s + 1.0, {0.0, 0.25, 0.0});
+  const FaultyRun run = run_with_faults(scenario);
+  EXPECT_EQ(run.count(0.0, kEnd_s, kRelocated), 0);
+  EXPECT_EQ(run.count_located(5.1, kEnd_s), run.count(5.1, kEnd_s, is_finite));
+  EXPECT_LT(run.worst_error_m(0.0, kEnd_s), 0.06);
+}
+
+/// Few recognized features with large errors give a worse pose than 0.3 s of dead reckoning.
+TEST(EstimatorRecovery, AnInaccurateMapPoseDoesNotReplaceDeadReckoning) {
+  FaultyScenario scenario;
+  const double end = kBegin_s + 0.3;
+  scenario.change_frame = [=](TrackedFrame& frame) {
+    const double t = to_seconds(frame.t);
+    if (t >= kBegin_s && t < end) frame.features.clear();
+    if (t < end) return;
+    Random random(static_cast<std::uint32_t>(frame.id));
+    int kept = 0;
+    for (TrackedFeature& feature : frame.features) {
+      const bool recognized = t < end + 0.04 && kept < 16;
+      if (recognized) feature.bearing += 0.005 * Eigen::Vector2d(random.normal(), random.normal());
+      if (recognized) ++kept;
+      if (!recognized) feature.id += 100000;
+    }
+  };
+  const FaultyRun run = run_with_faults(scenario);
+  EXPECT_LT(run.worst_error_m(0.0, kEnd_s), 0.02);
+}
 
 TEST(EstimatorRecovery, ADivergedBiasIsForgotten) {
   FaultyScenario scenario;
