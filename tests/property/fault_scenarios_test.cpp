@@ -3,6 +3,7 @@
 // environment (2 by default); scripts/fault_scenarios.sh runs ten and prints the values.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -10,15 +11,14 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/covariance.h"
+#include "core/imu/propagation.h"
 #include "tests/support/simulated/faulty_run.h"
 
 namespace stillpoint {
 namespace {
 
 using enum OdometryStatus;
-
-constexpr double kBegin_s = 4.0;  ///< of the faults
-constexpr double kEnd_s = 100.0;  ///< of the runs
 
 int seeds() {
   const char* text = std::getenv("STILLPOINT_FAULT_SEEDS");
@@ -83,6 +83,42 @@ TEST(FaultScenarios, TheErrorAtTheReturnOfTheViewIsThatOfDeadReckoning) {
       return error_at_return_m(run, end);
     });
   }
+}
+
+/// Error after dead reckoning from the true state with the true biases: that of the noise of the samples.
+double error_of_noise_m(const SimulatedMotion& motion, double begin, double end) {
+  NavState start = SimulatedMotion::state(begin);
+  start.gyro_bias = motion.gyro_bias;
+  start.accel_bias = motion.accel_bias;
+  ImuBuffer imu;
+  for (const ImuSample& sample : motion.imu(end + 0.5)) imu.add(sample);
+  const NavState reached =
+      propagate(start, imu.samples_between(from_seconds(begin), from_seconds(end)), {0.0, 0.0, -9.81});
+  return (reached.T_w_b.p - SimulatedMotion::state(end).T_w_b.p).norm();
+}
+
+/// The last frame before the view returns: vision then corrects the motion of the previous frames, too.
+TEST(FaultScenarios, TheCovarianceCoversTheErrorOfDeadReckoning) {
+  FaultyScenario scenario;
+  const double end = kBegin_s + 5.0;
+  scenario.change_frame = blank(kBegin_s, end, false);
+  SimulatedMotion motion = scenario.motion;
+  std::string noise;
+  std::string sigmas;
+  for_each_seed("error before the return after 5 s of blank images [m]", scenario, [&](const FaultyRun& run) {
+    const auto returned = std::ranges::find_if(run.frames, [&](const FaultyFrame& f) { return f.t >= end; });
+    const FaultyFrame& last = *std::prev(returned);
+    EXPECT_EQ(last.update.status, kDeadReckoning);
+    EXPECT_TRUE(last.update.covariance);
+    const double sigma_m = largest_sigma(last.update.covariance->position());
+    EXPECT_LE(last.error_m, 3.0 * sigma_m);
+    ++motion.seed;  // from 1, as for_each_seed
+    sigmas += fmt::format(" {:.3f}", sigma_m);
+    noise += fmt::format(" {:.3f}", error_of_noise_m(motion, kBegin_s, last.t));
+    return last.error_m;
+  });
+  std::cout << "claimed standard deviation [m]:" << sigmas
+            << "\nerror by the noise of the samples [m]:" << noise << '\n';
 }
 
 TEST(FaultScenarios, AGapOfTheImuLosesNoPose) {
