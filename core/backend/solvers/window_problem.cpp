@@ -8,7 +8,7 @@ namespace stillpoint {
 namespace {
 
 /// Of a track that continues, see marginalized_fraction.
-constexpr double kMarginalizedFraction = 0.5;
+constexpr double kMarginalizedFraction = 0.2;
 
 /// Published prior: below this speed the image motion is too small to observe time offset and extrinsics.
 constexpr double kMinSpeedForCalibration = 0.2;  // [m/s]

@@ -116,6 +116,11 @@ struct VariableGlobals {
 /// p = p^a p^(1-a), whose exponents sum up to at most one (as in covariance intersection, Julier and Uhlmann
 /// 1997). Only that both factors belong to the same point is lost. The whole information of a track that
 /// ended enters the prior.
+///
+/// In a track that is longer than the window, an observation that n slides have reduced has the weight
+/// (1 - a)^n. The point is determined by about 1 / a frames: two with a = 1/2, so that the estimate drifts as
+/// if the window were that short. What remains when the frame of an observation leaves is lost, which for a
+/// window of ten frames is (1 - a)^10, a tenth with a = 1/5.
 [[nodiscard]] double marginalized_fraction(const Landmark& landmark, const Window& window,
                                            const BackendConfig& config);
 
