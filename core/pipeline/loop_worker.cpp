@@ -88,8 +88,8 @@ void LoopWorker::correct(OptimizationStage& optimization, OdometryUpdate& update
     T_m_w_ = results_.front().T_m_w;
     unlocated_ = has_map_ && !results_.front().relocalized;
     optimization.recycle(std::move(results_.front().used));
-    results_.pop_front();
-    due_.pop_front();
+    results_.erase(results_.begin());
+    due_.erase(due_.begin());
   }
   update.T_m_w = T_m_w_;
   ++frame_;

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "core/base/bounded_channel.h"
 #include "core/config/odometry_config.h"
@@ -69,8 +69,8 @@ class LoopWorker {
   std::int64_t lag_frames_;
   LoopClosure closure_;  ///< of the thread, while it runs
   std::int64_t frame_ = 0;
-  std::deque<std::int64_t> due_;  ///< frames from which on the corrections of submitted jobs are used
-  std::deque<Result> results_;    ///< of the oldest of them
+  std::vector<std::int64_t> due_;  ///< frames from which on the corrections of submitted jobs are used
+  std::vector<Result> results_;    ///< of the oldest of them
   std::size_t outstanding_ = 0;   ///< jobs in the thread and its channels
   int dropped_ = 0;
   bool has_map_ = false;
