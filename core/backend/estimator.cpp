@@ -171,6 +171,7 @@ void Estimator::begin_update(std::int64_t frame_id) {
   ModuleTimings timings = std::move(update_.timings);
   timings.clear();
   update_ = {.frame_id = frame_id, .timings = std::move(timings)};
+  oldest_motion_.reset();
 }
 
 void Estimator::add(const TrackedFrame& frame) {
@@ -208,16 +209,22 @@ void Estimator::solve() {
   unusable_solves_ = report.usable ? 0 : unusable_solves_ + 1;
   update_.at_bound = limit_calibration(rig_, backend_, window_);
   if (!window_.inertial) restore_gauge(oldest, backend_, window_);
-  if (backend_.covariance && report.usable) {
-    update_.covariance =
-        solver_->newest_covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
-  }
+  if (backend_.covariance && report.usable) compute_covariance();
   if (backend_.reprojection_error_px > 0.0) {
     pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
   }
   update_.counters.window_landmarks = report.landmarks;
   update_.counters.depth_landmarks = report.depth_landmarks;
   update_.counters.solver_iterations = report.iterations;
+}
+
+void Estimator::compute_covariance() {
+  const bool oldest_leaves = keyframe_ && is_full();
+  const std::optional<WindowCovariance> covariance =
+      solver_->covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), oldest_leaves);
+  if (!covariance) return;
+  update_.covariance = covariance->newest;
+  oldest_motion_ = covariance->oldest_motion;
 }
 
 bool Estimator::refine() {

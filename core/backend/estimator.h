@@ -86,6 +86,10 @@ class Estimator {
   [[nodiscard]] const ImuHealth& imu_health() const { return imu_.health(); }
   [[nodiscard]] const Window& window() const { return window_; }
 
+  /// After `refine`, if the oldest frame leaves the window in `finish`: its motion to the next frame, with
+  /// the covariance of the last solve; absent unless `backend.covariance` is on.
+  [[nodiscard]] const std::optional<UncertainPose>& oldest_motion() const { return oldest_motion_; }
+
  private:
   [[nodiscard]] bool uses_imu() const { return imu_config_.enabled; }
   [[nodiscard]] bool has_metric_scale() const {
@@ -109,6 +113,7 @@ class Estimator {
   void check_biases();
   void enlarge_bias_walk(const MeasuredBiases& measured);
   void solve();
+  void compute_covariance();
   void discard_newest();
   [[nodiscard]] StatusReason failure() const;
   [[nodiscard]] bool update_status();
@@ -146,6 +151,7 @@ class Estimator {
   std::optional<Timestamp> biases_agree_since_;   ///< same
   DepthScale depth_scale_;
   std::optional<Timestamp> depth_rejected_since_;
+  std::optional<UncertainPose> oldest_motion_;
   FrameEvidence evidence_;   ///< of the last frame that was added
   int unusable_solves_ = 0;  ///< in succession
   OdometryUpdate update_;

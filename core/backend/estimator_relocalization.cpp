@@ -15,8 +15,8 @@ constexpr double kMaxPoseDistance = 16.81;
 /// it is larger than the error by which the map and this pose differ.
 std::optional<UncertainPose> Estimator::dead_reckoned_pose(Timestamp t) {
   if (window_.frames.empty() || !window_.inertial) return std::nullopt;
-  const std::optional<StateCovariance> claim =
-      solver_->newest_covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
+  const std::optional<WindowCovariance> claim =
+      solver_->covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), false);
   const double offset_s = window_.time_offset_s;
   const std::vector<ImuSample>& samples = imu_.samples_up_to(after(newest_.t, offset_s), after(t, offset_s));
   if (!claim || samples.size() < 2) return std::nullopt;
@@ -27,7 +27,8 @@ std::optional<UncertainPose> Estimator::dead_reckoned_pose(Timestamp t) {
   Q.block<3, 3>(ImuErrorIndex::kPosition, ImuErrorIndex::kPosition) = newest_.T_w_b.R();
   Q.block<3, 3>(ImuErrorIndex::kVelocity, ImuErrorIndex::kVelocity) = newest_.T_w_b.R();
   const Matrix15 J = Q * motion.jacobian() * Q.transpose();
-  const Matrix15 covariance = J * claim->state * J.transpose() + Q * motion.covariance() * Q.transpose();
+  const Matrix15 covariance =
+      J * claim->newest.state * J.transpose() + Q * motion.covariance() * Q.transpose();
   return UncertainPose{motion.predict(newest_, window_.gravity_w).T_w_b, covariance.topLeftCorner<6, 6>()};
 }
 

@@ -8,7 +8,6 @@
 namespace stillpoint {
 namespace {
 
-using Matrix6 = UncertainPose::Matrix6;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 Vector6 pose_difference(const Pose& a, const Pose& b) {
@@ -20,10 +19,38 @@ Vector6 pose_difference(const Pose& a, const Pose& b) {
 }  // namespace
 
 UncertainPose in_frame(const UncertainPose& pose, const Pose& T_f_g) {
-  Matrix6 J = Matrix6::Identity();
-  J.topRightCorner<3, 3>() = -pose.T_w_f.R() * skew(T_f_g.p);
-  J.bottomRightCorner<3, 3>() = T_f_g.R().transpose();
-  return {pose.T_w_f * T_f_g, J * pose.covariance * J.transpose()};
+  return compose(pose, {.T_w_f = T_f_g});
+}
+
+UncertainPose compose(const UncertainPose& a, const UncertainPose& b) {
+  Matrix6 J_a = Matrix6::Identity();
+  J_a.topRightCorner<3, 3>() = -a.T_w_f.R() * skew(b.T_w_f.p);
+  J_a.bottomRightCorner<3, 3>() = b.T_w_f.R().transpose();
+  Matrix6 J_b = Matrix6::Identity();
+  J_b.topLeftCorner<3, 3>() = a.T_w_f.R();
+  return {.T_w_f = a.T_w_f * b.T_w_f,
+          .covariance = J_a * a.covariance * J_a.transpose() + J_b * b.covariance * J_b.transpose()};
+}
+
+UncertainPose inverse(const UncertainPose& a) {
+  const Eigen::Matrix3d R_transposed = a.T_w_f.R().transpose();
+  Matrix6 J = Matrix6::Zero();
+  J.topLeftCorner<3, 3>() = -R_transposed;
+  J.topRightCorner<3, 3>() = -skew(R_transposed * a.T_w_f.p);
+  J.bottomRightCorner<3, 3>() = -a.T_w_f.R();
+  return {.T_w_f = a.T_w_f.inverse(), .covariance = J * a.covariance * J.transpose()};
+}
+
+UncertainPose relative_pose(const Pose& T_w_a, const Pose& T_w_b, const Matrix12& joint) {
+  const Pose T_a_b = T_w_a.inverse() * T_w_b;
+  const Eigen::Matrix3d R_a_w = T_w_a.R().transpose();
+  Eigen::Matrix<double, 6, 12> J = Eigen::Matrix<double, 6, 12>::Zero();
+  J.block<3, 3>(0, 0) = -R_a_w;
+  J.block<3, 3>(0, 3) = skew(T_a_b.p);
+  J.block<3, 3>(0, 6) = R_a_w;
+  J.block<3, 3>(3, 3) = -T_a_b.R().transpose();
+  J.block<3, 3>(3, 9).setIdentity();
+  return {.T_w_f = T_a_b, .covariance = J * joint * J.transpose()};
 }
 
 double squared_distance(const Pose& a, const Pose& b, const Matrix6& covariance) {

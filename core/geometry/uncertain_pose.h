@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Poses with the covariance of their errors: change of the frame, distance, and fusion.
+/// Poses with the covariance of their errors, to first order (Barfoot and Furgale 2014, Sec. III): change of
+/// the frame, composition, distance, and fusion.
 #pragma once
 
 #include "core/geometry/pose.h"
 
 namespace stillpoint {
 
-/// The true pose is (p + dp, q Exp(dtheta)): dp in the world frame, dtheta in the frame f.
+/// The true pose is (p + dp, q Exp(dtheta)): dp in the frame w, dtheta in the frame f. The frame w may be
+/// another body, of a relative pose.
 struct UncertainPose {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
@@ -14,10 +16,28 @@ struct UncertainPose {
   Matrix6 covariance = Matrix6::Zero();  ///< of (dp, dtheta)
 };
 
+using Matrix6 = UncertainPose::Matrix6;
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+
 /// Pose of another frame on the same rigid body: T_w_g = T_w_f T_f_g. With the rotations of these,
 ///
 ///   dp_g = dp_f - R_w_f [p_f_g]x dtheta_f,    dtheta_g = R_g_f dtheta_f.
 [[nodiscard]] UncertainPose in_frame(const UncertainPose& pose, const Pose& T_f_g);
+
+/// Composition of independent poses:
+///
+///   dp = dp_a - R_a [p_b]x dtheta_a + R_a dp_b,   dtheta = R_b^T dtheta_a + dtheta_b
+[[nodiscard]] UncertainPose compose(const UncertainPose& a, const UncertainPose& b);
+
+/// The inverse: dp' = -R^T dp - [R^T p]x dtheta, dtheta' = -R dtheta.
+[[nodiscard]] UncertainPose inverse(const UncertainPose& a);
+
+/// T_a_b of two poses with common errors. With p_a_b = R_a^T (p_b - p_a):
+///
+///   dp = R_a^T (dp_b - dp_a) + [p_a_b]x dtheta_a,   dtheta = dtheta_b - R_b^T R_a dtheta_a
+///
+/// @param joint covariance of (dp_a, dtheta_a, dp_b, dtheta_b)
+[[nodiscard]] UncertainPose relative_pose(const Pose& T_w_a, const Pose& T_w_b, const Matrix12& joint);
 
 /// Squared Mahalanobis distance d^T P^-1 d of two poses, with d = (p_b - p_a, Log(q_a^-1 q_b)).
 /// @param covariance P of d, positive definite

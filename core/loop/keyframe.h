@@ -11,14 +11,12 @@
 #include <opencv2/core/mat.hpp>
 
 #include "core/base/timestamp.h"
-#include "core/geometry/pose.h"
+#include "core/geometry/uncertain_pose.h"
 #include "core/loop/descriptor.h"
 #include "core/types/detection.h"
 #include "core/types/keyframe_map.h"
 
 namespace stillpoint {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Static feature of the odometry.
 struct StaticFeature {
@@ -39,6 +37,8 @@ struct DepartedKeyframe {
   Timestamp t;
   Pose T_w_b;
   Pose T_b_c;
+  /// Of the motion from the keyframe before, T_bi_bj: (p + rho, q * Exp(theta)); absent if it is not known.
+  std::optional<Matrix6> motion_covariance;
   std::optional<Eigen::Vector3d> gravity_b;  ///< unit vector; absent without an IMU
   cv::Mat gray;                              ///< CV_8UC1; shares pixels with the frame
   cv::Mat depth;                             ///< CV_16UC1, or empty; shares pixels with the frame

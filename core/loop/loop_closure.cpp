@@ -66,7 +66,7 @@ Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
   if (map_size_ > 0 && keyframes_.size() == map_size_ + 1) {
     drift_.add_unrelated(keyframe.t, keyframe.T_w_b);
   } else {
-    drift_.add(keyframe.t, keyframe.T_w_b);
+    drift_.add(keyframe.t, keyframe.T_w_b, keyframe.motion_covariance);
   }
   constrain_by_start();
   find_loops();

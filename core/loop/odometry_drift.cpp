@@ -12,50 +12,59 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMinStepSigma_m = 0.002;
 constexpr double kMinStepSigma_rad = 0.02 * kDegree;
+constexpr double kWindowFactor = 3.0;  // ratio of the errors to their sigma, see reports/measured/loops.md
 constexpr double kUnknown_m = 1000.0;
 constexpr double kUnknown_rad = 10.0;
 
 double squared(double value) { return value * value; }
 
+/// Isotropic covariance of position and rotation.
+Matrix6 diagonal(double position, double rotation) {
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal() << Eigen::Vector3d::Constant(position), Eigen::Vector3d::Constant(rotation);
+  return covariance;
+}
+
 }  // namespace
 
-void OdometryDrift::add(Timestamp t, const Pose& T_w_b) {
-  times_.push_back(t);
-  T_w_b_.push_back(T_w_b);
-  if (sums_.empty()) {
-    sums_.emplace_back(Matrix6::Zero());
-    return;
-  }
-  const Pose& before = T_w_b_[T_w_b_.size() - 2];
-  Matrix6 J = Matrix6::Zero();
-  J.topLeftCorner<3, 3>() = before.R();
-  J.topRightCorner<3, 3>() = skew(T_w_b.p) * T_w_b.R();
-  J.bottomRightCorner<3, 3>() = T_w_b.R();
-  sums_.emplace_back(sums_.back() + J * step_covariance(T_w_b_.size() - 1) * J.transpose());
+void OdometryDrift::add(Timestamp t, const Pose& T_w_b, const std::optional<Matrix6>& motion_covariance) {
+  append(t, T_w_b, steps_.empty() ? Matrix6(Matrix6::Zero()) : step(t, T_w_b, motion_covariance));
 }
 
 void OdometryDrift::add_unrelated(Timestamp t, const Pose& T_w_b) {
-  unrelated_ = T_w_b_.size();
-  add(t, T_w_b);
+  append(t, T_w_b,
+         steps_.empty() ? Matrix6(Matrix6::Zero()) : diagonal(squared(kUnknown_m), squared(kUnknown_rad)));
 }
 
-Matrix6 OdometryDrift::step_covariance(std::size_t k) const {
-  if (k == unrelated_) {
-    Matrix6 unknown = Matrix6::Zero();
-    unknown.diagonal() << Eigen::Vector3d::Constant(squared(kUnknown_m)),
-        Eigen::Vector3d::Constant(squared(kUnknown_rad));
-    return unknown;
+void OdometryDrift::append(Timestamp t, const Pose& T_w_b, const Matrix6& step) {
+  Matrix6 sum = step;
+  if (!sums_.empty()) {
+    Matrix6 J = Matrix6::Zero();
+    J.topLeftCorner<3, 3>() = T_w_b_.back().R();
+    J.topRightCorner<3, 3>() = skew(T_w_b.p) * T_w_b.R();
+    J.bottomRightCorner<3, 3>() = T_w_b.R();
+    sum = sums_.back() + J * step * J.transpose();
   }
-  const double distance_m = (T_w_b_[k].p - T_w_b_[k - 1].p).norm();
+  times_.push_back(t);
+  T_w_b_.push_back(T_w_b);
+  steps_.push_back(step);
+  sums_.push_back(sum);
+}
+
+Matrix6 OdometryDrift::step(Timestamp t, const Pose& T_w_b,
+                            const std::optional<Matrix6>& motion_covariance) const {
+  if (motion_covariance) {
+    return squared(kWindowFactor) * *motion_covariance +
+           diagonal(squared(kMinStepSigma_m), squared(kMinStepSigma_rad));
+  }
+  const double distance_m = (T_w_b.p - T_w_b_.back().p).norm();
   // A map may contain several runs, each with a clock of its own.
-  const double elapsed_s = std::max(0.0, seconds_between(times_[k - 1], times_[k]));
+  const double elapsed_s = std::max(0.0, seconds_between(times_.back(), t));
   const double position = squared(config_.drift_m_per_sqrt_m) * distance_m + squared(kMinStepSigma_m);
   const double rotation = squared(kDegree * config_.drift_deg_per_sqrt_m) * distance_m +
                           squared(kDegree * config_.drift_deg_per_sqrt_s) * elapsed_s +
                           squared(kMinStepSigma_rad);
-  Matrix6 covariance = Matrix6::Zero();
-  covariance.diagonal() << position, position, position, rotation, rotation, rotation;
-  return covariance;
+  return diagonal(position, rotation);
 }
 
 Matrix6 OdometryDrift::covariance(std::size_t i, std::size_t j) const {

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Uncertainty of the motion between keyframes by the odometry: a random walk over distance and time.
+/// Uncertainty of the motion between keyframes by the odometry. The motion between two successive keyframes
+/// has the covariance
 ///
-/// The motion between two successive keyframes, over the distance d [m] and the time dt [s], has the
-/// covariance
+///   Q = f^2 Q_window + diag(e_p^2, e_r^2)      (p + rho, q * Exp(theta))
 ///
-///   Q = diag(s_p^2 d + e_p^2, s_r^2 d + s_t^2 dt + e_r^2)      (p + rho, q * Exp(theta))
+/// with e_p = 2 mm and e_r = 0.02 degrees, where Q_window is composed of the covariances of the motion from
+/// the oldest frame of the window to the next one, see `WindowSolver::covariance`. f = 3: the window knows
+/// nothing about errors that its frames have in common (calibration, depth, moving objects), and the
+/// published prior counts observations repeatedly. Where Q_window is not known (without `backend.covariance`,
+/// in a loaded map, at the end of a run), Q is that of a random walk over the distance d [m] and the time dt
+/// [s]:
+///
+///   Q = diag(s_p^2 d + e_p^2, s_r^2 d + s_t^2 dt + e_r^2)
 ///
 /// with s_p = `loop.drift_m_per_sqrt_m`, s_r = `loop.drift_deg_per_sqrt_m`, s_t =
-/// `loop.drift_deg_per_sqrt_s`, e_p = 2 mm, e_r = 0.02 degrees. An error (rho, theta) of the motion from k to
-/// k+1 moves all later poses by the displacement v + phi x p of the world with
+/// `loop.drift_deg_per_sqrt_s`. An error (rho, theta) of the motion from k to k+1 moves all later poses by
+/// the displacement v + phi x p of the world with
 ///
 ///   phi = R_w,k+1 theta,   v = R_w,k rho - phi x p_k+1
 ///
@@ -16,6 +23,7 @@
 /// difference of two sums (Barfoot and Furgale 2014, Sec. III: uncertainty of compound poses, first order).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/config/loop_config.h"
@@ -28,24 +36,29 @@ class OdometryDrift {
   explicit OdometryDrift(const LoopConfig& config) : config_(config) {}
 
   /// Appends the next keyframe: its pose by the odometry.
-  void add(Timestamp t, const Pose& T_w_b);
+  /// @param motion_covariance Q_window of the motion from the keyframe before; absent if it is not known
+  void add(Timestamp t, const Pose& T_w_b, const std::optional<Matrix6>& motion_covariance = {});
 
-  /// Appends the first keyframe of another run, whose pose relative to the previous ones is unknown: Q has
-  /// standard deviations of 1 km and 10 rad.
+  /// Appends the first keyframe of another run or segment, whose pose relative to the previous ones is
+  /// unknown: Q has standard deviations of 1 km and 10 rad.
   void add_unrelated(Timestamp t, const Pose& T_w_b);
 
   /// Covariance Q of the motion from keyframe k - 1 to k, k > 0.
-  [[nodiscard]] Matrix6 step_covariance(std::size_t k) const;
+  [[nodiscard]] const Matrix6& step_covariance(std::size_t k) const { return steps_[k]; }
 
   /// Covariance of T_bi_bj, i < j: (p + rho, q * Exp(theta)).
   [[nodiscard]] Matrix6 covariance(std::size_t i, std::size_t j) const;
 
  private:
+  [[nodiscard]] Matrix6 step(Timestamp t, const Pose& T_w_b,
+                             const std::optional<Matrix6>& motion_covariance) const;
+  void append(Timestamp t, const Pose& T_w_b, const Matrix6& step);
+
   LoopConfig config_;
   std::vector<Timestamp> times_;
   std::vector<Pose> T_w_b_;
-  std::vector<Matrix6> sums_;  ///< of (v, phi), from keyframe 0
-  std::size_t unrelated_ = 0;  ///< keyframe of `add_unrelated`; 0: none
+  std::vector<Matrix6> steps_;  ///< Q of the motion to each keyframe; zero for keyframe 0
+  std::vector<Matrix6> sums_;   ///< of (v, phi), from keyframe 0
 };
 
 }  // namespace stillpoint

@@ -2,11 +2,9 @@
 /// Relative pose of a landmark's host camera and another camera, with its derivatives by the states.
 #pragma once
 
-#include "core/geometry/pose.h"
+#include "core/geometry/uncertain_pose.h"
 
 namespace stillpoint {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// T_cj_ci = T_c_b T_bj_w T_w_bi T_b_c. All observations of the same two frames share it, so their residuals
 /// are linearized with respect to its left perturbation (nu, omega), dp = nu + omega x p for a point p in

@@ -15,9 +15,8 @@ class CeresSolver final : public WindowSolver {
                                                double focal_px, LinearPrior recycled) override;
 
   /// By the inverse of the dense H of all states.
-  [[nodiscard]] std::optional<StateCovariance> newest_covariance(const Window& window,
-                                                                 const BackendConfig& config,
-                                                                 double focal_px) override;
+  [[nodiscard]] std::optional<WindowCovariance> covariance(const Window& window, const BackendConfig& config,
+                                                           double focal_px, bool oldest_motion) override;
 
  private:
   [[nodiscard]] SolveReport minimize(Window& window, const BackendConfig& config, double focal_px) override;

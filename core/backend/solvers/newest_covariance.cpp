@@ -49,4 +49,8 @@ StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestM
   return result;
 }
 
+UncertainPose oldest_motion_of(const Window& window, const NewestMatrix& covariance) {
+  return relative_pose(window.frames[0].state.T_w_b, window.frames[1].state.T_w_b, Matrix12(covariance));
+}
+
 }  // namespace stillpoint

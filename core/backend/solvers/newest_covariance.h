@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The blocks whose covariance is reported with each frame, and their place in StateCovariance.
+/// The blocks whose covariance is reported with each frame, and their place in WindowCovariance.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
 #include "core/backend/solvers/window_problem.h"
+#include "core/geometry/uncertain_pose.h"
 #include "core/types/state_covariance.h"
 
 namespace stillpoint {
@@ -21,5 +23,11 @@ using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 /// @param covariance joint covariance of `blocks`, as `newest_blocks` gives them, in their order
 [[nodiscard]] StateCovariance state_covariance(std::span<const BlockRef> blocks,
                                                const NewestMatrix& covariance);
+
+inline constexpr std::array<BlockRef, 2> kOldestPoses = {BlockRef{BlockKind::kPose, 0},
+                                                         BlockRef{BlockKind::kPose, 1}};
+
+/// T_b0_b1. @param covariance joint covariance of `kOldestPoses`
+[[nodiscard]] UncertainPose oldest_motion_of(const Window& window, const NewestMatrix& covariance);
 
 }  // namespace stillpoint

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 
 #include "core/backend/solvers/newest_covariance.h"
 #include "core/backend/solvers/schur_solver.h"
 
 namespace stillpoint {
 
-std::optional<StateCovariance> SchurSolver::newest_covariance(const Window& window,
-                                                              const BackendConfig& config, double focal_px) {
+std::optional<WindowCovariance> SchurSolver::covariance(const Window& window, const BackendConfig& config,
+                                                        double focal_px, bool oldest_motion) {
   read(window, config, focal_px);
   static_cast<void>(linearize(window, config));
   S_ = system_.H;
@@ -17,8 +18,17 @@ std::optional<StateCovariance> SchurSolver::newest_covariance(const Window& wind
   if (!skyline_factorize(system_.first, S_)) return std::nullopt;
 
   prior_blocks_ = newest_blocks(window, config, std::move(prior_blocks_));
+  const NewestMatrix newest = inverse_blocks(prior_blocks_);
+  if (!newest.allFinite()) return std::nullopt;
+  WindowCovariance result{.newest = state_covariance(prior_blocks_, newest)};
+  if (oldest_motion) result.oldest_motion = oldest_motion_of(window, inverse_blocks(kOldestPoses));
+  return result;
+}
+
+/// The rows and columns of the blocks in S^-1.
+NewestMatrix SchurSolver::inverse_blocks(std::span<const BlockRef> blocks) {
   columns_.clear();
-  for (const BlockRef block : prior_blocks_) append_columns(block);
+  for (const BlockRef block : blocks) append_columns(block);
   unit_columns_.resize(layout_.size(), ForwardColumns::ColsAtCompileTime);
   unit_columns_.setZero();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -27,9 +37,7 @@ std::optional<StateCovariance> SchurSolver::newest_covariance(const Window& wind
   const int begin = *std::min_element(columns_.begin(), columns_.end()) / kTile * kTile;
   skyline_forward(system_.first, S_, begin, unit_columns_);
   const auto used = unit_columns_.leftCols(static_cast<Eigen::Index>(columns_.size()));
-  const NewestMatrix covariance = used.transpose().lazyProduct(used);
-  if (!covariance.allFinite()) return std::nullopt;
-  return state_covariance(prior_blocks_, covariance);
+  return used.transpose().lazyProduct(used);
 }
 
 }  // namespace stillpoint

@@ -3,8 +3,10 @@
 /// dogleg. Paper Sec. II (state optimization).
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "core/backend/solvers/newest_covariance.h"
 #include "core/backend/solvers/visual_terms.h"
 #include "core/backend/solvers/window_solver.h"
 
@@ -44,9 +46,8 @@ class SchurSolver final : public WindowSolver {
 
   /// With S = L L^T, the rows and columns I of S^-1 are Y^T Y, where L Y = E_I and E_I are the columns I of
   /// the identity: one forward substitution, which starts late for poses and global states.
-  [[nodiscard]] std::optional<StateCovariance> newest_covariance(const Window& window,
-                                                                 const BackendConfig& config,
-                                                                 double focal_px) override;
+  [[nodiscard]] std::optional<WindowCovariance> covariance(const Window& window, const BackendConfig& config,
+                                                           double focal_px, bool oldest_motion) override;
 
  private:
   [[nodiscard]] SolveReport minimize(Window& window, const BackendConfig& config, double focal_px) override;
@@ -69,6 +70,7 @@ class SchurSolver final : public WindowSolver {
   void apply_step();
   [[nodiscard]] SolveReport iterate(const Window& window, const BackendConfig& config);
   void append_columns(BlockRef block);
+  [[nodiscard]] NewestMatrix inverse_blocks(std::span<const BlockRef> blocks);
   [[nodiscard]] bool factorize_columns();
   [[nodiscard]] LinearPrior with_square_root(LinearPrior prior, Eigen::Index marginalized);
 

@@ -7,6 +7,7 @@
 
 #include "core/backend/window/window.h"
 #include "core/config/backend_config.h"
+#include "core/geometry/uncertain_pose.h"
 #include "core/types/state_covariance.h"
 
 namespace stillpoint {
@@ -18,6 +19,12 @@ struct SolveReport {
   double initial_cost = 0.0;
   double final_cost = 0.0;
   bool usable = true;  ///< false: the solver failed and the window is unchanged
+};
+
+struct WindowCovariance {
+  StateCovariance newest;
+  /// Of the motion T_b0_b1 from the oldest frame to the next one; absent unless requested.
+  std::optional<UncertainPose> oldest_motion;
 };
 
 /// Extension point for solvers. An instance is reused for its buffers only: results depend on nothing but the
@@ -62,11 +69,14 @@ class WindowSolver {
                                                        double focal_px, LinearPrior recycled) = 0;
 
   /// Covariance of the newest state: with H of all residuals of `solve`, linearized at the states of the
-  /// window, the blocks of H^-1 of that state and of the global states. Absent if H is singular, that is, if
-  /// the residuals leave a state unconstrained.
-  [[nodiscard]] virtual std::optional<StateCovariance> newest_covariance(const Window& window,
-                                                                         const BackendConfig& config,
-                                                                         double focal_px) = 0;
+  /// window, the blocks of H^-1 of that state and of the global states. That of the motion from the oldest
+  /// frame to the next one follows from the blocks of H^-1 of both poses, in which the error of the whole
+  /// window relative to the gauge cancels, see `relative_pose`. Absent if H is singular, that is, if the
+  /// residuals leave a state unconstrained.
+  /// @param oldest_motion whether the second one is requested; at least two frames
+  [[nodiscard]] virtual std::optional<WindowCovariance> covariance(const Window& window,
+                                                                   const BackendConfig& config,
+                                                                   double focal_px, bool oldest_motion) = 0;
 
  private:
   /// `solve` without the reset of lost depths.

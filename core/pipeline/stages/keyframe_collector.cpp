@@ -46,17 +46,23 @@ void set_pose(const Pose& T_w_b, const Window& window, DepartedKeyframe& keyfram
 
 }  // namespace
 
-void KeyframeCollector::before_slide(const Window& window) {
+void KeyframeCollector::before_slide(const Window& window, const std::optional<UncertainPose>& oldest_motion) {
   oldest_.reset();
+  next_.reset();
+  oldest_motion_ = oldest_motion;
   if (window.frames.empty()) return;
   oldest_ = window.frames.front().id;
   oldest_T_w_b_ = window.frames.front().state.T_w_b;
+  if (window.frames.size() > 1) next_ = window.frames[1].id;
 }
 
 void KeyframeCollector::after_slide(const Window& window, const TrackedFrame& frame,
                                     const DynamicReport& dynamic) {
   if (departed_) recycle(std::move(*std::exchange(departed_, std::nullopt)));
-  if (oldest_ && !has_frame(window, *oldest_)) depart(*oldest_, oldest_T_w_b_, window);
+  if (oldest_ && !has_frame(window, *oldest_)) {
+    depart(*oldest_, oldest_T_w_b_, window);
+    add_motion(window);
+  }
   discard_missing(window);
   if (!has_frame(window, frame.id)) return;
   DepartedKeyframe keyframe = unused();
@@ -71,11 +77,20 @@ DepartedKeyframe KeyframeCollector::unused() {
   return keyframe;
 }
 
+/// Continues `motion_` to the frame that is the oldest one now.
+void KeyframeCollector::add_motion(const Window& window) {
+  const bool known = motion_ && oldest_motion_ && !window.frames.empty() && window.frames.front().id == next_;
+  motion_ = known ? std::optional(compose(*motion_, *oldest_motion_)) : std::nullopt;
+}
+
 void KeyframeCollector::depart(std::int64_t frame, const Pose& T_w_b, const Window& window) {
   const auto found = std::ranges::find(in_window_, frame, &DepartedKeyframe::frame);
   if (found == in_window_.end() || !located_ || !has_moved(T_w_b)) return;
   set_pose(T_w_b, window, *found);
+  found->motion_covariance.reset();
+  if (motion_) found->motion_covariance = motion_->covariance;
   last_T_w_b_ = T_w_b;
+  motion_ = UncertainPose{};
   departed_ = std::move(*found);
   in_window_.erase(found);
 }
@@ -103,6 +118,7 @@ std::optional<DepartedKeyframe> KeyframeCollector::newest(const Window& window, 
   if (state == window.frames.end()) return std::nullopt;
   DepartedKeyframe copy = unused();
   copy = in_window_.back();
+  copy.motion_covariance.reset();
   set_pose(state->state.T_w_b, window, copy);
   return copy;
 }
@@ -111,6 +127,7 @@ std::optional<DepartedKeyframe> KeyframeCollector::take_remaining(const Window& 
   while (!in_window_.empty() && !departed_) {
     const std::int64_t frame = in_window_.front().frame;
     const auto state = std::ranges::find(window.frames, frame, &WindowFrame::id);
+    if (frame != window.frames.front().id) motion_.reset();
     if (state != window.frames.end()) depart(frame, state->state.T_w_b, window);
     if (!departed_) in_window_.erase(in_window_.begin());
   }

@@ -17,8 +17,9 @@ class KeyframeCollector {
  public:
   explicit KeyframeCollector(const LoopConfig& config) : config_(config) {}
 
-  /// Remembers the oldest state before the window slides.
-  void before_slide(const Window& window);
+  /// Remembers the oldest states before the window slides.
+  /// @param oldest_motion from the oldest frame to the next, with its covariance, if it is known
+  void before_slide(const Window& window, const std::optional<UncertainPose>& oldest_motion);
 
   /// After the window has slid: notices that the oldest frame left it, and stores the newest one.
   /// @param frame the newest one, with its gray image
@@ -44,6 +45,7 @@ class KeyframeCollector {
 
  private:
   [[nodiscard]] bool has_moved(const Pose& T_w_b) const;
+  void add_motion(const Window& window);
   void depart(std::int64_t frame, const Pose& T_w_b, const Window& window);
   [[nodiscard]] DepartedKeyframe unused();
   void discard_missing(const Window& window);
@@ -52,7 +54,11 @@ class KeyframeCollector {
   bool located_ = false;
   std::optional<std::int64_t> oldest_;  ///< frame
   Pose oldest_T_w_b_;
+  std::optional<std::int64_t> next_;            ///< frame after the oldest one
+  std::optional<UncertainPose> oldest_motion_;  ///< from the oldest frame to the next
   std::optional<Pose> last_T_w_b_;  ///< of the last keyframe that was handed over
+  /// From that keyframe to the oldest frame of the window; absent if a part of it is not known.
+  std::optional<UncertainPose> motion_;
   std::vector<DepartedKeyframe> in_window_;
   std::vector<DepartedKeyframe> unused_;
   std::optional<DepartedKeyframe> departed_;

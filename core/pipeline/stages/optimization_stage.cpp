@@ -58,7 +58,7 @@ OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const Dete
     } else {
       reset_recognition();
     }
-    if (keyframes_) keyframes_->before_slide(estimator_.window());
+    if (keyframes_) keyframes_->before_slide(estimator_.window(), estimator_.oldest_motion());
     estimator_.finish();
     if (keyframes_) {
       keyframes_->set_located(is_located(update.status) && update.segment == 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the covariance of the newest state with the inverse of the information of all states and
-// landmarks.
+// Compares the covariances of the newest state and of the motion between the oldest ones with the inverse of
+// the information of all states and landmarks.
 #include "core/backend/solvers/newest_covariance.h"
 
 #include <gtest/gtest.h>
@@ -109,17 +109,24 @@ double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& refe
 /// Sums in another order change the information by rounding errors, and its condition number is about 1e7.
 constexpr double kRounding = 1e-8;
 
+/// The error of the whole window cancels in the motion between two frames, and its rounding error does not.
+constexpr double kDifference = 1e-6;
+
 void expect_covariances(const SimulatedWindowOptions& options) {
   const Window window = simulated_window(options);
   const std::vector<BlockRef> blocks = newest_blocks(window, options.config);
-  const StateCovariance reference =
-      state_covariance(blocks, FullInformation(window, options.config).covariance(blocks));
+  const FullInformation information(window, options.config);
+  const StateCovariance reference = state_covariance(blocks, information.covariance(blocks));
+  const Matrix6 motion =
+      oldest_motion_of(window, information.covariance({kOldestPoses.begin(), kOldestPoses.end()})).covariance;
   SchurSolver schur;
   CeresSolver ceres;
   for (WindowSolver* solver : {static_cast<WindowSolver*>(&schur), static_cast<WindowSolver*>(&ceres)}) {
-    const std::optional<StateCovariance> found =
-        solver->newest_covariance(window, options.config, kSimulatedFocal_px);
-    ASSERT_TRUE(found);
+    const std::optional<WindowCovariance> both =
+        solver->covariance(window, options.config, kSimulatedFocal_px, true);
+    ASSERT_TRUE(both && both->oldest_motion);
+    EXPECT_LT(relative_difference(both->oldest_motion->covariance, motion), kDifference);
+    const StateCovariance* found = &both->newest;
     EXPECT_EQ(found->inertial, window.inertial);
     EXPECT_LT(relative_difference(found->state, reference.state), kRounding);
     EXPECT_LT(relative_difference(found->gravity, reference.gravity), kRounding);
@@ -159,8 +166,8 @@ TEST(NewestCovariance, IsAbsentIfAStateIsUnconstrained) {
   SimulatedWindowOptions options{.frames = 14, .points = 80};
   Window window = simulated_window(options);
   window.frames.back().from_previous.reset();  // no residual involves the newest velocity and biases
-  EXPECT_FALSE(SchurSolver().newest_covariance(window, options.config, kSimulatedFocal_px));
-  EXPECT_FALSE(CeresSolver().newest_covariance(window, options.config, kSimulatedFocal_px));
+  EXPECT_FALSE(SchurSolver().covariance(window, options.config, kSimulatedFocal_px, true));
+  EXPECT_FALSE(CeresSolver().covariance(window, options.config, kSimulatedFocal_px, true));
 }
 
 }  // namespace

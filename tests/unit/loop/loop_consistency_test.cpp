@@ -45,6 +45,48 @@ TEST(OdometryDrift, TheCovarianceOfTwoStepsIsThatOfTheirComposition) {
   EXPECT_NEAR(both(1, 5), step(5, 5), 1e-15);
 }
 
+/// Steps of 0.2 m along x. From the middle on, the odometry drifts along y, as its covariances say.
+struct SidewaysDrift {
+  static constexpr int kSteps = 20;
+  static constexpr double kError_m = 0.1;
+  std::vector<Pose> truth;
+  PoseGraph graph;
+
+  explicit SidewaysDrift(double sigma_m) {
+    OdometryDrift drift(LoopConfig{});
+    for (int k = 0; k <= kSteps; ++k) {
+      const int drifting = std::max(0, k - kSteps / 2);
+      truth.push_back({Eigen::Quaterniond::Identity(), {0.2 * k, 0.0, 0.0}});
+      graph.T_m_b.push_back(truth.back());
+      graph.T_m_b.back().p.y() += kError_m * drifting / (kSteps / 2);
+      graph.gravity_b.emplace_back();
+      Matrix6 covariance = pose_covariance(1e-4, 1e-5);
+      if (drifting > 0) covariance(1, 1) = sigma_m * sigma_m;
+      drift.add(from_seconds(0.2 * k), graph.T_m_b.back(), covariance);
+      if (k > 0) add_step(k, drift);
+    }
+    graph.loops.push_back({.i = 0,
+                           .j = kSteps,
+                           .T_i_j = truth.front().inverse() * truth.back(),
+                           .covariance = pose_covariance(0.005, 0.001)});
+  }
+
+  void add_step(int k, const OdometryDrift& drift) {
+    const auto at = static_cast<std::size_t>(k);
+    graph.odometry.push_back({.i = k - 1,
+                              .j = k,
+                              .T_i_j = graph.T_m_b[at - 1].inverse() * graph.T_m_b[at],
+                              .covariance = drift.step_covariance(at)});
+  }
+};
+
+TEST(OdometryDrift, ADriftInOneDirectionIsCorrectedWhereTheCovarianceOfTheWindowIsLarge) {
+  const SidewaysDrift drift(0.03);
+  const PoseGraphSolution solution = optimize_pose_graph(drift.graph, {});
+  ASSERT_TRUE(solution.inliers.front());
+  EXPECT_LT(largest_error_m(solution.T_m_b, drift.truth), 0.1 * SidewaysDrift::kError_m);
+}
+
 TEST(LoopConsistency, ALoopThatAgreesWithTheOdometryHasNoDistance) {
   const Laps laps(100);
   EXPECT_LT(odometry_distance(laps.loop(3, 53, Eigen::Vector3d::Zero()), laps.T_w_b, laps.drift), 1e-12);

@@ -17,8 +17,9 @@ class KeyframeCollectorTest : public testing::Test {
     frame.id = id;
     frame.state.T_w_b.p = {step_m_ * static_cast<double>(id), 0.0, 0.0};
     window_.frames.push_back(frame);
-    collector_.before_slide(window_);
-    if (window_.frames.size() > 3) window_.frames.erase(window_.frames.begin());
+    const bool leaves = window_.frames.size() > 3;
+    collector_.before_slide(window_, leaves ? motion_ : std::nullopt);
+    if (leaves) window_.frames.erase(window_.frames.begin());
     TrackedFrame tracked{.id = id, .t = from_seconds(static_cast<double>(id))};
     tracked.features = {{.id = 1, .pixel = {10.0, 20.0}, .depth = 1.5}, {.id = 4, .pixel = {30.0, 40.0}}};
     collector_.set_located(located_);
@@ -28,6 +29,7 @@ class KeyframeCollectorTest : public testing::Test {
 
   double step_m_;
   bool located_ = true;
+  std::optional<UncertainPose> motion_;  ///< of each step
   Window window_;
   KeyframeCollector collector_{LoopConfig{}};
 };
@@ -74,6 +76,38 @@ TEST_F(SlowKeyframeCollectorTest, FramesCloseToTheLastKeyframeAreDiscarded) {
   EXPECT_EQ(departed, (std::vector<std::int64_t>{0, 2, 4}));  // 0.15 m apart at least
 }
 
+TEST_F(KeyframeCollectorTest, TheCovarianceOfTheMotionIsUnknownWithoutOneOfTheWindow) {
+  for (std::int64_t id = 0; id < 3; ++id) append(id);
+  EXPECT_FALSE(append(3)->motion_covariance);
+  EXPECT_FALSE(append(4)->motion_covariance);
+}
+
+TEST_F(SlowKeyframeCollectorTest, TheCovariancesOfStepsBetweenKeyframesAddUp) {
+  // Without rotation, the variance of the position along the motion is that of two steps.
+  motion_ = UncertainPose{.T_w_f = {Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.0}}};
+  motion_->covariance(0, 0) = 1e-6;
+  std::vector<DepartedKeyframe> departed;
+  for (std::int64_t id = 0; id < 8; ++id) {
+    if (auto keyframe = append(id)) departed.push_back(std::move(*keyframe));
+  }
+  ASSERT_EQ(departed.size(), 3u);  // frames 0, 2 and 4
+  EXPECT_FALSE(departed[0].motion_covariance);
+  for (std::size_t k = 1; k < 3; ++k) {
+    ASSERT_TRUE(departed[k].motion_covariance);
+    EXPECT_NEAR((*departed[k].motion_covariance)(0, 0), 2e-6, 1e-15);
+  }
+}
+
+TEST_F(SlowKeyframeCollectorTest, AStepWithoutCovarianceMakesThatOfTheWholeMotionUnknown) {
+  motion_ = UncertainPose{};
+  std::vector<bool> known;
+  for (std::int64_t id = 0; id < 10; ++id) {
+    motion_ = id == 4 ? std::nullopt : std::optional(UncertainPose{});  // the step from frame 1 to 2
+    if (const auto keyframe = append(id)) known.push_back(keyframe->motion_covariance.has_value());
+  }
+  EXPECT_EQ(known, (std::vector<bool>{false, false, true, true}));  // frames 0, 2, 4 and 6
+}
+
 TEST_F(KeyframeCollectorTest, NothingIsHandedOverWhileThePoseIsLost) {
   located_ = false;
   for (std::int64_t id = 0; id < 6; ++id) EXPECT_FALSE(append(id));
@@ -97,6 +131,15 @@ TEST_F(KeyframeCollectorTest, TheRemainingFramesAreHandedOverAtTheEnd) {
   std::vector<std::int64_t> remaining;
   while (const auto keyframe = collector_.take_remaining(window_)) remaining.push_back(keyframe->frame);
   EXPECT_EQ(remaining, (std::vector<std::int64_t>{0, 1, 2}));
+}
+
+TEST_F(KeyframeCollectorTest, TheMotionBetweenRemainingFramesIsUnknown) {
+  motion_ = UncertainPose{};
+  for (std::int64_t id = 0; id < 5; ++id) append(id);
+  std::vector<bool> known;
+  while (const auto keyframe = collector_.take_remaining(window_))
+    known.push_back(keyframe->motion_covariance.has_value());
+  EXPECT_EQ(known, (std::vector<bool>{true, false, false}));  // that to the oldest frame is complete
 }
 
 }  // namespace
