@@ -15,21 +15,27 @@ struct Correction {
   Pose T_m_w;
 };
 
-/// Of the keyframes. The output at the time of a keyframe was not yet that of its final pose by the odometry,
-/// which the window refined afterwards: if its extrinsics are known, the difference is corrected, too.
-std::vector<Correction> corrections_of(const Trajectory& odometry, const LoopReport& report) {
+/// Of the located keyframes of a segment. The output at the time of a keyframe was not yet that of its final
+/// pose by the odometry, which the window refined afterwards: the difference is corrected, too.
+std::vector<Correction> corrections_of(const Trajectory& odometry, const LoopReport& report, int segment) {
   std::vector<Correction> corrections;
-  const std::size_t count = report.keyframes.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    const MapKeyframe& keyframe = report.keyframes[k];
+  for (const MapKeyframe& keyframe : report.keyframes) {
+    if (keyframe.segment != segment || (segment > 0 && !keyframe.is_located)) continue;
     corrections.push_back({keyframe.t, keyframe.T_m_b * keyframe.T_w_b.inverse()});
     const auto output = std::ranges::lower_bound(odometry.poses, keyframe.t, {}, &StampedPose::t);
     const bool has_output = output != odometry.poses.end() && output->t == keyframe.t;
-    if (!has_output || !report.map || report.map->keyframes.size() < count) continue;
-    const Pose& T_b_c = report.map->keyframes[report.map->keyframes.size() - count + k].T_b_c;
-    corrections.back().T_m_w = keyframe.T_m_b * T_b_c * output->T_w_f.inverse();
+    if (has_output) corrections.back().T_m_w = keyframe.T_m_b * keyframe.T_b_c * output->T_w_f.inverse();
   }
   return corrections;
+}
+
+Pose corrected(const StampedPose& pose, std::span<const Correction> corrections) {
+  const auto next = std::ranges::upper_bound(corrections, pose.t, {}, &Correction::t);
+  const auto before = next == corrections.begin() ? next : next - 1;
+  const Pose by_before = before->T_m_w * pose.T_w_f;
+  if (next == corrections.end() || next == before) return by_before;
+  const double s = seconds_between(before->t, pose.t) / seconds_between(before->t, next->t);
+  return interpolate(by_before, next->T_m_w * pose.T_w_f, s);
 }
 
 eval::RevisitScore revisits_of(const Trajectory& gt, const LoopReport& report) {
@@ -54,20 +60,15 @@ std::optional<double> ate_m(const Trajectory& gt, Trajectory trajectory,
 
 }  // namespace
 
-Trajectory optimized_trajectory(const Trajectory& odometry, const LoopReport& report) {
-  Trajectory result{.frame = odometry.frame, .poses = odometry.poses};
-  const std::vector<Correction> corrections = corrections_of(odometry, report);
-  if (corrections.empty()) return result;
-  for (StampedPose& pose : result.poses) {
-    const auto next = std::ranges::upper_bound(corrections, pose.t, {}, &Correction::t);
-    const auto before = next == corrections.begin() ? next : next - 1;
-    const Pose by_before = before->T_m_w * pose.T_w_f;
-    if (next == corrections.end() || next == before) {
-      pose.T_w_f = by_before;
-      continue;
-    }
-    const double s = seconds_between(before->t, pose.t) / seconds_between(before->t, next->t);
-    pose.T_w_f = interpolate(by_before, next->T_m_w * pose.T_w_f, s);
+Trajectory optimized_trajectory(std::span<const Trajectory> odometry, const LoopReport& report) {
+  Trajectory result;
+  for (std::size_t segment = 0; segment < odometry.size(); ++segment) {
+    const Trajectory& part = odometry[segment];
+    result.frame = part.frame;
+    const std::vector<Correction> corrections = corrections_of(part, report, static_cast<int>(segment));
+    if (corrections.empty() && segment > 0) continue;
+    for (const StampedPose& pose : part.poses)
+      result.poses.push_back({pose.t, corrections.empty() ? pose.T_w_f : corrected(pose, corrections)});
   }
   return result;
 }

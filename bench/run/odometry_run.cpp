@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <future>
+#include <span>
+#include <vector>
 
 #include "bench/run/frame_prefetcher.h"
 #include "bench/run/recorded_boxes.h"
@@ -73,9 +75,16 @@ eval::ClaimedPose claim_of(const OdometryUpdate& update, Timestamp t) {
   return claim;
 }
 
-/// With a loaded map: before the relocalization T_m_w is the identity.
-bool is_located_in_map(const OdometryUpdate& update) {
-  return !update.T_m_w.p.isZero(0.0) || update.T_m_w.q.w() != 1.0;
+/// The located poses of each segment.
+std::vector<Trajectory> segments_of(std::span<const eval::ClaimedPose> claims) {
+  std::vector<Trajectory> segments;
+  for (const eval::ClaimedPose& claim : claims) {
+    if (claim.claim != eval::PoseClaim::kLocated) continue;
+    while (segments.size() <= static_cast<std::size_t>(claim.segment))
+      segments.push_back({.frame = "camera", .poses = {}});
+    segments[static_cast<std::size_t>(claim.segment)].poses.push_back({claim.t, claim.T_w_c});
+  }
+  return segments;
 }
 
 /// Records the output of a runner.
@@ -123,7 +132,7 @@ class RunRecorder {
     if (imu_rate_) run_.imu_rate = imu_rate_->take();
     if (run_.loops && run_.summary.loops) {
       run_.loops->report = std::move(*run_.summary.loops);
-      run_.loops->optimized = optimized_trajectory(run_.trajectory, run_.loops->report);
+      run_.loops->optimized = optimized_trajectory(segments_of(run_.claims), run_.loops->report);
     }
     if (!spec_.deterministic_counts) run_.summary.waits.push_back(decoded_);
     for (const DecodedFrame& frame : prefetcher.decoded()) record_decoding(frame);
@@ -148,10 +157,9 @@ class RunRecorder {
       run_.level_covariance = update.covariance->gravity;
     record_calibration(update);
     run_.claims.push_back(claim_of(update, t));
-    if (!is_located(update.status) || update.segment > 0) return;
-    run_.trajectory.poses.push_back({t, update.T_w_c});
-    if (run_.loops && (!spec_.map || is_located_in_map(update)))
-      run_.loops->causal.poses.push_back({t, update.T_m_w * update.T_w_c});
+    if (!is_located(update.status)) return;
+    if (run_.loops && update.in_map) run_.loops->causal.poses.push_back({t, update.T_m_w * update.T_w_c});
+    if (update.segment == 0) run_.trajectory.poses.push_back({t, update.T_w_c});
   }
 
   void record_calibration(const OdometryUpdate& update) {

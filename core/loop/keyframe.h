@@ -35,6 +35,7 @@ struct DynamicRegion {
 struct DepartedKeyframe {
   std::int64_t frame = 0;
   Timestamp t;
+  int segment = 0;  ///< of the odometry, see `OdometryUpdate`
   Pose T_w_b;
   Pose T_b_c;
   /// Of the motion from the keyframe before, T_bi_bj: (p + rho, q * Exp(theta)); absent if it is not known.

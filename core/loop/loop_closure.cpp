@@ -32,18 +32,38 @@ LoopClosure::LoopClosure(const LoopConfig& config, const Camera& camera, bool ha
   if (config.dof != 4 && config.dof != 6) throw InputError("loop.dof", "is neither 4 nor 6; use one of them");
   if (config.dof == 4 && !has_imu)
     throw InputError("loop.dof", "4 requires the direction of gravity from an IMU; use 6");
+  parts_.begin(segment_);
 }
 
 void LoopClosure::use_map(const KeyframeMap& map) {
   STILLPOINT_CHECK(keyframes_.empty());
+  if (map.keyframes.empty()) return;
   keyframes_ = map.keyframes;
-  map_size_ = keyframes_.size();
-  recognition_.add_map(keyframes_);
+  loaded_ = keyframes_.size();
+  recognition_.add_all(keyframes_);
+  parts_ = {};
+  parts_.begin(-1);
   for (const Keyframe& keyframe : keyframes_) {
     T_w_b_.push_back(keyframe.T_w_b);
     drift_.add(keyframe.t, keyframe.T_w_b);
+    parts_.add();
   }
   T_m_b_ = T_w_b_;
+  parts_.begin(segment_);
+}
+
+/// The keyframes so far become the map in which the new segment is to be located: those of parts that are not
+/// located in it themselves are never used again.
+void LoopClosure::enter_segment(int segment) {
+  if (segment == segment_) return;
+  segment_ = segment;
+  if (has_new_loop_) optimize();
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) keyframes_[k].T_w_b = T_m_b_[k];
+  recognition_.add_all(keyframes_);
+  relocalization_ = Relocalization(config_, camera_);
+  start_.reset();
+  T_m_w_ = {};
+  parts_.begin(segment);
 }
 
 Keyframe LoopClosure::describe(const DepartedKeyframe& keyframe) const {
@@ -60,26 +80,29 @@ Keyframe LoopClosure::describe(const DepartedKeyframe& keyframe) const {
 
 Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
   const auto start = std::chrono::steady_clock::now();
+  enter_segment(keyframe.segment);
   keyframes_.push_back(describe(keyframe));
   T_w_b_.push_back(keyframe.T_w_b);
   T_m_b_.push_back(T_m_w_ * keyframe.T_w_b);
-  if (map_size_ > 0 && keyframes_.size() == map_size_ + 1) {
+  if (parts_.is_empty()) {
     drift_.add_unrelated(keyframe.t, keyframe.T_w_b);
   } else {
     drift_.add(keyframe.t, keyframe.T_w_b, keyframe.motion_covariance);
   }
+  parts_.add();
   constrain_by_start();
   find_loops();
   if (is_optimization_due()) optimize();
   processing_ms_.push_back(
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-  // Corrections by loops within this run do not locate it in the loaded map.
-  return map_size_ > 0 && !relocalized_ ? Pose{} : T_m_w_;
+  // Corrections by loops within a part do not locate it in the map.
+  return is_located() ? T_m_w_ : Pose{};
 }
 
 Pose LoopClosure::locate(const DepartedKeyframe& frame) {
-  if (map_size_ == 0 || relocalized_) return T_m_w_;
-  start_ = relocalization_.locate(describe(frame), std::span(keyframes_).first(map_size_), recognition_);
+  enter_segment(frame.segment);
+  if (is_located()) return T_m_w_;
+  start_ = relocalization_.locate(describe(frame), keyframes_, parts_, recognition_);
   if (start_) start_->record += records_.size();
   records_.insert(records_.end(), relocalization_.records().begin(), relocalization_.records().end());
   if (!start_) return {};
@@ -105,10 +128,12 @@ void LoopClosure::constrain_by_start() {
 
 void LoopClosure::find_loops() {
   for (const PlaceVotes& place : recognition_.recognize(keyframes_)) {
-    const Keyframe& match = keyframes_[static_cast<std::size_t>(place.place)];
+    const auto index = static_cast<std::size_t>(place.place);
+    if (!parts_.is_current(index) && !parts_.is_in_map(index)) continue;
+    const Keyframe& match = keyframes_[index];
     VerifiedLoop verified = verify_loop(keyframes_.back(), match, camera_, config_);
     verified.record.votes = place.votes;
-    verified.record.in_map = is_in_map(place.place);
+    verified.record.in_map = parts_.is_loaded(index);
     assess(std::move(verified), place.place);
     if (records_.back().outcome == LoopOutcome::kAccepted) return;
   }
@@ -140,7 +165,7 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
   std::size_t contradicting = 0;
   for (ConsistentLoop& other : loops_) {
     if (loop.query - other.loop.query > kComparedKeyframes || other.loop.query == loop.query) continue;
-    if (is_in_map(loop.match) != is_in_map(other.loop.match)) continue;  // the motion between both is unknown
+    if (!is_same_part(loop, other.loop)) continue;
     if (pairwise_distance(loop, other.loop, T_w_b_, drift_) <= config_.gate_chi2) {
       agreeing.push_back(&other);
     } else {
@@ -157,17 +182,31 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
   return LoopOutcome::kAccepted;
 }
 
+/// Whether the odometry knows the motion between the queries, and that between the matches.
+bool LoopClosure::is_same_part(const GraphLoop& a, const GraphLoop& b) const {
+  const auto is_same = [this](int i, int j) {
+    return parts_.is_same_part(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+  };
+  return is_same(a.match, b.match) && is_same(a.query, b.query);
+}
+
+/// Whether the loop locates the current part in the map.
+bool LoopClosure::is_location(const GraphLoop& loop) const {
+  return parts_.is_current(static_cast<std::size_t>(loop.query)) &&
+         parts_.is_reference(static_cast<std::size_t>(loop.match));
+}
+
 bool LoopClosure::is_optimization_due() const {
-  if (has_new_loop_ && map_size_ > 0 && !relocalized_) return true;
+  if (has_new_loop_ && !is_located()) return true;
   return has_new_loop_ &&
          keyframes_.size() >=
              keyframes_optimized_ + std::max(kMinInterval, keyframes_.size() / kIntervalDivisor);
 }
 
 void LoopClosure::relocalize() {
-  if (relocalized_) return;
+  if (is_located()) return;
   const auto found = std::find_if(loops_.rbegin(), loops_.rend(), [this](const ConsistentLoop& loop) {
-    return loop.confirmed && is_in_map(loop.loop.match);
+    return loop.confirmed && is_location(loop.loop);
   });
   if (found == loops_.rend()) return;
   const auto match = static_cast<std::size_t>(found->loop.match);
@@ -177,13 +216,15 @@ void LoopClosure::relocalize() {
 
 void LoopClosure::move_into_map(const Pose& T_m_w) {
   T_m_w_ = T_m_w;
-  for (std::size_t k = map_size_; k < T_m_b_.size(); ++k) T_m_b_[k] = T_m_w_ * T_w_b_[k];
-  relocalized_ = true;
+  parts_.set_located(true);
+  for (std::size_t k = 0; k < T_m_b_.size(); ++k) {
+    if (parts_.is_current(k)) T_m_b_[k] = T_m_w_ * T_w_b_[k];
+  }
 }
 
 bool LoopClosure::has_inlier_in_map() const {
   return std::ranges::any_of(loops_, [this](const ConsistentLoop& loop) {
-    return is_in_map(loop.loop.match) && records_[loop.record].outcome == LoopOutcome::kAccepted;
+    return is_location(loop.loop) && records_[loop.record].outcome == LoopOutcome::kAccepted;
   });
 }
 
@@ -222,22 +263,31 @@ void LoopClosure::optimize() {
   T_m_w_ = T_m_b_.back() * T_w_b_.back().inverse();
   keyframes_optimized_ = keyframes_.size();
   has_new_loop_ = false;
-  if (relocalized_ && !has_inlier_in_map()) relocalized_ = false;
+  if (!parts_.is_first_part() && is_located() && !has_inlier_in_map()) parts_.set_located(false);
 }
 
 LoopReport LoopClosure::finish() {
   if (has_new_loop_) optimize();
-  LoopReport report{.loops = records_, .relocalized = relocalized_};
-  for (std::size_t k = map_size_; k < keyframes_.size(); ++k) {
+  LoopReport report{.loops = records_};
+  for (std::size_t k = loaded_; k < keyframes_.size(); ++k) {
     report.keyframes.push_back({.frame = keyframes_[k].frame,
                                 .t = keyframes_[k].t,
+                                .segment = parts_.segment_of(k),
+                                .is_located = parts_.is_in_map(k),
                                 .T_w_b = T_w_b_[k],
                                 .T_m_b = T_m_b_[k],
-                                .processing_ms = processing_ms_[k - map_size_]});
+                                .T_b_c = keyframes_[k].T_b_c,
+                                .processing_ms = processing_ms_[k - loaded_]});
+    report.relocalized = report.relocalized || (loaded_ > 0 && parts_.is_in_map(k));
   }
-  if (map_size_ > 0 && !relocalized_) return report;
-  for (std::size_t k = 0; k < keyframes_.size(); ++k) keyframes_[k].T_w_b = T_m_b_[k];
-  report.map = std::make_shared<KeyframeMap>(KeyframeMap{std::move(keyframes_)});
+  if (loaded_ > 0 && !report.relocalized) return report;
+  auto map = std::make_shared<KeyframeMap>();
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+    if (!parts_.is_in_map(k)) continue;
+    keyframes_[k].T_w_b = T_m_b_[k];
+    map->keyframes.push_back(std::move(keyframes_[k]));
+  }
+  report.map = std::move(map);
   return report;
 }
 

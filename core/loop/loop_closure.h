@@ -8,6 +8,7 @@
 
 #include "core/config/loop_config.h"
 #include "core/geometry/camera.h"
+#include "core/loop/keyframe_parts.h"
 #include "core/loop/loop_consistency.h"
 #include "core/loop/loop_verification.h"
 #include "core/loop/place_recognition.h"
@@ -18,7 +19,9 @@
 namespace stillpoint {
 
 /// A keyframe is described, looked up, verified against the candidates and, if one is accepted, the graph is
-/// optimized. Deterministic and single-threaded.
+/// optimized. The map has the frame of the loaded map or, without one, of the first segment. A later segment
+/// of the odometry, after a loss, has a world of its own: it is located in the map by the places that it
+/// shares with the earlier parts, as a run is in a loaded map. Deterministic and single-threaded.
 class LoopClosure {
  public:
   /// @throws InputError if `loop.dof` is neither 4 nor 6, or 4 without an IMU
@@ -26,21 +29,21 @@ class LoopClosure {
 
   /// Adds the keyframes of an earlier run. From the first keyframe on whose place is recognized and confirmed
   /// (relocalization), the map of this run is that of the earlier one; until then, it is the odometry's
-  /// world. Call it before `add`.
+  /// world. Call it before `add` and `locate`.
   void use_map(const KeyframeMap& map);
 
-  /// Adds the next keyframe. @return T_m_w: the pose of the odometry's world in the map, as known now; with a
-  /// loaded map the identity until the relocalization
+  /// Adds the next keyframe. @return T_m_w: the pose of its segment's world in the map, as known now; the
+  /// identity until the segment is located
   /// @throws InputError if it has no depth image
   [[nodiscard]] Pose add(const DepartedKeyframe& keyframe);
 
-  /// Looks up a frame in the loaded map, unless this run is located in it already. The frame does not become
-  /// a keyframe; its location constrains the next one. @return as `add`
+  /// Looks up a frame in the map, unless its segment is located already. The frame does not become a
+  /// keyframe; its location constrains the next one. @return as `add`
   /// @param frame a current one, with its present pose by the odometry
   [[nodiscard]] Pose locate(const DepartedKeyframe& frame);
 
-  /// Whether the poses refer to the loaded map.
-  [[nodiscard]] bool is_relocalized() const { return relocalized_; }
+  /// Whether the poses of the current segment refer to the map.
+  [[nodiscard]] bool is_located() const { return parts_.is_located(); }
 
   /// Optimizes the graph for the last time. @return all candidates, and the keyframes with their final poses
   [[nodiscard]] LoopReport finish();
@@ -51,7 +54,7 @@ class LoopClosure {
     GraphLoop loop;
     std::size_t record = 0;  ///< index in `records_`
     bool confirmed = false;  ///< by another loop
-    bool is_start = false;   ///< location of the run in the loaded map
+    bool is_start = false;   ///< location of the part in the map by a frame
   };
 
   [[nodiscard]] Keyframe describe(const DepartedKeyframe& keyframe) const;
@@ -61,8 +64,10 @@ class LoopClosure {
   [[nodiscard]] bool is_optimization_due() const;
   void optimize();
   [[nodiscard]] PoseGraph build_graph() const;
-  [[nodiscard]] bool is_in_map(int keyframe) const { return static_cast<std::size_t>(keyframe) < map_size_; }
-  /// Moves this run into the loaded map by the newest confirmed loop to it, if it is the first one.
+  void enter_segment(int segment);
+  [[nodiscard]] bool is_same_part(const GraphLoop& a, const GraphLoop& b) const;
+  [[nodiscard]] bool is_location(const GraphLoop& loop) const;
+  /// Moves the current part into the map by the newest confirmed loop to it, if it is the first one.
   void relocalize();
   void move_into_map(const Pose& T_m_w);
   void constrain_by_start();
@@ -73,8 +78,11 @@ class LoopClosure {
   PlaceRecognition recognition_;
   Relocalization relocalization_;
   OdometryDrift drift_;
+  KeyframeParts parts_;
+  int segment_ = 0;
+  std::size_t loaded_ = 0;  ///< number of keyframes of the loaded map, the first ones
   std::vector<Keyframe> keyframes_;
-  std::vector<Pose> T_w_b_;            ///< of the keyframes, by the odometry
+  std::vector<Pose> T_w_b_;            ///< of the keyframes, by the odometry of their part
   std::vector<Pose> T_m_b_;            ///< of the keyframes, in the map
   std::vector<double> processing_ms_;  ///< of the keyframes
   Pose T_m_w_;
@@ -83,8 +91,6 @@ class LoopClosure {
   std::optional<MapLocation> start_;  ///< in the map, until the next keyframe; `record` is that in `records_`
   std::size_t keyframes_optimized_ = 0;  ///< number of keyframes at the last optimization
   bool has_new_loop_ = false;            ///< since then
-  std::size_t map_size_ = 0;             ///< number of keyframes of the loaded map, the first ones
-  bool relocalized_ = false;             ///< in the loaded map
 };
 
 }  // namespace stillpoint

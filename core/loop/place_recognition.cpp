@@ -31,8 +31,9 @@ std::vector<PlaceVotes> vote_maxima(std::span<const PlaceVotes> votes) {
   return maxima;
 }
 
-void PlaceRecognition::add_map(std::span<const Keyframe> keyframes) {
-  for (const Keyframe& keyframe : keyframes) index_.add(keyframe.features);
+void PlaceRecognition::add_all(std::span<const Keyframe> keyframes) {
+  for (const Keyframe& keyframe : keyframes.subspan(static_cast<std::size_t>(index_.places())))
+    index_.add(keyframe.features);
 }
 
 std::vector<PlaceVotes> PlaceRecognition::recognize(std::span<const Keyframe> keyframes) {

@@ -16,8 +16,9 @@ class PlaceRecognition {
  public:
   explicit PlaceRecognition(const LoopConfig& config) : config_(config) {}
 
-  /// Adds keyframes of an earlier run as the first places; their times are not compared.
-  void add_map(std::span<const Keyframe> keyframes);
+  /// Adds all keyframes as places, whenever they were visited: those of an earlier run or segment.
+  /// @param keyframes the first ones are those that are places already
+  void add_all(std::span<const Keyframe> keyframes);
 
   /// Places that look like the newest keyframe, the most similar first, at most `loop.max_candidates`. Each
   /// is a maximum of the votes among its neighbors, older than the newest keyframe by `loop.min_gap_s`, and

@@ -34,9 +34,10 @@ Pose pose_in_map(const MapLocation& location, std::span<const Keyframe> map) {
 }  // namespace
 
 std::optional<MapLocation> Relocalization::locate(const Keyframe& frame, std::span<const Keyframe> map,
+                                                  const KeyframeParts& parts,
                                                   const PlaceRecognition& recognition) {
   records_.clear();
-  std::optional<MapLocation> location = best_location(frame, map, recognition);
+  std::optional<MapLocation> location = best_location(frame, map, parts, recognition);
   const bool confirmed = location && is_confirmed(*location, map);
   recent_.push_back(location);
   if (recent_.size() > kRecentFrames) recent_.pop_front();
@@ -51,7 +52,6 @@ std::optional<MapLocation> Relocalization::verify(const Keyframe& frame, const P
   const VerifiedLoop loop = verify_loop(frame, match, camera_, config_);
   LoopRecord& record = records_.emplace_back(loop.record);
   record.votes = place.votes;
-  record.in_map = true;
   if (record.outcome != LoopOutcome::kAccepted) return std::nullopt;
   record.outcome = LoopOutcome::kUnconfirmed;
   if (!gravity_agrees(frame, match, loop.T_bm_bq)) {
@@ -68,14 +68,16 @@ std::optional<MapLocation> Relocalization::verify(const Keyframe& frame, const P
 
 /// The location at the most similar place; none if the frame is ambiguous.
 std::optional<MapLocation> Relocalization::best_location(const Keyframe& frame, std::span<const Keyframe> map,
+                                                         const KeyframeParts& parts,
                                                          const PlaceRecognition& recognition) {
   std::optional<MapLocation> best;
   std::size_t verified = 0;
   for (const PlaceVotes& place : recognition.similar_places(frame)) {
     const auto match = static_cast<std::size_t>(place.place);
-    if (match >= map.size()) continue;  // a keyframe of this run
+    if (!parts.is_reference(match)) continue;
     if (++verified > kMaxPlaces) break;
     const std::optional<MapLocation> location = verify(frame, place, map[match]);
+    records_.back().in_map = parts.is_loaded(match);
     if (!location) continue;
     if (!best) {
       best = location;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Location of single frames in a loaded map. A keyframe of the odometry is final when it leaves the window,
-/// seconds after the start; until then, current frames are looked up.
+/// Location of single frames in a map. A keyframe of the odometry is final when it leaves the window, seconds
+/// after the start; until then, current frames are looked up.
 #pragma once
 
 #include <deque>
@@ -10,6 +10,7 @@
 
 #include "core/config/loop_config.h"
 #include "core/geometry/camera.h"
+#include "core/loop/keyframe_parts.h"
 #include "core/loop/loop_verification.h"
 #include "core/loop/place_recognition.h"
 
@@ -34,9 +35,11 @@ class Relocalization {
   /// A frame that fits two places more than 0.2 m or 5 degrees apart is ambiguous, and has no location; nor
   /// has one whose direction of gravity differs from that of the map by more than 2 degrees.
   /// @param frame the next one: described, with its pose by the odometry
-  /// @param map at least the places that `recognition` was given by `add_map`
+  /// @param map keyframes with their poses in the map, at least the places of `recognition`
+  /// @param parts those of `map`; only references of the current part are used
   /// @return nullopt without a certain location
   [[nodiscard]] std::optional<MapLocation> locate(const Keyframe& frame, std::span<const Keyframe> map,
+                                                  const KeyframeParts& parts,
                                                   const PlaceRecognition& recognition);
 
   /// The candidates of the last frame; accepted is that of the location, if it is certain.
@@ -46,6 +49,7 @@ class Relocalization {
   [[nodiscard]] std::optional<MapLocation> verify(const Keyframe& frame, const PlaceVotes& place,
                                                   const Keyframe& match);
   [[nodiscard]] std::optional<MapLocation> best_location(const Keyframe& frame, std::span<const Keyframe> map,
+                                                         const KeyframeParts& parts,
                                                          const PlaceRecognition& recognition);
   [[nodiscard]] bool is_confirmed(const MapLocation& location, std::span<const Keyframe> map) const;
   [[nodiscard]] double distance(const MapLocation& a, const MapLocation& b,

@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t kMaxOutstanding = 8;
 constexpr std::size_t kMaxOutstandingRealtime = 2;
 
-/// Until the run is located in the loaded map: largest lag, and frames between two that are looked up. After
-/// a number of unsuccessful ones, the place is probably not in the map.
+/// Until the segment is located in the map: largest lag, and frames between two that are looked up. After a
+/// number of unsuccessful ones, the place is probably not in the map.
 constexpr std::int64_t kLookUpLag = 5;
 constexpr std::int64_t kLookUpInterval = 3;
 constexpr std::int64_t kLaterLookUpInterval = 15;
@@ -54,19 +54,28 @@ void LoopWorker::run() {
 
 void LoopWorker::use_map(const KeyframeMap& map) {
   closure_.use_map(map);
-  has_map_ = true;
-  unlocated_ = true;
+  located_ = closure_.is_located();
+}
+
+/// Corrections of the segment before do not apply to the world of the new one.
+void LoopWorker::enter_segment(int segment) {
+  if (segment == segment_) return;
+  segment_ = segment;
+  T_m_w_ = {};
+  located_ = false;
+  next_look_up_ = frame_;
+  look_ups_ = 0;
 }
 
 LoopWorker::Result LoopWorker::process(Job job) {
   const Pose T_m_w = job.is_current ? closure_.locate(job.keyframe) : closure_.add(job.keyframe);
   job.keyframe.gray.release();  // not until it is recycled
   job.keyframe.depth.release();
-  return {T_m_w, closure_.is_relocalized(), std::move(job.keyframe)};
+  return {T_m_w, closure_.is_located(), std::move(job.keyframe)};
 }
 
 void LoopWorker::look_up(OptimizationStage& optimization, const OdometryUpdate& update) {
-  if (!unlocated_ || frame_ < next_look_up_) return;
+  if (located_ || frame_ < next_look_up_) return;
   std::optional<DepartedKeyframe> frame = optimization.current_frame(update.frame_id);
   if (!frame) return;
   next_look_up_ = frame_ + (++look_ups_ < kEarlyLookUps ? kLookUpInterval : kLaterLookUpInterval);
@@ -74,6 +83,7 @@ void LoopWorker::look_up(OptimizationStage& optimization, const OdometryUpdate& 
 }
 
 void LoopWorker::correct(OptimizationStage& optimization, OdometryUpdate& update) {
+  enter_segment(update.segment);
   if (std::optional<DepartedKeyframe> keyframe = optimization.take_keyframe()) add({std::move(*keyframe)});
   look_up(optimization, update);
   if (execution_ == LoopExecution::kRealtime) {
@@ -85,13 +95,16 @@ void LoopWorker::correct(OptimizationStage& optimization, OdometryUpdate& update
   };
   while (is_due()) {
     if (results_.empty()) collect_next();
-    T_m_w_ = results_.front().T_m_w;
-    unlocated_ = has_map_ && !results_.front().relocalized;
+    if (results_.front().used.segment == segment_) {
+      T_m_w_ = results_.front().T_m_w;
+      located_ = results_.front().located;
+    }
     optimization.recycle(std::move(results_.front().used));
     results_.erase(results_.begin());
     due_.erase(due_.begin());
   }
   update.T_m_w = T_m_w_;
+  update.in_map = located_;
   ++frame_;
 }
 
@@ -100,7 +113,7 @@ void LoopWorker::add(Job job) {
     dropped_ += !job.is_current;
     return;
   }
-  const std::int64_t due = frame_ + (unlocated_ ? std::min(lag_frames_, kLookUpLag) : lag_frames_);
+  const std::int64_t due = frame_ + (located_ ? lag_frames_ : std::min(lag_frames_, kLookUpLag));
   due_.push_back(due_.empty() ? due : std::max(due, due_.back()));
   if (execution_ == LoopExecution::kInline) {
     results_.push_back(process(std::move(job)));
@@ -120,7 +133,7 @@ void LoopWorker::collect_next() {
   std::optional<Result> result = from_thread_.pop();
   if (!result) {
     errors_.rethrow();
-    return collect({T_m_w_, !unlocated_, {}});
+    return collect({T_m_w_, located_, {}});
   }
   collect(std::move(*result));
 }

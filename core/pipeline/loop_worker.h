@@ -25,8 +25,9 @@ enum class LoopExecution {
 
 /// One thread at a time may use an object. `kInline` and `kThread` give the same corrections to the bit: that
 /// of a keyframe which left the window with frame k is used from frame k + `loop.lag_frames` on. `kThread`
-/// waits for it there, and not before. With a loaded map, and until the run is located in it, current frames
-/// are looked up at a fixed cadence, and all lags are at most 5 frames.
+/// waits for it there, and not before. While the segment is not located in the map, that is at the start with
+/// a loaded map and after a loss, current frames are looked up at a fixed cadence, and all lags are at most 5
+/// frames.
 class LoopWorker {
  public:
   /// @throws InputError as the constructor of `LoopClosure`
@@ -38,7 +39,8 @@ class LoopWorker {
   /// As `LoopClosure::use_map`. Call it before the first frame.
   void use_map(const KeyframeMap& map);
 
-  /// Takes the keyframe that left the window with the newest frame, and sets `OdometryUpdate::T_m_w`.
+  /// Takes the keyframe that left the window with the newest frame, and sets `OdometryUpdate::T_m_w` and
+  /// `in_map`.
   /// @throws the exception of the thread, if any
   void correct(OptimizationStage& optimization, OdometryUpdate& update);
 
@@ -53,12 +55,13 @@ class LoopWorker {
   };
   struct Result {
     Pose T_m_w;
-    bool relocalized = false;
+    bool located = false;
     DepartedKeyframe used;  ///< to be recycled
   };
 
   void run();
   [[nodiscard]] Result process(Job job);
+  void enter_segment(int segment);
   void add(Job job);
   void look_up(OptimizationStage& optimization, const OdometryUpdate& update);
   void collect(Result result);
@@ -71,12 +74,12 @@ class LoopWorker {
   std::int64_t frame_ = 0;
   std::vector<std::int64_t> due_;  ///< frames from which on the corrections of submitted jobs are used
   std::vector<Result> results_;    ///< of the oldest of them
-  std::size_t outstanding_ = 0;   ///< jobs in the thread and its channels
+  std::size_t outstanding_ = 0;    ///< jobs in the thread and its channels
   int dropped_ = 0;
-  bool has_map_ = false;
-  bool unlocated_ = false;         ///< a map is loaded, and the run is not located in it
+  int segment_ = 0;                ///< of the newest frame
+  bool located_ = true;            ///< in the map
   std::int64_t next_look_up_ = 0;  ///< frame
-  int look_ups_ = 0;
+  int look_ups_ = 0;               ///< in this segment
   Pose T_m_w_;
   BoundedChannel<Job> to_thread_;
   BoundedChannel<Result> from_thread_;

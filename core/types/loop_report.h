@@ -52,8 +52,11 @@ struct LoopRecord {
 struct MapKeyframe {
   std::int64_t frame = 0;
   Timestamp t;
-  Pose T_w_b;                  ///< by the odometry
-  Pose T_m_b;                  ///< optimized
+  int segment = 0;         ///< of the odometry, see `OdometryUpdate`
+  bool is_located = true;  ///< `T_m_b` refers to the map, and not to the world of the segment
+  Pose T_w_b;              ///< by the odometry, in the world of the segment
+  Pose T_m_b;              ///< optimized
+  Pose T_b_c;
   double processing_ms = 0.0;  ///< time of the loop closure for it
 };
 
@@ -62,8 +65,8 @@ struct LoopReport {
   std::vector<MapKeyframe> keyframes;  ///< by time
   int dropped_keyframes = 0;           ///< not processed, in real time
   bool relocalized = false;            ///< keyframes were located in the loaded map
-  /// All keyframes with optimized poses, for later runs: those of a loaded map, which this run extends, and
-  /// of this run. Null if a map was loaded and the run was not located in it.
+  /// All located keyframes with optimized poses, for later runs: those of a loaded map, which this run
+  /// extends, and of this run. Null if a map was loaded and the run was not located in it.
   std::shared_ptr<const KeyframeMap> map;
 };
 

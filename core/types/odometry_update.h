@@ -46,6 +46,9 @@ struct OdometryUpdate {
   /// Pose of the odometry's world in the map, by the loops that are known at this frame (`loop.lag_frames`);
   /// the identity without loop closure. T_m_w * T_w_c is the corrected pose.
   Pose T_m_w;
+  /// Whether T_m_w is known. With loop closure, later segments and runs with a loaded map are located in the
+  /// map by the places that they share with it; until then T_m_w is the identity.
+  bool in_map = true;
   OdometryStatus status = OdometryStatus::kInitializing;
   StatusReason reason = StatusReason::kNone;
   int segment = 0;  ///< number of the world frame; a new one begins after a loss without relocation

@@ -46,7 +46,8 @@ void set_pose(const Pose& T_w_b, const Window& window, DepartedKeyframe& keyfram
 
 }  // namespace
 
-void KeyframeCollector::before_slide(const Window& window, const std::optional<UncertainPose>& oldest_motion) {
+void KeyframeCollector::before_slide(const Window& window,
+                                     const std::optional<UncertainPose>& oldest_motion) {
   oldest_.reset();
   next_.reset();
   oldest_motion_ = oldest_motion;
@@ -87,6 +88,7 @@ void KeyframeCollector::depart(std::int64_t frame, const Pose& T_w_b, const Wind
   const auto found = std::ranges::find(in_window_, frame, &DepartedKeyframe::frame);
   if (found == in_window_.end() || !located_ || !has_moved(T_w_b)) return;
   set_pose(T_w_b, window, *found);
+  found->segment = segment_;
   found->motion_covariance.reset();
   if (motion_) found->motion_covariance = motion_->covariance;
   last_T_w_b_ = T_w_b;
@@ -110,6 +112,14 @@ void KeyframeCollector::discard_missing(const Window& window) {
                 [&](const DepartedKeyframe& keyframe) { return !has_frame(window, keyframe.frame); });
 }
 
+void KeyframeCollector::set_located(bool located, int segment) {
+  located_ = located;
+  if (segment == segment_) return;
+  segment_ = segment;
+  last_T_w_b_.reset();
+  motion_.reset();
+}
+
 std::optional<DepartedKeyframe> KeyframeCollector::take() { return std::exchange(departed_, std::nullopt); }
 
 std::optional<DepartedKeyframe> KeyframeCollector::newest(const Window& window, std::int64_t frame) {
@@ -118,6 +128,7 @@ std::optional<DepartedKeyframe> KeyframeCollector::newest(const Window& window, 
   if (state == window.frames.end()) return std::nullopt;
   DepartedKeyframe copy = unused();
   copy = in_window_.back();
+  copy.segment = segment_;
   copy.motion_covariance.reset();
   set_pose(state->state.T_w_b, window, copy);
   return copy;

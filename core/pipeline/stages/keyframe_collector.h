@@ -26,9 +26,9 @@ class KeyframeCollector {
   /// @param dynamic labels and mask of the same frame
   void after_slide(const Window& window, const TrackedFrame& frame, const DynamicReport& dynamic);
 
-  /// Whether the world of the odometry is still the first one, and the window is located in it: keyframes
-  /// that leave it otherwise are discarded. Call it between the two functions above.
-  void set_located(bool located) { located_ = located; }
+  /// Whether the window is located in the world of this segment: keyframes that leave it otherwise are
+  /// discarded. Call it between the two functions above.
+  void set_located(bool located, int segment);
 
   /// The keyframe that left the window with the last frame, if it is far enough from the one before.
   [[nodiscard]] std::optional<DepartedKeyframe> take();
@@ -52,11 +52,12 @@ class KeyframeCollector {
 
   LoopConfig config_;
   bool located_ = false;
+  int segment_ = 0;
   std::optional<std::int64_t> oldest_;  ///< frame
   Pose oldest_T_w_b_;
   std::optional<std::int64_t> next_;            ///< frame after the oldest one
   std::optional<UncertainPose> oldest_motion_;  ///< from the oldest frame to the next
-  std::optional<Pose> last_T_w_b_;  ///< of the last keyframe that was handed over
+  std::optional<Pose> last_T_w_b_;              ///< of the last keyframe that was handed over
   /// From that keyframe to the oldest frame of the window; absent if a part of it is not known.
   std::optional<UncertainPose> motion_;
   std::vector<DepartedKeyframe> in_window_;

@@ -61,7 +61,7 @@ OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const Dete
     if (keyframes_) keyframes_->before_slide(estimator_.window(), estimator_.oldest_motion());
     estimator_.finish();
     if (keyframes_) {
-      keyframes_->set_located(is_located(update.status) && update.segment == 0);
+      keyframes_->set_located(is_located(update.status), update.segment);
       keyframes_->after_slide(estimator_.window(), frame, dynamic_);
     }
   }

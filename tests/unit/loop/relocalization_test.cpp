@@ -6,58 +6,17 @@
 #include <numbers>
 #include <random>
 
-#include <opencv2/imgproc.hpp>
-
 #include "core/geometry/so3.h"
 #include "core/loop/loop_closure.h"
+#include "tests/unit/loop/painted_wall.h"
 
 namespace stillpoint {
 namespace {
 
-const Camera kCamera{.width = 424, .height = 240, .fx = 305.5, .fy = 305.5, .cx = 211.5, .cy = 119.5};
-constexpr double kPixelsPerMeter = 150.0;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// A wall in the plane z = 0 that extends 16 m along x and 3 m along y, with random rectangles.
-cv::Mat painted_wall(std::uint64_t seed) {
-  cv::RNG random(seed);
-  cv::Mat wall(450, 2400, CV_8UC1, cv::Scalar(128));
-  for (int i = 0; i < 4000; ++i) {
-    const cv::Point corner(random.uniform(0, wall.cols), random.uniform(0, wall.rows));
-    const cv::Size size(random.uniform(6, 60), random.uniform(6, 60));
-    cv::rectangle(wall, cv::Rect(corner, size), cv::Scalar(random.uniform(20, 235)), cv::FILLED);
-  }
-  return wall;
-}
-
-/// The wall as seen by a camera at `T_w_c`; the body is the camera.
-DepartedKeyframe keyframe_at(const cv::Mat& wall, const Pose& T_w_c, std::int64_t frame) {
-  Eigen::Matrix3d K = Eigen::Matrix3d::Identity();
-  K << kCamera.fx, 0.0, kCamera.cx, 0.0, kCamera.fy, kCamera.cy, 0.0, 0.0, 1.0;
-  const Pose T_c_w = T_w_c.inverse();
-  Eigen::Matrix3d from_wall;  // metric wall coordinates to the camera frame
-  from_wall << T_c_w.R().leftCols<2>(), T_c_w.p;
-  const Eigen::Matrix3d H =
-      K * from_wall * Eigen::Vector3d(1.0 / kPixelsPerMeter, 1.0 / kPixelsPerMeter, 1.0).asDiagonal();
-  cv::Mat homography(3, 3, CV_64F);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) homography.at<double>(row, column) = H(row, column);
-  }
-  DepartedKeyframe keyframe{.frame = frame, .t = from_seconds(0.1 * static_cast<double>(frame))};
-  cv::warpPerspective(wall, keyframe.gray, homography, {kCamera.width, kCamera.height}, cv::INTER_AREA);
-  keyframe.depth.create(kCamera.height, kCamera.width, CV_16UC1);
-  for (int v = 0; v < kCamera.height; ++v) {
-    for (int u = 0; u < kCamera.width; ++u) {
-      const Eigen::Vector3d ray((u - kCamera.cx) / kCamera.fx, (v - kCamera.cy) / kCamera.fy, 1.0);
-      const double depth_m = -T_w_c.p.z() / (T_w_c.q * ray).z();
-      keyframe.depth.at<std::uint16_t>(v, u) = cv::saturate_cast<std::uint16_t>(1000.0 * depth_m);
-    }
-  }
-  return keyframe;
-}
-
 KeyframeMap map_of(const cv::Mat& wall) {
-  LoopClosure closure({.enabled = true}, kCamera, false);
+  LoopClosure closure({.enabled = true}, kWallCamera, false);
   for (int i = 0; i < 42; ++i) {
     const Pose T_w_c{Eigen::Quaterniond::Identity(), {1.8 + 0.3 * i, 1.5, -2.5}};
     DepartedKeyframe keyframe = keyframe_at(wall, T_w_c, i);
@@ -85,7 +44,7 @@ SecondRun second_run(const KeyframeMap& map, const cv::Mat& wall, std::mt19937_6
                    10.0 * Eigen::Vector3d(unit(random), unit(random), unit(random))};
   const Eigen::Vector3d start(7.8 + 5.0 * unit(random), 1.5 + 0.15 * unit(random), -2.5 + 0.3 * unit(random));
   const Eigen::Quaterniond turn = exp_so3({0.05 * unit(random), 0.12 * unit(random), 0.05 * unit(random)});
-  LoopClosure closure({.enabled = true}, kCamera, false);
+  LoopClosure closure({.enabled = true}, kWallCamera, false);
   closure.use_map(map);
   // Keyframes are 0.15 m apart; of the current frames, there are 8 in 0.8 s.
   for (int i = 0; i < (keyframes ? 6 : 8); ++i) {
@@ -93,7 +52,7 @@ SecondRun second_run(const KeyframeMap& map, const cv::Mat& wall, std::mt19937_6
     DepartedKeyframe keyframe = keyframe_at(wall, T_w_c, i);
     keyframe.T_w_b = T_o_w * T_w_c;
     const Pose T_m_o = keyframes ? closure.add(keyframe) : closure.locate(keyframe);
-    if (!closure.is_relocalized()) continue;
+    if (!closure.is_located()) continue;
     const Pose error = T_w_c.inverse() * T_m_o * keyframe.T_w_b;
     return {i + 1, error.p.norm(), error.q.angularDistance(Eigen::Quaterniond::Identity()) / kDegree};
   }
@@ -141,7 +100,7 @@ TEST(Relocalization, CurrentFramesOfAnotherPlaceAreNotLocated) {
 TEST(Relocalization, AFrameThatFitsTwoPlacesOfTheMapIsAmbiguous) {
   cv::Mat wall = painted_wall(1);
   wall.colRange(0, 1200).copyTo(wall.colRange(1200, 2400));  // equal halves, 8 m apart
-  LoopClosure closure({.enabled = true}, kCamera, false);
+  LoopClosure closure({.enabled = true}, kWallCamera, false);
   closure.use_map(map_of(wall));
   for (int i = 0; i < 10; ++i) {
     DepartedKeyframe frame =
@@ -149,13 +108,13 @@ TEST(Relocalization, AFrameThatFitsTwoPlacesOfTheMapIsAmbiguous) {
     frame.T_w_b.p.x() = 0.2 * i;
     static_cast<void>(closure.locate(frame));
   }
-  EXPECT_FALSE(closure.is_relocalized());
+  EXPECT_FALSE(closure.is_located());
   EXPECT_GT(std::ranges::count(closure.finish().loops, LoopOutcome::kPairwise, &LoopRecord::outcome), 5);
 }
 
 TEST(Relocalization, TheStartConstrainsTheFirstKeyframe) {
   const cv::Mat wall = painted_wall(1);
-  LoopClosure closure({.enabled = true}, kCamera, false);
+  LoopClosure closure({.enabled = true}, kWallCamera, false);
   closure.use_map(map_of(wall));
   const Pose T_o_w{exp_so3({0.0, 0.0, 1.0}), {3.0, 2.0, 1.0}};
   const auto frame_at = [&](int i, double x_m) {
@@ -165,7 +124,7 @@ TEST(Relocalization, TheStartConstrainsTheFirstKeyframe) {
     return keyframe;
   };
   for (int i = 0; i < 3; ++i) static_cast<void>(closure.locate(frame_at(i, 6.0)));
-  ASSERT_TRUE(closure.is_relocalized());
+  ASSERT_TRUE(closure.is_located());
   for (int i = 3; i < 9; ++i) static_cast<void>(closure.add(frame_at(i, 6.0 + 0.15 * (i - 3))));
   const LoopReport report = closure.finish();
   EXPECT_TRUE(report.relocalized);
@@ -189,7 +148,7 @@ TEST(Relocalization, IsNotLocatedInTheMapOfAnotherPlace) {
 
 TEST(Relocalization, LoopsOfThisRunAreNoPositionInTheMap) {
   const cv::Mat other = painted_wall(2);
-  LoopClosure closure({.enabled = true}, kCamera, false);
+  LoopClosure closure({.enabled = true}, kWallCamera, false);
   closure.use_map(map_of(painted_wall(1)));
   for (int i = 0; i < 16; ++i) {  // two visits, 9 s apart, between which the odometry drifts by 2 cm
     const bool second = i >= 8;
@@ -207,7 +166,7 @@ TEST(Relocalization, LoopsOfThisRunAreNoPositionInTheMap) {
 TEST(Relocalization, TheReportContainsTheKeyframesOfThisRunOnly) {
   const cv::Mat wall = painted_wall(1);
   const KeyframeMap map = map_of(wall);
-  LoopClosure closure({.enabled = true}, kCamera, false);
+  LoopClosure closure({.enabled = true}, kWallCamera, false);
   closure.use_map(map);
   for (int i = 0; i < 4; ++i) {
     const Pose T_w_c{Eigen::Quaterniond::Identity(), {6.0 + 0.15 * i, 1.5, -2.5}};
@@ -225,7 +184,7 @@ TEST(Relocalization, TheReportContainsTheKeyframesOfThisRunOnly) {
 TEST(Relocalization, ALocatedRunExtendsTheMap) {
   const cv::Mat wall = painted_wall(1);
   const KeyframeMap map = map_of(wall);
-  LoopClosure closure({.enabled = true}, kCamera, false);
+  LoopClosure closure({.enabled = true}, kWallCamera, false);
   closure.use_map(map);
   const Pose T_o_w{exp_so3({0.0, 0.0, 1.0}), {3.0, 2.0, 1.0}};
   for (int i = 0; i < 4; ++i) {
@@ -243,7 +202,7 @@ TEST(Relocalization, ALocatedRunExtendsTheMap) {
 }
 
 TEST(Relocalization, ARunThatIsNotLocatedDoesNotExtendTheMap) {
-  LoopClosure closure({.enabled = true}, kCamera, false);
+  LoopClosure closure({.enabled = true}, kWallCamera, false);
   closure.use_map(map_of(painted_wall(1)));
   DepartedKeyframe keyframe =
       keyframe_at(painted_wall(2), {Eigen::Quaterniond::Identity(), {6.0, 1.5, -2.5}}, 0);

@@ -22,13 +22,14 @@ class KeyframeCollectorTest : public testing::Test {
     if (leaves) window_.frames.erase(window_.frames.begin());
     TrackedFrame tracked{.id = id, .t = from_seconds(static_cast<double>(id))};
     tracked.features = {{.id = 1, .pixel = {10.0, 20.0}, .depth = 1.5}, {.id = 4, .pixel = {30.0, 40.0}}};
-    collector_.set_located(located_);
+    collector_.set_located(located_, segment_);
     collector_.after_slide(window_, tracked, {.labels = {{.id = 4, .label = LabelClass::kDynamicMotion}}});
     return collector_.take();
   }
 
   double step_m_;
   bool located_ = true;
+  int segment_ = 0;
   std::optional<UncertainPose> motion_;  ///< of each step
   Window window_;
   KeyframeCollector collector_{LoopConfig{}};
@@ -111,6 +112,17 @@ TEST_F(SlowKeyframeCollectorTest, AStepWithoutCovarianceMakesThatOfTheWholeMotio
 TEST_F(KeyframeCollectorTest, NothingIsHandedOverWhileThePoseIsLost) {
   located_ = false;
   for (std::int64_t id = 0; id < 6; ++id) EXPECT_FALSE(append(id));
+}
+
+TEST_F(KeyframeCollectorTest, TheMotionBetweenSegmentsIsUnknown) {
+  motion_ = UncertainPose{};
+  for (std::int64_t id = 0; id < 4; ++id) append(id);
+  segment_ = 1;
+  const std::optional<DepartedKeyframe> first = append(4);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->segment, 1);
+  EXPECT_FALSE(first->motion_covariance);
+  EXPECT_TRUE(append(5)->motion_covariance);
 }
 
 TEST_F(KeyframeCollectorTest, TheNewestFrameIsCopiedAndStaysInTheWindow) {

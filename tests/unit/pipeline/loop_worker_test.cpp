@@ -100,6 +100,56 @@ TEST(LoopWorker, CurrentFramesAreLocatedInAMapWithinASecondWithAndWithoutAThread
   EXPECT_EQ(threaded.odometry, expected.odometry);
 }
 
+/// Image of the plane at a frame: 0 to 59, in darkness until frame 89, then 10 to 60 and back.
+std::size_t interrupted_index(int k) {
+  const int step = std::max(0, k - 90) % 100;
+  return static_cast<std::size_t>(k < 60 ? k : 10 + std::min(step, 100 - step));
+}
+
+Frame interrupted_frame(const SlidingPlane& plane, int k) {
+  Frame frame = plane.frame(interrupted_index(k));
+  frame.id = k;
+  frame.t = after(Timestamp{1'000'000'000}, k / 30.0);
+  if (k >= 60 && k < 90) frame.gray = cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(90));
+  return frame;
+}
+
+TEST(LoopWorker, AfterALossTheViewThatComesBackIsLocatedInTheSameWorldWithAndWithoutAThread) {
+  constexpr int kEnd = 180;
+  const SlidingPlane plane(kFrames / 2 + 1);
+  std::vector<OdometryUpdate> expected;
+  Odometry odometry(loop_config(10), plane.input().rig);
+  for (int k = 0; k < kEnd; ++k) expected.push_back(odometry.track(interrupted_frame(plane, k)));
+  static_cast<void>(odometry.finish_loops());
+  const OdometryUpdate& last = expected.back();
+  ASSERT_GE(last.segment, 1) << "the odometry recovered by itself";
+  ASSERT_TRUE(is_located(last.status));
+  EXPECT_TRUE(last.in_map);
+  const auto index = static_cast<std::int64_t>(interrupted_index(kEnd - 1));
+  EXPECT_NEAR((last.T_m_w * last.T_w_c).p.x(), SlidingPlane::camera_x_m(index) - SlidingPlane::camera_x_m(0),
+              0.03);
+  for (const OdometryUpdate& update : expected) {
+    // Not before it is located, and never with the correction of another segment.
+    if (!update.in_map) {
+      EXPECT_TRUE(update.T_m_w.p.isZero(0.0)) << update.frame_id;
+    } else if (update.segment > 0) {
+      EXPECT_LT((update.T_m_w.p - last.T_m_w.p).norm(), 0.05) << update.frame_id;
+    }
+  }
+  std::vector<OdometryUpdate> threaded;
+  ThreadedOdometry other(loop_config(10), plane.input().rig,
+                         {.on_update = [&](const OdometryUpdate& update) { threaded.push_back(update); }});
+  other.finish_imu();
+  for (int k = 0; k < kEnd; ++k) other.add_frame(interrupted_frame(plane, k));
+  other.finish();
+  static_cast<void>(other.finish_loops());
+  ASSERT_EQ(threaded.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_EQ(threaded[k].T_m_w.p, expected[k].T_m_w.p) << k;
+    EXPECT_EQ(threaded[k].in_map, expected[k].in_map) << k;
+  }
+}
+
 TEST(LoopWorker, TheOdometryDoesNotDependOnLoopClosure) {
   const SlidingPlane plane(kFrames / 2 + 1);
   OdometryConfig off = loop_config(0);

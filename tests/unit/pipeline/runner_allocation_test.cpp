@@ -84,11 +84,11 @@ TEST(PipelinedRunner, TrackingAndOptimizationAreAllocationFreeBesideLoopClosure)
                                },
                            .on_frame = {},
                            .stop_requested = {}};
-  const RunSummary summary = run_pipelined(
-      motion.input(),
-      config_with({"loop.enabled=true", "loop.min_gap_s=0.3", "loop.min_translation_m=0.05",
-                   "loop.min_votes=5", "loop.min_inliers=12", "loop.lag_frames=10"}),
-      control);
+  const RunSummary summary =
+      run_pipelined(motion.input(),
+                    config_with({"loop.enabled=true", "loop.min_gap_s=0.3", "loop.min_translation_m=0.05",
+                                 "loop.min_votes=5", "loop.min_inliers=12", "loop.lag_frames=10"}),
+                    control);
   ASSERT_EQ(tracking.size(), kFrames);
   EXPECT_GT(summary.loops->keyframes.size(), 20u);
   EXPECT_GT(corrected, kFrames / 2);

@@ -8,11 +8,11 @@ namespace {
 
 Pose at_x(double x) { return {Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}}; }
 
-/// Poses at 1 Hz, 1 m apart.
-Trajectory straight(int count, double scale = 1.0) {
+/// Poses at 1 Hz, 1 m apart, in one segment.
+std::vector<Trajectory> straight(int count, int begin = 0) {
   Trajectory trajectory{.frame = "camera", .poses = {}};
-  for (int k = 0; k < count; ++k) trajectory.poses.push_back({from_seconds(k), at_x(scale * k)});
-  return trajectory;
+  for (int k = 0; k < count; ++k) trajectory.poses.push_back({from_seconds(begin + k), at_x(k)});
+  return {trajectory};
 }
 
 /// A keyframe whose odometry drifted to `x_w`, and is corrected to `x_m`.
@@ -34,8 +34,7 @@ TEST(LoopRun, TheOutputAtAKeyframeIsMovedToItsFinalPose) {
   // The output at 1 s was 1.0 m; the window refined it to 0.9 m, and the loops to 0.8 m. The camera is 0.1 m
   // before the body.
   LoopReport report{.loops = {}, .keyframes = {keyframe(0, -0.1, -0.1), keyframe(1, 0.8, 0.7)}};
-  const Keyframe described{.T_b_c = at_x(0.1)};
-  report.map = std::make_shared<KeyframeMap>(KeyframeMap{{described, described}});
+  for (MapKeyframe& keyframe : report.keyframes) keyframe.T_b_c = at_x(0.1);
   const Trajectory optimized = optimized_trajectory(straight(3), report);
   const std::vector<double> expected = {0.0, 0.8, 1.8};
   ASSERT_EQ(optimized.poses.size(), expected.size());
@@ -45,7 +44,27 @@ TEST(LoopRun, TheOutputAtAKeyframeIsMovedToItsFinalPose) {
 
 TEST(LoopRun, WithoutKeyframesTheTrajectoryIsThatOfTheOdometry) {
   const Trajectory optimized = optimized_trajectory(straight(3), {});
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(optimized.poses[k].T_w_f.p, straight(3).poses[k].T_w_f.p);
+  ASSERT_EQ(optimized.poses.size(), 3u);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(optimized.poses[static_cast<std::size_t>(k)].T_w_f.p, at_x(k).p);
+}
+
+TEST(LoopRun, LaterSegmentsAreMovedIntoTheMapIfTheyAreLocatedInIt) {
+  // The second segment begins at 3 s and 10 m, the third one is not located.
+  std::vector<Trajectory> segments = straight(2);
+  segments.push_back(straight(2, 3).front());
+  segments.push_back(straight(2, 6).front());
+  LoopReport report{.loops = {}, .keyframes = {keyframe(1, 1.0, 0.9), keyframe(3, 0.0, 10.0)}};
+  report.keyframes.back().segment = 1;
+  report.keyframes.push_back(keyframe(6, 0.0, 0.0));
+  report.keyframes.back().segment = 2;
+  report.keyframes.back().is_located = false;
+  const Trajectory optimized = optimized_trajectory(segments, report);
+  const std::vector<std::pair<double, double>> expected = {{0.0, -0.1}, {1.0, 0.9}, {3.0, 10.0}, {4.0, 11.0}};
+  ASSERT_EQ(optimized.poses.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_EQ(optimized.poses[k].t, from_seconds(expected[k].first));
+    EXPECT_NEAR(optimized.poses[k].T_w_f.p.x(), expected[k].second, 1e-12);
+  }
 }
 
 }  // namespace
