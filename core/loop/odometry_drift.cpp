@@ -53,10 +53,6 @@ void OdometryDrift::append(Timestamp t, const Pose& T_w_b, const Matrix6& step) 
 
 Matrix6 OdometryDrift::step(Timestamp t, const Pose& T_w_b,
                             const std::optional<Matrix6>& motion_covariance) const {
-  if (motion_covariance) {
-    return squared(kWindowFactor) * *motion_covariance +
-           diagonal(squared(kMinStepSigma_m), squared(kMinStepSigma_rad));
-  }
   const double distance_m = (T_w_b.p - T_w_b_.back().p).norm();
   // A map may contain several runs, each with a clock of its own.
   const double elapsed_s = std::max(0.0, seconds_between(times_.back(), t));
@@ -64,7 +60,8 @@ Matrix6 OdometryDrift::step(Timestamp t, const Pose& T_w_b,
   const double rotation = squared(kDegree * config_.drift_deg_per_sqrt_m) * distance_m +
                           squared(kDegree * config_.drift_deg_per_sqrt_s) * elapsed_s +
                           squared(kMinStepSigma_rad);
-  return diagonal(position, rotation);
+  const Matrix6 walk = diagonal(position, rotation);
+  return motion_covariance ? Matrix6(walk + squared(kWindowFactor) * *motion_covariance) : walk;
 }
 
 Matrix6 OdometryDrift::covariance(std::size_t i, std::size_t j) const {

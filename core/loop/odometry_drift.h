@@ -2,20 +2,15 @@
 /// Uncertainty of the motion between keyframes by the odometry. The motion between two successive keyframes
 /// has the covariance
 ///
-///   Q = f^2 Q_window + diag(e_p^2, e_r^2)      (p + rho, q * Exp(theta))
+///   Q = diag(s_p^2 d + e_p^2, s_r^2 d + s_t^2 dt + e_r^2) + f^2 Q_window      (p + rho, q * Exp(theta))
 ///
-/// with e_p = 2 mm and e_r = 0.02 degrees, where Q_window is composed of the covariances of the motion from
-/// the oldest frame of the window to the next one, see `WindowSolver::covariance`. f = 3: the window knows
-/// nothing about errors that its frames have in common (calibration, depth, moving objects), and the
-/// published prior counts observations repeatedly. Where Q_window is not known (without `backend.covariance`,
-/// in a loaded map, at the end of a run), Q is that of a random walk over the distance d [m] and the time dt
-/// [s]:
-///
-///   Q = diag(s_p^2 d + e_p^2, s_r^2 d + s_t^2 dt + e_r^2)
-///
-/// with s_p = `loop.drift_m_per_sqrt_m`, s_r = `loop.drift_deg_per_sqrt_m`, s_t =
-/// `loop.drift_deg_per_sqrt_s`. An error (rho, theta) of the motion from k to k+1 moves all later poses by
-/// the displacement v + phi x p of the world with
+/// The first part is a random walk over the distance d [m] and the time dt [s], of errors that the window
+/// does not claim (calibration, depth, moving objects), with s_p = `loop.drift_m_per_sqrt_m`, s_r =
+/// `loop.drift_deg_per_sqrt_m`, s_t = `loop.drift_deg_per_sqrt_s`, e_p = 2 mm, e_r = 0.02 degrees. Q_window
+/// is composed of the covariances of the motion from the oldest frame of the window to the next one, see
+/// `WindowSolver::covariance`; zero where it is not known (without `backend.covariance`, in a loaded map, at
+/// the end of a run). f = 3, as the published prior counts observations repeatedly. An error (rho, theta) of
+/// the motion from k to k+1 moves all later poses by the displacement v + phi x p of the world with
 ///
 ///   phi = R_w,k+1 theta,   v = R_w,k rho - phi x p_k+1
 ///
