@@ -54,6 +54,8 @@ std::string link(const std::string& parent, const std::string& child, const std:
 
 }  // namespace
 
+void write_tum_folder(const TemporaryFolder& folder) { write_tum_folder(folder, 8, 6); }
+
 void write_tum_folder(const TemporaryFolder& folder, int depth_width, int depth_height) {
   std::string color = "# color images\n";
   std::string depth = "# depth maps\n";

@@ -10,7 +10,10 @@ namespace stillpoint {
 
 /// Three 8x6 color images at 1.00, 1.04, 1.08 s, depth images 5 ms later (raw value 5000), and ground truth
 /// along x at 1 m/s from 0.9 to 1.2 s.
-void write_tum_folder(const TemporaryFolder& folder, int depth_width = 8, int depth_height = 6);
+void write_tum_folder(const TemporaryFolder& folder);
+
+/// The same with depth images of another size.
+void write_tum_folder(const TemporaryFolder& folder, int depth_width, int depth_height);
 
 /// Three 8x6 frames at 100.00, 100.04, 100.08 s, gyroscope at 400 Hz and accelerometer at 250 Hz from 99.9 s
 /// on, ground truth of base_link, which is 1 m below the camera.
