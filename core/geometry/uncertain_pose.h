@@ -36,10 +36,14 @@ using Matrix12 = Eigen::Matrix<double, 12, 12>;
 ///
 ///   dp = R_a^T (dp_b - dp_a) + [p_a_b]x dtheta_a,   dtheta = dtheta_b - R_b^T R_a dtheta_a
 ///
+/// @param T_w_a pose that becomes the origin
+/// @param T_w_b pose to be expressed in a
 /// @param joint covariance of (dp_a, dtheta_a, dp_b, dtheta_b)
 [[nodiscard]] UncertainPose relative_pose(const Pose& T_w_a, const Pose& T_w_b, const Matrix12& joint);
 
 /// Squared Mahalanobis distance d^T P^-1 d of two poses, with d = (p_b - p_a, Log(q_a^-1 q_b)).
+/// @param a pose with which d begins
+/// @param b pose with which d ends
 /// @param covariance P of d, positive definite
 [[nodiscard]] double squared_distance(const Pose& a, const Pose& b, const UncertainPose::Matrix6& covariance);
 

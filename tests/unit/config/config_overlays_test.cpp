@@ -132,7 +132,8 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"backend.depth.max_landmark_depth_m", "100.0"},
                                    {"backend.initializer.kind", "\"instant\""},
                                    {"backend.initializer.gyro_bias_sigma", "0.02"},
-                                   {"backend.initializer.accel_bias_sigma", "0.1"}};
+                                   {"backend.initializer.accel_bias_sigma", "0.1"},
+                                   {"loop.min_inliers", "50"}};
 
 TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {
   EXPECT_EQ(config_difference(base("dynamic_vins"), base("stillpoint")), kKeysOfStillpoint);
