@@ -64,7 +64,7 @@ struct DetectorConfig {
   int input_px = 320;                                ///< side of the square network input
   double score_threshold = 0.3;
   double nms_threshold = 0.45;  ///< IoU threshold of the non-maximum suppression
-  int threads = 1;              ///< for inference; OpenCV has one setting per process
+  int threads = 1;  ///< of OpenCV during a run: one setting for inference and all other functions of OpenCV
   SimulatedDetectorConfig simulated;
 };
 template <class Visitor, class Config>

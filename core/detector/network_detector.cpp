@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/core/version.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/base/error.h"
+#include "core/detector/opencv_threads.h"
 #include "core/detector/usable_boxes.h"
 
 namespace stillpoint {
@@ -97,23 +97,6 @@ class ScopedSilentOpencv {
 
  private:
   cv::utils::logging::LogLevel previous_;
-};
-
-/// Number of OpenCV threads during inference only: the setting is global to the process, and the tracker must
-/// not depend on whether there is a network.
-class ScopedOpencvThreads {
- public:
-  explicit ScopedOpencvThreads(int threads) : previous_(cv::getNumThreads()) {
-    if (threads != previous_) cv::setNumThreads(threads);
-  }
-  ~ScopedOpencvThreads() {
-    if (cv::getNumThreads() != previous_) cv::setNumThreads(previous_);
-  }
-  ScopedOpencvThreads(const ScopedOpencvThreads&) = delete;
-  ScopedOpencvThreads& operator=(const ScopedOpencvThreads&) = delete;
-
- private:
-  int previous_;
 };
 
 /// Error message of OpenCV without line breaks.

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/detector/opencv_threads.h"
 #include "core/pipeline/assembly.h"
 #include "core/pipeline/loop_worker.h"
 #include "core/pipeline/runners/device_cores.h"
@@ -204,6 +205,7 @@ RunSummary run_on_device(const SensorInput& input, const OdometryConfig& config,
                          const DeviceClock& clock) {
   if (!(clock.speed > 0.0)) throw InputError("--speed", "must be larger than 0; 1 is as recorded");
   if (input.frame_times.empty()) return {};
+  const ScopedOpencvThreads threads(config.detector.threads);
   return DeviceRun(input, config, control, clock).run();
 }
 

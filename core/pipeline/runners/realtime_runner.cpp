@@ -6,6 +6,7 @@
 #include "core/base/bounded_channel.h"
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
+#include "core/detector/opencv_threads.h"
 #include "core/pipeline/assembly.h"
 #include "core/pipeline/loop_worker.h"
 #include "core/pipeline/runners/detection_queue.h"
@@ -165,6 +166,7 @@ class RealtimeRun {
 RunSummary run_realtime(const SensorInput& input, const OdometryConfig& config, const RunControl& control,
                         double speed) {
   if (!(speed > 0.0)) throw InputError("--speed", "must be larger than 0; 1 is as recorded");
+  const ScopedOpencvThreads threads(config.detector.threads);
   return RealtimeRun(input, config, control, speed).run();
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/detector/opencv_threads.h"
 #include "core/pipeline/assembly.h"
 #include "core/pipeline/odometry.h"
 #include "core/pipeline/runners/runner_parts.h"
@@ -17,6 +18,7 @@ int RealtimeReport::deadline_misses() const {
 }
 
 RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config, const RunControl& control) {
+  const ScopedOpencvThreads threads(config.detector.threads);
   const std::unique_ptr<ObjectDetector> detector = make_detector(input, config);
   Odometry odometry(config, input.rig);
   if (input.map) odometry.use_map(*input.map);
@@ -45,6 +47,7 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
 }
 
 RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config, const RunControl& control) {
+  const ScopedOpencvThreads threads(config.detector.threads);
   const std::unique_ptr<ObjectDetector> detector = make_detector(input, config);
   int resets = 0;  // written by the optimization thread
   ThreadedOdometry odometry(config, input.rig,

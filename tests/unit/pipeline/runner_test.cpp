@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "core/base/error.h"
+#include "core/detector/opencv_threads.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/simulated/sliding_plane.h"
 #include "tests/support/simulated/visual_config.h"
@@ -51,6 +54,28 @@ TEST(Runner, RealtimeReportsAPoseForEachFrameThatWasNotDropped) {
   EXPECT_EQ(recorder.positions.size() + static_cast<std::size_t>(summary.realtime->dropped), kFrames);
   EXPECT_EQ(summary.realtime->latencies_ms.size(), recorder.positions.size());
   EXPECT_NEAR(summary.realtime->deadline_ms, 33.333 / 20.0, 0.001);
+}
+
+/// Numbers of OpenCV threads that a run shows if the process has `before` and the config asks for `wanted`.
+std::set<int> opencv_threads_in(decltype(&run_sequential) run, int before, int wanted) {
+  const SlidingPlane plane(kFrames);
+  const ScopedOpencvThreads of_process(before);
+  OdometryConfig config = visual_config();
+  config.detector.threads = wanted;
+  std::set<int> seen;
+  static_cast<void>(run(plane.input(), config,
+                        {.on_update = [&](const OdometryUpdate&) { seen.insert(cv::getNumThreads()); },
+                         .on_frame = {},
+                         .stop_requested = {}}));
+  EXPECT_EQ(cv::getNumThreads(), before);
+  return seen;
+}
+
+TEST(Runner, KeepsTheNumberOfOpencvThreadsOfTheConfigDuringTheWholeRun) {
+  for (const auto run : {&run_sequential, &run_pipelined}) {
+    EXPECT_EQ(opencv_threads_in(run, 2, 1), std::set{1});
+    EXPECT_EQ(opencv_threads_in(run, 1, 2), std::set{2});
+  }
 }
 
 TEST(Runner, SkipsAndReportsFramesThatCannotBeRead) {
