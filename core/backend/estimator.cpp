@@ -31,7 +31,7 @@ ImuNoise scaled(const ImuNoise& noise, double factor) {
 MonitorOptions monitor_options(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed) {
   return {.uses_imu = imu.enabled,
           .inlier_threshold = kLocalizationInlier_px / rig.camera.focal_px(),
-          .bearing_sigma = backend.pixel_sigma_px / rig.camera.focal_px(),
+          .bearing_sigma = backend.feature_sigma_px / rig.camera.focal_px(),
           .max_dead_reckoning_s = backend.max_dead_reckoning_s,
           .max_relocalization_s = backend.max_relocalization_s,
           .seed = static_cast<std::uint32_t>(seed)};

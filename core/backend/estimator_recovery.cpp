@@ -212,7 +212,7 @@ void Estimator::assess_newest() {
   }
   known_points_ = known_points(window_, backend_.depth, std::move(known_points_));
   evidence_.vision = assess_vision(known_points_, window_.T_w_c(window_.newest()),
-                                   backend_.pixel_sigma_px / rig_.camera.focal_px());
+                                   backend_.feature_sigma_px / rig_.camera.focal_px());
   evidence_.located =
       evidence_.vision.is_located(window_.inertial && evidence_.imu_defect == StatusReason::kNone);
 }

@@ -77,7 +77,7 @@ void initialize_depths(const BackendConfig& config, double focal_px, Window& win
       landmark.source = depth > 0.0 ? DepthSource::kMeasured : DepthSource::kNone;
     }
     if (depth <= 0.0) {
-      depth = triangulate_depth(window, landmark, config.pixel_sigma_px / focal_px);
+      depth = triangulate_depth(window, landmark, config.feature_sigma_px / focal_px);
       landmark.source = depth > 0.0 ? DepthSource::kTriangulated : DepthSource::kNone;
     }
     if (depth >= config.depth.min_m && depth <= config.depth.max_landmark_depth_m)

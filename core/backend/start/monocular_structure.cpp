@@ -98,7 +98,7 @@ class Structure {
       : window_(window),
         config_(config),
         focal_px_(focal_px),
-        bearing_sigma_(config.pixel_sigma_px / focal_px) {}
+        bearing_sigma_(config.feature_sigma_px / focal_px) {}
 
   // The steps of `reconstruct_window`, in this order; false if a step fails.
   [[nodiscard]] Points triangulate_reference_pair(const Reference& reference);

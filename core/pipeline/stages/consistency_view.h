@@ -20,10 +20,10 @@ namespace stillpoint {
 }
 
 /// All features observed in the newest frame, of any label, with the current poses of the window.
-/// @param pixel_sigma_px standard deviation of a feature position [px]
+/// @param feature_sigma_px standard deviation of a feature position [px]
 /// @param recycled a result that is no longer needed; its memory is reused
 [[nodiscard]] inline ConsistencyView consistency_view(const Window& window, double focal_px,
-                                                      double pixel_sigma_px, ConsistencyView recycled) {
+                                                      double feature_sigma_px, ConsistencyView recycled) {
   ConsistencyView view = std::move(recycled);
   view.focal_px = focal_px;
   view.T_w_c.clear();
@@ -33,7 +33,7 @@ namespace stillpoint {
   for (const Landmark& landmark : window.landmarks) {
     if (landmark.last() != window.newest()) continue;
     view.features.push_back({.id = landmark.id,
-                             .inverse_depth = inverse_depth_of(window, landmark, pixel_sigma_px / focal_px),
+                             .inverse_depth = inverse_depth_of(window, landmark, feature_sigma_px / focal_px),
                              .first = view.observations.size(),
                              .count = landmark.observations.size()});
     for (int frame = landmark.host; frame <= landmark.last(); ++frame) {

@@ -33,7 +33,7 @@ std::vector<std::int64_t> dynamic_ids(const std::vector<DynamicLabel>& labels,
 
 OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& rig)
     : config_(config.dynamic),
-      pixel_sigma_px_(config.backend.pixel_sigma_px),
+      feature_sigma_px_(config.backend.feature_sigma_px),
       camera_(rig.camera),
       perturbation_(config.pipeline.perturbation_seed, rig.camera.focal_px()),
       estimator_(config.backend, config.imu, rig, config.seed),
@@ -138,7 +138,7 @@ void OptimizationStage::check_motion_after_solve() {
 }
 
 const ConsistencyView& OptimizationStage::update_view() {
-  view_ = consistency_view(estimator_.window(), camera_.focal_px(), pixel_sigma_px_, std::move(view_));
+  view_ = consistency_view(estimator_.window(), camera_.focal_px(), feature_sigma_px_, std::move(view_));
   return view_;
 }
 

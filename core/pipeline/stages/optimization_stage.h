@@ -59,7 +59,7 @@ class OptimizationStage {
   void reset_recognition();
 
   DynamicConfig config_;
-  double pixel_sigma_px_;
+  double feature_sigma_px_;
   Camera camera_;
   InputPerturbation perturbation_;
   Estimator estimator_;

@@ -58,21 +58,24 @@ TEST(ConfigOverlays, DepthBandSetsTheMaskOfStillpoint) {
   EXPECT_EQ(changes("stillpoint", "depth_band"), Entries{});
 }
 
-TEST(ConfigOverlays, ConsistentPriorAndInertialTimeOffsetChangeNothingElse) {
-  EXPECT_EQ(changes("stillpoint", "consistent_prior"),
-            (Entries{{"backend.prior", "\"consistent\""}, {"backend.time_offset_walk", "0.001"}}));
-  expect_one_change("inertial_time_offset", {"backend.time_offset_model", "\"inertial\""});
+TEST(ConfigOverlays, PublishedPriorTakesThePriorOfDynamicVins) {
+  EXPECT_EQ(changes("stillpoint", "published_prior"), (Entries{{"backend.pixel_sigma_px", "1.5"},
+                                                               {"backend.prior", "\"published\""},
+                                                               {"backend.time_offset_model", "\"bearing\""},
+                                                               {"backend.time_offset_walk", "0.0"}}));
+  EXPECT_EQ(changes("dynamic_vins", "published_prior"), Entries{});
 }
 
-TEST(ConfigOverlays, ConsistentAddsTheTruePixelNoiseToThem) {
-  Entries expected = changes("stillpoint", "consistent_prior+inertial_time_offset");
-  expected.insert(expected.begin(), {"backend.pixel_sigma_px", "0.5"});
-  EXPECT_EQ(changes("stillpoint", "consistent"), expected);
+TEST(ConfigOverlays, BearingTimeOffsetIsThatOfDynamicVins) {
+  EXPECT_EQ(changes("stillpoint", "bearing_time_offset"),
+            (Entries{{"backend.time_offset_model", "\"bearing\""}}));
+  EXPECT_EQ(changes("dynamic_vins", "bearing_time_offset"), Entries{});
 }
 
 TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
-  EXPECT_EQ(changes("stillpoint", "vo"),
-            (Entries{{"imu.enabled", "false"}, {"backend.keyframe_min_shared_ratio", "0.7"}}));
+  EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"},
+                                                  {"backend.keyframe_min_shared_ratio", "0.7"},
+                                                  {"backend.pixel_sigma_px", "1.5"}}));
 }
 
 TEST(ConfigOverlays, DynamicVinsVoHasThePublishedTumSettings) {
@@ -114,14 +117,18 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"dynamic.min_stable_features", "20"},
                                    {"backend.rate_hz", "0.0"},
                                    {"backend.keyframe_min_shared_ratio", "0.5"},
+                                   {"backend.pixel_sigma_px", "0.5"},
                                    {"backend.reprojection_error_px", "0.5"},
                                    {"backend.solver", "\"schur\""},
                                    {"backend.max_iterations", "4"},
                                    {"backend.keyframe_max_interval_s", "0.5"},
                                    {"backend.gravity", "\"estimated\""},
+                                   {"backend.prior", "\"consistent\""},
                                    {"backend.covariance", "true"},
                                    {"backend.bias_steps", "true"},
+                                   {"backend.time_offset_model", "\"inertial\""},
                                    {"backend.time_offset_sigma_s", "0.01"},
+                                   {"backend.time_offset_walk", "0.001"},
                                    {"backend.time_offset_bound_s", "0.15"},
                                    {"backend.extrinsics_bound_m", "0.1"},
                                    {"backend.extrinsics_bound_rad", "0.2"},

@@ -120,10 +120,9 @@ TEST_P(OptimizationStageWith, IsAllocationFreeInTheSteadyState) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Settings, OptimizationStageWith,
-                         testing::Values("", "vo", "consistent_prior+inertial_time_offset"),
+                         testing::Values("", "vo", "bearing_time_offset", "published_prior"),
                          [](const auto& variant) {
-                           if (variant.param.empty()) return "Inertial";
-                           return variant.param == "vo" ? "Visual" : "Consistent";
+                           return variant.param.empty() ? "stillpoint" : variant.param;
                          });
 
 }  // namespace
