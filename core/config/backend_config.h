@@ -145,10 +145,10 @@ struct BackendConfig {
   double keyframe_min_shared_ratio = 0.5;  ///< same, relative to all static features; 0 = off, as in the
                                            ///< published code (there dynamic features add parallax)
   double pixel_sigma_px = 1.5;             ///< standard deviation of a reprojection residual
-  double feature_sigma_px = 1.5;           ///< same of a feature position, for decisions: triangulation, inliers
-                                           ///< of a pose, moving consistency
-  double reprojection_error_px = 0.0;      ///< nominal median; a larger one inflates pixel_sigma_px; 0 = off
-  double cauchy_scale = 1.0;               ///< scale of the Cauchy loss, in standard deviations
+  double feature_sigma_px = 1.5;       ///< same of a feature position, for decisions: triangulation, inliers
+                                       ///< of a pose, moving consistency
+  double reprojection_error_px = 0.0;  ///< nominal median; a larger one inflates pixel_sigma_px; 0 = off
+  double cauchy_scale = 1.0;           ///< scale of the Cauchy loss, in standard deviations
   WindowSolverKind solver = WindowSolverKind::kCeres;  ///< both minimize the same residuals
   int max_iterations = 8;
   double function_tolerance = 1e-6;      ///< relative change of the cost at which the solve stops

@@ -9,6 +9,9 @@ namespace stillpoint {
 
 static_assert(alignof(Eigen::Quaterniond) == 16,
               "compile with EIGEN_MAX_ALIGN_BYTES=16: the library is, and both must lay out poses alike");
+static_assert(
+    EIGEN_MALLOC_ALREADY_ALIGNED == 0,
+    "compile with EIGEN_MALLOC_ALREADY_ALIGNED=0: the library is, and both must free matrices alike");
 
 /// Rotation and translation [m]; code that sets `q` must keep it normalized.
 struct Pose {

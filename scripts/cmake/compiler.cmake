@@ -42,7 +42,8 @@ if(stillpoint_march)
   target_compile_options(stillpoint_options INTERFACE -march=${stillpoint_march})
 endif()
 # Debian's Ceres is built for baseline x86-64: its Eigen aligns to 16 bytes, so must ours. One thread per stage.
-target_compile_definitions(stillpoint_options INTERFACE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_DONT_PARALLELIZE)
+target_compile_definitions(stillpoint_options INTERFACE EIGEN_MAX_ALIGN_BYTES=16
+                           EIGEN_MALLOC_ALREADY_ALIGNED=0 EIGEN_DONT_PARALLELIZE)
 target_compile_options(stillpoint_options INTERFACE -fno-math-errno -fno-trapping-math)
 if(STILLPOINT_SANITIZE)
   target_compile_options(stillpoint_options INTERFACE -fsanitize=${STILLPOINT_SANITIZE} -fno-omit-frame-pointer)

@@ -26,8 +26,10 @@ function(stillpoint_component name)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE}
                         INTERFACE $<BUILD_INTERFACE:stillpoint_options>)
   target_compile_features(${target} INTERFACE cxx_std_20)
-  # Eigen aligns by -march unless told; poses that cross the border must have one layout on both sides.
-  target_compile_definitions(${target} INTERFACE $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16>)
+  # Eigen aligns and allocates by -march unless told: poses and matrices that cross the border must have one layout, and
+  # one way to be freed, on both sides.
+  target_compile_definitions(${target} INTERFACE
+                             $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=0>)
   install(TARGETS ${target} EXPORT stillpoint_${name} COMPONENT library
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT stillpoint_${name} NAMESPACE stillpoint:: DESTINATION ${stillpoint_package_folder} COMPONENT library)

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/ceres_residuals.h"
 
-#include <ceres/normal_prior.h>
-
 #include "core/backend/factors/imu_factor.h"
 #include "core/backend/factors/prior_factor.h"
 #include "core/backend/factors/reprojection_factor.h"
+#include "core/backend/factors/zero_velocity_factor.h"
 
 namespace stillpoint {
 namespace {
@@ -99,9 +98,7 @@ void ResidualBuilder::add_imu(int frame) {
 
 void ResidualBuilder::add_zero_velocity(int frame) {
   if (!window_.inertial || !window_.frames[static_cast<std::size_t>(frame)].at_rest) return;
-  ceres::Matrix selection = ceres::Matrix::Zero(3, 9);
-  selection.diagonal().setConstant(1.0 / config_.zero_velocity.sigma_m_per_s);
-  residuals_.push_back({std::make_unique<ceres::NormalPrior>(selection, ceres::Vector::Zero(9)),
+  residuals_.push_back({std::make_unique<ZeroVelocityFactor>(config_.zero_velocity.sigma_m_per_s),
                         nullptr,
                         {{BlockKind::kSpeedBias, frame}},
                         -1});

@@ -14,9 +14,9 @@ namespace stillpoint::synth {
 /// Pose and its derivatives at one time.
 struct BodyMotion {
   Pose T_w_b;
-  Eigen::Vector3d velocity_w;      ///< [m/s]
-  Eigen::Vector3d acceleration_w;  ///< [m/s^2], without gravity
-  Eigen::Vector3d rate_b;          ///< angular rate in the body frame [rad/s]
+  Eigen::Vector3d velocity_w = Eigen::Vector3d::Zero();      ///< [m/s]
+  Eigen::Vector3d acceleration_w = Eigen::Vector3d::Zero();  ///< [m/s^2], without gravity
+  Eigen::Vector3d rate_b = Eigen::Vector3d::Zero();          ///< angular rate in the body frame [rad/s]
 };
 
 /// Specific force [m/s^2] that an ideal accelerometer measures at `motion`: R_b_w * (a - g).
