@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "bench/store/store.h"
+#include "tests/support/sequences/rendered_sequence.h"
 #include "tests/support/sequences/replay_bench.h"
 
 namespace stillpoint {
@@ -97,6 +98,43 @@ TEST(BenchKill, TwentyKillsGiveTheSameStoreAsAnUninterruptedBenchmark) {
   EXPECT_GE(finished, static_cast<std::size_t>(kRuns));
   EXPECT_LE(finished,
             static_cast<std::size_t>(kRuns + 2 * kKills));  // each kill repeats at most the two active runs
+}
+
+/// By key: what loop closure adds to a run, and its trajectory.
+std::map<std::string, std::vector<std::string>> loops_of(const fs::path& file) {
+  std::map<std::string, std::vector<std::string>> content;
+  for (const bench::StoredRun& run : bench::Store(file).runs()) {
+    std::vector<std::string>& values = content[run.key];
+    values = {bench::outcome_name(run.outcome), run.blobs.at("trajectory")};
+    for (const char* metric : {"ate_rmse_m", "ate_loop_m", "ate_optimized_m", "loops", "loop_keyframes"})
+      values.push_back(std::to_string(bench::metric_value(run, metric).value()));
+  }
+  return content;
+}
+
+TEST(BenchKill, KilledRunsWithLoopClosureAreRepeated) {
+  const TemporaryFolder folder;
+  static_cast<void>(copy_of_rendered_sequence(folder));
+  const fs::path config = folder.write(
+      "loops.toml", "[loop]\nenabled = true\nmin_gap_s = 0.5\nmin_translation_m = 0.02\nmin_inliers = 20\n");
+  const fs::path plan = folder.write("plan.toml", "repetitions = 6\nvariants = [\"vo+" + config.string() +
+                                                      "\"]\n[recorded]\nsequences = [\"copy\"]\n");
+  const fs::path uninterrupted = folder.path() / "uninterrupted.sqlite";
+  const auto start = std::chrono::steady_clock::now();
+  const ProgramResult whole = replay_bench(folder, plan, uninterrupted);
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  const std::chrono::duration<double, std::milli> whole_ms = std::chrono::steady_clock::now() - start;
+
+  const fs::path killed = folder.path() / "killed.sqlite";
+  int interrupted = 0;
+  for (const double fraction : {0.2, 0.35, 0.5})
+    interrupted += kill_after(folder, plan, killed, static_cast<int>(fraction * whole_ms.count())) ? 1 : 0;
+  EXPECT_GE(interrupted, 1);
+  ASSERT_EQ(replay_bench(folder, plan, killed).exit_code, 0);
+  const auto content = loops_of(uninterrupted);
+  ASSERT_EQ(content.size(), 6U);
+  EXPECT_GT(std::stod(content.begin()->second[5]), 0.0) << "the sequence has no loop";
+  EXPECT_EQ(content, loops_of(killed));
 }
 
 TEST(BenchKill, TheSecondCallExecutesNothing) {
