@@ -90,6 +90,7 @@ FaultyScenario random_scenario(int seed) {
   scenario.seconds = kSeconds;
   scenario.motion.points = 80;
   scenario.uses_imu = random.uniform(0.0, 1.0) < 0.75;
+  if (seed % 4 != 0) use_consistent_prior(scenario.backend);
   if (random.uniform(0.0, 1.0) < 0.25) {
     scenario.backend = BackendConfig{};
     scenario.backend.rate_hz = 0.0;

@@ -15,7 +15,8 @@ namespace stillpoint {
 inline constexpr double kBegin_s = 4.0;  ///< of faults
 inline constexpr double kEnd_s = 100.0;  ///< after the runs
 
-/// The settings of bench/configs/stillpoint.toml that matter to the backend.
+/// The settings of bench/configs/stillpoint.toml that matter to the backend, with the overlay
+/// published_prior: the limits of the scenarios were set with it.
 inline BackendConfig default_backend() {
   BackendConfig config;
   config.rate_hz = 0.0;
@@ -27,6 +28,14 @@ inline BackendConfig default_backend() {
   config.initializer.kind = InitializerKind::kInstant;
   config.covariance = true;
   return config;
+}
+
+/// Without that overlay.
+inline void use_consistent_prior(BackendConfig& config) {
+  config.prior = PriorModel::kConsistent;
+  config.pixel_sigma_px = 0.5;
+  config.time_offset_model = TimeOffsetModel::kInertial;
+  config.time_offset_walk = 0.001;
 }
 
 struct FaultyScenario {
