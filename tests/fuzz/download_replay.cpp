@@ -34,16 +34,20 @@ std::string archive_seed(const std::string& name, const std::vector<TestEntry>& 
   return {std::istreambuf_iterator<char>(input), {}};
 }
 
-std::vector<std::string> seeds() {
-  std::vector<std::string> all{"", "HTTP/1.1 206 x\r\nContent-Range: bytes 0-9/10\r\nETag: \"a\"\r\n",
-                               "name = \"d\"\ntitle = \"t\"\nlicence = \"l\"\nlayout = \"tum\"\n"
-                               "urls = [\"https://h/{}\"]\n[[sequences]]\nmembers = [\"a\", \"b\"]\n"
-                               "files = [\"{}.tgz\"]\n[archives.\"a.tgz\"]\nbytes = 1\n"};
+std::vector<std::string> archives() {
   const std::vector<TestEntry> entries{{"a/rgb.txt", "1 rgb/1.png"}, {"a/rgb/1.png", std::string(300, 'x')}};
+  std::vector<std::string> all;
   for (const char* name : {"a.tar", "a.tgz", "a.tar.xz", "a.tar.bz2", "a.zip", "a.7z"})
     all.push_back(archive_seed(name, entries));
   all.push_back(archive_seed("b.zip", {{"a.zip", archive_seed("a.zip", entries)}}));
   return all;
+}
+
+std::vector<std::string> headers_and_catalogues() {
+  return {"", "HTTP/1.1 206 x\r\nContent-Range: bytes 0-9/10\r\nETag: \"a\"\r\n",
+          "name = \"d\"\ntitle = \"t\"\nlicence = \"l\"\nlayout = \"tum\"\n"
+          "urls = [\"https://h/{}\"]\n[[sequences]]\nmembers = [\"a\", \"b\"]\n"
+          "files = [\"{}.tgz\"]\n[archives.\"a.tgz\"]\nbytes = 1\n"};
 }
 
 /// One mutation: a changed byte, or a removed or duplicated substring.
@@ -62,19 +66,24 @@ std::string mutated(std::string bytes, std::mt19937& random) {
   }
 }
 
-/// STILLPOINT_FUZZ_SECONDS extends the test, e.g. under the address sanitizer.
-TEST(DownloadTarget, MutatedSeedsAreAcceptedOrRejected) {
+/// STILLPOINT_FUZZ_SECONDS extends each test, e.g. under the address sanitizer.
+void expect_accepted_or_rejected(const std::vector<std::string>& seeds) {
   const char* const seconds = std::getenv("STILLPOINT_FUZZ_SECONDS");
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::seconds(seconds == nullptr ? 0 : std::atoi(seconds));
-  const std::vector<std::string> all = seeds();
   std::mt19937 random(1);
   for (int round = 0; round < 100 || std::chrono::steady_clock::now() < end; ++round) {
-    for (std::string bytes : all) {
+    for (std::string bytes : seeds) {
       for (int i = 0; i < round % 5; ++i) bytes = mutated(std::move(bytes), random);
       ASSERT_EQ(LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), 0);
     }
   }
+}
+
+TEST(DownloadTarget, MutatedArchivesAreAcceptedOrRejected) { expect_accepted_or_rejected(archives()); }
+
+TEST(DownloadTarget, MutatedHeadersAndCataloguesAreAcceptedOrRejected) {
+  expect_accepted_or_rejected(headers_and_catalogues());
 }
 
 }  // namespace
