@@ -224,6 +224,7 @@ void Estimator::compute_covariance() {
       solver_->covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), oldest_leaves);
   if (!covariance) return;
   update_.covariance = covariance->newest;
+  contradiction_.add_to(*update_.covariance, window_.frames.back().state.t);
   oldest_motion_ = covariance->oldest_motion;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/backend/health/bias_check.h"
+#include "core/backend/health/contradiction.h"
 #include "core/backend/health/depth_scale.h"
 #include "core/backend/health/inertial_check.h"
 #include "core/backend/health/inertial_interval.h"
@@ -147,6 +148,7 @@ class Estimator {
   InertialCheck inertial_check_;
   StepCheck step_check_;
   BiasCheck bias_check_;
+  Contradiction contradiction_;                   ///< of the sensors, by the checks of the biases
   std::optional<Timestamp> biases_differ_since_;  ///< by successive checks of the biases
   std::optional<Timestamp> biases_agree_since_;   ///< same
   DepthScale depth_scale_;

@@ -110,6 +110,12 @@ void Estimator::check_biases() {
   const BiasCheck::Result result = bias_check_.update(window_, imu_);
   if (result == BiasCheck::Result::kUnknown) return;
   const Timestamp t = newest.state.t;
+  if (result == BiasCheck::Result::kDiffers || result == BiasCheck::Result::kDoubtful) {
+    contradiction_.begin_or_continue(bias_check_.measured(), newest.state);
+  } else {
+    contradiction_.end();
+  }
+  if (result == BiasCheck::Result::kDoubtful) return;
   std::optional<Timestamp>& since =
       result == BiasCheck::Result::kAgrees ? biases_agree_since_ : biases_differ_since_;
   if (!since) since = t;
@@ -196,6 +202,7 @@ bool Estimator::update_status() {
   evidence_.inertial = window_.inertial;
   evidence_.has_start = uses_imu() ? window_.inertial : has_metric_scale();
   evidence_.located = false;
+  evidence_.contradiction = contradiction_.holds_at(evidence_.t);
   if (update_.covariance) evidence_.sigma_m = largest_sigma(update_.covariance->position());
   const bool alive = evidence_.failure == StatusReason::kNone;
   if (alive && localized_ && !window_.frames.empty()) assess_newest();
@@ -241,6 +248,7 @@ void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   inertial_check_.reset();
   step_check_.reset();
   bias_check_.reset();
+  contradiction_.end();
   biases_differ_since_.reset();
   biases_agree_since_.reset();
 }

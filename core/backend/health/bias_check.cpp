@@ -108,10 +108,10 @@ BiasCheck::Result BiasCheck::update(const Window& window, ImuBuffer& imu) {
   const BiasError gyro = gyro_bias_error(*newest, state), accel = accel_bias_error(*newest, state);
   const bool agrees = !gyro.exceeds(kGyroAgreement) && !accel.exceeds(kAccelAgreement);
   if (!agrees && is_step(measured_, state)) return Result::kStep;
-  if (!newest->certain) return Result::kUnknown;
+  const bool differs = gyro.exceeds(kGyroDifference) || accel.exceeds(kAccelDifference);
+  if (!newest->certain) return differs ? Result::kDoubtful : Result::kUnknown;
   if (agrees) return Result::kAgrees;
-  if (!gyro.exceeds(kGyroDifference) && !accel.exceeds(kAccelDifference)) return Result::kUnknown;
-  return Result::kDiffers;
+  return differs ? Result::kDiffers : Result::kUnknown;
 }
 
 std::optional<MeasuredBiases> BiasCheck::measure(const Window& window, ImuBuffer& imu) {

@@ -38,7 +38,8 @@ struct MeasuredBiases {
 /// m/s^2, plus one s, are agreement if vision is certain.
 class BiasCheck {
  public:
-  enum class Result { kUnknown, kAgrees, kDiffers, kStep };
+  /// kDoubtful: they differ, but vision is not certain, so that it may be wrong itself
+  enum class Result { kUnknown, kAgrees, kDoubtful, kDiffers, kStep };
 
   /// @param focal_px of the camera, > 0
   explicit BiasCheck(double focal_px)
@@ -50,8 +51,8 @@ class BiasCheck {
                 .min_agreeing = 20}) {}
 
   /// Processes the newest frame of an inertial window.
-  /// @return kUnknown if it is too early for another check, vision is not certain and there is no step, or
-  /// the error is neither
+  /// @return kUnknown if it is too early for another check, or the error is neither; without certain vision
+  /// kUnknown, kDoubtful or kStep
   [[nodiscard]] Result update(const Window& window, ImuBuffer& imu);
 
   /// The biases measured last; after a result other than kUnknown.

@@ -40,6 +40,7 @@ TrackingMonitor::Decision TrackingMonitor::decide_located(const FrameEvidence& e
   if (relocated_ || status_ == kLost) return {kRelocated, StatusReason::kMapMatched};
   if (options_.uses_imu && !evidence.inertial) return {kDegraded, StatusReason::kNoInertialStart};
   if (evidence.imu_defect != StatusReason::kNone) return {kDegraded, evidence.imu_defect};
+  if (evidence.contradiction) return {kDegraded, StatusReason::kImuInconsistent};
   if (evidence.vision.has_few_features()) return {kDegraded, StatusReason::kFewFeatures};
   if (evidence.vision.has_weak_geometry()) return {kDegraded, StatusReason::kWeakGeometry};
   return {kTracking, StatusReason::kNone};

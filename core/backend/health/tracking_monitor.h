@@ -22,6 +22,7 @@ struct FrameEvidence {
   double sigma_m =
       0.0;  ///< standard deviation of the position along its least certain direction; 0 = unknown
   StatusReason imu_defect = StatusReason::kNone;
+  bool contradiction = false;  ///< inertial data and vision differ; which of them is wrong is not known
   StatusReason failure = StatusReason::kNone;  ///< the window was cleared because of it
 };
 
