@@ -166,12 +166,15 @@ class RunRecorder {
     EstimatedCalibration& calibration = run_.calibration;
     calibration.time_offset_s = update.time_offset_s;
     calibration.depth_scale = update.depth_scale;
+    calibration.T_b_c = update.state.T_w_b.inverse() * update.T_w_c;
     calibration.time_offset_at_bound += update.at_bound.time_offset;
     calibration.extrinsics_at_bound += update.at_bound.extrinsics;
     calibration.depth_scale_at_bound += update.at_bound.depth_scale;
     if (!update.covariance) return;
     calibration.time_offset_sigma_s = std::sqrt(update.covariance->time_offset);
     calibration.depth_scale_sigma = std::sqrt(update.covariance->depth_scale);
+    calibration.extrinsics_sigma_m = largest_sigma(update.covariance->extrinsics.topLeftCorner<3, 3>());
+    calibration.extrinsics_sigma_rad = largest_sigma(update.covariance->extrinsics.bottomRightCorner<3, 3>());
   }
 
   void record_spans(const OdometryUpdate& update) {

@@ -57,8 +57,10 @@ struct FrameSpan {
 struct EstimatedCalibration {
   double time_offset_s = 0.0;
   double depth_scale = 1.0;
-  /// Standard deviations, if `backend.covariance` is on; zero if constant.
-  std::optional<double> time_offset_sigma_s, depth_scale_sigma;
+  Pose T_b_c;  ///< extrinsics
+  /// Standard deviations, if `backend.covariance` is on; zero if constant. Those of the extrinsics are along
+  /// the least certain direction.
+  std::optional<double> time_offset_sigma_s, depth_scale_sigma, extrinsics_sigma_m, extrinsics_sigma_rad;
   int time_offset_at_bound = 0;  ///< number of frames in which the value was at its bound
   int extrinsics_at_bound = 0;   ///< same
   int depth_scale_at_bound = 0;  ///< same

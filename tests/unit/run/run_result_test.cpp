@@ -101,6 +101,18 @@ TEST(RunResult, WarnsOfACalibrationAtItsBound) {
   EXPECT_DOUBLE_EQ(json["calibration"]["depth_scale"], 1.0);
 }
 
+TEST(RunResult, ContainsTheEstimatedExtrinsics) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  run.calibration.T_b_c = {Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), {0.01, 0.02, 0.03}};
+  run.calibration.extrinsics_sigma_m = 0.004;
+  const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, std::move(run))));
+  EXPECT_EQ(json["calibration"]["T_b_c"]["p_m"], nlohmann::ordered_json({0.01, 0.02, 0.03}));
+  EXPECT_EQ(json["calibration"]["T_b_c"]["q_xyzw"], nlohmann::ordered_json({1.0, 0.0, 0.0, 0.0}));
+  EXPECT_DOUBLE_EQ(json["calibration"]["extrinsics_sigma_m"], 0.004);
+  EXPECT_TRUE(json["calibration"]["extrinsics_sigma_rad"].is_null());
+}
+
 TEST(RunResult, WithoutRecordedBoxesDoesNotCountFramesWithoutThem) {
   const datasets::SequenceInfo info = straight_sequence();
   const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, perfect_run(info, kFrames))));
