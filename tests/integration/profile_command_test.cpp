@@ -114,6 +114,24 @@ TEST(ProfileCommand, ReportsUnavailableMeasurements) {
   EXPECT_NE(energy, result.out.find("energy: n/a: ") != std::string::npos) << result.out;
 }
 
+/// A sensor that shows 4.96 W all the time.
+TEST(ProfileCommand, SubtractsTheIdlePower) {
+  const TemporaryFolder root;
+  const std::string sensor = "sys/bus/i2c/drivers/ina3221/7-0040/hwmon/hwmon3/";
+  root.write(sensor + "in1_label", "VDD_IN\n");
+  root.write(sensor + "in1_input", "4960\n");    // mV
+  root.write(sensor + "curr1_input", "1000\n");  // mA
+  const TemporaryFolder folder;
+  const ProgramResult result = profile(folder, {"--sysfs-root", root.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json profiled = read_json(folder.path() / "profile.json");
+  EXPECT_GT(profiled.at("energy_j"), 0.0);
+  EXPECT_NEAR(profiled.at("idle_power_w"), 4.96, 1e-9);
+  const json per_frame = profiled.at("energy_j_per_frame");  // rounding decides whether it is below idle
+  EXPECT_TRUE(per_frame.is_null() || per_frame.get<double>() < 1e-9);
+  EXPECT_NE(result.out.find("above idle (4.96 W)"), std::string::npos) << result.out;
+}
+
 TEST(ProfileCommand, CountsAllocationsInTheCountingProgram) {
   const TemporaryFolder folder;
   const std::string command = std::string(STILLPOINT_BINARY_DIR) + "/stillpoint_counting profile " +

@@ -20,6 +20,7 @@
 #include "bench/plan/sequence_argument.h"
 #include "bench/profile/meters/device_info.h"
 #include "bench/profile/meters/process_usage.h"
+#include "bench/profile/meters/run_monitor.h"
 #include "bench/profile/meters/throttling.h"
 #include "bench/profile/profile_table.h"
 #include "bench/profile/timeline.h"
@@ -92,7 +93,8 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
   ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
   AllocationWatch allocations;
   ThreadUsageSampler thread_usage;
-  EnergyMeter energy(arguments.sysfs_root, arguments.tegrastats, std::chrono::steady_clock::now());
+  const auto start = std::chrono::steady_clock::now();
+  EnergyMeter energy(arguments.sysfs_root, arguments.tegrastats, start);
   const HardwareCounters counters;
   const ProcessUsage before = process_usage();
   const auto on_update = [&](const OdometryUpdate& update) {
@@ -110,7 +112,9 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
   profile.usage = usage_between(before, process_usage());
   profile.counters = counters.counts();
   profile.counters_missing = counters.reason();
-  profile.energy = energy.use(std::chrono::steady_clock::now());
+  const auto end = std::chrono::steady_clock::now();
+  profile.energy = energy.use(end);
+  profile.energy_s = std::chrono::duration<double>(end - start).count();
   thread_usage.sample();
   profile.threads = thread_usage.usages();
   profile.rows = profile_rows(profile.run.timings, arguments.budget_ms);
@@ -195,8 +199,10 @@ int run_profile(const ProfileArguments& arguments) {
   if (arguments.instructions) {
     return profile_instructions(instruction_request(stream->info(), arguments, folder));
   }
-  const Profile profile =
+  const std::optional<double> idle_w = idle_power_w(arguments.sysfs_root, arguments.tegrastats);
+  Profile profile =
       arguments.duration.empty() ? measure(*stream, arguments) : measure_drift(*stream, arguments);
+  profile.idle_w = idle_w;
   if (interrupt_requested()) return kExitInterrupted;
   const ProfileTitle title{.sequence = name,
                            .base = arguments.base,

@@ -77,6 +77,25 @@ void print_process(const ProcessUsage& usage, const std::map<int, ThreadUsage>& 
   }
 }
 
+/// Energy above idle [J]; nothing if either was not measured, or if the run used less than idle.
+std::optional<double> joules_per_frame(const Profile& profile) {
+  if (!profile.energy || !profile.idle_w || profile.misses.frames == 0) return std::nullopt;
+  const double above_idle = profile.energy->joules - *profile.idle_w * profile.energy_s;
+  if (above_idle < 0.0) return std::nullopt;
+  return above_idle / static_cast<double>(profile.misses.frames);
+}
+
+std::string energy_text(const Profile& profile) {
+  if (!profile.energy)
+    return "n/a: neither RAPL nor a power sensor is readable (on Jetson devices: --tegrastats LOG)";
+  const std::string whole =
+      fmt::format("{:.2f} J, whole machine ({})", profile.energy->joules, profile.energy->source);
+  if (!profile.idle_w) return whole;
+  const std::optional<double> per_frame = joules_per_frame(profile);
+  return whole + fmt::format("; above idle ({:.2f} W): ", *profile.idle_w) +
+         (per_frame ? fmt::format("{:.4f} J per frame", *per_frame) : "n/a: not more than idle");
+}
+
 std::string counters_text(const Profile& profile) {
   if (profile.counters.empty()) return "n/a: " + profile.counters_missing;
   std::string text;
@@ -89,12 +108,7 @@ std::string counters_text(const Profile& profile) {
 
 void print_machine(const Profile& profile) {
   std::cout << "hardware counters: " << counters_text(profile) << '\n';
-  std::cout
-      << "energy: "
-      << (profile.energy
-              ? fmt::format("{:.2f} J, whole machine ({})", profile.energy->joules, profile.energy->source)
-              : "n/a: neither RAPL nor a power sensor is readable (on Jetson devices: --tegrastats LOG)")
-      << '\n';
+  std::cout << "energy: " << energy_text(profile) << '\n';
   std::cout << "allocations: "
             << (profile.allocations
                     ? fmt::format("{} per frame (median), {} at most; all threads, including the recorder",
@@ -119,7 +133,12 @@ std::string profile_text(const Profile& profile, const ProfileTitle& title) {
   json["waits"] = waits_json(profile.run.summary.waits);
   json["process"] = usage_json(profile.usage, profile.threads);
   json["counters"] = counters_json(profile.counters);
+  const auto or_null = [](const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+  };
   json["energy_j"] = profile.energy ? Json(profile.energy->joules) : Json(nullptr);
+  json["idle_power_w"] = or_null(profile.idle_w);
+  json["energy_j_per_frame"] = or_null(joules_per_frame(profile));
   json["allocations_per_frame"] = profile.allocations ? Json{{"median", profile.allocations->median},
                                                              {"largest", profile.allocations->largest}}
                                                       : Json(nullptr);

@@ -28,6 +28,8 @@ struct Profile {
   std::vector<HardwareCount> counters;
   std::string counters_missing;     ///< reason if `counters` is empty
   std::optional<EnergyUse> energy;  ///< if the machine has a readable energy counter
+  std::optional<double> idle_w;     ///< power before the run
+  double energy_s = 0.0;            ///< time that `energy` was used in
   RecorderCost recorder;
   std::vector<DriftRow> drift;  ///< with --duration
 };

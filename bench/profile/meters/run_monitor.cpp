@@ -10,8 +10,8 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr std::chrono::milliseconds kSampleInterval{50};
 constexpr std::chrono::seconds kIdleTime{1};
+constexpr std::chrono::milliseconds kSampleInterval{50};
 
 /// Energy above idle per frame between two samples; nothing without frames.
 std::optional<double> joules_per_frame(const EnergySample& from, const EnergySample& to, double idle_w) {
@@ -54,20 +54,25 @@ DeviceScore energy_score(std::span<const EnergySample> samples, double idle_w) {
   return score;
 }
 
+std::optional<double> idle_power_w(const std::filesystem::path& root,
+                                   const std::filesystem::path& tegrastats) {
+  const EnergyMeter::Time start = std::chrono::steady_clock::now();
+  EnergyMeter meter(root, tegrastats, start);
+  if (!meter.so_far()) return std::nullopt;
+  EnergyMeter::Time last = start;
+  while (last - start < kIdleTime) {
+    std::this_thread::sleep_until(last + kSampleInterval);
+    last = std::chrono::steady_clock::now();
+    meter.sample(last);
+  }
+  const std::optional<EnergyUse> use = meter.so_far();
+  if (!use) return std::nullopt;
+  return use->joules / std::chrono::duration<double>(last - start).count();
+}
+
 RunMonitor::RunMonitor(std::filesystem::path root) : root_(std::move(root)) {
   if (root_.empty()) return;
-  const Clock::time_point start = Clock::now();
-  EnergyMeter idle(root_, {}, start);
-  if (idle.so_far()) {
-    Clock::time_point last = start;
-    while (last - start < kIdleTime) {
-      wait_until(last + kSampleInterval, {});
-      last = Clock::now();
-      idle.sample(last);
-    }
-    if (const auto use = idle.so_far())
-      idle_w_ = use->joules / std::chrono::duration<double>(last - start).count();
-  }
+  idle_w_ = idle_power_w(root_, {});
   before_ = read_throttle_state(root_);
   if (!idle_w_) return;
   start_ = Clock::now();

@@ -36,6 +36,12 @@ inline constexpr double kLowestEnergyRateHz = 10.0;
 /// @param idle_w power before the run
 [[nodiscard]] DeviceScore energy_score(std::span<const EnergySample> samples, double idle_w);
 
+/// Mean power over one second, which the caller leaves idle [W]; nothing as for `EnergyMeter::so_far`, then
+/// at once.
+/// @param root, tegrastats as for `EnergyMeter`
+[[nodiscard]] std::optional<double> idle_power_w(const std::filesystem::path& root,
+                                                 const std::filesystem::path& tegrastats);
+
 /// Measures idle power when it is constructed, for 1 s, if the machine has readable power rails or counters;
 /// then a thread samples the energy 20 times per second until `finish`. Without, it only compares throttling.
 class RunMonitor {
