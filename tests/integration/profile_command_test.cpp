@@ -127,7 +127,7 @@ TEST(ProfileCommand, SubtractsTheIdlePower) {
   const json profiled = read_json(folder.path() / "profile.json");
   EXPECT_GT(profiled.at("energy_j"), 0.0);
   EXPECT_NEAR(profiled.at("idle_power_w"), 4.96, 1e-9);
-  const json per_frame = profiled.at("energy_j_per_frame");  // rounding decides whether it is below idle
+  const json per_frame = profiled.at("energy_j_per_frame");  // null if rounding makes it less than idle
   EXPECT_TRUE(per_frame.is_null() || per_frame.get<double>() < 1e-9);
   EXPECT_NE(result.out.find("above idle (4.96 W)"), std::string::npos) << result.out;
 }

@@ -20,7 +20,6 @@
 #include "bench/plan/sequence_argument.h"
 #include "bench/profile/meters/device_info.h"
 #include "bench/profile/meters/process_usage.h"
-#include "bench/profile/meters/run_monitor.h"
 #include "bench/profile/meters/throttling.h"
 #include "bench/profile/profile_table.h"
 #include "bench/profile/timeline.h"
@@ -77,6 +76,35 @@ class ThreadUsageSampler {
   std::map<int, ThreadUsage> threads_ = at_start_;
 };
 
+/// Energy since the construction.
+class EnergyWatch {
+ public:
+  explicit EnergyWatch(const ProfileArguments& arguments)
+      : meter_(arguments.sysfs_root, arguments.tegrastats, start_) {
+    if (meter_.so_far()) samples_.push_back({});
+  }
+
+  /// @param frames processed so far
+  void sample(std::int64_t frames) {
+    const auto now = std::chrono::steady_clock::now();
+    meter_.sample(now);
+    const std::optional<EnergyUse> use = meter_.so_far();
+    if (!use) return samples_.clear();
+    samples_.push_back({.t_s = std::chrono::duration<double>(now - start_).count(),
+                        .joules = use->joules,
+                        .frames = frames});
+  }
+
+  [[nodiscard]] std::optional<EnergyUse> use() const { return meter_.so_far(); }
+  /// None if a reading was not valid.
+  [[nodiscard]] const std::vector<EnergySample>& samples() const { return samples_; }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  EnergyMeter meter_;
+  std::vector<EnergySample> samples_;
+};
+
 /// Sampling thread times and energy disturbs the run. The times of threads that end with the run lack its
 /// last frames, at most this many.
 constexpr std::int64_t kFramesBetweenSamples = 10;
@@ -89,12 +117,13 @@ RunSpec spec_of(const ProfileArguments& arguments) {
           .keep_spans = true};
 }
 
-Profile measure(const datasets::SensorStream& stream, const ProfileArguments& arguments) {
+/// @param idle_w power before the run
+Profile measure(const datasets::SensorStream& stream, const ProfileArguments& arguments,
+                const std::optional<double>& idle_w) {
   ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
   AllocationWatch allocations;
   ThreadUsageSampler thread_usage;
-  const auto start = std::chrono::steady_clock::now();
-  EnergyMeter energy(arguments.sysfs_root, arguments.tegrastats, start);
+  EnergyWatch energy(arguments);
   const HardwareCounters counters;
   const ProcessUsage before = process_usage();
   const auto on_update = [&](const OdometryUpdate& update) {
@@ -102,7 +131,7 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
     progress.update(static_cast<std::size_t>(update.frame_id) + 1);
     if (update.frame_id % kFramesBetweenSamples == 0) {
       thread_usage.sample();
-      energy.sample(std::chrono::steady_clock::now());
+      energy.sample(update.frame_id + 1);
     }
     allocations.begin_frame();
   };
@@ -112,9 +141,10 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
   profile.usage = usage_between(before, process_usage());
   profile.counters = counters.counts();
   profile.counters_missing = counters.reason();
-  const auto end = std::chrono::steady_clock::now();
-  profile.energy = energy.use(end);
-  profile.energy_s = std::chrono::duration<double>(end - start).count();
+  energy.sample(static_cast<std::int64_t>(profile.run.summary.frames));
+  profile.energy = energy.use();
+  profile.idle_w = idle_w;
+  if (idle_w) profile.energy_above_idle = energy_score(energy.samples(), *idle_w);
   thread_usage.sample();
   profile.threads = thread_usage.usages();
   profile.rows = profile_rows(profile.run.timings, arguments.budget_ms);
@@ -125,14 +155,15 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
 }
 
 /// Repeats the run for --duration. @return the last repetition, with the drift over all
-Profile measure_drift(const datasets::SensorStream& stream, const ProfileArguments& arguments) {
+Profile measure_drift(const datasets::SensorStream& stream, const ProfileArguments& arguments,
+                      const std::optional<double>& idle_w) {
   const double duration_s = parse_duration_s(arguments.duration);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   std::vector<DriftRow> drift;
   while (true) {
     const ThrottleState before = read_throttle_state(arguments.sysfs_root);
-    Profile profile = measure(stream, arguments);
+    Profile profile = measure(stream, arguments, idle_w);
     const double t_s = std::chrono::duration<double>(Clock::now() - start).count();
     drift.push_back({.t_s = t_s,
                      .frame_ms = profile.misses.whole_frame ? profile.misses.whole_frame->mean : 0.0,
@@ -200,9 +231,8 @@ int run_profile(const ProfileArguments& arguments) {
     return profile_instructions(instruction_request(stream->info(), arguments, folder));
   }
   const std::optional<double> idle_w = idle_power_w(arguments.sysfs_root, arguments.tegrastats);
-  Profile profile =
-      arguments.duration.empty() ? measure(*stream, arguments) : measure_drift(*stream, arguments);
-  profile.idle_w = idle_w;
+  const Profile profile = arguments.duration.empty() ? measure(*stream, arguments, idle_w)
+                                                     : measure_drift(*stream, arguments, idle_w);
   if (interrupt_requested()) return kExitInterrupted;
   const ProfileTitle title{.sequence = name,
                            .base = arguments.base,

@@ -77,23 +77,17 @@ void print_process(const ProcessUsage& usage, const std::map<int, ThreadUsage>& 
   }
 }
 
-/// Energy above idle [J]; nothing if either was not measured, or if the run used less than idle.
-std::optional<double> joules_per_frame(const Profile& profile) {
-  if (!profile.energy || !profile.idle_w || profile.misses.frames == 0) return std::nullopt;
-  const double above_idle = profile.energy->joules - *profile.idle_w * profile.energy_s;
-  if (above_idle < 0.0) return std::nullopt;
-  return above_idle / static_cast<double>(profile.misses.frames);
-}
-
 std::string energy_text(const Profile& profile) {
   if (!profile.energy)
     return "n/a: neither RAPL nor a power sensor is readable (on Jetson devices: --tegrastats LOG)";
   const std::string whole =
       fmt::format("{:.2f} J, whole machine ({})", profile.energy->joules, profile.energy->source);
   if (!profile.idle_w) return whole;
-  const std::optional<double> per_frame = joules_per_frame(profile);
+  const std::optional<double> per_frame = profile.energy_above_idle.joules_per_frame;
   return whole + fmt::format("; above idle ({:.2f} W): ", *profile.idle_w) +
-         (per_frame ? fmt::format("{:.4f} J per frame", *per_frame) : "n/a: not more than idle");
+         (per_frame ? fmt::format("{:.4f} J per frame", *per_frame)
+                    : fmt::format("n/a: not more than idle, or sampled less than {:g} times per second",
+                                  kLowestEnergyRateHz));
 }
 
 std::string counters_text(const Profile& profile) {
@@ -138,7 +132,8 @@ std::string profile_text(const Profile& profile, const ProfileTitle& title) {
   };
   json["energy_j"] = profile.energy ? Json(profile.energy->joules) : Json(nullptr);
   json["idle_power_w"] = or_null(profile.idle_w);
-  json["energy_j_per_frame"] = or_null(joules_per_frame(profile));
+  json["energy_j_per_frame"] = or_null(profile.energy_above_idle.joules_per_frame);
+  json["energy_j_per_frame_sd"] = or_null(profile.energy_above_idle.joules_per_frame_sd);
   json["allocations_per_frame"] = profile.allocations ? Json{{"median", profile.allocations->median},
                                                              {"largest", profile.allocations->largest}}
                                                       : Json(nullptr);

@@ -12,6 +12,7 @@
 #include "bench/profile/meters/energy_meter.h"
 #include "bench/profile/meters/hardware_counters.h"
 #include "bench/profile/meters/process_usage.h"
+#include "bench/profile/meters/run_monitor.h"
 #include "bench/profile/profile_table.h"
 #include "bench/profile/recorder_cost.h"
 
@@ -29,7 +30,7 @@ struct Profile {
   std::string counters_missing;     ///< reason if `counters` is empty
   std::optional<EnergyUse> energy;  ///< if the machine has a readable energy counter
   std::optional<double> idle_w;     ///< power before the run
-  double energy_s = 0.0;            ///< time that `energy` was used in
+  DeviceScore energy_above_idle;    ///< see `energy_score`; empty without `idle_w`
   RecorderCost recorder;
   std::vector<DriftRow> drift;  ///< with --duration
 };
