@@ -4,14 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/frontend/track_pixels.h"
+
 namespace stillpoint {
 namespace {
 
 constexpr double kMinCosine = 0.1;  // rays more than 84 degrees off the optical axis are not projected
-
-cv::Point2f to_point(const Eigen::Vector2d& pixel) {
-  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
-}
 
 }  // namespace
 

@@ -15,6 +15,8 @@
 #include "core/frontend/outliers/outlier_rejection.h"
 #include "core/frontend/point_tracker.h"
 #include "core/frontend/track.h"
+#include "core/frontend/track_pixels.h"
+#include "core/frontend/view_recovery.h"
 
 namespace stillpoint {
 namespace {
@@ -44,26 +46,15 @@ void check_frame(const Frame& frame, const Camera& camera) {
   }
 }
 
-Eigen::Vector2d to_vector(const cv::Point2f& point) {
-  return {static_cast<double>(point.x), static_cast<double>(point.y)};
-}
-
-std::vector<cv::Point2f> pixels_of(const std::vector<Track>& tracks, std::vector<cv::Point2f> recycled) {
-  std::vector<cv::Point2f> pixels = std::move(recycled);
-  pixels.clear();
-  for (const Track& track : tracks) {
-    pixels.emplace_back(static_cast<float>(track.feature.pixel.x()),
-                        static_cast<float>(track.feature.pixel.y()));
-  }
-  return pixels;
-}
-
 }  // namespace
 
 /// Tracks are sorted by id, and therefore from the oldest to the newest.
 struct FeatureTracker::State {
   State(const FrontendConfig& frontend_config, const Camera& frontend_camera)
-      : config(frontend_config), camera(frontend_camera), detector(make_feature_detector(frontend_config)) {
+      : config(frontend_config),
+        camera(frontend_camera),
+        detector(make_feature_detector(frontend_config)),
+        view_recovery(frontend_config, frontend_camera) {
     if (config.equalize) equalizer = cv::createCLAHE(kClaheClip, kClaheTiles);
   }
 
@@ -72,6 +63,7 @@ struct FeatureTracker::State {
   void match_features(TrackerPrediction kind);
   void update_tracks(double interval_s);
   void reject_outliers(DynamicIds dynamic_ids);
+  void recover_view(const cv::Mat& gray);
   void apply_mask();
   void detect_features(const cv::Mat& gray);
   void measure_depth(const Frame& frame);
@@ -92,6 +84,7 @@ struct FeatureTracker::State {
   std::vector<cv::Point2f> unstable;
   FeatureMask mask;
   OutlierRejector outlier_rejector;
+  ViewRecovery view_recovery;
   std::int64_t next_id = 0;
 
   // Buffers reused between calls.
@@ -120,13 +113,15 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
     if (!tracks.empty()) track_features(prior, seconds_between(current_t, frame.t));
     current_t = frame.t;
   }
+  if (options.detect) reject_outliers(options.dynamic_ids);
+  if (config.recover_view) recover_view(gray);
   if (options.detect) {
-    reject_outliers(options.dynamic_ids);
     apply_mask();
     detect_features(gray);
   }
   measure_depth(frame);
   if (options.detect) update_references();
+  if (config.recover_view) view_recovery.remember(gray, tracks);
 }
 
 void FeatureTracker::State::track_features(const MotionPrior& prior, double interval_s) {
@@ -203,6 +198,11 @@ void FeatureTracker::State::reject_outliers(DynamicIds dynamic_ids) {
     }
   }
   tracks.resize(kept);
+}
+
+void FeatureTracker::State::recover_view(const cv::Mat& gray) {
+  const ScopedTimer timer(timings, Module::kFeatureTracking);
+  view_recovery.process(gray, current, tracks);
 }
 
 void FeatureTracker::State::apply_mask() {
@@ -284,6 +284,7 @@ TrackedFrame FeatureTracker::track(const Frame& frame, const MotionPrior& prior,
 void FeatureTracker::reset() {
   state_->tracks.clear();
   state_->unstable.clear();
+  state_->view_recovery.reset();
   state_->detector->reset();
 }
 

@@ -59,11 +59,9 @@ TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, cons
   const bool repeated = is_repeated(last_gray_, frame.gray);
   last_gray_ = frame.gray;
   since_tracked_ = repeated ? std::optional(prior) : std::nullopt;
-  dynamic_ids_ = recognition_.tracker_ids(feedback.dynamic_ids, std::move(dynamic_ids_));
-  const TrackingOptions options{.detect = enters_window, .dynamic_ids = dynamic_ids_};
-  TrackedFrame tracked =
-      repeated ? empty_frame(frame, std::move(recycled))
-               : recognition_.process(frame.gray, tracker_.track(frame, prior, options, std::move(recycled)));
+  const TrackingOptions options{.detect = enters_window, .dynamic_ids = feedback.dynamic_ids};
+  TrackedFrame tracked = repeated ? empty_frame(frame, std::move(recycled))
+                                  : tracker_.track(frame, prior, options, std::move(recycled));
   perturbation_.perturb(tracked);
   if (keeps_image_) tracked.gray = frame.gray;
   return tracked;

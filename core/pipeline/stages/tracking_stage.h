@@ -6,7 +6,6 @@
 
 #include "core/config/odometry_config.h"
 #include "core/frontend/feature_tracker.h"
-#include "core/frontend/view_recognition.h"
 #include "core/pipeline/stages/feedback.h"
 #include "core/pipeline/stages/input_perturbation.h"
 #include "core/types/motion_prior.h"
@@ -37,8 +36,6 @@ class TrackingStage {
   bool keeps_image_;  ///< for loop closure
   InputPerturbation perturbation_;
   FeatureTracker tracker_;
-  ViewRecognition recognition_;
-  std::vector<std::int64_t> dynamic_ids_;  ///< of the tracker; a member only to reuse the memory
   ImuBuffer imu_;
   std::optional<Timestamp> last_frame_;
   std::optional<MotionPrior> since_tracked_;  ///< from the last tracked image to the last, repeated one

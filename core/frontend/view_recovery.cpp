@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frontend/view_recovery.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/frontend/feature_prediction.h"
+#include "core/frontend/outliers/rigid_motion.h"
+#include "core/frontend/point_tracker.h"
+#include "core/frontend/track_pixels.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kMinView = 20;           ///< tracks of a view that is worth to be recognized
+constexpr int kMinAge = 5;             ///< of these tracks, in images
+constexpr int kMaxAttempts = 60;       ///< images with new tracks; then the camera sees another view
+constexpr std::size_t kMinFound = 12;  ///< matches, inliers of the motion, and continued tracks
+constexpr double kMinInlierRatio = 0.4;
+constexpr double kMatched_px = 4.0;  ///< largest reprojection error of a match
+constexpr double kTracked_px = 3.0;  ///< of a track
+constexpr double kConfidence = 0.999;
+
+constexpr int kMaxCorners = 600;
+constexpr double kCornerQuality = 0.01;
+constexpr double kCornerDistance_px = 10.0;
+constexpr float kMaxDistance = 64.0F;  // of 256 bits
+constexpr float kMaxRatio = 0.8F;      // Lowe 2004, Sec. 7.1
+constexpr float kPatch_px = 31.0F;
+
+struct Described {
+  cv::Mat descriptors;
+  std::vector<std::size_t> points;  ///< index of each row; points near the border have none
+};
+
+Described describe(const cv::Mat& gray, const std::vector<cv::Point2f>& pixels) {
+  std::vector<cv::KeyPoint> points;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    points.emplace_back(pixels[i], kPatch_px, 0.0F, 0.0F, 0, static_cast<int>(i));
+  }
+  Described described;
+  cv::ORB::create(std::max(1, static_cast<int>(points.size())), 1.2F, 1)
+      ->compute(gray, points, described.descriptors);
+  for (const cv::KeyPoint& point : points) {
+    described.points.push_back(static_cast<std::size_t>(point.class_id));
+  }
+  return described;
+}
+
+/// Pairs of indices of points in both views.
+std::vector<std::pair<std::size_t, std::size_t>> match(const Described& from, const Described& to) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  if (from.points.size() < 2 || to.points.size() < 2) return pairs;
+  const cv::BFMatcher matcher(cv::NORM_HAMMING);
+  std::vector<std::vector<cv::DMatch>> forward;
+  std::vector<cv::DMatch> backward;
+  matcher.knnMatch(from.descriptors, to.descriptors, forward, 2);
+  matcher.match(to.descriptors, from.descriptors, backward);
+  for (const std::vector<cv::DMatch>& nearest : forward) {
+    const cv::DMatch& best = nearest.front();
+    if (best.distance > kMaxDistance || best.distance > kMaxRatio * nearest.back().distance) continue;
+    if (backward[static_cast<std::size_t>(best.trainIdx)].trainIdx != best.queryIdx) continue;
+    pairs.emplace_back(from.points[static_cast<std::size_t>(best.queryIdx)],
+                       to.points[static_cast<std::size_t>(best.trainIdx)]);
+  }
+  return pairs;
+}
+
+std::vector<cv::Point2f> corners_of(const cv::Mat& gray) {
+  std::vector<cv::Point2f> corners;
+  cv::goodFeaturesToTrack(gray, corners, kMaxCorners, kCornerQuality, kCornerDistance_px);
+  return corners;
+}
+
+/// Error of the bearing of a point that is seen from another pose; infinite behind the camera.
+double bearing_error(const PointCorrespondence& seen, const Pose& T_to_from) {
+  const Eigen::Vector3d p = T_to_from * seen.point;
+  if (p.z() <= 0.0) return std::numeric_limits<double>::infinity();
+  return (p.hnormalized() - seen.bearing).norm();
+}
+
+PointCorrespondence correspondence(const Track& track, const Eigen::Vector2d& bearing) {
+  return {track.known_depth * track.feature.bearing.homogeneous(), bearing};
+}
+
+std::int64_t id_of(const Track& track) { return track.feature.id; }
+
+/// Tracks sorted by id: of those of the lost view, only the found ones continue.
+void replace(std::span<const Track> lost, std::span<const Track> found, std::vector<Track>& tracks) {
+  std::erase_if(tracks, [&](const Track& track) {
+    return std::ranges::binary_search(lost, track.feature.id, {}, id_of);
+  });
+  tracks.insert(tracks.end(), found.begin(), found.end());
+  std::ranges::sort(tracks, {}, id_of);
+}
+
+}  // namespace
+
+/// Motion of the camera T_now_lost, if the image shows the lost view.
+std::optional<Pose> ViewRecovery::motion_since(const View& lost, const cv::Mat& gray) const {
+  const std::vector<cv::Point2f> corners = corners_of(gray);
+  std::vector<PointCorrespondence> matches;
+  for (const auto& [before, now] :
+       match(describe(lost.gray, pixels_of(lost.tracks)), describe(gray, corners))) {
+    const Track& track = lost.tracks[before];
+    if (track.known_depth <= 0.0) continue;
+    matches.push_back(correspondence(track, camera_.unproject(to_vector(corners[now]))));
+  }
+  if (matches.size() < kMinFound) return std::nullopt;
+  const double threshold = kMatched_px / camera_.focal_px();
+  const std::optional<Pose> T_now_lost =
+      estimate_rigid_motion(matches, {.threshold = threshold, .confidence = kConfidence});
+  if (!T_now_lost) return std::nullopt;
+  const auto inliers = std::ranges::count_if(matches, [&](const PointCorrespondence& seen) {
+    return bearing_error(seen, *T_now_lost) <= threshold;
+  });
+  const double required =
+      std::max(static_cast<double>(kMinFound), kMinInlierRatio * static_cast<double>(matches.size()));
+  return static_cast<double>(inliers) >= required ? T_now_lost : std::nullopt;
+}
+
+bool ViewRecovery::fits(const Track& before, const Pose& T_now_lost, const Eigen::Vector2d& bearing) const {
+  return before.known_depth > 0.0 &&
+         bearing_error(correspondence(before, bearing), T_now_lost) <= kTracked_px / camera_.focal_px();
+}
+
+std::vector<Track> ViewRecovery::continue_tracks(const View& lost, const Pose& T_now_lost,
+                                                 const ImagePyramid& pyramid) const {
+  const ImagePyramid before = build_pyramid(config_, lost.gray);
+  const MotionPrior motion{T_now_lost, true, true};
+  const std::vector<cv::Point2f> pixels = pixels_of(lost.tracks);
+  const std::vector<cv::Point2f> predicted =
+      predict_pixels(lost.tracks, {motion, TrackerPrediction::kFull}, camera_);
+  const KltResult forward = track_points(config_, {.from = before,
+                                                   .to = pyramid,
+                                                   .points = pixels,
+                                                   .initial_guesses = predicted,
+                                                   .levels = config_.pyramid_levels});
+  std::vector<Track> continued;
+  for (std::size_t i = 0; i < lost.tracks.size(); ++i) {
+    const Eigen::Vector2d pixel = to_vector(forward.pixels[i]);
+    if (forward.found[i] == 0 || !pixel.allFinite() || !camera_.contains(pixel, config_.border_px)) continue;
+    const Eigen::Vector2d bearing = camera_.unproject(pixel);
+    if (!fits(lost.tracks[i], T_now_lost, bearing)) continue;
+    Track track = lost.tracks[i];
+    track.feature.pixel = pixel;
+    track.feature.bearing = track.reference_bearing = bearing;
+    track.feature.velocity.setZero();
+    track.feature.depth = track.reference_depth = 0.0;
+    ++track.feature.age;
+    continued.push_back(track);
+  }
+  if (continued.size() < kMinFound) continued.clear();
+  return continued;
+}
+
+/// Less than half of an established view continues.
+bool ViewRecovery::loses_view(std::size_t continued) const {
+  const auto established =
+      std::ranges::count_if(last_.tracks, [](const Track& track) { return track.feature.age >= kMinAge; });
+  return established >= kMinView && 2 * continued < last_.tracks.size();
+}
+
+void ViewRecovery::process(const cv::Mat& gray, const ImagePyramid& pyramid, std::vector<Track>& tracks) {
+  if (loses_view(tracks.size())) {
+    lost_ = std::move(last_);
+    attempts_ = 0;
+  }
+  if (!lost_) return;
+  attempts_ += tracks.size() >= kMinFound ? 1 : 0;
+  if (const std::optional<Pose> T_now_lost = motion_since(*lost_, gray)) {
+    const std::vector<Track> found = continue_tracks(*lost_, *T_now_lost, pyramid);
+    if (!found.empty()) {
+      replace(lost_->tracks, found, tracks);
+      lost_.reset();
+      return;
+    }
+  }
+  if (attempts_ >= kMaxAttempts) lost_.reset();
+}
+
+void ViewRecovery::remember(const cv::Mat& gray, std::span<const Track> tracks) {
+  if (config_.equalize) {
+    gray.copyTo(last_.gray);  // the image is a buffer
+  } else {
+    last_.gray = gray;
+  }
+  last_.tracks.assign(tracks.begin(), tracks.end());
+}
+
+void ViewRecovery::reset() {
+  last_.tracks.clear();
+  lost_.reset();
+}
+
+}  // namespace stillpoint
