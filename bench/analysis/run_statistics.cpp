@@ -187,6 +187,26 @@ std::string first_difference(const std::string& frames, const std::string& other
   }
 }
 
+std::vector<StageDifference> stage_differences(const std::string& frames, const std::string& others) {
+  std::istringstream first(frames);
+  std::istringstream second(others);
+  std::string line;
+  std::string other;
+  std::getline(first, line);
+  std::getline(second, other);
+  const std::vector<std::string> names = split_cells(line);
+  std::vector<StageDifference> stages;
+  for (std::size_t i = 1; i < names.size() && line == other; ++i) stages.push_back({names[i], std::nullopt});
+  while (std::getline(first, line) && std::getline(second, other)) {
+    const std::vector<std::string> a = split_cells(line);
+    const std::vector<std::string> b = split_cells(other);
+    for (std::size_t i = 0; i < stages.size() && i + 1 < std::min(a.size(), b.size()); ++i) {
+      if (!stages[i].frame && a[i + 1] != b[i + 1]) stages[i].frame = std::stoll(a.front());
+    }
+  }
+  return stages;
+}
+
 std::vector<RepetitionRow> repetition_report(const Store& store, std::span<const StoredRun> runs) {
   std::map<std::string, std::vector<const StoredRun*>> groups;
   for (const StoredRun& run : runs) {

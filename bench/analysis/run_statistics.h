@@ -68,4 +68,14 @@ struct RepetitionRow {
 /// First difference between the texts of two frames.csv: "frame 17, optimization"; empty if they are equal.
 [[nodiscard]] std::string first_difference(const std::string& frames, const std::string& others);
 
+/// First frame in which the result of a stage differs.
+struct StageDifference {
+  std::string stage;
+  std::optional<std::int64_t> frame;  ///< nullopt: equal in all frames
+};
+
+/// For each column of two frames.csv; empty if one is empty or they have different columns.
+[[nodiscard]] std::vector<StageDifference> stage_differences(const std::string& frames,
+                                                             const std::string& others);
+
 }  // namespace stillpoint::bench

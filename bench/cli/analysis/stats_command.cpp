@@ -5,6 +5,7 @@
 
 #include "bench/cli/analysis/stats_ablation.h"
 #include "bench/cli/analysis/stats_faults.h"
+#include "bench/cli/analysis/stats_repeat.h"
 #include "bench/cli/analysis/stats_table.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/commands.h"
@@ -15,11 +16,6 @@ namespace stillpoint::bench {
 namespace {
 
 constexpr const char* kMedianTest = "exact, by order statistics";
-
-std::vector<std::string> with_left_out(std::vector<std::string> notes, const RunSelection& selection) {
-  notes.insert(notes.end(), selection.left_out.begin(), selection.left_out.end());
-  return notes;
-}
 
 std::size_t count_of(const RunSpread& row) { return row.spread ? row.spread->count : 0; }
 
@@ -77,33 +73,6 @@ int summary(const StatsArguments& arguments) {
           selection),
       arguments);
   return kExitOk;
-}
-
-int repeat(const StatsArguments& arguments) {
-  const Store store(arguments.store);
-  const RunSelection selection = chosen_runs(store, arguments);
-  std::vector<GroupRows> groups;
-  bool all_equal = true;
-  for (const RunGroup& group : selection.groups) {
-    GroupRows rows{.group = &group, .rows = {}};
-    for (const RepetitionRow& row : repetition_report(store, group.runs)) {
-      const bool is_equal = row.distinct_trajectories == 1 && row.first_difference.empty();
-      all_equal = all_equal && is_equal;
-      const std::string unknown = row.distinct_trajectories == 1 ? "none" : "not recorded";
-      rows.rows.push_back({row.label, fmt::format("{}", row.repetitions),
-                           fmt::format("{}", row.distinct_trajectories),
-                           row.first_difference.empty() ? unknown : row.first_difference});
-    }
-    if (!rows.rows.empty()) groups.push_back(std::move(rows));
-  }
-  if (groups.empty())
-    throw InputError(arguments.store, "contains no repeated run; set `repetitions = 2` in a plan");
-  print_groups({"run", "repetitions", "trajectories", "first difference"}, groups,
-               with_left_out({all_equal ? "All repetitions are bit-equal: a single run is sufficient."
-                                        : "Some repetitions differ: evaluate the spread over repetitions."},
-                             selection),
-               arguments);
-  return all_equal ? kExitOk : kExitFindings;
 }
 
 std::vector<std::string> sweep_cells(const RunSpread& row) {
@@ -179,10 +148,11 @@ Command stats_command() {
                       .example = "stats faults --plan faults"},
                      arguments, stats_faults),
           subcommand({.name = "repeat",
-                      .summary = "Check that repetitions are bit-equal; if not, print the first frame "
-                                 "and module that differ",
-                      .example = "stats repeat --store build/bench/store.sqlite"},
-                     arguments, repeat),
+                      .summary = "Check that repetitions, or runs of two machines, are bit-equal",
+                      .example = "stats repeat --store build/bench/store.sqlite",
+                      .options = {{"--with", "Store of another machine: compare the runs that both contain",
+                                   &arguments->other}}},
+                     arguments, stats_repeat),
           subcommand({.name = "sweep",
                       .summary = "Degradation curves: one row per value, sequence and variant",
                       .example = "stats sweep --plan sweep_synthetic --csv",

@@ -96,6 +96,11 @@ std::string interval_note(const std::string& test, const std::set<std::size_t>& 
   return note + fmt::format("; the smallest two-sided p of n = {} is {:g}.", count, eval::smallest_p(count));
 }
 
+std::vector<std::string> with_left_out(std::vector<std::string> notes, const RunSelection& selection) {
+  notes.insert(notes.end(), selection.left_out.begin(), selection.left_out.end());
+  return notes;
+}
+
 void print_groups(const std::vector<std::string>& header, const std::vector<GroupRows>& groups,
                   const std::vector<std::string>& notes, const StatsArguments& arguments) {
   std::vector<GroupColumn> columns;

@@ -20,6 +20,7 @@ struct StatsArguments {
   std::string build;
   std::string metric;
   std::string base;
+  std::string other;  ///< store that `stats repeat` compares with
   bool csv = false;
 };
 
@@ -41,6 +42,10 @@ void require_metric(const RunSelection& selection, const std::string& metric);
 /// @param test   e.g. "exact signed-rank test"
 /// @param counts n of the rows
 [[nodiscard]] std::string interval_note(const std::string& test, const std::set<std::size_t>& counts);
+
+/// Notes, followed by those about runs that were left out.
+[[nodiscard]] std::vector<std::string> with_left_out(std::vector<std::string> notes,
+                                                     const RunSelection& selection);
 
 /// Rows of one group.
 struct GroupRows {
