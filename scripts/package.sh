@@ -1,47 +1,81 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes Debian packages that run on any amd64 processor, in build/package: stillpoint (program) and stillpoint-dev (static
-# libraries, headers, package config, examples). STILLPOINT_CONTACT="NAME <ADDRESS>" names their maintainer.
-#   scripts/package.sh         build and package
-#   scripts/package.sh --test  also lintian, and installation, quick benchmark and removal in a new chroot; needs root,
-#                              lintian and mmdebstrap
+# Makes Debian packages: stillpoint (program) and stillpoint-dev (static libraries, headers, package config, examples).
+# STILLPOINT_CONTACT="NAME <ADDRESS>" names their maintainer.
+#   scripts/package.sh amd64         build and package for any amd64 processor, in build/package-amd64
+#   scripts/package.sh arm64         same for 64-bit ARM, by the cross compiler of scripts/portability.sh; after amd64
+#   scripts/package.sh ARCH --test   also lintian, and installation, quick benchmark and removal in a new chroot; arm64 under
+#                                    qemu-user. Needs root, lintian and mmdebstrap
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 contact="${STILLPOINT_CONTACT:-The Stillpoint developers <developers@stillpoint.example.org>}"
+chroots="${STILLPOINT_CHROOTS:-$PWD/build/chroots}"
 jobs="${STILLPOINT_JOBS:-$(nproc)}"
-build="build/package"
+architecture="${1:-amd64}"
+packages="build/package-$architecture"
 fail() { echo "package: error: $*" >&2; exit 2; }
-[[ $# == 0 || ( $# == 1 && "$1" == --test ) ]] || fail "unknown option \"$*\"; the option is --test"
+dependencies() { dpkg-deb -f "$1"/stillpoint_*.deb Depends; }
+
+# The kernels of the tracker select the instruction set at run time; all else uses the baseline.
+case "$architecture" in
+  amd64)
+    inside=() sources="$PWD" build="$PWD/build/package"
+    options=(--preset release -DSTILLPOINT_MARCH=x86-64 -DSTILLPOINT_MODULE_FOLDER=lib/x86_64-linux-gnu/stillpoint)
+    ;;
+  arm64) # the libraries have the same names as for amd64, whose dependencies dpkg-shlibdeps finds
+    inside=(scripts/in_chroot.sh "$chroots/arm64" env STILLPOINT_SYSROOT=/sysroot) sources=/src build=/build-package
+    options=(--preset release-arm64 -DSTILLPOINT_MODULE_FOLDER=lib/aarch64-linux-gnu/stillpoint)
+    compgen -G "build/package-amd64/stillpoint_*.deb" >/dev/null || fail "the packages for amd64 are made first"
+    options+=("-DSTILLPOINT_PACKAGE_DEPENDS=$(dependencies build/package-amd64)")
+    ;;
+  *) fail "unknown architecture \"$architecture\"; they are amd64 and arm64" ;;
+esac
+[[ $# -le 1 || ( $# == 2 && "$2" == --test ) ]] || fail "unknown option \"${*:2}\"; the option is --test"
 command -v dpkg-shlibdeps >/dev/null || fail "dpkg-dev is missing; run apt-get install dpkg-dev"
 
 build_packages() {
-  local triplet
-  triplet="$(dpkg-architecture -qDEB_HOST_MULTIARCH)"
-  # The kernels of the tracker select the instruction set at run time; all else uses the baseline.
-  cmake --preset release -B "$build" -DSTILLPOINT_MARCH=x86-64 -DSTILLPOINT_PACKAGES=ON -DSTILLPOINT_CONTACT="$contact" \
-    -DCMAKE_INSTALL_PREFIX=/usr -DSTILLPOINT_MODULE_FOLDER="lib/$triplet/stillpoint" --log-level=WARNING \
-    >"$(log_file configure-package)" 2>&1 || show_failure configure-package
-  cmake --build "$build" --parallel "$jobs" --target stillpoint stillpoint_module_imageio stillpoint_module_video \
-    stillpoint_component_geometry stillpoint_component_core stillpoint_component_eval stillpoint_component_datasets
-  scripts/package/documents.sh "$build/stillpoint" "$build/package_documents" "$contact"
-  rm -f "$build"/*.deb
-  (cd "$build" && cpack -G DEB) >"$(log_file cpack)" 2>&1 || show_failure cpack
-  ls -l "$build"/*.deb
+  [[ "$architecture" == amd64 ]] || scripts/portability.sh arm64 chroot
+  "${inside[@]}" cmake -S "$sources" -B "$build" "${options[@]}" -DSTILLPOINT_PACKAGES=ON "-DSTILLPOINT_CONTACT=$contact" \
+    -DCMAKE_INSTALL_PREFIX=/usr --log-level=WARNING >"$(log_file "configure-package-$architecture")" 2>&1 ||
+    show_failure "configure-package-$architecture"
+  "${inside[@]}" cmake --build "$build" --parallel "$jobs" --target stillpoint stillpoint_module_imageio \
+    stillpoint_module_video stillpoint_component_geometry stillpoint_component_core stillpoint_component_eval \
+    stillpoint_component_datasets
+  "${inside[@]}" "$sources/scripts/package/documents.sh" "$build/stillpoint" "$build/package_documents" "$contact"
+  "${inside[@]}" bash -c 'cd "$1" && rm -f *.deb && cpack -G DEB' - "$build" >"$(log_file "cpack-$architecture")" 2>&1 ||
+    show_failure "cpack-$architecture"
+  rm -rf "$packages"
+  mkdir -p "$packages"
+  if [[ "$architecture" == amd64 ]]; then cp "$build"/*.deb "$packages"; else cp "$chroots/arm64$build"/*.deb "$packages"; fi
+  ls -l "$packages"/*.deb
 }
 
 # A chroot with the libraries that the package depends on: what is left after its removal is its own.
 make_chroot() {
-  local mirror depends
+  local mirror depends emulated=()
   mirror="$(apt-get indextargets --format '$(ORIGIN)|$(SITE)|$(RELEASE)' 'Origin: Debian' |
     awk -F'|' '$3 !~ /-/ { print $2, $3; exit }')"
   [[ -n "$mirror" ]] || fail "apt has no lists of a Debian mirror; run apt-get update"
-  depends="$(dpkg-deb -f "$build"/stillpoint_*.deb Depends | sed 's/ *([^)]*)//g; s/ *|[^,]*//g; s/ //g')"
-  mmdebstrap --mode=root --variant=apt --include="$depends" --aptopt='APT::Install-Recommends "false"' "${mirror#* }" "$1" \
-    "${mirror% *}" >"$(log_file package-chroot)" 2>&1 || show_failure package-chroot
+  depends="$(dependencies "$packages" | sed 's/ *([^)]*)//g; s/ *|[^,]*//g; s/ //g')"
+  if [[ "$architecture" == arm64 ]]; then
+    ln -sf "$(realpath "$chroots/arm64-emulator")" "$1-emulator"
+    emulated=(scripts/emulate.sh "$1-emulator")
+  fi
+  "${emulated[@]}" mmdebstrap --mode=root --variant=apt --architectures="$architecture" --skip=check/qemu \
+    --include="$depends" --aptopt='APT::Install-Recommends "false"' "${mirror#* }" "$1" "${mirror% *}" \
+    >"$(log_file "package-chroot-$architecture")" 2>&1 || show_failure "package-chroot-$architecture"
+}
+
+# An emulated renderer takes an hour: sequences are rendered by this machine, into the cache of the user in the chroot.
+render() {
+  local sequence
+  for sequence in walking_xyz_empty walking_rpy_empty walking_xyz; do
+    STILLPOINT_CACHE="$1/root/.cache/stillpoint" build/package/stillpoint data synth "$sequence" --seconds 8
+  done
 }
 
 test_in_chroot() {
-  scripts/in_chroot.sh "$1" bash -eu -o pipefail -s -- "/src/$build" <<'INSIDE'
+  scripts/in_chroot.sh "$1" bash -eu -o pipefail -s -- "/src/$packages" <<'INSIDE'
 # Without the home of the user, who keeps the runs, and the lists and logs of the package manager.
 all_files() {
   local excluded=(/proc /sys /src /tmp /root /var/cache /var/log /var/lib/apt /var/lib/dpkg)
@@ -61,14 +95,15 @@ diff /root/before /root/after && echo "package: removed without a trace"
 INSIDE
 }
 
-step "packages for any amd64 processor"
+step "packages for $architecture"
 build_packages
-[[ "${1:-}" == --test ]] || exit 0
+[[ "${2:-}" == --test ]] || exit 0
 step "lintian"
-lintian --fail-on error "$build"/*.deb
+lintian --fail-on error "$packages"/*.deb
 step "installation in a new chroot"
 ((EUID == 0)) || fail "a chroot needs root"
 chroot_folder="$(mktemp -d)"
-trap 'rm -rf "$chroot_folder"' EXIT
+trap 'rm -rf "$chroot_folder" "$chroot_folder-emulator"' EXIT
 make_chroot "$chroot_folder"
+[[ "$architecture" == amd64 ]] || render "$chroot_folder"
 test_in_chroot "$chroot_folder"

@@ -21,7 +21,7 @@ case "$target" in
   debian13) suite=trixie preset=release tools="$(packages)" ;;
   arm64)
     suite=bookworm preset=release-arm64
-    tools=g++,g++-aarch64-linux-gnu,cmake,ninja-build,git,pkg-config,ccache,qemu-user
+    tools=g++,g++-aarch64-linux-gnu,cmake,ninja-build,git,pkg-config,ccache,qemu-user,qemu-user-static
     # A BLAS that needs no alternatives: packages of a sysroot are only extracted.
     libraries="$(packages $'g++\ncmake\nninja-build\ngit\nmake\npkg-config\nccache\nopenimageio-tools\nuniversal-ctags'),libblas-dev,liblapack-dev"
     ;;
@@ -48,18 +48,20 @@ make_chroot() {
   touch "$1.complete"
 }
 
-# Extracted packages have no alternatives: the reference BLAS and LAPACK take their place.
+# Extracted packages have no alternatives: the reference BLAS and LAPACK take their place. The CMake file of Ceres names
+# libraries by paths without the sysroot.
 link_blas() {
-  local libraries="$1/usr/lib/aarch64-linux-gnu" name
+  local libraries="usr/lib/aarch64-linux-gnu" name
   for name in blas lapack; do
-    ln -sf "$name/lib$name.so.3" "$libraries/lib$name.so.3"
-    ln -sf "$name/lib$name.so" "$libraries/lib$name.so"
+    ln -sf "$name/lib$name.so.3" "$folder-sysroot/$libraries/lib$name.so.3"
+    ln -sf "$name/lib$name.so" "$folder-sysroot/$libraries/lib$name.so"
   done
+  for name in blas lapack f77blas atlas; do ln -sf "/sysroot/$libraries/lib$name.so" "$folder/$libraries/lib$name.so"; done
 }
 
 chroot_step() {
   make_chroot "$folder" minbase amd64 "$tools"
-  [[ "$target" != arm64 ]] || { make_chroot "$folder-sysroot" extract arm64 "$libraries" && link_blas "$folder-sysroot"; }
+  [[ "$target" != arm64 ]] || { make_chroot "$folder-sysroot" extract arm64 "$libraries" && link_blas && ln -sf "$folder/usr/bin/qemu-aarch64-static" "$folder-emulator"; }
   du -shc "$folder" "$folder-sysroot" 2>/dev/null | tail -n 1
 }
 inside() { scripts/in_chroot.sh "$folder" "$@"; }
@@ -70,7 +72,8 @@ build_step() {
   build_targets stillpoint fast_tests
   inside du -h --apparent-size /build/stillpoint
 }
-test_step() { inside ctest --test-dir /build --output-on-failure --parallel "$jobs" -L fast; }
+# Emulated tests with several threads take long.
+test_step() { inside ctest --test-dir /build --output-on-failure --parallel "$jobs" -L fast --timeout 7200; }
 
 for name in chroot configure kernels build test; do
   step "$target: $name"

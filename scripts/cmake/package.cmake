@@ -4,6 +4,8 @@
 set(STILLPOINT_PACKAGES OFF CACHE BOOL "prepare the installation for Debian packages")
 set(STILLPOINT_CONTACT "The Stillpoint developers <developers@stillpoint.example.org>" CACHE STRING "maintainer of the packages")
 
+set(STILLPOINT_PACKAGE_DEPENDS "" CACHE STRING "packages that the program depends on; empty: found by dpkg-shlibdeps")
+
 if(NOT STILLPOINT_PACKAGES)
   return()
 endif()
@@ -34,7 +36,14 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME stillpoint)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+if(STILLPOINT_PACKAGE_DEPENDS)
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${STILLPOINT_PACKAGE_DEPENDS}")
+else()
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+endif()
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
+endif()
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "RGB-D inertial odometry for dynamic scenes
 Estimates the motion of an RGB-D camera in scenes with moving people, and
 benchmarks such systems: readers of datasets, rendered sequences with ground
