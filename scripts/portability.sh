@@ -60,9 +60,15 @@ link_blas() {
 }
 
 chroot_step() {
+  local folders=("$folder")
   make_chroot "$folder" minbase amd64 "$tools"
-  [[ "$target" != arm64 ]] || { make_chroot "$folder-sysroot" extract arm64 "$libraries" && link_blas && ln -sf "$folder/usr/bin/qemu-aarch64-static" "$folder-emulator"; }
-  du -shc "$folder" "$folder-sysroot" 2>/dev/null | tail -n 1
+  if [[ "$target" == arm64 ]]; then
+    make_chroot "$folder-sysroot" extract arm64 "$libraries"
+    link_blas
+    ln -sf "$folder/usr/bin/qemu-aarch64-static" "$folder-emulator"
+    folders+=("$folder-sysroot")
+  fi
+  du -shc "${folders[@]}" | tail -n 1
 }
 inside() { scripts/in_chroot.sh "$folder" "$@"; }
 build_targets() { inside cmake --build /build --parallel "$jobs" --target "$@"; }
