@@ -21,9 +21,9 @@ inline cv::Mat dead_leaves_image(int shift_px = 0) {
   cv::RNG random(1);
   for (int i = 0; i < kLeaves; ++i) {
     const double side_px = 6.0 / (0.03 + random.uniform(0.0, 1.0));  // 6 to 200
-    const cv::Point corner(random.uniform(-100, leaves.cols), random.uniform(-100, leaves.rows));
+    const int y = random.uniform(-100, leaves.rows), x = random.uniform(-100, leaves.cols);
     const cv::Size size(cvRound(side_px), cvRound(side_px * random.uniform(0.5, 2.0)));
-    cv::rectangle(leaves, cv::Rect(corner, size), random.uniform(20, 236), cv::FILLED);
+    cv::rectangle(leaves, cv::Rect({x, y}, size), random.uniform(20, 236), cv::FILLED);
   }
   cv::GaussianBlur(leaves, leaves, cv::Size(), 1.0);
   cv::Mat image = leaves(cv::Rect({shift_px, 0}, kImageSize)).clone();

@@ -63,10 +63,10 @@ cv::Mat smear_mask(cv::Size size, double fraction, RandomSequence random) {
   cv::Mat mask = cv::Mat::zeros(size, CV_8U);
   const double area = fraction * size.area() / kSmearSpots;
   for (int i = 0; i < kSmearSpots; ++i) {
-    const cv::Point center(random.index(size.width), random.index(size.height));
+    const int y = random.index(size.height), x = random.index(size.width);
     const double aspect = random.uniform(0.5, 2.0);
     const double radius = std::sqrt(area / std::numbers::pi * aspect);
-    cv::ellipse(mask, center, cv::Size(cvRound(radius), cvRound(radius / aspect)), random.uniform(0.0, 180.0),
+    cv::ellipse(mask, {x, y}, cv::Size(cvRound(radius), cvRound(radius / aspect)), random.uniform(0.0, 180.0),
                 0.0, 360.0, cv::Scalar(255), cv::FILLED);
   }
   return mask;

@@ -13,8 +13,8 @@ namespace {
 constexpr std::int64_t kMinStep_ns = 1000;
 
 Eigen::Vector3d random_direction(synth::RandomSequence random) {
-  const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
-  return direction.normalized();
+  const double z = random.normal(), y = random.normal(), x = random.normal();
+  return Eigen::Vector3d(x, y, z).normalized();
 }
 
 Eigen::Vector3d clipped(const Eigen::Vector3d& value, double limit) {

@@ -36,8 +36,8 @@ cv::Mat paint_clothes(RandomSequence& random) {
   }
   if (kind == 3) {
     for (int i = 0; i < 90; ++i) {
-      const cv::Point at(random.index(kSide), random.index(kSide));
-      cv::circle(canvas, at, 6 + random.index(14), i % 2 == 0 ? second : Color(230, 230, 225), cv::FILLED,
+      const int y = random.index(kSide), x = random.index(kSide);
+      cv::circle(canvas, {x, y}, 6 + random.index(14), i % 2 == 0 ? second : Color(230, 230, 225), cv::FILLED,
                  cv::LINE_AA);
     }
   }

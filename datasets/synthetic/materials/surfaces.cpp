@@ -24,12 +24,15 @@ struct Specks {
 void add_specks(cv::Mat& canvas, const Specks& specks, RandomSequence& random) {
   const auto& [count, largest_px, contrast] = specks;
   for (int i = 0; i < count; ++i) {
-    const cv::Point at(random.index(canvas.cols), random.index(canvas.rows));
+    const int y = random.index(canvas.rows), x = random.index(canvas.cols);
+    const cv::Point at(x, y);
     const double change = random.uniform(-contrast, contrast);
     const cv::Vec3b under = canvas.at<cv::Vec3b>(at);
     const Color color(under[0] + change, under[1] + change, under[2] + change);
-    const cv::Size axes(1 + random.index(largest_px), 1 + random.index(std::max(1, largest_px / 2)));
-    cv::ellipse(canvas, at, axes, random.uniform(0.0, 180.0), 0.0, 360.0, color, cv::FILLED, cv::LINE_AA);
+    const int minor_px = 1 + random.index(std::max(1, largest_px / 2));
+    const int major_px = 1 + random.index(largest_px);
+    cv::ellipse(canvas, at, {major_px, minor_px}, random.uniform(0.0, 180.0), 0.0, 360.0, color, cv::FILLED,
+                cv::LINE_AA);
   }
 }
 
@@ -49,7 +52,8 @@ void draw_sheet(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
 }
 
 void draw_spine(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
-  const Color cover = random_color(random, random.uniform(60.0, 220.0), random.uniform(0.1, 0.8));
+  const double saturation = random.uniform(0.1, 0.8), brightness = random.uniform(60.0, 220.0);
+  const Color cover = random_color(random, brightness, saturation);
   fill_rect(canvas, area, cover);
   const bool dark = cover[0] + cover[1] + cover[2] < 330.0;
   const Color ink = dark ? Color(235, 230, 215) : Color(25, 25, 30);
@@ -60,13 +64,15 @@ void draw_spine(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
   upright.copyTo(canvas(area));
   for (int band = 0; band < 2; ++band) {
     const int y = area.y + static_cast<int>(random.uniform(0.02, 0.98) * (area.height - 14));
-    fill_rect(canvas, {area.x, y, area.width, 4 + random.index(10)}, random_color(random, 210.0, 0.6));
+    const Color color = random_color(random, 210.0, 0.6);
+    fill_rect(canvas, {area.x, y, area.width, 4 + random.index(10)}, color);
   }
   cv::line(canvas, area.tl(), {area.x, area.y + area.height}, darker(cover, 0.4), 2);
 }
 
 void draw_package(cv::Mat& canvas, const cv::Rect& area, RandomSequence& random) {
-  fill_rect(canvas, area, random_color(random, random.uniform(120.0, 235.0), random.uniform(0.3, 0.9)));
+  const double saturation = random.uniform(0.3, 0.9), brightness = random.uniform(120.0, 235.0);
+  fill_rect(canvas, area, random_color(random, brightness, saturation));
   const int pad = area.width / 10;
   fill_rect(canvas, {area.x, area.y + pad, area.width, area.height / 4}, random_color(random, 230.0, 0.5));
   draw_words(canvas, {area.x + pad, area.y + pad + 2, area.width - pad, area.height / 4 - 4},
@@ -188,8 +194,9 @@ cv::Mat paint_noticeboard(RandomSequence& random) {
   add_grain(canvas, 14.0, random);
   for (int i = 0; i < 14; ++i) {
     const int width = 110 + random.index(60), height = 140 + random.index(60);
-    const cv::Point at(20 + random.index(kTiledSide - width - 40),
-                       20 + random.index(kObjectSide - height - 40));
+    const int y = 20 + random.index(kObjectSide - height - 40),
+              x = 20 + random.index(kTiledSide - width - 40);
+    const cv::Point at(x, y);
     draw_sheet(canvas, {at.x, at.y, width, height}, random);
     cv::circle(canvas, {at.x + width / 2, at.y + 6}, 6, random_color(random, 220.0, 0.9), cv::FILLED,
                cv::LINE_AA);

@@ -85,8 +85,8 @@ SurfacePoint node_at(const Quad& quad, float u, float v) {
 
 float node_light(const World& world, const RayTracer& tracer, const SurfacePoint& node,
                  RandomSequence& random) {
-  return lamp_light(world, tracer, node, random) +
-         world.ambient * (0.25F + 0.75F * openness(tracer, node.point, node.normal, random));
+  const float lamps = lamp_light(world, tracer, node, random);
+  return lamps + world.ambient * (0.25F + 0.75F * openness(tracer, node.point, node.normal, random));
 }
 
 }  // namespace

@@ -59,9 +59,8 @@ void add_book_pile(const SceneContext& context, const Vector3d& foot) {
     const double shift = random.uniform(-0.015, 0.015);
     const Vector3d low = foot + Vector3d(shift - half, -0.08, z);
     const TextureRegion spine{random.index(kSpinesPerTexture) / 16.0, 0.0, 1.0 / kSpinesPerTexture, 1.0};
-    builder.add_labeled_box(low, low + Vector3d(2.0 * half, 0.16, thickness),
-                            {spine, pick_random(palette.spines, random)},
-                            pick_random(palette.plain_colors, random));
+    const int cover = pick_random(palette.plain_colors, random), back = pick_random(palette.spines, random);
+    builder.add_labeled_box(low, low + Vector3d(2.0 * half, 0.16, thickness), {spine, back}, cover);
     z += thickness;
   }
 }
@@ -72,17 +71,20 @@ void add_desk_clutter(const SceneContext& context) {
   lay_flat(builder, {random.uniform(-0.1, 0.1), {random.uniform(-0.15, 0.1), -0.55, z + 0.012}, 0.44, 0.15},
            palette.keyboards.front());
   for (int i = 0; i < 4; ++i) {
-    const Vector3d at(random.uniform(-0.65, 0.65), random.uniform(-0.68, -0.25), z + 0.001 * i);
-    lay_flat(builder, {random.uniform(-0.6, 0.6), at, 0.21, 0.297}, pick_random(palette.papers, random));
+    const double y = random.uniform(-0.68, -0.25), x = random.uniform(-0.65, 0.65);
+    const int paper = pick_random(palette.papers, random);
+    lay_flat(builder, {random.uniform(-0.6, 0.6), {x, y, z + 0.001 * i}, 0.21, 0.297}, paper);
   }
   add_book_pile(context, {random.chance(0.5) ? -0.62 : 0.62, random.uniform(-0.4, -0.2), kDeskHeight});
-  builder.add_cylinder({{random.uniform(0.3, 0.5), random.uniform(-0.6, -0.45), kDeskHeight}, 0.04, 0.1},
-                       pick_random(palette.plain_colors, random), 0.1);
-  const Vector3d box(random.uniform(-0.6, -0.45), random.uniform(-0.62, -0.5), kDeskHeight);
-  builder.add_labeled_box(
-      box, box + Vector3d(0.14, 0.09, 0.2),
-      {{0.25 * random.index(4), 0.25 * random.index(4), 0.25, 0.25}, pick_random(palette.packages, random)},
-      pick_random(palette.plain_colors, random));
+  const int cup = pick_random(palette.plain_colors, random);
+  builder.add_cylinder({{random.uniform(0.3, 0.5), random.uniform(-0.6, -0.45), kDeskHeight}, 0.04, 0.1}, cup,
+                       0.1);
+  const double box_y = random.uniform(-0.62, -0.5), box_x = random.uniform(-0.6, -0.45);
+  const Vector3d box(box_x, box_y, kDeskHeight);
+  const int side = pick_random(palette.plain_colors, random);
+  const TextureRegion front{0.25 * random.index(4), 0.25 * random.index(4), 0.25, 0.25};
+  builder.add_labeled_box(box, box + Vector3d(0.14, 0.09, 0.2),
+                          {front, pick_random(palette.packages, random)}, side);
 }
 
 /// One row of books from x = 0 to `width`.
@@ -97,9 +99,8 @@ void add_book_row(const SceneContext& context, const Vector3d& start, double wid
     }
     const Vector3d low = start + Vector3d(x, random.uniform(0.0, 0.05), 0.0);
     const TextureRegion spine{random.index(kSpinesPerTexture) / 16.0, 0.0, 1.0 / kSpinesPerTexture, 1.0};
-    builder.add_labeled_box(low, low + Vector3d(thickness, 0.2, height),
-                            {spine, pick_random(palette.spines, random)},
-                            pick_random(palette.plain_colors, random));
+    const int cover = pick_random(palette.plain_colors, random), back = pick_random(palette.spines, random);
+    builder.add_labeled_box(low, low + Vector3d(thickness, 0.2, height), {spine, back}, cover);
     x += thickness + 0.001;
   }
 }

@@ -88,17 +88,17 @@ void decorate(const SceneContext& context, const Wall& wall, const Decoration& d
   while (along < wall.length - 0.9) {
     const double gap = random.uniform(0.15, 0.5) / decoration.density;
     if (random.chance(0.2) && along + 1.8 < wall.length) {
-      hang(builder, wall, {{along, lift + random.uniform(1.1, 1.3)}, {1.6, 0.8}},
-           pick_random(palette.noticeboards, random));
+      const int board = pick_random(palette.noticeboards, random);
+      hang(builder, wall, {{along, lift + random.uniform(1.1, 1.3)}, {1.6, 0.8}}, board);
       along += 1.6 + gap;
     } else if (random.chance(0.75)) {
       const double width = random.uniform(0.45, 0.7);
-      hang(builder, wall, {{along, lift + random.uniform(1.15, 1.4)}, {width, 1.3 * width}},
-           pick_random(palette.posters, random));
+      const int poster = pick_random(palette.posters, random);
+      hang(builder, wall, {{along, lift + random.uniform(1.15, 1.4)}, {width, 1.3 * width}}, poster);
       along += width + gap;
     } else {
-      hang(builder, wall, {{along, lift + random.uniform(1.3, 1.7)}, {0.21, 0.297}},
-           pick_random(palette.papers, random));
+      const int paper = pick_random(palette.papers, random);
+      hang(builder, wall, {{along, lift + random.uniform(1.3, 1.7)}, {0.21, 0.297}}, paper);
       along += 0.21 + gap;
     }
   }

@@ -103,13 +103,12 @@ struct SimulatedMotion {
     const Pose T_c_w = (state(path_time(t + time_offset_s)).T_w_b * calibration.T_b_c).inverse();
     TrackedFrame frame{.id = id, .t = from_seconds(t)};
     for (int k = 0; k < points; ++k) {
-      const Eigen::Vector3d p_w(places.uniform(2.0, 5.0), places.uniform(-2.5, 2.5),
-                                places.uniform(-2.0, 2.0));
+      const Eigen::Vector3d p_w = places.uniform3({2.0, -2.5, -2.0}, {5.0, 2.5, 2.0});
       const Eigen::Vector3d p_c = T_c_w * p_w;
       if (p_c.z() < 0.5) continue;
       Eigen::Vector2d pixel = calibration.camera.project(p_c);
       if (!calibration.camera.contains(pixel)) continue;
-      pixel += pixel_noise_px * Eigen::Vector2d(random.normal(), random.normal());
+      pixel += pixel_noise_px * random.normal2();
       TrackedFeature feature{
           .id = track_id(k, t), .pixel = pixel, .bearing = calibration.camera.unproject(pixel)};
       feature.depth = depth_factor / (1.0 / p_c.z() + depth_noise * random.normal());

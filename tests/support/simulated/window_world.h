@@ -20,7 +20,7 @@ inline Window visual_window(int frames, int points) {
     window.frames.push_back(frame);
   }
   for (int k = 0; k < points; ++k) {
-    const Eigen::Vector3d p_w(random.uniform(-1.0, 1.0), random.uniform(-0.8, 0.8), random.uniform(2.0, 4.0));
+    const Eigen::Vector3d p_w = random.uniform3({-1.0, -0.8, 2.0}, {1.0, 0.8, 4.0});
     Landmark landmark{.id = k};
     for (int i = 0; i < frames; ++i) {
       const Eigen::Vector3d p_c = window.T_w_c(i).inverse() * p_w;

@@ -16,7 +16,7 @@ std::vector<PointObservation> observations_with_outliers() {
   Random random(7);
   std::vector<PointObservation> observations;
   for (int i = 0; i < 80; ++i) {
-    const Eigen::Vector2d bearing(random.uniform(-0.5, 0.5), random.uniform(-0.4, 0.4));
+    const Eigen::Vector2d bearing = random.uniform2({-0.5, -0.4}, {0.5, 0.4});
     const Eigen::Vector3d p_w = kTwC * Eigen::Vector3d(random.uniform(2.0, 5.0) * bearing.homogeneous());
     const Eigen::Vector2d shift = i % 4 == 0 ? Eigen::Vector2d(0.1, 0.0) : Eigen::Vector2d::Zero();
     observations.push_back({p_w, bearing + shift});

@@ -51,7 +51,7 @@ TEST(EstimatorRecovery, AnInaccurateMapPoseDoesNotReplaceDeadReckoning) {
     int kept = 0;
     for (TrackedFeature& feature : frame.features) {
       const bool recognized = t < end + 0.04 && kept < 16;
-      if (recognized) feature.bearing += 0.005 * Eigen::Vector2d(random.normal(), random.normal());
+      if (recognized) feature.bearing += 0.005 * random.normal2();
       if (recognized) ++kept;
       if (!recognized) feature.id += 100000;
     }

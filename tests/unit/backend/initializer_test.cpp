@@ -148,7 +148,7 @@ TEST(Initializer, RejectsAnUnobservableScale) {
   Window window = with_unknown_scale(exact_window(Pose{}, 11, 0.1), 2.5);
   Random random(4);
   for (WindowFrame& frame : window.frames) {
-    frame.state.T_w_b.p += 0.03 / 2.5 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    frame.state.T_w_b.p += 0.03 / 2.5 * random.normal3();
   }
   InitializerConfig config = monocular();
   config.gravity_tolerance = 9.0;  // so that only the scale can be rejected

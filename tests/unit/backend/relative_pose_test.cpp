@@ -19,7 +19,7 @@ std::vector<BearingPair> pairs_of_points(int points, int outlier_every) {
   Random random(7);
   std::vector<BearingPair> pairs;
   for (int i = 0; i < points; ++i) {
-    const Eigen::Vector2d first(random.uniform(-0.5, 0.5), random.uniform(-0.4, 0.4));
+    const Eigen::Vector2d first = random.uniform2({-0.5, -0.4}, {0.5, 0.4});
     const Eigen::Vector3d p_first = random.uniform(2.0, 5.0) * first.homogeneous();
     const Eigen::Vector3d p_second = kTFirstSecond.inverse() * p_first;
     const bool outlier = i % outlier_every == outlier_every - 1;

@@ -35,7 +35,7 @@ TrackedFrame covered(TrackedFrame frame, double t, Random& random) {
     const Eigen::Vector3d p_c(-1.2 + 0.2 * (k % 12) + 0.25 * std::sin(2.4 * t), -0.5 + 0.1 * (k / 12), 1.2);
     Eigen::Vector2d pixel = camera.project(p_c);
     if (pixel.x() >= edge_px || !camera.contains(pixel)) continue;
-    pixel += 0.5 * Eigen::Vector2d(random.normal(), random.normal());
+    pixel += 0.5 * random.normal2();
     frame.features.push_back({.id = kFirstPersonId + k,
                               .pixel = pixel,
                               .bearing = camera.unproject(pixel),

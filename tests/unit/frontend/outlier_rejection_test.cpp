@@ -31,7 +31,8 @@ std::vector<Match> static_matches(Scene scene, const Pose& T_to_from, int count)
     match.from = {lateral(random), lateral(random)};
     match.depth = scene == Scene::kRoom ? depth_distribution(random) : 2.0 + match.from.x();
     const Eigen::Vector3d point_from = match.depth * match.from.homogeneous();
-    match.to = (T_to_from * point_from).hnormalized() + Eigen::Vector2d(noise(random), noise(random));
+    const double y = noise(random), x = noise(random);
+    match.to = (T_to_from * point_from).hnormalized() + Eigen::Vector2d(x, y);
     matches.push_back(match);
   }
   return matches;

@@ -20,7 +20,8 @@ class NoiseSource {
  public:
   explicit NoiseSource(unsigned seed) : generator_(seed) {}
   Eigen::Vector3d draw(double sigma) {
-    return sigma * Eigen::Vector3d(normal_(generator_), normal_(generator_), normal_(generator_));
+    const double z = normal_(generator_), y = normal_(generator_), x = normal_(generator_);
+    return sigma * Eigen::Vector3d(x, y, z);
   }
 
  private:

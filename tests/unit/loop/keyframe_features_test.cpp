@@ -18,9 +18,9 @@ DepartedKeyframe textured_keyframe() {
   keyframe.gray = cv::Mat(kCamera.height, kCamera.width, CV_8UC1);
   cv::RNG random(1);
   for (int i = 0; i < 400; ++i) {
-    const cv::Rect rectangle(random.uniform(-20, 320), random.uniform(-20, 320), random.uniform(10, 60),
-                             random.uniform(10, 60));
-    cv::rectangle(keyframe.gray, rectangle, random.uniform(0, 256), cv::FILLED);
+    const int height = random.uniform(10, 60), width = random.uniform(10, 60);
+    const int y = random.uniform(-20, 320), x = random.uniform(-20, 320);
+    cv::rectangle(keyframe.gray, cv::Rect(x, y, width, height), random.uniform(0, 256), cv::FILLED);
   }
   keyframe.depth = cv::Mat(kCamera.height, kCamera.width, CV_16UC1, cv::Scalar(2000));
   return keyframe;

@@ -18,9 +18,9 @@ inline cv::Mat painted_wall(std::uint64_t seed) {
   cv::RNG random(seed);
   cv::Mat wall(450, 2400, CV_8UC1, cv::Scalar(128));
   for (int i = 0; i < 4000; ++i) {
-    const cv::Point corner(random.uniform(0, wall.cols), random.uniform(0, wall.rows));
-    const cv::Size size(random.uniform(6, 60), random.uniform(6, 60));
-    cv::rectangle(wall, cv::Rect(corner, size), cv::Scalar(random.uniform(20, 235)), cv::FILLED);
+    const int y = random.uniform(0, wall.rows), x = random.uniform(0, wall.cols);  // in a defined order
+    const int height = random.uniform(6, 60), width = random.uniform(6, 60);
+    cv::rectangle(wall, cv::Rect(x, y, width, height), cv::Scalar(random.uniform(20, 235)), cv::FILLED);
   }
   return wall;
 }

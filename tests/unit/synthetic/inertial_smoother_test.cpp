@@ -39,7 +39,8 @@ Recording jittery_recording(const Eigen::Vector3d& gyro_bias, const Eigen::Vecto
       hand_path(HandMotion::kRpy, {{0.0, -2.0, 1.5}, {0.0, 0.0, 1.0}}, {Pose{}, 5, 0.0, 6.0}), {}, {}};
   RandomSequence random(1);
   const auto noise3 = [&random] {
-    return Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    const double z = random.normal(), y = random.normal(), x = random.normal();
+    return Eigen::Vector3d(x, y, z);
   };
   for (int i = 0; i <= 720; ++i) {
     const double t_s = i / 120.0;
