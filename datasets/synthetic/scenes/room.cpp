@@ -88,8 +88,8 @@ void decorate(const SceneContext& context, const Wall& wall, const Decoration& d
   while (along < wall.length - 0.9) {
     const double gap = random.uniform(0.15, 0.5) / decoration.density;
     if (random.chance(0.2) && along + 1.8 < wall.length) {
-      const int board = pick_random(palette.noticeboards, random);
-      hang(builder, wall, {{along, lift + random.uniform(1.1, 1.3)}, {1.6, 0.8}}, board);
+      const int notices = pick_random(palette.noticeboards, random);
+      hang(builder, wall, {{along, lift + random.uniform(1.1, 1.3)}, {1.6, 0.8}}, notices);
       along += 1.6 + gap;
     } else if (random.chance(0.75)) {
       const double width = random.uniform(0.45, 0.7);
