@@ -48,13 +48,16 @@ make_chroot() {
   touch "$1.complete"
 }
 
-# Extracted packages have no alternatives: the reference BLAS and LAPACK take their place. The CMake file of Ceres names
-# libraries by paths without the sysroot.
-link_blas() {
-  local libraries="usr/lib/aarch64-linux-gnu" name
+# Extracted packages have no alternatives: the reference BLAS and LAPACK take their place. Absolute links point outside of
+# the sysroot, and a static library would be linked instead. The CMake file of Ceres names libraries by paths without it.
+link_libraries() {
+  local libraries="usr/lib/aarch64-linux-gnu" name target
   for name in blas lapack; do
     ln -sf "$name/lib$name.so.3" "$folder-sysroot/$libraries/lib$name.so.3"
     ln -sf "$name/lib$name.so" "$folder-sysroot/$libraries/lib$name.so"
+  done
+  find "$folder-sysroot/$libraries" -maxdepth 1 -type l -lname '/*' -printf '%p %l\n' | while read -r name target; do
+    ln -srf "$folder-sysroot$target" "$name"
   done
   for name in blas lapack f77blas atlas; do ln -sf "/sysroot/$libraries/lib$name.so" "$folder/$libraries/lib$name.so"; done
 }
@@ -64,7 +67,7 @@ chroot_step() {
   make_chroot "$folder" minbase amd64 "$tools"
   if [[ "$target" == arm64 ]]; then
     make_chroot "$folder-sysroot" extract arm64 "$libraries"
-    link_blas
+    link_libraries
     ln -sf "$folder/usr/bin/qemu-aarch64-static" "$folder-emulator"
     folders+=("$folder-sysroot")
   fi

@@ -29,6 +29,10 @@ add_library(stillpoint_warnings INTERFACE)
 target_compile_options(stillpoint_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion
                        -Wno-missing-field-initializers -Wno-array-bounds -Wno-restrict
                        -Wno-stringop-overflow -Wno-stringop-overread)
+# From g++ 13 on: it takes a reference that a function returns for one to a temporary argument of the call.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
+  target_compile_options(stillpoint_warnings INTERFACE -Wno-dangling-reference)
+endif()
 # Warnings are errors except under sanitizers, whose instrumentation makes g++ 12 see flows that do not exist.
 if(STILLPOINT_SANITIZE)
   target_compile_options(stillpoint_warnings INTERFACE -Wno-maybe-uninitialized)
