@@ -35,11 +35,13 @@ run_steps() {
   local instruction arguments
   while read -r instruction arguments; do
     case "$instruction" in
-      COPY) cp build/package-"$architecture"/stillpoint_*.deb "$1/tmp" ;;
+      COPY) # the source may be a pattern
+        cp ${arguments%% *} "$1${arguments##* }"
+        ;;
       RUN) scripts/in_chroot.sh "$1" bash -euc "$arguments" </dev/null >>"$(log_file "image-$architecture")" 2>&1 ||
         show_failure "image-$architecture" ;;
     esac
-  done < <(sed -e :a -e '/\\$/N; s/\\\n//; ta' Containerfile)
+  done < <(sed -e :a -e '/\\$/N; s/\\\n//; ta' Containerfile | sed "s/\${ARCH}/$architecture/")
 }
 
 test_image() {
@@ -50,6 +52,10 @@ test_image() {
     stillpoint device info >/work/device
     if touch /data/x 2>/dev/null; then echo "image: error: /data is writable"; exit 1; fi
     rm /work/device'
+  # Also by the libraries of the image on this system.
+  local version=("$1/stillpoint" --version)
+  [[ "$architecture" == amd64 ]] || version=(scripts/emulate.sh "$1-emulator" "${version[@]}")
+  "${version[@]}"
 }
 
 chroot_folder="$(mktemp -d)"

@@ -30,7 +30,7 @@ pages=(chromium texlive-latex-recommended)
 { command -v node && command -v npm; } >/dev/null || pages+=(nodejs npm)
 docs=(doxygen)
 oracles=(python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-tf2-msgs)
-cluster=(munge slurm-wlm openssh-server parallel rsync)
+cluster=(munge slurm-wlm openssh-server parallel rsync zstd)
 case "${1:-}" in
   "") ;;
   --list) printf '%s\n' "${packages[@]}"; exit 0 ;;

@@ -35,11 +35,11 @@ Host with_word(Host host, const std::string& word) {
   const std::size_t equals = word.find('=');
   const std::string key = word.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
-  if (key == "program") {
+  if (key == "program" || key == "package") {
     if (!value.starts_with('/') || !is_plain_word(value))
-      throw InputError("program \"" + value +
+      throw InputError(key + " \"" + value +
                        "\" must be an absolute path of letters, digits and _ . / + , = @ : -");
-    host.program = value;
+    (key == "program" ? host.program : host.package) = value;
   } else if (key == "class") {
     if (!is_host_word(value))
       throw InputError("class \"" + value + "\" must consist of letters, digits and _ . -");
@@ -47,7 +47,8 @@ Host with_word(Host host, const std::string& word) {
   } else if (key == "tasks") {
     host.tasks = task_count(value);
   } else {
-    throw InputError("unknown word \"" + word + "\"; expected program=PATH, class=NAME or tasks=N");
+    throw InputError("unknown word \"" + word +
+                     "\"; expected program=PATH, package=FILE, class=NAME or tasks=N");
   }
   return host;
 }
@@ -57,9 +58,11 @@ Host parse_host(std::istringstream& words, const std::string& name, const std::s
     throw InputError("host \"" + name +
                      "\" must be NAME or USER@NAME of letters, digits and _ . -; "
                      "port and keys belong into the configuration of ssh");
-  Host host{.name = name, .program = program, .machine_class = ""};
+  Host host{.name = name, .program = program, .package = "", .machine_class = ""};
   for (std::string word; words >> word;) host = with_word(std::move(host), word);
-  if (!is_plain_word(host.program))
+  if (!host.package.empty() && host.program != program)
+    throw InputError("program=PATH and package=FILE exclude each other");
+  if (host.package.empty() && !is_plain_word(host.program))
     throw InputError("the path of this program, " + host.program +
                      ", has characters that shells interpret; add program=PATH");
   return host;

@@ -4,6 +4,9 @@
 /// One host per line; "#" begins a comment. The host is a name that ssh resolves, `NAME` or `USER@NAME`;
 /// port, keys and aliases belong into the configuration of ssh. Optional words follow, in any order:
 ///   program=/PATH  this program on the host; by default the path of the calling program
+///   package=/FILE  a build for that host, on this machine, which is copied to it: a root file system
+///   (.tar.zst,
+///                  scripts/image.sh) or, for hosts with its libraries, a Debian package (.deb)
 ///   class=NAME     machine class; timing runs are executed on hosts of one class only
 ///   tasks=N        concurrent tasks, 1 to 1000; by default 1
 #pragma once
@@ -17,7 +20,8 @@ namespace stillpoint::bench {
 
 struct Host {
   std::string name;
-  std::string program;  ///< absolute path
+  std::string program;  ///< absolute path; not used if there is a package
+  std::string package;  ///< absolute path on this machine, or empty
   std::string machine_class;
   int tasks = 1;
 };

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/executors/host_package.h"
 #include "bench/executors/job_folder.h"
 #include "bench/executors/tool.h"
 #include "bench/record/output_folder.h"
@@ -121,18 +122,31 @@ class SshHosts {
     return result.exit_code == 0;
   }
 
+  /// The program of a host as seen from its job folder; copies the package of the host.
+  [[nodiscard]] std::string install_program(const Host& host) const {
+    if (host.package.empty()) return host.program;
+    const HostPackage package = extract_package(host.package, folder_ / "packages", options_.stop_requested);
+    const std::string target = ".stillpoint/packages/" + package.name;
+    report(fmt::format("copy {} to {}", host.package, host.name));
+    static_cast<void>(call_ssh(host, {"mkdir", "-p", target}));
+    require_rsync({"--delete"}, package.tree.string() + "/", host.name + ":" + target + "/");
+    return "../../packages/" + package.name + "/" + package.program;
+  }
+
   /// Fetches and merges what workers of an earlier call completed, after the last one ended.
   void collect_from(const Host& host) const {
+    const std::string program = install_program(host);
+    if (stopped()) return;
     const fs::path link = folder_ / "programs" / host.name / "program";
     fs::create_directories(link.parent_path());
     fs::remove(link);
-    fs::create_symlink(host.program, link);  // rsync copies the link itself
+    fs::create_symlink(program, link);  // rsync copies the link itself
     require_rsync({}, link, remote_path(host, "program"));
     const ToolResult waited = call_ssh(host, worker_words({"wait"}));
     if (stopped()) return;
     if (waited.exit_code != 0)
       throw InputError("host " + host.name,
-                       fmt::format("{} cannot be executed: {}", host.program, waited.messages));
+                       fmt::format("{} cannot be executed: {}", program, waited.messages));
     const fs::path results = folder_ / "results" / host.name;
     fs::create_directories(results);
     require_rsync({"--include=/store-*", "--include=/store-*/**", "--exclude=*"}, remote_path(host, ""),

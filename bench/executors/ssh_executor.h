@@ -18,7 +18,8 @@ struct SshOptions {
 };
 
 /// Hosts that cannot be reached are reported and left out. A recorded sequence is used where the host has it
-/// under its name with the same checksum, and copied otherwise.
+/// under its name with the same checksum, and copied otherwise. The package of a host is copied once, into
+/// its folder ~/.stillpoint/packages.
 /// @throws InputError if ssh, rsync or parallel are not installed, no host can be reached, no host has the
 /// machine class, or a host has another build or other data
 [[nodiscard]] Executor ssh_executor(const PlanMatrix& matrix, const DistributionOptions& options,

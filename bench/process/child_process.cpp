@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -92,7 +93,12 @@ double cpu_seconds(const timeval& time) {
 
 }  // namespace
 
-std::filesystem::path executable_path() { return std::filesystem::read_symlink("/proc/self/exe"); }
+std::filesystem::path executable_path() {
+  const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe");
+  const char* const launcher = std::getenv("STILLPOINT_LAUNCHER");
+  const bool is_loader = executable.filename().string().starts_with("ld-linux");
+  return is_loader && launcher != nullptr ? launcher : executable;
+}
 
 std::vector<int> allowed_processors() {
   cpu_set_t set;

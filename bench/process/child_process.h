@@ -39,7 +39,8 @@ struct ProcessResult {
   std::int64_t peak_memory_bytes = 0;
 };
 
-/// Path of the running executable.
+/// What starts this program again: the running executable, or the launcher of an extracted root file system
+/// (scripts/package/launcher.sh), which names itself in STILLPOINT_LAUNCHER.
 [[nodiscard]] std::filesystem::path executable_path();
 
 /// CPU affinity of this process.

@@ -75,6 +75,28 @@ grep -q 'copy recorded_a to one' "$work/bench-recorded.log" || fail "the sequenc
 expect_equal recorded_local recorded
 echo "equal stores with a copied sequence"
 
+# Hosts without the program: a root file system that contains the libraries, too, and a Debian package.
+libraries="$(uname -m)-linux-gnu"
+mkdir -p "$work/root/usr/bin" "$work/root/usr/lib/$libraries/stillpoint" "$work/deb/DEBIAN" "$work/deb/usr/bin"
+cp "$program" "$work/root/usr/bin"
+cp "$program" "$work/deb/usr/bin"
+modules=("$(dirname "$program")"/lib/libstillpoint_*.so)
+cp "${modules[@]}" "$work/root/usr/lib/$libraries/stillpoint"
+ldd "$program" "${modules[@]}" | grep -o '/[^ :]*\.so[^ :]*' | sort -u | xargs cp -L --target-directory="$work/root/usr/lib/$libraries"
+cp "$(dirname "${BASH_SOURCE[0]}")/../../scripts/package/launcher.sh" "$work/root/stillpoint"
+tar --create --zstd --directory "$work/root" --file "$work/root.tar.zst" .
+printf 'Package: stillpoint\nVersion: 0\nArchitecture: all\nMaintainer: x <x@example.org>\nDescription: test\n' \
+  >"$work/deb/DEBIAN/control"
+dpkg-deb --build --root-owner-group -Znone "$work/deb" "$work/program.deb" >/dev/null
+rm -r "$work"/home/*/.stillpoint
+printf 'one package=%s\ntwo package=%s\n' "$work/root.tar.zst" "$work/program.deb" >"$work/package_hosts"
+bench plan packages --executor ssh --hosts "$work/package_hosts" --ssh-config "$work/ssh_config" --tasks 4 ||
+  fail "execution of packages: $(tail -n 3 "$work/bench-packages.log")"
+[[ "$(readlink -f "$work"/home/one/.stillpoint/jobs/*/program)" == "$work"/home/one/.stillpoint/packages/*/stillpoint ]] ||
+  fail "host one did not use its root file system"
+expect_equal local packages
+echo "equal stores with copied programs"
+
 # The calling program and a worker are killed; a host that cannot be reached is left out.
 write_plan many 12
 bench many many_local --jobs 2 || fail "local execution of 48 runs"

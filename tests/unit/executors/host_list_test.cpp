@@ -23,6 +23,11 @@ TEST(HostList, WordsAfterTheHostSetItsOptions) {
   EXPECT_EQ(hosts[1].tasks, 4);
 }
 
+TEST(HostList, APackageReplacesTheProgram) {
+  const std::vector<Host> hosts = parse_hosts("one package=/images/arm64.tar.zst", "hosts", "/my programs/s");
+  EXPECT_EQ(hosts[0].package, "/images/arm64.tar.zst");
+}
+
 TEST(HostList, NamesThatAShellOrSshWouldInterpretAreErrors) {
   for (const char* name :
        {"-oProxyCommand=x", "a;b", "$(x)", "a@b@c", "@a", "a@", "a:22", "4/a", "..", ":", "a'b"})
@@ -34,6 +39,9 @@ TEST(HostList, InvalidWordsAreErrorsWithTheirLine) {
   expect_input_error([] { static_cast<void>(hosts_of("a tasks=2x")); }, {"hosts:1", "1 to 1000"});
   expect_input_error([] { static_cast<void>(hosts_of("a program=bin/x")); }, {"hosts:1", "absolute"});
   expect_input_error([] { static_cast<void>(hosts_of("a program=/x;y")); }, {"hosts:1", "absolute"});
+  expect_input_error([] { static_cast<void>(hosts_of("a package=x.deb")); }, {"hosts:1", "absolute"});
+  expect_input_error([] { static_cast<void>(hosts_of("a program=/x package=/x.deb")); },
+                     {"hosts:1", "exclude"});
   expect_input_error([] { static_cast<void>(hosts_of("a port=22")); }, {"hosts:1", "unknown word"});
   expect_input_error([] { static_cast<void>(hosts_of("a\na")); }, {"hosts:2", "twice"});
   expect_input_error([] { static_cast<void>(hosts_of("# none\n")); }, {"hosts", "no host"});
