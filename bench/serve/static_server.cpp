@@ -8,6 +8,7 @@
 #include <arpa/inet.h>
 #include <microhttpd.h>
 #include <netinet/in.h>
+#include <unistd.h>
 
 #include "core/base/error.h"
 
@@ -102,6 +103,16 @@ sockaddr_in address_of(const ServerOptions& options) {
   return address;
 }
 
+/// Why an address cannot be used. libmicrohttpd does not keep the error: it is provoked again.
+std::string listen_error(const sockaddr_in& address) {
+  const int file = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (file < 0) return std::strerror(errno);
+  const bool is_free = bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const std::string error = is_free ? "the server cannot be started" : std::strerror(errno);
+  close(file);
+  return error;
+}
+
 }  // namespace
 
 StaticServer::StaticServer(const std::vector<OutputFile>& files, const ServerOptions& options)
@@ -121,7 +132,7 @@ StaticServer::StaticServer(const std::vector<OutputFile>& files, const ServerOpt
       nullptr, MHD_OPTION_CONNECTION_TIMEOUT, kTimeoutS, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END));
   if (daemon_ == nullptr) {
     throw InputError("--port", "cannot listen on " + options.address + ":" + std::to_string(options.port) +
-                                   ": " + std::strerror(errno) +
+                                   ": " + listen_error(address) +
                                    "; use another port, or 0 for any free port");
   }
 }
