@@ -63,7 +63,7 @@ std::string pdf_text(const Drawing& drawing) {
   {
     const Surface surface(cairo_pdf_surface_create_for_stream(append, &text, drawing.width, drawing.height),
                           &cairo_surface_destroy);
-    cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_5);  // what LaTeX includes
+    cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_4);  // every LaTeX includes it
     // Without a date equal drawings give equal bytes.
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "1970-01-01T00:00:00Z");
     const Context context(cairo_create(surface.get()), &cairo_destroy);
