@@ -81,6 +81,9 @@ std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const O
     warnings.emplace_back(
         "machine: the processor was throttled during the run; its times are not comparable with others");
   }
+  if (run.loops && run.loops->report.bundle_adjustment && !run.loops->report.bundle_adjustment->usable)
+    warnings.emplace_back(
+        "global bundle adjustment: failed; the optimized poses are those of the pose graph");
   for (std::string& warning : calibration_warnings(run.calibration)) warnings.push_back(std::move(warning));
   return warnings;
 }

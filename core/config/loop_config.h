@@ -45,6 +45,10 @@ struct LoopConfig {
   double drift_deg_per_sqrt_s = 0.02;
 
   double gravity_sigma_deg = 0.3;  ///< of the direction of gravity in a keyframe
+
+  /// Adjusts all keyframes and their landmarks after the last frame. Affects the optimized trajectory and the
+  /// saved map only.
+  bool final_bundle_adjustment = false;
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, LoopConfig>
@@ -71,6 +75,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("drift_deg_per_sqrt_m", config.drift_deg_per_sqrt_m, 1e-5, 90.0);
   field("drift_deg_per_sqrt_s", config.drift_deg_per_sqrt_s, 1e-5, 90.0);
   field("gravity_sigma_deg", config.gravity_sigma_deg, 1e-3, 90.0);
+  field("final_bundle_adjustment", config.final_bundle_adjustment);
 }
 
 }  // namespace stillpoint

@@ -20,6 +20,7 @@ namespace stillpoint {
 
 /// Static feature of the odometry.
 struct StaticFeature {
+  std::int64_t track = 0;                           ///< unique in a run
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  ///< [px]
   float depth_m = 0.0F;                             ///< 0 = not measured
 };

@@ -92,7 +92,7 @@ class FeatureBuilder {
   void add_tracked_features() {
     for (const StaticFeature& feature : keyframe_.features) {
       cv::KeyPoint corner({feature.pixel.x(), feature.pixel.y()}, kPatch_px);
-      add(corner, feature.depth_m);
+      add(corner, feature.depth_m, feature.track);
     }
   }
 
@@ -125,13 +125,15 @@ class FeatureBuilder {
     std::vector<KeyframeFeature> features(corners_.size());
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       std::memcpy(features[i].descriptor.data(), descriptors.ptr(static_cast<int>(i)), sizeof(Descriptor));
-      features[i].p_c = points_[static_cast<std::size_t>(corners_[i].class_id)];
+      const auto added = static_cast<std::size_t>(corners_[i].class_id);
+      features[i].p_c = points_[added];
+      features[i].track = tracks_[added];
     }
     return features;
   }
 
  private:
-  void add(cv::KeyPoint corner, double depth_m) {
+  void add(cv::KeyPoint corner, double depth_m, std::int64_t track = -1) {
     if (depth_m < kMinDepth_m || depth_m > config_.max_depth_m) return;
     const Eigen::Vector2f pixel(corner.pt.x, corner.pt.y);
     if (!camera_.contains(pixel.cast<double>(), kBorder_px)) return;
@@ -140,6 +142,7 @@ class FeatureBuilder {
     corner.angle = angle_at(bearing, corner.pt);
     corner.class_id = static_cast<int>(points_.size());
     corners_.push_back(corner);
+    tracks_.push_back(track);
     points_.emplace_back((depth_m * Eigen::Vector3d(bearing.x(), bearing.y(), 1.0)).cast<float>());
   }
 
@@ -153,8 +156,9 @@ class FeatureBuilder {
   const Camera& camera_;
   const LoopConfig& config_;
   std::optional<Eigen::Vector3d> g_c_;  ///< unit vector
-  std::vector<cv::KeyPoint> corners_;   ///< `class_id`: index into `points_`
+  std::vector<cv::KeyPoint> corners_;   ///< `class_id`: index into `points_` and `tracks_`
   std::vector<Eigen::Vector3f> points_;
+  std::vector<std::int64_t> tracks_;
 };
 
 }  // namespace

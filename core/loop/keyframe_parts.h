@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/loop/loop_consistency.h"
+
 namespace stillpoint {
 
 class KeyframeParts {
@@ -32,6 +34,18 @@ class KeyframeParts {
   }
   [[nodiscard]] bool is_in_map(std::size_t keyframe) const { return parts_[part_of_[keyframe]].located; }
   [[nodiscard]] bool is_same_part(std::size_t i, std::size_t j) const { return part_of_[i] == part_of_[j]; }
+  /// Whether a loop locates the current part in the map.
+  [[nodiscard]] bool is_location(const GraphLoop& loop) const {
+    return is_current(static_cast<std::size_t>(loop.query)) &&
+           is_reference(static_cast<std::size_t>(loop.match));
+  }
+  /// Whether the odometry knows the motion between the queries of two loops, and that between the matches.
+  [[nodiscard]] bool is_same_part(const GraphLoop& a, const GraphLoop& b) const {
+    const auto is_same = [this](int i, int j) {
+      return is_same_part(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+    };
+    return is_same(a.match, b.match) && is_same(a.query, b.query);
+  }
   /// A keyframe of another part by which the current one can be located.
   [[nodiscard]] bool is_reference(std::size_t keyframe) const {
     return is_in_map(keyframe) && !is_current(keyframe);

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/loop/bundle_adjustment.h"
 #include "core/loop/keyframe_features.h"
+#include "core/loop/relative_pose_estimation.h"
 
 namespace stillpoint {
 namespace {
@@ -165,7 +167,7 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
   std::size_t contradicting = 0;
   for (ConsistentLoop& other : loops_) {
     if (loop.query - other.loop.query > kComparedKeyframes || other.loop.query == loop.query) continue;
-    if (!is_same_part(loop, other.loop)) continue;
+    if (!parts_.is_same_part(loop, other.loop)) continue;
     if (pairwise_distance(loop, other.loop, T_w_b_, drift_) <= config_.gate_chi2) {
       agreeing.push_back(&other);
     } else {
@@ -182,20 +184,6 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
   return LoopOutcome::kAccepted;
 }
 
-/// Whether the odometry knows the motion between the queries, and that between the matches.
-bool LoopClosure::is_same_part(const GraphLoop& a, const GraphLoop& b) const {
-  const auto is_same = [this](int i, int j) {
-    return parts_.is_same_part(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-  };
-  return is_same(a.match, b.match) && is_same(a.query, b.query);
-}
-
-/// Whether the loop locates the current part in the map.
-bool LoopClosure::is_location(const GraphLoop& loop) const {
-  return parts_.is_current(static_cast<std::size_t>(loop.query)) &&
-         parts_.is_reference(static_cast<std::size_t>(loop.match));
-}
-
 bool LoopClosure::is_optimization_due() const {
   if (has_new_loop_ && !is_located()) return true;
   return has_new_loop_ &&
@@ -206,7 +194,7 @@ bool LoopClosure::is_optimization_due() const {
 void LoopClosure::relocalize() {
   if (is_located()) return;
   const auto found = std::find_if(loops_.rbegin(), loops_.rend(), [this](const ConsistentLoop& loop) {
-    return loop.confirmed && is_location(loop.loop);
+    return loop.confirmed && parts_.is_location(loop.loop);
   });
   if (found == loops_.rend()) return;
   const auto match = static_cast<std::size_t>(found->loop.match);
@@ -224,9 +212,11 @@ void LoopClosure::move_into_map(const Pose& T_m_w) {
 
 bool LoopClosure::has_inlier_in_map() const {
   return std::ranges::any_of(loops_, [this](const ConsistentLoop& loop) {
-    return is_location(loop.loop) && records_[loop.record].outcome == LoopOutcome::kAccepted;
+    return parts_.is_location(loop.loop) && records_[loop.record].outcome == LoopOutcome::kAccepted;
   });
 }
+
+double LoopClosure::gravity_sigma_rad() const { return config_.gravity_sigma_deg * std::numbers::pi / 180.0; }
 
 PoseGraph LoopClosure::build_graph() const {
   PoseGraph graph{.T_m_b = T_m_b_};
@@ -253,9 +243,8 @@ void LoopClosure::optimize() {
   for (const ConsistentLoop& loop : loops_) {
     if (loop.confirmed) records.push_back(loop.record);
   }
-  PoseGraphSolution solution = optimize_pose_graph(
-      build_graph(),
-      {.dof = config_.dof, .gravity_sigma_rad = config_.gravity_sigma_deg * std::numbers::pi / 180.0});
+  PoseGraphSolution solution =
+      optimize_pose_graph(build_graph(), {.dof = config_.dof, .gravity_sigma_rad = gravity_sigma_rad()});
   for (std::size_t i = 0; i < records.size(); ++i) {
     records_[records[i]].outcome = solution.inliers[i] ? LoopOutcome::kAccepted : LoopOutcome::kPoseGraph;
   }
@@ -266,9 +255,26 @@ void LoopClosure::optimize() {
   if (!parts_.is_first_part() && is_located() && !has_inlier_in_map()) parts_.set_located(false);
 }
 
+std::optional<BundleAdjustmentSummary> LoopClosure::adjust() {
+  if (!config_.final_bundle_adjustment || keyframes_.empty()) return std::nullopt;
+  std::vector<GraphLoop> accepted;
+  for (const ConsistentLoop& loop : loops_) {
+    if (records_[loop.record].outcome == LoopOutcome::kAccepted) accepted.push_back(loop.loop);
+  }
+  const RelativePoseOptions noise{.inlier_threshold = config_.inlier_px / camera_.focal_px(),
+                                  .inverse_depth_sigma = config_.depth_noise_per_m};
+  BundleAdjustmentResult adjusted =
+      adjust_bundle(build_graph(), keyframes_, associate_landmarks(keyframes_, T_m_b_, accepted, noise),
+                    {.bearing_sigma = noise.inlier_threshold / kThresholdSigmas,
+                     .inverse_depth_sigma = noise.inverse_depth_sigma,
+                     .gravity_sigma_rad = gravity_sigma_rad()});
+  T_m_b_ = std::move(adjusted.T_m_b);
+  return adjusted.summary;
+}
+
 LoopReport LoopClosure::finish() {
   if (has_new_loop_) optimize();
-  LoopReport report{.loops = records_};
+  LoopReport report{.loops = records_, .bundle_adjustment = adjust()};
   for (std::size_t k = loaded_; k < keyframes_.size(); ++k) {
     report.keyframes.push_back({.frame = keyframes_[k].frame,
                                 .t = keyframes_[k].t,

@@ -65,13 +65,13 @@ class LoopClosure {
   void optimize();
   [[nodiscard]] PoseGraph build_graph() const;
   void enter_segment(int segment);
-  [[nodiscard]] bool is_same_part(const GraphLoop& a, const GraphLoop& b) const;
-  [[nodiscard]] bool is_location(const GraphLoop& loop) const;
   /// Moves the current part into the map by the newest confirmed loop to it, if it is the first one.
   void relocalize();
   void move_into_map(const Pose& T_m_w);
   void constrain_by_start();
   [[nodiscard]] bool has_inlier_in_map() const;
+  [[nodiscard]] double gravity_sigma_rad() const;
+  [[nodiscard]] std::optional<BundleAdjustmentSummary> adjust();
 
   LoopConfig config_;
   Camera camera_;

@@ -11,6 +11,7 @@
 
 #include "core/backend/factors/gravity_manifold.h"
 #include "core/backend/factors/pose_manifold.h"
+#include "core/loop/pose_block.h"
 #include "core/loop/pose_graph_factors.h"
 
 namespace stillpoint {
@@ -21,25 +22,6 @@ constexpr int kMaxProblems = 30;
 constexpr int kStepsPerProblem = 2;
 constexpr int kFinalSteps = 20;
 constexpr double kInlierWeight = 0.5;
-
-using Block = std::array<double, 7>;
-
-Block block_of(const Pose& pose) {
-  return {pose.p.x(), pose.p.y(), pose.p.z(), pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w()};
-}
-
-Pose pose_of(const Block& block) {
-  return {Eigen::Quaterniond(block.data() + 3).normalized(), Eigen::Vector3d(block.data())};
-}
-
-/// Mean direction of gravity in the map; zero without measurements.
-Eigen::Vector3d mean_gravity(const PoseGraph& graph) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < graph.T_m_b.size(); ++i) {
-    if (graph.gravity_b[i]) sum += graph.T_m_b[i].q * *graph.gravity_b[i];
-  }
-  return sum.norm() > 0.0 ? sum.normalized() : sum;
-}
 
 /// The rotation by the smallest angle that takes `from` to `to`, unit vectors that are not opposite. Not
 /// Eigen's FromTwoVectors, which compiles a singular value decomposition for opposite vectors.
@@ -63,7 +45,7 @@ class GraphProblem {
         problem_(problem_options()) {
     for (const Pose& pose : graph.T_m_b) blocks_.push_back(block_of(pose));
     if (options.dof == 4) align_with_gravity();
-    for (Block& block : blocks_) {
+    for (PoseBlock& block : blocks_) {
       if (options.dof == 4) {
         problem_.AddParameterBlock(block.data(), 7, &heading_);
       } else {
@@ -96,7 +78,7 @@ class GraphProblem {
 
   [[nodiscard]] PoseGraphSolution solution() const {
     PoseGraphSolution result;
-    for (const Block& block : blocks_) result.T_m_b.push_back(pose_of(block));
+    for (const PoseBlock& block : blocks_) result.T_m_b.push_back(pose_of(block));
     for (const double weight : weights_) result.inliers.push_back(weight > 0.0);
     return result;
   }
@@ -177,14 +159,22 @@ class GraphProblem {
   HeadingManifold heading_;
   GravityManifold sphere_;
   double one_ = 1.0;
-  std::vector<double> weights_;  ///< of the loops
-  std::deque<Block> blocks_;     ///< addresses are constant
+  std::vector<double> weights_;   ///< of the loops
+  std::deque<PoseBlock> blocks_;  ///< addresses are constant
   std::deque<RelativePoseFactor> factors_;
   std::deque<GravityFactor> gravity_factors_;
   ceres::Problem problem_;
 };
 
 }  // namespace
+
+Eigen::Vector3d mean_gravity(const PoseGraph& graph) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < graph.T_m_b.size(); ++i) {
+    if (graph.gravity_b[i]) sum += graph.T_m_b[i].q * *graph.gravity_b[i];
+  }
+  return sum.norm() > 0.0 ? sum.normalized() : sum;
+}
 
 double graduated_weight(double squared_residual, double mu, double max_chi2) {
   if (squared_residual <= mu / (mu + 1.0) * max_chi2) return 1.0;

@@ -54,6 +54,9 @@ struct PoseGraphSolution {
 /// Minimizes the cost by Ceres with SuiteSparse's sparse Cholesky decomposition.
 [[nodiscard]] PoseGraphSolution optimize_pose_graph(const PoseGraph& graph, const PoseGraphOptions& options);
 
+/// Mean direction of gravity in the map, a unit vector; zero without measurements.
+[[nodiscard]] Eigen::Vector3d mean_gravity(const PoseGraph& graph);
+
 /// Weight of a loop, see above.
 /// @param squared_residual |r|^2
 [[nodiscard]] double graduated_weight(double squared_residual, double mu, double max_chi2);

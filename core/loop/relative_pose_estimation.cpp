@@ -18,9 +18,8 @@ constexpr int kMaxSamples = 300;
 constexpr double kConfidence = 0.999;
 constexpr double kDepthSigmas = 3.0;
 constexpr int kMaxRefinements = 8;
-constexpr double kMinPoint_z = 0.1;       // [m]
-constexpr double kMinArea_m2 = 0.01;      // of the triangle of a sample: smaller ones fix no rotation
-constexpr double kThresholdSigmas = 3.0;  // the inlier threshold, in standard deviations of a pixel
+constexpr double kMinPoint_z = 0.1;   // [m]
+constexpr double kMinArea_m2 = 0.01;  // of the triangle of a sample: smaller ones fix no rotation
 constexpr double kHuber = 1.5;
 
 /// Residual of a pair: bearing and inverse depth in the match.

@@ -17,6 +17,9 @@ struct PointPair {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero();  ///< match
 };
 
+/// The inlier threshold, in standard deviations of the position of a feature.
+constexpr double kThresholdSigmas = 3.0;
+
 struct RelativePoseOptions {
   double inlier_threshold = 0.006;     ///< largest reprojection error on the normalized image plane
   double inverse_depth_sigma = 0.004;  ///< [1/m], of one measurement

@@ -20,6 +20,7 @@ using Descriptor = std::array<std::uint64_t, 4>;
 struct KeyframeFeature {
   Descriptor descriptor{};
   Eigen::Vector3f p_c = Eigen::Vector3f::Zero();  ///< in the camera frame [m], p_c.z() > 0
+  std::int64_t track = -1;                        ///< of the odometry; -1: a corner, or of a loaded map
 };
 
 /// A keyframe of loop closure.

@@ -2,8 +2,10 @@
 /// Results of loop closure: candidates with their outcome, and the optimized keyframes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -60,11 +62,21 @@ struct MapKeyframe {
   double processing_ms = 0.0;  ///< time of the loop closure for it
 };
 
+/// Of the global bundle adjustment (core/loop/bundle_adjustment.h).
+struct BundleAdjustmentSummary {
+  std::size_t landmarks = 0;
+  std::size_t observations = 0;
+  double rms_before = 0.0;  ///< of the normalized residuals of the observations: 1 = as large as assumed
+  double rms_after = 0.0;
+  bool usable = true;  ///< false: the solver failed, and the poses are those of the pose graph
+};
+
 struct LoopReport {
-  std::vector<LoopRecord> loops;       ///< by query
-  std::vector<MapKeyframe> keyframes;  ///< by time
-  int dropped_keyframes = 0;           ///< not processed, in real time
-  bool relocalized = false;            ///< keyframes were located in the loaded map
+  std::vector<LoopRecord> loops;                             ///< by query
+  std::vector<MapKeyframe> keyframes;                        ///< by time
+  int dropped_keyframes = 0;                                 ///< not processed, in real time
+  bool relocalized = false;                                  ///< keyframes were located in the loaded map
+  std::optional<BundleAdjustmentSummary> bundle_adjustment;  ///< with `loop.final_bundle_adjustment`
   /// All located keyframes with optimized poses, for later runs: those of a loaded map, which this run
   /// extends, and of this run. Null if a map was loaded and the run was not located in it.
   std::shared_ptr<const KeyframeMap> map;

@@ -109,6 +109,10 @@ TEST(LoopClosureCommand, MapsRequireLoopClosure) {
                    "vo", "--save-map", (out.path() / "a.map").string()});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("requires loop closure"), std::string::npos) << result.err;
+  const ProgramResult adjusted = run_program(
+      {"run", rendered_sequence().string(), "--out", (out.path() / "run").string(), "--final-ba"});
+  EXPECT_EQ(adjusted.exit_code, 2);
+  EXPECT_NE(adjusted.err.find("--final-ba: requires loop closure"), std::string::npos) << adjusted.err;
 }
 
 TEST(LoopClosureCommand, FourDegreesOfFreedomRequireAnImu) {

@@ -13,10 +13,12 @@ OutputRules rules_of(const MapOptions& options) { return {.inputs = {options.loa
 }  // namespace
 
 void require_map_options(const MapOptions& options, const OdometryConfig& config, std::size_t runs) {
-  if (options.load.empty() && options.save.empty()) return;
+  if (options.load.empty() && options.save.empty() && !options.final_ba) return;
   if (!config.loop.enabled) {
-    throw InputError(options.load.empty() ? "--save-map" : "--map",
-                     "requires loop closure; add --variant ablations/loop_closure");
+    const char* const option = !options.load.empty()  ? "--map"
+                               : options.save.empty() ? "--final-ba"
+                                                      : "--save-map";
+    throw InputError(option, "requires loop closure; add --variant ablations/loop_closure");
   }
   if (options.save.empty()) return;
   if (runs > 1) throw InputError("--save-map", "requires a single run; pass one --variant");

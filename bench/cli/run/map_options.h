@@ -11,8 +11,9 @@
 namespace stillpoint::bench {
 
 struct MapOptions {
-  std::string load;  ///< map of an earlier run; empty = none
-  std::string save;  ///< file for the map of this run; empty = none
+  std::string load;       ///< map of an earlier run; empty = none
+  std::string save;       ///< file for the map of this run; empty = none
+  bool final_ba = false;  ///< global bundle adjustment after the last frame
 };
 
 /// Checks the options before the work begins.

@@ -70,6 +70,7 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   const std::vector<datasets::SensorFault> faults = faults_of(arguments);
   std::vector<std::string> settings = arguments.settings;
   if (arguments.imu_rate) settings.emplace_back("pipeline.imu_rate=true");
+  if (arguments.map.final_ba) settings.emplace_back("loop.final_bundle_adjustment=true");
   const std::shared_ptr<const KeyframeMap> map = load_map(arguments.map);
   std::vector<ConfiguredRun> runs;
   for (const std::string& variant : variants) {
@@ -248,42 +249,41 @@ int run(const RunArguments& arguments) {
 }
 
 std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) {
-  return {{"SEQ", "Sequence folder, bag or preset name", &arguments->sequence},
-          {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
-          {"--variant", "Overlays joined by +; may be repeated, each --variant is a separate run",
-           &arguments->variants},
-          {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
-          {"--fault",
-           "Inject a sensor fault: KIND or KIND:key=value,... with the keys start, duration, every [s], "
-           "amount, seed; may be repeated; kinds: `stillpoint data faults`",
-           &arguments->faults},
-          {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
-          {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed, {1e-3, 1e3}},
-          {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
-          {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
-           &arguments->format},
-          {"--topics", kTopicsHelp, &arguments->topics},
-          {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
-          {"--dump",
-           "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
-           "processing time of each frame); may be repeated",
-           &arguments->dumps},
-          {"--passes",
-           "Number of passes, alternately forward and backward, without IMU data [1]",
-           &arguments->passes,
-           {1, 1000}},
-          {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
-          {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
-          {"--map", "Map of an earlier run, in which this one is located", &arguments->map.load},
-          {"--save-map", "Write a map for later runs, with --map an extended one", &arguments->map.save},
-          {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
-          {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
-          {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
-          {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
-          {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
-          {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
-          {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
-           &arguments->deterministic_counts}};
+  return {
+      {"SEQ", "Sequence folder, bag or preset name", &arguments->sequence},
+      {"--config", "Base config: an embedded name or a TOML file", &arguments->base},
+      {"--variant", "Overlays joined by +; may be repeated, each --variant is a separate run",
+       &arguments->variants},
+      {"--set", "Override a config key: key=value; may be repeated", &arguments->settings},
+      {"--fault",
+       "Inject a sensor fault: KIND or KIND:key=value,... with the keys start, duration, every [s], "
+       "amount, seed; may be repeated; kinds: `stillpoint data faults`",
+       &arguments->faults},
+      {"--mode", "Execution mode: sequential, pipelined or realtime", &arguments->mode},
+      {"--speed", "Playback speed in realtime mode; 1 = as recorded", &arguments->speed, {1e-3, 1e3}},
+      {"--out", "Output folder [build/runs/SEQ/VARIANT]", &arguments->out},
+      {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
+       &arguments->format},
+      {"--topics", kTopicsHelp, &arguments->topics},
+      {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
+      {"--dump",
+       "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
+       "processing time of each frame); may be repeated",
+       &arguments->dumps},
+      {"--passes", "Passes, forward and backward in turn, without IMU [1]", &arguments->passes, {1, 1000}},
+      {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
+      {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
+      {"--map", "Map of an earlier run, in which this one is located", &arguments->map.load},
+      {"--save-map", "Write a map for later runs, with --map an extended one", &arguments->map.save},
+      {"--final-ba", "Adjust all keyframes after the last frame (loop closure)", &arguments->map.final_ba},
+      {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
+      {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
+      {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
+      {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
+      {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
+      {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
+      {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",
+       &arguments->deterministic_counts}};
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ void fill(const TrackedFrame& frame, const DynamicReport& dynamic, DepartedKeyfr
     if (labeled && label->label != LabelClass::kStable) {
       keyframe.dynamic_pixels.push_back(pixel);
     } else {
-      keyframe.features.push_back({pixel, static_cast<float>(feature.depth)});
+      keyframe.features.push_back({feature.id, pixel, static_cast<float>(feature.depth)});
     }
   }
   for (const SemanticMask::MaskedBox& box : dynamic.mask.boxes())

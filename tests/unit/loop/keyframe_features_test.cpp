@@ -38,10 +38,11 @@ TEST(KeyframeFeatures, HaveTheMeasuredDepth) {
 
 TEST(KeyframeFeatures, IncludeTheTrackedFeatures) {
   DepartedKeyframe keyframe = textured_keyframe();
-  keyframe.features = {{{100.5F, 90.25F}, 1.5F}, {{50.0F, 60.0F}, 0.0F}};
+  keyframe.features = {{7, {100.5F, 90.25F}, 1.5F}, {8, {50.0F, 60.0F}, 0.0F}};
   const std::vector<KeyframeFeature> features = keyframe_features(keyframe, kCamera, {.max_corners = 0});
   ASSERT_EQ(features.size(), 1u) << "one has no depth";
   EXPECT_LT((pixel_of(features.front()) - Eigen::Vector2d(100.5, 90.25)).norm(), 1e-4);
+  EXPECT_EQ(features.front().track, 7);
 }
 
 TEST(KeyframeFeatures, AreNotOnPeopleOrAtDynamicFeatures) {

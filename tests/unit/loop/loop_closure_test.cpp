@@ -41,5 +41,15 @@ TEST(LoopClosure, WithoutLoopsTheMapIsTheWorldOfTheOdometry) {
   EXPECT_TRUE(report.loops.empty());
 }
 
+TEST(LoopClosure, TheBundleAdjustmentIsAnOption) {
+  for (const bool is_on : {false, true}) {
+    LoopClosure closure({.final_bundle_adjustment = is_on}, kCamera, true);
+    static_cast<void>(closure.add({.t = from_seconds(1),
+                                   .gray = cv::Mat(48, 64, CV_8UC1, cv::Scalar(90)),
+                                   .depth = cv::Mat(48, 64, CV_16UC1, cv::Scalar(1000))}));
+    EXPECT_EQ(closure.finish().bundle_adjustment.has_value(), is_on);
+  }
+}
+
 }  // namespace
 }  // namespace stillpoint
