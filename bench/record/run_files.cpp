@@ -258,6 +258,7 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
     files.push_back({"trajectory_loop.tum", eval::format_tum(result.run.loops->causal)});
     files.push_back({"trajectory_optimized.tum", eval::format_tum(result.run.loops->optimized)});
     files.push_back({"loops.csv", loop_text(result.run.loops->report.loops)});
+    files.push_back({"keyframes.csv", keyframe_text(result.run.loops->report.keyframes)});
   }
   write_files(folder, files);
 }

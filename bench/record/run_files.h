@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The files of a run: trajectory.tum, result.json, timings.csv, frames.csv, counters.csv, stacks.folded,
 /// manifest.json, trajectory_imu.tum with `pipeline.imu_rate`, and trajectory_loop.tum (with the corrections
-/// known at each frame), trajectory_optimized.tum (with all corrections) and loops.csv with `loop.enabled`.
+/// known at each frame), trajectory_optimized.tum (with all corrections) loops.csv and keyframes.csv with
+/// `loop.enabled`.
 #pragma once
 
 #include <filesystem>

@@ -37,6 +37,8 @@ TEST(LoopClosureCommand, FindsLoopsAndDoesNotChangeTheOdometry) {
   const nlohmann::json result = nlohmann::json::parse(loop_text_of(out.path() / "with" / "result.json"));
   EXPECT_GE(result["loops"], 3);
   EXPECT_LE(result["ate_optimized_m"], 1.02 * result["ate_rmse_m"].get<double>() + 0.001);
+  const std::string keyframes = loop_text_of(out.path() / "with" / "keyframes.csv");
+  EXPECT_EQ(std::ranges::count(keyframes, '\n'), 1 + result["loop_keyframes"].get<int>());
   EXPECT_LE(result["ate_loop_m"], 1.02 * result["ate_rmse_m"].get<double>() + 0.001);
 }
 

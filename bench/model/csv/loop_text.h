@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Text of loops.csv: recognized places, and what became of them.
+/// Texts of loops.csv: recognized places, and what became of them; and of keyframes.csv.
 #pragma once
 
 #include <span>
@@ -23,6 +23,9 @@ struct StoredLoop {
 };
 
 [[nodiscard]] std::string loop_text(std::span<const LoopRecord> loops);
+
+/// Optimized poses T_m_b of the keyframes, and the time of the loop closure for each.
+[[nodiscard]] std::string keyframe_text(std::span<const MapKeyframe> keyframes);
 
 /// @param place name of the text in error messages
 /// @throws InputError for a malformed text
