@@ -7,6 +7,11 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 mount_folders() {
+  local device
+  # A chroot that was made under emulation has none.
+  for device in null zero random urandom; do
+    [[ -c "$1/dev/$device" ]] || { touch "$1/dev/$device" && mount --bind "/dev/$device" "$1/dev/$device"; }
+  done
   mkdir -p "$1/src"
   mount --bind "$PWD" "$1/src" && mount -o remount,bind,ro "$1/src"
   mount -t proc proc "$1/proc"

@@ -26,12 +26,10 @@ std::uint64_t file_hash(const fs::path& file) {
   return hash;
 }
 
-/// Device files are left out, as only root can create them.
 ToolCall extraction(const fs::path& file, const fs::path& tree) {
   if (file.extension() == ".deb") return {.program = "dpkg-deb", .arguments = {"--extract", file, tree}};
   return {.program = "tar",
-          .arguments = {"--extract", "--zstd", "--no-same-owner", "--exclude=./dev/*", "--file", file,
-                        "--directory", tree}};
+          .arguments = {"--extract", "--zstd", "--no-same-owner", "--file", file, "--directory", tree}};
 }
 
 }  // namespace
