@@ -4,9 +4,14 @@
 # library and its loader: needs no container engine, and no rights. At the root of that file system.
 #   FOLDER/stillpoint ...
 launcher="$(readlink -f "$0")"
-for libraries in "${launcher%/*}"/usr/lib/*-linux-gnu; do
+root="${launcher%/*}"
+for libraries in "$root"/usr/lib/*-linux-gnu; do
+  path="$libraries:$libraries/stillpoint"
+  # BLAS and LAPACK are chosen by links that are absolute, and could lead to those of this system.
+  for link in "$root"/etc/alternatives/lib*.so.3-"${libraries##*/}"; do
+    [ ! -L "$link" ] || path="$root$(dirname "$(readlink "$link")"):$path"
+  done
   # The loader is the running executable then; children are started by this script again.
   export STILLPOINT_LAUNCHER="$launcher"
-  exec "$libraries"/ld-linux-*.so.* --library-path "$libraries:$libraries/stillpoint:$libraries/blas:$libraries/lapack" \
-    "${launcher%/*}/usr/bin/stillpoint" "$@"
+  exec "$libraries"/ld-linux-*.so.* --inhibit-cache --library-path "$path" "$root/usr/bin/stillpoint" "$@"
 done
