@@ -11,6 +11,8 @@ namespace {
 
 constexpr int kDescriptorBits = 256;
 constexpr int kMaxVoteDistance = 48;  // bits; the distance of unrelated descriptors is 128 +- 8 or more
+constexpr int kMaxSignatureDistance =
+    24;  // bits; of the expected 12 at the largest distance, 32 if unrelated
 constexpr std::uint32_t kBitSeed = 1;
 
 }  // namespace
@@ -24,7 +26,7 @@ PlaceIndex::PlaceIndex() {
   for (std::size_t table = 0; table < tables_.size(); ++table) {
     std::copy_n(bits.begin() + static_cast<std::ptrdiff_t>(table * kKeyBits), kKeyBits,
                 tables_[table].bits.begin());
-    tables_[table].newest.assign(std::size_t{1} << kKeyBits, -1);
+    tables_[table].entries.resize(std::size_t{1} << kKeyBits);
   }
 }
 
@@ -34,14 +36,17 @@ std::size_t PlaceIndex::key_of(const Table& table, const Descriptor& descriptor)
   return key;
 }
 
+std::array<std::uint32_t, 2> PlaceIndex::signature_of(const Descriptor& descriptor) {
+  return {static_cast<std::uint32_t>(descriptor[0]), static_cast<std::uint32_t>(descriptor[0] >> 32)};
+}
+
 void PlaceIndex::add(std::span<const KeyframeFeature> features) {
   for (const KeyframeFeature& feature : features.first(std::min(features.size(), kMaxFeatures))) {
-    Entry entry{.descriptor = feature.descriptor, .place = places_};
-    for (std::size_t table = 0; table < tables_.size(); ++table) {
-      std::int32_t& newest = tables_[table].newest[key_of(tables_[table], entry.descriptor)];
-      entry.next[table] = std::exchange(newest, static_cast<std::int32_t>(entries_.size()));
-    }
-    entries_.push_back(entry);
+    const Entry entry{.signature = signature_of(feature.descriptor),
+                      .descriptor = static_cast<std::uint32_t>(descriptors_.size())};
+    for (Table& table : tables_) table.entries[key_of(table, feature.descriptor)].push_back(entry);
+    descriptors_.push_back(feature.descriptor);
+    place_of_.push_back(places_);
   }
   ++places_;
 }
@@ -52,16 +57,18 @@ std::vector<PlaceVotes> PlaceIndex::query(std::span<const KeyframeFeature> featu
   const std::size_t used = std::min(features.size(), kMaxFeatures);
   for (std::size_t i = 0; i < used; ++i) {
     const Descriptor& descriptor = features[i].descriptor;
-    for (std::size_t table = 0; table < tables_.size(); ++table) {
-      std::int32_t next = tables_[table].newest[key_of(tables_[table], descriptor)];
-      for (int compared = 0; next >= 0 && compared < kMaxEntries; ++compared) {
-        const Entry& entry = entries_[static_cast<std::size_t>(next)];
-        const auto place = static_cast<std::size_t>(entry.place);
-        if (voter[place] != i + 1 && hamming_distance(entry.descriptor, descriptor) <= kMaxVoteDistance) {
-          voter[place] = i + 1;
-          ++votes[place];
-        }
-        next = entry.next[table];
+    const auto [low, high] = signature_of(descriptor);
+    for (const Table& table : tables_) {
+      const std::vector<Entry>& all = table.entries[key_of(table, descriptor)];
+      for (const Entry& entry : std::span(all).last(std::min(all.size(), kMaxEntries))) {
+        const int distance =
+            std::popcount(entry.signature[0] ^ low) + std::popcount(entry.signature[1] ^ high);
+        if (distance > kMaxSignatureDistance) continue;
+        const auto place = static_cast<std::size_t>(place_of_[entry.descriptor]);
+        if (voter[place] == i + 1) continue;
+        if (hamming_distance(descriptors_[entry.descriptor], descriptor) > kMaxVoteDistance) continue;
+        voter[place] = i + 1;
+        ++votes[place];
       }
     }
   }
