@@ -16,7 +16,7 @@ struct ExecutionDifference {
   std::string label;                    ///< sequence, variant, seed
   std::size_t frames = 0;               ///< that both executed
   std::vector<StageDifference> stages;  ///< in the order of execution; empty if not recorded
-  bool equal_trajectories = false;      ///< to the bit
+  bool equal_trajectories = false;      ///< as stored, with nine decimals
   double largest_m = 0.0;               ///< distance between poses of the same time, at most
   double largest_rad = 0.0;             ///< same, angle
   std::optional<double> ate_m;          ///< of either execution

@@ -5,9 +5,9 @@
 /// Each of kTables tables has as key kKeyBits bits of the descriptor, drawn once. Two descriptors that differ
 /// in a fraction f of their bits share a key of one table with probability (1 - f)^kKeyBits, and one of all
 /// tables with 1 - (1 - (1 - f)^kKeyBits)^kTables: 43 % for f = 0.125, 2e-4 for unrelated ones (f = 0.5).
-/// Entries with a common key are compared by their Hamming distance: first 64 bits, which are stored with the
-/// key in one piece of memory, and all 256 only if those differ in at most kMaxSignatureDistance. Of two
-/// descriptors at the largest distance of a vote, 48, that excludes 1e-5, of unrelated ones 98 %.
+/// Entries with a common key are compared by their Hamming distance: first 64 bits, which are stored next to
+/// the key, and all 256 only if those differ in at most kMaxSignatureDistance. Of two descriptors at the
+/// largest distance of a vote, 48, that excludes 1e-5, of unrelated ones 98 %.
 #pragma once
 
 #include <array>

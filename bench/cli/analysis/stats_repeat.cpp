@@ -76,7 +76,8 @@ int compare_stores(const Store& store, const RunSelection& selection, const Stat
                groups,
                with_left_out(
                    {fmt::format("First frame that differs, by stage; -: none. Other: {}. {}", arguments.other,
-                                all_equal ? "All trajectories are bit-equal." : "Some trajectories differ.")},
+                                all_equal ? "All trajectories are equal to nine decimals."
+                                          : "Some trajectories differ.")},
                    selection),
                arguments);
   return all_equal ? kExitOk : kExitFindings;
