@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -13,6 +14,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMinStepSigma_m = 0.002;
 constexpr double kMinStepSigma_rad = 0.02 * kDegree;
 constexpr double kWindowFactor = 3.0;  // ratio of the errors to their sigma, see reports/measured/loops.md
+constexpr double kMaxWindowSigma_m = 0.01;
+constexpr double kMaxWindowSigma_rad = 0.3 * kDegree;
 constexpr double kUnknown_m = 1000.0;
 constexpr double kUnknown_rad = 10.0;
 
@@ -23,6 +26,14 @@ Matrix6 diagonal(double position, double rotation) {
   Matrix6 covariance = Matrix6::Zero();
   covariance.diagonal() << Eigen::Vector3d::Constant(position), Eigen::Vector3d::Constant(rotation);
   return covariance;
+}
+
+/// The covariance, scaled down to the largest standard deviations.
+Matrix6 limited(const Matrix6& covariance) {
+  const double sigma_m = largest_sigma(covariance.topLeftCorner<3, 3>());
+  const double sigma_rad = largest_sigma(covariance.bottomRightCorner<3, 3>());
+  const double scale = std::min({1.0, kMaxWindowSigma_m / sigma_m, kMaxWindowSigma_rad / sigma_rad});
+  return squared(scale) * covariance;
 }
 
 }  // namespace
@@ -61,7 +72,7 @@ Matrix6 OdometryDrift::step(Timestamp t, const Pose& T_w_b,
                           squared(kDegree * config_.drift_deg_per_sqrt_s) * elapsed_s +
                           squared(kMinStepSigma_rad);
   const Matrix6 walk = diagonal(position, rotation);
-  return motion_covariance ? Matrix6(walk + squared(kWindowFactor) * *motion_covariance) : walk;
+  return motion_covariance ? Matrix6(walk + squared(kWindowFactor) * limited(*motion_covariance)) : walk;
 }
 
 Matrix6 OdometryDrift::covariance(std::size_t i, std::size_t j) const {

@@ -9,8 +9,10 @@
 /// `loop.drift_deg_per_sqrt_m`, s_t = `loop.drift_deg_per_sqrt_s`, e_p = 2 mm, e_r = 0.02 degrees. Q_window
 /// is composed of the covariances of the motion from the oldest frame of the window to the next one, see
 /// `WindowSolver::covariance`; zero where it is not known (without `backend.covariance`, in a loaded map, at
-/// the end of a run). f = 3, as the published prior counts observations repeatedly. An error (rho, theta) of
-/// the motion from k to k+1 moves all later poses by the displacement v + phi x p of the world with
+/// the end of a run), and scaled down to at most 1 cm and 0.3 degrees: where people hide the scene the window
+/// claims meters for a fifth of a second, along directions that a linear covariance does not describe, and
+/// loops bent such motions. f = 3, as the published prior counts observations repeatedly. An error (rho,
+/// theta) of the motion from k to k+1 moves all later poses by the displacement v + phi x p of the world with
 ///
 ///   phi = R_w,k+1 theta,   v = R_w,k rho - phi x p_k+1
 ///

@@ -45,6 +45,20 @@ TEST(OdometryDrift, TheCovarianceOfTwoStepsIsThatOfTheirComposition) {
   EXPECT_NEAR(both(1, 5), step(5, 5), 1e-15);
 }
 
+TEST(OdometryDrift, AWindowThatVisionHardlyLocatesClaimsNoMoreThanACentimeter) {
+  const auto step_of = [](const Matrix6& claimed) {
+    OdometryDrift drift(LoopConfig{});
+    drift.add(from_seconds(0.0), {});
+    drift.add(from_seconds(0.2), {}, claimed);
+    return drift.step_covariance(1);
+  };
+  const Matrix6 walk = step_of(Matrix6::Zero());
+  // Three standard deviations are added to the random walk: see the header.
+  EXPECT_NEAR(step_of(pose_covariance(6.0, 1e-3))(1, 1) - walk(1, 1), 0.03 * 0.03, 1e-12);
+  EXPECT_NEAR(step_of(pose_covariance(1e-3, 2.0))(4, 4) - walk(4, 4), 0.0157079633 * 0.0157079633, 1e-11);
+  EXPECT_NEAR(step_of(pose_covariance(0.005, 1e-3))(1, 1) - walk(1, 1), 0.015 * 0.015, 1e-12);
+}
+
 /// Steps of 0.2 m along x. From the middle on, the odometry drifts along y, as its covariances say.
 struct SidewaysDrift {
   static constexpr int kSteps = 20;
