@@ -48,6 +48,7 @@ class SshHosts {
     std::erase_if(hosts_, [&](const Host& host) { return !stopped() && !is_reachable(host); });
     if (hosts_.empty()) throw InputError("--hosts", "no host can be reached; try `ssh HOST true`");
     for (const Host& host : hosts_) {
+      if (!stopped() && !programs_.contains(host.name)) programs_[host.name] = install_program(host);
       if (!stopped()) collect_from(host);
     }
   }
@@ -126,6 +127,7 @@ class SshHosts {
   [[nodiscard]] std::string install_program(const Host& host) const {
     if (host.package.empty()) return host.program;
     const HostPackage package = extract_package(host.package, folder_ / "packages", options_.stop_requested);
+    if (stopped()) return {};
     const std::string target = ".stillpoint/packages/" + package.name;
     report(fmt::format("copy {} to {}", host.package, host.name));
     static_cast<void>(call_ssh(host, {"mkdir", "-p", target}));
@@ -135,8 +137,7 @@ class SshHosts {
 
   /// Fetches and merges what workers of an earlier call completed, after the last one ended.
   void collect_from(const Host& host) const {
-    const std::string program = install_program(host);
-    if (stopped()) return;
+    const std::string& program = programs_.at(host.name);
     const fs::path link = folder_ / "programs" / host.name / "program";
     fs::create_directories(link.parent_path());
     fs::remove(link);
@@ -184,7 +185,8 @@ class SshHosts {
   std::vector<Host> hosts_;
   fs::path folder_;
   Words ssh_ = {"ssh"};
-  std::string remote_;  ///< the job folder on each host, relative to the home folder
+  std::string remote_;                           ///< the job folder on each host, relative to the home folder
+  std::map<std::string, std::string> programs_;  ///< of the hosts, as seen from their job folders
   std::map<std::string, fs::path> recorded_;
 };
 

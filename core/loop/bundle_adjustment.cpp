@@ -11,6 +11,7 @@
 
 #include "core/backend/factors/gravity_manifold.h"
 #include "core/backend/factors/pose_manifold.h"
+#include "core/backend/factors/problem_options.h"
 #include "core/loop/point_factor.h"
 #include "core/loop/pose_block.h"
 #include "core/loop/pose_graph_factors.h"
@@ -70,15 +71,6 @@ class BundleProblem {
     PointFactor factor;
     std::array<const double*, 2> blocks;  ///< pose, landmark
   };
-
-  static ceres::Problem::Options problem_options() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
 
   PoseBlock& pose(int keyframe) { return poses_[static_cast<std::size_t>(keyframe)]; }
 

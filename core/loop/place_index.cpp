@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kDescriptorBits = 256;
 constexpr int kMaxVoteDistance = 48;  // bits; the distance of unrelated descriptors is 128 +- 8 or more
-constexpr int kMaxSignatureDistance =
-    24;  // bits; of the expected 12 at the largest distance, 32 if unrelated
+// Bits of 64: 12 are expected at the largest distance of a vote, 32 between unrelated descriptors.
+constexpr int kMaxSignatureDistance = 24;
 constexpr std::uint32_t kBitSeed = 1;
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "core/backend/factors/gravity_manifold.h"
 #include "core/backend/factors/pose_manifold.h"
+#include "core/backend/factors/problem_options.h"
 #include "core/loop/pose_block.h"
 #include "core/loop/pose_graph_factors.h"
 
@@ -84,14 +85,6 @@ class GraphProblem {
   }
 
  private:
-  static ceres::Problem::Options problem_options() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
-
   /// Gives all poses their measured inclination, which four degrees of freedom do not change.
   void align_with_gravity() {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {

@@ -6,6 +6,7 @@
 
 #include "core/backend/factors/gravity_manifold.h"
 #include "core/backend/factors/pose_manifold.h"
+#include "core/backend/factors/problem_options.h"
 #include "core/backend/solvers/ceres_residuals.h"
 
 namespace stillpoint {
@@ -32,7 +33,7 @@ ResidualBuilder build_residuals(const Window& window, const BackendConfig& confi
 class WindowProblem {
  public:
   WindowProblem(const Window& window, const BackendConfig& config, double focal_px)
-      : blocks_(window), builder_(build_residuals(window, config, focal_px)), problem_(options()) {
+      : blocks_(window), builder_(build_residuals(window, config, focal_px)), problem_(problem_options()) {
     add_states(window);
     for (const Residual& r : builder_.residuals()) {
       problem_.AddResidualBlock(r.cost.get(), r.loss, parameter_addresses(r, blocks_));
@@ -60,15 +61,6 @@ class WindowProblem {
   [[nodiscard]] const ParameterBlocks& blocks() const { return blocks_; }
 
  private:
-  static ceres::Problem::Options options() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
-
   void add_states(const Window& window) {
     for (std::size_t i = 0; i < window.frames.size(); ++i) {
       add_state(blocks_.pose(i), 7, &manifold_);
