@@ -200,7 +200,7 @@ bool render_sequence(const SynthRequest& request, const fs::path& folder, const 
   writer.write_request(request);
   writer.write_rig(setup.rig, request);
   writer.write_imu(setup.imu);
-  writer.write_ground_truth(camera_ground_truth(request, setup));
+  writer.write_ground_truth(camera_ground_truth(request, setup, times.color));
   partial.rename_to(folder);
   return true;
 }

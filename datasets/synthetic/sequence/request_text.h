@@ -9,7 +9,7 @@
 namespace stillpoint::synth {
 
 /// Incremented whenever the output for an unchanged request changes.
-inline constexpr int kRendererVersion = 6;
+inline constexpr int kRendererVersion = 7;
 
 /// The renderer version and every field of the request, one TOML line each.
 [[nodiscard]] std::string request_text(const SynthRequest& request);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -163,6 +164,11 @@ SceneSetup recorded_setup(const SynthRequest& request) {
   return {std::move(scene), std::move(path), rig, motion.epoch, 0.0, std::move(motion.readings), {}};
 }
 
+/// File names contain microseconds.
+Timestamp whole_microseconds(Timestamp epoch, double since_epoch_s) {
+  return {epoch.ns / 1000 * 1000 + std::llround(since_epoch_s * 1e6) * 1000};
+}
+
 }  // namespace
 
 SceneSetup make_scene_setup(const SynthRequest& request) {
@@ -184,8 +190,7 @@ FrameTimes frame_times(const SynthRequest& request, const SceneSetup& setup) {
       --to_drop;
       continue;
     }
-    const double since_epoch_s = setup.first_frame_s + i / request.frames_per_s;
-    times.push_back({setup.epoch.ns / 1000 * 1000 + std::llround(since_epoch_s * 1e6) * 1000});
+    times.push_back(whole_microseconds(setup.epoch, setup.first_frame_s + i / request.frames_per_s));
   }
   return {times, times};
 }
@@ -209,14 +214,20 @@ Exposure exposure_at(const SynthRequest& request, const SceneSetup& setup, Times
   return exposure;
 }
 
-Trajectory camera_ground_truth(const SynthRequest& request, const SceneSetup& setup) {
-  Trajectory truth{"camera", {}};
+Trajectory camera_ground_truth(const SynthRequest& request, const SceneSetup& setup,
+                               const std::vector<Timestamp>& color_times) {
+  std::set<Timestamp> times(color_times.begin(), color_times.end());
   const double last_s = setup.first_frame_s + request.seconds + kTail_s;
   for (int i = 0;; ++i) {
     const double t_s = setup.first_frame_s - kFirstFrame_s + i * kTruthInterval_s;
-    if (t_s > last_s) return truth;
-    truth.poses.push_back({after(setup.epoch, t_s), setup.body_path.pose_at(t_s) * setup.rig.T_b_c});
+    if (t_s > last_s) break;
+    times.insert(whole_microseconds(setup.epoch, t_s));
   }
+  Trajectory truth{"camera", {}};
+  for (const Timestamp t : times) {
+    truth.poses.push_back({t, setup.body_path.pose_at(seconds_between(setup.epoch, t)) * setup.rig.T_b_c});
+  }
+  return truth;
 }
 
 }  // namespace stillpoint::synth

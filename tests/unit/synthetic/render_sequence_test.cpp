@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -80,6 +81,24 @@ TEST(RenderSequence, OpenLorisFoldersCanBeOpened) {
   const Frame frame = stream->load_frame(3);
   EXPECT_EQ(frame.color.size(), cv::Size(160, 120));
   EXPECT_GT(cv::countNonZero(frame.depth), 160 * 120 * 3 / 4);
+}
+
+TEST(RenderSequence, GroundTruthContainsAPoseAtTheTimeOfEachFrame) {
+  const fs::path folder = fresh_folder("truth_times");
+  ASSERT_TRUE(render_sequence(small_request("walking_rpy_empty"), folder));
+  const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(folder);
+  const std::vector<StampedPose>& truth = stream->info().ground_truth.trajectory.poses;
+  const std::vector<Timestamp>& frames = stream->info().frame_times;
+  ASSERT_EQ(frames.size(), 6U);
+  for (const Timestamp t : frames) {
+    EXPECT_EQ(std::count_if(truth.begin(), truth.end(), [t](const StampedPose& pose) { return pose.t == t; }),
+              1)
+        << t.ns;
+  }
+  EXPECT_TRUE(std::is_sorted(truth.begin(), truth.end(),
+                             [](const StampedPose& a, const StampedPose& b) { return a.t < b.t; }));
+  // 200 Hz over 0.05 + 0.2 + 0.05 s are 61 poses; frames 0 and 3, at 0.05 and 0.15 s, are two of them.
+  EXPECT_EQ(truth.size(), 61U + 4U);
 }
 
 TEST(RenderSequence, TumFoldersCanBeOpened) {
