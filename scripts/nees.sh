@@ -3,7 +3,7 @@
 # random walks, five times from 3 s on, relative to the first pose. Noise is configured as simulated; a
 # reprojection residual is the difference of two bearings of 0.5 px.
 # scripts/nees.sh [BUILD_FOLDER] [nees_program arguments], e.g.
-# scripts/nees.sh build/release --runs 10 --draw time_offset_s=0.04 backend.prior=published
+# scripts/nees.sh build/release --runs 10 --first-seed 51 --draw time_offset_s=0.04 backend.prior=published
 set -e
 cd "$(dirname "$0")/.."
 build=build/release

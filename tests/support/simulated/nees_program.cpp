@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// nees_program [--runs N] [--seconds S] [--draw KEY=VALUE]... [KEY=VALUE of the config]...
-// Prints the ratio of the NEES to its dimension, over the runs and five times of a simulation.
+// nees_program [--runs N] [--first-seed N] [--seconds S] [--draw KEY=VALUE]... [KEY=VALUE of the config]...
+// Prints the ratio of the NEES to its dimension, over the runs and five times of a simulation. Runs with
+// different seeds are independent.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -14,6 +15,7 @@ namespace {
 
 struct Options {
   int runs = 50;
+  int first_seed = 1;
   double seconds = 30.0;
   NeesDraw draw;
   bench::ConfigRequest config;
@@ -34,6 +36,8 @@ Options parse(int count, char** arguments) {
     const std::string argument = arguments[i];
     if (argument == "--runs") {
       options.runs = std::stoi(arguments[++i]);
+    } else if (argument == "--first-seed") {
+      options.first_seed = std::stoi(arguments[++i]);
     } else if (argument == "--seconds") {
       options.seconds = std::stod(arguments[++i]);
     } else if (argument == "--draw") {
@@ -52,7 +56,22 @@ struct Row {
   int dimension = 0;
   std::vector<double> squared, error;
   std::vector<int> count;
+  std::map<int, double> run_ratio;  ///< sum over the checkpoints of the run with that seed
 };
+
+/// Half width of the 95 % interval of the mean ratio, from the spread of the means of the runs: independent,
+/// while the checkpoints of one run are correlated.
+double half_width(const Row& row) {
+  const auto runs = static_cast<double>(row.run_ratio.size());
+  double sum = 0.0, squares = 0.0;
+  for (const auto& [seed, ratio] : row.run_ratio) {
+    const double mean = ratio / static_cast<double>(row.count.size());
+    sum += mean;
+    squares += mean * mean;
+  }
+  const double variance = (squares - sum * sum / runs) / (runs - 1.0);
+  return 1.96 * std::sqrt(variance / runs);
+}
 
 void print_row(const std::string& quantity, const Row& row) {
   double squared = 0.0, error = 0.0;
@@ -64,12 +83,9 @@ void print_row(const std::string& quantity, const Row& row) {
     error += row.error[i];
     count += row.count[i];
   }
-  // Checkpoints of one run are correlated: the interval is that of one independent value per run.
-  const double degrees = static_cast<double>(row.dimension) * row.count.back();
   const double ratio = squared / row.dimension / count;
-  const double half_width = 1.96 * std::sqrt(2.0 / degrees);
-  std::printf("  %6.3f [%.2f, %.2f]  %.3g\n", ratio, ratio * (1.0 - half_width), ratio * (1.0 + half_width),
-              std::sqrt(error / count));
+  const double width = half_width(row);
+  std::printf("  %6.3f [%.2f, %.2f]  %.3g\n", ratio, ratio - width, ratio + width, std::sqrt(error / count));
 }
 
 int run(int count, char** arguments) {
@@ -80,7 +96,7 @@ int run(int count, char** arguments) {
   std::map<std::string, Row> rows;
   int lost = 0;
   for (int i = 0; i < options.runs; ++i) {
-    options.draw.seed = static_cast<std::uint32_t>(i + 1);
+    options.draw.seed = static_cast<std::uint32_t>(options.first_seed + i);
     const auto result = simulate_nees(config, options.draw, checkpoints);
     for (std::size_t k = 0; k < result.size(); ++k) {
       lost += result[k].empty();
@@ -90,6 +106,7 @@ int run(int count, char** arguments) {
         for (auto* values : {&row.squared, &row.error}) values->resize(checkpoints.size());
         row.count.resize(checkpoints.size());
         row.squared[k] += term.squared;
+        row.run_ratio[options.first_seed + i] += term.squared / term.dimension;
         row.error[k] += term.error * term.error;
         ++row.count[k];
       }
