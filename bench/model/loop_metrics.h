@@ -28,6 +28,13 @@ template <auto kMember>
   }
 }
 
+/// The value of one member of `eval::ErrorAfterLoop`; nullopt without loops or with a loaded map.
+template <auto kMember>
+[[nodiscard]] std::optional<double> value_after_loop(const Measurements& m) {
+  if (!m.loops || !m.loops->after_first) return std::nullopt;
+  return (*m.loops->after_first).*kMember;
+}
+
 inline constexpr MetricDescriptor kLoopMetrics[] = {
     {.id = "ate_optimized_m",
      .label = "ATE, optimized",
@@ -49,6 +56,31 @@ inline constexpr MetricDescriptor kLoopMetrics[] = {
      .source = MetricSource::kLoop,
      .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 2e-4},
      .value = loop_value<&LoopScore::causal_ate_m>},
+    {.id = "ate_after_loop_ratio",
+     .label = "causal / odometry after a loop",
+     .title = "Error with loop closure relative to that of the odometry, after the first loop",
+     .description = "Root mean square error from 1 s after the first loop on, with the corrections known at "
+                    "each frame, relative to that of the odometry; both aligned at the start",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .decimals = 2,
+     .source = MetricSource::kLoop,
+     .value = value_after_loop<&eval::ErrorAfterLoop::ratio>},
+    {.id = "ate_after_loop_m",
+     .label = "ATE, causal, after a loop",
+     .description = "Root mean square distance between true positions and those with the corrections known "
+                    "at each frame, from 1 s after the first loop on, aligned at the start",
+     .unit = "m",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .source = MetricSource::kLoop,
+     .value = value_after_loop<&eval::ErrorAfterLoop::causal_m>},
+    {.id = "ate_odometry_after_loop_m",
+     .label = "ATE, odometry, after a loop",
+     .description = "Root mean square distance between true positions and those of the odometry, from 1 s "
+                    "after the first loop on, aligned at the start",
+     .unit = "m",
+     .direction = MetricDirection::kSmallerIsBetter,
+     .source = MetricSource::kLoop,
+     .value = value_after_loop<&eval::ErrorAfterLoop::odometry_m>},
     {.id = "loops",
      .label = "loops",
      .description = "Number of accepted loops",

@@ -15,6 +15,7 @@
 
 #include "bench/model/stored_run.h"
 #include "core/types/trajectory.h"
+#include "eval/metrics/error_after_loop.h"
 #include "eval/metrics/honesty.h"
 #include "eval/metrics/nees.h"
 #include "eval/metrics/revisits.h"
@@ -100,7 +101,8 @@ struct LoopScore {
   std::size_t keyframes = 0;
   std::optional<double> median_ms{};
   std::optional<eval::RevisitScore> revisits{};  ///< with a ground truth
-  std::optional<double> relocalization_s{};      ///< in a loaded map
+  std::optional<eval::ErrorAfterLoop> after_first{};
+  std::optional<double> relocalization_s{};  ///< in a loaded map
 };
 
 /// Energy and throttling of the machine during a run; see bench/model/device_metrics.h for the definitions.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "eval/metrics/error_after_loop.h"
 #include "eval/metrics/statistics.h"
 #include "eval/score.h"
 
@@ -58,6 +59,16 @@ std::optional<double> ate_m(const Trajectory& gt, Trajectory trajectory,
   return score.ate ? std::optional<double>(score.ate->translation_m.rmse) : std::nullopt;
 }
 
+/// Nothing without an accepted loop, or with a loaded map, whose world differs from that of the odometry.
+std::optional<eval::ErrorAfterLoop> error_after_first_loop(const Trajectory& gt, const Trajectory& odometry,
+                                                           const LoopRun& run) {
+  if (run.has_map) return std::nullopt;
+  const auto first =
+      std::ranges::find(run.report.loops, LoopOutcome::kAccepted, &LoopRecord::outcome);  // by query
+  if (first == run.report.loops.end()) return std::nullopt;
+  return eval::error_after_loop(gt, odometry, run.causal, first->query_t);
+}
+
 }  // namespace
 
 Trajectory optimized_trajectory(std::span<const Trajectory> odometry, const LoopReport& report) {
@@ -73,10 +84,11 @@ Trajectory optimized_trajectory(std::span<const Trajectory> odometry, const Loop
   return result;
 }
 
-LoopScore score_loops(const Trajectory& gt, const LoopRun& run) {
+LoopScore score_loops(const Trajectory& gt, const Trajectory& odometry, const LoopRun& run) {
   LoopScore score;
   score.optimized_ate_m = ate_m(gt, run.optimized);
   score.causal_ate_m = ate_m(gt, run.causal);
+  score.after_first = error_after_first_loop(gt, odometry, run);
   if (run.has_map && !run.causal.poses.empty()) {
     score.relocalization_s = seconds_between(run.optimized.poses.front().t, run.causal.poses.front().t);
   }

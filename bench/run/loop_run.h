@@ -29,6 +29,7 @@ struct LoopRun {
 [[nodiscard]] Trajectory optimized_trajectory(std::span<const Trajectory> odometry, const LoopReport& report);
 
 /// @param gt of the camera
-[[nodiscard]] LoopScore score_loops(const Trajectory& gt, const LoopRun& run);
+/// @param odometry the first segment, without corrections
+[[nodiscard]] LoopScore score_loops(const Trajectory& gt, const Trajectory& odometry, const LoopRun& run);
 
 }  // namespace stillpoint::bench

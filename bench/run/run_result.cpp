@@ -137,7 +137,7 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
   result.gt = camera_truth(info, options.expected_times);
   result.score = eval::score(result.gt, run.trajectory, options);
   if (run.imu_rate) result.imu_rate = score_imu_rate(result.gt, *run.imu_rate, run.trajectory);
-  if (run.loops) result.loops = score_loops(result.gt, *run.loops);
+  if (run.loops) result.loops = score_loops(result.gt, run.trajectory, *run.loops);
   if (!faults.empty())
     result.honesty = eval::honesty(result.gt, run.claims, fault_spans(faults, options.expected_times));
   result.run = std::move(run);

@@ -67,5 +67,35 @@ TEST(LoopRun, LaterSegmentsAreMovedIntoTheMapIfTheyAreLocatedInIt) {
   }
 }
 
+/// Poses at 1 Hz on a parabola, off in z from 20 s on.
+Trajectory drifting(double error_m) {
+  Trajectory trajectory{.frame = "camera", .poses = {}};
+  for (int k = 0; k < 30; ++k) {
+    const double t = k;
+    trajectory.poses.push_back(
+        {from_seconds(t), {Eigen::Quaterniond::Identity(), {t, 0.1 * t * t, k < 20 ? 0.0 : error_m}}});
+  }
+  return trajectory;
+}
+
+TEST(LoopRun, TheErrorAfterTheFirstLoopIsThatAfterTheFirstAcceptedOne) {
+  LoopRun run{.causal = drifting(0.1), .optimized = drifting(0.0), .report = {}};
+  run.report.loops = {{.query_t = from_seconds(12), .outcome = LoopOutcome::kFewInliers},
+                      {.query_t = from_seconds(19), .outcome = LoopOutcome::kAccepted}};
+  // From 20 s on: 0.1 m and 0.3 m. From 13 s on, after the refused one, it would be less.
+  const LoopScore score = score_loops(drifting(0.0), drifting(0.3), run);
+  ASSERT_TRUE(score.after_first.has_value());
+  EXPECT_NEAR(score.after_first->odometry_m, 0.3, 1e-9);
+  EXPECT_NEAR(score.after_first->causal_m, 0.1, 1e-9);
+}
+
+TEST(LoopRun, WithoutAcceptedLoopsOrWithALoadedMapThereIsNoErrorAfterALoop) {
+  LoopRun run{.causal = drifting(0.1), .optimized = drifting(0.0), .report = {}};
+  EXPECT_FALSE(score_loops(drifting(0.0), drifting(0.3), run).after_first);
+  run.report.loops = {{.query_t = from_seconds(19), .outcome = LoopOutcome::kAccepted}};
+  run.has_map = true;
+  EXPECT_FALSE(score_loops(drifting(0.0), drifting(0.3), run).after_first);
+}
+
 }  // namespace
 }  // namespace stillpoint::bench
