@@ -101,6 +101,24 @@ TEST(RunCommand, RealtimeModeReportsLatency) {
   EXPECT_LE(realtime["latency_ms"]["p50"], realtime["latency_ms"]["p99"]);
 }
 
+TEST(RunCommand, ALateStartLeavesOutTheFramesBeforeIt) {
+  const TemporaryFolder out;
+  const auto run_from = [&](const std::string& start_s) {
+    return run_program(run_of(rendered_sequence(), out.path(), {"--start", start_s}));
+  };
+  const ProgramResult late = run_from("1");
+  ASSERT_EQ(late.exit_code, 0) << late.err;
+  // 30 of the 90 frames at 30 Hz are earlier than 1 s after the first one.
+  const nlohmann::json scores = json_of(out.path() / "result.json");
+  EXPECT_EQ(scores["frames"], kFrames - 30);
+  EXPECT_GT(scores["coverage"], 0.5);
+  EXPECT_LT(scores["ate_rmse_m"], 0.05);
+  EXPECT_NE(scores["notes"].dump().find("begins 1 s after the first frame"), std::string::npos);
+  const ProgramResult past = run_from("3");
+  EXPECT_EQ(past.exit_code, 2);
+  EXPECT_NE(past.err.find("--start: 3 s is past the end of office"), std::string::npos) << past.err;
+}
+
 TEST(RunCommand, DumpsAllLabels) {
   const TemporaryFolder out;
   ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path(), {"--dump", "labels", "--max-frames", "20"}))

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/cli/run/open_with_progress.h"
 
+#include <utility>
+
 #include <spdlog/spdlog.h>
 
 #include "bench/cli/interrupt.h"
 #include "bench/cli/progress.h"
 #include "bench/run/frame_cache_settings.h"
 #include "bench/run/sequence_source.h"
+#include "datasets/faults/faulty_stream.h"
+#include "datasets/ping_pong_playback.h"
+#include "datasets/playback_start.h"
 
 namespace stillpoint::bench {
 
@@ -21,6 +26,13 @@ std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& na
     progress->update(static_cast<std::size_t>(done));
   };
   return find_sequence(name, options, {.progress = on_rendered, .stop_requested = interrupt_requested});
+}
+
+std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
+                                               const Playback& playback) {
+  stream = datasets::start_at(std::move(stream), playback.start_s);
+  if (playback.passes > 1) stream = datasets::ping_pong_playback(std::move(stream), playback.passes);
+  return datasets::with_faults(std::move(stream), playback.faults);
 }
 
 std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames) {

@@ -30,9 +30,8 @@
 #include "bench/run/heartbeat.h"
 #include "bench/run/recorded_boxes.h"
 #include "core/base/error.h"
-#include "datasets/faults/faulty_stream.h"
+#include "datasets/faults/sensor_fault.h"
 #include "datasets/open_sequence.h"
-#include "datasets/ping_pong_playback.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -45,7 +44,7 @@ struct RunArguments {
   std::string out, format, rig, heartbeat, sequence_id, video, sysfs_root = "/";
   int max_frames = 0, passes = 1, images = 0;
   bool deterministic_counts = false, no_frame_cache = false, imu_rate = false;
-  double speed = 1.0;
+  double speed = 1.0, start_s = 0.0;
   MapOptions map;
 };
 
@@ -203,8 +202,9 @@ int exit_code(Outcome outcome) {
 /// Opens the sequence; renders it first if necessary. @return null if interrupted
 std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
                                              const std::vector<ConfiguredRun>& runs) {
-  // Instruction counts must not depend on earlier runs; several passes use all frames.
-  const bool cached = !arguments.no_frame_cache && !arguments.deterministic_counts;
+  // Instruction counts must not depend on earlier runs, the cache begins at frame 0, passes use all frames.
+  const bool cached =
+      !arguments.no_frame_cache && !arguments.deterministic_counts && arguments.start_s == 0.0;
   const int frames = arguments.passes == 1 ? arguments.max_frames : 0;
   auto stream =
       open_with_progress(resolve_sequence(arguments.sequence),
@@ -213,9 +213,8 @@ std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
                           .topics = arguments.topics,
                           .defer_color = std::ranges::none_of(runs, needs_color, &ConfiguredRun::spec),
                           .frame_cache = logged_frame_cache(cached, frames)});
-  if (stream && arguments.passes > 1)
-    stream = datasets::ping_pong_playback(std::move(stream), arguments.passes);
-  return stream ? datasets::with_faults(std::move(stream), runs.front().faults) : nullptr;
+  if (!stream) return nullptr;
+  return played(std::move(stream), {arguments.start_s, arguments.passes, runs.front().faults});
 }
 
 /// Executes a run and writes its files, then its dumps. @return exit code
@@ -279,6 +278,7 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
       {"--images", "Number of annotated images of the worst frames [0]", &arguments->images, {0, 1e6}},
       {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
       {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
+      {"--start", "Time after the first frame at which the run begins [0 s]", &arguments->start_s, {0, 1e9}},
       {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
       {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
       {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
@@ -292,7 +292,7 @@ Command run_command() {
   const auto arguments = std::make_shared<RunArguments>();
   return {.name = "run",
           .summary = "Run the odometry on one sequence; write trajectory, scores and manifest",
-          .example = "run walking_xyz --variant wo_circular_mask --out /tmp/run",
+          .example = "run walking_xyz --variant wo_circular_mask --start 5 --out /tmp/run",
           .options = run_options(arguments),
           .action = [arguments] { return run(*arguments); }};
 }
