@@ -97,7 +97,7 @@ LoopScore score_loops(const Trajectory& gt, const Trajectory& odometry, const Lo
   score.loops = static_cast<std::size_t>(
       std::ranges::count(run.report.loops, LoopOutcome::kAccepted, &LoopRecord::outcome));
   std::vector<double> times_ms;
-  for (const MapKeyframe& keyframe : run.report.keyframes) times_ms.push_back(keyframe.processing_ms);
+  for (const MapKeyframe& keyframe : run.report.keyframes) times_ms.push_back(keyframe.cost.processing_ms);
   score.median_ms = eval::percentile(times_ms, 0.5);
   if (!gt.poses.empty()) score.revisits = revisits_of(gt, run.report);
   return score;

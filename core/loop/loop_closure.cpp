@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include "core/base/error.h"
@@ -40,18 +39,23 @@ LoopClosure::LoopClosure(const LoopConfig& config, const Camera& camera, bool ha
 void LoopClosure::use_map(const KeyframeMap& map) {
   STILLPOINT_CHECK(keyframes_.empty());
   if (map.keyframes.empty()) return;
-  keyframes_ = map.keyframes;
-  loaded_ = keyframes_.size();
-  recognition_.add_all(keyframes_);
   parts_ = {};
   parts_.begin(-1);
-  for (const Keyframe& keyframe : keyframes_) {
-    T_w_b_.push_back(keyframe.T_w_b);
+  for (const Keyframe& keyframe : map.keyframes) {
+    append(keyframe);
     drift_.add(keyframe.t, keyframe.T_w_b);
     parts_.add();
   }
+  loaded_ = keyframes_.size();
+  recognition_.add_all(keyframes_);
   T_m_b_ = T_w_b_;
   parts_.begin(segment_);
+}
+
+void LoopClosure::append(Keyframe keyframe) {
+  features_allocated_ += keyframe.features.capacity();
+  T_w_b_.push_back(keyframe.T_w_b);
+  keyframes_.push_back(std::move(keyframe));
 }
 
 /// The keyframes so far become the map in which the new segment is to be located: those of parts that are not
@@ -83,8 +87,7 @@ Keyframe LoopClosure::describe(const DepartedKeyframe& keyframe) const {
 Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
   const auto start = std::chrono::steady_clock::now();
   enter_segment(keyframe.segment);
-  keyframes_.push_back(describe(keyframe));
-  T_w_b_.push_back(keyframe.T_w_b);
+  append(describe(keyframe));
   T_m_b_.push_back(T_m_w_ * keyframe.T_w_b);
   if (parts_.is_empty()) {
     drift_.add_unrelated(keyframe.t, keyframe.T_w_b);
@@ -95,8 +98,8 @@ Pose LoopClosure::add(const DepartedKeyframe& keyframe) {
   constrain_by_start();
   find_loops();
   if (is_optimization_due()) optimize();
-  processing_ms_.push_back(
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  costs_.push_back({.processing_ms = elapsed.count(), .memory_bytes = memory_bytes()});
   // Corrections by loops within a part do not locate it in the map.
   return is_located() ? T_m_w_ : Pose{};
 }
@@ -185,10 +188,9 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
 }
 
 bool LoopClosure::is_optimization_due() const {
-  if (has_new_loop_ && !is_located()) return true;
-  return has_new_loop_ &&
-         keyframes_.size() >=
-             keyframes_optimized_ + std::max(kMinInterval, keyframes_.size() / kIntervalDivisor);
+  if (!has_new_loop_ || !is_located()) return has_new_loop_;
+  const std::size_t interval = std::max(kMinInterval, keyframes_.size() / kIntervalDivisor);
+  return keyframes_.size() >= keyframes_optimized_ + interval;
 }
 
 void LoopClosure::relocalize() {
@@ -215,8 +217,6 @@ bool LoopClosure::has_inlier_in_map() const {
     return parts_.is_location(loop.loop) && records_[loop.record].outcome == LoopOutcome::kAccepted;
   });
 }
-
-double LoopClosure::gravity_sigma_rad() const { return config_.gravity_sigma_deg * std::numbers::pi / 180.0; }
 
 PoseGraph LoopClosure::build_graph() const {
   PoseGraph graph{.T_m_b = T_m_b_};
@@ -283,7 +283,7 @@ LoopReport LoopClosure::finish() {
                                 .T_w_b = T_w_b_[k],
                                 .T_m_b = T_m_b_[k],
                                 .T_b_c = keyframes_[k].T_b_c,
-                                .processing_ms = processing_ms_[k - loaded_]});
+                                .cost = costs_[k - loaded_]});
     report.relocalized = report.relocalized || (loaded_ > 0 && parts_.is_in_map(k));
   }
   if (loaded_ > 0 && !report.relocalized) return report;

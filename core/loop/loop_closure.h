@@ -3,6 +3,7 @@
 /// The odometry itself is not changed: the correction is a transform from its world to the map.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -70,7 +71,15 @@ class LoopClosure {
   void move_into_map(const Pose& T_m_w);
   void constrain_by_start();
   [[nodiscard]] bool has_inlier_in_map() const;
-  [[nodiscard]] double gravity_sigma_rad() const;
+  [[nodiscard]] double gravity_sigma_rad() const {
+    return config_.gravity_sigma_deg * std::numbers::pi / 180.0;
+  }
+  void append(Keyframe keyframe);
+  [[nodiscard]] std::size_t memory_bytes() const {  // of `KeyframeCost`
+    return recognition_.memory_bytes() + features_allocated_ * sizeof(KeyframeFeature) +
+           keyframes_.capacity() * sizeof(Keyframe) + (T_w_b_.capacity() + T_m_b_.capacity()) * sizeof(Pose) +
+           records_.capacity() * sizeof(LoopRecord) + loops_.capacity() * sizeof(ConsistentLoop);
+  }
   [[nodiscard]] std::optional<BundleAdjustmentSummary> adjust();
 
   LoopConfig config_;
@@ -82,9 +91,10 @@ class LoopClosure {
   int segment_ = 0;
   std::size_t loaded_ = 0;  ///< number of keyframes of the loaded map, the first ones
   std::vector<Keyframe> keyframes_;
-  std::vector<Pose> T_w_b_;            ///< of the keyframes, by the odometry of their part
-  std::vector<Pose> T_m_b_;            ///< of the keyframes, in the map
-  std::vector<double> processing_ms_;  ///< of the keyframes
+  std::vector<Pose> T_w_b_;             ///< of the keyframes, by the odometry of their part
+  std::vector<Pose> T_m_b_;             ///< of the keyframes, in the map
+  std::vector<KeyframeCost> costs_;     ///< of the keyframes of this run
+  std::size_t features_allocated_ = 0;  ///< of the keyframes
   Pose T_m_w_;
   std::vector<LoopRecord> records_;
   std::vector<ConsistentLoop> loops_;

@@ -44,11 +44,22 @@ void PlaceIndex::add(std::span<const KeyframeFeature> features) {
   for (const KeyframeFeature& feature : features.first(std::min(features.size(), kMaxFeatures))) {
     const Entry entry{.signature = signature_of(feature.descriptor),
                       .descriptor = static_cast<std::uint32_t>(descriptors_.size())};
-    for (Table& table : tables_) table.entries[key_of(table, feature.descriptor)].push_back(entry);
+    for (Table& table : tables_) {
+      std::vector<Entry>& entries = table.entries[key_of(table, feature.descriptor)];
+      const std::size_t capacity = entries.capacity();
+      entries.push_back(entry);
+      entries_allocated_ += entries.capacity() - capacity;
+    }
     descriptors_.push_back(feature.descriptor);
     place_of_.push_back(places_);
   }
   ++places_;
+}
+
+std::size_t PlaceIndex::memory_bytes() const {
+  return tables_.size() * (std::size_t{1} << kKeyBits) * sizeof(std::vector<Entry>) +
+         entries_allocated_ * sizeof(Entry) + descriptors_.capacity() * sizeof(Descriptor) +
+         place_of_.capacity() * sizeof(std::int32_t);
 }
 
 std::vector<PlaceVotes> PlaceIndex::query(std::span<const KeyframeFeature> features) const {

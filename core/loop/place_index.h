@@ -38,6 +38,9 @@ class PlaceIndex {
 
   [[nodiscard]] int places() const { return places_; }
 
+  /// Allocated for the entries and descriptors [B].
+  [[nodiscard]] std::size_t memory_bytes() const;
+
   static constexpr std::size_t kMaxFeatures = 300;  ///< per place and query: bounds memory and time
 
  private:
@@ -61,6 +64,7 @@ class PlaceIndex {
   std::array<Table, kTables> tables_;
   std::vector<Descriptor> descriptors_;
   std::vector<std::int32_t> place_of_;  ///< of each descriptor
+  std::size_t entries_allocated_ = 0;   ///< in all tables
   int places_ = 0;
 };
 

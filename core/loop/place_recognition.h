@@ -30,6 +30,8 @@ class PlaceRecognition {
   /// least `loop.min_votes` among the places of the map and the keyframes that `recognize` has indexed.
   [[nodiscard]] std::vector<PlaceVotes> similar_places(const Keyframe& query) const;
 
+  [[nodiscard]] std::size_t memory_bytes() const { return index_.memory_bytes(); }
+
  private:
   [[nodiscard]] bool is_consistent(int place) const;
 

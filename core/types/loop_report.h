@@ -50,6 +50,14 @@ struct LoopRecord {
   LoopOutcome outcome = LoopOutcome::kAccepted;
 };
 
+/// Cost of the loop closure for a keyframe.
+struct KeyframeCost {
+  double processing_ms = 0.0;
+  /// Allocated afterwards for keyframes, place index and loops, those of a loaded map included [B]. The pose
+  /// graph, which exists while it is optimized, is not.
+  std::size_t memory_bytes = 0;
+};
+
 /// A keyframe of the pose graph, of this run.
 struct MapKeyframe {
   std::int64_t frame = 0;
@@ -59,7 +67,7 @@ struct MapKeyframe {
   Pose T_w_b;              ///< by the odometry, in the world of the segment
   Pose T_m_b;              ///< optimized
   Pose T_b_c;
-  double processing_ms = 0.0;  ///< time of the loop closure for it
+  KeyframeCost cost;
 };
 
 /// Of the global bundle adjustment (core/loop/bundle_adjustment.h).

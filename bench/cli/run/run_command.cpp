@@ -267,7 +267,7 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
       {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
       {"--dump",
        "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
-       "processing time of each frame); may be repeated",
+       "processing time of each frame; loop_cost.svg: of loop closure); may be repeated",
        &arguments->dumps},
       {"--passes", "Passes, forward and backward in turn, without IMU [1]", &arguments->passes, {1, 1000}},
       {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},

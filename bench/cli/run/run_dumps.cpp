@@ -5,16 +5,22 @@
 #include "core/base/error.h"
 #include "reports/drawing/cost_trend.h"
 #include "reports/drawing/drawing.h"
+#include "reports/drawing/loop_cost_plot.h"
 
 namespace stillpoint::bench {
 namespace {
 
 constexpr const char* kLabelsFile = "labels.csv";
 constexpr const char* kCostFile = "cost.svg";
+constexpr const char* kLoopCostFile = "loop_cost.svg";
 constexpr const char* kImagesFolder = "images";
 
 std::string cost_svg(const OdometryRun& run) {
   return report::svg_text(report::cost_plot(report::cost_trend(report::frame_costs(run))));
+}
+
+std::string loop_cost_svg(const LoopRun& loops) {
+  return report::svg_text(report::loop_cost_plot(loops.report.keyframes));
 }
 
 }  // namespace
@@ -57,6 +63,11 @@ std::vector<std::string> RunDumps::finish(const OdometryRun* cost_run) {
     attempt("--dump labels", [&] { write_files(request_.folder, {{kLabelsFile, labels_.text()}}); });
   if (request_.cost && cost_run != nullptr)
     attempt("--dump cost", [&] { write_files(request_.folder, {{kCostFile, cost_svg(*cost_run)}}); });
+  if (request_.cost && cost_run != nullptr && cost_run->loops) {
+    attempt("--dump cost", [&] {
+      write_files(request_.folder, {{kLoopCostFile, loop_cost_svg(*cost_run->loops)}});
+    });
+  }
   return failures_;
 }
 

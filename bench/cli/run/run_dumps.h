@@ -18,7 +18,7 @@ namespace stillpoint::bench {
 
 /// The requested outputs.
 struct DumpRequest {
-  std::filesystem::path folder;  ///< of the run: labels.csv, cost.svg, images/
+  std::filesystem::path folder;  ///< of the run: labels.csv, cost.svg, loop_cost.svg, images/
   bool labels = false;
   bool cost = false;
   std::filesystem::path video;  ///< folder; empty = none

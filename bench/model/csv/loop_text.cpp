@@ -46,12 +46,13 @@ std::string loop_text(std::span<const LoopRecord> loops) {
 }
 
 std::string keyframe_text(std::span<const MapKeyframe> keyframes) {
-  std::string text = "frame,t_ns,segment,located,tx,ty,tz,qx,qy,qz,qw,processing_ms\n";
+  std::string text = "frame,t_ns,segment,located,tx,ty,tz,qx,qy,qz,qw,processing_ms,memory_bytes\n";
   for (const MapKeyframe& keyframe : keyframes) {
     const Pose& T = keyframe.T_m_b;
-    text += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.4g}\n",
+    text += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.4g},{}\n",
                         keyframe.frame, keyframe.t.ns, keyframe.segment, keyframe.is_located ? 1 : 0, T.p.x(),
-                        T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w(), keyframe.processing_ms);
+                        T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w(), keyframe.cost.processing_ms,
+                        keyframe.cost.memory_bytes);
   }
   return text;
 }

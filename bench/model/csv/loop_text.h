@@ -24,7 +24,7 @@ struct StoredLoop {
 
 [[nodiscard]] std::string loop_text(std::span<const LoopRecord> loops);
 
-/// Optimized poses T_m_b of the keyframes, and the time of the loop closure for each.
+/// Optimized poses T_m_b of the keyframes, the time of the loop closure for each, and its memory afterwards.
 [[nodiscard]] std::string keyframe_text(std::span<const MapKeyframe> keyframes);
 
 /// @param place name of the text in error messages

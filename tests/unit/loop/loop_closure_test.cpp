@@ -39,6 +39,9 @@ TEST(LoopClosure, WithoutLoopsTheMapIsTheWorldOfTheOdometry) {
   ASSERT_EQ(report.keyframes.size(), 3u);
   EXPECT_EQ(report.keyframes[2].T_m_b.p, Eigen::Vector3d(0.4, 0.0, 0.0));
   EXPECT_TRUE(report.loops.empty());
+  // The images have no features. The vectors of keyframes and poses have grown from one element to four.
+  EXPECT_EQ(report.keyframes[2].cost.memory_bytes - report.keyframes[0].cost.memory_bytes,
+            3 * (sizeof(Keyframe) + 2 * sizeof(Pose)));
 }
 
 TEST(LoopClosure, TheBundleAdjustmentIsAnOption) {

@@ -33,6 +33,16 @@ std::vector<std::vector<KeyframeFeature>> distinct_places(int count, std::mt1993
   return places;
 }
 
+TEST(PlaceIndex, ItsMemoryIsThatOfTheTablesEntriesAndDescriptors) {
+  // 4 tables of 2^16 keys with a vector each. A feature has an entry of 12 bytes per table, a descriptor of
+  // 32 bytes and a place of 4 bytes; vectors allocate their first element without a reserve.
+  PlaceIndex index;
+  const std::size_t empty = 4 * 65536 * sizeof(std::vector<int>);
+  EXPECT_EQ(index.memory_bytes(), empty);
+  index.add(std::vector<KeyframeFeature>(1));
+  EXPECT_EQ(index.memory_bytes(), empty + 4 * 12 + 32 + 4);
+}
+
 TEST(PlaceIndex, FindsAPlaceAmongOthersByNoisyDescriptors) {
   std::mt19937_64 random(1);
   const auto places = distinct_places(50, random);
