@@ -35,9 +35,14 @@ Tile inner_products(const Rows& left, const Rows& right, int begin, int end) {
   Tile products;
   for (std::size_t a = 0; a < kTile; ++a) {
     for (std::size_t b = 0; b < kTile; ++b) {
-      double sum = sums[3 * a + b].sum();
-      for (int i = k; i < end; ++i) sum += left[a][i] * right[b][i];
-      products(static_cast<int>(a), static_cast<int>(b)) = sum;
+      products(static_cast<int>(a), static_cast<int>(b)) = sums[3 * a + b].sum();
+    }
+  }
+  for (; k < end; ++k) {
+    for (std::size_t a = 0; a < kTile; ++a) {
+      for (std::size_t b = 0; b < kTile; ++b) {
+        products(static_cast<int>(a), static_cast<int>(b)) += left[a][k] * right[b][k];
+      }
     }
   }
   return products;
