@@ -35,6 +35,7 @@ void ObservationModel::read(const Window& window) {
 TimedBearing ObservationModel::at(const Landmark& landmark, int frame,
                                   const Eigen::Vector3d& position_w) const {
   const Observation& observation = landmark.observation_in(frame);
+  if (at_exposure_ && observation.readout_offset_s == 0.0) return {.bearing = observation.bearing};
   const Camera& camera = cameras_[static_cast<std::size_t>(frame)];
   TimedBearing timed{.bearing = observation.bearing,
                      .velocity = observation.velocity,
