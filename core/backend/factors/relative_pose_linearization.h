@@ -17,6 +17,37 @@ struct RelativePoseLinearization {
   Matrix6 J_extrinsics;
 };
 
+/// What the relative poses of all frames have in common.
+struct CameraOnBody {
+  explicit CameraOnBody(const Pose& T_b_c);
+
+  Eigen::Matrix3d R_b_c;
+  Eigen::Vector3d p_b_c;
+  Eigen::Vector3d p_c_b;
+  Matrix6 J_pose_j;  ///< without the derivative by the position, which depends on frame j
+};
+
+/// What the relative poses of one frame and all others have in common.
+struct CameraInWorld {
+  CameraInWorld(const Pose& T_w_b, const CameraOnBody& camera);
+
+  Eigen::Matrix3d R_w_b;
+  Eigen::Vector3d p_w_b;
+  Eigen::Matrix3d R_c_w;
+};
+
+/// Sets R_cj_ci and p_cj_ci.
+void set_pose(const CameraInWorld& i, const CameraInWorld& j, const CameraOnBody& camera,
+              RelativePoseLinearization& relative);
+
+/// Sets the derivatives by the poses.
+void set_pose_jacobians(const CameraInWorld& i, const CameraInWorld& j, const CameraOnBody& camera,
+                        RelativePoseLinearization& relative);
+
+/// Sets the derivative by T_b_c.
+void set_extrinsics_jacobian(const CameraInWorld& i, const CameraInWorld& j, const CameraOnBody& camera,
+                             RelativePoseLinearization& relative);
+
 [[nodiscard]] RelativePoseLinearization linearize_relative_pose(const Pose& T_w_bi, const Pose& T_w_bj,
                                                                 const Pose& T_b_c);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "core/backend/factors/timed_imu_residual.h"
 
@@ -50,8 +51,10 @@ ImuLinearization linearize_imu(const Window& window, int frame, const Linearizat
   std::array<double*, 6> jacobians = {out.J_pose_i.data(),  out.J_speed_bias_i.data(),
                                       out.J_pose_j.data(),  out.J_speed_bias_j.data(),
                                       out.J_gravity.data(), out.J_time_offset.data()};
-  residual.evaluate(imu_parameters(frame, at.states).data(), out.residual.data(), jacobians.data());
-  if (!at.at_first_estimates()) return out;
+  const bool at_states = !at.at_first_estimates();
+  residual.evaluate(imu_parameters(frame, at.states).data(), out.residual.data(),
+                    at_states ? jacobians.data() : nullptr);
+  if (at_states) return out;
   Vector15 unused;
   residual.evaluate(imu_parameters(frame, at.point).data(), unused.data(), jacobians.data());
   return out;
@@ -76,25 +79,15 @@ void add_global_rows(BlockKind kind, const Eigen::Matrix<double, 15, Columns>& J
   }
 }
 
-}  // namespace
+using PriorJacobian = ReusableMatrix<Eigen::MatrixXd>;
 
-int ReducedLayout::column(BlockRef block) const {
-  switch (block.kind) {
-    case BlockKind::kPose:
-      return first_pose() + 6 * block.frame;
-    case BlockKind::kSpeedBias:
-      return inertial_ ? 9 * (frames_ - 1 - block.frame) : -1;
-    case BlockKind::kExtrinsics:
-      return variable_.extrinsics ? first_global() : -1;
-    case BlockKind::kGravity:
-      return variable_.gravity ? first_gravity() : -1;
-    case BlockKind::kDepthScale:
-      return variable_.depth_scale ? first_depth_scale() : -1;
-    case BlockKind::kTimeOffset:
-      break;
-  }
-  return variable_.time_offset ? first_time_offset() : -1;
+bool has_same_bits(const PriorJacobian& a, const PriorJacobian& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
+  return a.size() == 0 ||
+         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
+
+}  // namespace
 
 void ReducedSystem::reset(const ReducedLayout& new_layout) {
   layout = new_layout;
@@ -123,6 +116,14 @@ void ReducedSystem::widen_profile(std::span<const BlockRef> blocks) {
       int& start = first[static_cast<std::size_t>(row / kTile)];
       start = std::min(start, begin);
     }
+  }
+}
+
+void ReducedSystem::copy_profile_to(ReusableMatrix<RowMajorMatrix>& S) const {
+  S.resize(H.rows(), H.cols());
+  for (Eigen::Index row = 0; row < H.rows(); ++row) {
+    const int begin = first[static_cast<std::size_t>(row / kTile)];
+    S.row(row).segment(begin, row + 1 - begin) = H.row(row).segment(begin, row + 1 - begin);
   }
 }
 
@@ -173,9 +174,12 @@ void PriorTerm::read(const LinearPrior& prior) {
   blocks_.clear();
   for (const PriorBlock& block : prior.blocks) blocks_.push_back({block.kind, block.frame});
   const Eigen::Index size = prior.jacobian.cols();
-  information_.resize(size, size);
-  information_.setZero();
-  information_.selfadjointView<Eigen::Lower>().rankUpdate(prior.jacobian.transpose());
+  if (!has_same_bits(prior.jacobian, jacobian_)) {
+    jacobian_ = prior.jacobian;
+    information_.resize(size, size);
+    information_.setZero();
+    information_.selfadjointView<Eigen::Lower>().rankUpdate(prior.jacobian.transpose());
+  }
   difference_.resize(size);
   gradient_.resize(size);
 }

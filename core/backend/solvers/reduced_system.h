@@ -21,7 +21,23 @@ class ReducedLayout {
       : frames_(frames), inertial_(inertial), variable_(variable) {}
 
   /// -1 for a constant block.
-  [[nodiscard]] int column(BlockRef block) const;
+  [[nodiscard]] int column(BlockRef block) const {
+    switch (block.kind) {
+      case BlockKind::kPose:
+        return first_pose() + 6 * block.frame;
+      case BlockKind::kSpeedBias:
+        return inertial_ ? 9 * (frames_ - 1 - block.frame) : -1;
+      case BlockKind::kExtrinsics:
+        return variable_.extrinsics ? first_global() : -1;
+      case BlockKind::kGravity:
+        return variable_.gravity ? first_gravity() : -1;
+      case BlockKind::kDepthScale:
+        return variable_.depth_scale ? first_depth_scale() : -1;
+      case BlockKind::kTimeOffset:
+        break;
+    }
+    return variable_.time_offset ? first_time_offset() : -1;
+  }
   [[nodiscard]] int first_pose() const { return inertial_ ? 9 * frames_ : 0; }
   /// Padded to a multiple of kTile.
   [[nodiscard]] int size() const { return first_global() + (globals() + kTile - 1) / kTile * kTile; }
@@ -63,6 +79,9 @@ class ReducedSystem {
     H.block(row, column, block.rows(), block.cols()) += block;
   }
 
+  /// Copies the part of H within the profile.
+  void copy_profile_to(ReusableMatrix<RowMajorMatrix>& S) const;
+
   ReducedLayout layout;
   ReusableMatrix<RowMajorMatrix> H;
   ReusableVector g;
@@ -89,6 +108,8 @@ class PriorTerm {
  private:
   const LinearPrior* prior_ = nullptr;
   std::vector<BlockRef> blocks_;
+  ReusableMatrix<Eigen::MatrixXd>
+      jacobian_;  // of information_: solve, covariance and marginalization share it
   ReusableMatrix<Eigen::MatrixXd> information_;  // J^T J, lower triangle
   ReusableVector difference_;
   ReusableVector error_;

@@ -11,7 +11,7 @@ std::optional<WindowCovariance> SchurSolver::covariance(const Window& window, co
                                                         double focal_px, bool oldest_motion) {
   read(window, config, focal_px);
   static_cast<void>(linearize(window, config));
-  S_ = system_.H;
+  system_.copy_profile_to(S_);
   newton_.states = -system_.g;
   visual_.eliminate(0.0, S_, newton_.states);
   S_.diagonal().tail(layout_.padding()).setOnes();

@@ -70,7 +70,7 @@ double SchurSolver::cost_at(const Window& window, const BackendConfig& config,
 
 bool SchurSolver::compute_newton_step() {
   for (double damping = kFirstDamping; damping <= kLastDamping; damping *= 10.0) {
-    S_ = system_.H;
+    system_.copy_profile_to(S_);
     S_.diagonal() += damping * scale_squared_.states;
     newton_.states = -system_.g;
     visual_.eliminate(damping, S_, newton_.states);

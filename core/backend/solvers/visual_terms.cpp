@@ -6,8 +6,6 @@
 namespace stillpoint {
 namespace {
 
-Pose pose_at(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Vector3d(x)}; }
-
 Eigen::Vector2d at_state(const TimedBearing& timed, double time_offset_s) {
   return timed.bearing - (time_offset_s + timed.exposure_s) * timed.velocity;
 }
@@ -20,6 +18,7 @@ void VisualTerms::read(const Window& window, const BackendConfig& config, double
   noise_ = reprojection_noise(config, focal_px);
   cauchy_squared_ = config.cauchy_scale * config.cauchy_scale;
   marginalizes_ = selection == LandmarkSelection::kHostedByOldest;
+  bearings_move_ = window.time_offset_model == TimeOffsetModel::kBearing;
   observation_model_.read(window);
   const auto pairs = static_cast<std::size_t>(frames_ * frames_);
   pair_used_.assign(pairs, 0);
@@ -70,38 +69,6 @@ void VisualTerms::add_landmark(const Window& window, std::size_t index, const Ba
   ++variable_count_;
 }
 
-/// Linearizes the relative poses of all frame pairs that share landmarks at the current states.
-void VisualTerms::update_relative_poses(const ParameterBlocks& blocks) {
-  time_offset_ = *blocks.time_offset();
-  depth_scale_ = *blocks.depth_scale();
-  const Pose T_b_c = pose_at(blocks.extrinsics());
-  for (int host = 0; host < frames_; ++host) {
-    for (int frame = host + 1; frame < frames_; ++frame) {
-      if (pair_used_[pair(host, frame)] == 0) continue;
-      relative_poses_[pair(host, frame)] =
-          linearize_relative_pose(pose_at(blocks.pose(static_cast<std::size_t>(host))),
-                                  pose_at(blocks.pose(static_cast<std::size_t>(frame))), T_b_c);
-    }
-  }
-}
-
-/// Evaluates the derivatives of the relative poses, but not the poses, at `point`.
-void VisualTerms::move_jacobians_to(const ParameterBlocks& point) {
-  const Pose T_b_c = pose_at(point.extrinsics());
-  for (int host = 0; host < frames_; ++host) {
-    for (int frame = host + 1; frame < frames_; ++frame) {
-      if (pair_used_[pair(host, frame)] == 0) continue;
-      const RelativePoseLinearization first =
-          linearize_relative_pose(pose_at(point.pose(static_cast<std::size_t>(host))),
-                                  pose_at(point.pose(static_cast<std::size_t>(frame))), T_b_c);
-      RelativePoseLinearization& relative = relative_poses_[pair(host, frame)];
-      relative.J_pose_i = first.J_pose_i;
-      relative.J_pose_j = first.J_pose_j;
-      relative.J_extrinsics = first.J_extrinsics;
-    }
-  }
-}
-
 VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
                                                  const ParameterBlocks& blocks) const {
   return {*blocks.inverse_depth(landmark.index), at_state(landmark.in_host, time_offset_).homogeneous(),
@@ -145,14 +112,14 @@ double VisualTerms::cost(const ParameterBlocks& blocks) {
 
 double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
   update_relative_poses(at.states);
-  if (at.at_first_estimates()) move_jacobians_to(at.point);
-  for (PairSum& sum : sums_) sum.setZero();
-  for (Column8& sum : scale_sums_) sum.setZero();
+  update_pose_jacobians(at.point, system.layout.variable_globals().extrinsics);
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    if (pair_used_[i] == 0) continue;
+    sums_[i].setZero();
+    scale_sums_[i].setZero();
+  }
   scale_information_ = host_scale_gradient_ = 0.0;
-  information_.setZero();
-  gradient_.setZero();
   coupling_.resize(system.layout.size() - system.layout.first_pose(), variable_count_);
-  coupling_.setZero();
   double total = 0.0;
   for (const VisualLandmark& landmark : landmarks_) total += linearize(landmark, at.states, system.layout);
   for (int host = 0; host < frames_; ++host) {
@@ -173,16 +140,27 @@ VisualTerms::ObservationTerm VisualTerms::linearize(const TimedObservation& time
                                                     const LandmarkState& host) const {
   const Eigen::Vector3d p_cj = to.R_cj_ci * host.ray + host.lambda * to.p_cj_ci;
   const ReprojectionRows at = reprojection_rows(p_cj, host.lambda, measured_point_at(timed), noise_);
-  const Eigen::Vector3d J_time = -(to.R_cj_ci.leftCols<2>() * host.velocity);
+  const double x = p_cj.x(), y = p_cj.y(), z = p_cj.z();
+  const double J_xy = at.J_point(0, 0), J_xz = at.J_point(0, 2), J_yz = at.J_point(1, 2);
+  const double J_zz = at.J_point(2, 2);
   ObservationTerm term;
-  for (int row = 0; row < 3; ++row) {
-    const Eigen::Vector3d J_point = at.J_point.row(row).transpose();
-    term.rows.col(row).head<3>() = host.lambda * J_point;
-    term.rows.col(row).segment<3>(3) = p_cj.cross(J_point);
-    term.rows(6, row) = J_point.dot(J_time);
-    term.rows(7, row) = at.residual[row];
+  term.rows.col(0) << host.lambda * J_xy, 0.0, host.lambda * J_xz,  // by nu
+      y * J_xz, z * J_xy - x * J_xz, -(y * J_xy),                   // by omega: P x J_point
+      0.0, at.residual[0];
+  term.rows.col(1) << 0.0, host.lambda * J_xy, host.lambda * J_yz,  //
+      y * J_yz - z * J_xy, -(x * J_yz), x * J_xy,                   //
+      0.0, at.residual[1];
+  term.rows.col(2) << 0.0, 0.0, host.lambda * J_zz,  //
+      y * J_zz, -(x * J_zz), 0.0,                    //
+      0.0, at.residual[2];
+  if (bearings_move_) {
+    const Eigen::Vector3d J_time = -(to.R_cj_ci.leftCols<2>() * host.velocity);
+    for (int row = 0; row < 3; ++row) {
+      const Eigen::Vector3d J_point = at.J_point.row(row).transpose();
+      term.rows(6, row) = J_point.dot(J_time);
+    }
+    term.rows.row(6).head<2>() += timed.bearing.velocity.transpose() / noise_.bearing;
   }
-  term.rows.row(6).head<2>() += timed.bearing.velocity.transpose() / noise_.bearing;
   term.J_lambda = at.J_point * to.p_cj_ci;
   term.J_lambda[2] += at.J_depth_lambda;
   term.J_scale = at.J_depth_scale;
@@ -198,6 +176,7 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
   double information = landmark.information * depth.slope * depth.slope;
   double gradient = landmark.information * depth.slope * depth.value;
   const bool with_scale = layout.variable_globals().depth_scale;
+  if (landmark.column >= 0) coupling_.col(landmark.column).setZero();
   if (with_scale && landmark.has_depth) add_host_scale_terms(landmark, state.lambda, depth, layout);
   for (int frame = landmark.host + 1; frame <= landmark.last; ++frame) {
     const std::size_t shared = pair(landmark.host, frame);
@@ -242,56 +221,6 @@ void VisualTerms::add_host_scale_terms(const VisualLandmark& landmark, double la
   if (landmark.column < 0) return;
   coupling_(layout.column({BlockKind::kDepthScale}) - layout.first_pose(), landmark.column) +=
       weighted * depth.slope;
-}
-
-/// H_pl += M_ij^T w J_y^T J_l of one observation. @param column w [J_y r]^T J_l
-void VisualTerms::add_coupling(const VisualLandmark& landmark, int frame, const Column8& column,
-                               const ReducedLayout& layout) {
-  const RelativePoseLinearization& to = relative_poses_[pair(landmark.host, frame)];
-  const Eigen::Matrix<double, 6, 1> relative = column.head<6>();
-  const Eigen::Index to_column = landmark.column;
-  coupling_.block<6, 1>(6 * frame, to_column).noalias() = to.J_pose_j.transpose() * relative;
-  coupling_.block<6, 1>(6 * landmark.host, to_column).noalias() += to.J_pose_i.transpose() * relative;
-  if (layout.variable_globals().extrinsics) {
-    const int extrinsics = layout.column({BlockKind::kExtrinsics}) - layout.first_pose();
-    coupling_.block<6, 1>(extrinsics, to_column).noalias() += to.J_extrinsics.transpose() * relative;
-  }
-  if (layout.variable_globals().time_offset) {
-    coupling_(layout.column({BlockKind::kTimeOffset}) - layout.first_pose(), to_column) += column[6];
-  }
-}
-
-void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
-  struct PoseBlock {
-    int column;
-    const Matrix6& map;
-  };
-  const RelativePoseLinearization& to = relative_poses_[pair(host, frame)];
-  const PairSum& sum = sums_[pair(host, frame)];
-  const PoseBlock pose_blocks[] = {{system.layout.column({BlockKind::kPose, host}), to.J_pose_i},
-                                   {system.layout.column({BlockKind::kPose, frame}), to.J_pose_j},
-                                   {system.layout.column({BlockKind::kExtrinsics}), to.J_extrinsics}};
-  const int time = system.layout.column({BlockKind::kTimeOffset});
-  const int scale = system.layout.column({BlockKind::kDepthScale});
-  const Column8& scale_sum = scale_sums_[pair(host, frame)];
-  for (const PoseBlock& a : pose_blocks) {
-    if (a.column < 0) continue;
-    const Matrix6 left = a.map.transpose() * sum.topLeftCorner<6, 6>();
-    for (const PoseBlock& b : pose_blocks) {
-      if (b.column < 0 || a.column < b.column) continue;
-      system.H.block<6, 6>(a.column, b.column).noalias() += left * b.map;
-    }
-    system.g.segment<6>(a.column).noalias() += a.map.transpose() * sum.block<6, 1>(0, 7);
-    if (time >= 0) system.H.block<1, 6>(time, a.column).noalias() += sum.block<1, 6>(6, 0) * a.map;
-    if (scale >= 0) {
-      system.H.block<1, 6>(scale, a.column).noalias() += scale_sum.head<6>().transpose() * a.map;
-    }
-  }
-  if (scale >= 0) system.g[scale] += scale_sum[7];
-  if (scale >= 0 && time >= 0) system.H(scale, time) += scale_sum[6];
-  if (time < 0) return;
-  system.H(time, time) += sum(6, 6);
-  system.g[time] += sum(6, 7);
 }
 
 }  // namespace stillpoint

@@ -92,8 +92,9 @@ class VisualTerms {
   };
 
   void add_landmark(const Window& window, std::size_t index, const BackendConfig& config);
+  [[nodiscard]] CameraOnBody place_cameras(const ParameterBlocks& blocks);
   void update_relative_poses(const ParameterBlocks& blocks);
-  void move_jacobians_to(const ParameterBlocks& point);
+  void update_pose_jacobians(const ParameterBlocks& point, bool with_extrinsics);
   [[nodiscard]] LandmarkState state_of(const VisualLandmark& landmark, const ParameterBlocks& blocks) const;
   [[nodiscard]] MeasuredPoint measured_point_at(const TimedObservation& observation) const;
   [[nodiscard]] const TimedObservation& observation_of(const VisualLandmark& landmark, int frame) const {
@@ -112,13 +113,16 @@ class VisualTerms {
   void add_coupling(const VisualLandmark& landmark, int frame, const Column8& column,
                     const ReducedLayout& layout);
   void add_pair(int host, int frame, ReducedSystem& system) const;
-  [[nodiscard]] std::size_t pair(int host, int frame) const {
-    return static_cast<std::size_t>(host * frames_ + frame);
+  template <class Index>
+  [[nodiscard]] std::size_t pair(Index host, Index frame) const {
+    return static_cast<std::size_t>(host) * static_cast<std::size_t>(frames_) +
+           static_cast<std::size_t>(frame);
   }
 
   int frames_ = 0;
   int measured_ = 0;
-  bool marginalizes_ = false;  // only a fraction of the information, see marginalized_fraction
+  bool bearings_move_ = false;  // with the time offset, see ObservationModel
+  bool marginalizes_ = false;   // only a fraction of the information, see marginalized_fraction
   double cauchy_squared_ = 1.0;
   double time_offset_ = 0.0;
   double depth_scale_ = 1.0;
@@ -127,6 +131,7 @@ class VisualTerms {
   std::vector<VisualLandmark> landmarks_;
   std::vector<TimedObservation> timed_observations_;
   std::vector<std::uint8_t> pair_used_;
+  std::vector<CameraInWorld> cameras_;
   std::vector<RelativePoseLinearization> relative_poses_;
   std::vector<PairSum> sums_;
   std::vector<Column8> scale_sums_;   // a_ij
