@@ -32,6 +32,14 @@ void remove_expired(Window& window) {
   window.landmarks.erase(kept_end, window.landmarks.end());
 }
 
+/// The tracker knows the velocity of a feature from its second observation on. With 0 the first one, the
+/// host, would not be shifted to the time of its frame by the readout offset of its row.
+void complete_first_velocity(const TrackedFeature& next, const Window& window, Landmark& landmark) {
+  Observation& first = landmark.observations.front();
+  const bool unknown = landmark.observations.size() == 1 && first.velocity.isZero(0.0);
+  if (unknown && window.time_offset_model == TimeOffsetModel::kInertial) first.velocity = next.velocity;
+}
+
 Landmark make_landmark(const TrackedFeature& feature, const Observation& observation, Window& window) {
   Landmark landmark{
       .id = feature.id, .host = window.newest(), .observations = window.observation_pool.acquire()};
@@ -80,6 +88,7 @@ void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConf
     const bool known =
         landmark != window.landmarks.end() && landmark->id == feature.id && landmark->last() == newest - 1;
     if (known) {
+      complete_first_velocity(feature, window, *landmark);
       landmark->observations.push_back(make_observation(feature, rig, config));
     } else if (landmark == window.landmarks.end() || landmark->id != feature.id) {
       landmark = window.landmarks.insert(

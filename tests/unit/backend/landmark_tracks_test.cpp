@@ -86,6 +86,28 @@ TEST(LandmarkTracks, AreExtendedByIdAndNewOnesAreHostedInTheNewestFrame) {
   EXPECT_EQ(window.landmarks[2].observations[0].depth, 0.0);  // below min_m: ignored
 }
 
+/// The tracker knows no velocity of a new feature, so the first row of a rolling shutter was not corrected.
+TEST(LandmarkTracks, HaveTheVelocityOfTheSecondObservationInTheFirst) {
+  for (const TimeOffsetModel model : {TimeOffsetModel::kInertial, TimeOffsetModel::kBearing}) {
+    Window window = visual_window(3, 0);
+    window.time_offset_model = model;
+    const Rig rig{.camera = {.height = 480}};
+    TrackedFrame frame;
+    frame.features = {{.id = 5, .depth = 2.0}};
+    add_observations(frame, rig, DepthConfig{}, window);
+    for (const double velocity : {0.3, 0.4}) {
+      window.frames.push_back(window.frames.back());
+      frame.features[0].velocity.x() = velocity;
+      add_observations(frame, rig, DepthConfig{}, window);
+    }
+    ASSERT_EQ(window.landmarks[0].observations.size(), 3u);
+    const double first = model == TimeOffsetModel::kInertial ? 0.3 : 0.0;  // kBearing: as published
+    EXPECT_EQ(window.landmarks[0].observations[0].velocity.x(), first);
+    EXPECT_EQ(window.landmarks[0].observations[1].velocity.x(), 0.3);
+    EXPECT_EQ(window.landmarks[0].observations[2].velocity.x(), 0.4);
+  }
+}
+
 /// A static camera: frames 0.1 s apart with identical observations of `landmarks` landmarks.
 Window static_camera_window(int landmarks) {
   Window window = visual_window(4, landmarks);
