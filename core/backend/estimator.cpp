@@ -177,7 +177,9 @@ void Estimator::begin_update(std::int64_t frame_id) {
 void Estimator::add(const TrackedFrame& frame) {
   begin_update(frame.id);
   update_.counters.tracked_features = static_cast<int>(frame.features.size());
-  evidence_ = {.t = frame.t, .features = static_cast<int>(frame.features.size())};
+  evidence_ = {.t = frame.t,
+               .features = static_cast<int>(frame.features.size()),
+               .bridged = frame.repeated && newest_covariance_ && previous_.t < newest_.t};
   relocalize(frame);
   push_frame(frame);
   const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
@@ -256,6 +258,7 @@ bool Estimator::refine() {
   } else {
     previous_ = newest_;
     newest_ = window_.frames.back().state;
+    newest_covariance_ = update_.covariance;
   }
   return update_status();
 }
@@ -266,7 +269,7 @@ void Estimator::finish() {
     const ScopedTimer slide_timer(update_.timings, Module::kMarginalization);
     slide(keyframe_);
   }
-  report(newest_);
+  report(monitor_.reason() == StatusReason::kRepeatedImage ? bridged_ : newest_);
   drop_old_samples(motion_state(), imu_);
 }
 

@@ -153,6 +153,8 @@ class Estimator {
   std::optional<Timestamp> biases_agree_since_;   ///< same
   DepthScale depth_scale_;
   std::optional<Timestamp> depth_rejected_since_;
+  NavState bridged_;                                  ///< predicted at a repeated image
+  std::optional<StateCovariance> newest_covariance_;  ///< of `newest_`, if it was computed
   std::optional<UncertainPose> oldest_motion_;
   FrameEvidence evidence_;   ///< of the last frame that was added
   int unusable_solves_ = 0;  ///< in succession

@@ -8,6 +8,7 @@
 #include "core/backend/failure_detection.h"
 #include "core/backend/window/landmark_tracks.h"
 #include "core/geometry/covariance.h"
+#include "core/geometry/so3.h"
 #include "core/imu/zero_velocity.h"
 
 namespace stillpoint {
@@ -43,6 +44,26 @@ constexpr int kMinFirstFeatures = 8;
 
 bool has_depth(const Landmark& landmark) {
   return !landmark.dynamic && !landmark.observations.empty() && landmark.observations.back().depth > 0.0;
+}
+
+/// Acceleration of a camera in the hand.
+constexpr double kAcceleration = 2.0;         // [m/s^2]
+constexpr double kAngularAcceleration = 5.0;  // [rad/s^2]
+
+/// Covariance of (dp, dtheta) that constant velocity adds to the pose of `newest`, see StateCovariance. With
+/// the predicted motion d = (p_k - p_n, Log(q_n^-1 q_k)) during t, and the accelerations a,
+///
+///   Q = d d^T + diag((a t^2)^2).
+///
+/// The first term covers a camera that stopped: when it repeats an image, its time stamps are doubtful, too.
+Matrix6 prediction_covariance(const NavState& newest, const NavState& predicted) {
+  Eigen::Matrix<double, 6, 1> motion;
+  motion << predicted.T_w_b.p - newest.T_w_b.p, log_so3(newest.T_w_b.q.conjugate() * predicted.T_w_b.q);
+  const double t = seconds_between(newest.t, predicted.t);
+  Matrix6 covariance = motion * motion.transpose();
+  covariance.diagonal().head<3>().array() += std::pow(kAcceleration * t * t, 2);
+  covariance.diagonal().tail<3>().array() += std::pow(kAngularAcceleration * t * t, 2);
+  return covariance;
 }
 
 bool is_finite(const LinearPrior& prior) { return prior.jacobian.allFinite() && prior.residual.allFinite(); }
@@ -179,14 +200,21 @@ bool Estimator::localize_newest() {
 /// The newest frame was located by neither vision nor inertial data. A window that has not started begins
 /// anew: its poses would depend on this one.
 void Estimator::discard_newest() {
+  const NavState predicted = window_.frames.back().state;
   if (monitor_.status() == OdometryStatus::kInitializing) {
     restart(window_.gravity_w);
   } else {
     remove_newest_frame(window_);
-    previous_ = newest_;
-    newest_.v_w.setZero();
   }
   static_cast<void>(update_status());
+  if (monitor_.reason() == StatusReason::kRepeatedImage) {
+    bridged_ = predicted;
+    update_.covariance = newest_covariance_;
+    update_.covariance->state.topLeftCorner<6, 6>() += prediction_covariance(newest_, predicted);
+    return;
+  }
+  previous_ = newest_;
+  newest_.v_w.setZero();
 }
 
 /// Why the estimate must be given up, if so.
@@ -244,6 +272,7 @@ void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   window_ = std::move(fresh);
   newest_.v_w.setZero();
   previous_ = newest_;
+  newest_covariance_.reset();
   unusable_solves_ = 0;
   inertial_check_.reset();
   step_check_.reset();

@@ -15,7 +15,8 @@
 ///                          |                                       |
 ///                          +---------------------------------------+
 ///
-/// Without an IMU there is no dead reckoning. `relocated` lasts one frame. A diverged estimate is `lost`.
+/// Without an IMU there is no dead reckoning, but a repeated image is bridged for 0.12 s: `degraded`.
+/// `relocated` lasts one frame. A diverged estimate is `lost`.
 ///
 /// | status         | pose                | trajectory, coverage     |
 /// |----------------|---------------------|--------------------------|
@@ -59,6 +60,7 @@ enum class StatusReason {
   kDiverged,         ///< implausible state
   kSolveFailed,      ///< the solver failed repeatedly
   kMapMatched,       ///< located by the map of trusted landmarks
+  kRepeatedImage,    ///< no new image: constant velocity, without an IMU
 };
 
 /// Whether the newest state can be propagated by inertial samples, if there is an IMU.
@@ -70,9 +72,10 @@ enum class StatusReason {
 
 /// Names used in output files.
 [[nodiscard]] constexpr std::string_view reason_name(StatusReason reason) {
-  constexpr std::string_view kNames[] = {"",         "no_inertial_start", "few_features",     "weak_geometry",
-                                         "imu_gap",  "imu_saturated",     "imu_inconsistent", "uncertain",
-                                         "diverged", "solve_failed",      "map_matched"};
+  constexpr std::string_view kNames[] = {
+      "",         "no_inertial_start", "few_features",     "weak_geometry",
+      "imu_gap",  "imu_saturated",     "imu_inconsistent", "uncertain",
+      "diverged", "solve_failed",      "map_matched",      "repeated_image"};
   return kNames[static_cast<std::size_t>(reason)];
 }
 

@@ -32,8 +32,9 @@ struct TrackedFrame {
   cv::Mat gray;   ///< for loop closure, else empty; shares pixels with the Frame
   cv::Mat depth;  ///< registered raw depth image, for the semantic mask; shares pixels with the Frame
   double depth_units_per_m = 1000.0;
-  int lost = 0;      ///< features lost in this frame, by KLT or RANSAC
-  int detected = 0;  ///< features newly detected in this frame
+  int lost = 0;           ///< features lost in this frame, by KLT or RANSAC
+  int detected = 0;       ///< features newly detected in this frame
+  bool repeated = false;  ///< bit-equal to the image before: no observation, no features
   ModuleTimings timings;
 };
 

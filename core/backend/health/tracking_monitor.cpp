@@ -17,6 +17,9 @@ constexpr double kGateRate_rad = 1.5;
 /// Features in a frame from which a new segment can begin.
 constexpr int kVisibleFeatures = 20;
 
+/// Longest time without a new image for which constant velocity gives a pose: three frames at 30 Hz.
+constexpr double kMaxRepetition_s = 0.12;
+
 bool is_plausible(const Pose& predicted, const Pose& found, double seconds) {
   return (predicted.p - found.p).norm() <= kGate_m + kGateRate_m * seconds &&
          predicted.q.angularDistance(found.q) <= kGate_rad + kGateRate_rad * seconds;
@@ -52,6 +55,12 @@ bool TrackingMonitor::is_too_uncertain(const FrameEvidence& evidence) const {
          grown > std::pow(options_.max_dead_reckoning_sigma_m, 2);
 }
 
+/// Whether constant velocity since vision last located the camera replaces an image that is missing.
+bool TrackingMonitor::bridges(const FrameEvidence& evidence) const {
+  return evidence.bridged && is_located(status_) &&
+         seconds_between(located_at_, evidence.t) <= kMaxRepetition_s;
+}
+
 TrackingMonitor::Decision TrackingMonitor::decide(const FrameEvidence& evidence) const {
   if (status_ == kInitializing) {
     if (!evidence.has_start || !evidence.located) return {kInitializing, StatusReason::kNone};
@@ -61,6 +70,7 @@ TrackingMonitor::Decision TrackingMonitor::decide(const FrameEvidence& evidence)
   if (relocated_) return {kRelocated, StatusReason::kMapMatched};
   if (awaits_map_) return {kLost, reason_};
   if (evidence.located) return decide_located(evidence);
+  if (!evidence.inertial && bridges(evidence)) return {kDegraded, StatusReason::kRepeatedImage};
   if (!evidence.inertial) return {kLost, StatusReason::kFewFeatures};
   if (evidence.imu_defect != StatusReason::kNone) return {kLost, evidence.imu_defect};
   if (is_too_uncertain(evidence)) return {kLost, StatusReason::kUncertain};
@@ -92,7 +102,7 @@ bool TrackingMonitor::update(const FrameEvidence& evidence, const Window& window
   status_ = decision.status;
   reason_ = decision.reason;
   relocated_ = false;
-  if (is_located(status_)) {
+  if (is_located(status_) && reason_ != StatusReason::kRepeatedImage) {
     located_at_ = evidence.t;
     located_sigma_m_ = evidence.sigma_m;
     awaits_map_ = false;

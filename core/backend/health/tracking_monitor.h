@@ -15,6 +15,7 @@ namespace stillpoint {
 struct FrameEvidence {
   Timestamp t;
   int features = 0;        ///< in the frame
+  bool bridged = false;    ///< repeated image; constant velocity gives a pose with its covariance
   bool has_start = false;  ///< scale, and with an IMU gravity and velocity, are known
   bool inertial = false;   ///< same for gravity and velocity alone
   bool located = false;    ///< by vision
@@ -67,6 +68,7 @@ class TrackingMonitor {
     StatusReason reason;
   };
   [[nodiscard]] Decision decide(const FrameEvidence& evidence) const;
+  [[nodiscard]] bool bridges(const FrameEvidence& evidence) const;
   [[nodiscard]] bool is_too_uncertain(const FrameEvidence& evidence) const;
   [[nodiscard]] Decision decide_located(const FrameEvidence& evidence) const;
   [[nodiscard]] bool patience_is_over(const FrameEvidence& evidence);

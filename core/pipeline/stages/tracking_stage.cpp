@@ -62,6 +62,7 @@ TrackedFrame TrackingStage::process(const Frame& frame, bool enters_window, cons
   const TrackingOptions options{.detect = enters_window, .dynamic_ids = feedback.dynamic_ids};
   TrackedFrame tracked = repeated ? empty_frame(frame, std::move(recycled))
                                   : tracker_.track(frame, prior, options, std::move(recycled));
+  tracked.repeated = repeated;
   perturbation_.perturb(tracked);
   if (keeps_image_) tracked.gray = frame.gray;
   return tracked;
