@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/backend/solvers/window_problem.h"
+#include "core/geometry/so3.h"
 
 namespace stillpoint {
 namespace {
@@ -30,6 +31,24 @@ Eigen::Matrix<double, 6, 6> pose_root_information(double sigma_m, double sigma_r
   Eigen::Matrix<double, 6, 1> diagonal;
   diagonal << Eigen::Vector3d::Constant(1.0 / sigma_m), Eigen::Vector3d::Constant(1.0 / sigma_rad);
   return diagonal.asDiagonal();
+}
+
+/// Whether the pose of the first camera fixes the gauge, see initial_prior.
+bool is_fixed_by_camera(const BackendConfig& config) {
+  return config.prior == PriorModel::kConsistent && config.estimate_extrinsics;
+}
+
+/// Of the camera pose in the body by the body pose and, in the last six columns, the extrinsics (p, theta):
+///
+///   R_w_b^T dp_w_c = R_w_b^T dp_w_b - [p_b_c]x dtheta_w_b + dp_b_c,    dtheta_w_c = R_b_c^T dtheta_w_b +
+///   dtheta_b_c.
+Eigen::Matrix<double, 6, 12> camera_pose_jacobian(const Pose& T_w_b, const Pose& T_b_c) {
+  Eigen::Matrix<double, 6, 12> J = Eigen::Matrix<double, 6, 12>::Zero();
+  J.block<3, 3>(0, 0) = T_w_b.R().transpose();
+  J.block<3, 3>(0, 3) = -skew(T_b_c.p);
+  J.block<3, 3>(3, 3) = T_b_c.R().transpose();
+  J.rightCols<6>().setIdentity();
+  return J;
 }
 
 /// Rows: position, heading, gyro bias, accel bias. d heading / d theta = e_z^T R.
@@ -58,6 +77,19 @@ LinearPrior prior_with_gravity(LinearPrior prior, const Window& window, const Ba
   return prior;
 }
 
+/// Replaces the rows of the pose by those of the camera pose.
+LinearPrior prior_fixed_by_camera(LinearPrior prior, const Window& window) {
+  const Eigen::Matrix<double, 6, 12> J =
+      camera_pose_jacobian(window.frames.front().state.T_w_b, window.T_b_c) / kExactSigma;
+  const Eigen::MatrixXd others = prior.jacobian;
+  prior.blocks.push_back(prior_block(window, BlockKind::kExtrinsics, -1));
+  prior.jacobian = Eigen::MatrixXd::Zero(others.rows(), others.cols() + 6);
+  prior.jacobian.leftCols(others.cols()) = others;
+  prior.jacobian.topLeftCorner<6, 6>() = J.leftCols<6>();
+  prior.jacobian.topRightCorner<6, 6>() = J.rightCols<6>();
+  return prior;
+}
+
 }  // namespace
 
 LinearPrior initial_prior(const Window& window, const BackendConfig& config) {
@@ -69,8 +101,9 @@ LinearPrior initial_prior(const Window& window, const BackendConfig& config) {
     return prior;
   }
   prior.blocks.push_back(prior_block(window, BlockKind::kSpeedBias, 0));
-  return window.gravity_covariance ? prior_with_gravity(std::move(prior), window, config)
-                                   : prior_of_level_world(std::move(prior), window, config);
+  if (!window.gravity_covariance) return prior_of_level_world(std::move(prior), window, config);
+  prior = prior_with_gravity(std::move(prior), window, config);
+  return is_fixed_by_camera(config) ? prior_fixed_by_camera(std::move(prior), window) : prior;
 }
 
 LinearPrior calibration_prior(const Window& window, const BackendConfig& config) {

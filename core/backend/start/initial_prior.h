@@ -9,7 +9,9 @@ namespace stillpoint {
 
 /// Initial prior of a window: fixes the gauge at frame 0 and constrains its biases by their configured
 /// uncertainty. The gauge is the whole pose; with an IMU and constant gravity only position and heading. If
-/// gravity is estimated, it is constrained by `Window::gravity_covariance`.
+/// gravity is estimated, it is constrained by `Window::gravity_covariance`. With the consistent prior and
+/// estimated extrinsics the pose of the camera is fixed, not that of the body: else each change of the
+/// extrinsics would rotate the trajectory of the camera, which vision determines without them.
 [[nodiscard]] LinearPrior initial_prior(const Window& window, const BackendConfig& config);
 
 /// Prior on extrinsics, time offset and, if estimated, depth scale at their current values, with the

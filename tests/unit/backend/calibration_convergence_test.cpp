@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "core/geometry/so3.h"
 #include "tests/support/process_frame.h"
@@ -120,6 +121,32 @@ TEST(CalibrationConvergence, AllConvergeTogether) {
   EXPECT_LT(result.rotation_rad, 0.3 * M_PI / 180.0);
   EXPECT_LT(result.translation_m, 3.0 * result.translation_sigma_m);
   EXPECT_LT(std::abs(result.depth_scale), 0.009);
+}
+
+/// Errors of 2 degrees and 2 cm: if the first pose of the body were fixed, the camera would turn by the 2
+/// degrees while the extrinsics converge.
+TEST(CalibrationConvergence, TheExtrinsicsDoNotTurnTheTrajectoryOfTheCamera) {
+  BackendConfig config = calibrating_config();
+  config.estimate_extrinsics = true;
+  config.extrinsics_sigma_rad = 0.035;
+  const SimulatedMotion motion{.pixel_noise_px = 0.5, .depth_noise = 0.003, .noisy_imu = true};
+  Rig rig = SimulatedMotion::rig();
+  const Pose T_b_c = rig.T_b_c;
+  const CalibrationError error{.rotation_rad = 2.0 * M_PI / 180.0, .translation_m = 0.02};
+  rig.T_b_c = Pose{T_b_c.q * error.extrinsics().q, T_b_c.p + error.extrinsics().p};
+  Estimator estimator(config, {}, rig, 1);
+  for (const ImuSample& sample : motion.imu(10.5)) estimator.add_imu(sample);
+  std::optional<Pose> T_we_wt;
+  for (int i = 0; i < 300; ++i) {
+    const double t = 0.1 + i / kRate_hz;
+    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
+    const Pose true_T_w_c = SimulatedMotion::state(t).T_w_b * T_b_c;
+    if (!T_we_wt && update.status == OdometryStatus::kTracking) T_we_wt = update.T_w_c * true_T_w_c.inverse();
+    if (i < 299) continue;
+    ASSERT_TRUE(T_we_wt);
+    EXPECT_LT(T_b_c.q.angularDistance(estimator.window().T_b_c.q), 0.3 * M_PI / 180.0);
+    EXPECT_LT((*T_we_wt * true_T_w_c).q.angularDistance(update.T_w_c.q), 0.5 * M_PI / 180.0);
+  }
 }
 
 TEST(CalibrationConvergence, WithoutAnImuTheDepthScaleStaysAtOne) {
