@@ -12,6 +12,7 @@
 #include "core/backend/health/depth_scale.h"
 #include "core/backend/health/inertial_check.h"
 #include "core/backend/health/inertial_interval.h"
+#include "core/backend/health/offset_settling.h"
 #include "core/backend/health/step_check.h"
 #include "core/backend/health/tracking_monitor.h"
 #include "core/backend/marginalization/frame_marginalizer.h"
@@ -148,6 +149,7 @@ class Estimator {
   InertialCheck inertial_check_;
   StepCheck step_check_;
   BiasCheck bias_check_;
+  OffsetSettling offset_settling_;
   Contradiction contradiction_;                   ///< of the sensors, by the checks of the biases
   std::optional<Timestamp> biases_differ_since_;  ///< by successive checks of the biases
   std::optional<Timestamp> biases_agree_since_;   ///< same

@@ -124,19 +124,22 @@ void Estimator::check_prediction() {
 }
 
 /// A step of the biases: their random walk in the samples that it was recognized by is enlarged, so that the
-/// solver follows it. Errors that persist are not those of a bias: the data is not used until they end.
+/// solver follows it. Errors that persist are not those of a bias: the data is not used until they end. While
+/// the time offset converges, errors are its own: the solver needs the data, and only the uncertainty grows.
 void Estimator::check_biases() {
   const WindowFrame& newest = window_.frames.back();
   if (!backend_.bias_steps || !window_.inertial || !newest.from_previous) return;
+  const Timestamp t = newest.state.t;
+  const bool settled = offset_settling_.update(t, window_.time_offset_s);
   const BiasCheck::Result result = bias_check_.update(window_, imu_);
   if (result == BiasCheck::Result::kUnknown) return;
-  const Timestamp t = newest.state.t;
-  if (result == BiasCheck::Result::kDiffers || result == BiasCheck::Result::kDoubtful) {
+  if (result == BiasCheck::Result::kDiffers || result == BiasCheck::Result::kDoubtful ||
+      (result == BiasCheck::Result::kStep && !settled)) {
     contradiction_.begin_or_continue(bias_check_.measured(), newest.state);
   } else {
     contradiction_.end();
   }
-  if (result == BiasCheck::Result::kDoubtful) return;
+  if (result == BiasCheck::Result::kDoubtful || !settled) return;
   std::optional<Timestamp>& since =
       result == BiasCheck::Result::kAgrees ? biases_agree_since_ : biases_differ_since_;
   if (!since) since = t;
@@ -277,6 +280,7 @@ void Estimator::restart(const Eigen::Vector3d& gravity_w) {
   inertial_check_.reset();
   step_check_.reset();
   bias_check_.reset();
+  offset_settling_.reset();
   contradiction_.end();
   biases_differ_since_.reset();
   biases_agree_since_.reset();
