@@ -38,17 +38,23 @@ std::string remedy(int result) {
   throw InputError(file.string(), what + "; " + remedy(result));
 }
 
+int open_connection(const std::string& name, int flags, sqlite3** connection) {
+  const int result = sqlite3_open_v2(name.c_str(), connection, flags, nullptr);
+  sqlite3_busy_timeout(*connection, kBusyTimeoutMs);  // before the first statement: its lock can be taken
+  return result;
+}
+
 /// In a read-only folder SQLite cannot create the shared memory of its write-ahead log; the file is then
 /// opened as immutable.
 int open_read_only(const fs::path& file, sqlite3** connection) {
-  int result = sqlite3_open_v2(file.c_str(), connection, SQLITE_OPEN_READONLY, nullptr);
+  int result = open_connection(file.string(), SQLITE_OPEN_READONLY, connection);
   if (result == SQLITE_OK)
     result = sqlite3_exec(*connection, "SELECT 1 FROM sqlite_master", nullptr, nullptr, nullptr);
   const int kind = result & 0xff;
   if (kind != SQLITE_CANTOPEN && kind != SQLITE_READONLY) return result;
   sqlite3_close(*connection);
   const std::string uri = "file:" + fs::absolute(file).string() + "?immutable=1";
-  return sqlite3_open_v2(uri.c_str(), connection, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  return open_connection(uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, connection);
 }
 
 sqlite3* open_file(const fs::path& file, DatabaseAccess access) {
@@ -61,7 +67,7 @@ sqlite3* open_file(const fs::path& file, DatabaseAccess access) {
   const int result =
       access == DatabaseAccess::kRead
           ? open_read_only(file, &connection)
-          : sqlite3_open_v2(file.c_str(), &connection, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+          : open_connection(file.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, &connection);
   if (result == SQLITE_OK) return connection;
   const std::unique_ptr<sqlite3, int (*)(sqlite3*)> closer(connection, sqlite3_close);
   fail(file, connection, result);
@@ -117,7 +123,6 @@ double Statement::real(int column) const { return sqlite3_column_double(statemen
 Database::Database(const fs::path& file, DatabaseAccess access)
     : file_(file), connection_(open_file(file, access), sqlite3_close) {
   sqlite3_extended_result_codes(connection_.get(), 1);
-  sqlite3_busy_timeout(connection_.get(), kBusyTimeoutMs);
   execute("PRAGMA foreign_keys = ON");
   static_cast<void>(integer("SELECT count(*) FROM sqlite_master"));  // reads the header
 }

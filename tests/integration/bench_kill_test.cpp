@@ -157,8 +157,13 @@ TEST(BenchKill, TwoWorkersExecuteEachRunOnce) {
   const fs::path plan = write_replay_plan(folder, 20, "\"--log\", \"" + log + "\", ");
   const fs::path store = folder.path() / "store.sqlite";
   const pid_t other = fork();
-  if (other == 0) _exit(replay_bench(folder, plan, store).exit_code);
-  EXPECT_EQ(replay_bench(folder, plan, store).exit_code, 0);
+  if (other == 0) {
+    const ProgramResult result = replay_bench(folder, plan, store);
+    std::fputs(result.err.c_str(), stderr);
+    _exit(result.exit_code);
+  }
+  const ProgramResult result = replay_bench(folder, plan, store);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
   int status = 0;
   waitpid(other, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 0);

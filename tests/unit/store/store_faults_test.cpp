@@ -2,8 +2,11 @@
 // Unusable stores are reported, and no stored run is lost.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
+#include <future>
+#include <thread>
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -34,6 +37,22 @@ fs::path small_store(const TemporaryFolder& folder) {
 
 TEST(StoreFaults, ReadingAMissingStoreDoesNotCreateIt) {
   expect_input_error([] { const Store store("no/such/store.sqlite"); }, {"there is no such store"});
+}
+
+/// The last worker that leaves a store locks it, also against readers, while it empties its log.
+TEST(StoreFaults, AReaderWaitsForAWorkerThatClosesTheStore) {
+  const TemporaryFolder folder;
+  const fs::path file = small_store(folder);
+  std::promise<void> locked;
+  std::thread closing([&] {
+    const Database database(file, DatabaseAccess::kWrite);
+    database.execute("PRAGMA locking_mode = EXCLUSIVE; BEGIN IMMEDIATE; COMMIT");
+    locked.set_value();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  });
+  locked.get_future().wait();
+  EXPECT_NO_THROW(static_cast<void>(Store(file).runs()));
+  closing.join();
 }
 
 TEST(StoreFaults, AFileOfAnotherKindIsRejected) {
