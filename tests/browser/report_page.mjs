@@ -5,7 +5,6 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { browser, drawnCharts, lightAndDarkDiffer, open, selection, test } from "./browser.mjs";
 
 const { PAGE, WORK, STILLPOINT_SCREENSHOTS } = process.env;
-const OPEN_MS = 2000;
 
 const runs = (page) => selection(page, "runs");
 const page = await open(PAGE);
@@ -180,8 +179,8 @@ if (STILLPOINT_SCREENSHOTS) {
   }
 }
 
-// The page with 1,000 runs of 1,000 frames each, replicated from its first run.
-function grown(text) {
+// The page with `count` runs of 1,000 frames each, replicated from its first run.
+function grown(text, count) {
   const script = (id) => new RegExp(`(<script type="application/json" id="${id}">)(.*?)(</script>)`, "s");
   const index = JSON.parse(script("index").exec(text)[2]);
   const one = index.runs.findIndex((run) => run.frames > 0);
@@ -192,7 +191,7 @@ function grown(text) {
   series.frames = frames;
   series.t = { low: 0, step: 1 / 30, data: ramp };
   for (const column of Object.values(series.columns)) column.data = bytes(column);
-  const runs = Array.from({ length: 1000 }, (_, i) => ({ ...index.runs[one], key: i.toString(16), frames }));
+  const runs = Array.from({ length: count }, (_, i) => ({ ...index.runs[one], key: i.toString(16), frames }));
   const all = runs.map((_, i) => `<script type="application/json" id="series-${i}">${JSON.stringify(series)}</script>`).join("\n");
   const bare = text.replace(/<script type="application\/json" id="(series|images)-\d+">.*?<\/script>/gs, "");
   return bare.replace(script("index"), (_, open, __, close) => open + JSON.stringify({ ...index, runs }) + close + "\n" + all);
@@ -223,14 +222,19 @@ await test("hostile names are shown as text and do not widen the page", async ()
   await opened.close();
 });
 
-await test("1,000 runs of 1,000 frames open quickly", async () => {
-  const file = WORK + "/large.html";
-  writeFileSync(file, grown(readFileSync(PAGE, "utf8")));
-  const opened = await open(file);
-  const ms = Number(await opened.evaluate(() => document.documentElement.dataset.readyMs));
-  console.log(`    ${(readFileSync(file).length / 1e6).toFixed(1)} MB are open after ${ms} ms`);
-  assert.equal(await opened.locator("#run option").count(), 1000);
-  assert.ok(ms < OPEN_MS, `${ms} ms`);
+// Times of one session are compared: what is fast depends on the machine and on what else it does.
+await test("the time to open grows at most in proportion to the runs", async () => {
+  const least = { 100: Infinity, 1000: Infinity };
+  for (let i = 0; i < 3; ++i) for (const count of [100, 1000]) {
+    const file = WORK + `/${count}.html`;
+    writeFileSync(file, grown(readFileSync(PAGE, "utf8"), count));
+    const opened = await open(file);
+    least[count] = Math.min(least[count], Number(await opened.evaluate(() => document.documentElement.dataset.readyMs)));
+    assert.equal(await opened.locator("#run option").count(), count);
+    await opened.close();
+  }
+  console.log(`    100 runs of 1,000 frames are open after ${least[100]} ms, 1,000 after ${least[1000]} ms`);
+  assert.ok(least[1000] < 10 * least[100]);
 });
 
 await browser.close();
