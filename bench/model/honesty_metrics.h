@@ -23,6 +23,12 @@ template <auto kMember>
   return m.counts && m.counts->nees ? std::optional<double>((*m.counts->nees).*kMember) : std::nullopt;
 }
 
+/// The value of one member of `RunCounts`; nullopt without claimed covariances or inertial data.
+template <auto kMember>
+[[nodiscard]] std::optional<double> nis_value(const Measurements& m) {
+  return m.counts ? (*m.counts).*kMember : std::nullopt;
+}
+
 inline constexpr MetricDescriptor kHonestyMetrics[] = {
     {.id = metric_id::kClaimedThreeSigma,
      .label = "claimed 3 sigma",
@@ -45,6 +51,24 @@ inline constexpr MetricDescriptor kHonestyMetrics[] = {
      .decimals = 2,
      .source = MetricSource::kRun,
      .value = nees_value<&eval::MeanNees::rotation>},
+    {.id = "nis_reprojection",
+     .label = "NIS reprojection",
+     .description =
+         "Mean over the located frames of the squared reprojection error of static landmarks at the "
+         "pose predicted by inertial data, normalized by its covariance; of each frame the median "
+         "divided by that of the distribution, so that 1 is consistent",
+     .decimals = 2,
+     .source = MetricSource::kRun,
+     .value = nis_value<&RunCounts::nis_reprojection>},
+    {.id = "nis_inertial",
+     .label = "NIS inertial",
+     .description =
+         "Mean over the located frames of the squared difference of the pose by vision alone and the "
+         "pose predicted by inertial data, normalized by the covariance of both, divided by 6; 1 is "
+         "consistent",
+     .decimals = 2,
+     .source = MetricSource::kRun,
+     .value = nis_value<&RunCounts::nis_inertial>},
     {.id = metric_id::kFalseConfidence,
      .label = "false confidence",
      .title = "False confidence: fraction of the frames called located with a wrong pose",

@@ -68,6 +68,8 @@ struct RunCounts {
   double wall_s = 0.0;
   std::optional<double> claimed_three_sigma_m{};  ///< see eval/metrics/honesty.h
   std::optional<eval::MeanNees> nees{};           ///< with a ground truth
+  std::optional<double> nis_reprojection{};       ///< see core/backend/health/innovation.h
+  std::optional<double> nis_inertial{};           ///< same
 };
 
 /// Resources used by the process of a run.

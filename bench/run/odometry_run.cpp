@@ -158,6 +158,7 @@ class RunRecorder {
     record_calibration(update);
     run_.claims.push_back(claim_of(update, t));
     if (!is_located(update.status)) return;
+    run_.innovations.push_back(update.nis);
     if (run_.loops && update.in_map) run_.loops->causal.poses.push_back({t, update.T_m_w * update.T_w_c});
     if (update.segment == 0) run_.trajectory.poses.push_back({t, update.T_w_c});
   }

@@ -81,6 +81,7 @@ struct OdometryRun {
   std::vector<FrameSpan> spans;               ///< if `keep_spans`; those of decoding last
   std::vector<StateHashes> frame_hashes;      ///< per processed frame
   std::vector<FrameCounters> frame_counters;  ///< per processed frame
+  std::vector<Innovations> innovations;       ///< per located frame
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();  ///< of the last update
   std::optional<Eigen::Matrix2d> level_covariance;  ///< of that rotation: `StateCovariance::gravity` [rad^2]
   EstimatedCalibration calibration;

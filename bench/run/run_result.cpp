@@ -103,6 +103,18 @@ std::vector<eval::TimeSpan> fault_spans(std::span<const datasets::SensorFault> f
   return spans;
 }
 
+/// Over the frames that have one.
+std::optional<double> mean_nis(std::span<const Innovations> frames,
+                               std::optional<double> Innovations::*part) {
+  double sum = 0.0;
+  int count = 0;
+  for (const Innovations& frame : frames) {
+    sum += (frame.*part).value_or(0.0);
+    count += (frame.*part).has_value() ? 1 : 0;
+  }
+  return count > 0 ? std::optional<double>(sum / count) : std::nullopt;
+}
+
 }  // namespace
 
 Measurements measurements_of(const RunResult& result) {
@@ -115,7 +127,9 @@ Measurements measurements_of(const RunResult& result) {
                               .frames_without_boxes = run.summary.detector_counters.unrecorded,
                               .wall_s = run.wall_s,
                               .claimed_three_sigma_m = eval::claimed_three_sigma_m(run.claims),
-                              .nees = nees},
+                              .nees = nees,
+                              .nis_reprojection = mean_nis(run.innovations, &Innovations::reprojection),
+                              .nis_inertial = mean_nis(run.innovations, &Innovations::inertial)},
           .imu_rate = result.imu_rate,
           .honesty = result.honesty,
           .loops = result.loops,

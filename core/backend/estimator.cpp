@@ -233,6 +233,7 @@ void Estimator::compute_covariance() {
 bool Estimator::refine() {
   const ScopedTimer timer(update_.timings, Module::kStateOptimization);
   keyframe_ = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
+  record_reprojection_nis();
   check_inertial_data();
   check_biases();
   localized_ = localize_newest();

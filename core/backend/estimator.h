@@ -62,6 +62,10 @@ class Estimator {
   /// false.
   void check_prediction();
 
+  /// Camera pose of the newest frame as predicted by inertial data, with its covariance relative to the frame
+  /// before, which the optimization claims; absent without reliable data, or if no covariance is known.
+  [[nodiscard]] std::optional<UncertainPose> predicted_camera() const;
+
   /// Optimizes the window, including the pose of the newest frame.
   /// A frame that neither vision nor inertial data locates is removed again.
   /// @return false after a failure: the window has been cleared and restarts with the next frame
@@ -111,6 +115,9 @@ class Estimator {
   void integrate_samples(const WindowFrame& last, WindowFrame& next);
   [[nodiscard]] bool localize_newest();
   void check_inertial_data();
+  [[nodiscard]] double residual_sigma() const;
+  void record_reprojection_nis();
+  void record_inertial_nis(const Pose& T_w_c, double inlier_scale);
   void distrust_recent_samples();
   void check_biases();
   void enlarge_bias_walk(const MeasuredBiases& measured);
@@ -138,6 +145,7 @@ class Estimator {
   LinearPrior discarded_prior_;     ///< its memory is reused
   Window window_;
   std::vector<PointObservation> known_points_;  ///< buffer of `localize_newest`
+  std::vector<double> distances_;               ///< buffer of `reprojection_nis`
   ReprojectionErrorMonitor error_monitor_;
   PixelNoise pixel_noise_;
   NavState newest_;        ///< last reported state

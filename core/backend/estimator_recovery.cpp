@@ -105,20 +105,13 @@ void Estimator::check_inertial_data() {
     if (!vision.is_located(false)) inertial_check_.interrupt(newest.state.t);
     return;
   }
+  record_inertial_nis(T_w_c, kVisualPoseInlier_px / focal_px);
   const bool was_consistent = inertial_check_.is_consistent();
   const VisualPose pose{.t = after(newest.state.t, newest.time_offset_s),
                         .T_w_b = T_w_c * window_.T_b_c.inverse(),
                         .sigma_m = vision.sigma_m,
                         .sigma_rad = vision.sigma_rad};
   if (inertial_check_.update(pose, newest_, window_.gravity_w, imu_) || !was_consistent) return;
-  evidence_.imu_defect = StatusReason::kImuInconsistent;
-  distrust_recent_samples();
-}
-
-void Estimator::check_prediction() {
-  if (!has_inertial_prediction() || !window_.frames.back().from_previous) return;
-  if (!step_check_.is_wrong(window_, imu_)) return;
-  inertial_check_.contradict();
   evidence_.imu_defect = StatusReason::kImuInconsistent;
   distrust_recent_samples();
 }

@@ -38,6 +38,19 @@ NavState extrapolate(const MotionState& motion, ImuBuffer& imu, Timestamp t) {
   return state;
 }
 
+UncertainPose predicted_motion(const NavState& state, const StateCovariance& claimed,
+                               const Preintegration& imu, const Eigen::Vector3d& gravity_w) {
+  using Index = ImuErrorIndex;
+  const Eigen::Matrix3d R_b_w = state.T_w_b.R().transpose();
+  // Of (dp, dtheta) by the error of the state, in the order of both.
+  Eigen::Matrix<double, 6, 15> J = Eigen::Matrix<double, 6, 15>::Zero();
+  J.block<3, 3>(Index::kPosition, Index::kRotation) = imu.duration_s() * skew(R_b_w * state.v_w);
+  J.block<3, 3>(Index::kPosition, Index::kVelocity) = imu.duration_s() * R_b_w;
+  J.rightCols<6>() = imu.jacobian().topRightCorner<6, 6>();
+  return {.T_w_f = state.T_w_b.inverse() * imu.predict(state, gravity_w).T_w_b,
+          .covariance = J * claimed.state * J.transpose() + imu.covariance().topLeftCorner<6, 6>()};
+}
+
 void drop_old_samples(const MotionState& motion, ImuBuffer& imu) {
   if (motion.initialized) imu.drop_before(after(motion.newest.t, motion.time_offset_s - kRetention_s));
 }

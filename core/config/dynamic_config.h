@@ -54,7 +54,10 @@ struct DynamicConfig {
   bool gate_before_solve = false;  ///< also check the newest frame at its predicted pose before the solve. In
                                    ///< the paper, but not in the published code
   double gate_threshold_px = 10;   ///< residual at the predicted pose above which a feature is dynamic
-  int min_stable_features = 0;     ///< minimum number of features left by the check; not in the paper
+  /// Instead of the threshold, the probability that a static feature passes the check at the predicted pose,
+  /// by the covariance of the prediction; 0 = the threshold, as without a covariance. Not in the paper
+  double gate_probability = 0;
+  int min_stable_features = 0;  ///< minimum number of features left by the check; not in the paper
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, DynamicConfig>
@@ -79,6 +82,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("static_residual_px", config.static_residual_px, 0.01, 1000.0);
   field("gate_before_solve", config.gate_before_solve);
   field("gate_threshold_px", config.gate_threshold_px, 0.1, 1000.0);
+  field("gate_probability", config.gate_probability, 0.0, 0.999999);
   field("min_stable_features", config.min_stable_features, 0, 1000);
 }
 

@@ -49,6 +49,13 @@ void label_as_moving(DynamicLabel& label, LabelReason reason) {
   label.reason = reason;
 }
 
+bool fails_gate(const ConsistencyResidual& residual, const DynamicConfig& config) {
+  if (config.gate_probability <= 0.0 || !residual.squared_distance)
+    return residual.mean_px > config.gate_threshold_px;
+  // Quantile of the chi-square distribution with two degrees of freedom.
+  return *residual.squared_distance > -2.0 * std::log(1.0 - config.gate_probability);
+}
+
 }  // namespace
 
 bool FeatureRecognition::is_inside(const TrackedFeature& feature, const DepthView& depth,
@@ -87,8 +94,7 @@ const std::vector<DynamicLabel>& FeatureRecognition::classify(const TrackedFrame
 const std::vector<DynamicLabel>& FeatureRecognition::gate(std::span<const ConsistencyResidual> residuals) {
   for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
     feature.label.residual_px = residual.mean_px;
-    if (residual.mean_px > config_.gate_threshold_px)
-      label_as_moving(feature.label, LabelReason::kPredictionResidual);
+    if (fails_gate(residual, config_)) label_as_moving(feature.label, LabelReason::kPredictionResidual);
   });
   collect_labels();
   labels_ = enforce_min_stable(std::move(labels_), config_.min_stable_features);

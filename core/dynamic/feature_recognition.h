@@ -31,8 +31,8 @@ class FeatureRecognition {
   [[nodiscard]] const std::vector<DynamicLabel>& classify(const TrackedFrame& frame,
                                                           const SemanticMask& mask);
 
-  /// Labels features with a residual above `gate_threshold_px` as dynamic. Recycles none: the residuals are
-  /// computed at the predicted pose.
+  /// Labels features with a residual above `gate_threshold_px`, or outside the gate of `gate_probability`, as
+  /// dynamic. Recycles none: the residuals are computed at the predicted pose.
   [[nodiscard]] const std::vector<DynamicLabel>& gate(std::span<const ConsistencyResidual> residuals);
 
   /// Labels features with a residual r_k above `mcc_threshold_px` as dynamic. Recycles dynamic features

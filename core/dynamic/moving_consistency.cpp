@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/dynamic/moving_consistency.h"
 
+#include <limits>
 #include <optional>
 #include <utility>
+
+#include <Eigen/LU>
 
 namespace stillpoint {
 namespace {
@@ -24,10 +27,18 @@ std::optional<Eigen::Vector3d> position_in(const ConsistencyView& view, const Co
   return depth * observation.bearing.homogeneous();
 }
 
+/// Means over the pairs (i, j), in camera frame i.
+struct MeanPair {
+  ConsistencyResidual residual;
+  Eigen::Vector2d difference = Eigen::Vector2d::Zero();  ///< of the observation and the projections
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();    ///< of the feature [m]
+  bool in_front = true;                                  ///< in all pairs
+};
+
 /// Eq. (6) with frame i = that of `reference`.
-ConsistencyResidual residual(const ConsistencyView& view, const ConsistencyFeature& feature,
-                             const ConsistencyObservation& reference) {
-  ConsistencyResidual result{.id = feature.id};
+MeanPair mean_pair(const ConsistencyView& view, const ConsistencyFeature& feature,
+                   const ConsistencyObservation& reference) {
+  MeanPair mean{.residual = {.id = feature.id}};
   const Pose T_ci_w = view.T_w_c[static_cast<std::size_t>(reference.frame)].inverse();
   double sum = 0.0;
   for (const ConsistencyObservation& other : view.observations_of(feature)) {
@@ -35,12 +46,31 @@ ConsistencyResidual residual(const ConsistencyView& view, const ConsistencyFeatu
     const std::optional<Eigen::Vector3d> p_cj = position_in(view, feature, other);
     if (!p_cj) continue;
     const Eigen::Vector3d p_ci = T_ci_w * (view.T_w_c[static_cast<std::size_t>(other.frame)] * *p_cj);
-    const bool in_front = p_ci.z() > kMinDepth_m;
-    sum += in_front ? (reference.bearing - p_ci.hnormalized()).norm() : 1.0;
-    ++result.pair_count;
+    ++mean.residual.pair_count;
+    if (p_ci.z() <= kMinDepth_m) {
+      mean.in_front = false;
+      sum += 1.0;
+      continue;
+    }
+    const Eigen::Vector2d difference = reference.bearing - p_ci.hnormalized();
+    sum += difference.norm();
+    mean.difference += difference;
+    mean.position += p_ci;
   }
-  if (result.pair_count > 0) result.mean_px = view.focal_px * sum / result.pair_count;
-  return result;
+  const int pairs = mean.residual.pair_count;
+  if (pairs == 0) return mean;
+  mean.residual.mean_px = view.focal_px * sum / pairs;
+  mean.difference /= pairs;
+  mean.position /= pairs;
+  return mean;
+}
+
+double squared_distance(const MeanPair& mean, const PredictionError& error) {
+  if (!mean.in_front) return std::numeric_limits<double>::infinity();
+  const double variance = error.bearing_sigma * error.bearing_sigma * (1.0 + 1.0 / mean.residual.pair_count);
+  const Eigen::Matrix2d S =
+      projection_covariance(error.camera, mean.position) + variance * Eigen::Matrix2d::Identity();
+  return mean.difference.dot(S.inverse() * mean.difference);
 }
 
 }  // namespace
@@ -51,13 +81,15 @@ std::vector<ConsistencyResidual> consistency_residuals(const ConsistencyView& vi
   residuals.clear();
   for (const ConsistencyFeature& feature : view.features) {
     if (feature.count < 2) continue;
-    const ConsistencyResidual result = residual(view, feature, view.observations_of(feature).front());
+    const ConsistencyResidual result =
+        mean_pair(view, feature, view.observations_of(feature).front()).residual;
     if (result.pair_count > 0) residuals.push_back(result);
   }
   return residuals;
 }
 
 std::vector<ConsistencyResidual> gate_on_prediction(const ConsistencyView& view,
+                                                    const std::optional<PredictionError>& error,
                                                     std::vector<ConsistencyResidual> recycled) {
   const int newest = static_cast<int>(view.T_w_c.size()) - 1;
   std::vector<ConsistencyResidual> residuals = std::move(recycled);
@@ -65,8 +97,10 @@ std::vector<ConsistencyResidual> gate_on_prediction(const ConsistencyView& view,
   for (const ConsistencyFeature& feature : view.features) {
     const ConsistencyObservation& last = view.observations_of(feature).back();
     if (feature.count < 2 || last.frame != newest) continue;
-    const ConsistencyResidual result = residual(view, feature, last);
-    if (result.pair_count > 0) residuals.push_back(result);
+    MeanPair mean = mean_pair(view, feature, last);
+    if (mean.residual.pair_count == 0) continue;
+    if (error) mean.residual.squared_distance = squared_distance(mean, *error);
+    residuals.push_back(mean.residual);
   }
   return residuals;
 }

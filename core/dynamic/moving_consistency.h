@@ -4,10 +4,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "core/geometry/pose.h"
+#include "core/geometry/uncertain_pose.h"
 
 namespace stillpoint {
 
@@ -40,8 +41,9 @@ struct ConsistencyView {
 
 struct ConsistencyResidual {
   std::int64_t id = 0;
-  double mean_px = 0.0;  ///< r_k
-  int pair_count = 0;    ///< m: number of frame pairs (i, j) in the mean
+  double mean_px = 0.0;                      ///< r_k
+  int pair_count = 0;                        ///< m: number of frame pairs (i, j) in the mean
+  std::optional<double> squared_distance{};  ///< Mahalanobis distance of the mean, see `gate_on_prediction`
 };
 
 /// Average reprojection residual of each feature k over the window. Eq. (6):
@@ -68,10 +70,25 @@ struct ConsistencyResidual {
 [[nodiscard]] std::vector<ConsistencyResidual> consistency_residuals(
     const ConsistencyView& view, std::vector<ConsistencyResidual> recycled = {});
 
+/// A predicted camera pose, and the error of the features that are compared with it.
+struct PredictionError {
+  UncertainPose camera;  ///< T_w_c of the newest frame, with its covariance P relative to the earlier ones
+  double bearing_sigma = 0.0;  ///< s: of a feature position on the normalized image plane
+};
+
 /// Eq. (6) with the newest frame, whose pose is a prediction, in place of frame i; j are the earlier frames.
 /// Features that are not observed in the newest frame have no entry.
+///
+/// With the error of the prediction, also the squared Mahalanobis distance of the mean vector r of the m
+/// differences, which for a static feature has the chi-square distribution with two degrees of freedom. With
+/// the Jacobian J of the projection of its mean position by the camera pose,
+///
+///   d^2 = r^T S^-1 r,    S = J P J^T + s^2 (1 + 1/m) I.
+///
+/// @param error    of the pose of the newest frame
 /// @param recycled as above
 [[nodiscard]] std::vector<ConsistencyResidual> gate_on_prediction(
-    const ConsistencyView& view, std::vector<ConsistencyResidual> recycled = {});
+    const ConsistencyView& view, const std::optional<PredictionError>& error = std::nullopt,
+    std::vector<ConsistencyResidual> recycled = {});
 
 }  // namespace stillpoint

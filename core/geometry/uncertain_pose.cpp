@@ -53,6 +53,16 @@ UncertainPose relative_pose(const Pose& T_w_a, const Pose& T_w_b, const Matrix12
   return {.T_w_f = T_a_b, .covariance = J * joint * J.transpose()};
 }
 
+Eigen::Matrix2d projection_covariance(const UncertainPose& camera, const Eigen::Vector3d& p_c) {
+  const Eigen::Vector2d projected = p_c.hnormalized();
+  Eigen::Matrix<double, 2, 3> J_point;
+  J_point << 1.0, 0.0, -projected.x(), 0.0, 1.0, -projected.y();
+  J_point /= p_c.z();
+  Eigen::Matrix<double, 2, 6> J;
+  J << -J_point * camera.T_w_f.R().transpose(), J_point * skew(p_c);
+  return J * camera.covariance * J.transpose();
+}
+
 double squared_distance(const Pose& a, const Pose& b, const Matrix6& covariance) {
   const Vector6 d = pose_difference(a, b);
   return d.dot(covariance.ldlt().solve(d));

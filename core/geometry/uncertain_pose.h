@@ -41,6 +41,15 @@ using Matrix12 = Eigen::Matrix<double, 12, 12>;
 /// @param joint covariance of (dp_a, dtheta_a, dp_b, dtheta_b)
 [[nodiscard]] UncertainPose relative_pose(const Pose& T_w_a, const Pose& T_w_b, const Matrix12& joint);
 
+/// Covariance J P J^T of the projection (x / z, y / z) of a fixed point by an uncertain camera. With the
+/// position p_c of the point in the camera frame c,
+///
+///   dp_c = -R_c_w dp + [p_c]x dtheta,    d(x / z, y / z) = (1 / z) [ 1 0 -x/z ; 0 1 -y/z ] dp_c.
+///
+/// @param camera T_w_c
+/// @param p_c in front of the camera [m]
+[[nodiscard]] Eigen::Matrix2d projection_covariance(const UncertainPose& camera, const Eigen::Vector3d& p_c);
+
 /// Squared Mahalanobis distance d^T P^-1 d of two poses, with d = (p_b - p_a, Log(q_a^-1 q_b)).
 /// @param a pose with which d begins
 /// @param b pose with which d ends

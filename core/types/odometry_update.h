@@ -23,6 +23,13 @@ struct OdometryCounters {
   bool reset = false;    ///< a failure was detected in this frame; the estimator reinitializes
 };
 
+/// Normalized innovation squared of a frame at its predicted pose, 1 in the mean for true covariances; see
+/// core/backend/health/innovation.h. Absent without a covariance or reliable inertial data.
+struct Innovations {
+  std::optional<double> reprojection;
+  std::optional<double> inertial;  ///< also absent at rest, or if vision does not determine the pose
+};
+
 /// Estimated calibration that is at a bound of the configuration: it does not fit the data, or the calibrated
 /// value is far off.
 struct CalibrationAtBound {
@@ -60,6 +67,7 @@ struct OdometryUpdate {
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();
   /// Of `state`, as of the last solve; absent unless `backend.covariance` is on and the frame was solved.
   std::optional<StateCovariance> covariance;
+  Innovations nis;
   OdometryCounters counters;
   StateHashes hashes;
   ModuleTimings timings;

@@ -122,7 +122,12 @@ void OptimizationStage::check_motion_before_solve() {
   estimator_.check_prediction();
   if (!estimator_.has_inertial_prediction()) return;
   const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition, Kind::kPart);
-  residuals_ = gate_on_prediction(update_view(), std::move(residuals_));
+  std::optional<PredictionError> error;
+  if (config_.gate_probability > 0.0) {
+    if (const std::optional<UncertainPose> camera = estimator_.predicted_camera())
+      error = {.camera = *camera, .bearing_sigma = feature_sigma_px_ / camera_.focal_px()};
+  }
+  residuals_ = gate_on_prediction(update_view(), error, std::move(residuals_));
   apply_labels(recognition_.gate(residuals_));
 }
 

@@ -108,6 +108,9 @@ std::vector<std::vector<NeesTerm>> simulate_nees(const OdometryConfig& config, c
     if (t < checkpoints[result.size()]) continue;
     result.emplace_back();
     if (valid) result.back() = Comparison(estimator, *T_we_wt).terms(*update.covariance, motion);
+    if (update.nis.reprojection)
+      result.back().push_back({"NIS reprojection", 1, *update.nis.reprojection, 0.0});
+    if (update.nis.inertial) result.back().push_back({"NIS inertial", 1, *update.nis.inertial, 0.0});
   }
   return result;
 }

@@ -32,6 +32,7 @@ struct NeesTerm {
 
 /// Simulates a run and compares the state at the `checkpoints` [s] with the truth. Both are relative to the
 /// pose that fixes the gauge, T_0^-1 T_k; there is no alignment. A frame without a valid state has no terms.
+/// The terms "NIS reprojection" and "NIS inertial" are those of OdometryUpdate.
 [[nodiscard]] std::vector<std::vector<NeesTerm>> simulate_nees(const OdometryConfig& config,
                                                                const NeesDraw& draw,
                                                                const std::vector<double>& checkpoints);

@@ -55,6 +55,14 @@ TEST(EstimatorConsistency, TheConsistentPriorGivesTheCovarianceOfTheErrors) {
   }
 }
 
+TEST(EstimatorConsistency, InnovationsHaveTheirCovariance) {
+  const std::map<std::string, double> nees = mean_nees(PriorModel::kConsistent, 6);
+  for (const char* quantity : {"NIS reprojection", "NIS inertial"}) {
+    EXPECT_GT(nees.at(quantity), 0.6) << quantity;
+    EXPECT_LT(nees.at(quantity), 1.5) << quantity;
+  }
+}
+
 TEST(EstimatorConsistency, ThePublishedPriorIsOverconfidentInThePosition) {
   EXPECT_GT(mean_nees(PriorModel::kPublished, 6).at("position"), 2.0);
 }

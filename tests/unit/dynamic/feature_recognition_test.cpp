@@ -130,6 +130,21 @@ TEST(FeatureRecognition, KeepsAHistoryPerFeature) {
   EXPECT_EQ(labels[2].label, LabelClass::kStable);
 }
 
+TEST(FeatureRecognition, TheGateOfAProbabilityUsesTheDistanceInsteadOfPixels) {
+  DynamicConfig by_covariance = config();
+  by_covariance.gate_probability = 0.99;  // quantile of two degrees of freedom: 9.21
+  const auto gate_one = [&](const ConsistencyResidual& residual) {
+    FeatureRecognition recognition{by_covariance};
+    static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));
+    return recognition.gate(std::vector{residual}).at(0).label;
+  };
+  EXPECT_EQ(gate_one({.id = 1, .mean_px = 20.0, .squared_distance = 9.2}), LabelClass::kStable);
+  EXPECT_EQ(gate_one({.id = 1, .mean_px = 2.0, .squared_distance = 9.3}), LabelClass::kDynamicMotion);
+  // Without a covariance: the threshold of 8 px.
+  EXPECT_EQ(gate_one({.id = 1, .mean_px = 20.0}), LabelClass::kDynamicMotion);
+  EXPECT_EQ(gate_one({.id = 1, .mean_px = 7.0}), LabelClass::kStable);
+}
+
 TEST(FeatureRecognition, CheckLabelsResidualsAboveTheThresholdAsDynamic) {
   FeatureRecognition recognition{config()};
   static_cast<void>(classify_one(recognition, feature(1, kOutside, 2.0), SemanticMask()));

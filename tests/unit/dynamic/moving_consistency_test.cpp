@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -132,6 +134,32 @@ TEST(GateOnPrediction, UsesTheNewestFrameAsReference) {
   ASSERT_EQ(residuals.size(), 1U);
   EXPECT_EQ(residuals[0].pair_count, 2);
   EXPECT_NEAR(residuals[0].mean_px, 7.5, 1e-9);
+}
+
+TEST(GateOnPrediction, MeasuresTheMeanDifferenceInItsStandardDeviations) {
+  const ConsistencyView view = sideways_motion();
+  // In the newest camera at depth 2 and off by 0.02 m, as seen from both earlier frames: 5 px, to the side.
+  const ConsistencyView moved =
+      with(view, observed_at(view, 0, {{0.2, 0.0, 2.0}, {0.2, 0.0, 2.0}, {0.22, 0.0, 2.0}}));
+  EXPECT_FALSE(gate_on_prediction(moved).at(0).squared_distance);
+  PredictionError error{.camera = {.T_w_f = view.T_w_c.back()}, .bearing_sigma = 2.0 / kFocal};
+  // Variance of the difference without an error of the pose: 2^2 (1 + 1/2) px^2.
+  EXPECT_NEAR(*gate_on_prediction(moved, error).at(0).squared_distance, 25.0 / 6.0, 1e-9);
+  // 0.04 m along x: 10 px. An error of the pose along the ray does not show there.
+  error.camera.covariance(0, 0) = 0.04 * 0.04;
+  error.camera.covariance(2, 2) = 1.0;
+  EXPECT_NEAR(*gate_on_prediction(moved, error).at(0).squared_distance, 25.0 / 106.0, 1e-2);
+}
+
+TEST(GateOnPrediction, APointBehindTheCameraIsInfinitelyFar) {
+  ConsistencyView view = sideways_motion();
+  view.T_w_c[2] = Pose{exp_so3({0.0, M_PI, 0.0}), Eigen::Vector3d::Zero()};  // faces backwards
+  ObservedFeature feature;
+  feature.observations = {{.frame = 0, .bearing = {0.0, 0.0}, .depth = 2.0},
+                          {.frame = 1, .bearing = {0.0, 0.0}, .depth = 2.0},
+                          {.frame = 2, .bearing = {0.0, 0.0}, .depth = 2.0}};
+  const PredictionError error{.camera = {.T_w_f = view.T_w_c.back()}, .bearing_sigma = 1.0};
+  EXPECT_TRUE(std::isinf(*gate_on_prediction(with(view, feature), error).at(0).squared_distance));
 }
 
 TEST(GateOnPrediction, HasNoEntryForFeaturesNotObservedInTheNewestFrame) {

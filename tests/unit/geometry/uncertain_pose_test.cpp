@@ -28,6 +28,17 @@ TEST(UncertainPose, MovesTheErrorToAnotherFrameOfTheBody) {
   EXPECT_TRUE(moved.covariance.isApprox(expected * expected.transpose(), 1e-2));
 }
 
+TEST(UncertainPose, ProjectsItsErrorToThePositionsOfPoints) {
+  const Eigen::Vector3d p_c(0.6, -0.4, 2.0);
+  const Eigen::Vector3d p_w = kPose * p_c;
+  for (int axis = 0; axis < 6; ++axis) {
+    const Vector6 error = 1e-4 * Vector6::Unit(axis);
+    const Eigen::Vector2d moved = (perturbed(kPose, error).inverse() * p_w).hnormalized() - p_c.hnormalized();
+    const Eigen::Matrix2d projected = projection_covariance({kPose, error * error.transpose()}, p_c);
+    EXPECT_TRUE(projected.isApprox(moved * moved.transpose(), 1e-3)) << axis;
+  }
+}
+
 TEST(UncertainPose, MeasuresDistancesInStandardDeviations) {
   Vector6 sigmas;
   sigmas << 0.1, 0.2, 0.3, 0.01, 0.02, 0.03;
