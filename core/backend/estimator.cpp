@@ -23,9 +23,12 @@ namespace {
 constexpr double kRepropagateGyro = 0.01;  // [rad/s]
 constexpr double kRepropagateAccel = 0.1;  // [m/s^2]
 
-ImuNoise scaled(const ImuNoise& noise, double factor) {
-  return {factor * noise.gyro_noise, factor * noise.accel_noise, factor * noise.gyro_walk,
-          factor * noise.accel_walk};
+ImuNoise configured_noise(const ImuNoise& stated, const ImuConfig& config) {
+  const auto density = [&](double configured, double of_sequence) {
+    return config.noise_scale * (configured > 0.0 ? configured : of_sequence);
+  };
+  return {density(config.gyro_noise, stated.gyro_noise), density(config.accel_noise, stated.accel_noise),
+          density(config.gyro_walk, stated.gyro_walk), density(config.accel_walk, stated.accel_walk)};
 }
 
 MonitorOptions monitor_options(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed) {
@@ -53,7 +56,7 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
     throw InputError("imu.enabled", "the sequence has no inertial data; run with --variant vo");
   }
   check_scale(backend, imu);
-  rig_.imu_noise = scaled(rig.imu_noise, imu.noise_scale);
+  rig_.imu_noise = configured_noise(rig.imu_noise, imu);
   window_ = calibrated_window();
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "tests/support/simulated/nees_simulation.h"
+#include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
 namespace {
@@ -65,6 +66,22 @@ TEST(EstimatorConsistency, InnovationsHaveTheirCovariance) {
 
 TEST(EstimatorConsistency, ThePublishedPriorIsOverconfidentInThePosition) {
   EXPECT_GT(mean_nees(PriorModel::kPublished, 6).at("position"), 2.0);
+}
+
+TEST(EstimatorConsistency, ConfiguredNoiseDensitiesReplaceThoseOfTheRig) {
+  const ImuNoise stated = SimulatedMotion::rig().imu_noise;
+  OdometryConfig scaled = simulated_config(PriorModel::kConsistent);
+  scaled.imu.noise_scale = 3.0;
+  OdometryConfig configured = simulated_config(PriorModel::kConsistent);
+  configured.imu.gyro_noise = 3.0 * stated.gyro_noise;
+  configured.imu.accel_noise = 3.0 * stated.accel_noise;
+  configured.imu.gyro_walk = 3.0 * stated.gyro_walk;
+  configured.imu.accel_walk = 3.0 * stated.accel_walk;
+  const auto position = [](const OdometryConfig& config) {
+    return simulate_nees(config, {}, {3.0}).at(0).at(0).squared;
+  };
+  EXPECT_EQ(position(configured), position(scaled));
+  EXPECT_NE(position(configured), position(simulated_config(PriorModel::kConsistent)));
 }
 
 TEST(EstimatorConsistency, ATimeOffsetFarFromTheCalibratedOneIsFound) {

@@ -115,6 +115,7 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"dynamic.recycle_min_frames", "3"},
                                    {"dynamic.min_static_frames", "3"},
                                    {"dynamic.gate_before_solve", "true"},
+                                   {"dynamic.gate_probability", "0.9999"},
                                    {"dynamic.min_stable_features", "20"},
                                    {"backend.rate_hz", "0.0"},
                                    {"backend.keyframe_min_shared_ratio", "0.5"},
@@ -187,6 +188,14 @@ TEST(ConfigOverlays, DynamicVinsIsTheDefaultsOfTheCodeWithoutUnpublishedChecks) 
                      {"backend.depth.max_landmark_depth_m", "10000.0"},
                      {"backend.initializer.gyro_bias_sigma", "10.0"},
                      {"backend.initializer.accel_bias_sigma", "10.0"}}));
+}
+
+TEST(ConfigOverlays, SensorsStateTheirNoiseDensities) {
+  EXPECT_EQ(changes("stillpoint", "sensors/tum_vi"), (Entries{{"imu.noise_scale", "1.0"},
+                                                              {"imu.gyro_noise", "0.00048"},
+                                                              {"imu.accel_noise", "0.0084"},
+                                                              {"imu.gyro_walk", "2.2e-05"},
+                                                              {"imu.accel_walk", "0.00086"}}));
 }
 
 TEST(ConfigOverlays, EveryEmbeddedConfigLoads) {
