@@ -2,8 +2,9 @@
 #include "reports/frames/frame_annotator.h"
 
 #include <algorithm>
-#include <string>
+#include <numbers>
 
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 namespace stillpoint::report {
@@ -23,6 +24,7 @@ const cv::Scalar kShadow(0, 0, 0);
 
 constexpr int kTextFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.5;
+constexpr int kCorrectionFrames = 30;
 constexpr int kFractionBits = 4;  // OpenCV takes coordinates in 1/16 px
 
 cv::Point fixed(const cv::Point2d& pixel) {
@@ -75,6 +77,16 @@ void write_status(const OdometryUpdate& update, cv::Mat& canvas) {
   write_line(text, cv::Point(6, canvas.rows - 8), canvas);
 }
 
+/// Change of the correction by loop closure, at the position of the camera.
+std::string correction_text(const Pose& before, const OdometryUpdate& update) {
+  const Eigen::Vector3d moved = update.T_m_w * update.T_w_c.p - before * update.T_w_c.p;
+  const double angle_rad = before.q.angularDistance(update.T_m_w.q);
+  return fmt::format("loop closure: corrected by {:.1f} cm, {:.2f} deg", 100.0 * moved.norm(),
+                     angle_rad * 180.0 / std::numbers::pi);
+}
+
+bool is_same(const Pose& a, const Pose& b) { return a.p == b.p && a.q.coeffs() == b.q.coeffs(); }
+
 }  // namespace
 
 FrameAnnotator::Tracks FrameAnnotator::extended_tracks(const FrameReport& report) const {
@@ -123,6 +135,12 @@ cv::Mat FrameAnnotator::annotate(const FrameReport& report) {
     cv::circle(canvas, points.back(), 3 << kFractionBits, color, cv::FILLED, cv::LINE_AA, kFractionBits);
   }
   write_status(report.update, canvas);
+  if (!is_same(report.update.T_m_w, T_m_w_)) {
+    correction_ = correction_text(T_m_w_, report.update);
+    correction_frames_ = kCorrectionFrames;
+    T_m_w_ = report.update.T_m_w;
+  }
+  if (correction_frames_-- > 0) write_line(correction_, cv::Point(6, canvas.rows - 26), canvas);
   tracks_ = std::move(now);
   return canvas;
 }

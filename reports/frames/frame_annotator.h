@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
@@ -23,7 +24,7 @@ struct AnnotationStyle {
 /// Green: stable. Red: on a dynamic object. Magenta: moving (moving consistency check). White: no label yet.
 /// Thin circles suppress new features: orange around stable features, purple where a feature was lost in the
 /// last frame (unstable). Red tint: depth below its box's threshold, Eq. (1). Boxes: yellow detected, blue
-/// from missed detection compensation.
+/// from missed detection compensation. After a correction by loop closure its size is written for 30 frames.
 class FrameAnnotator {
  public:
   explicit FrameAnnotator(AnnotationStyle style) : style_(style) {}
@@ -47,6 +48,9 @@ class FrameAnnotator {
 
   AnnotationStyle style_;
   Tracks tracks_;  ///< of the features in the last frame
+  Pose T_m_w_;     ///< `OdometryUpdate::T_m_w` of the last frame that was drawn
+  std::string correction_;
+  int correction_frames_ = 0;  ///< for which it is still written
 };
 
 }  // namespace stillpoint::report

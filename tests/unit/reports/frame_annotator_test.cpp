@@ -2,6 +2,7 @@
 #include "reports/frames/frame_annotator.h"
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "tests/support/fake_frame_report.h"
 
@@ -71,6 +72,19 @@ TEST(FrameAnnotator, TintsPixelsNearerThanTheThresholdOfTheirBox) {
   // Center at 1 m, corners at 4 m: the threshold is in the middle, 2.5 m.
   EXPECT_FALSE(is_black(drawn.at<cv::Vec3b>(50, 50)));
   EXPECT_TRUE(is_black(drawn.at<cv::Vec3b>(80, 80)));
+}
+
+TEST(FrameAnnotator, WritesTheCorrectionByALoopForThirtyFrames) {
+  FrameAnnotator annotator({});
+  const auto has_text = [&](std::int64_t id, double corrected_m) {
+    FakeFrameReport fake(id, {400, 120});
+    fake.update.T_m_w.p.x() = corrected_m;
+    const cv::Mat drawn = annotator.annotate(fake.report());
+    return cv::norm(drawn.rowRange(82, 96), cv::NORM_INF) > 0.0;  // above the status
+  };
+  EXPECT_FALSE(has_text(0, 0.0));
+  for (int i = 1; i <= 30; ++i) EXPECT_TRUE(has_text(i, 0.05)) << i;
+  EXPECT_FALSE(has_text(31, 0.05));
 }
 
 TEST(FrameAnnotator, DoesNotModifyTheFrame) {
