@@ -38,6 +38,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string sequence;
   fs::path out = ".";
+  std::string name;  ///< of the first --out: the key of the run, unless the program was given another one
   double error_m = 0.01;
   std::string worse_sequence, slow_module;
   double worse = 1.0, slow = 1.0, noise = 0.02;
@@ -59,7 +60,10 @@ Options parse(const std::vector<std::string>& words) {
     const std::string& word = words[i];
     const auto next = [&] { return ++i < words.size() ? words[i] : std::string(); };
     if (word == "run") options.sequence = next();
-    if (word == "--out") options.out = next();
+    if (word == "--out") {
+      options.out = next();
+      if (options.name.empty()) options.name = options.out.filename().string();
+    }
     if (word == "--error") options.error_m = std::stod(next());
     if (word == "--worse") {
       options.worse_sequence = next();
@@ -101,10 +105,13 @@ Trajectory replay(const Trajectory& truth, const Options& options) {
   return path;
 }
 
-/// Times of two modules [ms]; deterministic for a run.
+/// Times of two modules [ms]; deterministic for a run, and with a name also independent of the configs of the
+/// odometry, which the key of the run depends on.
 std::string timings_text(const Options& options) {
   std::string text;
-  std::mt19937_64 random(std::hash<std::string>{}(options.seed + options.out.filename().string()));
+  std::mt19937_64 random(std::hash<std::string>{}(fmt::format("{} {} {} {}", options.seed, options.name,
+                                                              fs::path(options.sequence).filename().string(),
+                                                              options.perturbation_seed)));
   for (const char* module : {"feature_tracking", "state_optimization"}) {
     std::normal_distribution<double> spread(1.0, options.noise);
     const double ms = 10.0 * spread(random) * (options.slow_module == module ? options.slow : 1.0);
