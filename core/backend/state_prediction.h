@@ -29,8 +29,8 @@ struct MotionState {
 /// Motion T_bi_bj of the body from the frame of a state i to the next one, with its covariance. With the
 /// duration T, the velocity v_b = R_i^T v_i in the body frame and the Jacobians J of the preintegration,
 ///
-///   dp = T dv_b + J_pbg dbg + J_pba dba + noise,   dtheta = J_qbg dbg + noise,   dv_b = R_i^T dv + [v_b]x
-///   dtheta_i.
+///   dp = T dv_b + J_pbg dbg + J_pba dba + noise,    dtheta = J_qbg dbg + noise,
+///   dv_b = R_i^T dv + [v_b]x dtheta_i.
 ///
 /// The error of the direction of gravity is left out: 0.1 mm per degree at 30 Hz.
 /// @param claimed of `state`, inertial

@@ -118,6 +118,16 @@ void FrameAnnotator::draw_circles(const Tracks& now, cv::Mat& canvas) const {
   }
 }
 
+/// A world that is located in the map, or a new world, is not a correction.
+void FrameAnnotator::note_correction(const OdometryUpdate& update) {
+  if (in_map_ && update.in_map && !is_same(update.T_m_w, T_m_w_)) {
+    correction_ = correction_text(T_m_w_, update);
+    correction_frames_ = kCorrectionFrames;
+  }
+  T_m_w_ = update.T_m_w;
+  in_map_ = update.in_map;
+}
+
 cv::Mat FrameAnnotator::annotate(const FrameReport& report) {
   cv::Mat canvas = canvas_of(report.frame);
   Tracks now = extended_tracks(report);
@@ -135,11 +145,7 @@ cv::Mat FrameAnnotator::annotate(const FrameReport& report) {
     cv::circle(canvas, points.back(), 3 << kFractionBits, color, cv::FILLED, cv::LINE_AA, kFractionBits);
   }
   write_status(report.update, canvas);
-  if (!is_same(report.update.T_m_w, T_m_w_)) {
-    correction_ = correction_text(T_m_w_, report.update);
-    correction_frames_ = kCorrectionFrames;
-    T_m_w_ = report.update.T_m_w;
-  }
+  note_correction(report.update);
   if (correction_frames_-- > 0) write_line(correction_, cv::Point(6, canvas.rows - 26), canvas);
   tracks_ = std::move(now);
   return canvas;

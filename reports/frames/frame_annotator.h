@@ -44,11 +44,13 @@ class FrameAnnotator {
   using Tracks = std::map<std::int64_t, Track>;
 
   [[nodiscard]] Tracks extended_tracks(const FrameReport& report) const;
+  void note_correction(const OdometryUpdate& update);
   void draw_circles(const Tracks& now, cv::Mat& canvas) const;
 
   AnnotationStyle style_;
-  Tracks tracks_;  ///< of the features in the last frame
-  Pose T_m_w_;     ///< `OdometryUpdate::T_m_w` of the last frame that was drawn
+  Tracks tracks_;       ///< of the features in the last frame
+  Pose T_m_w_;          ///< `OdometryUpdate::T_m_w` of the last frame that was drawn
+  bool in_map_ = true;  ///< same
   std::string correction_;
   int correction_frames_ = 0;  ///< for which it is still written
 };

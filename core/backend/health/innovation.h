@@ -18,8 +18,9 @@ namespace stillpoint {
 ///
 ///   v = u - pi(T_w_c^-1 p_w),    S = J P J^T + s^2 I,    see `projection_covariance`.
 ///
-/// Landmarks that move unrecognized do not change it: it is the median of v^T S^-1 v over the landmarks,
+/// Landmarks that move unrecognized hardly change it: it is the median of v^T S^-1 v over the landmarks,
 /// divided by that of the chi-square distribution with two degrees of freedom.
+/// @param residual_sigma s [normalized image plane]
 /// @param distances buffer, whose content is ignored: v^T S^-1 v of each landmark
 /// @return nothing if there are fewer than eight landmarks
 [[nodiscard]] std::optional<double> reprojection_nis(const Window& window, const UncertainPose& camera,

@@ -87,6 +87,16 @@ TEST(FrameAnnotator, WritesTheCorrectionByALoopForThirtyFrames) {
   EXPECT_FALSE(has_text(31, 0.05));
 }
 
+TEST(FrameAnnotator, LocatingAWorldInTheMapIsNotACorrection) {
+  FrameAnnotator annotator({});
+  FakeFrameReport before(0, {400, 120});
+  before.update.in_map = false;
+  static_cast<void>(annotator.annotate(before.report()));
+  FakeFrameReport located(1, {400, 120});
+  located.update.T_m_w.p.x() = 3.0;
+  EXPECT_EQ(cv::norm(annotator.annotate(located.report()).rowRange(82, 96), cv::NORM_INF), 0.0);
+}
+
 TEST(FrameAnnotator, DoesNotModifyTheFrame) {
   FakeFrameReport fake(0);
   fake.frame.color = cv::Mat::zeros(120, 160, CV_8UC3);
