@@ -145,10 +145,11 @@ struct BackendConfig {
   double keyframe_min_shared_ratio = 0.5;  ///< same, relative to all static features; 0 = off, as in the
                                            ///< published code (there dynamic features add parallax)
   double pixel_sigma_px = 1.5;             ///< standard deviation of a reprojection residual
-  double feature_sigma_px = 1.5;       ///< same of a feature position, for decisions: triangulation, inliers
-                                       ///< of a pose, moving consistency
-  double reprojection_error_px = 0.0;  ///< nominal median; a larger one inflates pixel_sigma_px; 0 = off
-  double cauchy_scale = 1.0;           ///< scale of the Cauchy loss, in standard deviations
+  double feature_sigma_px = 1.5;        ///< same of a feature position, for decisions: triangulation, inliers
+                                        ///< of a pose, moving consistency
+  double reprojection_error_px = 0.0;   ///< nominal median; a larger one inflates pixel_sigma_px; 0 = off
+  double max_pixel_noise_factor = 4.0;  ///< limit of that inflation
+  double cauchy_scale = 1.0;            ///< scale of the Cauchy loss, in standard deviations
   WindowSolverKind solver = WindowSolverKind::kCeres;  ///< both minimize the same residuals
   int max_iterations = 8;
   double function_tolerance = 1e-6;      ///< relative change of the cost at which the solve stops
@@ -187,6 +188,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("pixel_sigma_px", config.pixel_sigma_px, 0.05, 20.0);
   field("feature_sigma_px", config.feature_sigma_px, 0.05, 20.0);
   field("reprojection_error_px", config.reprojection_error_px, 0.0, 20.0);
+  field("max_pixel_noise_factor", config.max_pixel_noise_factor, 1.0, 1000.0);
   field("cauchy_scale", config.cauchy_scale, 0.01, 100.0);
   field("solver", config.solver);
   field("max_iterations", config.max_iterations, 1, 100);

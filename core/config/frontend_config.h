@@ -80,7 +80,9 @@ struct FrontendConfig {
   bool reject_static_only = false;  ///< exclude features labeled dynamic from RANSAC and never reject them,
                                     ///< so that a large dynamic object cannot become the consensus; not in
                                     ///< the paper
-  bool recover_view = false;        ///< continue the tracks of a lost view when it returns; not in the paper
+  double drift_min_correlation = 0.0;  ///< align matches with the first image of their track, where the
+                                       ///< correlation is at least this; 0 = off; not in the paper
+  bool recover_view = false;  ///< continue the tracks of a lost view when it returns; not in the paper
   int border_px = 1;
   double depth_max_spread =
       0.05;               ///< range of the depths in the 3x3 neighborhood over the depth; 0 = no check
@@ -110,6 +112,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("ransac_confidence", config.ransac_confidence, 0.5, 0.99999);
   field("ransac_min_inlier_ratio", config.ransac_min_inlier_ratio, 0.0, 1.0);
   field("reject_static_only", config.reject_static_only);
+  field("drift_min_correlation", config.drift_min_correlation, 0.0, 1.0);
   field("recover_view", config.recover_view);
   field("border_px", config.border_px, 0, 100);
   field("depth_max_spread", config.depth_max_spread, 0.0, 10.0);

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/frontend/depth_sampling.h"
 #include "core/frontend/detect/feature_detector.h"
 #include "core/frontend/detect/feature_mask.h"
+#include "core/frontend/drift_correction.h"
 #include "core/frontend/feature_prediction.h"
+#include "core/frontend/frame_check.h"
 #include "core/frontend/outliers/outlier_rejection.h"
 #include "core/frontend/point_tracker.h"
 #include "core/frontend/track.h"
@@ -26,26 +26,6 @@ const cv::Size kClaheTiles(8, 8);
 
 using DynamicIds = std::span<const std::int64_t>;
 
-std::string size_text(const cv::Size& size) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height);
-}
-
-void check_frame(const Frame& frame, const Camera& camera) {
-  const std::string location = "frame " + std::to_string(frame.id);
-  const cv::Size expected(camera.width, camera.height);
-  if (frame.gray.type() != CV_8UC1 || frame.gray.size() != expected) {
-    throw InputError(location, "gray image is " + size_text(frame.gray.size()) + " " +
-                                   cv::typeToString(frame.gray.type()) + ", expected " + size_text(expected) +
-                                   " CV_8UC1; check the calibration");
-  }
-  if (frame.depth.empty()) return;
-  if (frame.depth.type() != CV_16UC1 || frame.depth.size() != expected) {
-    throw InputError(location, "depth image is " + size_text(frame.depth.size()) + " " +
-                                   cv::typeToString(frame.depth.type()) + ", expected " +
-                                   size_text(expected) + " CV_16UC1; register it to the color image");
-  }
-}
-
 }  // namespace
 
 /// Tracks are sorted by id, and therefore from the oldest to the newest.
@@ -54,13 +34,15 @@ struct FeatureTracker::State {
       : config(frontend_config),
         camera(frontend_camera),
         detector(make_feature_detector(frontend_config)),
+        drift_corrector(frontend_config, frontend_camera),
         view_recovery(frontend_config, frontend_camera) {
     if (config.equalize) equalizer = cv::createCLAHE(kClaheClip, kClaheTiles);
   }
 
   void advance(const Frame& frame, const MotionPrior& prior, const TrackingOptions& options);
-  void track_features(const MotionPrior& prior, double interval_s);
+  void track_features(const Frame& frame, const MotionPrior& prior);
   void match_features(TrackerPrediction kind);
+  void correct_drift(const Frame& frame, const MotionPrior& prior);
   void update_tracks(double interval_s);
   void reject_outliers(DynamicIds dynamic_ids);
   void recover_view(const cv::Mat& gray);
@@ -84,6 +66,8 @@ struct FeatureTracker::State {
   std::vector<cv::Point2f> unstable;
   FeatureMask mask;
   OutlierRejector outlier_rejector;
+  DriftCorrector drift_corrector;
+  bool inertial_rotation = false;  // of a frame since the last detection
   ViewRecovery view_recovery;
   std::int64_t next_id = 0;
 
@@ -110,7 +94,7 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
     const ScopedTimer timer(timings, Module::kFeatureTracking);
     std::swap(previous, current);
     current = build_pyramid(config, gray, std::move(current));
-    if (!tracks.empty()) track_features(prior, seconds_between(current_t, frame.t));
+    if (!tracks.empty()) track_features(frame, prior);
     current_t = frame.t;
   }
   if (options.detect) reject_outliers(options.dynamic_ids);
@@ -120,15 +104,17 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
     detect_features(gray);
   }
   measure_depth(frame);
+  if (config.drift_min_correlation > 0.0) DriftCorrector::begin_views(current, tracks);
   if (options.detect) update_references();
   if (config.recover_view) view_recovery.remember(gray, tracks);
 }
 
-void FeatureTracker::State::track_features(const MotionPrior& prior, double interval_s) {
+void FeatureTracker::State::track_features(const Frame& frame, const MotionPrior& prior) {
   const TrackerPrediction kind = usable_prediction(config.prediction, prior);
   predicted = predict_pixels(tracks, {prior, kind}, camera, std::move(predicted));
   match_features(kind);
-  update_tracks(interval_s);
+  if (config.drift_min_correlation > 0.0) correct_drift(frame, prior);
+  update_tracks(seconds_between(current_t, frame.t));
 }
 
 void FeatureTracker::State::match_features(TrackerPrediction kind) {
@@ -145,6 +131,12 @@ void FeatureTracker::State::match_features(TrackerPrediction kind) {
       {.from = current, .to = previous, .points = forward.pixels, .initial_guesses = pixels, .levels = 1},
       std::move(backward));
   forward = forward_backward_check(pixels, std::move(forward), backward, config.forward_backward_px);
+}
+
+void FeatureTracker::State::correct_drift(const Frame& frame, const MotionPrior& prior) {
+  if (prior.has_rotation) DriftCorrector::rotate(prior.T_ccur_cprev.R(), tracks);
+  inertial_rotation |= prior.has_rotation;
+  drift_corrector.correct(frame, current, tracks, forward);
 }
 
 void FeatureTracker::State::update_tracks(double interval_s) {
@@ -198,6 +190,11 @@ void FeatureTracker::State::reject_outliers(DynamicIds dynamic_ids) {
     }
   }
   tracks.resize(kept);
+  // Without a gyroscope the rotation is known after the frame only: its patches are warped by that of the
+  // last.
+  const std::optional<Pose>& motion = outlier_rejector.motion();
+  if (motion && !inertial_rotation) DriftCorrector::rotate(motion->R(), tracks);
+  inertial_rotation = false;
 }
 
 void FeatureTracker::State::recover_view(const cv::Mat& gray) {

@@ -14,7 +14,7 @@ ImagePyramid build_pyramid(const FrontendConfig& config, const cv::Mat& gray, Im
   if (config.tracker == TrackerKind::kPatch) {
     pyramid.rebuild(gray, kPatchReach, levels, PyramidKind::kImages);
   } else {
-    pyramid.rebuild(gray, config.window_px, levels, PyramidKind::kImagesAndDerivatives);
+    pyramid.rebuild(gray, std::max(config.window_px, kPatchReach), levels, PyramidKind::kImagesAndDerivatives);
   }
   return pyramid;
 }

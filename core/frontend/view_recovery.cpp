@@ -151,6 +151,7 @@ std::vector<Track> ViewRecovery::continue_tracks(const View& lost, const Pose& T
     track.feature.velocity.setZero();
     track.feature.depth = track.reference_depth = 0.0;
     ++track.feature.age;
+    track.first_view.patch.clear();  // its rotation is not known
     continued.push_back(track);
   }
   if (continued.size() < kMinFound) continued.clear();

@@ -8,7 +8,6 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMinObservations = 20;
-constexpr double kMaxFactor = 4.0;
 constexpr double kSmoothing = 0.1;  // per window: time constant of about ten windows
 
 }  // namespace
@@ -34,7 +33,7 @@ double ReprojectionErrorMonitor::median_px(const Window& window, double focal_px
 void PixelNoise::observe(double error_px, const BackendConfig& config) {
   if (error_px <= 0.0 || config.reprojection_error_px <= 0.0) return;
   const double ratio = error_px / config.reprojection_error_px;
-  factor_ += kSmoothing * (std::clamp(ratio * ratio, 1.0, kMaxFactor) - factor_);
+  factor_ += kSmoothing * (std::clamp(ratio * ratio, 1.0, config.max_pixel_noise_factor) - factor_);
 }
 
 BackendConfig PixelNoise::applied_to(BackendConfig config) const {

@@ -24,7 +24,7 @@ class ReprojectionErrorMonitor {
 /// Low-pass filtered factor f on `pixel_sigma_px`: with e the median reprojection error and e0 its nominal
 /// value `reprojection_error_px`,
 ///
-///   f <- f + 0.1 (clamp((e / e0)^2, 1, 4) - f).
+///   f <- f + 0.1 (clamp((e / e0)^2, 1, f_max) - f),   f_max = `max_pixel_noise_factor`.
 ///
 /// Errors above the nominal value are model errors (distortion, blur, rolling shutter, compression). They are
 /// correlated along a track, so the observations carry less information than their variance suggests; hence

@@ -66,11 +66,13 @@ bool OutlierRejector::fit_rigid(std::span<const Match> matches, const OutlierRej
     inliers_.push_back(
         reprojection_error(match, *T_to_from) * settings.focal_px <= settings.threshold_px ? 1 : 0);
   }
-  return has_enough_inliers(settings);
+  if (has_enough_inliers(settings)) motion_ = T_to_from;
+  return motion_.has_value();
 }
 
 const InlierMask& OutlierRejector::find(std::span<const Match> matches,
                                         const OutlierRejectionSettings& settings) {
+  motion_.reset();
   const bool has_model = matches.size() >= kMinMatches &&
                          ((settings.model == OutlierModel::kRigid && fit_rigid(matches, settings)) ||
                           fit_epipolar(matches, settings));

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,9 @@ class OutlierRejector {
   [[nodiscard]] const InlierMask& find(std::span<const Match> matches,
                                        const OutlierRejectionSettings& settings);
 
+  /// T_to_from of the last call, if it found a rigid motion.
+  [[nodiscard]] const std::optional<Pose>& motion() const { return motion_; }
+
  private:
   [[nodiscard]] bool fit_epipolar(std::span<const Match> matches, const OutlierRejectionSettings& settings);
   [[nodiscard]] bool fit_rigid(std::span<const Match> matches, const OutlierRejectionSettings& settings);
@@ -44,6 +48,7 @@ class OutlierRejector {
 
   std::vector<PointCorrespondence> correspondences_;
   InlierMask inliers_;
+  std::optional<Pose> motion_;
 };
 
 /// Inliers of the dominant motion, by RANSAC (Fischler and Bolles 1981). Deterministic.

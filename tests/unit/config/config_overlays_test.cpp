@@ -30,6 +30,12 @@ TEST(ConfigOverlays, WithoutImuPredictionDisablesPrediction) {
   EXPECT_EQ(changes("dynamic_vins", "wo_imu_prediction"), (Entries{{"frontend.prediction", "\"none\""}}));
 }
 
+TEST(ConfigOverlays, WithoutDriftCorrectionTracksFromFrameToFrame) {
+  EXPECT_EQ(changes("stillpoint", "wo_drift_correction"),
+            (Entries{{"frontend.drift_min_correlation", "0.0"}}));
+  EXPECT_EQ(changes("dynamic_vins", "wo_drift_correction"), Entries{});
+}
+
 TEST(ConfigOverlays, WithoutGridDetectionUsesShiTomasi) {
   EXPECT_EQ(changes("stillpoint", "wo_grid_detection"), (Entries{{"frontend.detector", "\"shi_tomasi\""}}));
 }
@@ -75,7 +81,10 @@ TEST(ConfigOverlays, BearingTimeOffsetIsThatOfDynamicVins) {
 TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
   EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"},
                                                   {"backend.keyframe_min_shared_ratio", "0.7"},
-                                                  {"backend.pixel_sigma_px", "1.5"}}));
+                                                  {"backend.pixel_sigma_px", "0.5"},
+                                                  {"backend.reprojection_error_px", "0.26"},
+                                                  {"backend.max_pixel_noise_factor", "18.0"},
+                                                  {"backend.cauchy_scale", "0.5"}}));
 }
 
 TEST(ConfigOverlays, DynamicVinsVoHasThePublishedTumSettings) {
@@ -100,6 +109,7 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"frontend.ransac_threshold_px", "2.0"},
                                    {"frontend.ransac_min_inlier_ratio", "0.5"},
                                    {"frontend.reject_static_only", "true"},
+                                   {"frontend.drift_min_correlation", "0.9"},
                                    {"frontend.recover_view", "true"},
                                    {"frontend.depth_max_spread", "0.05"},
                                    {"frontend.grid.stop_early", "true"},
@@ -119,8 +129,9 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"dynamic.min_stable_features", "20"},
                                    {"backend.rate_hz", "0.0"},
                                    {"backend.keyframe_min_shared_ratio", "0.5"},
-                                   {"backend.pixel_sigma_px", "0.5"},
-                                   {"backend.reprojection_error_px", "0.5"},
+                                   {"backend.pixel_sigma_px", "0.25"},
+                                   {"backend.reprojection_error_px", "0.36"},
+                                   {"backend.max_pixel_noise_factor", "8.0"},
                                    {"backend.solver", "\"schur\""},
                                    {"backend.max_iterations", "4"},
                                    {"backend.keyframe_max_interval_s", "0.5"},
