@@ -45,6 +45,7 @@ struct FeatureTracker::State {
   void correct_drift(const Frame& frame, const MotionPrior& prior);
   void update_tracks(double interval_s);
   void reject_outliers(DynamicIds dynamic_ids);
+  void rotate_views();
   void recover_view(const cv::Mat& gray);
   void apply_mask();
   void detect_features(const cv::Mat& gray);
@@ -190,8 +191,12 @@ void FeatureTracker::State::reject_outliers(DynamicIds dynamic_ids) {
     }
   }
   tracks.resize(kept);
-  // Without a gyroscope the rotation is known after the frame only: its patches are warped by that of the
-  // last.
+  if (config.drift_min_correlation > 0.0) rotate_views();
+}
+
+/// Without a gyroscope the rotation of a frame is known after its tracking only: its patches are warped by
+/// that up to the last detection.
+void FeatureTracker::State::rotate_views() {
   const std::optional<Pose>& motion = outlier_rejector.motion();
   if (motion && !inertial_rotation) DriftCorrector::rotate(motion->R(), tracks);
   inertial_rotation = false;

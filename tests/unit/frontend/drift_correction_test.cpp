@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -14,7 +15,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kPlaneDistance_m = 2.0;  // [m] of the plane
+constexpr double kPlaneDistance_m = 2.0;
 constexpr int kDriftFrames = 80;
 constexpr std::size_t kMinTracks = 40;
 
@@ -84,7 +85,7 @@ TEST(DriftCorrection, TakesTheRotationFromTheImagesWithoutAGyroscope) {
 TEST(DriftCorrection, BeginsAViewWhereNoneIs) {
   ImagePyramid pyramid;
   pyramid.rebuild(random_texture(cv::Size(64, 48), 1), kPatchReach, 2, PyramidKind::kImages);
-  std::vector<Track> tracks(2);
+  std::vector<Track> tracks(1);
   tracks[0].feature.pixel = {20.0, 20.0};
   tracks[0].feature.depth = 1.5;
   DriftCorrector::begin_views(pyramid, tracks);
