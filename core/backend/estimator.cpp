@@ -288,6 +288,7 @@ void Estimator::report(const NavState& state) {
   update_.status = monitor_.status();
   update_.reason = monitor_.reason();
   update_.segment = monitor_.segment();
+  update_.inertial = motion_state().inertial;
   update_.time_offset_s = window_.time_offset_s;
   update_.depth_scale = window_.depth_scale;
   if (window_.gravity_covariance) update_.q_level_w = level_rotation(window_.gravity_w);

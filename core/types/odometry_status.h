@@ -63,13 +63,6 @@ enum class StatusReason {
   kRepeatedImage,    ///< no new image: constant velocity, without an IMU
 };
 
-/// Whether the newest state can be propagated by inertial samples, if there is an IMU.
-[[nodiscard]] constexpr bool has_reliable_imu(OdometryStatus status, StatusReason reason) {
-  using enum OdometryStatus;
-  const bool weak_vision = reason == StatusReason::kFewFeatures || reason == StatusReason::kWeakGeometry;
-  return status == kTracking || status == kDeadReckoning || (status == kDegraded && weak_vision);
-}
-
 /// Names used in output files.
 [[nodiscard]] constexpr std::string_view reason_name(StatusReason reason) {
   constexpr std::string_view kNames[] = {

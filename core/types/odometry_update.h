@@ -58,7 +58,8 @@ struct OdometryUpdate {
   bool in_map = true;
   OdometryStatus status = OdometryStatus::kInitializing;
   StatusReason reason = StatusReason::kNone;
-  int segment = 0;  ///< number of the world frame; a new one begins after a loss without relocation
+  int segment = 0;        ///< number of the world frame; a new one begins after a loss without relocation
+  bool inertial = false;  ///< whether inertial samples propagate `state`; else constant velocity does
   double time_offset_s = 0.0;  ///< current estimate
   double depth_scale = 1.0;    ///< ratio of measured to true depth; current estimate
   CalibrationAtBound at_bound;

@@ -43,12 +43,15 @@ void ImuRatePoses::add(const OdometryUpdate& update, Timestamp available) {
         predictor_.state_at(after(samples_[next_ - 1].t, -motion_.time_offset_s));
     if (state) predicted = state->T_w_b * motion_.T_b_c;
   }
+  const bool jumps = update.segment != segment_ || update.status == OdometryStatus::kRelocated;
+  motion_.previous = motion_.initialized && !jumps ? motion_.newest : update.state;
   motion_.newest = update.state;
+  segment_ = update.segment;
   motion_.T_b_c = update.state.T_w_b.inverse() * update.T_w_c;
   motion_.gravity_w = update.q_level_w.conjugate() * Eigen::Vector3d(0.0, 0.0, -gravity_);
   motion_.time_offset_s = update.time_offset_s;
   motion_.initialized = true;
-  motion_.inertial = has_reliable_imu(update.status, update.reason);
+  motion_.inertial = update.inertial;
   predictor_.set(motion_, update.status);
   if (predicted) record_correction(*predicted, samples_[next_ - 1].t);
 }

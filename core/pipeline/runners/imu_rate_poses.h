@@ -31,7 +31,8 @@ struct ImuRateOutput {
 ///   T_w_b(s) = propagate(x_k, samples in (t_k + d_k, s]),   k = argmax { t_k : available_k <= s }
 ///
 /// s: time of a sample; x_k, d_k: state and time offset estimated at frame k; t_k: its exposure; available_k:
-/// `FrameReport::available`. The pose has the stamp s - d_k. Samples before the first estimate, after the
+/// `FrameReport::available`. While inertial data is not used, the pose continues at the velocity between the
+/// last two estimates. It has the stamp s - d_k. Samples before the first estimate, after the
 /// last one, and while the odometry is lost have no pose.
 class ImuRatePoses {
  public:
@@ -54,6 +55,7 @@ class ImuRatePoses {
   std::size_t next_ = 0;  ///< index of the first sample without a pose
   StatePredictor predictor_;
   MotionState motion_;  ///< of the newest estimate
+  int segment_ = 0;     ///< same
   ImuRateOutput output_;
 };
 

@@ -25,6 +25,7 @@ std::vector<ImuSample> level_samples() {
 OdometryUpdate update_at(double t, double error_m = 0.0) {
   OdometryUpdate update;
   update.status = OdometryStatus::kTracking;
+  update.inertial = true;
   update.state.t = from_seconds(t);
   update.state.T_w_b.p = {t, error_m, 0.0};
   update.state.v_w = {1.0, 0.0, 0.0};
@@ -49,6 +50,34 @@ TEST(ImuRatePoses, PropagateTheNewestEstimateThatIsAvailableAtEachSample) {
   }
   EXPECT_NEAR(output.ages_ms.front(), 20.0, 1e-9);
   EXPECT_NEAR(output.ages_ms[19], 115.0, 1e-9);  // at 0.215 s, by the estimate at 0.1 s
+}
+
+TEST(ImuRatePoses, ContinueAtTheLastVelocityWhileInertialDataIsNotUsed) {
+  const std::vector<ImuSample> samples = level_samples();
+  ImuRatePoses poses({}, samples);
+  for (const double t : {0.1, 0.2, 0.3}) {
+    OdometryUpdate update = update_at(t);
+    update.inertial = false;
+    update.state.v_w.setZero();
+    poses.add(update, from_seconds(t + 0.02));
+  }
+  const ImuRateOutput output = poses.take();
+  ASSERT_EQ(output.trajectory.poses.size(), 40u);
+  EXPECT_NEAR(output.trajectory.poses[19].T_w_f.p.x(), 0.1, 1e-12);  // of one estimate: no velocity yet
+  EXPECT_NEAR(output.trajectory.poses[39].T_w_f.p.x(), 0.315, 1e-12);
+}
+
+/// The step between worlds, or to a place in the map, is no velocity.
+TEST(ImuRatePoses, DoNotContinueAJump) {
+  const std::vector<ImuSample> samples = level_samples();
+  ImuRatePoses poses({}, samples);
+  poses.add(update_at(0.1), from_seconds(0.12));
+  OdometryUpdate jumped = update_at(0.2, 3.0);
+  jumped.inertial = false;
+  jumped.status = OdometryStatus::kRelocated;
+  poses.add(jumped, from_seconds(0.22));
+  poses.add(update_at(0.3), from_seconds(0.32));
+  EXPECT_NEAR(poses.take().trajectory.poses.back().T_w_f.p.y(), 3.0, 1e-12);
 }
 
 TEST(ImuRatePoses, RecordTheStepThatEachEstimateCauses) {
