@@ -17,9 +17,6 @@ namespace {
 /// Inlier threshold of the visual poses that inertial data is compared with.
 constexpr double kVisualPoseInlier_px = 3.0;
 
-/// Fraction of the features that agree with a visual pose which may contradict inertial data.
-constexpr double kMinAgreeing = 0.7;
-
 /// Inertial data that contradicts vision was wrong before it was recognized.
 constexpr double kRecognitionDelay_s = 0.15;
 
@@ -100,8 +97,7 @@ void Estimator::check_inertial_data() {
   const Pose T_w_c =
       refine_camera_pose(known_points_, newest.state.T_w_b * window_.T_b_c, kVisualPoseInlier_px / focal_px);
   const VisionAssessment vision = assess_vision(known_points_, T_w_c, kVisualPoseInlier_px / 5.0 / focal_px);
-  if (vision.has_few_features() || vision.has_weak_geometry() ||
-      vision.inliers < kMinAgreeing * vision.features) {
+  if (!vision.may_contradict_imu(evidence_.features)) {
     if (!vision.is_located(false)) inertial_check_.interrupt(newest.state.t);
     return;
   }

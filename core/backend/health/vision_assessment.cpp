@@ -16,6 +16,8 @@ constexpr int kMinInliers = 8;
 constexpr double kMinVisualInlierRatio = 0.3;
 constexpr double kMinInertialInlierRatio = 0.1;
 constexpr int kFewInliers = 15;
+constexpr double kMinAgreeingRatio = 0.7;
+constexpr double kMinKnownRatio = 0.25;
 constexpr double kWeak_m = 0.1;
 constexpr double kWeak_rad = 0.05;
 constexpr double kMaxBearingError_sigmas = 5.0;
@@ -93,6 +95,11 @@ std::optional<UncertainPose> with_covariance(const std::vector<PointObservation>
   Matrix6 J = Matrix6::Identity();
   J.topLeftCorner<3, 3>() = T_w_c.R();
   return UncertainPose{T_w_c, variance * J * *covariance * J.transpose()};
+}
+
+bool VisionAssessment::may_contradict_imu(int tracked) const {
+  return !has_few_features() && !has_weak_geometry() && inliers >= kMinAgreeingRatio * features &&
+         inliers >= kMinKnownRatio * tracked;
 }
 
 }  // namespace stillpoint

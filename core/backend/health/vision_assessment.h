@@ -26,6 +26,11 @@ struct VisionAssessment {
   /// Located by few features, or with an uncertain direction.
   [[nodiscard]] bool has_few_features() const;
   [[nodiscard]] bool has_weak_geometry() const;
+  /// Whether the pose may contradict inertial data: it is well determined, and seven tenths of the features
+  /// agree with it, which are at least a quarter of all tracked ones. Behind a person who just came before
+  /// the camera few features of known position remain, and some of those are on the person.
+  /// @param tracked number of features in the newest frame
+  [[nodiscard]] bool may_contradict_imu(int tracked) const;
 };
 
 /// Camera pose with its covariance, in the frame of the camera. The standard deviation of the bearings
