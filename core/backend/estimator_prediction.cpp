@@ -4,6 +4,13 @@
 #include "core/backend/health/innovation.h"
 
 namespace stillpoint {
+namespace {
+
+/// Normalized innovation of the features of a frame. On rendered sequences the largest one is 4.6; that of
+/// a sensor that became wrong is 9 or more.
+constexpr double kUnexpectedNis = 5.0;
+
+}  // namespace
 
 void Estimator::check_prediction() {
   if (!has_inertial_prediction() || !window_.frames.back().from_previous) return;
@@ -29,8 +36,10 @@ double Estimator::residual_sigma() const {
 }
 
 void Estimator::record_reprojection_nis() {
-  if (const std::optional<UncertainPose> predicted = predicted_camera())
-    update_.nis.reprojection = reprojection_nis(window_, *predicted, residual_sigma(), distances_);
+  const std::optional<UncertainPose> predicted = predicted_camera();
+  if (!predicted) return;
+  update_.nis.reprojection = reprojection_nis(window_, *predicted, residual_sigma(), distances_);
+  if (update_.nis.reprojection > kUnexpectedNis) pixel_noise_.expect_errors();
 }
 
 /// @param T_w_c        by vision alone, from `known_points_`

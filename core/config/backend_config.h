@@ -147,8 +147,9 @@ struct BackendConfig {
   double pixel_sigma_px = 1.5;             ///< standard deviation of a reprojection residual
   double feature_sigma_px = 1.5;        ///< same of a feature position, for decisions: triangulation, inliers
                                         ///< of a pose, moving consistency
-  double reprojection_error_px = 0.0;   ///< nominal median; a larger one inflates pixel_sigma_px; 0 = off
-  double max_pixel_noise_factor = 4.0;  ///< limit of that inflation
+  double reprojection_error_px = 0.0;   ///< nominal median, by which pixel_sigma_px is scaled; 0 = off
+  double min_pixel_noise_factor = 1.0;  ///< limits of that scale
+  double max_pixel_noise_factor = 4.0;  ///< same
   double cauchy_scale = 1.0;            ///< scale of the Cauchy loss, in standard deviations
   WindowSolverKind solver = WindowSolverKind::kCeres;  ///< both minimize the same residuals
   int max_iterations = 8;
@@ -188,6 +189,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("pixel_sigma_px", config.pixel_sigma_px, 0.05, 20.0);
   field("feature_sigma_px", config.feature_sigma_px, 0.05, 20.0);
   field("reprojection_error_px", config.reprojection_error_px, 0.0, 20.0);
+  field("min_pixel_noise_factor", config.min_pixel_noise_factor, 0.01, 1.0);
   field("max_pixel_noise_factor", config.max_pixel_noise_factor, 1.0, 1000.0);
   field("cauchy_scale", config.cauchy_scale, 0.01, 100.0);
   field("solver", config.solver);

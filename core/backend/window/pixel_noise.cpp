@@ -33,7 +33,9 @@ double ReprojectionErrorMonitor::median_px(const Window& window, double focal_px
 void PixelNoise::observe(double error_px, const BackendConfig& config) {
   if (error_px <= 0.0 || config.reprojection_error_px <= 0.0) return;
   const double ratio = error_px / config.reprojection_error_px;
-  factor_ += kSmoothing * (std::clamp(ratio * ratio, 1.0, config.max_pixel_noise_factor) - factor_);
+  const double factor =
+      std::clamp(ratio * ratio, config.min_pixel_noise_factor, config.max_pixel_noise_factor);
+  factor_ += kSmoothing * (factor - factor_);
 }
 
 BackendConfig PixelNoise::applied_to(BackendConfig config) const {

@@ -2,6 +2,7 @@
 /// Adaptive pixel noise from the reprojection errors of the window.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/backend/window/window.h"
@@ -24,15 +25,19 @@ class ReprojectionErrorMonitor {
 /// Low-pass filtered factor f on `pixel_sigma_px`: with e the median reprojection error and e0 its nominal
 /// value `reprojection_error_px`,
 ///
-///   f <- f + 0.1 (clamp((e / e0)^2, 1, f_max) - f),   f_max = `max_pixel_noise_factor`.
+///   f <- f + 0.1 (clamp((e / e0)^2, f_min, f_max) - f),   f_min, f_max = `min_`, `max_pixel_noise_factor`.
 ///
-/// Errors above the nominal value are model errors (distortion, blur, rolling shutter, compression). They are
-/// correlated along a track, so the observations carry less information than their variance suggests; hence
-/// the square of the ratio.
+/// Most of a larger error is model error (distortion, blur, rolling shutter, compression, patches that change
+/// with the view). It is correlated along a track, so the observations carry less information than their
+/// variance suggests; hence the square of the ratio.
 class PixelNoise {
  public:
   /// Updates the factor after a solve. @param error_px median reprojection error; 0 = unknown, ignored
   void observe(double error_px, const BackendConfig& config);
+
+  /// The newest features are not where they were predicted: something is not as it was when their errors were
+  /// small, so the factor is at least 1 again.
+  void expect_errors() { factor_ = std::max(factor_, 1.0); }
 
   /// The configuration with `pixel_sigma_px` multiplied by the factor.
   [[nodiscard]] BackendConfig applied_to(BackendConfig config) const;

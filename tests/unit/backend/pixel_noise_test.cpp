@@ -38,8 +38,27 @@ TEST(MedianReprojectionError, IsZeroWithTooFewObservations) {
   EXPECT_EQ(ReprojectionErrorMonitor().median_px(visual_window(2, 19), kFocal_px), 0.0);
 }
 
-TEST(PixelNoise, StaysNominalUpToTheNominalReprojectionError) {
+TEST(PixelNoise, StaysNominalUpToTheNominalReprojectionErrorByDefault) {
   EXPECT_DOUBLE_EQ(sigma_after(std::vector<double>(50, 0.4), adaptive_config()), 1.5);
+}
+
+TEST(PixelNoise, DecreasesWithTheSquareOfTheErrorDownToItsBound) {
+  BackendConfig config = adaptive_config();
+  config.min_pixel_noise_factor = 0.5;
+  EXPECT_NEAR(sigma_after(std::vector<double>(100, 0.4), config), 1.5 * 0.64, 1e-3);
+  EXPECT_NEAR(sigma_after(std::vector<double>(100, 0.1), config), 1.5 * 0.5, 1e-3);
+}
+
+TEST(PixelNoise, IsNominalAgainIfErrorsAreExpected) {
+  BackendConfig config = adaptive_config();
+  config.min_pixel_noise_factor = 0.5;
+  PixelNoise noise;
+  for (int i = 0; i < 100; ++i) noise.observe(0.1, config);
+  noise.expect_errors();
+  EXPECT_DOUBLE_EQ(noise.applied_to(config).pixel_sigma_px, 1.5);
+  for (int i = 0; i < 100; ++i) noise.observe(0.75, config);
+  noise.expect_errors();
+  EXPECT_NEAR(noise.applied_to(config).pixel_sigma_px, 1.5 * 2.25, 1e-3);
 }
 
 TEST(PixelNoise, GrowsWithTheSquareOfTheErrorUpToABound) {

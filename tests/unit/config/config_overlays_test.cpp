@@ -83,6 +83,7 @@ TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
                                                   {"backend.keyframe_min_shared_ratio", "0.7"},
                                                   {"backend.pixel_sigma_px", "0.5"},
                                                   {"backend.reprojection_error_px", "0.26"},
+                                                  {"backend.min_pixel_noise_factor", "1.0"},
                                                   {"backend.max_pixel_noise_factor", "18.0"},
                                                   {"backend.cauchy_scale", "0.5"}}));
 }
@@ -130,7 +131,8 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"backend.rate_hz", "0.0"},
                                    {"backend.keyframe_min_shared_ratio", "0.5"},
                                    {"backend.pixel_sigma_px", "0.25"},
-                                   {"backend.reprojection_error_px", "0.36"},
+                                   {"backend.reprojection_error_px", "0.18"},
+                                   {"backend.min_pixel_noise_factor", "0.35"},
                                    {"backend.max_pixel_noise_factor", "8.0"},
                                    {"backend.solver", "\"schur\""},
                                    {"backend.max_iterations", "4"},
