@@ -49,6 +49,7 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
       seed_(static_cast<std::uint32_t>(seed)),
       imu_(imu.max_gap_s),
       solver_(make_window_solver(backend.solver)),
+      rotation_aligner_(backend, rig),
       monitor_(monitor_options(backend, imu, rig, seed)),
       step_check_(rig.camera.focal_px()),
       bias_check_(rig.camera.focal_px()) {
@@ -81,7 +82,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
     if (averages_imu()) average_imu_at_exposure(imu_, next);
     window_.frames.push_back(next);
     window_.prior = initial_prior(window_, backend_);
-    window_.calibration = calibration_prior(window_, backend_);
+    window_.calibration = calibration_prior(rig_window(), backend_);
     return;
   }
   next.state = extrapolate(motion_state(), imu_, frame.t);
@@ -128,7 +129,7 @@ void Estimator::repropagate_preintegrations() {
 }
 
 void Estimator::try_initialize_imu() {
-  if (!uses_imu() || window_.inertial) return;
+  if (!uses_imu() || window_.inertial || aligns_rotations()) return;
   const double span = seconds_between(window_.frames.front().state.t, window_.frames.back().state.t);
   const bool instant = backend_.initializer.kind == InitializerKind::kInstant && window_.newest() >= 4;
   if (!is_full() && !(instant && span >= backend_.initializer.min_span_s)) return;
@@ -274,7 +275,7 @@ void Estimator::finish() {
     slide(keyframe_);
   }
   report(monitor_.reason() == StatusReason::kRepeatedImage ? bridged_ : newest_);
-  drop_old_samples(motion_state(), imu_);
+  aligns_rotations() ? align_rotations() : drop_old_samples(motion_state(), imu_);
 }
 
 void Estimator::predict(std::int64_t frame_id, Timestamp t) {

@@ -18,6 +18,7 @@
 #include "core/backend/marginalization/frame_marginalizer.h"
 #include "core/backend/solvers/window_solver.h"
 #include "core/backend/start/camera_pose.h"
+#include "core/backend/start/rotation_alignment.h"
 #include "core/backend/state_prediction.h"
 #include "core/backend/window/pixel_noise.h"
 #include "core/backend/window/window.h"
@@ -110,6 +111,7 @@ class Estimator {
   void relocalize(const TrackedFrame& frame);
   [[nodiscard]] std::optional<UncertainPose> dead_reckoned_pose(Timestamp t);
   [[nodiscard]] Window calibrated_window() const;
+  [[nodiscard]] Window rig_window() const;
   void push_frame(const TrackedFrame& frame);
   void reject_depth_of_another_scale();
   void integrate_samples(const WindowFrame& last, WindowFrame& next);
@@ -129,6 +131,8 @@ class Estimator {
   void assess_newest();
   void repropagate_preintegrations();
   void try_initialize_imu();
+  [[nodiscard]] bool aligns_rotations() const;
+  void align_rotations();
   void restart(const Eigen::Vector3d& gravity_w);
   void forget_biases();
   void slide(bool keyframe);
@@ -141,8 +145,10 @@ class Estimator {
   std::uint32_t seed_;
   ImuBuffer imu_;
   std::unique_ptr<WindowSolver> solver_;
-  FrameMarginalizer marginalizer_;  ///< buffers only
-  LinearPrior discarded_prior_;     ///< its memory is reused
+  RotationAligner rotation_aligner_;
+  std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
+  FrameMarginalizer marginalizer_;                       ///< buffers only
+  LinearPrior discarded_prior_;                          ///< its memory is reused
   Window window_;
   std::vector<PointObservation> known_points_;  ///< buffer of `localize_newest`
   std::vector<double> distances_;               ///< buffer of `reprojection_nis`

@@ -244,15 +244,6 @@ void Estimator::assess_newest() {
       evidence_.vision.is_located(window_.inertial && evidence_.imu_defect == StatusReason::kNone);
 }
 
-/// Without frames.
-Window Estimator::calibrated_window() const {
-  Window window;
-  window.T_b_c = rig_.T_b_c;
-  window.time_offset_s = rig_.time_offset_s;
-  window.time_offset_model = backend_.time_offset_model;
-  return window;
-}
-
 /// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
 /// @param gravity_w before the solve that failed; an estimated one is kept with its covariance
 void Estimator::restart(const Eigen::Vector3d& gravity_w) {

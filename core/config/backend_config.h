@@ -98,6 +98,8 @@ struct InitializerConfig {
   double min_span_s = 0.3;         ///< instant: shortest time span from which gravity is estimated
   double gyro_bias_sigma = 0.02;   ///< prior standard deviation [rad/s]
   double accel_bias_sigma = 0.1;   ///< prior standard deviation [m/s^2]
+  bool align_rotations = false;    ///< before the start: with estimated extrinsics, those and the time offset
+                                   ///< by rotations alone; see core/backend/start/rotation_alignment.h
   double gravity_tolerance = 1.0;  ///< largest accepted error of the unconstrained gravity norm [m/s^2]
   int min_common_features = 30;    ///< monocular: in the initial frame pair. Qin et al. 2018, Sec. V-A
   double min_parallax_px = 20.0;   ///< monocular: their mean rotation-compensated parallax; same source
@@ -110,6 +112,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("min_span_s", config.min_span_s, 0.1, 10.0);
   field("gyro_bias_sigma", config.gyro_bias_sigma, 1e-5, 10.0);
   field("accel_bias_sigma", config.accel_bias_sigma, 1e-5, 10.0);
+  field("align_rotations", config.align_rotations);
   field("gravity_tolerance", config.gravity_tolerance, 0.01, 9.0);
   field("min_common_features", config.min_common_features, 10, 1000);
   field("min_parallax_px", config.min_parallax_px, 1.0, 200.0);

@@ -123,6 +123,21 @@ TEST(CalibrationConvergence, AllConvergeTogether) {
   EXPECT_LT(std::abs(result.depth_scale), 0.009);
 }
 
+/// Without the alignment of the rotations the extrinsics are off by degrees after 20 s.
+TEST(CalibrationConvergence, AllConvergeFromTwiceTheirStandardDeviations) {
+  BackendConfig config = calibrating_config();
+  config.depth.estimate_scale = true;
+  config.estimate_extrinsics = true;
+  config.initializer.align_rotations = true;
+  const Calibrated result = calibrate(
+      {.time_offset_s = 0.04, .rotation_rad = 2.0 * M_PI / 180.0, .translation_m = 0.02, .depth_scale = 0.85},
+      config);
+  EXPECT_LT(std::abs(result.time_offset_s), 0.001);
+  EXPECT_LT(result.rotation_rad, 0.3 * M_PI / 180.0);
+  EXPECT_LT(result.translation_m, 3.0 * result.translation_sigma_m);
+  EXPECT_LT(std::abs(result.depth_scale), 0.0085);
+}
+
 /// Errors of 2 degrees and 2 cm: if the first pose of the body were fixed, the camera would turn by the 2
 /// degrees while the extrinsics converge.
 TEST(CalibrationConvergence, TheExtrinsicsDoNotTurnTheTrajectoryOfTheCamera) {

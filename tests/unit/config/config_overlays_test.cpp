@@ -145,8 +145,8 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"backend.time_offset_sigma_s", "0.01"},
                                    {"backend.time_offset_walk", "0.001"},
                                    {"backend.time_offset_bound_s", "0.15"},
-                                   {"backend.extrinsics_walk_m", "0.0005"},
-                                   {"backend.extrinsics_walk_rad", "0.0003"},
+                                   {"backend.extrinsics_walk_m", "0.0001"},
+                                   {"backend.extrinsics_walk_rad", "0.0001"},
                                    {"backend.extrinsics_bound_m", "0.1"},
                                    {"backend.extrinsics_bound_rad", "0.2"},
                                    {"backend.depth.usage", "\"weighted\""},
@@ -157,6 +157,7 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"backend.initializer.kind", "\"instant\""},
                                    {"backend.initializer.gyro_bias_sigma", "0.02"},
                                    {"backend.initializer.accel_bias_sigma", "0.1"},
+                                   {"backend.initializer.align_rotations", "true"},
                                    {"loop.min_inliers", "50"}};
 
 TEST(ConfigOverlays, StillpointDiffersFromDynamicVinsInTheseKeys) {

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/start/rotation_alignment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "core/geometry/covariance.h"
+#include "core/geometry/so3.h"
+#include "core/imu/midpoint.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kViewInterval_s = 0.1;
+constexpr double kMinSpan_s = 1.5;
+constexpr double kMaxSpan_s = 3.0;
+constexpr double kCertainRotation_rad = 0.005;
+constexpr double kCertainOffset_s = 0.001;
+
+constexpr int kIterations = 8;
+constexpr double kRateHalfWidth_s = 0.02;  // the noise of one sample would bias the time offset
+constexpr double kMinSigma_rad = 3e-4;     // of a rotation by vision over an interval, per axis
+constexpr double kCauchyScale = 3.0;       // [standard deviations]
+constexpr double kMedianNorm = 1.538;      // median length of a vector of three standard normal components
+
+/// Rotation by the gyroscope, and the derivative of its vector by the bias.
+struct GyroRotation {
+  Eigen::Quaterniond dq = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d by_bias = Eigen::Matrix3d::Zero();
+};
+
+GyroRotation integrate_gyro(const std::vector<ImuSample>& samples, const Eigen::Vector3d& bias) {
+  GyroRotation rotation;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const Eigen::Vector3d theta = midpoint_rotation(samples[i - 1], samples[i], bias);
+    const Eigen::Quaterniond step = exp_so3(theta);
+    rotation.dq = (rotation.dq * step).normalized();
+    rotation.by_bias = step.conjugate() * rotation.by_bias -
+                       right_jacobian(theta) * seconds_between(samples[i - 1].t, samples[i].t);
+  }
+  return rotation;
+}
+
+}  // namespace
+
+RotationAligner::RotationAligner(const BackendConfig& config, const Rig& rig)
+    : q_b_c_(rig.T_b_c.q), time_offset_s_(rig.time_offset_s) {
+  const double offset_sigma_s = config.estimate_time_offset ? config.time_offset_sigma_s : 1e-9;
+  prior_information_ << Eigen::Vector3d::Constant(config.extrinsics_sigma_rad), offset_sigma_s,
+      Eigen::Vector3d::Constant(config.initializer.gyro_bias_sigma);
+  prior_information_ = prior_information_.cwiseInverse().cwiseAbs2().eval();
+}
+
+void RotationAligner::add(Timestamp t, const Eigen::Quaterniond& q_w_c) {
+  if (!views_.empty() && seconds_between(views_.back().t, t) < kViewInterval_s) return;
+  views_.push_back({t, q_w_c});
+}
+
+std::vector<RotationAligner::Residual> RotationAligner::residuals(const RotationAlignment& at,
+                                                                  ImuBuffer& imu) const {
+  std::vector<Residual> found;
+  for (std::size_t k = 1; k < views_.size(); ++k) {
+    const View &i = views_[k - 1], &j = views_[k];
+    const Timestamp begin = after(i.t, at.time_offset_s), end = after(j.t, at.time_offset_s);
+    const std::optional<ImuSample> w_i = imu.mean_around(begin, kRateHalfWidth_s);
+    const std::optional<ImuSample> w_j = imu.mean_around(end, kRateHalfWidth_s);
+    const std::vector<ImuSample>& samples = imu.samples_between(begin, end);
+    if (samples.size() < 2 || !w_i || !w_j) continue;
+    const GyroRotation gyro = integrate_gyro(samples, at.gyro_bias);
+    const Eigen::Quaterniond dq_c = i.q_w_c.conjugate() * j.q_w_c;
+    Residual residual;
+    residual.r = log_so3(gyro.dq.conjugate() * at.q_b_c * dq_c * at.q_b_c.conjugate());
+    residual.J << at.q_b_c * (dq_c.toRotationMatrix().transpose() - Eigen::Matrix3d::Identity()),
+        gyro.dq.conjugate() * (w_i->gyro_b - at.gyro_bias) - (w_j->gyro_b - at.gyro_bias), -gyro.by_bias;
+    found.push_back(residual);
+  }
+  return found;
+}
+
+RotationAligner::NormalEquations RotationAligner::normal_equations(const RotationAlignment& at,
+                                                                   ImuBuffer& imu) const {
+  Unknowns from_rig;
+  from_rig << log_so3(q_b_c_.conjugate() * at.q_b_c), at.time_offset_s - time_offset_s_, at.gyro_bias;
+  NormalEquations equations{.H = prior_information_.asDiagonal(),
+                            .g = -prior_information_.cwiseProduct(from_rig)};
+  const std::vector<Residual> all = residuals(at, imu);
+  if (all.empty()) return equations;
+  std::vector<double> norms;
+  for (const Residual& residual : all) norms.push_back(residual.r.norm());
+  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
+  std::ranges::nth_element(norms, middle);
+  const double variance = std::pow(std::max(kMinSigma_rad, *middle / kMedianNorm), 2);
+  for (const auto& [r, J] : all) {
+    const double weight = 1.0 / (variance + r.squaredNorm() / (kCauchyScale * kCauchyScale));
+    equations.H += weight * J.transpose() * J;
+    equations.g -= weight * J.transpose() * r;
+  }
+  return equations;
+}
+
+std::optional<RotationAlignment> RotationAligner::align(ImuBuffer& imu) const {
+  if (views_.size() < 2) return std::nullopt;
+  const double span = seconds_between(views_.front().t, views_.back().t);
+  if (span < kMinSpan_s) return std::nullopt;
+  RotationAlignment found{.q_b_c = q_b_c_, .time_offset_s = time_offset_s_};
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const NormalEquations equations = normal_equations(found, imu);
+    const Unknowns step = equations.H.ldlt().solve(equations.g);
+    found.q_b_c = (found.q_b_c * exp_so3(step.head<3>())).normalized();
+    found.time_offset_s += step[3];
+    found.gyro_bias += step.tail<3>();
+  }
+  const Eigen::Matrix<double, 7, 7> covariance = normal_equations(found, imu).H.inverse();
+  found.rotation_sigma_rad = largest_sigma(covariance.topLeftCorner<3, 3>());
+  found.offset_sigma_s = std::sqrt(covariance(3, 3));
+  const bool certain =
+      found.rotation_sigma_rad < kCertainRotation_rad && found.offset_sigma_s < kCertainOffset_s;
+  if (!certain && span < kMaxSpan_s) return std::nullopt;
+  return found;
+}
+
+}  // namespace stillpoint
