@@ -62,11 +62,12 @@ constexpr auto enum_names(TimeOffsetModel) {
 /// How measured depth enters the estimate.
 struct DepthConfig {
   DepthUsage usage = DepthUsage::kFixed;
-  double min_m = 0.3;            ///< smaller measured depths are ignored
-  double max_m = 8.0;            ///< larger measured depths are not used to initialize a landmark
-  double inverse_sigma = 0.003;  ///< standard deviation of 1/depth [1/m]: sigma_Z = this * Z^2
-  double outlier_sigmas = 2.0;   ///< kWeighted: bound of the depth residual, in standard deviations
-  double agreement_px = 10.0;    ///< largest reprojection error of a depth accepted from one view
+  double min_m = 0.3;                  ///< smaller measured depths are ignored
+  double max_m = 8.0;                  ///< larger measured depths are not used to initialize a landmark
+  double inverse_sigma = 0.003;        ///< standard deviation of 1/depth [1/m]: sigma_Z = this * Z^2
+  double outlier_sigmas = 2.0;         ///< kWeighted: bound of the depth residual, in standard deviations
+  double agreement_px = 10.0;          ///< largest reprojection error of a depth accepted from one view
+  double agreement_probability = 0.0;  ///< > 0: by the covariance of that error instead
   double max_scale_error = 0.0;  ///< depth whose scale differs by more from that of known landmarks is not
                                  ///< used; 0 = no check
   double max_landmark_depth_m = 100.0;  ///< landmarks triangulated or estimated farther away are discarded
@@ -84,6 +85,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("inverse_sigma", config.inverse_sigma, 1e-5, 1.0);
   field("outlier_sigmas", config.outlier_sigmas, 0.1, 1000.0);
   field("agreement_px", config.agreement_px, 0.1, 100.0);
+  field("agreement_probability", config.agreement_probability, 0.0, 0.999999);
   field("max_scale_error", config.max_scale_error, 0.0, 1.0);
   field("max_landmark_depth_m", config.max_landmark_depth_m, 10.0, 10000.0);
   field("estimate_scale", config.estimate_scale);

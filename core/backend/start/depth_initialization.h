@@ -9,9 +9,14 @@ namespace stillpoint {
 
 /// Initializes the inverse depth of every static landmark that has none and at least two observations.
 ///
-/// Each measured depth is transformed to the host and accepted if its reprojection error in at least one
-/// other view is below `agreement_px`; the landmark is initialized at the mean of the accepted depths.
-/// Without any, it is triangulated if the parallax suffices, else left uninitialized.
+/// Each measured depth Z is transformed to the host and accepted if its reprojection error r in at least one
+/// other view is small; the landmark is initialized at the mean of the accepted depths. Without any, it is
+/// triangulated if the parallax suffices, else left uninitialized. Small is below `agreement_px` or, with
+/// `agreement_probability` p, within the quantile of the chi-square distribution with two degrees of freedom,
+///
+///   r^T S^-1 r <= -2 ln(1 - p),    S = 2 s^2 I + sigma_Z^2 J J^T,
+///
+/// with s = `feature_sigma_px`, the standard deviation sigma_Z of the depth (`inverse_sigma`), and J = dr/dZ.
 void initialize_depths(const BackendConfig& config, double focal_px, Window& window);
 
 /// Depth z in the host by linear triangulation over all observations [m]. With a = R_cj_chost m (m the
