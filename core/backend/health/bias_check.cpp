@@ -19,7 +19,7 @@ struct BiasLimit {
   double sigmas;
 };
 
-constexpr BiasLimit kGyroAgreement{.base = 0.008, .sigmas = 1.0};  // [rad/s]
+constexpr BiasLimit kGyroAgreement{.base = 0.003, .sigmas = 1.0};  // [rad/s]
 constexpr BiasLimit kAccelAgreement{.base = 0.15, .sigmas = 1.0};  // [m/s^2]
 
 /// Errors in succession from which a step is recognized, whether vision must have been certain, and whether
@@ -32,14 +32,15 @@ struct StepRule {
 };
 constexpr StepRule kGyroRules[] = {
     {.limit = {.base = 0.05, .sigmas = 16.0}, .errors = 1, .certain = true, .explained = true},
-    {.limit = {.base = 0.006, .sigmas = 8.0}, .errors = 2, .certain = true, .explained = false}};
+    {.limit = {.base = 0.006, .sigmas = 8.0}, .errors = 2, .certain = true, .explained = false},
+    {.limit = {.base = 0.0015, .sigmas = 2.0}, .errors = 6, .certain = true, .explained = false}};
 constexpr StepRule kAccelRules[] = {
     {.limit = {.base = 0.2, .sigmas = 4.0}, .errors = 1, .certain = true, .explained = true},
     {.limit = {.base = 0.2, .sigmas = 3.0}, .errors = 2, .certain = false, .explained = true},
     {.limit = {.base = 0.05, .sigmas = 1.5}, .errors = 3, .certain = false, .explained = false}};
 constexpr BiasLimit kGyroDifference{.base = 0.006, .sigmas = 8.0};
 constexpr BiasLimit kAccelDifference{.base = 0.05, .sigmas = 4.0};
-constexpr std::size_t kMaxErrors = 3;
+constexpr std::size_t kMaxErrors = 6;
 
 struct BiasError {
   Eigen::Vector3d e;

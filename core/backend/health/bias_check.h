@@ -29,12 +29,13 @@ struct MeasuredBiases {
 ///       1       |e| > 0.05 + 16 s, explained           |e| > 0.2 + 4 s, explained, vision is certain
 ///       2       |e| > 0.006 + 8 s                      |e| > 0.2 + 3 s, one is explained
 ///       3                                              |e| > 0.05 + 1.5 s
+///       6       |e| > 0.0015 + 2 s
 ///
 /// An explained error is one by which the data changed, see InertialError. An image that jumps gives two
 /// errors of one direction, and then two of the opposite one. Each pose is determined by 20 features, an
 /// eighth of all that are tracked; vision is certain with 40, a third of all, else people who cover the image
 /// look like a step. Features that were labeled static at the earlier pose are used: a step of the
-/// accelerometer makes them appear to move, and they lose their label. Errors below 0.008 rad/s and 0.15
+/// accelerometer makes them appear to move, and they lose their label. Errors below 0.003 rad/s and 0.15
 /// m/s^2, plus one s, are agreement if vision is certain.
 class BiasCheck {
  public:

@@ -99,8 +99,7 @@ TEST(ConfigOverlays, DynamicVinsVoHasThePublishedTumSettings) {
                      {"backend.depth.max_m", "10.0"}}));
 }
 
-const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
-                                   {"frontend.min_distance_px", "20"},
+const Entries kKeysOfStillpoint = {{"frontend.min_distance_px", "20"},
                                    {"frontend.unstable_radius_px", "20"},
                                    {"frontend.prediction", "\"full\""},
                                    {"frontend.tracker", "\"patch\""},
@@ -152,6 +151,7 @@ const Entries kKeysOfStillpoint = {{"imu.noise_scale", "2.0"},
                                    {"backend.depth.usage", "\"weighted\""},
                                    {"backend.depth.max_m", "8.0"},
                                    {"backend.depth.outlier_sigmas", "5.0"},
+                                   {"backend.depth.agreement_probability", "0.99999"},
                                    {"backend.depth.max_scale_error", "0.04"},
                                    {"backend.depth.max_landmark_depth_m", "100.0"},
                                    {"backend.initializer.kind", "\"instant\""},
@@ -205,8 +205,8 @@ TEST(ConfigOverlays, DynamicVinsIsTheDefaultsOfTheCodeWithoutUnpublishedChecks) 
 }
 
 TEST(ConfigOverlays, SensorsStateTheirNoiseDensities) {
-  EXPECT_EQ(changes("stillpoint", "sensors/tum_vi"), (Entries{{"imu.noise_scale", "1.0"},
-                                                              {"imu.gyro_noise", "0.00048"},
+  EXPECT_EQ(changes("stillpoint", "sensors/datasheet"), (Entries{{"imu.noise_scale", "2.0"}}));
+  EXPECT_EQ(changes("stillpoint", "sensors/tum_vi"), (Entries{{"imu.gyro_noise", "0.00048"},
                                                               {"imu.accel_noise", "0.0084"},
                                                               {"imu.gyro_walk", "2.2e-05"},
                                                               {"imu.accel_walk", "0.00086"}}));
