@@ -27,9 +27,15 @@ struct DepthGate {
   }
 };
 
-/// Whether some view other than that of `frame`, where `depth` was measured, agrees with it.
-bool another_view_agrees(const Window& window, const Landmark& landmark, int frame, double depth,
+struct MeasuredDepth {
+  int frame;
+  double depth;  ///< [m]
+};
+
+/// Whether some view other than its own agrees with a measured depth.
+bool another_view_agrees(const Window& window, const Landmark& landmark, const MeasuredDepth& measured,
                          const DepthGate& gate) {
+  const auto [frame, depth] = measured;
   const Eigen::Vector3d ray = landmark.observation_in(frame).bearing.homogeneous();
   for (int other = landmark.host; other <= landmark.last(); ++other) {
     if (other == frame) continue;
@@ -56,7 +62,7 @@ double confirmed_depth(const Window& window, const Landmark& landmark, const Dep
     const Eigen::Vector3d p_w =
         window.T_w_c(frame) * Eigen::Vector3d(measured * observation.bearing.homogeneous());
     const double depth = (T_chost_w * p_w).z();
-    if (depth <= 0.0 || !another_view_agrees(window, landmark, frame, measured, gate)) continue;
+    if (depth <= 0.0 || !another_view_agrees(window, landmark, {frame, measured}, gate)) continue;
     sum += depth;
     ++count;
   }
