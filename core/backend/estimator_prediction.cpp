@@ -6,8 +6,8 @@
 namespace stillpoint {
 namespace {
 
-/// Normalized innovation of the features of a frame. On rendered sequences the largest one is 4.6; that of
-/// a sensor that became wrong is 9 or more.
+/// Normalized innovation of the features of a frame. On four rendered sequences the largest one is 4.6; that
+/// of a clock that jumped is 9 or more.
 constexpr double kUnexpectedNis = 5.0;
 
 }  // namespace

@@ -123,8 +123,9 @@ TEST(CalibrationConvergence, AllConvergeTogether) {
   EXPECT_LT(std::abs(result.depth_scale), 0.009);
 }
 
-/// Without the alignment of the rotations the extrinsics are off by degrees after 20 s.
-TEST(CalibrationConvergence, AllConvergeFromTwiceTheirStandardDeviations) {
+/// The window that starts anew after the alignment converges. On this motion it does without the alignment,
+/// too; rendered sequences, where it does not, are in reports/measured/consistency.md.
+TEST(CalibrationConvergence, AllConvergeAfterTheAlignmentOfRotations) {
   BackendConfig config = calibrating_config();
   config.depth.estimate_scale = true;
   config.estimate_extrinsics = true;
