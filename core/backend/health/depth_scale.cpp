@@ -20,7 +20,7 @@ std::optional<double> DepthScale::of_newest(const Window& window) {
     if (!is_usable(landmark) || landmark.last() != window.newest()) continue;
     const double measured = landmark.observations.back().depth;
     const double known = (T_c_w * window.position(landmark)).z();
-    if (measured > 0.0 && known > kMinDepth) ratios_.push_back(measured / known);
+    if (measured > 0.0 && known > kMinDepth) ratios_.push_back(measured / (window.depth_scale * known));
   }
   if (ratios_.size() < kMinLandmarks) return std::nullopt;
   const auto middle = ratios_.begin() + static_cast<std::ptrdiff_t>(ratios_.size() / 2);

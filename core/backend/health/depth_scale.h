@@ -10,8 +10,9 @@
 namespace stillpoint {
 
 /// Compares the depths d_k measured in the newest frame with the depths z_k of the same static landmarks at
-/// its predicted pose, as known from earlier frames. The scale is the median of d_k / z_k, if at least 15
-/// landmarks are compared and half of the ratios are within 2 % of it.
+/// its predicted pose, as known from earlier frames. The scale is the median of d_k / (s z_k) with the
+/// estimated depth scale s of the window, if at least 15 landmarks are compared and half of the ratios are
+/// within 2 % of it.
 class DepthScale {
  public:
   /// @return nullopt without a common scale
