@@ -103,9 +103,7 @@ Json image_waits_s(const RunSummary& summary) {
 }
 
 Json calibration_json(const EstimatedCalibration& calibration) {
-  const auto or_null = [](const std::optional<double>& value) {
-    return value ? Json(*value) : Json(nullptr);
-  };
+  const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
   const auto& [q, p] = calibration.T_b_c;
   return {{"time_offset_s", calibration.time_offset_s},
           {"time_offset_sigma_s", or_null(calibration.time_offset_sigma_s)},
@@ -114,6 +112,9 @@ Json calibration_json(const EstimatedCalibration& calibration) {
           {"T_b_c", {{"p_m", {p.x(), p.y(), p.z()}}, {"q_xyzw", {q.x(), q.y(), q.z(), q.w()}}}},
           {"extrinsics_sigma_m", or_null(calibration.extrinsics_sigma_m)},
           {"extrinsics_sigma_rad", or_null(calibration.extrinsics_sigma_rad)},
+          {"agrees_with_rig",
+           {{"extrinsics", or_null(calibration.extrinsics_agree)},
+            {"depth_scale", or_null(calibration.depth_scale_agrees)}}},
           {"frames_at_bound",
            {{"time_offset", calibration.time_offset_at_bound},
             {"extrinsics", calibration.extrinsics_at_bound},

@@ -168,6 +168,10 @@ class RunRecorder {
     calibration.time_offset_s = update.time_offset_s;
     calibration.depth_scale = update.depth_scale;
     calibration.T_b_c = update.state.T_w_b.inverse() * update.T_w_c;
+    if (update.agrees_with_rig.extrinsics || calibration.extrinsics_agree)
+      calibration.extrinsics_agree = update.agrees_with_rig.extrinsics;
+    if (update.agrees_with_rig.depth_scale || calibration.depth_scale_agrees)
+      calibration.depth_scale_agrees = update.agrees_with_rig.depth_scale;
     calibration.time_offset_at_bound += update.at_bound.time_offset;
     calibration.extrinsics_at_bound += update.at_bound.extrinsics;
     calibration.depth_scale_at_bound += update.at_bound.depth_scale;

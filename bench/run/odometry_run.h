@@ -61,9 +61,12 @@ struct EstimatedCalibration {
   /// Standard deviations, if `backend.covariance` is on; zero if constant. Those of the extrinsics are along
   /// the least certain direction.
   std::optional<double> time_offset_sigma_s, depth_scale_sigma, extrinsics_sigma_m, extrinsics_sigma_rad;
-  int time_offset_at_bound = 0;  ///< number of frames in which the value was at its bound
-  int extrinsics_at_bound = 0;   ///< same
-  int depth_scale_at_bound = 0;  ///< same
+  /// Whether the data agrees with the rig, so that the value is that of the rig; absent if it is not compared
+  /// (`backend.calibration_agreement_probability`).
+  std::optional<bool> extrinsics_agree, depth_scale_agrees;
+  int time_offset_at_bound = 0;   ///< number of frames in which the value was at its bound
+  int extrinsics_at_bound = 0;    ///< same
+  int depth_scale_at_bound = 0;   ///< same
 };
 
 /// Recorded output of a run.

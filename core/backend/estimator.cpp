@@ -7,12 +7,12 @@
 #include "core/backend/online_calibration.h"
 #include "core/backend/solvers/window_problem.h"
 #include "core/backend/standstill.h"
+#include "core/backend/start/config_check.h"
 #include "core/backend/start/depth_initialization.h"
 #include "core/backend/start/frozen_world.h"
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/start/initializer.h"
 #include "core/backend/start/monocular_structure.h"
-#include "core/backend/start/scale_check.h"
 #include "core/backend/window/landmark_tracks.h"
 #include "core/base/error.h"
 
@@ -49,6 +49,7 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
       seed_(static_cast<std::uint32_t>(seed)),
       imu_(imu.max_gap_s),
       solver_(make_window_solver(backend.solver)),
+      camera_rotations_(rig.camera.focal_px()),
       rotation_aligner_(backend, rig),
       monitor_(monitor_options(backend, imu, rig, seed)),
       step_check_(rig.camera.focal_px()),
@@ -56,7 +57,7 @@ Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const R
   if (imu.enabled && !rig.has_imu) {
     throw InputError("imu.enabled", "the sequence has no inertial data; run with --variant vo");
   }
-  check_scale(backend, imu);
+  check_config(backend, imu);
   rig_.imu_noise = configured_noise(rig.imu_noise, imu);
   window_ = calibrated_window();
 }
@@ -79,11 +80,7 @@ void Estimator::push_frame(const TrackedFrame& frame) {
   if (window_.frames.empty()) {
     next.state = newest_;
     next.state.t = frame.t;
-    if (averages_imu()) average_imu_at_exposure(imu_, next);
-    window_.frames.push_back(next);
-    window_.prior = initial_prior(window_, backend_);
-    window_.calibration = calibration_prior(rig_window(), backend_);
-    return;
+    return begin_window(std::move(next));
   }
   next.state = extrapolate(motion_state(), imu_, frame.t);
   if (uses_imu()) integrate_samples(window_.frames.back(), next);
@@ -129,7 +126,7 @@ void Estimator::repropagate_preintegrations() {
 }
 
 void Estimator::try_initialize_imu() {
-  if (!uses_imu() || window_.inertial || aligns_rotations()) return;
+  if (!uses_imu() || window_.inertial) return;
   const double span = seconds_between(window_.frames.front().state.t, window_.frames.back().state.t);
   const bool instant = backend_.initializer.kind == InitializerKind::kInstant && window_.newest() >= 4;
   if (!is_full() && !(instant && span >= backend_.initializer.min_span_s)) return;
@@ -158,8 +155,8 @@ void Estimator::slide(bool keyframe) {
   } else if (keyframe) {
     LinearPrior prior = solver_->marginalize_oldest(window_, pixel_noise_.applied_to(backend_),
                                                     rig_.camera.focal_px(), std::move(discarded_prior_));
-    add_calibration_walk(backend_, seconds_between(window_.frames[0].state.t, window_.frames[1].state.t),
-                         prior);
+    add_calibration_walk(backend_, window_.agrees_with_rig,
+                         seconds_between(window_.frames[0].state.t, window_.frames[1].state.t), prior);
     remove_marginalized_information(backend_, window_);
     remove_oldest_frame(window_);
     discarded_prior_ = std::exchange(window_.prior, std::move(prior));
@@ -232,6 +229,7 @@ void Estimator::compute_covariance() {
   update_.covariance = covariance->newest;
   contradiction_.add_to(*update_.covariance, window_.frames.back().state.t);
   oldest_motion_ = covariance->oldest_motion;
+  compare_with_rig(covariance->rig);
 }
 
 bool Estimator::refine() {
@@ -275,7 +273,8 @@ void Estimator::finish() {
     slide(keyframe_);
   }
   report(monitor_.reason() == StatusReason::kRepeatedImage ? bridged_ : newest_);
-  aligns_rotations() ? align_rotations() : drop_old_samples(motion_state(), imu_);
+  free_calibration();
+  if (!aligns_rotations()) drop_old_samples(motion_state(), imu_);
 }
 
 void Estimator::predict(std::int64_t frame_id, Timestamp t) {
@@ -292,6 +291,7 @@ void Estimator::report(const NavState& state) {
   update_.inertial = motion_state().inertial;
   update_.time_offset_s = window_.time_offset_s;
   update_.depth_scale = window_.depth_scale;
+  update_.agrees_with_rig = window_.agrees_with_rig;
   if (window_.gravity_covariance) update_.q_level_w = level_rotation(window_.gravity_w);
 }
 

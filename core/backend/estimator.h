@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/backend/health/bias_check.h"
+#include "core/backend/health/camera_rotations.h"
 #include "core/backend/health/contradiction.h"
 #include "core/backend/health/depth_scale.h"
 #include "core/backend/health/inertial_check.h"
@@ -32,6 +33,11 @@
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {
+
+struct DepthScaleEstimate {
+  double value = 1.0;
+  double sigma = 0.0;  ///< standard deviation
+};
 
 /// Sliding-window estimator. With depth it starts as metric visual odometry; with an IMU it switches to
 /// visual-inertial odometry once gravity and velocities are initialized and reports poses from then on.
@@ -111,7 +117,12 @@ class Estimator {
   void relocalize(const TrackedFrame& frame);
   [[nodiscard]] std::optional<UncertainPose> dead_reckoned_pose(Timestamp t);
   [[nodiscard]] Window calibrated_window() const;
+  [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
+  [[nodiscard]] bool agrees_with_rig(const RotationAlignment& alignment) const;
+  void compare_with_rig(const RigContradiction& contradiction);
   [[nodiscard]] Window rig_window() const;
+  [[nodiscard]] LinearPrior prior_of_calibration() const;
+  void begin_window(WindowFrame first);
   void push_frame(const TrackedFrame& frame);
   void reject_depth_of_another_scale();
   void integrate_samples(const WindowFrame& last, WindowFrame& next);
@@ -132,7 +143,9 @@ class Estimator {
   void repropagate_preintegrations();
   void try_initialize_imu();
   [[nodiscard]] bool aligns_rotations() const;
+  void free_calibration();
   void align_rotations();
+  void restart_with_calibration(const Eigen::Vector3d& gyro_bias);
   void restart(const Eigen::Vector3d& gravity_w);
   void forget_biases();
   void slide(bool keyframe);
@@ -145,8 +158,10 @@ class Estimator {
   std::uint32_t seed_;
   ImuBuffer imu_;
   std::unique_ptr<WindowSolver> solver_;
+  CameraRotations camera_rotations_;
   RotationAligner rotation_aligner_;
   std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
+  std::optional<DepthScaleEstimate> depth_scale_found_;  ///< contradicts the rig
   FrameMarginalizer marginalizer_;                       ///< buffers only
   LinearPrior discarded_prior_;                          ///< its memory is reused
   Window window_;

@@ -67,9 +67,10 @@ bool is_finite(const LinearPrior& prior) { return prior.jacobian.allFinite() && 
 
 }  // namespace
 
-/// For a limited time: if the contradiction persists, the landmarks are wrong.
+/// For a limited time: if the contradiction persists, the landmarks are wrong. While the scale of the rig is
+/// compared with the data, its depth is what the comparison needs.
 void Estimator::reject_depth_of_another_scale() {
-  if (backend_.depth.max_scale_error <= 0.0) return;
+  if (backend_.depth.max_scale_error <= 0.0 || window_.agrees_with_rig.depth_scale) return;
   const std::optional<double> scale = depth_scale_.of_newest(window_);
   const Timestamp t = window_.frames.back().state.t;
   if (scale && std::abs(*scale - 1.0) <= kAgreeingScale * backend_.depth.max_scale_error)

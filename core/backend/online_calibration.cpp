@@ -41,13 +41,15 @@ void average_imu_at_exposure(const ImuBuffer& imu, WindowFrame& frame) {
   frame.accel_b = mean->accel_b;
 }
 
-void add_calibration_walk(const BackendConfig& config, double seconds, LinearPrior& prior) {
+void add_calibration_walk(const BackendConfig& config, const AgreesWithRig& agrees, double seconds,
+                          LinearPrior& prior) {
   const double root = std::sqrt(seconds);
   const double m = root * config.extrinsics_walk_m;
   const double rad = root * config.extrinsics_walk_rad;
   add_random_step(BlockKind::kTimeOffset, std::array{root * config.time_offset_walk}, prior);
-  add_random_step(BlockKind::kExtrinsics, std::array{m, m, m, rad, rad, rad}, prior);
-  add_random_step(BlockKind::kDepthScale, std::array{root * config.depth.scale_walk}, prior);
+  if (!agrees.extrinsics) add_random_step(BlockKind::kExtrinsics, std::array{m, m, m, rad, rad, rad}, prior);
+  if (!agrees.depth_scale)
+    add_random_step(BlockKind::kDepthScale, std::array{root * config.depth.scale_walk}, prior);
 }
 
 CalibrationAtBound limit_calibration(const Rig& rig, const BackendConfig& config, Window& window) {

@@ -16,8 +16,10 @@ namespace stillpoint {
 void average_imu_at_exposure(const ImuBuffer& imu, WindowFrame& frame);
 
 /// Adds the configured random walks of time offset, extrinsics and depth scale to a prior.
+/// @param agrees calibration that does not walk
 /// @param seconds by which the prior advances: from the oldest frame to the next one
-void add_calibration_walk(const BackendConfig& config, double seconds, LinearPrior& prior);
+void add_calibration_walk(const BackendConfig& config, const AgreesWithRig& agrees, double seconds,
+                          LinearPrior& prior);
 
 /// Moves the calibration of a window back into its bounds around the calibrated values of the rig: the time
 /// offset and the depth scale are clamped, the translation and the rotation vector of the extrinsics relative

@@ -177,8 +177,11 @@ struct BackendConfig {
   double extrinsics_walk_rad = 0.0;    ///< same for the rotation [rad/sqrt(s)]
   double extrinsics_bound_m = 10.0;    ///< largest deviation from the calibrated value; none is published
   double extrinsics_bound_rad = 3.14;  ///< same for the rotation
-  double max_dead_reckoning_s = 6.0;   ///< without vision; then the pose is lost
-  double max_relocalization_s = 1.0;   ///< with a view after a loss; then a new world begins
+  double calibration_agreement_probability = 0.0;  ///< > 0: estimated extrinsics and depth scale have the
+                                                   ///< values of the rig until the data contradicts those
+                                                   ///< with this probability
+  double max_dead_reckoning_s = 6.0;               ///< without vision; then the pose is lost
+  double max_relocalization_s = 1.0;               ///< with a view after a loss; then a new world begins
   ZeroVelocityConfig zero_velocity;
   DepthConfig depth;
   InitializerConfig initializer;
@@ -217,6 +220,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("extrinsics_walk_rad", config.extrinsics_walk_rad, 0.0, 1.0);
   field("extrinsics_bound_m", config.extrinsics_bound_m, 1e-3, 10.0);
   field("extrinsics_bound_rad", config.extrinsics_bound_rad, 1e-3, 3.14);
+  field("calibration_agreement_probability", config.calibration_agreement_probability, 0.0, 0.999999);
   field("max_dead_reckoning_s", config.max_dead_reckoning_s, 0.0, 1000.0);
   field("max_relocalization_s", config.max_relocalization_s, 0.0, 1000.0);
   field("zero_velocity", config.zero_velocity);

@@ -8,6 +8,7 @@
 #include "core/base/module_timings.h"
 #include "core/types/nav_state.h"
 #include "core/types/odometry_status.h"
+#include "core/types/rig.h"
 #include "core/types/state_covariance.h"
 
 namespace stillpoint {
@@ -63,6 +64,7 @@ struct OdometryUpdate {
   double time_offset_s = 0.0;  ///< current estimate
   double depth_scale = 1.0;    ///< ratio of measured to true depth; current estimate
   CalibrationAtBound at_bound;
+  AgreesWithRig agrees_with_rig;
   /// Rotates the world such that gravity points along -z, by the current estimate of gravity; the identity if
   /// gravity is not estimated (`backend.gravity`) or not yet known.
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();

@@ -18,4 +18,13 @@ struct Rig {
   double rolling_shutter_s = 0.0;  ///< readout time from the first to the last row; 0 = global shutter
 };
 
+/// Calibration to be estimated that has the value of the rig as long as the data does not contradict it:
+/// constant in the solve, but with its uncertainty in prior and covariance.
+struct AgreesWithRig {
+  bool extrinsics = false;
+  bool depth_scale = false;
+
+  [[nodiscard]] bool any() const { return extrinsics || depth_scale; }
+};
+
 }  // namespace stillpoint

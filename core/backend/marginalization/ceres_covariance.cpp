@@ -50,6 +50,10 @@ std::optional<WindowCovariance> CeresSolver::covariance(const Window& window, co
   };
   const std::vector<BlockRef> blocks = newest_blocks(window, config);
   WindowCovariance result{.newest = state_covariance(blocks, inverse_blocks(blocks))};
+  const Eigen::VectorXd step = -inverse * equations.b(columns);
+  result.rig =
+      rig_contradiction(window.agrees_with_rig, blocks, inverse_blocks(blocks),
+                        step.head(static_cast<Eigen::Index>(columns_of(blocks, equations.layout).size())));
   if (oldest_motion) result.oldest_motion = oldest_motion_of(window, inverse_blocks(kOldestPoses));
   return result;
 }

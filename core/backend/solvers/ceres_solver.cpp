@@ -89,7 +89,7 @@ class WindowProblem {
   }
 
   void set_global_constancy(const Window& window, const BackendConfig& config) {
-    const VariableGlobals variable = variable_globals(window, config);
+    const VariableGlobals variable = solved_globals(window, config);
     if (!variable.extrinsics) problem_.SetParameterBlockConstant(blocks_.extrinsics());
     if (!variable.time_offset) problem_.SetParameterBlockConstant(blocks_.time_offset());
     if (!variable.gravity) problem_.SetParameterBlockConstant(blocks_.gravity());

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/newest_covariance.h"
 
+#include <cmath>
 #include <utility>
+
+#include <Eigen/Cholesky>
 
 namespace stillpoint {
 
@@ -43,6 +46,25 @@ StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestM
       case BlockKind::kDepthScale:
         result.depth_scale = covariance(column, column);
         break;
+    }
+    column += local_size(block.kind);
+  }
+  return result;
+}
+
+RigContradiction rig_contradiction(const AgreesWithRig& constant, std::span<const BlockRef> blocks,
+                                   const NewestMatrix& covariance, const NewestVector& step) {
+  RigContradiction result;
+  int column = 0;
+  for (const BlockRef block : blocks) {
+    if (block.kind == BlockKind::kExtrinsics && constant.extrinsics) {
+      const auto d = step.segment<6>(column);
+      result.extrinsics = d.dot(covariance.block<6, 6>(column, column).llt().solve(d));
+    }
+    if (block.kind == BlockKind::kDepthScale && constant.depth_scale) {
+      result.depth_scale_step = step[column];
+      result.depth_scale_sigma = std::sqrt(covariance(column, column));
+      result.depth_scale = step[column] * step[column] / covariance(column, column);
     }
     column += local_size(block.kind);
   }

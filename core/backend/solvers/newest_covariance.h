@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/backend/solvers/window_problem.h"
+#include "core/backend/solvers/window_solver.h"
 #include "core/geometry/uncertain_pose.h"
 #include "core/types/state_covariance.h"
 
@@ -23,6 +24,15 @@ using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 /// @param covariance joint covariance of `blocks`, as `newest_blocks` gives them, in their order
 [[nodiscard]] StateCovariance state_covariance(std::span<const BlockRef> blocks,
                                                const NewestMatrix& covariance);
+
+/// At most as many rows as NewestMatrix.
+using NewestVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 25, 1>;
+
+/// @param blocks, covariance as in `state_covariance`
+/// @param step Gauss-Newton step of the blocks, if all of them were variable
+[[nodiscard]] RigContradiction rig_contradiction(const AgreesWithRig& constant,
+                                                 std::span<const BlockRef> blocks,
+                                                 const NewestMatrix& covariance, const NewestVector& step);
 
 inline constexpr std::array<BlockRef, 2> kOldestPoses = {BlockRef{BlockKind::kPose, 0},
                                                          BlockRef{BlockKind::kPose, 1}};

@@ -9,7 +9,7 @@ namespace stillpoint {
 
 std::optional<WindowCovariance> SchurSolver::covariance(const Window& window, const BackendConfig& config,
                                                         double focal_px, bool oldest_motion) {
-  read(window, config, focal_px);
+  read(window, config, focal_px, variable_globals(window, config));
   static_cast<void>(linearize(window, config));
   system_.copy_profile_to(S_);
   newton_.states = -system_.g;
@@ -21,6 +21,11 @@ std::optional<WindowCovariance> SchurSolver::covariance(const Window& window, co
   const NewestMatrix newest = inverse_blocks(prior_blocks_);
   if (!newest.allFinite()) return std::nullopt;
   WindowCovariance result{.newest = state_covariance(prior_blocks_, newest)};
+  if (window.agrees_with_rig.any()) {
+    skyline_solve(system_.first, S_, newton_.states);
+    const NewestVector step = newton_.states(columns_);
+    result.rig = rig_contradiction(window.agrees_with_rig, prior_blocks_, newest, step);
+  }
   if (oldest_motion) result.oldest_motion = oldest_motion_of(window, inverse_blocks(kOldestPoses));
   return result;
 }

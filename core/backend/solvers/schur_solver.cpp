@@ -31,14 +31,14 @@ void add_to_pose(const ReusableVector& step, int column, double* x) {
 
 }  // namespace
 
-void SchurSolver::read(const Window& window, const BackendConfig& config, double focal_px) {
+void SchurSolver::read(const Window& window, const BackendConfig& config, double focal_px,
+                       VariableGlobals variable) {
   blocks_.assign(window);
   candidate_.assign(window);
   visual_.read(window, config, focal_px, LandmarkSelection::kAll);
   prior_.read(window.prior);
   calibration_.read(window.calibration);
-  layout_ = ReducedLayout(static_cast<int>(window.frames.size()), window.inertial,
-                          variable_globals(window, config));
+  layout_ = ReducedLayout(static_cast<int>(window.frames.size()), window.inertial, variable);
 }
 
 double SchurSolver::linearize(const Window& window, const BackendConfig& config) {
@@ -194,7 +194,7 @@ SolveReport SchurSolver::iterate(const Window& window, const BackendConfig& conf
 }
 
 SolveReport SchurSolver::minimize(Window& window, const BackendConfig& config, double focal_px) {
-  read(window, config, focal_px);
+  read(window, config, focal_px, solved_globals(window, config));
   SolveReport report = iterate(window, config);
   report.landmarks = visual_.landmarks();
   report.depth_landmarks = visual_.measured_landmarks();

@@ -58,7 +58,7 @@ class SchurSolver final : public WindowSolver {
     ReusableVector landmarks;
   };
 
-  void read(const Window& window, const BackendConfig& config, double focal_px);
+  void read(const Window& window, const BackendConfig& config, double focal_px, VariableGlobals variable);
   [[nodiscard]] double linearize(const Window& window, const BackendConfig& config);
   [[nodiscard]] double cost_at(const Window& window, const BackendConfig& config,
                                const ParameterBlocks& blocks);

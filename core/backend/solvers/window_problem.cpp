@@ -111,6 +111,13 @@ VariableGlobals variable_globals(const Window& window, const BackendConfig& conf
           .depth_scale = config.depth.estimate_scale && window.inertial};
 }
 
+VariableGlobals solved_globals(const Window& window, const BackendConfig& config) {
+  VariableGlobals globals = variable_globals(window, config);
+  if (window.agrees_with_rig.extrinsics) globals.extrinsics = false;
+  if (window.agrees_with_rig.depth_scale) globals.depth_scale = false;
+  return globals;
+}
+
 VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config) {
   VariableGlobals globals = variable_globals(window, config);
   if (!has_consistent_prior(window, config)) globals.extrinsics = globals.time_offset = false;

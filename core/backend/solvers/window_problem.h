@@ -102,8 +102,10 @@ struct VariableGlobals {
   bool gravity = false;
   bool depth_scale = false;
 };
-/// In the solve.
+/// In the covariance.
 [[nodiscard]] VariableGlobals variable_globals(const Window& window, const BackendConfig& config);
+/// In the solve: without the calibration that agrees with the rig.
+[[nodiscard]] VariableGlobals solved_globals(const Window& window, const BackendConfig& config);
 /// In marginalize_oldest. With the published prior extrinsics and time offset are constant there.
 [[nodiscard]] VariableGlobals marginalized_globals(const Window& window, const BackendConfig& config);
 

@@ -21,8 +21,24 @@ struct SolveReport {
   bool usable = true;  ///< false: the solver failed and the window is unchanged
 };
 
+/// How strongly the residuals contradict calibration that is constant in the solve (Window::agrees_with_rig):
+/// with the Gauss-Newton step d of that calibration if it were variable, and its covariance C,
+///
+///   d^T C^-1 d,
+///
+/// chi-square distributed if the values of the rig are true (score test, Rao 1948), with six degrees of
+/// freedom for the extrinsics and one for the depth scale. Zero for calibration that is variable in the
+/// solve.
+struct RigContradiction {
+  double extrinsics = 0.0;
+  double depth_scale = 0.0;
+  double depth_scale_step = 0.0;   ///< d
+  double depth_scale_sigma = 0.0;  ///< square root of C
+};
+
 struct WindowCovariance {
   StateCovariance newest;
+  RigContradiction rig;
   /// Of the motion T_b0_b1 from the oldest frame to the next one; absent unless requested.
   std::optional<UncertainPose> oldest_motion;
 };

@@ -14,7 +14,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kViewInterval_s = 0.1;
 constexpr double kMinSpan_s = 1.5;
 constexpr double kMaxSpan_s = 3.0;
 constexpr double kCertainRotation_rad = 0.005;
@@ -54,26 +53,20 @@ RotationAligner::RotationAligner(const BackendConfig& config, const Rig& rig)
   prior_information_ = prior_information_.cwiseInverse().cwiseAbs2().eval();
 }
 
-void RotationAligner::add(Timestamp t, const Eigen::Quaterniond& q_w_c) {
-  if (!views_.empty() && seconds_between(views_.back().t, t) < kViewInterval_s) return;
-  views_.push_back({t, q_w_c});
-}
-
 std::vector<RotationAligner::Residual> RotationAligner::residuals(const RotationAlignment& at,
                                                                   ImuBuffer& imu) const {
   std::vector<Residual> found;
-  for (std::size_t k = 1; k < views_.size(); ++k) {
-    const View &i = views_[k - 1], &j = views_[k];
-    const Timestamp begin = after(i.t, at.time_offset_s), end = after(j.t, at.time_offset_s);
+  for (const CameraRotation& rotation : rotations_) {
+    const Timestamp begin = after(rotation.begin, at.time_offset_s);
+    const Timestamp end = after(rotation.end, at.time_offset_s);
     const std::optional<ImuSample> w_i = imu.mean_around(begin, kRateHalfWidth_s);
     const std::optional<ImuSample> w_j = imu.mean_around(end, kRateHalfWidth_s);
     const std::vector<ImuSample>& samples = imu.samples_between(begin, end);
     if (samples.size() < 2 || !w_i || !w_j) continue;
     const GyroRotation gyro = integrate_gyro(samples, at.gyro_bias);
-    const Eigen::Quaterniond dq_c = i.q_w_c.conjugate() * j.q_w_c;
     Residual residual;
-    residual.r = log_so3(gyro.dq.conjugate() * at.q_b_c * dq_c * at.q_b_c.conjugate());
-    residual.J << at.q_b_c * (dq_c.toRotationMatrix().transpose() - Eigen::Matrix3d::Identity()),
+    residual.r = log_so3(gyro.dq.conjugate() * at.q_b_c * rotation.dq_c * at.q_b_c.conjugate());
+    residual.J << at.q_b_c * (rotation.dq_c.toRotationMatrix().transpose() - Eigen::Matrix3d::Identity()),
         gyro.dq.conjugate() * (w_i->gyro_b - at.gyro_bias) - (w_j->gyro_b - at.gyro_bias), -gyro.by_bias;
     found.push_back(residual);
   }
@@ -101,9 +94,9 @@ RotationAligner::NormalEquations RotationAligner::normal_equations(const Rotatio
   return equations;
 }
 
-std::optional<RotationAlignment> RotationAligner::align(ImuBuffer& imu) const {
-  if (views_.size() < 2) return std::nullopt;
-  const double span = seconds_between(views_.front().t, views_.back().t);
+std::optional<RotationAlignment> RotationAligner::align(Timestamp now, ImuBuffer& imu) {
+  if (!first_) first_ = now;
+  const double span = seconds_between(*first_, now);
   if (span < kMinSpan_s) return std::nullopt;
   RotationAlignment found{.q_b_c = q_b_c_, .time_offset_s = time_offset_s_};
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -116,6 +109,9 @@ std::optional<RotationAlignment> RotationAligner::align(ImuBuffer& imu) const {
   const Eigen::Matrix<double, 7, 7> covariance = normal_equations(found, imu).H.inverse();
   found.rotation_sigma_rad = largest_sigma(covariance.topLeftCorner<3, 3>());
   found.offset_sigma_s = std::sqrt(covariance(3, 3));
+  Eigen::Vector4d from_rig;
+  from_rig << log_so3(q_b_c_.conjugate() * found.q_b_c), found.time_offset_s - time_offset_s_;
+  found.rig_contradiction = from_rig.dot(covariance.topLeftCorner<4, 4>().llt().solve(from_rig));
   const bool certain =
       found.rotation_sigma_rad < kCertainRotation_rad && found.offset_sigma_s < kCertainOffset_s;
   if (!certain && span < kMaxSpan_s) return std::nullopt;

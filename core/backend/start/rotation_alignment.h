@@ -19,14 +19,23 @@ struct RotationAlignment {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< [rad/s]
   double rotation_sigma_rad = 0.0;                      ///< largest standard deviation of q_b_c about an axis
   double offset_sigma_s = 0.0;
+  /// d^T C^-1 d of the difference d of q_b_c and time offset from the rig: four degrees of freedom.
+  double rig_contradiction = 0.0;
 };
 
-/// Collects the rotation of the camera by visual odometry at the start of a sequence and compares it with the
-/// gyroscope. Neither depth scale nor lever arm nor gravity enters, so a far-off calibration is found that
-/// the window, which linearizes all of them together, would not converge from.
+/// Rotation of the camera from one frame to a later one, by vision alone.
+struct CameraRotation {
+  Timestamp begin, end;  ///< stamps of the frames
+  Eigen::Quaterniond dq_c = Eigen::Quaterniond::Identity();
+};
+
+/// Collects rotations of the camera by vision alone (CameraRotations) at the start of a sequence and compares
+/// them with the gyroscope. Neither states of the window nor depth scale, lever arm or gravity enter, so a
+/// far-off calibration is found that the window, which linearizes all of them together, would not converge
+/// from.
 ///
-/// For successive frames i, j at least 0.1 s apart, with the rotation dR_c of the camera and dR_b(d, b) of
-/// the gyroscope from t_i + d to t_j + d with bias b, the residual is
+/// With the rotation dR_c of the camera from t_i to t_j and dR_b(d, b) of the
+/// gyroscope from t_i + d to t_j + d with bias b, the residual is
 ///
 ///   r = Log(dR_b(d, b)^-1 R_b_c dR_c R_b_c^-1).
 ///
@@ -39,23 +48,16 @@ class RotationAligner {
  public:
   RotationAligner(const BackendConfig& config, const Rig& rig);
 
-  /// Adds the newest frame.
-  /// @param q_w_c by vision alone
-  void add(Timestamp t, const Eigen::Quaterniond& q_w_c);
+  void add(const CameraRotation& rotation) { rotations_.push_back(rotation); }
 
-  /// After a loss: rotations before and after it are not compared.
-  void reset() { views_.clear(); }
-
+  /// For each frame.
+  /// @param now its stamp
   /// @param imu samples since the first frame
-  /// @return the alignment once it is certain (0.3 degrees, 1 ms), and after 3 s in any case; nothing in the
-  /// first 1.5 s
-  [[nodiscard]] std::optional<RotationAlignment> align(ImuBuffer& imu) const;
+  /// @return the alignment once it is certain (0.3 degrees, 1 ms), and 3 s after the first frame in any case;
+  /// nothing in the first 1.5 s
+  [[nodiscard]] std::optional<RotationAlignment> align(Timestamp now, ImuBuffer& imu);
 
  private:
-  struct View {
-    Timestamp t;
-    Eigen::Quaterniond q_w_c;
-  };
   /// theta, d, b.
   using Unknowns = Eigen::Matrix<double, 7, 1>;
   struct Residual {
@@ -73,7 +75,8 @@ class RotationAligner {
   Eigen::Quaterniond q_b_c_;  ///< of the rig
   double time_offset_s_;      ///< of the rig
   Unknowns prior_information_;
-  std::vector<View> views_;  ///< at least 0.1 s apart
+  std::optional<Timestamp> first_;  ///< stamp of the first frame
+  std::vector<CameraRotation> rotations_;
 };
 
 }  // namespace stillpoint

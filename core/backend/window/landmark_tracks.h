@@ -31,4 +31,8 @@ void remove_newest_frame(Window& window);
 /// Restarts a landmark at its newest observation; earlier ones belong to another point.
 void restart_track(Landmark& landmark);
 
+/// The landmarks that the newest frame observes, as those of a window of this frame alone: with one
+/// observation, and without the depth that was estimated.
+[[nodiscard]] std::vector<Landmark> landmarks_of_newest(const Window& window);
+
 }  // namespace stillpoint

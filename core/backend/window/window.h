@@ -65,6 +65,7 @@ struct Window {
   double time_offset_s = 0.0;
   TimeOffsetModel time_offset_model = TimeOffsetModel::kBearing;
   double depth_scale = 1.0;  ///< ratio of measured to true depth
+  AgreesWithRig agrees_with_rig;
   Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();
   /// Covariance of the direction of gravity [rad^2] in its tangent space (see gravity_direction.h) when the
   /// current initial prior was built; absent: gravity is constant.

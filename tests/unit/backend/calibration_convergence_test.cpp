@@ -2,6 +2,7 @@
 // Time offset, extrinsics and depth scale converge on a simulated motion of 20 s, with honest uncertainty.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -53,6 +54,8 @@ struct Calibrated {
   double translation_sigma_m = 0.0;
   double depth_scale = 0.0;
   double depth_scale_sigma = 0.0;
+  AgreesWithRig agrees_with_rig;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the newest frame, as estimated
 };
 
 /// The IMU has a noise density of a third of the default.
@@ -78,7 +81,9 @@ Calibrated calibrate(const CalibrationError& error, const BackendConfig& config)
   Calibrated result{.time_offset_s = last.time_offset_s - error.time_offset_s,
                     .rotation_rad = T_true.q.angularDistance(T_b_c.q),
                     .translation_m = (T_b_c.p - T_true.p).norm(),
-                    .depth_scale = last.depth_scale - error.depth_scale};
+                    .depth_scale = last.depth_scale - error.depth_scale,
+                    .agrees_with_rig = last.agrees_with_rig,
+                    .position = last.state.T_w_b.p};
   if (!last.covariance) return result;
   result.time_offset_sigma_s = std::sqrt(last.covariance->time_offset);
   result.translation_sigma_m = std::sqrt(last.covariance->extrinsics.topLeftCorner<3, 3>().trace());
@@ -121,6 +126,74 @@ TEST(CalibrationConvergence, AllConvergeTogether) {
   EXPECT_LT(result.rotation_rad, 0.3 * M_PI / 180.0);
   EXPECT_LT(result.translation_m, 3.0 * result.translation_sigma_m);
   EXPECT_LT(std::abs(result.depth_scale), 0.009);
+}
+
+/// Estimated or not, the poses are the same as long as the data agrees with the rig.
+TEST(CalibrationConvergence, ATrueCalibrationDoesNotChangeThePoses) {
+  const BackendConfig constant = calibrating_config();
+  BackendConfig config = constant;
+  config.depth.estimate_scale = true;
+  config.estimate_extrinsics = true;
+  config.calibration_agreement_probability = 0.9999;
+  const Calibrated estimated = calibrate({}, config);
+  EXPECT_TRUE(estimated.agrees_with_rig.extrinsics && estimated.agrees_with_rig.depth_scale);
+  EXPECT_EQ(estimated.depth_scale, 0.0);
+  EXPECT_EQ(estimated.translation_m, 0.0);
+  EXPECT_GT(estimated.translation_sigma_m, 0.0);
+  EXPECT_LT(estimated.depth_scale_sigma, 0.005);
+  EXPECT_LT((calibrate({}, constant).position - estimated.position).norm(), 1e-5);
+}
+
+TEST(CalibrationConvergence, AWrongCalibrationIsEstimatedOnceTheDataContradictsIt) {
+  BackendConfig config = calibrating_config();
+  config.depth.estimate_scale = true;
+  config.estimate_extrinsics = true;
+  config.extrinsics_sigma_rad = 0.035;
+  config.calibration_agreement_probability = 0.9999;
+  const Calibrated result =
+      calibrate({.rotation_rad = 2.0 * M_PI / 180.0, .translation_m = 0.02, .depth_scale = 0.85}, config);
+  EXPECT_FALSE(result.agrees_with_rig.any());
+  EXPECT_LT(result.rotation_rad, 0.3 * M_PI / 180.0);
+  EXPECT_LT(result.translation_m, 3.0 * result.translation_sigma_m);
+  EXPECT_LT(std::abs(result.depth_scale), 0.0085);
+}
+
+/// The window starts anew after the alignment, with another rotation and another depth scale. Errors from
+/// frame to frame are those of the wrong calibration; a world that is leveled anew would turn by more.
+TEST(CalibrationConvergence, ThePosesContinueWhenTheWindowStartsWithAnotherCalibration) {
+  BackendConfig config = calibrating_config();
+  config.depth.estimate_scale = true;
+  config.depth.max_scale_error = 0.04;
+  config.estimate_extrinsics = true;
+  config.initializer.align_rotations = true;
+  config.calibration_agreement_probability = 0.9999;
+  const SimulatedMotion motion{
+      .pixel_noise_px = 0.5, .depth_noise = 0.003, .depth_factor = 0.85, .noisy_imu = true};
+  Rig rig = SimulatedMotion::rig();
+  const Pose T_b_c = rig.T_b_c;
+  const CalibrationError error{.rotation_rad = 2.0 * M_PI / 180.0, .translation_m = 0.02};
+  rig.T_b_c = Pose{T_b_c.q * error.extrinsics().q, T_b_c.p + error.extrinsics().p};
+  Estimator estimator(config, {}, rig, 1);
+  for (const ImuSample& sample : motion.imu(8.5)) estimator.add_imu(sample);
+  std::optional<Pose> before;
+  double largest_rad = 0.0, largest_m = 0.0;
+  for (int i = 0; i < 240; ++i) {
+    const double t = 0.1 + i / kRate_hz;
+    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
+    if (before) {
+      ASSERT_TRUE(is_located(update.status)) << i;
+      const Pose found = before->inverse() * update.T_w_c;
+      const Pose previous = SimulatedMotion::state(t - 1.0 / kRate_hz).T_w_b * T_b_c;
+      const Pose moved = previous.inverse() * SimulatedMotion::state(t).T_w_b * T_b_c;
+      largest_rad = std::max(largest_rad, found.q.angularDistance(moved.q));
+      largest_m = std::max(largest_m, (found.p - moved.p).norm());
+    }
+    if (is_located(update.status)) before = update.T_w_c;
+  }
+  EXPECT_FALSE(estimator.update().agrees_with_rig.any());
+  EXPECT_NEAR(estimator.update().depth_scale, 0.85, 0.0085);
+  EXPECT_LT(largest_rad, 0.15 * M_PI / 180.0);
+  EXPECT_LT(largest_m, 0.01);
 }
 
 /// The window that starts anew after the alignment converges. On this motion it does without the alignment,

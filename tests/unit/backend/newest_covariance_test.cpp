@@ -154,6 +154,32 @@ TEST(NewestCovariance, OfTheWholeCalibration) {
   expect_covariances(options);
 }
 
+/// For small errors of the rig the score statistic is that of the likelihood ratio: twice the decrease of the
+/// cost if the calibration becomes variable.
+TEST(RigContradiction, IsTwiceTheCostOfTheValuesOfTheRig) {
+  SimulatedWindowOptions options{.frames = 24, .points = 80, .depth_factor = 0.97};
+  options.config.gravity = GravityModel::kEstimated;
+  options.config.prior = PriorModel::kConsistent;
+  Window window = simulated_window(options);
+  options.config.depth.estimate_scale = true;
+  window.agrees_with_rig.depth_scale = true;
+  SchurSolver schur;
+  CeresSolver ceres;
+  options.config.max_iterations = 30;
+  const double constant = schur.solve(window, options.config, kSimulatedFocal_px).final_cost;
+  ASSERT_EQ(window.depth_scale, 1.0);
+  const auto contradiction = [&](WindowSolver& solver) {
+    return solver.covariance(window, options.config, kSimulatedFocal_px, false)->rig.depth_scale;
+  };
+  const double by_schur = contradiction(schur), by_ceres = contradiction(ceres);
+  EXPECT_NEAR(by_schur, by_ceres, 1e-6 * by_ceres);
+  window.agrees_with_rig.depth_scale = false;
+  const double variable = schur.solve(window, options.config, kSimulatedFocal_px).final_cost;
+  EXPECT_NE(window.depth_scale, 1.0);
+  EXPECT_NEAR(by_schur, 2.0 * (constant - variable), 0.1 * by_schur);
+  EXPECT_EQ(contradiction(schur), 0.0);
+}
+
 TEST(NewestCovariance, WithThePublishedPriorAndConstantDepths) {
   SimulatedWindowOptions options{.frames = 14, .points = 80};
   options.config.depth.usage = DepthUsage::kFixed;

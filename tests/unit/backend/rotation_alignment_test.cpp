@@ -28,11 +28,13 @@ std::optional<RotationAlignment> aligned(const std::vector<ImuSample>& samples, 
   ImuBuffer imu;
   for (const ImuSample& sample : samples) imu.add(sample);
   RotationAligner aligner(config(), rig);
-  for (int i = 0; i <= static_cast<int>(std::lround(seconds * 30.0)); ++i) {
-    const double t = 0.2 + i / 30.0;
-    aligner.add(from_seconds(t), q_w_c(t));
+  static_cast<void>(aligner.align(from_seconds(0.2), imu));
+  const int count = static_cast<int>(std::lround(seconds * 10.0));
+  for (int i = 0; i < count; ++i) {
+    const double begin = 0.2 + 0.1 * i, end = begin + 0.1;
+    aligner.add({from_seconds(begin), from_seconds(end), q_w_c(begin).conjugate() * q_w_c(end)});
   }
-  return aligner.align(imu);
+  return aligner.align(from_seconds(0.2 + 0.1 * count), imu);
 }
 
 TEST(RotationAligner, FindsRotationTimeOffsetAndBias) {

@@ -101,6 +101,19 @@ TEST(RunResult, WarnsOfACalibrationAtItsBound) {
   EXPECT_DOUBLE_EQ(json["calibration"]["depth_scale"], 1.0);
 }
 
+TEST(RunResult, WarnsOfARigThatTheDataContradicts) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  run.calibration = {.depth_scale = 0.851, .depth_scale_sigma = 0.002};
+  run.calibration.extrinsics_agree = true;
+  run.calibration.depth_scale_agrees = false;
+  const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, std::move(run))));
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  EXPECT_NE(json["warnings"][0].get<std::string>().find("0.8510 +- 0.0020"), std::string::npos);
+  EXPECT_EQ(json["calibration"]["agrees_with_rig"]["depth_scale"], false);
+  EXPECT_EQ(json["calibration"]["agrees_with_rig"]["extrinsics"], true);
+}
+
 TEST(RunResult, ContainsTheEstimatedExtrinsics) {
   const datasets::SequenceInfo info = straight_sequence();
   OdometryRun run = perfect_run(info, kFrames);
@@ -111,6 +124,7 @@ TEST(RunResult, ContainsTheEstimatedExtrinsics) {
   EXPECT_EQ(json["calibration"]["T_b_c"]["q_xyzw"], nlohmann::ordered_json({1.0, 0.0, 0.0, 0.0}));
   EXPECT_DOUBLE_EQ(json["calibration"]["extrinsics_sigma_m"], 0.004);
   EXPECT_TRUE(json["calibration"]["extrinsics_sigma_rad"].is_null());
+  EXPECT_TRUE(json["calibration"]["agrees_with_rig"]["extrinsics"].is_null());
 }
 
 TEST(RunResult, WithoutRecordedBoxesDoesNotCountFramesWithoutThem) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/start/scale_check.h"
+#include "core/backend/start/config_check.h"
 
 #include "core/base/error.h"
 
 namespace stillpoint {
 
-void check_scale(const BackendConfig& backend, const ImuConfig& imu) {
+void check_config(const BackendConfig& backend, const ImuConfig& imu) {
   const bool monocular = backend.initializer.kind == InitializerKind::kMonocular;
   const bool no_depth = backend.depth.usage == DepthUsage::kOff;
   if (no_depth && !imu.enabled) {
@@ -24,6 +24,11 @@ void check_scale(const BackendConfig& backend, const ImuConfig& imu) {
   }
   if (backend.depth.estimate_scale && backend.depth.usage != DepthUsage::kWeighted) {
     throw InputError("backend.depth.estimate_scale", "requires backend.depth.usage = \"weighted\"");
+  }
+  const bool estimates = backend.depth.estimate_scale || backend.estimate_extrinsics;
+  if (estimates && backend.calibration_agreement_probability > 0.0 && !backend.covariance) {
+    throw InputError("backend.calibration_agreement_probability",
+                     "requires backend.covariance = true; 0 estimates the calibration from the start");
   }
 }
 
