@@ -23,9 +23,10 @@ DepthScaleEstimate found_depth_scale(const RigContradiction& contradiction) {
 
 }  // namespace
 
+/// The features need measured depth, by which the window can also start anew without an IMU.
 bool Estimator::aligns_rotations() const {
   return backend_.initializer.align_rotations && uses_imu() && backend_.estimate_extrinsics &&
-         has_metric_scale() && !rotation_alignment_;
+         backend_.depth.usage != DepthUsage::kOff && !rotation_alignment_;
 }
 
 /// Makes calibration that the data contradicts variable. With a wrong rotation or depth scale, the states of

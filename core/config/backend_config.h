@@ -97,11 +97,11 @@ void visit_fields(Visitor&& field, Config& config) {
 /// Initialization, and the uncertainty of the initial state. Position and heading of frame 0 fix the gauge.
 struct InitializerConfig {
   InitializerKind kind = InitializerKind::kWindow;
-  double min_span_s = 0.3;         ///< instant: shortest time span from which gravity is estimated
-  double gyro_bias_sigma = 0.02;   ///< prior standard deviation [rad/s]
-  double accel_bias_sigma = 0.1;   ///< prior standard deviation [m/s^2]
-  bool align_rotations = false;    ///< before the start: with estimated extrinsics, those and the time offset
-                                   ///< by rotations alone; see core/backend/start/rotation_alignment.h
+  double min_span_s = 0.3;        ///< instant: shortest time span from which gravity is estimated
+  double gyro_bias_sigma = 0.02;  ///< prior standard deviation [rad/s]
+  double accel_bias_sigma = 0.1;  ///< prior standard deviation [m/s^2]
+  bool align_rotations = false;   ///< estimated extrinsics and the time offset in the first 3 s, by rotations
+                                  ///< alone; see core/backend/start/rotation_alignment.h
   double gravity_tolerance = 1.0;  ///< largest accepted error of the unconstrained gravity norm [m/s^2]
   int min_common_features = 30;    ///< monocular: in the initial frame pair. Qin et al. 2018, Sec. V-A
   double min_parallax_px = 20.0;   ///< monocular: their mean rotation-compensated parallax; same source
