@@ -124,6 +124,7 @@ class Estimator {
   [[nodiscard]] LinearPrior prior_of_calibration() const;
   void begin_window(WindowFrame first);
   void push_frame(const TrackedFrame& frame);
+  [[nodiscard]] bool knows_depth_scale() const;
   void reject_depth_of_another_scale();
   void integrate_samples(const WindowFrame& last, WindowFrame& next);
   [[nodiscard]] bool localize_newest();

@@ -36,6 +36,9 @@ constexpr double kMaxDepthRejection_s = 10.0;
 /// frames, which pull the landmarks to it.
 constexpr double kAgreeingScale = 0.5;
 
+/// Standard deviations of an estimated depth scale within the largest accepted error.
+constexpr double kKnownScaleSigmas = 3.0;
+
 /// Features with a measured depth from which a window can start.
 constexpr int kMinFirstFeatures = 8;
 
@@ -67,10 +70,16 @@ bool is_finite(const LinearPrior& prior) { return prior.jacobian.allFinite() && 
 
 }  // namespace
 
-/// For a limited time: if the contradiction persists, the landmarks are wrong. While the scale of the rig is
-/// compared with the data, its depth is what the comparison needs.
+/// While the scale of the rig is compared with the data, the comparison needs the depth until it is certain.
+bool Estimator::knows_depth_scale() const {
+  return !window_.agrees_with_rig.depth_scale ||
+         (newest_covariance_ &&
+          kKnownScaleSigmas * std::sqrt(newest_covariance_->depth_scale) < backend_.depth.max_scale_error);
+}
+
+/// For a limited time: if the contradiction persists, the landmarks are wrong.
 void Estimator::reject_depth_of_another_scale() {
-  if (backend_.depth.max_scale_error <= 0.0 || window_.agrees_with_rig.depth_scale) return;
+  if (backend_.depth.max_scale_error <= 0.0 || !knows_depth_scale()) return;
   const std::optional<double> scale = depth_scale_.of_newest(window_);
   const Timestamp t = window_.frames.back().state.t;
   if (scale && std::abs(*scale - 1.0) <= kAgreeingScale * backend_.depth.max_scale_error)

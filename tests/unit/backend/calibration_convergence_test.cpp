@@ -158,6 +158,25 @@ TEST(CalibrationConvergence, AWrongCalibrationIsEstimatedOnceTheDataContradictsI
   EXPECT_LT(std::abs(result.depth_scale), 0.0085);
 }
 
+/// Depth of another scale for five seconds is that of a faulty sensor, not of a wrong rig.
+TEST(CalibrationConvergence, ADepthSensorThatFailsForAWhileDoesNotChangeTheScale) {
+  BackendConfig config = calibrating_config();
+  config.depth.estimate_scale = true;
+  config.depth.max_scale_error = 0.04;
+  config.calibration_agreement_probability = 0.9999;
+  const SimulatedMotion motion{.pixel_noise_px = 0.5, .depth_noise = 0.003, .noisy_imu = true};
+  SimulatedMotion faulty = motion;
+  faulty.depth_factor = 0.85;
+  Estimator estimator(config, {}, SimulatedMotion::rig(), 1);
+  for (const ImuSample& sample : motion.imu(14.5)) estimator.add_imu(sample);
+  for (int i = 0; i < 420; ++i) {
+    const double t = 0.1 + i / kRate_hz;
+    process_frame(estimator, (i >= 240 && i < 390 ? faulty : motion).frame(i, t));
+  }
+  EXPECT_TRUE(estimator.update().agrees_with_rig.depth_scale);
+  EXPECT_EQ(estimator.update().depth_scale, 1.0);
+}
+
 /// The window starts anew after the alignment, with another rotation and another depth scale. Errors from
 /// frame to frame are those of the wrong calibration; a world that is leveled anew would turn by more.
 TEST(CalibrationConvergence, ThePosesContinueWhenTheWindowStartsWithAnotherCalibration) {
