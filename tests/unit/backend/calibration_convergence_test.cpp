@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/error.h"
 #include "core/geometry/so3.h"
 #include "tests/support/process_frame.h"
 #include "tests/support/simulated/simulated_motion.h"
@@ -255,6 +256,14 @@ TEST(CalibrationConvergence, TheExtrinsicsDoNotTurnTheTrajectoryOfTheCamera) {
     EXPECT_LT(T_b_c.q.angularDistance(estimator.window().T_b_c.q), 0.3 * M_PI / 180.0);
     EXPECT_LT((*T_we_wt * true_T_w_c).q.angularDistance(update.T_w_c.q), 0.5 * M_PI / 180.0);
   }
+}
+
+TEST(CalibrationConvergence, TheComparisonWithTheRigNeedsACovariance) {
+  BackendConfig config = calibrating_config();
+  config.depth.estimate_scale = true;
+  config.calibration_agreement_probability = 0.9999;
+  config.covariance = false;
+  EXPECT_THROW(Estimator(config, {}, SimulatedMotion::rig(), 1), InputError);
 }
 
 TEST(CalibrationConvergence, WithoutAnImuTheDepthScaleStaysAtOne) {
