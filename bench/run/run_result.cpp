@@ -60,8 +60,8 @@ std::vector<std::string> calibration_warnings(const EstimatedCalibration& calibr
        fmt::format("depth scale, {:.3f} at the end,", calibration.depth_scale), "backend.depth.scale_bound");
   if (calibration.depth_scale_agrees == false) {
     warnings.push_back(fmt::format(
-        "calibration: the data contradicts the depth scale of the rig; it is {:.4f} +- {:.4f}, the "
-        "poses before it was estimated are off by that factor",
+        "calibration: the data contradicts the depth scale of the rig; it is {:.4f} +- {:.4f} (standard "
+        "deviation), the poses before it was estimated are less accurate",
         calibration.depth_scale, calibration.depth_scale_sigma.value_or(0.0)));
   }
   if (calibration.extrinsics_agree == false) {

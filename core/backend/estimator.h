@@ -34,6 +34,7 @@
 
 namespace stillpoint {
 
+/// Ratio of measured to true depth.
 struct DepthScaleEstimate {
   double value = 1.0;
   double sigma = 0.0;  ///< standard deviation

@@ -52,7 +52,8 @@ void Estimator::align_rotations() {
 }
 
 /// With the newest frame, at the same pose of its camera. Gravity and biases were estimated with the
-/// calibration of the rig: the former is uncertain, and the latter are forgotten.
+/// calibration of the rig: gravity is uncertain, and the bias of the accelerometer is forgotten.
+/// @param gyro_bias known without that calibration, or hardly affected by it
 void Estimator::restart_with_calibration(const Eigen::Vector3d& gyro_bias) {
   const Pose T_before_after = window_.T_b_c * calibrated_window().T_b_c.inverse();
   NavState previous = previous_;

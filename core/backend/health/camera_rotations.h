@@ -9,8 +9,8 @@
 
 namespace stillpoint {
 
-/// Successive rotations of the camera over 0.2 s or more, of which a calibration that is still wrong is no
-/// part.
+/// Successive rotations of the camera over 0.2 s or more. States and calibration of the window are only their
+/// initial guess.
 class CameraRotations {
  public:
   /// @param focal_px of the camera
