@@ -119,14 +119,19 @@ void Estimator::compare_with_rig(const RigContradiction& contradiction) {
     agrees.extrinsics &= agrees_with_rig(contradiction.extrinsics, local_size(BlockKind::kExtrinsics));
 }
 
-/// About the rig. A depth scale that was found is known by the residuals of windows that are given up.
+/// About the rig. A depth scale that was found is known by the residuals of windows that are given up, and
+/// rotation and time offset, if they contradict the rig, by the rotations that they were aligned with.
 LinearPrior Estimator::prior_of_calibration() const {
-  if (!depth_scale_found_) return calibration_prior(rig_window(), backend_);
   Window window = rig_window();
   BackendConfig config = backend_;
-  window.depth_scale = depth_scale_found_->value;
-  config.depth.scale_sigma = std::min(config.depth.scale_sigma, depth_scale_found_->sigma);
-  return calibration_prior(window, config);
+  if (depth_scale_found_) {
+    window.depth_scale = depth_scale_found_->value;
+    config.depth.scale_sigma = std::min(config.depth.scale_sigma, depth_scale_found_->sigma);
+  }
+  if (!rotation_alignment_ || agrees_with_rig(*rotation_alignment_)) return calibration_prior(window, config);
+  window.T_b_c.q = rotation_alignment_->q_b_c;
+  window.time_offset_s = rotation_alignment_->time_offset_s;
+  return aligned_calibration_prior(window, config, rotation_alignment_->covariance);
 }
 
 /// Without frames, with the calibration that the priors are about.

@@ -121,6 +121,14 @@ LinearPrior calibration_prior(const Window& window, const BackendConfig& config)
   return prior;
 }
 
+LinearPrior aligned_calibration_prior(const Window& window, const BackendConfig& config,
+                                      const Eigen::Matrix4d& rotation_and_offset) {
+  LinearPrior prior = calibration_prior(window, config);
+  // Rotation and time offset are adjacent, in columns 3 to 6.
+  prior.jacobian.block<4, 4>(3, 3) = rotation_and_offset.llt().matrixL().solve(Eigen::Matrix4d::Identity());
+  return prior;
+}
+
 bool restore_gauge(const Pose& oldest_T_w_b, const BackendConfig& config, Window& window) {
   const Pose& current = window.frames.front().state.T_w_b;
   const bool translated = (current.p - oldest_T_w_b.p).norm() > kJump_m;

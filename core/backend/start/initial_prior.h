@@ -18,6 +18,10 @@ namespace stillpoint {
 /// configured uncertainty.
 [[nodiscard]] LinearPrior calibration_prior(const Window& window, const BackendConfig& config);
 
+/// calibration_prior with the covariance of a RotationAlignment for rotation and time offset.
+[[nodiscard]] LinearPrior aligned_calibration_prior(const Window& window, const BackendConfig& config,
+                                                    const Eigen::Matrix4d& rotation_and_offset);
+
 /// Restores the gauge after a jump of the whole window. Without inertial data only the marginalization prior
 /// constrains the pose of the oldest frame in the world. If a solve moves it by more than 0.1 m or 0.02 rad,
 /// the prior is inconsistent, that is, it was linearized from a moving landmark. All poses are then

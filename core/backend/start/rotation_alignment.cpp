@@ -106,14 +106,12 @@ std::optional<RotationAlignment> RotationAligner::align(Timestamp now, ImuBuffer
     found.time_offset_s += step[3];
     found.gyro_bias += step.tail<3>();
   }
-  const Eigen::Matrix<double, 7, 7> covariance = normal_equations(found, imu).H.inverse();
-  found.rotation_sigma_rad = largest_sigma(covariance.topLeftCorner<3, 3>());
-  found.offset_sigma_s = std::sqrt(covariance(3, 3));
+  found.covariance = normal_equations(found, imu).H.inverse().topLeftCorner<4, 4>();
   Eigen::Vector4d from_rig;
   from_rig << log_so3(q_b_c_.conjugate() * found.q_b_c), found.time_offset_s - time_offset_s_;
-  found.rig_contradiction = from_rig.dot(covariance.topLeftCorner<4, 4>().llt().solve(from_rig));
-  const bool certain =
-      found.rotation_sigma_rad < kCertainRotation_rad && found.offset_sigma_s < kCertainOffset_s;
+  found.rig_contradiction = from_rig.dot(found.covariance.llt().solve(from_rig));
+  const bool certain = largest_sigma(found.covariance.topLeftCorner<3, 3>()) < kCertainRotation_rad &&
+                       found.covariance(3, 3) < kCertainOffset_s * kCertainOffset_s;
   if (!certain && span < kMaxSpan_s) return std::nullopt;
   return found;
 }

@@ -17,8 +17,8 @@ struct RotationAlignment {
   Eigen::Quaterniond q_b_c = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;                           ///< of the IMU clock, as in Rig
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< [rad/s]
-  double rotation_sigma_rad = 0.0;                      ///< largest standard deviation of q_b_c about an axis
-  double offset_sigma_s = 0.0;
+  /// Of (theta, time offset), with q_b_c Exp(theta): the prior included.
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   /// d^T C^-1 d of the difference d of q_b_c and time offset from the rig: four degrees of freedom.
   double rig_contradiction = 0.0;
 };

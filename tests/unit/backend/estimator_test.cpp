@@ -228,6 +228,14 @@ TEST(Estimator, RejectsMonocularInitializationWithDepth) {
   EXPECT_THROW(Estimator(config, {}, SimulatedMotion::rig(), 1), InputError);
 }
 
+TEST(Estimator, RejectsAComparisonWithTheRigWithoutACovariance) {
+  BackendConfig config = every_frame();
+  config.estimate_extrinsics = true;
+  config.calibration_agreement_probability = 0.9999;
+  config.covariance = false;
+  EXPECT_THROW(Estimator(config, {}, SimulatedMotion::rig(), 1), InputError);
+}
+
 TEST(Estimator, RejectsARigWithoutTheRequiredImu) {
   Rig rig = SimulatedMotion::rig();
   rig.has_imu = false;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 namespace stillpoint {
 namespace {
 
@@ -30,6 +32,22 @@ TEST(RestoreGauge, IgnoresAShiftOfCentimeters) {
   for (WindowFrame& frame : window.frames) frame.state.T_w_b.p.y() += 0.05;
   EXPECT_FALSE(restore_gauge(oldest, {}, window));
   EXPECT_EQ(window.frames[0].state.T_w_b.p.y(), 0.05);
+}
+
+TEST(AlignedCalibrationPrior, HasTheCovarianceOfTheAlignment) {
+  BackendConfig config;
+  config.extrinsics_sigma_m = 0.02;
+  config.depth.estimate_scale = true;
+  config.depth.scale_sigma = 0.1;
+  const Eigen::Vector4d common(2.0, -1.0, 0.5, 0.3);
+  const Eigen::Matrix4d aligned = 1e-4 * (common * common.transpose() +
+                                          Eigen::Matrix4d(Eigen::Vector4d(1.0, 2.0, 3.0, 0.1).asDiagonal()));
+  const LinearPrior prior = aligned_calibration_prior(two_frames(), config, aligned);
+  const Eigen::MatrixXd covariance = (prior.jacobian.transpose() * prior.jacobian).inverse();
+  EXPECT_TRUE((covariance.block<4, 4>(3, 3)).isApprox(aligned, 1e-9));
+  EXPECT_TRUE((covariance.topLeftCorner<3, 3>()).isApprox(4e-4 * Eigen::Matrix3d::Identity(), 1e-9));
+  EXPECT_NEAR(covariance(7, 7), 0.01, 1e-9);
+  EXPECT_TRUE(prior.residual.isZero());
 }
 
 }  // namespace
