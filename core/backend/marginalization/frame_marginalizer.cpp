@@ -6,6 +6,13 @@
 #include "core/base/error.h"
 
 namespace stillpoint {
+namespace {
+
+/// Pivots below this ratio of the largest entry of the prior are rounding errors: those of rendered sequences
+/// are below 1e-13, and those of real constraints above 1e-6.
+constexpr double kPivotTolerance = 1e-9;
+
+}  // namespace
 
 /// Splits blocks and columns of the prior into those of the frame and the others.
 void FrameMarginalizer::split(int frame, const LinearPrior& prior) {
@@ -43,7 +50,8 @@ LinearPrior FrameMarginalizer::remove(int frame, LinearPrior prior) {
     Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxRows + 1> workspace;
     Eigen::Map<Eigen::MatrixXd>& rotated = remaining_columns_;
     qr_.householderQ().adjoint().applyThisOnTheLeft(rotated, workspace);
-    rank = qr_.rank();
+    const double floor = kPivotTolerance * prior.jacobian.cwiseAbs().maxCoeff();
+    rank = (qr_.matrixQR().diagonal().array().abs() > floor).count();
   }
   const Eigen::Index rows = remaining_columns_.rows() - rank;
   result_.jacobian = remaining_columns_.bottomLeftCorner(rows, remaining_columns_.cols() - 1);

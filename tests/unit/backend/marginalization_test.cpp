@@ -72,6 +72,23 @@ TEST(Marginalization, RemovingAFrameFromAPriorPreservesTheMarginalsOfTheOthers) 
   EXPECT_LT((information - 0.5 * Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-9);
 }
 
+/// x1 is known along one direction only. The other entries of its columns are rounding errors, with which a
+/// row that determines x0 must not be explained.
+TEST(Marginalization, RoundingErrorsOfAFrameDoNotRemoveTheInformationOfOthers) {
+  Eigen::VectorXd origin(7);
+  origin << 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  LinearPrior prior;
+  prior.blocks = {{BlockKind::kPose, 0, origin}, {BlockKind::kPose, 1, origin}};
+  prior.jacobian = Eigen::MatrixXd::Zero(7, 12);
+  prior.jacobian.topLeftCorner<6, 6>() = 100.0 * Eigen::MatrixXd::Identity(6, 6);
+  prior.jacobian.block<6, 6>(0, 6) = 1e-10 * Eigen::MatrixXd::Identity(6, 6);
+  prior.jacobian(6, 6) = 1000.0;
+  prior.residual = Eigen::VectorXd::Zero(7);
+  const LinearPrior remaining = FrameMarginalizer().remove(1, prior);
+  const Eigen::MatrixXd information = remaining.jacobian.transpose() * remaining.jacobian;
+  EXPECT_LT((information - 1e4 * Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-3);
+}
+
 /// Five frames with an IMU; the first landmark is lost after frame 3.
 Window inertial_window_with_ended_track() {
   Window window = visual_window(5, 30);
