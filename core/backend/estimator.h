@@ -121,7 +121,6 @@ class Estimator {
   [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
   [[nodiscard]] bool agrees_with_rig(const RotationAlignment& alignment) const;
   void compare_with_rig(const RigContradiction& contradiction);
-  [[nodiscard]] Window rig_window() const;
   [[nodiscard]] LinearPrior prior_of_calibration() const;
   void begin_window(WindowFrame first);
   void push_frame(const TrackedFrame& frame);

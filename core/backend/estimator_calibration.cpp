@@ -83,9 +83,12 @@ void Estimator::begin_window(WindowFrame first) {
   window_.calibration = prior_of_calibration();
 }
 
-/// Without frames.
+/// Without frames, with the calibration that its prior is about.
 Window Estimator::calibrated_window() const {
-  Window window = rig_window();
+  Window window;
+  window.T_b_c = rig_.T_b_c;
+  window.time_offset_s = rig_.time_offset_s;
+  window.time_offset_model = backend_.time_offset_model;
   const bool starts_with_rig = uses_imu() && backend_.calibration_agreement_probability > 0.0;
   window.agrees_with_rig = {
       .extrinsics = starts_with_rig && backend_.estimate_extrinsics,
@@ -122,25 +125,12 @@ void Estimator::compare_with_rig(const RigContradiction& contradiction) {
 /// About the rig. A depth scale that was found is known by the residuals of windows that are given up, and
 /// rotation and time offset, if they contradict the rig, by the rotations that they were aligned with.
 LinearPrior Estimator::prior_of_calibration() const {
-  Window window = rig_window();
+  const Window window = calibrated_window();
   BackendConfig config = backend_;
-  if (depth_scale_found_) {
-    window.depth_scale = depth_scale_found_->value;
+  if (depth_scale_found_)
     config.depth.scale_sigma = std::min(config.depth.scale_sigma, depth_scale_found_->sigma);
-  }
   if (!rotation_alignment_ || agrees_with_rig(*rotation_alignment_)) return calibration_prior(window, config);
-  window.T_b_c.q = rotation_alignment_->q_b_c;
-  window.time_offset_s = rotation_alignment_->time_offset_s;
   return aligned_calibration_prior(window, config, rotation_alignment_->covariance);
-}
-
-/// Without frames, with the calibration that the priors are about.
-Window Estimator::rig_window() const {
-  Window window;
-  window.T_b_c = rig_.T_b_c;
-  window.time_offset_s = rig_.time_offset_s;
-  window.time_offset_model = backend_.time_offset_model;
-  return window;
 }
 
 }  // namespace stillpoint

@@ -8,8 +8,8 @@
 namespace stillpoint {
 namespace {
 
-/// Pivots below this ratio of the largest entry of the prior are rounding errors: those of rendered sequences
-/// are below 1e-13, and those of real constraints above 1e-6.
+/// Pivots below this ratio of the largest entry of the prior are rounding errors: on a rendered sequence
+/// those are below 1e-13, and pivots of constraints above 1e-6.
 constexpr double kPivotTolerance = 1e-9;
 
 }  // namespace

@@ -54,17 +54,23 @@ TEST(Marginalization, AnUnconnectedFrameLeavesAnEmptyPrior) {
   }
 }
 
-TEST(Marginalization, RemovingAFrameFromAPriorPreservesTheMarginalsOfTheOthers) {
-  // x0 - x1 = 0 and x1 = 0, both with unit weight.
+/// With zero Jacobians and residuals.
+LinearPrior prior_of_two_poses(int rows) {
   Eigen::VectorXd origin(7);
   origin << 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0;
   LinearPrior prior;
   prior.blocks = {{BlockKind::kPose, 0, origin}, {BlockKind::kPose, 1, origin}};
-  prior.jacobian = Eigen::MatrixXd::Zero(12, 12);
+  prior.jacobian = Eigen::MatrixXd::Zero(rows, 12);
+  prior.residual = Eigen::VectorXd::Zero(rows);
+  return prior;
+}
+
+TEST(Marginalization, RemovingAFrameFromAPriorPreservesTheMarginalsOfTheOthers) {
+  // x0 - x1 = 0 and x1 = 0, both with unit weight.
+  LinearPrior prior = prior_of_two_poses(12);
   prior.jacobian.topLeftCorner<6, 6>().setIdentity();
   prior.jacobian.topRightCorner<6, 6>() = -Eigen::MatrixXd::Identity(6, 6);
   prior.jacobian.bottomRightCorner<6, 6>().setIdentity();
-  prior.residual = Eigen::VectorXd::Zero(12);
   const LinearPrior remaining = FrameMarginalizer().remove(1, prior);
   ASSERT_EQ(remaining.blocks.size(), 1u);
   const Eigen::MatrixXd information = remaining.jacobian.transpose() * remaining.jacobian;
@@ -75,15 +81,10 @@ TEST(Marginalization, RemovingAFrameFromAPriorPreservesTheMarginalsOfTheOthers) 
 /// x1 is known along one direction only. The other entries of its columns are rounding errors, with which a
 /// row that determines x0 must not be explained.
 TEST(Marginalization, RoundingErrorsOfAFrameDoNotRemoveTheInformationOfOthers) {
-  Eigen::VectorXd origin(7);
-  origin << 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0;
-  LinearPrior prior;
-  prior.blocks = {{BlockKind::kPose, 0, origin}, {BlockKind::kPose, 1, origin}};
-  prior.jacobian = Eigen::MatrixXd::Zero(7, 12);
+  LinearPrior prior = prior_of_two_poses(7);
   prior.jacobian.topLeftCorner<6, 6>() = 100.0 * Eigen::MatrixXd::Identity(6, 6);
   prior.jacobian.block<6, 6>(0, 6) = 1e-10 * Eigen::MatrixXd::Identity(6, 6);
   prior.jacobian(6, 6) = 1000.0;
-  prior.residual = Eigen::VectorXd::Zero(7);
   const LinearPrior remaining = FrameMarginalizer().remove(1, prior);
   const Eigen::MatrixXd information = remaining.jacobian.transpose() * remaining.jacobian;
   EXPECT_LT((information - 1e4 * Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-3);
