@@ -18,8 +18,8 @@ expect_fault style.sh "core/imu/a.h: no SPDX line" "a missing licence line"
 tree_with core/imu/a.h "$licence"
 expect_fault style.sh "core/imu/a.h: no #pragma once" "a header without a guard"
 tree_with core/imu/a.cpp "$licence
-$(yes '// line' | head -n 300)"
-expect_fault style.sh "core/imu/a.cpp: more than 300 lines" "a file of 301 lines"
+$(yes '// line' | head -n 600)"
+expect_fault style.sh "core/imu/a.cpp: more than 600 lines" "a file of 601 lines"
 tree_with core/imu/a.cpp "$licence
 using namespace std;"
 expect_fault style.sh "core/imu/a.cpp: using namespace at file scope" "using namespace"
@@ -28,14 +28,14 @@ tree_with tests/unit/a.cpp "$licence
 expect_fault style.sh "tests/unit/a.cpp: TODO" "a debt without an issue"
 tree_with core/imu/a.cpp "$licence
 int a() {
-$(yes '  step();' | head -n 38)
+$(yes '  step();' | head -n 58)
 }"
-expect_clean style.sh "a function of 40 lines"
+expect_clean style.sh "a function of 60 lines"
 tree_with core/imu/a.cpp "$licence
 int a() {
-$(yes '  step();' | head -n 39)
+$(yes '  step();' | head -n 59)
 }"
-expect_fault style.sh "core/imu/a.cpp:2 a: more than 40 lines" "a function of 41 lines"
+expect_fault style.sh "core/imu/a.cpp:2 a: more than 60 lines" "a function of 61 lines"
 tree_with core/imu/a.cpp "$licence
 double a(int b, const std::map<int, int>& c, double (*f)(int, int), int d = g(1, 2)) { return 0.0; }
 int callback(void* context, const char* name, long, long, unsigned, void**) { return 0; }"
