@@ -24,9 +24,9 @@ base="${1:-main}"
 step "format"
 scripts/format.sh --check
 
-step "layers, paper map, style, language, one-definition rule"
+step "layers, documents, style, language, one-definition rule"
 scripts/layers.sh
-scripts/paper_map.sh
+scripts/documents.sh
 scripts/style.sh
 scripts/language.sh
 scripts/odr.sh

@@ -4,7 +4,7 @@
 #   scripts/setup.sh         what building, testing and running need
 #   scripts/setup.sh --dev   also clang-format and clang-tidy, for scripts/check.sh, and valgrind, to count instructions
 #   scripts/setup.sh --pages also a browser and LaTeX, for the tests of pages and tables that are skipped without
-#   scripts/setup.sh --docs  also Doxygen, for scripts/docs.sh
+#   scripts/setup.sh --docs  also Doxygen and Graphviz, for scripts/docs.sh
 #   scripts/setup.sh --oracles also the ROS 1 bag library of Debian, which tests compare the own reader with
 #   scripts/setup.sh --cluster also Slurm, sshd, GNU parallel and rsync, for the tests of `bench --executor`; the packages
 #                            start their services under systemd, which the tests do not use
@@ -28,7 +28,7 @@ packages=(
 dev=(clang-format clang-tidy valgrind)
 pages=(chromium texlive-latex-recommended)
 { command -v node && command -v npm; } >/dev/null || pages+=(nodejs npm)
-docs=(doxygen)
+docs=(doxygen graphviz)
 oracles=(python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-tf2-msgs)
 cluster=(munge slurm-wlm openssh-server parallel rsync zstd)
 case "${1:-}" in

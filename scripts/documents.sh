@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Checks that the documents lead nowhere wrong: every path of the paper map (core/README.md), every link and every path in code
+# marks exists, no document is longer than its limit, and each diagram was made from its present source.
+#   scripts/documents.sh [ROOT]
+# A path is a folder, a file, or a pair of files named without their endings; in code marks it begins with a folder of the root.
+set -euo pipefail
+cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
+
+faults=0
+complain() {
+  echo "$1"
+  faults=$((faults + 1))
+}
+exists() { [[ -e "$1" || -e "$1.h" || -e "$1.cpp" ]]; }
+documents() { git ls-files -c -o --exclude-standard -- '*.md' 2>/dev/null || find . -name '*.md' | sed 's|^\./||'; }
+
+map=core/README.md
+rows="$(sed -n '/<!-- paper map -->/,/<!-- end of paper map -->/p' "$map" 2>/dev/null | grep '^|' | tail -n +3 || true)"
+paths="$(cut -d'|' -f3 <<<"$rows" | grep -o '`[^`]*`' | tr -d '`' || true)"
+[[ -n "$paths" ]] || complain "$map: the paper map is empty"
+while read -r path; do
+  exists "$path" || complain "$map: the paper map names $path, which does not exist"
+done <<<"$paths"
+rows_without_path="$(cut -d'|' -f3 <<<"$rows" | grep -vc '`' || true)"
+((rows_without_path == 0)) || complain "$map: $rows_without_path row(s) of the paper map name no path"
+
+# Links are relative to the document, paths in code marks to the root. Words with wildcards or in capitals are no paths.
+count=0
+while read -r document; do
+  [[ -f "$document" ]] || continue
+  count=$((count + 1))
+  while read -r target; do
+    [[ -e "$(dirname "$document")/$target" ]] || complain "$document: links to $target, which does not exist"
+  done < <(grep -oE '(\]\(|src=")[^)#"]+' "$document" | sed -E 's/^(\]\(|src=")//' | grep -vE '^https?:' || true)
+  [[ "$document" != CHANGELOG.md ]] || continue
+  while read -r path; do
+    exists "$path" || complain "$document: names $path, which does not exist"
+  done < <(grep -oE '`(core|datasets|eval|bench|reports|scripts|tests)/[A-Za-z0-9_./-]+`' "$document" | tr -d '`' | grep -v '[A-Z]\{2\}' || true)
+done < <(documents)
+
+# limit DOCUMENT... LINES
+limit() {
+  local document
+  for document in "${@:1:$#-1}"; do
+    [[ ! -f "$document" ]] || (($(wc -l <"$document") <= ${!#})) || complain "$document: more than ${!#} lines"
+  done
+}
+limit README.md reports/measured/*.md 120
+limit ARCHITECTURE.md 250
+
+for source in core/diagrams/*.dot; do
+  [[ -f "$source" ]] || continue
+  grep -qs "source: $(sha256sum "$source" | cut -c1-64)" "${source%.dot}.svg" ||
+    complain "$source: its SVG is missing or made from another source; run scripts/docs.sh --diagrams"
+done
+
+((faults == 0)) || { echo "documents: $faults fault(s)"; exit 1; }
+echo "documents: $count documents, $(wc -l <<<"$paths") paths of the paper map"
