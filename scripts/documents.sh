@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Checks that the documents lead nowhere wrong: every path of the paper map (core/README.md), every link and every path in code
-# marks exists, no document is longer than its limit, and each diagram was made from its present source.
-#   scripts/documents.sh [ROOT]
+# marks exists, no document is longer than its limit, and each diagram was made from its present source. With PROGRAM also:
+# every configuration key exists (but in the changelog and in measurements, which are those of their builds).
+#   scripts/documents.sh [ROOT [PROGRAM]]
 # A path is a folder, a file, or a pair of files named without their endings; in code marks it begins with a folder of the root.
 set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
+program="${2:-}"
 
 faults=0
 complain() {
@@ -38,6 +40,14 @@ while read -r document; do
     exists "$path" || complain "$document: names $path, which does not exist"
   done < <(grep -oE '`(core|datasets|eval|bench|reports|scripts|tests)/[A-Za-z0-9_./-]+`' "$document" | tr -d '`' | grep -v '[A-Z]\{2\}' || true)
 done < <(documents)
+
+if [[ -n "$program" ]]; then
+  keys="$("$program" config reference)"
+  while IFS=: read -r document key; do
+    grep -qF -e "\`$key\`" -e "\`$key." <<<"$keys" || complain "$document: names the key $key, which does not exist"
+  done < <(documents | grep -vE '^(CHANGELOG|reports/measured/)' | xargs -d '\n' grep -oHE \
+    '\b(backend|frontend|imu|dynamic|detector|loop|pipeline)\.[a-z_]+(\.[a-z_]+)*' | grep -vE '\.(txt|csv|h|cpp)$' | sort -u)
+fi
 
 # limit DOCUMENT... LINES
 limit() {

@@ -42,6 +42,12 @@ expect_fault documents.sh "names core/imu/gone.h" "a path in code marks that doe
 with_document reports/measured/long.md "$(printf 'line\n%.0s' {1..121})"
 expect_fault documents.sh "more than 120 lines" "a page that is too long"
 
+with_document README.md 'set `backend.solver` and `imu.walk`, see imu.txt'
+put program 'echo "| \`backend.solver\` |"'
+chmod +x "$scratch/program"
+output="$("$root/scripts/documents.sh" "$scratch" "$scratch/program" 2>&1)" && fail "a key that does not exist is not seen"
+[[ "$output" == *"imu.walk"* && "$output" != *"backend.solver"* && "$output" != *"imu.txt"* ]] || fail "keys: $output"
+
 with_document core/diagrams/a.dot 'digraph { a; }'
 put core/diagrams/a.svg "<!-- source: $(sha256sum "$scratch/core/diagrams/a.dot" | cut -c1-64) -->"
 expect_clean documents.sh "a diagram of its source"
