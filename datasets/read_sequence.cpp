@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/base/utf8_text.h"
 #include "datasets/calibration/rig_file.h"
 #include "datasets/formats/bag_format.h"
 #include "datasets/formats/formats.h"

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "core/base/fault_log.h"
+#include "core/base/error.h"
 #include "datasets/formats/sequence_content.h"
 #include "datasets/open_sequence.h"
 

@@ -16,7 +16,6 @@
 #include "bench/cli/command_words.h"
 #include "bench/record/build_info.h"
 #include "core/base/error.h"
-#include "core/base/utf8_text.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {

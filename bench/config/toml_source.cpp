@@ -10,7 +10,6 @@
 #include "bench/config/embedded_files.h"
 #include "bench/config/spelling.h"
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 
 namespace stillpoint::bench {
 namespace {

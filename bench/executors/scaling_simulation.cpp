@@ -6,8 +6,8 @@
 #include <set>
 
 #include "bench/plan/execution/run_cost.h"
+#include "core/base/content_hash.h"
 #include "core/base/error.h"
-#include "core/base/mix_bits.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "core/loop/place_index.h"
+#include "core/loop/place_recognition.h"
 
 namespace stillpoint {
 namespace {

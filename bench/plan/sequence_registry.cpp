@@ -10,7 +10,6 @@
 #include "bench/process/file_lock.h"
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
-#include "core/base/utf8_text.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {

@@ -13,7 +13,6 @@
 
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 
 namespace stillpoint::bench {
 namespace {

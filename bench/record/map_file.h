@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/types/keyframe_map.h"
+#include "core/types/loop_report.h"
 
 namespace stillpoint::bench {
 

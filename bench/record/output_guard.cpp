@@ -6,7 +6,6 @@
 
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 
 namespace stillpoint::bench {
 namespace {

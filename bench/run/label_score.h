@@ -7,7 +7,6 @@
 #include <span>
 
 #include "bench/run/drifted_tracks.h"
-#include "core/types/dynamic_label.h"
 #include "core/types/tracked_frame.h"
 #include "datasets/sensor_stream.h"
 

@@ -4,7 +4,6 @@
 #include <sqlite3.h>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 
 namespace stillpoint::bench {
 namespace {

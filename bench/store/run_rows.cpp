@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/store/run_rows.h"
 
-#include "core/base/utf8_text.h"
+#include "core/base/error.h"
 
 namespace stillpoint::bench {
 

@@ -5,7 +5,7 @@
 
 #include "core/backend/estimator.h"
 #include "core/backend/start/initial_prior.h"
-#include "core/geometry/chi_square.h"
+#include "core/geometry/covariance.h"
 
 namespace stillpoint {
 namespace {

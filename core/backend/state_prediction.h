@@ -2,12 +2,10 @@
 /// Prediction of states and camera motion outside the window. Paper Sec. III-A ("IMU preintegration").
 #pragma once
 
-#include "core/geometry/uncertain_pose.h"
+#include "core/geometry/covariance.h"
 #include "core/imu/imu_buffer.h"
 #include "core/imu/preintegration.h"
-#include "core/types/motion_prior.h"
 #include "core/types/nav_state.h"
-#include "core/types/state_covariance.h"
 
 namespace stillpoint {
 

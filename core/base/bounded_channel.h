@@ -1,18 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bounded blocking queue between threads.
+/// Bounded blocking queue between threads, which counts how long they wait for it.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "core/base/channel_waits.h"
-
 namespace stillpoint {
+
+struct WaitTime {
+  std::int64_t ns = 0;
+  std::int64_t waits = 0;  ///< calls that blocked; calls that could proceed at once are not counted
+};
+
+struct ChannelWaits {
+  std::string channel;
+  WaitTime for_items;  ///< consumers, channel empty
+  WaitTime for_room;   ///< producers, channel full
+};
 
 /// First in, first out; any number of threads may push and pop.
 template <class T>

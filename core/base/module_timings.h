@@ -29,7 +29,13 @@ enum class Module : std::uint8_t {
 inline constexpr std::size_t kModuleCount = 12;
 
 /// Stable name of a module in result files: snake_case, e.g. "feature_tracking".
-[[nodiscard]] std::string_view module_name(Module module);
+[[nodiscard]] constexpr std::string_view module_name(Module module) {
+  constexpr std::array<std::string_view, kModuleCount> kNames = {
+      "feature_tracking",   "feature_detection",   "tracking_thread",  "dynamic_recognition",
+      "state_optimization", "optimization_thread", "object_detection", "outlier_rejection",
+      "feature_mask",       "window_solve",        "marginalization",  "image_decoding"};
+  return kNames[static_cast<std::size_t>(module)];
+}
 
 /// Total time and number of calls of one module. Both are needed: Table III averages modules per call and
 /// threads per frame.

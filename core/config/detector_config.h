@@ -17,7 +17,7 @@ constexpr auto enum_names(DetectorKind) {
                                      {DetectorKind::kSimulated, "simulated"}}};
 }
 
-/// Output layout of a network; see core/detector/network_output.h.
+/// Output layout of a network; see core/detector/network_detector.h.
 enum class NetworkLayout { kDarknet, kYolov5, kYolov8, kYolox };
 constexpr auto enum_names(NetworkLayout) {
   return EnumNames<NetworkLayout, 4>{{{NetworkLayout::kDarknet, "darknet"},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Interface of detectors of potentially dynamic objects. Paper Sec. II, object detection thread.
+/// Detectors of potentially dynamic objects: interface, factory, and validation of boxes. Paper Sec. II,
+/// object detection thread.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
+
+#include <opencv2/core/types.hpp>
 
 #include "core/config/detector_config.h"
 #include "core/types/detection.h"
@@ -65,5 +69,17 @@ struct DetectorInput {
 /// not in temporal order
 [[nodiscard]] std::unique_ptr<ObjectDetector> make_object_detector(const DetectorConfig& config,
                                                                    const DetectorInput& input);
+
+struct UsableBoxes {
+  std::vector<Detection> detections;
+  DetectorCounters counters;  ///< boxes, clipped and rejected
+};
+
+/// Clips boxes to the image and removes those without area inside it.
+[[nodiscard]] UsableBoxes usable_boxes(std::vector<Detection> detections, cv::Size image_size);
+
+/// @param source name of the sets in error messages
+/// @throws InputError if the timestamps are not strictly ascending
+void require_increasing(std::span<const DetectionSet> sets, const std::string& source);
 
 }  // namespace stillpoint

@@ -9,7 +9,6 @@
 #include "core/config/dynamic_config.h"
 #include "core/dynamic/moving_consistency.h"
 #include "core/dynamic/semantic_mask.h"
-#include "core/types/dynamic_label.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {

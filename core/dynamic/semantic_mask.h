@@ -6,23 +6,65 @@
 /// `dynamic.mask` selects how the depth range of an object is computed:
 ///   "depth_threshold"  Eq. (2), the default of DynamicConfig: bench/configs/dynamic_vins.toml and
 ///                      dynamic_vins_vo.toml
-///   "depth_band"       object_depth_band.h, not in the paper: bench/configs/stillpoint.toml (the default
+///   "depth_band"       object_depth_band, not in the paper: bench/configs/stillpoint.toml (the default
 ///                      configuration of the program) and the overlay ablations/depth_band.toml
 ///   "whole_box"        d_bar = +inf: the overlay ablations/wo_seg_like_mask.toml
 ///   "off"              no mask: baselines/vins_rgbd.toml and baselines/vins_mono.toml
 /// All other files in bench/configs/ are overlays that do not change the mask.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
 #include "core/config/dynamic_config.h"
-#include "core/dynamic/depth_view.h"
 #include "core/types/detection.h"
 
 namespace stillpoint {
+
+/// A depth image registered to the color camera, in raw sensor units.
+struct DepthView {
+  cv::Mat pixels;  ///< CV_16UC1, 0 = not measured; may be empty
+  double units_per_m = 1000.0;
+};
+
+/// Largest window of `median_depth`.
+inline constexpr int kMaxDepthWindow_px = 31;
+
+/// Median of the valid depths in a square window around a pixel [m]; the upper median for an even count; 0 if
+/// the window has no valid depth. The window is clipped to the image.
+/// @param depth may be empty, which gives 0
+/// @param pixel center of the window, rounded
+/// @param window_px side of the window, odd, at most kMaxDepthWindow_px
+[[nodiscard]] double median_depth(const DepthView& depth, const Eigen::Vector2d& pixel, int window_px);
+
+/// Depths in [near_m, far_m) belong to the object.
+struct DepthBand {
+  double near_m = 0.0;
+  double far_m = std::numeric_limits<double>::infinity();
+};
+
+/// Depth interval of the object in a box (`dynamic.mask = "depth_band"`), an alternative to Eq. (2) that is
+/// not part of the paper: the interval around the mode of a center-weighted depth histogram.
+///
+///   h(b)   = sum of exp(-rho_k^2 / (2 * 0.6^2)) over the samples k whose depth lies in bin b
+///   b*     = argmax_b h(b)
+///   [l, u] = largest run of bins around b* with h(b) >= 0.1 h(b*) and |b - b*| <= ceil(extent_m / 0.1 m)
+///   result = [(l - 1) * 0.1 m, (u + 2) * 0.1 m)
+///
+/// with 24 x 24 samples k on a regular grid over the box, rho_k the distance of a sample from the box center
+/// in half side lengths, and bins b of 0.1 m up to 15 m. Unlike Eq. (2) it does not depend on single corner
+/// or center pixels, keeps features in front of the object, and finds legs in a box whose center shows the
+/// wall between them.
+///
+/// @param box      with positive area; may exceed the image
+/// @param extent_m maximum extent of the object to either side of the mode [m], > 0
+/// @return [0, inf) if the box has no valid depth
+[[nodiscard]] DepthBand object_depth_band(const DepthView& depth, const Box& box, double extent_m);
 
 /// Depths sampled on one detection box [m]; 0 = invalid.
 struct BoxDepths {

@@ -3,8 +3,7 @@
 
 #include <Eigen/LU>
 
-#include "core/frontend/depth_sampling.h"
-#include "core/frontend/track_pixels.h"
+#include "core/frontend/track.h"
 
 namespace stillpoint {
 namespace {

@@ -3,19 +3,16 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "core/frontend/depth_sampling.h"
+#include "core/base/error.h"
 #include "core/frontend/detect/feature_detector.h"
-#include "core/frontend/detect/feature_mask.h"
 #include "core/frontend/drift_correction.h"
-#include "core/frontend/feature_prediction.h"
-#include "core/frontend/frame_check.h"
 #include "core/frontend/outliers/outlier_rejection.h"
 #include "core/frontend/point_tracker.h"
 #include "core/frontend/track.h"
-#include "core/frontend/track_pixels.h"
 #include "core/frontend/view_recovery.h"
 
 namespace stillpoint {
@@ -25,6 +22,28 @@ constexpr double kClaheClip = 3.0;  // as in VINS-Mono
 const cv::Size kClaheTiles(8, 8);
 
 using DynamicIds = std::span<const std::int64_t>;
+
+std::string size_text(const cv::Size& size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+/// @throws InputError unless the gray image is CV_8UC1 of the camera's size, and depth empty or CV_16UC1 of
+/// that size
+void check_frame(const Frame& frame, const Camera& camera) {
+  const std::string location = "frame " + std::to_string(frame.id);
+  const cv::Size expected(camera.width, camera.height);
+  if (frame.gray.type() != CV_8UC1 || frame.gray.size() != expected) {
+    throw InputError(location, "gray image is " + size_text(frame.gray.size()) + " " +
+                                   cv::typeToString(frame.gray.type()) + ", expected " + size_text(expected) +
+                                   " CV_8UC1; check the calibration");
+  }
+  if (frame.depth.empty()) return;
+  if (frame.depth.type() != CV_16UC1 || frame.depth.size() != expected) {
+    throw InputError(location, "depth image is " + size_text(frame.depth.size()) + " " +
+                                   cv::typeToString(frame.depth.type()) + ", expected " +
+                                   size_text(expected) + " CV_16UC1; register it to the color image");
+  }
+}
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 
 #include "core/config/frontend_config.h"
 #include "core/types/frame.h"
-#include "core/types/motion_prior.h"
+#include "core/types/nav_state.h"
 #include "core/types/rig.h"
 #include "core/types/tracked_frame.h"
 

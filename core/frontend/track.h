@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// State of one feature track between two frames.
+/// Feature tracks between two frames: their state, their pixels as OpenCV's types, and the depth measured
+/// there.
 #pragma once
 
-#include "core/frontend/patch/track_template.h"
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
+
+#include "core/frontend/patch/patch_tracker.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {
@@ -23,5 +32,31 @@ struct Track {
   double reference_depth = 0.0;  ///< depth at the last detection [m]; 0 = not measured
   FirstView first_view;
 };
+
+inline cv::Point2f to_point(const Eigen::Vector2d& pixel) {
+  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
+}
+
+inline Eigen::Vector2d to_vector(const cv::Point2f& point) {
+  return {static_cast<double>(point.x), static_cast<double>(point.y)};
+}
+
+/// @param recycled buffer reused for the result
+inline std::vector<cv::Point2f> pixels_of(std::span<const Track> tracks,
+                                          std::vector<cv::Point2f> recycled = {}) {
+  std::vector<cv::Point2f> pixels = std::move(recycled);
+  pixels.clear();
+  for (const Track& track : tracks) pixels.push_back(to_point(track.feature.pixel));
+  return pixels;
+}
+
+/// Depth d at the nearest pixel [m], or 0 if it was not measured, lies outside the image, or lies on a depth
+/// discontinuity: (d_max - d_min) / d > `max_spread`, with d_min and d_max over the measured depths of the
+/// 3x3 neighborhood. At an object boundary a corner of the color image may get the depth of the foreground
+/// or of the background. Not specified by the paper.
+/// @param depth      CV_16UC1; empty = not measured
+/// @param max_spread 0 = no check
+[[nodiscard]] double sample_depth(const cv::Mat& depth, double depth_units_per_m,
+                                  const Eigen::Vector2d& pixel, double max_spread);
 
 }  // namespace stillpoint

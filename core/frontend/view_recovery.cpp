@@ -7,10 +7,9 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/frontend/feature_prediction.h"
-#include "core/frontend/outliers/rigid_motion.h"
+#include "core/frontend/outliers/outlier_rejection.h"
 #include "core/frontend/point_tracker.h"
-#include "core/frontend/track_pixels.h"
+#include "core/frontend/track.h"
 
 namespace stillpoint {
 namespace {

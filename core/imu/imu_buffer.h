@@ -6,8 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/types/imu_health.h"
-#include "core/types/imu_sample.h"
+#include "core/types/rig.h"
 
 namespace stillpoint {
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Midpoint preintegration of inertial samples between two times. Paper Sec. II; Qin et al. 2018 (VINS-Mono),
-/// Sec. IV-B; Forster et al. 2017.
+/// Midpoint preintegration of inertial samples between two times, and the gyro bias from rotations measured
+/// by another sensor. Paper Sec. II; Qin et al. 2018 (VINS-Mono), Sec. IV-B and V-B1; Forster et al. 2017.
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "core/geometry/pose.h"
-#include "core/types/imu_sample.h"
 #include "core/types/nav_state.h"
+#include "core/types/rig.h"
 
 namespace stillpoint {
 
@@ -128,5 +129,22 @@ class Preintegration {
   Matrix15 jacobian_ = Matrix15::Identity();
   Matrix15 sqrt_information_ = Matrix15::Zero();
 };
+
+/// An interval of inertial data and the rotation of the body over it from another source (vision, ground
+/// truth).
+struct RotationPair {
+  const Preintegration* preintegration;  ///< not owned, never null
+  Eigen::Quaterniond q_bi_bj;
+};
+
+/// Gyro bias [rad/s] by linear least squares over the rotation differences of all intervals,
+///
+///   min_b sum | Log(delta_q(b_0)^-1 q_bi_bj) - J (b - b_0) |^2,    J = d theta / d b_g,
+///
+/// with b_0 the linearization point of each preintegration. For biases of a few 0.01 rad/s iterate once:
+/// repropagate with the result and estimate again.
+///
+/// @param pairs at least one, of positive duration
+[[nodiscard]] Eigen::Vector3d estimate_gyro_bias(std::span<const RotationPair> pairs);
 
 }  // namespace stillpoint

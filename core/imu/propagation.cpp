@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/imu/propagation.h"
 
-#include "core/imu/midpoint.h"
-
 namespace stillpoint {
 
 NavState propagate(const NavState& start, std::span<const ImuSample> samples,

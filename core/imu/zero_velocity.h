@@ -5,7 +5,6 @@
 
 #include <span>
 
-#include "core/types/imu_sample.h"
 #include "core/types/nav_state.h"
 #include "core/types/rig.h"
 

@@ -8,8 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/loop/bundle_adjustment.h"
-#include "core/loop/keyframe_features.h"
-#include "core/loop/relative_pose_estimation.h"
+#include "core/loop/keyframe.h"
+#include "core/loop/loop_verification.h"
 
 namespace stillpoint {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "core/config/loop_config.h"
 #include "core/geometry/camera.h"
-#include "core/loop/keyframe_parts.h"
 #include "core/loop/loop_consistency.h"
 #include "core/loop/loop_verification.h"
 #include "core/loop/place_recognition.h"

@@ -12,7 +12,6 @@
 #include "core/backend/factors/gravity_manifold.h"
 #include "core/backend/factors/pose_manifold.h"
 #include "core/backend/factors/problem_options.h"
-#include "core/loop/pose_block.h"
 #include "core/loop/pose_graph_factors.h"
 
 namespace stillpoint {

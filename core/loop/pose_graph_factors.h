@@ -1,14 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Residuals of the pose graph. Poses are blocks (p, q xyzw); Jacobians are in the tangent space p + d,
-/// q * Exp(theta), in the first six of seven columns, see core/backend/factors/pose_manifold.h.
+/// Residuals of the pose graph and of the bundle adjustment of its keyframes. Poses are blocks (p, q xyzw);
+/// Jacobians are in the tangent space p + d, q * Exp(theta), in the first six of seven columns, see
+/// core/backend/factors/pose_manifold.h.
 #pragma once
+
+#include <array>
 
 #include <ceres/manifold.h>
 #include <ceres/sized_cost_function.h>
 
+#include "core/geometry/pose.h"
 #include "core/loop/pose_graph.h"
 
 namespace stillpoint {
+
+using PoseBlock = std::array<double, 7>;
+
+inline PoseBlock block_of(const Pose& pose) {
+  return {pose.p.x(), pose.p.y(), pose.p.z(), pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w()};
+}
+
+inline Pose pose_of(const PoseBlock& block) {
+  return {Eigen::Quaterniond(block.data() + 3).normalized(), Eigen::Vector3d(block.data())};
+}
 
 /// Relative pose of two keyframes (Carlone et al. 2015, Eq. (5), with the full covariance):
 ///
@@ -68,6 +82,32 @@ class HeadingManifold final : public ceres::Manifold {
 
  private:
   Eigen::Vector3d up_;
+};
+
+/// Landmark with measured depth in a keyframe. X: landmark in the map; p_c: measured position in the camera
+/// frame; pi(X) = (x, y) / z:
+///
+///   X_b = R_m_b^T (X - p_m_b),   X_c = T_b_c^-1 X_b
+///   r = [ (pi(X_c) - pi(p_c)) / s_b ;  (1 / z(X_c) - 1 / z(p_c)) / s_d ]
+///
+///   dX_b/dp = -R_m_b^T,   dX_b/dtheta = [X_b]x,   dX_b/dX = R_m_b^T
+///
+/// with poses as in pose_graph_factors.h.
+class PointFactor final : public ceres::SizedCostFunction<3, 7, 3> {
+ public:
+  /// @param p_c z > 0
+  /// @param bearing_sigma s_b, on the normalized image plane
+  /// @param inverse_depth_sigma s_d [1/m]
+  PointFactor(const Eigen::Vector3d& p_c, const Pose& T_b_c, double bearing_sigma,
+              double inverse_depth_sigma);
+
+  /// @return false for a landmark that is not before the camera
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  Eigen::Vector3d measured_;  ///< pi(p_c), 1 / z(p_c)
+  Pose T_c_b_;
+  Eigen::Vector3d inverse_sigmas_;
 };
 
 }  // namespace stillpoint

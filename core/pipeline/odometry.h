@@ -10,8 +10,6 @@
 #include "core/config/odometry_config.h"
 #include "core/types/detection.h"
 #include "core/types/frame.h"
-#include "core/types/imu_health.h"
-#include "core/types/imu_sample.h"
 #include "core/types/loop_report.h"
 #include "core/types/nav_state.h"
 #include "core/types/odometry_update.h"

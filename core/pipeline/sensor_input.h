@@ -8,9 +8,7 @@
 
 #include "core/types/detection.h"
 #include "core/types/frame.h"
-#include "core/types/frame_arrival.h"
-#include "core/types/imu_sample.h"
-#include "core/types/keyframe_map.h"
+#include "core/types/loop_report.h"
 #include "core/types/rig.h"
 
 namespace stillpoint {

@@ -9,14 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/channel_waits.h"
+#include "core/base/bounded_channel.h"
 #include "core/base/module_timings.h"
 #include "core/base/timestamp.h"
 #include "core/config/odometry_config.h"
 #include "core/types/detection.h"
 #include "core/types/frame.h"
-#include "core/types/imu_health.h"
-#include "core/types/imu_sample.h"
 #include "core/types/loop_report.h"
 #include "core/types/nav_state.h"
 #include "core/types/odometry_update.h"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One frame of an RGB-D camera.
+/// One frame of an RGB-D camera, and when it arrives.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+
 #include <opencv2/core/mat.hpp>
 
 #include "core/base/timestamp.h"
@@ -37,5 +39,11 @@ struct Frame {
   if (column < 0 || row < 0 || column >= depth.cols || row >= depth.rows) return 0.0;
   return depth.at<std::uint16_t>(row, column) / depth_units_per_m;
 }
+
+/// When a frame reaches the odometry: later than its exposure, in another order, or twice.
+struct FrameArrival {
+  std::size_t index = 0;  ///< position of the frame in the sequence
+  Timestamp t;            ///< not earlier than the timestamp of the frame
+};
 
 }  // namespace stillpoint

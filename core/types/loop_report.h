@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Results of loop closure: candidates with their outcome, and the optimized keyframes.
+/// Results of loop closure: candidates with their outcome, the optimized keyframes, and the map of a finished
+/// run for relocalization in later ones.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,11 +11,36 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "core/base/timestamp.h"
 #include "core/geometry/pose.h"
-#include "core/types/keyframe_map.h"
 
 namespace stillpoint {
+
+/// Binary descriptor of 256 bits.
+using Descriptor = std::array<std::uint64_t, 4>;
+
+struct KeyframeFeature {
+  Descriptor descriptor{};
+  Eigen::Vector3f p_c = Eigen::Vector3f::Zero();  ///< in the camera frame [m], p_c.z() > 0
+  std::int64_t track = -1;                        ///< of the odometry; -1: a corner, or of a loaded map
+};
+
+/// A keyframe of loop closure.
+struct Keyframe {
+  std::int64_t frame = 0;
+  Timestamp t;
+  Pose T_w_b;  ///< by the odometry; in a map: optimized
+  Pose T_b_c;
+  std::optional<Eigen::Vector3d> gravity_b;  ///< unit vector
+  std::vector<KeyframeFeature> features;     ///< the most distinctive corners first
+};
+
+/// Map of a run: keyframes with described points.
+struct KeyframeMap {
+  std::vector<Keyframe> keyframes;  ///< in the order of the run
+};
 
 /// Why a candidate was refused.
 enum class LoopOutcome : std::uint8_t {

@@ -1,13 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Sensor calibration of one robot.
+/// Sensors of one robot: inertial samples, noise, and calibration.
 #pragma once
 
+#include <Eigen/Core>
+
+#include "core/base/timestamp.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/pose.h"
-#include "core/types/imu_sample.h"
 
 namespace stillpoint {
 
+/// Angular rate [rad/s] and specific force [m/s^2] in the body frame, biases included.
+struct ImuSample {
+  Timestamp t;
+  Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();
+};
+
+/// Continuous-time noise densities, as given by a data sheet or an Allan deviation plot.
+struct ImuNoise {
+  double gyro_noise = 1.6e-3;   ///< [rad/s/sqrt(Hz)]
+  double accel_noise = 1.6e-2;  ///< [m/s^2/sqrt(Hz)]
+  double gyro_walk = 2e-5;      ///< [rad/s^2/sqrt(Hz)]
+  double accel_walk = 2e-4;     ///< [m/s^3/sqrt(Hz)]
+};
+
+/// Counts of irregularities in the IMU stream; reported with the run.
+struct ImuHealth {
+  int rejected_samples = 0;  ///< not finite, out of order or repeated
+  int gaps = 0;              ///< gaps longer than `imu.max_gap_s` in extracted intervals, each counted once
+};
+
+/// Calibration.
 struct Rig {
   Camera camera;
   double depth_units_per_m = 1000.0;  ///< raw depth value corresponding to 1 m

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/fault_log.h"
-#include "core/types/imu_sample.h"
+#include "core/base/error.h"
+#include "core/types/rig.h"
 #include "datasets/bags/bag_file.h"
 #include "datasets/bags/bag_topics.h"
 

@@ -9,7 +9,6 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 #include "datasets/bags/chunk_codec.h"
 
 namespace stillpoint::datasets {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 
 namespace stillpoint::datasets {
 namespace {

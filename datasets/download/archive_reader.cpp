@@ -7,7 +7,6 @@
 #include <archive_entry.h>
 
 #include "core/base/error.h"
-#include "core/base/utf8_text.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/types/frame_arrival.h"
+#include "core/types/frame.h"
 #include "datasets/faults/sensor_fault.h"
 
 namespace stillpoint::datasets {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/types/imu_sample.h"
+#include "core/types/rig.h"
 #include "datasets/faults/sensor_fault.h"
 
 namespace stillpoint::datasets {

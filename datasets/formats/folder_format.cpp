@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 #include "datasets/formats/formats.h"
 
 namespace stillpoint::datasets {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "core/base/fault_log.h"
+#include "core/base/error.h"
 #include "datasets/formats/sequence_content.h"
 
 namespace stillpoint::datasets {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/base/fault_log.h"
+#include "core/base/error.h"
 #include "datasets/formats/sequence_content.h"
 #include "eval/trajectory/association.h"
 

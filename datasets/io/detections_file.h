@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/fault_log.h"
+#include "core/base/error.h"
 #include "core/types/detection.h"
 
 namespace stillpoint::datasets {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/base/fault_log.h"
+#include "core/base/error.h"
 #include "core/base/timestamp.h"
 #include "eval/io/text_table.h"
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/fault_log.h"
-#include "core/types/imu_sample.h"
+#include "core/base/error.h"
+#include "core/types/rig.h"
 #include "eval/io/text_table.h"
 
 namespace stillpoint::datasets {

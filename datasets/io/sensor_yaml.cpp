@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 #include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {

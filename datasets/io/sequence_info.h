@@ -10,8 +10,6 @@
 #include "core/base/timestamp.h"
 #include "core/types/detection.h"
 #include "core/types/frame.h"
-#include "core/types/frame_arrival.h"
-#include "core/types/imu_sample.h"
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/base/mix_bits.h"
+#include "core/base/content_hash.h"
 
 namespace stillpoint::synth {
 

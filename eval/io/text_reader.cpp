@@ -9,7 +9,6 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 
 namespace stillpoint::eval {
 namespace {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/fault_log.h"
 #include "core/base/timestamp.h"
 #include "eval/io/text_reader.h"
 

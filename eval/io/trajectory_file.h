@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/fault_log.h"
+#include "core/base/error.h"
 #include "core/types/trajectory.h"
 
 namespace stillpoint::eval {

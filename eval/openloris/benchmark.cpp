@@ -6,7 +6,6 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/utf8_text.h"
 #include "eval/io/openloris_file.h"
 #include "eval/openloris/robot_frames.h"
 #include "eval/trajectory/alignment.h"

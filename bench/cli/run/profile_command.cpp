@@ -27,7 +27,6 @@
 #include "bench/record/output_guard.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -2,7 +2,7 @@
 /// Relative pose of a landmark's host camera and another camera, with its derivatives by the states.
 #pragma once
 
-#include "core/geometry/uncertain_pose.h"
+#include "core/geometry/covariance.h"
 
 namespace stillpoint {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/backend/health/bias_check.h"
-#include "core/types/state_covariance.h"
+#include "core/types/nav_state.h"
 
 namespace stillpoint {
 

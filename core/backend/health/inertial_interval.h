@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/imu/preintegration.h"
-#include "core/types/odometry_status.h"
+#include "core/types/odometry_update.h"
 
 namespace stillpoint {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/backend/window/window.h"
-#include "core/geometry/uncertain_pose.h"
+#include "core/geometry/covariance.h"
 
 namespace stillpoint {
 

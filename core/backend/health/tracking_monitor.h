@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Transitions between the states of odometry_status.h, and relocalization after a loss.
+/// Transitions between the states of odometry_update.h, and relocalization after a loss.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include "core/backend/health/trusted_map.h"
 #include "core/backend/health/vision_assessment.h"
-#include "core/types/odometry_status.h"
+#include "core/types/odometry_update.h"
 
 namespace stillpoint {
 

@@ -8,7 +8,7 @@
 
 #include "core/backend/start/camera_pose.h"
 #include "core/backend/window/window.h"
-#include "core/geometry/uncertain_pose.h"
+#include "core/geometry/covariance.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {

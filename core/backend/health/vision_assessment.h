@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/backend/start/camera_pose.h"
-#include "core/geometry/uncertain_pose.h"
+#include "core/geometry/covariance.h"
 
 namespace stillpoint {
 

@@ -8,8 +8,8 @@
 
 #include "core/backend/solvers/window_problem.h"
 #include "core/backend/solvers/window_solver.h"
-#include "core/geometry/uncertain_pose.h"
-#include "core/types/state_covariance.h"
+#include "core/geometry/covariance.h"
+#include "core/types/nav_state.h"
 
 namespace stillpoint {
 

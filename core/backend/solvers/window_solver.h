@@ -7,8 +7,8 @@
 
 #include "core/backend/window/window.h"
 #include "core/config/backend_config.h"
-#include "core/geometry/uncertain_pose.h"
-#include "core/types/state_covariance.h"
+#include "core/geometry/covariance.h"
+#include "core/types/nav_state.h"
 
 namespace stillpoint {
 

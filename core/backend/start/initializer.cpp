@@ -8,7 +8,7 @@
 
 #include "core/backend/factors/gravity_direction.h"
 #include "core/backend/start/frozen_world.h"
-#include "core/imu/gyro_bias.h"
+#include "core/imu/preintegration.h"
 
 namespace stillpoint {
 namespace {

@@ -24,7 +24,7 @@ struct InertialAlignment {
 /// Aligns the visual poses of a window with its preintegrated IMU data. The poses are metric except with the
 /// monocular initializer, which estimates the scale as well. No static start is required.
 ///
-/// 1. Gyro bias: least squares on the rotation differences of successive frames (see gyro_bias.h).
+/// 1. Gyro bias: least squares on the rotation differences of successive frames (see preintegration.h).
 /// 2. Linear alignment. Integrating from frame 0 with the visual attitudes R_k gives velocity and position
 ///    due to specific force alone,
 ///

@@ -9,7 +9,7 @@
 
 #include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
-#include "core/imu/midpoint.h"
+#include "core/imu/propagation.h"
 
 namespace stillpoint {
 namespace {

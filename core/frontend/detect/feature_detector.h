@@ -1,16 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Interface of feature detectors. Paper Sec. III-B.
+/// Feature detectors: their interface, the masks that exclude image regions (Paper Sec. III-A, III-B), and
+/// the detector of the baselines, Shi-Tomasi. The detector of the paper is in grid_detector.h.
 #pragma once
 
 #include <memory>
-#include <opencv2/core/mat.hpp>
 #include <span>
 #include <vector>
 
+#include <opencv2/core/mat.hpp>
+
 #include "core/config/frontend_config.h"
-#include "core/frontend/detect/feature_mask.h"
 
 namespace stillpoint {
+
+/// Circular masks that exclude image regions from detection: marks each pixel as free or occupied. The
+/// tracker occupies a circle around each stable feature (orange in Fig. 2 of the paper), against clustered
+/// features, and around each unstable feature, i.e. one lost since the last detection (purple), against
+/// redetection in blurred or weakly textured regions.
+class FeatureMask {
+ public:
+  /// Resizes the mask and marks all pixels as free.
+  void clear(cv::Size size);
+
+  /// Whether the pixel (rounded) lies inside the image and outside all circles.
+  [[nodiscard]] bool is_free(const cv::Point2f& pixel) const;
+
+  /// Occupies the disc around the pixel (rounded); no effect for a radius of 0 or less.
+  void occupy_circle(const cv::Point2f& pixel, int radius_px);
+
+  /// Occupies the circle if its center is free. Called from the oldest feature to the newest, it keeps the
+  /// older of two features that are too close.
+  /// @return whether the center was free
+  bool try_occupy(const cv::Point2f& pixel, int radius_px);
+
+  /// CV_8UC1, 255 = free, 0 = occupied.
+  [[nodiscard]] const cv::Mat& image() const { return image_; }
+
+ private:
+  cv::Mat image_;
+};
 
 /// Input of one detection.
 struct DetectionRequest {
@@ -36,5 +64,20 @@ class FeatureDetector {
 
 /// Creates the detector selected by the config.
 [[nodiscard]] std::unique_ptr<FeatureDetector> make_feature_detector(const FrontendConfig& config);
+
+/// Shi-Tomasi corners (minimum eigenvalue, 1994) over the whole image: the detector of VINS-Mono and
+/// VINS-RGBD, the baseline of the paper's Table III.
+class ShiTomasiDetector final : public FeatureDetector {
+ public:
+  /// @param quality minimum corner strength relative to the strongest corner of the image, in (0, 1)
+  explicit ShiTomasiDetector(double quality) : quality_(quality) {}
+
+  [[nodiscard]] const std::vector<cv::Point2f>& detect(const DetectionRequest& request) override;
+  void reset() override {}
+
+ private:
+  double quality_;
+  std::vector<cv::Point2f> corners_;
+};
 
 }  // namespace stillpoint

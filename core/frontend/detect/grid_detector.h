@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/frontend/detect/fast_cell.h"
+#include "core/frontend/detect/fast_corners.h"
 #include "core/frontend/detect/feature_detector.h"
 #include "core/frontend/detect/thread_pool.h"
 

@@ -8,7 +8,7 @@
 
 #include "core/config/odometry_config.h"
 #include "core/pipeline/state_predictor.h"
-#include "core/types/imu_sample.h"
+#include "core/types/rig.h"
 #include "core/types/trajectory.h"
 
 namespace stillpoint {

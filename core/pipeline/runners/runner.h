@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "core/base/channel_waits.h"
+#include "core/base/bounded_channel.h"
 #include "core/config/odometry_config.h"
 #include "core/detector/object_detector.h"
 #include "core/pipeline/runners/device.h"
 #include "core/pipeline/sensor_input.h"
 #include "core/pipeline/stages/frame_report.h"
-#include "core/types/imu_health.h"
 #include "core/types/loop_report.h"
+#include "core/types/rig.h"
 
 namespace stillpoint {
 

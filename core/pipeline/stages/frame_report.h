@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "core/dynamic/semantic_mask.h"
-#include "core/types/dynamic_label.h"
+#include "core/types/detection.h"
 #include "core/types/frame.h"
 #include "core/types/odometry_update.h"
-#include "core/types/tracked_box.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {

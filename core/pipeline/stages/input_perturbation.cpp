@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pipeline/stages/input_perturbation.h"
 
-#include "core/base/mix_bits.h"
+#include "core/base/content_hash.h"
 
 namespace stillpoint {
 namespace {

@@ -12,7 +12,7 @@
 
 #include <cstdint>
 
-#include "core/types/imu_sample.h"
+#include "core/types/rig.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {

@@ -9,7 +9,7 @@
 #include "core/config/odometry_config.h"
 #include "core/dynamic/feature_recognition.h"
 #include "core/dynamic/missed_detection.h"
-#include "core/dynamic/static_readmission.h"
+#include "core/dynamic/moving_consistency.h"
 #include "core/pipeline/stages/feedback.h"
 #include "core/pipeline/stages/frame_report.h"
 #include "core/pipeline/stages/input_perturbation.h"

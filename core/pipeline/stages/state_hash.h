@@ -5,7 +5,6 @@
 
 #include <span>
 
-#include "core/types/dynamic_label.h"
 #include "core/types/nav_state.h"
 #include "core/types/odometry_update.h"
 #include "core/types/tracked_frame.h"

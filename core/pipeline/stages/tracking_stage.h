@@ -8,7 +8,7 @@
 #include "core/frontend/feature_tracker.h"
 #include "core/pipeline/stages/feedback.h"
 #include "core/pipeline/stages/input_perturbation.h"
-#include "core/types/motion_prior.h"
+#include "core/types/nav_state.h"
 
 namespace stillpoint {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/timestamp.h"
-#include "core/types/imu_sample.h"
+#include "core/types/rig.h"
 #include "datasets/io/imu_file.h"
 #include "datasets/synthetic/motion/path_spline.h"
 

@@ -12,7 +12,7 @@
 #include <span>
 
 #include "core/base/timestamp.h"
-#include "core/types/imu_sample.h"
+#include "core/types/rig.h"
 #include "core/types/trajectory.h"
 #include "datasets/synthetic/motion/path_spline.h"
 

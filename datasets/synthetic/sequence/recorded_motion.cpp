@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/fault_log.h"
 #include "datasets/io/imu_file.h"
 #include "eval/io/trajectory_file.h"
 

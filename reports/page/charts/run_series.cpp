@@ -10,7 +10,7 @@
 
 #include "bench/model/csv/status_text.h"
 #include "core/base/timestamp.h"
-#include "core/types/odometry_status.h"
+#include "core/types/odometry_update.h"
 #include "eval/metrics/frame_to_frame_error.h"
 #include "eval/metrics/strict_rpe.h"
 #include "eval/protocols/protocol.h"

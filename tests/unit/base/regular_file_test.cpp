@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/regular_file.h"
+#include "core/base/error.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

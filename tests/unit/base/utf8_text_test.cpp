@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/utf8_text.h"
+#include "core/base/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/detector/network_output.h"
+#include "core/detector/network_detector.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/detector/recorded_detector.h"
+#include "core/detector/playback_detectors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/detector/usable_boxes.h"
+#include "core/detector/object_detector.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/dynamic/box_association.h"
+#include "core/dynamic/missed_detection.h"
 
 #include <gtest/gtest.h>
 
-#include "core/types/box_geometry.h"
+#include "core/types/detection.h"
 
 namespace stillpoint {
 namespace {

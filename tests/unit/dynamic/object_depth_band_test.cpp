@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/dynamic/object_depth_band.h"
+#include "core/dynamic/semantic_mask.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "core/dynamic/semantic_mask.h"
 
 namespace stillpoint {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/dynamic/static_readmission.h"
+#include "core/dynamic/moving_consistency.h"
 
 #include <gtest/gtest.h>
 

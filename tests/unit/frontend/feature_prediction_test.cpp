@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/feature_prediction.h"
+#include "core/frontend/point_tracker.h"
 
 #include <gtest/gtest.h>
 

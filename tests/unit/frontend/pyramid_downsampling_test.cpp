@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/klt/pyramid_downsampling.h"
+#include "core/frontend/klt/klt.h"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/frontend/klt/klt.h"
 #include "tests/unit/frontend/textured_image.h"
 
 namespace stillpoint {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/outliers/rigid_motion.h"
+#include "core/frontend/outliers/outlier_rejection.h"
 
 #include <gtest/gtest.h>
 

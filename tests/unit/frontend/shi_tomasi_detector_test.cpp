@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/detect/shi_tomasi_detector.h"
+#include "core/frontend/detect/feature_detector.h"
 
 #include <gtest/gtest.h>
 

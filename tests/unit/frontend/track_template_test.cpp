@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/patch/track_template.h"
+#include "core/frontend/patch/patch_tracker.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "core/geometry/chi_square.h"
+#include "core/geometry/covariance.h"
 
 namespace stillpoint {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/geometry/uncertain_pose.h"
+#include "core/geometry/covariance.h"
 
 #include <gtest/gtest.h>
 

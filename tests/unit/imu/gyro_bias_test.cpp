@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/imu/gyro_bias.h"
+#include "core/imu/preintegration.h"
 
 #include <gtest/gtest.h>
 

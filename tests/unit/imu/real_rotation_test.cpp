@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/so3.h"
-#include "core/imu/gyro_bias.h"
+#include "core/imu/preintegration.h"
 #include "tests/support/test_data.h"
 #include "tests/unit/imu/real_rotation.h"
 

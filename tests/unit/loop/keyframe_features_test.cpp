@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/loop/keyframe_features.h"
+#include "core/loop/keyframe.h"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/loop/feature_matching.h"
+#include "core/loop/loop_verification.h"
 
 namespace stillpoint {
 namespace {

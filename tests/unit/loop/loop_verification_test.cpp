@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/so3.h"
-#include "core/loop/relative_pose_estimation.h"
 #include "tests/unit/loop/random_features.h"
 
 namespace stillpoint {

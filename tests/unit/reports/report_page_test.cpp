@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/model/csv/loop_text.h"
-#include "bench/model/metrics.h"
 #include "bench/store/store_writer.h"
 #include "reports/page/charts/run_series.h"
 #include "reports/page/series_text.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frontend/depth_sampling.h"
+#include "core/frontend/track.h"
 
 #include <algorithm>
 #include <cstdint>

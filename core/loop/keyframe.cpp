@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/loop/keyframe_features.h"
+#include "core/loop/keyframe.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/types/box_geometry.h"
+#include "core/types/detection.h"
 
 namespace stillpoint {
 namespace {
