@@ -89,9 +89,8 @@ row core/examples $core $eval $datasets
 
 # --- bench: each folder includes those above it ---
 row bench/model $messages eval eval/metrics eval/trajectory
-row bench/model/csv core/base core/geometry core/types bench/model
 row bench/config core/base core/config bench/model
-row bench/store core/base core/types eval/io bench/model bench/model/csv
+row bench/store core/base core/types eval/io bench/model
 row bench/store/maintenance core/base eval/io bench/model bench/store
 row bench/process core/base bench/model
 row bench/run $common core/pipeline/runners datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/metrics eval/trajectory \
@@ -99,14 +98,14 @@ row bench/run $common core/pipeline/runners datasets datasets/cache datasets/fau
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
   bench/profile/meters
-row bench/record $common bench/profile/meters core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/model/csv bench/config bench/run \
+row bench/record $common bench/profile/meters core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/config bench/run \
   bench/profile
 row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record
 row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
 row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
-  bench/model bench/config bench/store bench/process bench/run bench/record bench/systems bench/plan
+  bench/model bench/config bench/store bench/process bench/run bench/profile/meters bench/record bench/systems bench/plan
 row bench/fetch $common core/detector datasets datasets/io datasets/catalogue datasets/download eval/io bench/model bench/config bench/process bench/record bench/plan
 row bench/executors core/base eval/io bench/model bench/store bench/store/maintenance bench/process bench/record bench/systems \
   bench/plan bench/plan/execution
@@ -122,15 +121,15 @@ row reports/drawing core/base core/types datasets/io eval/io eval/openloris eval
   reports/tables
 row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
-row reports/page/charts $stored bench/model/csv core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols reports/tables
-row reports/page $stored bench/model/csv bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/tables/formats \
+row reports/page/charts $stored core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols reports/tables
+row reports/page $stored bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/tables/formats \
   reports/drawing reports/page/charts
 row reports/dashboard $stored bench/record reports/tables reports/page
 
 # --- the program ---
 row bench/cli core/base eval/io bench/config bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
-row bench/cli/run $execution core/config datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
+row bench/cli/run $execution core/config core/pipeline/runners datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
@@ -181,7 +180,7 @@ threads=(
   'bench/plan/execution/(sequence_renderer|outcome_scorer)\.(h|cpp)'
   'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'
   'bench/profile/meters/run_monitor\.(h|cpp)'
-  'bench/record/host_info\.cpp'
+  'bench/record/run_environment\.cpp'
   'bench/cli/plan/reproduce_command\.cpp'
 )
 libraries+=("<(thread|future|execution)> ^($(IFS='|' && echo "${threads[*]}"))\$")

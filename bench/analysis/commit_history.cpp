@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "bench/analysis/run_groups.h"
-#include "bench/analysis/run_origin.h"
 #include "core/base/error.h"
 #include "eval/metrics/statistics.h"
 

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/model/replicates.h"
+#include "bench/model/stored_run.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bench/analysis/metric_change.h"
-#include "bench/analysis/test_family.h"
 #include "bench/model/stored_run.h"
 
 namespace stillpoint::bench {
@@ -40,12 +39,12 @@ struct Comparison {
 [[nodiscard]] std::string count_sentence(const Comparison& comparison);
 
 /// Compares runs that differ only in their build. The tests are exact, and corrected for their number
-/// (bench/analysis/test_family.h).
+/// (bench/analysis/metric_change.h).
 ///
 /// Accuracy is tested per variant and sequence, so that a regression on one sequence is not masked by others.
 /// The runs of a deterministic program do not scatter, but a different rounding may change a decision and
 /// with it the error by several percent. A change is therefore tested against replicates with perturbed input
-/// (bench/model/replicates.h) or other seeds; repetitions with equal trajectories count once. Where the
+/// (bench/model/stored_run.h) or other seeds; repetitions with equal trajectories count once. Where the
 /// replicates of a sequence are too few for the test, the pairs of all sequences of the variant are pooled,
 /// and the changes of the single sequences are reported as inconclusive.
 ///

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/analysis/commit_history.h"
-#include "bench/store/acceptance.h"
+#include "bench/store/store.h"
 #include "eval/statistics/change_points.h"
 #include "eval/statistics/paired.h"
 

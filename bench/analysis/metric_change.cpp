@@ -3,13 +3,295 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "bench/analysis/paired_runs.h"
+#include "bench/model/metrics.h"
+#include "bench/model/stored_run.h"
+#include "core/base/module_timings.h"
 #include "eval/metrics/statistics.h"
 #include "eval/statistics/level.h"
+#include "eval/statistics/signed_rank.h"
 
 namespace stillpoint::bench {
+namespace {
+
+std::size_t gated_count(MetricSource source) {
+  const std::vector<const MetricDescriptor*> metrics = metrics_of(source);
+  return static_cast<std::size_t>(
+      std::count_if(metrics.begin(), metrics.end(),
+                    [](const MetricDescriptor* metric) { return metric->gate.has_value(); }));
+}
+
+using Variant = std::tuple<std::string, std::string, double>;  // with the sweep point
+using Inputs = std::set<std::string>;
+
+}  // namespace
+
+TestFamily test_family(std::span<const double> smallest_p) {
+  const auto below = [&](double level) {
+    return static_cast<std::size_t>(
+        std::count_if(smallest_p.begin(), smallest_p.end(), [&](double p) { return p <= level; }));
+  };
+  TestFamily family{.tests = smallest_p.size()};
+  for (std::size_t k = 1; below(family.level) > k;) family.level = kSignificance / static_cast<double>(++k);
+  return family;
+}
+
+double smallest_rank_sum_p(std::size_t first, std::size_t second) {
+  if (first == 0 || second == 0) return 1.0;
+  double arrangements = 1.0;  // (m + n)! / (m! n!)
+  for (std::size_t i = 1; i <= second; ++i)
+    arrangements *= static_cast<double>(first + i) / static_cast<double>(i);
+  return std::min(1.0, 2.0 / arrangements);
+}
+
+std::size_t replicates_for(double level) {
+  std::size_t count = 1;
+  while (smallest_rank_sum_p(count, count) > level) ++count;
+  return count;
+}
+
+std::size_t pairs_for_plan(std::span<const RunIdentity> runs) {
+  if (runs.empty() || runs.front().kind == "instructions") return 1;
+  std::map<Variant, Inputs> variants;
+  std::map<std::pair<Variant, std::string>, Inputs> subjects;
+  for (const RunIdentity& run : runs) {
+    const Variant variant{run.variant, run.axis, run.axis_value};
+    variants[variant].insert(input_key(run));
+    subjects[{variant, run.sequence}].insert(input_key(run));
+  }
+  const std::size_t tests = gated_count(MetricSource::kTrajectory) * subjects.size() +
+                            (gated_count(MetricSource::kProcess) + kModuleCount) * variants.size();
+  const double level = kSignificance / static_cast<double>(tests);
+  std::size_t pairs = 1;
+  const auto needs_pairs = [&](std::size_t inputs) {
+    pairs = std::max(pairs, (eval::smallest_count(level) + inputs - 1) / inputs);
+  };
+  for (const auto& [variant, inputs] : variants) needs_pairs(inputs.size());
+  for (const auto& [subject, inputs] : subjects) {
+    if (inputs.size() > 1) {
+      needs_pairs(inputs.size());
+    } else {
+      pairs = std::max(pairs, replicates_for(level));
+    }
+  }
+  return pairs;
+}
+
+namespace {
+
+std::string variant_of(const RunIdentity& identity) {
+  if (identity.axis.empty() || identity.axis == kPerturbationKey) return identity.variant;
+  return fmt::format("{} {} = {}", identity.variant, identity.axis, identity.axis_value);
+}
+
+std::string subject_of(const RunIdentity& identity) {
+  return variant_of(identity) + " on " + identity.sequence;
+}
+
+/// Data, seed and config of a run.
+using Input = std::pair<std::string, std::string>;
+
+Input input_of(const RunIdentity& identity) {
+  return {input_key(identity), std::string(unperturbed_hash(identity.config_hash))};
+}
+
+/// Runs of one side, each fingerprint once.
+class DistinctRuns {
+ public:
+  void add(const StoredRun& run) {
+    if (fingerprints_.insert(fingerprint(run)).second) runs_.push_back(&run);
+  }
+  [[nodiscard]] std::vector<double> values(std::string_view metric) const {
+    std::vector<double> values;
+    for (const StoredRun* run : runs_) {
+      const std::optional<double> value = metric_value(*run, metric);
+      if (value && std::isfinite(*value)) values.push_back(*value);
+    }
+    return values;
+  }
+
+ private:
+  std::set<std::string> fingerprints_;
+  std::vector<const StoredRun*> runs_;
+};
+
+/// The paired runs of one variant on one sequence.
+struct PairedSubject {
+  std::vector<RunPair> pairs;  ///< with different fingerprints on at least one side
+  std::set<Input> inputs;
+  std::set<std::tuple<Input, std::string, std::string>> fingerprints;
+
+  void add(const RunPair& pair) {
+    const Input input = input_of(pair.base->identity);
+    inputs.insert(input);
+    if (fingerprints.insert({input, fingerprint(*pair.base), fingerprint(*pair.head)}).second)
+      pairs.push_back(pair);
+  }
+
+  /// The runs of one side, and its perturbed runs without counterpart.
+  [[nodiscard]] DistinctRuns side(const StoredRun* RunPair::*member,
+                                  const std::vector<const StoredRun*>& others) const {
+    DistinctRuns runs;
+    for (const RunPair& pair : pairs) runs.add(*(pair.*member));
+    const Input input = input_of((pairs.front().*member)->identity);
+    for (const StoredRun* run : others) {
+      const RunIdentity& identity = run->identity;
+      if (run->outcome == Outcome::kOk && is_perturbed(identity.config_hash) && input_of(identity) == input)
+        runs.add(*run);
+    }
+    return runs;
+  }
+};
+
+MetricSeries series_of(const Metric& stored, const PairedSubject& runs) {
+  const RunIdentity& identity = runs.pairs.front().base->identity;
+  MetricSeries series{.metric = stored.name,
+                      .subject = subject_of(identity),
+                      .variant = variant_of(identity),
+                      .unit = stored.unit,
+                      .descriptor = gated_metric(stored.name),
+                      .inputs = runs.inputs.size()};
+  for (const RunPair& pair : runs.pairs) {
+    const std::optional<double> base = metric_value(*pair.base, stored.name);
+    const std::optional<double> head = metric_value(*pair.head, stored.name);
+    if (base && head && std::isfinite(*base) && std::isfinite(*head)) series.pairs.push_back({*base, *head});
+  }
+  return series;
+}
+
+bool is_gated(const Metric& metric, MetricFamily family) {
+  const MetricDescriptor* descriptor = gated_metric(metric.name);
+  return descriptor != nullptr && descriptor->gate->family == family;
+}
+
+/// Series of costs by metric and subject.
+class CostTable {
+ public:
+  void add(const RunIdentity& identity, const MetricDescriptor& metric, const std::string& name,
+           const eval::Pair& pair) {
+    const bool is_exact = metric.gate->repeatable;
+    const std::string subject = is_exact ? subject_of(identity) : variant_of(identity);
+    MetricSeries& series = table_[{name, subject}];
+    series.metric = name;
+    series.subject = subject;
+    series.variant = variant_of(identity);
+    series.unit = std::string(metric.unit);
+    series.descriptor = &metric;
+    series.test = is_exact ? ChangeTest::kExact : ChangeTest::kPairs;
+    if (std::isfinite(pair.base) && std::isfinite(pair.changed)) series.pairs.push_back(pair);
+    inputs_[{name, subject}].insert(input_of(identity));
+    series.inputs = inputs_[{name, subject}].size();
+  }
+
+  [[nodiscard]] std::vector<MetricSeries> all() const {
+    std::vector<MetricSeries> list;
+    for (const auto& [key, series] : table_) list.push_back(series);
+    return list;
+  }
+
+ private:
+  using Key = std::pair<std::string, std::string>;
+  std::map<Key, MetricSeries> table_;
+  std::map<Key, std::set<Input>> inputs_;
+};
+
+/// Pairs that the signed-rank test does not omit.
+std::size_t different_pairs(const MetricSeries& series) {
+  return static_cast<std::size_t>(
+      std::count_if(series.pairs.begin(), series.pairs.end(),
+                    [](const eval::Pair& pair) { return pair.base != 0.0 && pair.base != pair.changed; }));
+}
+
+std::vector<double> sorted(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+}  // namespace
+
+std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
+  std::map<std::string, PairedSubject> subjects;
+  for (const RunPair& pair : runs.pairs) {
+    if (both_succeeded(pair)) subjects[subject_of(pair.base->identity)].add(pair);
+  }
+  std::vector<MetricSeries> list;
+  for (const auto& [subject, members] : subjects) {
+    for (const Metric& metric : members.pairs.front().base->metrics) {
+      if (!is_gated(metric, MetricFamily::kAccuracy)) continue;
+      MetricSeries series = series_of(metric, members);
+      if (series.pairs.empty()) continue;
+      if (series.inputs == 1) {
+        series.test = ChangeTest::kReplicates;
+        series.base = members.side(&RunPair::base, runs.only_in_base).values(metric.name);
+        series.head = members.side(&RunPair::head, runs.only_in_head).values(metric.name);
+      }
+      list.push_back(std::move(series));
+    }
+  }
+  return list;
+}
+
+std::vector<MetricSeries> cost_series(const PairedRuns& runs) {
+  CostTable table;
+  for (const RunPair& pair : runs.pairs) {
+    if (!both_succeeded(pair)) continue;
+    const RunIdentity& identity = pair.base->identity;
+    for (const Metric& base : pair.base->metrics) {
+      const std::optional<double> head = metric_value(*pair.head, base.name);
+      if (head && is_gated(base, MetricFamily::kCost))
+        table.add(identity, *gated_metric(base.name), base.name, {base.value, *head});
+    }
+    for (const ModuleCost& base : pair.base->costs) {
+      for (const ModuleCost& head : pair.head->costs) {
+        if (base.module == head.module)
+          table.add(identity, *gated_metric(metric_id::kModuleTime), base.module,
+                    {base.mean_ms, head.mean_ms});
+      }
+    }
+  }
+  return table.all();
+}
+
+MetricSeries pooled(const std::vector<const MetricSeries*>& parts) {
+  MetricSeries series = *parts.front();
+  series.subject = series.variant + " on all sequences";
+  series.test = ChangeTest::kPairs;
+  series.decides = true;
+  series.inputs = 0;
+  series.pairs.clear();
+  series.base.clear();
+  series.head.clear();
+  for (const MetricSeries* part : parts) {
+    series.inputs += part->inputs;
+    series.pairs.insert(series.pairs.end(), part->pairs.begin(), part->pairs.end());
+  }
+  return series;
+}
+
+bool is_tested(const MetricSeries& series) {
+  if (series.test == ChangeTest::kExact) return false;
+  if (series.test == ChangeTest::kReplicates) return sorted(series.base) != sorted(series.head);
+  return different_pairs(series) > 0;
+}
+
+double smallest_p_of(const MetricSeries& series) {
+  return series.test == ChangeTest::kReplicates ? smallest_rank_sum_p(series.base.size(), series.head.size())
+                                                : eval::smallest_p(different_pairs(series));
+}
+
+std::size_t pairs_for(const MetricSeries& series, double level) {
+  if (series.test == ChangeTest::kReplicates) return replicates_for(level);
+  return (eval::smallest_count(level) + series.inputs - 1) / series.inputs;
+}
+
 namespace {
 
 std::optional<eval::RelativeChange> tested_change(const MetricSeries& series, double confidence) {

@@ -1,17 +1,103 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Size, significance and class of the change of one metric.
+///
+/// Correction for the number of tests in one comparison, and the number of pairs that it requires.
+///
+/// A comparison tests m metrics at once: five of accuracy for each variant and sequence, and fourteen of cost
+/// for each variant, 150 in all for the plan `quick`. The probability that any metric of an unchanged program
+/// is called better or worse shall be at most a = 0.05. Bonferroni's level a / m achieves this for any
+/// dependence between the metrics, but spends a part of the error on tests that cannot reject at all: with n
+/// pairs an exact test has no p-value below some p* > 0, and none at all where base and head are equal.
+/// Tarone (Biometrics 46, 1990) leaves these out:
+///
+///   K = min{k >= 1: #{j: p*_j <= a / k} <= k},  metric j is significant if p_j <= a / K
+///
+/// At most K tests can reject at this level, each with probability <= a / K, so the sum is <= a. K is fixed
+/// before the signs of the differences are known, because p*_j depends on the number of pairs and ties only.
+///
+/// Smallest p-values: 2^(1-n) for n pairs (signed-rank test), 2 m! n! / (m + n)! for m and n replicates (rank
+/// test of two samples). Replicates on one input need fewer runs: for 150 tests 8 per side, where pairs would
+/// have to be 13; pairs are better where inputs or the state of the machine differ. Step-down procedures
+/// (Holm) have the same first step, and save no pairs.
+///
+/// Values of the compared metrics over paired runs, and the test that is valid for them.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "bench/analysis/metric_series.h"
-#include "bench/analysis/test_family.h"
+#include "bench/analysis/paired_runs.h"
 #include "bench/model/metrics.h"
+#include "bench/model/stored_run.h"
 #include "eval/statistics/paired.h"
 
 namespace stillpoint::bench {
+
+/// Largest probability of a false statement in one comparison.
+inline constexpr double kSignificance = 0.05;
+
+struct TestFamily {
+  std::size_t tests = 0;         ///< m
+  double level = kSignificance;  ///< largest p-value of a significant change, a / K
+};
+
+/// @param smallest_p p*_j of each metric that differs between base and head
+[[nodiscard]] TestFamily test_family(std::span<const double> smallest_p);
+
+/// Smallest two-sided p-value of the rank test of two samples; 1 if one is empty.
+[[nodiscard]] double smallest_rank_sum_p(std::size_t first, std::size_t second);
+
+/// Smallest number of replicates per side whose rank test reaches a p-value of `level`.
+/// @param level in (0, 1]
+[[nodiscard]] std::size_t replicates_for(double level);
+
+/// Smallest number of pairs per run with which each metric of a plan can be significant.
+/// @param runs the runs of one program, without repetitions
+/// @return 1 for runs that count instructions, which need no test
+[[nodiscard]] std::size_t pairs_for_plan(std::span<const RunIdentity> runs);
+
+enum class ChangeTest {
+  kExact,       ///< none: the metric has no noise, each difference is caused by the program (instructions)
+  kPairs,       ///< signed-rank test over pairs: times, memory, and accuracy over several inputs
+  kReplicates,  ///< rank test of two samples: accuracy over replicates on one input
+};
+
+/// One metric on one subject.
+struct MetricSeries {
+  std::string metric;   ///< metric name, or name of the timed module
+  std::string subject;  ///< variant, and sequence if tested per sequence
+  std::string variant;  ///< with the sweep point
+  std::string unit;
+  const MetricDescriptor* descriptor = nullptr;  ///< with a gate
+  ChangeTest test = ChangeTest::kPairs;
+  std::size_t inputs = 1;         ///< number of different data and seeds
+  std::vector<eval::Pair> pairs;  ///< one per pair of runs
+  std::vector<double> base;       ///< `kReplicates`: one value per replicate
+  std::vector<double> head;
+  bool decides = true;  ///< false: the result of the comparison is that of `pooled` instead
+};
+
+/// Accuracy per variant and sequence, from runs that succeeded. Runs with equal fingerprints count once. With
+/// one input, replicates of only one side are used as well.
+[[nodiscard]] std::vector<MetricSeries> accuracy_series(const PairedRuns& runs);
+
+/// Times and memory per variant, over all its sequences; instructions per variant and sequence.
+[[nodiscard]] std::vector<MetricSeries> cost_series(const PairedRuns& runs);
+
+/// The pairs of several series of one metric and variant as one series of the variant.
+[[nodiscard]] MetricSeries pooled(const std::vector<const MetricSeries*>& parts);
+
+/// Whether the series is tested: base and head differ, and not exactly known.
+[[nodiscard]] bool is_tested(const MetricSeries& series);
+
+/// Smallest p-value that a tested series can reach with its number of pairs.
+[[nodiscard]] double smallest_p_of(const MetricSeries& series);
+
+/// Smallest number of pairs per input with which a series can reach a p-value of `level`.
+[[nodiscard]] std::size_t pairs_for(const MetricSeries& series, double level);
 
 /// From the best to the worst result of a comparison.
 enum class ChangeClass { kSame, kBetter, kInconclusive, kWorse, kError };
@@ -29,7 +115,7 @@ struct MetricChange {
   eval::RelativeChange
       change;  ///< number of pairs, estimate, p-value, 95 % interval if there are enough pairs
   ChangeTest test = ChangeTest::kPairs;
-  double level = kSignificance;  ///< largest p-value that is significant, see bench/analysis/test_family.h
+  double level = kSignificance;  ///< largest p-value that is significant, see bench/analysis/metric_change.h
   /// Confidence interval at 1 - `level`; nullopt if there are too few pairs for it.
   std::optional<eval::Interval> adjusted_interval{};
   double largest = 0.0;     ///< largest absolute relative change of a pair

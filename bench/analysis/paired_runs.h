@@ -23,7 +23,7 @@ struct PairedRuns {
 };
 
 /// Pairs runs with equal identities except for build and config, because defaults may change with the build;
-/// the seed of a perturbation (bench/model/replicates.h) must be equal. If this matches several runs of one
+/// the seed of a perturbation (bench/model/stored_run.h) must be equal. If this matches several runs of one
 /// side, those with the same config hash are paired.
 /// @param base, head must outlive the result
 [[nodiscard]] PairedRuns paired_runs(std::span<const StoredRun> base, std::span<const StoredRun> head);

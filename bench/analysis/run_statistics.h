@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Statistics over runs: spread over repetitions, ablation effects, sweep curves, and repeatability.
+///
+/// Differences between two executions of the same run, e.g. on two machines or architectures.
 #pragma once
 
 #include <optional>
@@ -77,5 +79,23 @@ struct StageDifference {
 /// For each column of two frames.csv; empty if one is empty or they have different columns.
 [[nodiscard]] std::vector<StageDifference> stage_differences(const std::string& frames,
                                                              const std::string& others);
+
+struct ExecutionDifference {
+  std::string label;                    ///< sequence, variant, seed
+  std::size_t frames = 0;               ///< that both executed
+  std::vector<StageDifference> stages;  ///< in the order of execution; empty if not recorded
+  bool equal_trajectories = false;      ///< as stored, with nine decimals
+  double largest_m = 0.0;               ///< distance between poses of the same time, at most
+  double largest_rad = 0.0;             ///< same, angle
+  std::optional<double> ate_m;          ///< of either execution
+  std::optional<double> other_ate_m;
+};
+
+/// One row for each successful run that both stores contain: the same sequence, config, seed and source code.
+/// The poses of both are compared as they are, without alignment: both start at the same pose.
+/// @param runs of `store`
+[[nodiscard]] std::vector<ExecutionDifference> execution_differences(const Store& store,
+                                                                     std::span<const StoredRun> runs,
+                                                                     const Store& other);
 
 }  // namespace stillpoint::bench

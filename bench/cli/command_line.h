@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Declarative description of subcommands; parses the command line and executes the selected one.
+///
+/// The subcommands of the program, one source file each (`run` in run_command.cpp etc.).
+///
+/// Options whose values are the names of an enum (`enum_names` of core/base/fields.h).
+///
+/// Checks the names of commands and options on a command line before it is parsed, to suggest the nearest
+/// one.
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "core/base/error.h"
+#include "core/base/fields.h"
 
 namespace stillpoint::bench {
 
@@ -53,5 +64,81 @@ inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells repor
 /// @return exit code of the command; `kExitBadInput`, with one line on stderr, for invalid usage or
 /// InputError
 [[nodiscard]] int run_command_line(int argc, char** argv, const std::vector<Command>& commands);
+
+/// Help of the option --topics, of which the values are passed to `OpenOptions::topics`.
+inline constexpr const char* kTopicsHelp =
+    "Topic of a bag: ROLE=TOPIC, with a role color, depth, imu, gyro, accel or truth; may be repeated [by "
+    "type and "
+    "name]";
+
+/// Help of the option --sysfs-root.
+inline constexpr const char* kSysfsRootHelp =
+    "Folder with recorded sys, proc, etc and var instead of those of this machine [/]";
+
+[[nodiscard]] Command run_command();             ///< `stillpoint run`: odometry on one sequence
+[[nodiscard]] Command eval_command();            ///< `stillpoint eval`: score trajectory files
+[[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: score result files by scene
+[[nodiscard]] Command bench_command();           ///< `stillpoint bench`: execute a benchmark plan
+[[nodiscard]] Command worker_command();          ///< `stillpoint worker`: execute tasks of a plan
+[[nodiscard]] Command plan_command();            ///< `stillpoint plan`: list plans and their runs
+[[nodiscard]] Command store_command();           ///< `stillpoint store`: inspect and maintain stores
+/// `stillpoint store accept`, `withdraw` and `accepted`: accepted metric changes
+[[nodiscard]] std::vector<Command> acceptance_commands();
+[[nodiscard]] Command stats_command();        ///< `stillpoint stats`: statistics over runs
+[[nodiscard]] Command compare_command();      ///< `stillpoint compare`: regression gate
+[[nodiscard]] Command profile_command();      ///< `stillpoint profile`: profile one run
+[[nodiscard]] Command report_command();       ///< `stillpoint report`: HTML report of a store
+[[nodiscard]] Command dashboard_command();    ///< `stillpoint dashboard`: metrics over commits as HTML
+[[nodiscard]] Command regressions_command();  ///< `stillpoint regressions`: list open regressions
+[[nodiscard]] Command serve_command();        ///< `stillpoint serve`: serve the dashboard over HTTP
+[[nodiscard]] Command reproduce_command();    ///< `stillpoint reproduce`: tables of the paper
+[[nodiscard]] Command config_command();       ///< `stillpoint config`: resolved configs and the key reference
+[[nodiscard]] Command data_command();         ///< `stillpoint data`: create and inspect sequences
+[[nodiscard]] Command catalogue_command();    ///< `stillpoint data catalogue`: list public datasets
+[[nodiscard]] Command get_command();          ///< `stillpoint data get`: download sequences
+[[nodiscard]] Command verify_command();       ///< `stillpoint data verify`: compare files with their digests
+[[nodiscard]] Command cache_command();        ///< `stillpoint data cache`: decoded frames on disk
+[[nodiscard]] Command check_command();        ///< `stillpoint data check`: validate a sequence
+[[nodiscard]] Command faults_command();       ///< `stillpoint data faults`: list injectable sensor faults
+[[nodiscard]] Command export_command();       ///< `stillpoint data export`: write other layouts
+[[nodiscard]] Command device_command();       ///< `stillpoint device`: cores, temperatures, power rails
+[[nodiscard]] Command detect_command();       ///< `stillpoint detect`: record boxes of a detection network
+[[nodiscard]] Command synth_command();        ///< `stillpoint data synth`: render a sequence
+
+/// The accepted values, e.g. "none, first_pose, yaw".
+template <class Enum>
+[[nodiscard]] std::string enum_list() {
+  std::string list;
+  for (const auto& [value, name] : enum_names(Enum{})) list.append(list.empty() ? "" : ", ").append(name);
+  return list;
+}
+
+/// The value with the given name.
+/// @throws InputError naming the option and the accepted values
+template <class Enum>
+[[nodiscard]] Enum enum_of(const std::string& option, const std::string& name) {
+  for (const auto& [value, known] : enum_names(Enum{})) {
+    if (known == name) return value;
+  }
+  throw InputError(option, "unknown value \"" + name + "\"; expected one of: " + enum_list<Enum>());
+}
+
+/// `help eval openloris` as `eval openloris --help`, `help` as `--help`; other words unchanged.
+[[nodiscard]] std::vector<std::string> without_help_word(std::vector<std::string> words);
+
+/// The words that select a command and its subcommand, e.g. {"store", "list"}.
+/// @param words the arguments of the program
+/// @throws InputError for an unknown or missing command or subcommand; names the nearest one
+[[nodiscard]] std::vector<std::string> selected_names(std::span<const std::string> words,
+                                                      const std::vector<Command>& commands);
+
+/// The command with these names, as returned by `selected_names`; null without names.
+[[nodiscard]] const Command* find_command(std::span<const std::string> names,
+                                          const std::vector<Command>& commands);
+
+/// The message for an option that `command` does not have.
+/// @param typed as on the command line, e.g. "--sotre=a.sqlite"
+/// @param command may be null: the options of the program itself
+[[nodiscard]] std::string unknown_option(const std::string& typed, const Command* command);
 
 }  // namespace stillpoint::bench

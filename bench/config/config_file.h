@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Resolves configs: a base file with the files it inherits, then overlays, then single settings.
+///
+/// Text form of a config: all keys with their values, for display, manifests and comparison.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/config/odometry_config.h"
@@ -21,5 +24,32 @@ struct ConfigRequest {
 /// A file is a base if it is `dynamic_vins` or inherits it, directly or indirectly; any other is an overlay.
 /// @throws InputError for unknown names, circular inheritance, two bases, and every fault of a file
 [[nodiscard]] OdometryConfig load_config(const ConfigRequest& request);
+
+/// A TOML string: the text in double quotes, with backslashes before quotes and backslashes.
+[[nodiscard]] std::string toml_quoted(std::string_view text);
+
+/// One key and its value in TOML syntax.
+struct ConfigEntry {
+  std::string key;
+  std::string value;
+  friend bool operator==(const ConfigEntry&, const ConfigEntry&) = default;
+};
+
+/// All keys in the order of the field lists; numbers are printed such that they are read back bit-exactly.
+[[nodiscard]] std::vector<ConfigEntry> config_entries(const OdometryConfig& config);
+
+/// The entries as TOML text with dotted keys, one per line.
+[[nodiscard]] std::string config_text(const OdometryConfig& config);
+
+/// Hash of all values of the config, as 16 hexadecimal digits; with a perturbed input, its seed follows (see
+/// bench/model/stored_run.h).
+[[nodiscard]] std::string config_hash(const OdometryConfig& config);
+
+/// The entries of `changed` whose values differ from those of `parent`.
+[[nodiscard]] std::vector<ConfigEntry> config_difference(const OdometryConfig& parent,
+                                                         const OdometryConfig& changed);
+
+/// Reference page of all keys: a Markdown table of key, type or choices, range and default.
+[[nodiscard]] std::string config_reference();
 
 }  // namespace stillpoint::bench

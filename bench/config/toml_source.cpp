@@ -7,7 +7,6 @@
 #include <iterator>
 #include <optional>
 
-#include "bench/config/embedded_files.h"
 #include "bench/config/spelling.h"
 #include "core/base/error.h"
 

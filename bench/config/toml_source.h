@@ -1,12 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Finds configs, plans, systems, devices, published tables and catalogues of datasets among the embedded
 /// files or on disk.
+///
+/// Source files embedded in the executable, so that it does not depend on installed data files.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stillpoint::bench {
+
+struct EmbeddedFile {
+  std::string_view path;  ///< relative to the source root, e.g. "bench/configs/vo.toml"
+  std::string_view text;
+};
+
+/// The TOML files of configs, plans, systems, devices, published tables and catalogues, sorted by path.
+[[nodiscard]] std::span<const EmbeddedFile> embedded_files();
+
+/// The files of reports/web; defined in the reports library.
+[[nodiscard]] std::span<const EmbeddedFile> web_files();
 
 /// A TOML text and its origin.
 struct TomlSource {

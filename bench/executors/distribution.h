@@ -2,17 +2,58 @@
 /// Executes a plan in tasks: the missing runs are divided, executed by workers with stores of their own, and
 /// merged. Each step may be interrupted at any time: the next call collects what was completed, and executes
 /// the rest.
+///
+/// A folder with which several workers execute a plan, on this or on other machines. It contains
+///   plan.toml        the plan
+///   build            of the program that divided the plan
+///   keys-K           keys of the runs of task K = 1, 2, ..., one per line
+///   store-K.sqlite   the store of task K, with its files
+///   data/            recorded sequences that were copied to this machine; optional
+///   lock             shared lock of every worker
+///
+/// Simulates the execution of a plan by many workers: what limits the speedup, and how large a plan must be.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "bench/plan/execution/plan_runner.h"
 #include "bench/plan/plan_matrix.h"
+#include "bench/store/maintenance/maintenance.h"
 
 namespace stillpoint::bench {
+
+/// Replaces the job in a folder; existing stores remain.
+/// @param tasks keys of the runs of each task
+/// @throws InputError if the folder cannot be written
+void write_job(const std::filesystem::path& folder, const BenchPlan& plan,
+               const std::vector<std::vector<std::string>>& tasks);
+
+/// The matrix of a plan, restricted to the runs with the given keys. A key contains the checksum of the
+/// sequence, the config and the build, so a machine where one of them differs does not have the run.
+/// @throws InputError if a key is not one of the plan on this machine, or as `load_plan` and `expand_plan`
+[[nodiscard]] PlanMatrix job_matrix(const std::filesystem::path& folder,
+                                    const std::vector<std::string>& keys);
+
+/// Keys of one task, or of all tasks.
+/// @throws InputError if there is no such task
+[[nodiscard]] std::vector<std::string> task_keys(const std::filesystem::path& folder, int task);
+[[nodiscard]] std::vector<std::string> all_task_keys(const std::filesystem::path& folder);
+
+/// Executes a task into its own store. Completed runs of an earlier execution of the task are not repeated.
+[[nodiscard]] PlanReport run_task(const std::filesystem::path& folder, int task, int jobs,
+                                  const PlanHooks& hooks);
+
+/// Returns when no worker uses the folder.
+void wait_for_workers(const std::filesystem::path& folder);
+
+/// Waits for the workers of a folder, adds the runs of all stores of tasks to `store`, and removes them. May
+/// be repeated after an interruption.
+MergeReport merge_tasks(const std::filesystem::path& folder, const std::filesystem::path& store);
 
 struct DistributionOptions {
   std::filesystem::path store;
@@ -42,5 +83,43 @@ struct Executor {
 /// uses, or as the executor
 [[nodiscard]] PlanReport distribute_plan(const PlanMatrix& matrix, const DistributionOptions& options,
                                          const Executor& executor);
+
+struct SimulatedRun {
+  double seconds = 0.0;
+  std::size_t sequence = 0;
+};
+
+/// Times other than those of runs [s].
+struct ScalingCosts {
+  double task_start_s = 2.0;  ///< start of a task: scheduler, connection, opening the store
+  double merge_s = 0.17;      ///< `store merge` per run with annotated images, reports/measured/scaling.md
+  double prepare_s = 30.0;    ///< a sequence on a worker that does not have it: copying, rendering, decoding
+  double variation = 0.1;     ///< of the duration of runs: uniform within 1 +- variation
+};
+
+/// Wall time of a plan as a sum [s]. All but the last two are averages over the workers.
+struct SimulatedPlan {
+  std::size_t runs = 0;
+  double executing_s = 0.0;
+  double starting_s = 0.0;
+  double preparing_s = 0.0;
+  double waiting_s = 0.0;  ///< for the last task
+  double merging_s = 0.0;  ///< by one process, after the last task
+
+  [[nodiscard]] double wall_s() const {
+    return executing_s + starting_s + preparing_s + waiting_s + merging_s;
+  }
+  /// Fraction of the time of the workers in which they execute runs.
+  [[nodiscard]] double efficiency() const { return executing_s / wall_s(); }
+};
+
+/// Each run `times` times in succession, as further variants or repetitions of its sequence.
+[[nodiscard]] std::vector<SimulatedRun> repeated(std::span<const SimulatedRun> runs, std::size_t times);
+
+/// Divides the runs into tasks as the executors do (`divide_evenly`). Each idle worker takes the next task,
+/// prepares the sequences that it has not had before, and executes the runs. Deterministic.
+/// @param runs not empty, with positive durations
+[[nodiscard]] SimulatedPlan simulate_plan(std::span<const SimulatedRun> runs, int workers, int tasks,
+                                          const ScalingCosts& costs);
 
 }  // namespace stillpoint::bench

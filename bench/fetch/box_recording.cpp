@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "bench/config/config_file.h"
-#include "bench/fetch/locked_download.h"
-#include "bench/plan/dataset_catalogue.h"
+#include "bench/fetch/data_lock.h"
+#include "bench/plan/sequence_registry.h"
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
 #include "datasets/io/detections_file.h"

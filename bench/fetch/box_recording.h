@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/fetch/fetch_options.h"
-#include "bench/fetch/install_sequence.h"
+#include "bench/fetch/data_lock.h"
+#include "bench/fetch/fetch_sequences.h"
 #include "core/config/detector_config.h"
 #include "core/detector/object_detector.h"
 #include "datasets/catalogue/catalogue.h"

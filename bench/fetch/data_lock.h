@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// stillpoint.lock.json in the folder of downloads: digests of the files that were downloaded first, and the
 /// licences that were accepted.
+///
+/// How sequences of the catalogue are fetched.
+///
+/// Download of one file of the catalogue, verified by published digests and the lock file.
+///
+/// Verifies registered sequences and kept archives against the digests of their first use.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
+#include <vector>
+
+#include "bench/plan/sequence_registry.h"
+#include "datasets/catalogue/catalogue.h"
+#include "datasets/download/archive_extraction.h"
+#include "datasets/download/transfer_control.h"
 
 namespace stillpoint::bench {
 
@@ -35,5 +48,53 @@ void lock_licence(const std::filesystem::path& root, const std::string& dataset)
 /// Records a downloaded file unless it is recorded; safe for several processes.
 /// @throws InputError if it cannot be written
 void lock_file(const std::filesystem::path& root, const std::string& key, const LockedFile& file);
+
+struct FetchOptions {
+  std::filesystem::path root;  ///< sequences are stored in ROOT/DATASET/FOLDER
+  std::string mirror;          ///< address that serves MIRROR/DATASET/FILE, tried first; empty = none
+  bool keep_archives = false;
+  int attempts = 5;  ///< per address
+  double first_backoff_s = 1.0;
+  int stall_timeout_s = 30;
+  datasets::ExtractionLimits limits;
+  bool record_boxes = false;  ///< fetch a detection network, and record the boxes of sequences without any
+};
+
+/// How the progress of a step is displayed and the whole operation is stopped.
+struct FetchControl {
+  /// @param label what is done with which file, e.g. "downloading a.tgz"
+  std::function<datasets::TransferControl(const std::string& label)> step;
+  std::function<void(const std::string&)> report;  ///< one line about something that is complete
+};
+
+/// Where a file of the catalogue is stored: ROOT/DATASET/downloads/NAME.
+[[nodiscard]] std::filesystem::path download_path(const std::filesystem::path& root,
+                                                  const datasets::CatalogueDataset& dataset,
+                                                  const std::string& file);
+
+/// Downloads to `download_path`, whose folder is created. Without a published SHA-256, that of the first
+/// download is required.
+/// @return false if stopped
+/// @throws InputError as `datasets::download`
+[[nodiscard]] bool download_locked(const datasets::CatalogueDataset& dataset,
+                                   const datasets::CatalogueArchive& archive, const FetchOptions& options,
+                                   const FetchControl& control);
+
+enum class VerifiedState { kEqual, kChanged, kMissing };
+
+/// Reads every byte of a registered sequence.
+/// @throws InputError if a file cannot be read
+[[nodiscard]] VerifiedState verify_sequence(const RegisteredSequence& sequence);
+
+struct VerifiedFile {
+  std::string file;
+  VerifiedState state = VerifiedState::kEqual;
+};
+
+/// Archives that were kept in the folder of downloads.
+/// @return those that were read before `control` stopped it
+/// @throws InputError if a file cannot be read
+[[nodiscard]] std::vector<VerifiedFile> verify_archives(const std::filesystem::path& root,
+                                                        const datasets::TransferControl& control);
 
 }  // namespace stillpoint::bench

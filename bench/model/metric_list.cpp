@@ -2,12 +2,11 @@
 #include <algorithm>
 #include <array>
 
-#include "bench/model/cost_metrics.h"
-#include "bench/model/device_metrics.h"
 #include "bench/model/honesty_metrics.h"
 #include "bench/model/imu_rate_metrics.h"
 #include "bench/model/loop_metrics.h"
 #include "bench/model/metrics.h"
+#include "bench/model/resource_metrics.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -107,7 +107,7 @@ struct LoopScore {
   std::optional<double> relocalization_s{};  ///< in a loaded map
 };
 
-/// Energy and throttling of the machine during a run; see bench/model/device_metrics.h for the definitions.
+/// Energy and throttling of the machine during a run; see bench/model/resource_metrics.h for the definitions.
 struct DeviceScore {
   std::optional<double> joules_per_frame{};
   std::optional<double> joules_per_frame_sd{};

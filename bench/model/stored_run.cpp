@@ -3,14 +3,22 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <utility>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+}
+
 namespace {
 
 constexpr std::array<std::pair<Outcome, std::string_view>, 7> kNames = {
@@ -61,5 +69,21 @@ std::optional<double> metric_value(const StoredRun& run, std::string_view name) 
   }
   return std::nullopt;
 }
+
+namespace {
+
+constexpr std::string_view kMark = "-perturbed-";
+
+}  // namespace
+
+std::string perturbed_hash(const std::string& hash, int seed) {
+  return seed == 0 ? hash : hash + std::string(kMark) + std::to_string(seed);
+}
+
+std::string_view unperturbed_hash(std::string_view config_hash) {
+  return config_hash.substr(0, config_hash.find(kMark));
+}
+
+bool is_perturbed(std::string_view config_hash) { return config_hash.find(kMark) != std::string_view::npos; }
 
 }  // namespace stillpoint::bench

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Data types of a run in a store.
+///
+/// Current time as recorded in stores and manifests.
+///
+/// Replicates of a deterministic run: runs with the same config and data, whose input is perturbed with
+/// different seeds (core/pipeline/stages/input_perturbation.h). The seed is the last part of the config hash,
+/// "0123456789abcdef-perturbed-3", so that replicates have different identities and are recognized as such.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +16,9 @@
 #include <vector>
 
 namespace stillpoint::bench {
+
+/// Current time, UTC, ISO 8601, e.g. "2025-01-31T12:00:00Z".
+[[nodiscard]] std::string utc_now();
 
 /// Identity of a run: runs with equal members are executed only once. A sweep varies one config key, its
 /// axis.
@@ -129,5 +138,18 @@ struct StoredRun {
 
 /// Value of the first metric with that name, regardless of its protocol.
 [[nodiscard]] std::optional<double> metric_value(const StoredRun& run, std::string_view name);
+
+/// The config key of the seed.
+inline constexpr std::string_view kPerturbationKey = "pipeline.perturbation_seed";
+
+/// @param hash of the config without the seed
+/// @param seed 0: the hash is not changed
+[[nodiscard]] std::string perturbed_hash(const std::string& hash, int seed);
+
+/// The hash without the seed, which replicates share.
+[[nodiscard]] std::string_view unperturbed_hash(std::string_view config_hash);
+
+/// Whether the hash is that of a perturbed run.
+[[nodiscard]] bool is_perturbed(std::string_view config_hash);
 
 }  // namespace stillpoint::bench

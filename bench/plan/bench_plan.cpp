@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/plan/bench_plan.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
-#include "bench/config/apply_settings.h"
-#include "bench/config/config_text.h"
+#include "bench/config/config_file.h"
+#include "bench/config/settings.h"
+#include "bench/config/spelling.h"
 #include "bench/config/toml_source.h"
-#include "bench/plan/plan_validation.h"
-#include "bench/plan/synth_settings.h"
+#include "bench/plan/plan_sequences.h"
+#include "bench/run/odometry_run.h"
+#include "bench/systems/published_table.h"
+#include "bench/systems/slam_system.h"
 #include "core/base/error.h"
+#include "datasets/faults/sensor_fault.h"
+#include "eval/protocols/protocol.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -113,6 +120,219 @@ BenchPlan load_plan(const std::string& name) {
   if (plan.title.empty()) plan.title = plan.name;
   validate_plan(plan);
   return plan;
+}
+
+namespace {
+
+constexpr double kMaxWhole = 9e15;  // below 2^53: exact as an integer
+
+/// @param place of the setting in the plan, for messages
+void require_setting(Setting setting, const std::string& place) {
+  setting.file = place;
+  setting.line = 0;
+  static_cast<void>(with_settings(OdometryConfig{}, std::vector{setting}));
+}
+
+/// Sweep values are numbers; whole ones are accepted by keys that require an integer.
+SettingValue sweep_value(double value) {
+  const bool is_whole = value == std::floor(value) && std::abs(value) <= kMaxWhole;
+  return is_whole ? SettingValue(static_cast<std::int64_t>(value)) : SettingValue(value);
+}
+
+/// Checks the keys and values of [config] and [sweep]; both are independent of the variants.
+void require_settings(const BenchPlan& plan) {
+  for (const std::string& assignment : plan.config_settings) {
+    const std::string key = "config." + assignment.substr(0, assignment.find('='));
+    require_setting(at_place(plan, key, [&] { return parse_assignment(assignment); }), place_of(plan, key));
+  }
+  for (const SweepAxis& axis : plan.sweep) {
+    if (axis.key.starts_with(kSynthPrefix)) continue;
+    for (const double value : axis.values)
+      require_setting({.key = axis.key, .value = sweep_value(value)}, place_of(plan, "sweep." + axis.key));
+  }
+}
+
+/// @param key of the list in the plan
+void require_configs(const BenchPlan& plan, const std::string& key,
+                     const std::vector<std::string>& variants) {
+  at_place(plan, key, [&] {
+    for (const std::string& variant : variants) static_cast<void>(load_config({plan.base, variant, {}}));
+  });
+}
+
+void require_renderings(const BenchPlan& plan) {
+  synth::SynthRequest request;
+  for (const SweepAxis& setting : plan.synth_settings) {
+    request = at_place(plan, std::string(kSynthPrefix) + setting.key,
+                       [&] { return with_number(request, setting.key, setting.values.front()); });
+  }
+  for (const SweepAxis& axis : plan.sweep) {
+    if (!axis.key.starts_with(kSynthPrefix)) continue;
+    at_place(plan, "sweep." + axis.key, [&] {
+      for (const double value : axis.values)
+        static_cast<void>(with_number(request, axis.key.substr(kSynthPrefix.size()), value));
+    });
+  }
+}
+
+void require_protocols(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const eval::Protocol& protocol : eval::protocols()) known.emplace_back(protocol.name);
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw InputError("unknown protocol \"" + name + "\"" + suggestion(name, known));
+  }
+}
+
+void require_mode(const BenchPlan& plan) {
+  if (std::ranges::find(kRunModes, plan.mode) != kRunModes.end()) return;
+  throw InputError(place_of(plan, "mode"), fmt::format("\"mode\" is \"{}\"; expected one of: \"{}\"",
+                                                       plan.mode, fmt::join(kRunModes, "\", \"")));
+}
+
+/// External systems always process whole sequences, and cannot run under callgrind.
+void require_supported_by_systems(const BenchPlan& plan) {
+  if (plan.systems.empty() || (plan.max_frames == 0 && plan.kind != RunKind::kInstructions)) return;
+  throw InputError(place_of(plan, "systems"),
+                   "max_frames and kind = \"instructions\" do not support external systems; remove systems");
+}
+
+void require_faults(const BenchPlan& plan) {
+  for (const std::string& fault : plan.faults) {
+    if (fault != kNoFault) static_cast<void>(datasets::parse_fault(fault));
+  }
+  if (!plan.faults.empty() && !plan.systems.empty())
+    throw InputError("faults are injected into runs of this odometry only; remove systems");
+}
+
+void require_expectations(const BenchPlan& plan) {
+  if (plan.expected.empty()) return;
+  if (plan.expected.size() != plan.faults.size())
+    throw InputError(fmt::format("has {} values for {} faults; give one for each", plan.expected.size(),
+                                 plan.faults.size()));
+  for (const std::string& value : plan.expected) {
+    if (value != kExpectSurvival && value != kExpectLoss)
+      throw InputError(fmt::format("unknown value \"{}\"; expected \"survive\" or \"lose\"", value));
+  }
+}
+
+/// Runs with equal keys are executed once; a value that is listed twice would only look like a repetition.
+template <class Value>
+void require_distinct(const BenchPlan& plan, const std::string& key, const std::vector<Value>& values) {
+  for (auto value = values.begin(); value != values.end(); ++value) {
+    if (std::find(values.begin(), value, *value) == value) continue;
+    throw InputError(place_of(plan, key), fmt::format("\"{}\" contains {} twice; remove one{}", key, *value,
+                                                      key == "seeds" ? ", or set repetitions = 2" : ""));
+  }
+}
+
+void require_distinct_lists(const BenchPlan& plan) {
+  require_distinct(plan, "seeds", plan.seeds);
+  require_distinct(plan, "variants", plan.variants);
+  require_distinct(plan, "rendered.variants", plan.rendered.variants);
+  require_distinct(plan, "recorded.variants", plan.recorded.variants);
+  require_distinct(plan, "systems", plan.systems);
+  require_distinct(plan, "faults", plan.faults);
+  require_distinct(plan, "protocols", plan.protocols);
+  for (const SweepAxis& axis : plan.sweep) require_distinct(plan, "sweep." + axis.key, axis.values);
+}
+
+void require_ablation_base(const BenchPlan& plan) {
+  std::vector<std::string> known = plan.variants;
+  for (const auto* variants : {&plan.rendered.variants, &plan.recorded.variants})
+    known.insert(known.end(), variants->begin(), variants->end());
+  const std::string& base = plan.ablation_base;
+  if (base.empty() || std::find(known.begin(), known.end(), base) != known.end()) return;
+  throw InputError("ablation_base \"" + base + "\" is no variant of the plan" + suggestion(base, known));
+}
+
+}  // namespace
+
+void validate_plan(const BenchPlan& plan) {
+  static_cast<void>(at_place(plan, "base", [&] { return load_config({plan.base, "", {}}); }));
+  require_settings(plan);
+  require_configs(plan, "variants", plan.variants);
+  require_configs(plan, "rendered.variants", plan.rendered.variants);
+  require_configs(plan, "recorded.variants", plan.recorded.variants);
+  require_renderings(plan);
+  require_distinct_lists(plan);
+  require_mode(plan);
+  require_supported_by_systems(plan);
+  at_place(plan, "ablation_base", [&] { require_ablation_base(plan); });
+  at_place(plan, "faults", [&] { require_faults(plan); });
+  at_place(plan, "expected", [&] { require_expectations(plan); });
+  at_place(plan, "protocols", [&] { require_protocols(plan.protocols); });
+  at_place(plan, "cores", [&] { static_cast<void>(parse_cpu_list(plan.cores)); });
+  at_place(plan, "rendered.sequences", [&] { static_cast<void>(matching_presets(plan.rendered.sequences)); });
+  at_place(plan, "systems", [&] {
+    for (const std::string& system : plan.systems) static_cast<void>(load_external_system(system));
+  });
+  at_place(plan, "table.published", [&] {
+    for (const std::string& table : plan.table.published) static_cast<void>(load_published(table));
+  });
+}
+
+void require_runs(const BenchPlan& plan) {
+  const auto require_group = [&plan](const std::string& group, const std::vector<std::string>& sequences,
+                                     const std::vector<std::string>& variants) {
+    if (sequences.empty() || !variants.empty() || !plan.variants.empty() || !plan.systems.empty()) return;
+    throw InputError(place_of(plan, plan.places.contains("variants") ? "variants" : group + ".sequences"),
+                     "the plan has no variant and no system to run; add e.g. variants = [\"stillpoint\"]");
+  };
+  if (plan.rendered.sequences.empty() && plan.recorded.sequences.empty()) {
+    throw InputError(plan.path,
+                     "the plan names no sequence; add e.g. [rendered] with "
+                     "sequences = [\"walking_xyz\"]");
+  }
+  if (plan.seeds.empty())
+    throw InputError(place_of(plan, "seeds"), "the list of seeds is empty; add seeds = [1]");
+  require_group("rendered", plan.rendered.sequences, plan.rendered.variants);
+  require_group("recorded", plan.recorded.sequences, plan.recorded.variants);
+}
+
+namespace {
+
+bool contains(std::span<const std::string> names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// The longest variant that `variant` extends by overlays, else `base`.
+std::string base_of(const std::string& variant, const std::string& base,
+                    std::span<const std::string> variants) {
+  for (std::size_t plus = variant.rfind('+'); plus != std::string::npos && plus > 0;
+       plus = variant.rfind('+', plus - 1)) {
+    if (contains(variants, variant.substr(0, plus))) return variant.substr(0, plus);
+  }
+  return base;
+}
+
+}  // namespace
+
+std::optional<std::string> ablation_base_of(const StoredPlan& plan) {
+  try {
+    for (const Setting& setting : parse_settings(plan.text, "plan " + plan.name)) {
+      const auto* base = std::get_if<std::string>(&setting.value);
+      if (setting.key == "ablation_base" && base != nullptr && !base->empty()) return *base;
+    }
+  } catch (const InputError&) {
+    return std::nullopt;  // written by hand or by another version; the runs are valid without it
+  }
+  return std::nullopt;
+}
+
+std::vector<AblationGroup> ablation_groups(const std::string& base, std::span<const std::string> variants) {
+  if (!contains(variants, base)) return {};
+  std::vector<AblationGroup> groups = {{.base = base, .variants = {}}};
+  for (const std::string& variant : variants) {
+    if (variant == base) continue;
+    const std::string own = base_of(variant, base, variants);
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const AblationGroup& known) { return known.base == own; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {.base = own, .variants = {}});
+    group->variants.push_back(variant);
+  }
+  std::erase_if(groups, [](const AblationGroup& group) { return group.variants.empty(); });
+  return groups;
 }
 
 }  // namespace stillpoint::bench

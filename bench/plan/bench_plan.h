@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A benchmark plan: sequences x variants x seeds x repetitions, and the layout of the result table.
+///
+/// Adds the line of a plan file to errors about what the line refers to.
+///
+/// Validates what a plan refers to, so that errors are reported before its first run.
+///
+/// The base of a stored plan's ablation, and the variants that are compared with it.
 #pragma once
 
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
+#include "bench/store/store.h"
+#include "core/base/error.h"
 #include "core/base/fields.h"
 
 namespace stillpoint::bench {
@@ -78,7 +88,7 @@ struct BenchPlan {
   std::string base = "stillpoint";    ///< config to which the variants are applied
   std::vector<std::string> variants;  ///< of this odometry
   std::string ablation_base;          ///< the variant that the others are compared with; empty: no ablation
-  std::vector<std::string> systems;   ///< external systems: files, see bench/systems/external_system.h
+  std::vector<std::string> systems;   ///< external systems: files, see bench/systems/slam_system.h
   std::vector<int> seeds = {1};       ///< for rendering and for the odometry
   int repetitions = 1;
   int max_frames = 0;  ///< process only the first frames of each sequence; 0 = all
@@ -145,5 +155,52 @@ void visit_fields(Visitor&& field, Config& config) {
 /// Parses a CPU list such as "0,2-3".
 /// @throws InputError if it is malformed, or the machine has no such processor
 [[nodiscard]] std::vector<int> parse_cpu_list(const std::string& cores);
+
+/// Place of a key in messages: "plan.toml:3"; the file alone, or the name of the plan, if the key is not set.
+[[nodiscard]] inline std::string place_of(const BenchPlan& plan, const std::string& key) {
+  const auto found = plan.places.find(key);
+  if (found != plan.places.end()) return found->second;
+  return plan.path.empty() ? "plan \"" + plan.name + "\"" : plan.path;
+}
+
+/// Result of `action`.
+/// @throws InputError the error of `action`, preceded by the place of the key
+template <class Action>
+decltype(auto) at_place(const BenchPlan& plan, const std::string& key, const Action& action) {
+  try {
+    return action();
+  } catch (const InputError& error) {
+    throw InputError(place_of(plan, key), error.what());
+  }
+}
+
+/// Loads each config of the plan, and checks its presets, sweeps, protocols, systems, processors and
+/// published tables. Recorded sequences are checked when the plan is expanded.
+/// @throws InputError with file and line of the plan for an unknown name (with the nearest one), a value out
+/// of range, and a seed, variant, system, protocol or sweep value that is listed twice
+void validate_plan(const BenchPlan& plan);
+
+/// Requires that the plan names a sequence, and that each group of sequences has a variant or a system.
+/// @throws InputError with the missing key
+void require_runs(const BenchPlan& plan);
+
+/// The key `ablation_base` of a plan, from its stored text.
+/// @return nullopt without that key, as in plans of older versions, or if the text is not valid TOML
+[[nodiscard]] std::optional<std::string> ablation_base_of(const StoredPlan& plan);
+
+/// Variants that are compared with the same base.
+struct AblationGroup {
+  std::string base;
+  std::vector<std::string> variants;  ///< without the base, in the order of the plan
+};
+
+/// Assigns each variant of a plan to its base: "a+b+c" is compared with "a+b" if the plan contains it, else
+/// with "a" if the plan contains it, else with the base of the plan. An overlay of another system is so never
+/// compared with the system of the plan's base.
+/// @param variants of the plan, each once
+/// @return the group of the plan's base first; groups without variants are omitted; none if `variants` does
+/// not contain `base`
+[[nodiscard]] std::vector<AblationGroup> ablation_groups(const std::string& base,
+                                                         std::span<const std::string> variants);
 
 }  // namespace stillpoint::bench

@@ -1,23 +1,85 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/plan/plan_sequences.h"
 
-#include <algorithm>
-#include <cstdlib>
-#include <map>
-
 #include <fnmatch.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <type_traits>
+#include <vector>
+
 #include "bench/config/spelling.h"
-#include "bench/plan/dataset_catalogue.h"
-#include "bench/plan/synth_settings.h"
+#include "bench/plan/sequence_registry.h"
 #include "bench/record/sequence_checksum.h"
-#include "bench/run/frame_cache_settings.h"
-#include "bench/run/rendered_sequence.h"
+#include "bench/run/frame_cache.h"
+#include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
+#include "datasets/synthetic/sequence/presets.h"
 #include "datasets/synthetic/sequence/request_text.h"
 
 namespace stillpoint::bench {
+namespace {
+
+constexpr double kMaxMagnitude = 1e9;  // far above any sensible value; fits in an int
+
+/// Visits all fields and sets the one with the given key; collects all keys for the error message.
+class NumberSetter {
+ public:
+  NumberSetter(std::string key, double value) : key_(std::move(key)), value_(value) {}
+
+  template <class Field>
+  void operator()(const std::string& name, Field&& field) {
+    using Value = std::remove_cvref_t<Field>;
+    if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, int>) {
+      visit_number(prefix_ + name, field);
+    } else if constexpr (std::is_class_v<Value> && !std::is_same_v<Value, std::string>) {
+      const std::string outer = prefix_;
+      prefix_ += name + ".";
+      visit_fields(*this, field);
+      prefix_ = outer;
+    }
+  }
+
+  [[nodiscard]] bool found() const { return found_; }
+  [[nodiscard]] const std::vector<std::string>& known() const { return known_; }
+
+ private:
+  template <class Number>
+  void visit_number(const std::string& key, Number& number) {
+    known_.push_back(key);
+    if (key != key_) return;
+    found_ = true;
+    if (std::is_same_v<Number, int> && value_ != std::floor(value_)) {
+      throw InputError("synth." + key_, "must be an integer");
+    }
+    number = static_cast<Number>(value_);
+  }
+
+  std::string key_;
+  double value_;
+  std::string prefix_;
+  std::vector<std::string> known_;
+  bool found_ = false;
+};
+
+}  // namespace
+
+synth::SynthRequest with_number(synth::SynthRequest request, const std::string& key, double value) {
+  if (!(std::abs(value) <= kMaxMagnitude))
+    throw InputError("synth." + key, "must be a finite number below 1e9");
+  NumberSetter setter(key, value);
+  visit_fields(setter, request);
+  if (!setter.found()) {
+    throw InputError("unknown rendering parameter \"synth." + key + "\"" + suggestion(key, setter.known()));
+  }
+  synth::check_request(request);
+  return request;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -209,6 +271,56 @@ fs::path sequence_folder(const PlanSequence& sequence, const synth::RenderContro
   if (datasets::is_sequence_path(sequence.folder)) return sequence.folder;
   throw InputError(sequence.folder.string(),
                    "no longer exists; restore the sequence and run the command again");
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void throw_unknown(const std::string& argument,
+                                const std::vector<RegisteredSequence>& registry) {
+  const std::string place = "sequence \"" + argument + "\"";
+  std::error_code ignored;
+  if (fs::exists(argument, ignored)) {
+    throw InputError(place, "is a file; specify the folder of the sequence");
+  }
+  std::vector<std::string> names = synth::preset_names();
+  for (const RegisteredSequence& known : registry) names.push_back(known.name);
+  const std::string advice = fetch_advice(load_catalogues(), argument);
+  if (!advice.empty()) throw InputError(place, "is not available; " + advice);
+  throw InputError(
+      place, "is neither a folder nor a preset nor a registered sequence" + suggestion(argument, names));
+}
+
+/// "tum/fr3_walking_xyz" as the name of its registration; other arguments unchanged.
+std::string without_catalogue_name(const std::string& argument) {
+  if (argument.find('/') == std::string::npos) return argument;
+  const std::vector<datasets::CatalogueDataset> catalogues = load_catalogues();
+  const std::vector<datasets::CatalogueEntry> entries = datasets::matching_entries(catalogues, argument);
+  return entries.size() == 1 ? datasets::registered_name(*entries.front().dataset, *entries.front().sequence)
+                             : argument;
+}
+
+}  // namespace
+
+std::string resolve_sequence(const std::string& given) {
+  const std::string argument = datasets::is_sequence_path(given) ? given : without_catalogue_name(given);
+  if (datasets::is_sequence_path(argument)) return argument;
+  const std::vector<std::string> presets = synth::preset_names();
+  const bool is_preset = std::ranges::find(presets, argument) != presets.end();
+  const std::vector<RegisteredSequence> registry = read_registry(registry_file());
+  const auto registered = std::ranges::find(registry, argument, &RegisteredSequence::name);
+  if (registered == registry.end()) {
+    if (!is_preset) throw_unknown(argument, registry);
+    return argument;
+  }
+  if (is_preset) {
+    throw InputError(
+        "sequence \"" + argument + "\"",
+        "is a preset and a registered sequence; specify its folder: " + registered->folder.string() +
+            ", or the one printed by `stillpoint data synth " + argument + "`");
+  }
+  return verified_sequence(*registered).folder.string();
 }
 
 }  // namespace stillpoint::bench

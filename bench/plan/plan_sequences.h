@@ -1,17 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Resolves the sequence names and globs of a plan.
+///
+/// Sets numeric fields of a rendering request by their names.
+///
+/// The argument SEQ of commands on one sequence: a folder, a registered name, a name of the
+/// catalogue or a preset.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/plan/bench_plan.h"
 #include "bench/plan/sequence_registry.h"
+#include "datasets/synthetic/sequence/presets.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint::bench {
+
+/// Beginning of the keys of plans that belong to a rendering request.
+inline constexpr std::string_view kSynthPrefix = "synth.";
+
+/// Returns the request with one numeric field changed.
+/// @param key dotted, e.g. "walkers", "depth.noise_per_m", "imu.gyro_bias"
+/// @throws InputError for an unknown key (with the nearest one), for a fraction if the field is an integer,
+/// and for a value out of range
+[[nodiscard]] synth::SynthRequest with_number(synth::SynthRequest request, const std::string& key,
+                                              double value);
 
 /// A sequence of a plan: a synthetic one, rendered before its first run, or a recorded one.
 struct PlanSequence {
@@ -49,5 +66,11 @@ struct PlanSequence {
 
 /// The folder of recorded sequences: $STILLPOINT_DATA, else ../shared/data relative to the working directory.
 [[nodiscard]] std::filesystem::path data_folder();
+
+/// Replaces a registered name, or that of the catalogue ("tum/fr3_walking_xyz"), by its folder; folders and
+/// presets are returned as they are. Reads all files of a registered sequence to verify its checksum.
+/// @throws InputError for a name that is neither, for one that is both registered and a preset, and for a
+/// file
+[[nodiscard]] std::string resolve_sequence(const std::string& given);
 
 }  // namespace stillpoint::bench

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A child process with a time and a memory limit: a crash or a runaway run fails alone and does not affect
 /// the other runs of a plan.
+///
+/// Concurrent child processes, managed from one thread.
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <sys/types.h>
 
 namespace stillpoint::bench {
 
@@ -89,5 +95,35 @@ class ChildProcess {
 
 /// Runs one child process until it exits.
 [[nodiscard]] ProcessResult run_process(const ProcessSpec& spec);
+
+class ProcessPool {
+ public:
+  /// @param stop_requested polled at least ten times per second; on true all children get SIGTERM
+  explicit ProcessPool(std::function<bool()> stop_requested) : stop_requested_(std::move(stop_requested)) {}
+
+  /// @param tag returned by `wait_next` with the result of this child
+  void start(std::size_t tag, const ProcessSpec& spec);
+
+  /// Waits until a child exits.
+  /// @param wake polled at least ten times per second; on true the waiting ends
+  /// @return nothing if none is running, or on `wake`
+  [[nodiscard]] std::optional<std::pair<std::size_t, ProcessResult>> wait_next(
+      const std::function<bool()>& wake = {});
+
+  [[nodiscard]] std::size_t running() const { return children_.size(); }
+
+ private:
+  struct Entry {
+    std::size_t tag;
+    std::unique_ptr<ChildProcess> child;
+  };
+
+  void forward_stop();
+  void wait_for_messages() const;
+
+  std::function<bool()> stop_requested_;
+  std::vector<Entry> children_;
+  bool stop_forwarded_ = false;
+};
 
 }  // namespace stillpoint::bench

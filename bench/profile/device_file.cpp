@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/profile/device_file.h"
 
-#include "bench/config/apply_settings.h"
+#include "bench/config/settings.h"
 #include "bench/config/toml_source.h"
 #include "core/base/error.h"
 

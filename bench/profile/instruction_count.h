@@ -1,18 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Executed instructions per stage of the odometry: reproducible between runs of the same binary, independent
 /// of the machine's load.
+///
+/// Parser of Valgrind's callgrind output.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/model/metrics.h"
 #include "bench/process/child_process.h"
-#include "bench/profile/callgrind_file.h"
 
 namespace stillpoint::bench {
+
+/// Executed instructions by function, with callgrind's function names (including parameter types).
+struct CallgrindCounts {
+  std::int64_t total = 0;
+  std::map<std::string, std::int64_t> self;       ///< without callees
+  std::map<std::string, std::int64_t> inclusive;  ///< with callees, summed over all calls
+};
+
+/// @param text  callgrind.out with the single event "Ir"; names may be compressed (the default)
+/// @param place name of the text in messages
+/// @throws InputError with the line of the first error
+/// Source: Callgrind Format Specification, Valgrind manual 3.19.
+[[nodiscard]] CallgrindCounts parse_callgrind(std::string_view text, const std::string& place);
 
 /// File name in the folder of a run.
 inline constexpr const char* kCallgrindFile = "callgrind.out";

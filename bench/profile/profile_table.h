@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Time per module and thread of one run, extending the columns of Paper Table III.
+///
+/// Overhead of the instrumentation, measured.
 #pragma once
 
 #include <optional>
@@ -7,7 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "bench/run/timing_statistics.h"
+#include "bench/run/odometry_run.h"
 
 namespace stillpoint::bench {
 
@@ -37,5 +39,15 @@ struct DeadlineMisses {
 /// JSON with "modules" [ms], "whole_frame_ms" and "deadline".
 [[nodiscard]] nlohmann::ordered_json profile_json(const std::vector<ProfileRow>& rows,
                                                   const DeadlineMisses& misses);
+
+struct RecorderCost {
+  double timer_ns = 0.0;  ///< of one `ScopedTimer`, median of several batches
+  double timers_per_frame = 0.0;
+  double recording_us_per_frame = 0.0;  ///< time of recording the updates
+  double fraction = 0.0;                ///< of the time of the odometry's stages
+};
+
+/// @param run with recorded spans
+[[nodiscard]] RecorderCost recorder_cost(const OdometryRun& run);
 
 }  // namespace stillpoint::bench

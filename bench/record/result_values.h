@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Metrics and module times of a run in result.json, and their conversion to those of a store.
+///
+/// The rotation that levels the world of a run, from its result.json.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <nlohmann/json_fwd.hpp>
 
 #include "bench/model/metrics.h"
@@ -30,5 +34,11 @@ namespace stillpoint::bench {
 /// @param timings the member "timings" of a result file: "modules" and "threads", in ms
 /// @throws nlohmann::json::exception if a member is missing or of another type
 [[nodiscard]] std::vector<ModuleCost> module_costs(const nlohmann::ordered_json& timings);
+
+/// Reads the member "leveling_rotation_xyzw".
+/// @return nullopt if the file has no such member
+/// @throws InputError if the file is no JSON object, or if the member is no rotation
+[[nodiscard]] std::optional<Eigen::Quaterniond> read_leveling_rotation(
+    const std::filesystem::path& result_json);
 
 }  // namespace stillpoint::bench

@@ -1,25 +1,64 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/record/run_files.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
 #include <nlohmann/json.hpp>
 
-#include "bench/config/config_text.h"
-#include "bench/model/csv/counter_text.h"
-#include "bench/model/csv/loop_text.h"
-#include "bench/model/csv/status_text.h"
-#include "bench/model/csv/timing_text.h"
+#include "bench/config/config_file.h"
+#include "bench/model/run_csv.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/result_values.h"
 #include "core/base/content_hash.h"
+#include "core/base/error.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
+
+namespace {
+
+/// @return the file, unless it contains something else than a heartbeat
+const std::filesystem::path& checked(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error) &&
+      std::filesystem::file_size(file, error) > sizeof(std::int64_t))
+    throw InputError(file.string(), "exists and is no heartbeat file; remove it or choose another name");
+  return file;
+}
+
+}  // namespace
+
+Heartbeat::Heartbeat(const std::filesystem::path& file)
+    : descriptor_(open(checked(file).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) {
+    throw InputError(file.string(),
+                     std::string("cannot be written: ") + std::strerror(errno) + "; check its folder");
+  }
+}
+
+Heartbeat::~Heartbeat() { close(descriptor_); }
+
+void Heartbeat::beat(std::int64_t frame) const {
+  // One write of 8 bytes, so that a reader never sees a partial number. A failure does not abort the run.
+  static_cast<void>(!pwrite(descriptor_, &frame, sizeof frame, 0));
+}
+
+std::optional<std::int64_t> read_heartbeat(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::int64_t frame = 0;
+  if (!stream.read(reinterpret_cast<char*>(&frame), sizeof frame)) return std::nullopt;
+  return frame;
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -262,6 +301,31 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
     files.push_back({"keyframes.csv", keyframe_text(result.run.loops->report.keyframes)});
   }
   write_files(folder, files);
+}
+
+namespace {
+
+/// `run` and the modes of `profile` may use the same folder.
+std::vector<std::vector<std::string>> marks() {
+  return {{"result.json", "manifest.json"}, {"profile.json"}, {"device.json"}, {"instructions.json"}};
+}
+
+}  // namespace
+
+OutputLayout run_layout() {
+  return {.names = {"trajectory.tum", "trajectory_imu.tum", "trajectory_loop.tum", "trajectory_optimized.tum",
+                    "loops.csv", "keyframes.csv", "result.json", "timings.csv", "frames.csv", "counters.csv",
+                    "status.csv", "stacks.folded", "manifest.json", "labels.csv", "cost.svg", "loop_cost.svg",
+                    "images"},
+          .marks = marks()};
+}
+
+OutputLayout video_layout() { return {.names = {"video.mp4", "frames"}, .marks = {{"video.mp4", "frames"}}}; }
+
+OutputLayout profile_layout() {
+  return {.names = {"profile.json", "trace.json", "stacks.folded", "device.json", "trajectory.tum",
+                    "instructions.json"},
+          .marks = marks()};
 }
 
 }  // namespace stillpoint::bench

@@ -3,18 +3,43 @@
 /// manifest.json, trajectory_imu.tum with `pipeline.imu_rate`, and trajectory_loop.tum (with the corrections
 /// known at each frame), trajectory_optimized.tum (with all corrections) loops.csv and keyframes.csv with
 /// `loop.enabled`.
+///
+/// File with the id of the last processed frame; reports the progress of a run, also after a crash.
+///
+/// Contents of the output folders of `run` and `profile`, and how earlier outputs are recognized.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
-#include "bench/record/build_info.h"
-#include "bench/record/host_info.h"
 #include "bench/record/output_folder.h"
+#include "bench/record/run_environment.h"
 #include "bench/run/run_result.h"
 #include "core/config/odometry_config.h"
 
 namespace stillpoint::bench {
+
+/// File name in a run's folder.
+inline constexpr const char* kHeartbeatFile = "heartbeat";
+
+class Heartbeat {
+ public:
+  /// @throws InputError if the file cannot be created, or exists with other content
+  explicit Heartbeat(const std::filesystem::path& file);
+  ~Heartbeat();
+  Heartbeat(const Heartbeat&) = delete;
+  Heartbeat& operator=(const Heartbeat&) = delete;
+
+  void beat(std::int64_t frame) const;
+
+ private:
+  int descriptor_;
+};
+
+/// Nothing if the file does not exist or is empty.
+[[nodiscard]] std::optional<std::int64_t> read_heartbeat(const std::filesystem::path& file);
 
 /// What is necessary to reproduce a run, and to decide which results are comparable with it.
 struct RunManifest {
@@ -38,7 +63,7 @@ struct RunManifest {
 /// Text of manifest.json.
 [[nodiscard]] std::string manifest_json(const RunManifest& manifest);
 
-/// Text of timings.csv: time per frame and module of the odometry, see bench/model/csv/timing_text.h.
+/// Text of timings.csv: time per frame and module of the odometry, see bench/model/run_csv.h.
 [[nodiscard]] std::string timings_csv(const OdometryRun& run);
 
 /// Text of frames.csv: hash of each module's state after each frame.
@@ -50,5 +75,9 @@ struct RunManifest {
 /// Writes the files: all of them, or none.
 /// @throws InputError if the folder cannot be written
 void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest);
+
+[[nodiscard]] OutputLayout run_layout();
+[[nodiscard]] OutputLayout video_layout();  ///< of --video
+[[nodiscard]] OutputLayout profile_layout();
 
 }  // namespace stillpoint::bench

@@ -6,15 +6,104 @@
 #include <cmath>
 #include <future>
 #include <span>
+#include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "bench/run/frame_prefetcher.h"
-#include "bench/run/recorded_boxes.h"
 #include "core/base/error.h"
 #include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
+#include "datasets/open_sequence.h"
+#include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
+namespace {
+
+double milliseconds(std::int64_t ns, std::int64_t calls) {
+  return static_cast<double>(ns) / static_cast<double>(calls) * 1e-6;
+}
+
+}  // namespace
+
+bool is_thread(Module module) {
+  return module == Module::kTrackingThread || module == Module::kOptimizationThread;
+}
+
+void TimingSamples::add(Module module, const ModuleTime& frame) {
+  if (frame.calls > 0) frames_[static_cast<std::size_t>(module)].push_back(frame);
+}
+
+std::optional<TimingStatistics> TimingSamples::statistics(Module module) const {
+  return statistics(module, is_thread(module) ? TimePer::kFrame : TimePer::kCall);
+}
+
+std::optional<TimingStatistics> TimingSamples::statistics(Module module, TimePer per) const {
+  std::vector<double> samples_ms;
+  ModuleTime total;
+  for (const ModuleTime& frame : frames_[static_cast<std::size_t>(module)]) {
+    samples_ms.push_back(milliseconds(frame.ns, per == TimePer::kFrame ? 1 : frame.calls));
+    total.ns += frame.ns;
+    total.calls += frame.calls;
+  }
+  if (samples_ms.empty()) return std::nullopt;
+  const auto frames = static_cast<std::int64_t>(samples_ms.size());
+  return TimingStatistics{.mean = milliseconds(total.ns, per == TimePer::kFrame ? frames : total.calls),
+                          .median = eval::percentile(samples_ms, 0.5).value(),
+                          .p95 = eval::percentile(samples_ms, 0.95).value(),
+                          .p99 = eval::percentile(samples_ms, 0.99).value(),
+                          .max = *std::max_element(samples_ms.begin(), samples_ms.end()),
+                          .calls = total.calls};
+}
+
+std::int64_t TimingSamples::frames_over(Module module, double budget_ms) const {
+  const std::vector<ModuleTime>& frames = frames_[static_cast<std::size_t>(module)];
+  return std::count_if(frames.begin(), frames.end(),
+                       [&](const ModuleTime& frame) { return milliseconds(frame.ns, 1) > budget_ms; });
+}
+
+namespace {
+
+[[noreturn]] void throw_missing(const std::filesystem::path& folder, const std::string& problem) {
+  const std::string file = datasets::companion_file(folder, "detections.txt").string();
+  throw InputError(
+      file, problem +
+                ", but the config uses recorded boxes (detector.kind = \"recorded\"); record them with "
+                "`stillpoint detect " +
+                folder.string() + " --out " + file +
+                "`, or run without boxes: --set detector.kind=none (in a plan: the variant "
+                "NAME+wo_object_detection)");
+}
+
+/// Whether a set is at most `tolerance_s` from time `t`.
+bool has_set_at(const std::vector<DetectionSet>& sets, Timestamp t, double tolerance_s) {
+  const Timestamp earliest = after(t, -tolerance_s);
+  const auto found = std::lower_bound(sets.begin(), sets.end(), earliest,
+                                      [](const DetectionSet& set, Timestamp time) { return set.t < time; });
+  return found != sets.end() && found->t <= after(t, tolerance_s);
+}
+
+}  // namespace
+
+void require_recorded_boxes(const OdometryConfig& config, const datasets::SequenceInfo& info) {
+  if (used_detector(config) != DetectorKind::kRecorded) return;
+  require_recorded_boxes(config, info.folder);
+  const double tolerance_s = config.detector.max_time_difference_s;
+  const bool any = std::any_of(info.frame_times.begin(), info.frame_times.end(),
+                               [&](Timestamp t) { return has_set_at(info.detections, t, tolerance_s); });
+  if (!any) {
+    throw_missing(info.folder, fmt::format("none of its {} time stamps is within {} s of a frame",
+                                           info.detections.size(), tolerance_s));
+  }
+}
+
+void require_recorded_boxes(const OdometryConfig& config, const std::filesystem::path& folder) {
+  if (used_detector(config) != DetectorKind::kRecorded) return;
+  if (!std::filesystem::exists(datasets::companion_file(folder, "detections.txt")))
+    throw_missing(folder, "does not exist");
+}
+
 namespace {
 
 /// Capacity of the buffer of decoded frames.

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Runs the odometry over a sequence and records its output.
+///
+/// Statistics of the time per module, as in Paper Table III.
+///
+/// Checks that a sequence has the recorded boxes that a config requires. Without them a run would mask no
+/// dynamic object, and its errors would be taken for those of the method.
 #pragma once
 
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,9 +19,9 @@
 
 #include "bench/model/metrics.h"
 #include "bench/model/stored_run.h"
-#include "bench/run/label_score.h"
-#include "bench/run/loop_run.h"
-#include "bench/run/timing_statistics.h"
+#include "bench/run/run_scores.h"
+#include "core/base/module_timings.h"
+#include "core/config/odometry_config.h"
 #include "core/pipeline/runners/imu_rate_poses.h"
 #include "core/pipeline/runners/runner.h"
 #include "core/types/trajectory.h"
@@ -23,6 +29,47 @@
 #include "eval/metrics/honesty.h"
 
 namespace stillpoint::bench {
+
+/// [ms]; modules per call, threads per frame.
+struct TimingStatistics {
+  double mean = 0.0;
+  double median = 0.0;
+  double p95 = 0.0;  ///< percentiles interpolate linearly between ranks
+  double p99 = 0.0;
+  double max = 0.0;
+  std::int64_t calls = 0;
+};
+
+/// Whether a module is a whole thread of the paper, whose time is reported per frame.
+[[nodiscard]] bool is_thread(Module module);
+
+/// Sample of the statistics: the mean time of a frame's calls, or the total time of the frame. Frames without
+/// a call are excluded from both.
+enum class TimePer { kCall, kFrame };
+
+/// Time per frame and module of a run.
+class TimingSamples {
+ public:
+  /// Adds the time of one frame in a module; ignored without calls.
+  void add(Module module, const ModuleTime& frame);
+
+  /// As in the paper: threads per frame, other modules per call. Nothing for a module that was never called.
+  [[nodiscard]] std::optional<TimingStatistics> statistics(Module module) const;
+  [[nodiscard]] std::optional<TimingStatistics> statistics(Module module, TimePer per) const;
+
+  /// Number of frames that spent more than `budget_ms` in a module.
+  [[nodiscard]] std::int64_t frames_over(Module module, double budget_ms) const;
+
+ private:
+  std::array<std::vector<ModuleTime>, kModuleCount> frames_;
+};
+
+/// @throws InputError naming the file and both remedies if the config uses recorded boxes and the sequence
+/// has none, or none for any of its frames
+void require_recorded_boxes(const OdometryConfig& config, const datasets::SequenceInfo& info);
+
+/// The same for a folder that is not opened yet: only the existence of detections.txt is checked.
+void require_recorded_boxes(const OdometryConfig& config, const std::filesystem::path& folder);
 
 /// Names of the execution modes.
 inline constexpr std::array<std::string_view, 3> kRunModes = {"sequential", "pipelined", "realtime"};
@@ -64,9 +111,9 @@ struct EstimatedCalibration {
   /// Whether the data agrees with the rig, so that the value is that of the rig; absent if it is not compared
   /// (`backend.calibration_agreement_probability`).
   std::optional<bool> extrinsics_agree, depth_scale_agrees;
-  int time_offset_at_bound = 0;   ///< number of frames in which the value was at its bound
-  int extrinsics_at_bound = 0;    ///< same
-  int depth_scale_at_bound = 0;   ///< same
+  int time_offset_at_bound = 0;  ///< number of frames in which the value was at its bound
+  int extrinsics_at_bound = 0;   ///< same
+  int depth_scale_at_bound = 0;  ///< same
 };
 
 /// Recorded output of a run.

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/run/imu_rate_score.h"
+#include "bench/run/run_scores.h"
 #include "datasets/faults/faulty_stream.h"
 #include "eval/trajectory/alignment.h"
 

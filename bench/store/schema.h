@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The tables of a store, and the migration of older stores.
+///
+/// Rows of the tables of a store as structs.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
+#include "bench/model/stored_run.h"
 #include "bench/store/database.h"
 
 namespace stillpoint::bench {
@@ -32,5 +35,24 @@ inline constexpr const char* kOldProtocolName = "recipe";  // alias, read only
 
 /// Current name of a kind of attachment; images had another prefix than `kImageKind` before schema 3.
 [[nodiscard]] std::string current_kind(const std::string& kind);
+
+/// Columns of table `run` that `run_of` reads.
+inline constexpr const char* kRunColumns =
+    "id, key, system, variant, sequence, sequence_id, config_hash, build, mode, kind, cores, seed, "
+    "repetition, axis, axis_value, outcome, detail, started, ended, manifest";
+
+/// Columns of table `timing` that `cost_of` reads.
+inline constexpr const char* kCostColumns = "run, module, per, calls, mean_ms, median_ms, p95_ms, max_ms";
+
+/// A row with `kRunColumns`, without metrics, costs and files. Bytes of the detail that are not UTF-8, which
+/// messages of other programs may contain, are escaped.
+/// @throws InputError for an unknown outcome
+[[nodiscard]] StoredRun run_of(const Statement& row);
+
+/// A row with the columns run, name, protocol, unit, value.
+[[nodiscard]] Metric metric_of(const Statement& row);
+
+/// A row with `kCostColumns`.
+[[nodiscard]] ModuleCost cost_of(const Statement& row);
 
 }  // namespace stillpoint::bench

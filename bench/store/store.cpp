@@ -4,15 +4,70 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "bench/model/csv/counter_text.h"
-#include "bench/model/csv/csv_rows.h"
-#include "bench/model/csv/timing_text.h"
-#include "bench/store/run_rows.h"
+#include "bench/model/run_csv.h"
 #include "bench/store/schema.h"
 #include "core/base/error.h"
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::bench {
+namespace {
+
+Database existing_store(const std::filesystem::path& file) {
+  static_cast<void>(Database(file, DatabaseAccess::kRead));  // throws if there is none
+  Database database(file, DatabaseAccess::kWrite);
+  migrate(database);
+  return database;
+}
+
+}  // namespace
+
+std::vector<Acceptance> read_acceptances(const Database& database) {
+  std::vector<Acceptance> acceptances;
+  if (database.integer("SELECT count(*) FROM sqlite_master WHERE name = 'acceptance'") == 0)
+    return acceptances;
+  Statement rows = database.prepare(
+      "SELECT build, metric, variant, sequence, reason, accepted FROM acceptance "
+      "ORDER BY build, metric, variant, sequence");
+  while (rows.step()) {
+    acceptances.push_back(
+        {rows.text(0), rows.text(1), rows.text(2), rows.text(3), rows.text(4), rows.text(5)});
+  }
+  return acceptances;
+}
+
+void write_acceptances(const std::filesystem::path& file, const std::vector<Acceptance>& acceptances) {
+  const Database database = existing_store(file);
+  Transaction transaction(database);
+  for (const Acceptance& acceptance : acceptances) {
+    database
+        .prepare(
+            "INSERT OR REPLACE INTO acceptance (build, metric, variant, sequence, reason, accepted) "
+            "VALUES (?, ?, ?, ?, ?, ?)")
+        .bind(acceptance.commit)
+        .bind(acceptance.metric)
+        .bind(acceptance.variant)
+        .bind(acceptance.sequence)
+        .bind(acceptance.reason)
+        .bind(acceptance.accepted)
+        .step();
+  }
+  transaction.commit();
+}
+
+bool withdraw_acceptance(const std::filesystem::path& file, const Acceptance& acceptance) {
+  const Database database = existing_store(file);
+  Transaction transaction(database);
+  database.prepare("DELETE FROM acceptance WHERE build = ? AND metric = ? AND variant = ? AND sequence = ?")
+      .bind(acceptance.commit)
+      .bind(acceptance.metric)
+      .bind(acceptance.variant)
+      .bind(acceptance.sequence)
+      .step();
+  const bool removed = database.integer("SELECT changes()") > 0;
+  transaction.commit();
+  return removed;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,6 +197,38 @@ std::vector<TimingSample> Store::timing_samples(const StoredRun& run) const {
   const std::string text = attachment(run, "timings");
   if (text.empty()) return {};
   return parse_timings(text, file().string() + ", run " + run.key);
+}
+
+namespace {
+
+bool is_readable(const Store& store, const StoredRun& run, const std::string& kind) {
+  try {
+    static_cast<void>(store.attachment(run, kind));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+ReadableRuns without_unreadable_files(const Store& store, std::vector<StoredRun> runs) {
+  ReadableRuns result;
+  for (StoredRun& run : runs) {
+    std::string kinds;
+    std::erase_if(run.blobs, [&](const auto& blob) {
+      if (is_readable(store, run, blob.first)) return false;
+      kinds += (kinds.empty() ? "" : ", ") + blob.first;
+      return true;
+    });
+    if (kinds.empty()) continue;
+    const std::string gap = "missing or damaged files: " + kinds;
+    run.detail += (run.detail.empty() ? "" : "; ") + gap;
+    result.gaps.push_back("run " + run.key + " (" + run.identity.sequence + ", " + run.identity.variant +
+                          "): " + gap);
+  }
+  result.runs = std::move(runs);
+  return result;
 }
 
 }  // namespace stillpoint::bench

@@ -3,6 +3,10 @@
 ///
 ///   const Store store("bench.sqlite");
 ///   for (const StoredRun& run : store.runs({.sequence = "walking_xyz"})) store.trajectory(run);
+///
+/// Reviewed and accepted changes of metrics, with their reasons.
+///
+/// Runs of a store of which some attached files are missing or damaged.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +14,32 @@
 #include <vector>
 
 #include "bench/model/stored_run.h"
-#include "bench/store/acceptance.h"
 #include "bench/store/blob_files.h"
 #include "bench/store/database.h"
 #include "core/types/trajectory.h"
 
 namespace stillpoint::bench {
+
+/// Accepts the change of a metric at a commit; an empty variant or sequence matches all.
+struct Acceptance {
+  std::string commit;
+  std::string metric;  ///< name of a metric or of a module
+  std::string variant;
+  std::string sequence;
+  std::string reason;
+  std::string accepted;  ///< UTC, ISO 8601
+};
+
+/// Sorted by commit, metric, variant and sequence. A store of schema 1 has none.
+[[nodiscard]] std::vector<Acceptance> read_acceptances(const Database& database);
+
+/// Adds acceptances to a store; one of the same commit, metric, variant and sequence is replaced. An older
+/// store is migrated.
+/// @throws InputError if there is no such store, or it cannot be written
+void write_acceptances(const std::filesystem::path& file, const std::vector<Acceptance>& acceptances);
+
+/// Removes an acceptance; its reason and time are ignored. @return false if there was none
+[[nodiscard]] bool withdraw_acceptance(const std::filesystem::path& file, const Acceptance& acceptance);
 
 /// Selects runs; an empty member matches all.
 struct RunFilter {
@@ -87,5 +111,14 @@ class Store {
   Database database_;
   BlobFiles blobs_;
 };
+
+struct ReadableRuns {
+  std::vector<StoredRun> runs;    ///< without the unreadable files
+  std::vector<std::string> gaps;  ///< one line per run with unreadable files
+};
+
+/// Reads all files of the runs, and removes the entries of those that are missing or damaged, so that readers
+/// find them absent. The details of these runs name them.
+[[nodiscard]] ReadableRuns without_unreadable_files(const Store& store, std::vector<StoredRun> runs);
 
 }  // namespace stillpoint::bench

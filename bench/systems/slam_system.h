@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Interface of systems that can be benchmarked: run on a sequence, write a trajectory.
+///
+/// An external SLAM system: its description (name, command line, input layout, output files) and its runs.
+///
+/// The odometry of this project, run as a child process: `stillpoint run`.
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "bench/config/config_file.h"
 #include "bench/model/stored_run.h"
 #include "bench/process/child_process.h"
+#include "core/base/fields.h"
 
 namespace stillpoint::bench {
 
@@ -35,5 +44,70 @@ class SlamSystem {
   /// and checks the resource limits.
   [[nodiscard]] virtual RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const = 0;
 };
+
+/// Dataset layout that a system reads.
+enum class ExportLayout {
+  kAsIs,   ///< the original folder, without export
+  kTum,    ///< TUM RGB-D: rgb/, depth/, their lists, groundtruth.txt; imu.txt and rig.toml
+  kEuroc,  ///< EuRoC ASL: mav0/cam0, mav0/imu0; no depth
+};
+constexpr auto enum_names(ExportLayout) {
+  return EnumNames<ExportLayout, 3>{
+      {{ExportLayout::kAsIs, "as_is"}, {ExportLayout::kTum, "tum"}, {ExportLayout::kEuroc, "euroc"}}};
+}
+
+/// Contents of a file in bench/systems/ or provided by the user. Placeholders in the command: {sequence} is
+/// the folder of the sequence, {out} an empty output folder, {here} the folder of this file, {seed} and
+/// {repetition} those of the run.
+struct ExternalSystem {
+  std::string name;
+  std::string version = "unknown";   ///< part of the run key: a change invalidates cached runs
+  std::vector<std::string> command;  ///< program and arguments
+  ExportLayout layout = ExportLayout::kTum;
+  std::string trajectory = "trajectory.tum";  ///< in {out}: TUM format, poses T_w_c
+  std::string timings;  ///< in {out}: JSON with modules and threads as "timings" in result.json; may be empty
+  // Set by load_external_system.
+  std::string folder;
+  std::string hash;  ///< of the text of the file
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, ExternalSystem>
+void visit_fields(Visitor&& field, Config& config) {
+  field("name", config.name);
+  field("version", config.version);
+  field("command", config.command);
+  field("layout", config.layout);
+  field("trajectory", config.trajectory);
+  field("timings", config.timings);
+}
+
+/// @param name of an embedded file, or path of one that ends in ".toml"
+/// @throws InputError if there is no such file, if it is invalid, or if name or command are missing
+[[nodiscard]] ExternalSystem load_external_system(const std::string& name);
+
+/// Runs an external system on a sequence.
+class ExternalRun : public SlamSystem {
+ public:
+  explicit ExternalRun(ExternalSystem system) : system_(std::move(system)) {}
+
+  /// Command line of the system. Exports the sequence first if the system requires another layout; exports
+  /// are cached.
+  [[nodiscard]] ProcessSpec command(const RunRequest& request) const override;
+
+  /// Evaluates the trajectory written by the system.
+  [[nodiscard]] RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const override;
+
+ private:
+  ExternalSystem system_;
+};
+
+class OwnOdometry : public SlamSystem {
+ public:
+  [[nodiscard]] ProcessSpec command(const RunRequest& request) const override;
+  [[nodiscard]] RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const override;
+};
+
+/// Build name in run records: git commit, and a hash of uncommitted changes if any.
+[[nodiscard]] std::string build_name();
 
 }  // namespace stillpoint::bench

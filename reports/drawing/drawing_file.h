@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "bench/record/output_guard.h"
+#include "bench/record/output_folder.h"
 #include "reports/drawing/drawing.h"
 
 namespace stillpoint::report {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/config/embedded_files.h"
+#include "bench/config/toml_source.h"
 #include "bench/model/metrics.h"
 #include "core/base/error.h"
 #include "reports/tables/escaping.h"

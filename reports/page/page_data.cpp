@@ -7,10 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/model/csv/loop_text.h"
 #include "bench/model/metrics.h"
-#include "bench/model/missing_boxes.h"
-#include "bench/model/protocol_difference.h"
+#include "bench/model/run_csv.h"
+#include "bench/model/run_notes.h"
 #include "bench/profile/timeline.h"
 #include "reports/page/charts/flame_stacks.h"
 #include "reports/page/charts/run_series.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "bench/plan/ablation_base.h"
+#include "bench/plan/bench_plan.h"
 #include "reports/tables/run_cells.h"
 
 namespace stillpoint::report {

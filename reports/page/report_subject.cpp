@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/analysis/run_groups.h"
-#include "bench/store/readable_files.h"
+#include "bench/store/store.h"
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
 #include "reports/page/disambiguate_names.h"

@@ -8,8 +8,7 @@
 
 #include "bench/analysis/run_statistics.h"
 #include "bench/model/metrics.h"
-#include "bench/model/missing_boxes.h"
-#include "bench/model/protocol_difference.h"
+#include "bench/model/run_notes.h"
 
 namespace stillpoint::report {
 namespace {

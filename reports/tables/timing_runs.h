@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/model/run_notes.h"
 #include "bench/model/stored_run.h"
-#include "bench/model/time_source.h"
 #include "reports/tables/report_table.h"
 
 namespace stillpoint::report {

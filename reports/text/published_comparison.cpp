@@ -8,8 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/model/protocol_difference.h"
-#include "bench/model/time_source.h"
+#include "bench/model/run_notes.h"
 #include "eval/metrics/statistics.h"
 #include "reports/tables/text_table.h"
 

@@ -13,7 +13,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/model/replicates.h"
 #include "bench/model/stored_run.h"
 
 namespace stillpoint::bench {

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/model/replicates.h"
 #include "bench/model/stored_run.h"
 
 namespace stillpoint::bench {

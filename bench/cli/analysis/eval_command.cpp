@@ -1,33 +1,116 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Command line arguments of `eval`.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/analysis/eval_arguments.h"
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
-#include "bench/cli/enum_option.h"
-#include "bench/record/leveling_rotation.h"
-#include "bench/record/output_guard.h"
+#include "bench/record/output_folder.h"
 #include "bench/record/result_values.h"
 #include "core/base/error.h"
 #include "datasets/bags/bag_trajectory.h"
 #include "eval/compare/conventions.h"
 #include "eval/compare/time_offset.h"
 #include "eval/io/any_trajectory.h"
+#include "eval/openloris/benchmark.h"
+#include "eval/protocols/protocol.h"
 #include "eval/trajectory/overlap.h"
 #include "reports/drawing/drawing_file.h"
 #include "reports/drawing/local_map.h"
+#include "reports/drawing/openloris_figure.h"
 #include "reports/drawing/trajectory_plot.h"
 #include "reports/text/evaluation_json.h"
 #include "reports/text/evaluation_table.h"
 
 namespace stillpoint::bench {
+
+struct EvalArguments {
+  std::string ground_truth;
+  std::vector<std::string> estimates;
+  std::vector<std::string> protocols;
+  std::string alignment;
+  int align_first = 0;
+  double rpe_delta = 1.0;
+  std::string rpe_unit = "s";
+  double offset_s = 0.0;
+  double max_difference_s = 0.0;
+  std::string format;
+  std::string times;
+  int sequence = 0;
+  std::string level;
+  bool find_offset = false;
+  bool explain = false;
+  bool json = false;
+  bool csv = false;
+  bool markdown = false;
+  std::string plot;
+  std::string map;
+  std::string per_pose;
+  bool force = false;
+};
+
+[[nodiscard]] eval::ProtocolOptions protocol_options(const EvalArguments& arguments);
+
+/// @param a receives the values when the command line is parsed
+[[nodiscard]] std::vector<Option> options_of(EvalArguments& a);
+
+eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
+  eval::ProtocolOptions options;
+  if (!arguments.alignment.empty())
+    options.alignment = enum_of<eval::Alignment>("--align", arguments.alignment);
+  options.align_first_n = static_cast<std::size_t>(arguments.align_first);
+  if (arguments.max_difference_s > 0.0) options.max_difference_s = arguments.max_difference_s;
+  options.rpe_delta = arguments.rpe_delta;
+  options.rpe_unit = enum_of<eval::RpeUnit>("--rpe-unit", arguments.rpe_unit);
+  options.offset_s = arguments.offset_s;
+  return options;
+}
+
+std::vector<Option> options_of(EvalArguments& a) {
+  return {
+      {"GT",
+       "Ground-truth trajectory: a file, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD for a chain of "
+       "transforms)",
+       &a.ground_truth},
+      {"EST", "Estimated trajectories of the same body frame", &a.estimates},
+      {"--protocol",
+       "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
+       "repeated",
+       &a.protocols,
+       {},
+       "--recipe"},
+      {"--align", "Override the alignment of the protocol: " + enum_list<eval::Alignment>(), &a.alignment},
+      {"--align-first", "Align with the first N matches only", &a.align_first, {1, 1e9}},
+      {"--level", "File with leveling_rotation_xyzw, for alignment yaw [result.json beside EST]", &a.level},
+      {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta, {1e-6, 1e6}},
+      {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
+      {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s, {-1e9, 1e9}},
+      {"--find-offset", "Estimate the time offset and print it, without applying it", &a.find_offset},
+      {"--max-difference",
+       "Override the maximum time difference of matched poses of the protocol [s]",
+       &a.max_difference_s,
+       {1e-9, 1e6}},
+      {"--format", "Trajectory format: " + enum_list<eval::TrajectoryFormat>() + " [detected]", &a.format},
+      {"--times", "File of time stamps of a KITTI trajectory", &a.times},
+      {"--seq", "Sequence number in an OpenLORIS file", &a.sequence, {0, 1e9}},
+      {"--explain", "Print a description of each protocol", &a.explain},
+      {"--json", "Print JSON with full precision", &a.json},
+      {"--csv", "Print CSV", &a.csv},
+      {"--markdown", "Print Markdown", &a.markdown},
+      {"--map", "Write a plan with scale and north arrow; GT may be NMEA sentences of a GNSS receiver",
+       &a.map},
+      {"--plot", "Write a plot of trajectories and errors (.svg, .pdf or .png)", &a.plot},
+      {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
+      {"--force", "Replace existing files of --plot and --per-pose", &a.force}};
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -231,6 +314,77 @@ Command eval_command() {
       .options = options_of(*arguments),
       .action = [arguments] { return evaluate_files(*arguments); },
       .subcommands = {eval_openloris_command()}};
+}
+
+namespace {
+
+constexpr const char* kFigureExtensions[] = {".svg", ".png"};
+
+struct OpenlorisArguments {
+  std::string results;
+  std::string ground_truth;
+  std::string figure;
+  bool lifelong = false;
+  bool keep_repeated = false;
+  bool json = false;
+  bool csv = false;
+  bool markdown = false;
+  bool force = false;
+};
+
+void write_figure(const OpenlorisArguments& arguments, const eval::OpenlorisBenchmark& benchmark) {
+  const report::Drawing drawing = report::openloris_figure(benchmark);
+  for (const char* extension : kFigureExtensions)
+    report::write_drawing(arguments.figure + extension, drawing, 1.0, {.force = arguments.force});
+}
+
+int evaluate_folder(const OpenlorisArguments& arguments) {
+  if (arguments.ground_truth.empty()) {
+    throw InputError("--ground-truth", "is required: the folder with gt_<scene>_1.txt");
+  }
+  for (const char* extension : kFigureExtensions) {
+    if (!arguments.figure.empty())
+      report::require_drawing_file(arguments.figure + extension, {.force = arguments.force});
+  }
+  const eval::OpenlorisEvaluation evaluation =
+      eval::evaluate_openloris(arguments.results, arguments.ground_truth,
+                               {.metric = {},
+                                .lifelong_thresholds = arguments.lifelong,
+                                .keep_repeated_poses = arguments.keep_repeated});
+  for (const std::string& sentence : evaluation.skipped) spdlog::warn("{}", sentence);
+  if (arguments.json) {
+    std::cout << report::openloris_json(evaluation).dump(2) << '\n';
+  } else {
+    const report::TableStyle style = arguments.csv        ? report::TableStyle::kCsv
+                                     : arguments.markdown ? report::TableStyle::kMarkdown
+                                                          : report::TableStyle::kText;
+    std::cout << report::openloris_table(evaluation.benchmark, style);
+  }
+  if (!arguments.figure.empty()) write_figure(arguments, evaluation.benchmark);
+  return kExitOk;
+}
+
+}  // namespace
+
+Command eval_openloris_command() {
+  const auto arguments = std::make_shared<OpenlorisArguments>();
+  OpenlorisArguments& a = *arguments;
+  return {
+      .name = "openloris",
+      .summary = "Evaluate OpenLORIS result files by scene; one folder per system",
+      .example = "eval openloris results --ground-truth groundtruth --figure openloris",
+      .options = {{"RESULTS", "Folder with one folder per system", &a.results},
+                  {"--ground-truth", "Folder with gt_<scene>_1.txt", &a.ground_truth},
+                  {"--figure", "Write the figure of the paper as BASE.svg and BASE.png", &a.figure},
+                  {"--force", "Replace existing files of --figure", &a.force},
+                  {"--lifelong",
+                   "Count poses as correct within 1, 3 or 5 m (by scene) and 30 deg [any pose is correct]",
+                   &a.lifelong},
+                  {"--keep-repeated", "Keep poses that are equal to their predecessor", &a.keep_repeated},
+                  {"--json", "Print JSON with full precision", &a.json},
+                  {"--csv", "Print CSV", &a.csv},
+                  {"--markdown", "Print Markdown", &a.markdown}},
+      .action = [arguments] { return evaluate_folder(*arguments); }};
 }
 
 }  // namespace stillpoint::bench

@@ -1,18 +1,428 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint stats ablation`.
+//
+// `stillpoint stats repeat`.
+//
+// `stillpoint stats faults`.
+#include <algorithm>
+#include <iostream>
 #include <memory>
+#include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "bench/cli/analysis/stats_ablation.h"
-#include "bench/cli/analysis/stats_faults.h"
-#include "bench/cli/analysis/stats_repeat.h"
+#include "bench/analysis/run_statistics.h"
 #include "bench/cli/analysis/stats_table.h"
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
 #include "bench/model/metrics.h"
+#include "bench/plan/bench_plan.h"
 #include "core/base/error.h"
+#include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
+
+/// Prints the paired differences of each variant from its base: `arguments.base`, or else the `ablation_base`
+/// of each plan.
+/// @return exit code
+/// @throws InputError if neither is given; the message lists the variants
+[[nodiscard]] int stats_ablation(const StatsArguments& arguments);
+
+/// Prints for each repeated run whether its repetitions are bit-equal, else the first frame and stage that
+/// differ. With another store (`StatsArguments::other`): for each run that both contain, the first frame in
+/// which each stage differs, the largest distance of the poses, and both ATE.
+/// @return exit code: findings if a run differs
+/// @throws InputError if there is nothing to compare
+[[nodiscard]] int stats_repeat(const StatsArguments& arguments);
+
+/// Prints a matrix of the faults of a plan and the variants: whether each run did as the plan expects, its
+/// error after recovery and its false confidence; below it one row of totals per variant: false confidence
+/// and missed availability of all frames, runs in which a wrong pose was called located for more than 0.5 s,
+/// and the claimed standard deviation of undisturbed runs.
+///
+/// A run survived if it recovered in the same world with an error of at most three times the ATE of the
+/// undisturbed run, or 2 cm, and a false confidence of at most 0.5 %. Else it lost honestly if its false
+/// confidence is that small, and is wrong if not.
+/// @return exit code: findings if a run of the first variant did not do as expected
+[[nodiscard]] int stats_faults(const StatsArguments& arguments);
+
+namespace {
+
+std::vector<std::string> variants_of(const std::vector<StoredRun>& runs) {
+  std::vector<std::string> variants;
+  for (const StoredRun& run : runs) {
+    const std::string& variant = run.identity.variant;
+    if (std::find(variants.begin(), variants.end(), variant) == variants.end()) variants.push_back(variant);
+  }
+  return variants;
+}
+
+/// Runs that may be pooled, and the bases of their variants.
+struct Ablation {
+  std::vector<StoredRun> runs;
+  std::vector<AblationGroup> bases;
+};
+
+/// A plan that names a base, and its runs with any build.
+struct BasedPlan {
+  std::string base;
+  std::set<std::int64_t> runs;  ///< ids
+};
+
+std::vector<BasedPlan> plans_with_base(const Store& store, const StatsArguments& arguments) {
+  std::vector<BasedPlan> plans;
+  for (const StoredPlan& plan : store.plans()) {
+    const std::optional<std::string> base = ablation_base_of(plan);
+    if (!base || (!arguments.plan.empty() && plan.name != arguments.plan)) continue;
+    plans.push_back({.base = *base, .runs = {}});
+    for (const StoredRun& run : runs_of_plan(store, plan.name)) plans.back().runs.insert(run.id);
+  }
+  return plans;
+}
+
+/// An ablation with the named base.
+std::vector<Ablation> ablation_of_base(const RunGroup& group, const std::string& base) {
+  std::vector<std::string> variants = variants_of(group.runs);
+  if (std::erase(variants, base) == 0 || variants.empty()) return {};
+  return {{group.runs, {{.base = base, .variants = variants}}}};
+}
+
+/// One ablation for each plan.
+std::vector<Ablation> ablations_of_plans(const RunGroup& group, const std::vector<BasedPlan>& plans) {
+  std::vector<Ablation> ablations;
+  for (const BasedPlan& plan : plans) {
+    std::vector<StoredRun> runs = group.runs;
+    std::erase_if(runs, [&](const StoredRun& run) { return !plan.runs.contains(run.id); });
+    std::vector<AblationGroup> bases = ablation_groups(plan.base, variants_of(runs));
+    if (!bases.empty()) ablations.push_back({std::move(runs), std::move(bases)});
+  }
+  return ablations;
+}
+
+std::string change_text(const eval::RelativeChange& change) {
+  const std::string interval =
+      change.interval
+          ? fmt::format("{:+.1f} to {:+.1f} %", 100.0 * change.interval->low, 100.0 * change.interval->high)
+          : "no interval";
+  return fmt::format("{:+.1f} % (n = {}, {})", 100.0 * change.median, change.count, interval);
+}
+
+std::vector<std::string> cells_of(const AblationRow& row, const std::string& base) {
+  const std::size_t count = row.difference ? row.difference->count : 0;
+  std::vector<std::string> cells = {base, row.variant, row.sequence.empty() ? "(all)" : row.sequence,
+                                    fmt::format("{}", count), fmt::format("{}", row.newly_failed)};
+  if (row.difference) {
+    cells.insert(
+        cells.end(),
+        {number_cell(row.difference->median), interval_cell(row.difference->interval, count),
+         fmt::format("{:+.2f}", row.difference->effect), row.change ? change_text(*row.change) : "n/a"});
+  } else {
+    cells.insert(cells.end(), 4, "n/a");
+  }
+  return cells;
+}
+
+/// The rows of one group, and n of each row.
+struct AblationTable {
+  report::TableRows rows;
+  std::set<std::size_t> counts;
+};
+
+AblationTable table_of(const std::vector<Ablation>& ablations, const std::string& metric) {
+  AblationTable table;
+  for (const Ablation& one : ablations) {
+    for (const AblationGroup& group : one.bases) {
+      for (const AblationRow& row : ablation(one.runs, group.base, metric)) {
+        const auto& variants = group.variants;
+        if (std::find(variants.begin(), variants.end(), row.variant) == variants.end()) continue;
+        table.rows.push_back(cells_of(row, group.base));
+        table.counts.insert(row.difference ? row.difference->count : 0);
+      }
+    }
+  }
+  return table;
+}
+
+[[noreturn]] void reject_base(const RunSelection& selection, const StatsArguments& arguments) {
+  std::vector<std::string> variants;
+  for (const RunGroup& group : selection.groups) {
+    for (const std::string& variant : variants_of(group.runs)) {
+      if (std::find(variants.begin(), variants.end(), variant) == variants.end()) variants.push_back(variant);
+    }
+  }
+  const bool is_known = std::find(variants.begin(), variants.end(), arguments.base) != variants.end();
+  std::string problem = "is required: no plan of these runs has the key ablation_base";
+  if (!arguments.base.empty())
+    problem = is_known ? "no other variant was executed with the same build, machine and mode"
+                       : "there is no run of variant \"" + arguments.base + "\"";
+  throw InputError("--base", fmt::format("{}; existing variants: {}", problem, fmt::join(variants, ", ")));
+}
+
+}  // namespace
+
+int stats_ablation(const StatsArguments& arguments) {
+  const Store store(arguments.store);
+  const RunSelection selection = chosen_runs(store, arguments);
+  require_metric(selection, arguments.metric);
+  std::vector<GroupRows> groups;
+  std::set<std::size_t> counts;
+  const std::vector<BasedPlan> plans =
+      arguments.base.empty() ? plans_with_base(store, arguments) : std::vector<BasedPlan>{};
+  for (const RunGroup& group : selection.groups) {
+    AblationTable table = table_of(
+        arguments.base.empty() ? ablations_of_plans(group, plans) : ablation_of_base(group, arguments.base),
+        arguments.metric);
+    counts.merge(table.counts);
+    if (!table.rows.empty()) groups.push_back({.group = &group, .rows = std::move(table.rows)});
+  }
+  if (groups.empty()) reject_base(selection, arguments);
+  std::vector<std::string> notes = {
+      fmt::format(
+          "{}; paired by sequence and seed, repetitions reduced to their median; n: pairs; difference and "
+          "change: Hodges-Lehmann estimates; effect: matched-pairs rank-biserial correlation, 1 = all "
+          "pairs increased.",
+          arguments.metric),
+      interval_note("exact Wilcoxon signed-rank test", counts)};
+  notes.insert(notes.end(), selection.left_out.begin(), selection.left_out.end());
+  print_groups(
+      {"base", "variant", "sequence", "n", "newly failed", "difference", "95 % interval", "effect", "change"},
+      groups, notes, arguments);
+  return kExitOk;
+}
+
+namespace {
+
+int compare_repetitions(const Store& store, const RunSelection& selection, const StatsArguments& arguments) {
+  std::vector<GroupRows> groups;
+  bool all_equal = true;
+  for (const RunGroup& group : selection.groups) {
+    GroupRows rows{.group = &group, .rows = {}};
+    for (const RepetitionRow& row : repetition_report(store, group.runs)) {
+      const bool is_equal = row.distinct_trajectories == 1 && row.first_difference.empty();
+      all_equal = all_equal && is_equal;
+      const std::string unknown = row.distinct_trajectories == 1 ? "none" : "not recorded";
+      rows.rows.push_back({row.label, fmt::format("{}", row.repetitions),
+                           fmt::format("{}", row.distinct_trajectories),
+                           row.first_difference.empty() ? unknown : row.first_difference});
+    }
+    if (!rows.rows.empty()) groups.push_back(std::move(rows));
+  }
+  if (groups.empty())
+    throw InputError(arguments.store, "contains no repeated run; set `repetitions = 2` in a plan");
+  print_groups({"run", "repetitions", "trajectories", "first difference"}, groups,
+               with_left_out({all_equal ? "All repetitions are bit-equal: a single run is sufficient."
+                                        : "Some repetitions differ: evaluate the spread over repetitions."},
+                             selection),
+               arguments);
+  return all_equal ? kExitOk : kExitFindings;
+}
+
+std::string ate_cell(const std::optional<double>& ate) { return ate ? number_cell(*ate) : "n/a"; }
+
+std::vector<std::string> difference_cells(const ExecutionDifference& row) {
+  std::string stages;
+  for (const StageDifference& stage : row.stages) {
+    stages += fmt::format("{}{} {}", stages.empty() ? "" : ", ", stage.stage,
+                          stage.frame ? fmt::format("{}", *stage.frame) : "-");
+  }
+  return {row.label,
+          fmt::format("{}", row.frames),
+          stages.empty() ? "not recorded" : stages,
+          row.equal_trajectories ? "equal" : fmt::format("{:.2g} m", row.largest_m),
+          row.equal_trajectories ? "equal"
+                                 : fmt::format("{:.2g} deg", row.largest_rad * 180.0 / std::numbers::pi),
+          ate_cell(row.ate_m),
+          ate_cell(row.other_ate_m)};
+}
+
+int compare_stores(const Store& store, const RunSelection& selection, const StatsArguments& arguments) {
+  const Store other(arguments.other);
+  std::vector<GroupRows> groups;
+  bool all_equal = true;
+  for (const RunGroup& group : selection.groups) {
+    GroupRows rows{.group = &group, .rows = {}};
+    for (const ExecutionDifference& row : execution_differences(store, group.runs, other)) {
+      all_equal = all_equal && row.equal_trajectories;
+      rows.rows.push_back(difference_cells(row));
+    }
+    if (!rows.rows.empty()) groups.push_back(std::move(rows));
+  }
+  if (groups.empty()) {
+    throw InputError(arguments.other, "contains no successful run that " + arguments.store +
+                                          " contains, too: execute the same plan by the same build on both");
+  }
+  print_groups({"run", "frames", "first frame that differs", "largest distance", "largest angle", "ATE m",
+                "ATE m, other"},
+               groups,
+               with_left_out(
+                   {fmt::format("First frame that differs, by stage; -: none. Other: {}. {}", arguments.other,
+                                all_equal ? "All trajectories are equal to nine decimals."
+                                          : "Some trajectories differ.")},
+                   selection),
+               arguments);
+  return all_equal ? kExitOk : kExitFindings;
+}
+
+}  // namespace
+
+int stats_repeat(const StatsArguments& arguments) {
+  const Store store(arguments.store);
+  const RunSelection selection = chosen_runs(store, arguments);
+  return arguments.other.empty() ? compare_repetitions(store, selection, arguments)
+                                 : compare_stores(store, selection, arguments);
+}
+
+namespace {
+
+constexpr double kMaxErrorRatio = 3.0;
+constexpr double kMinError_m = 0.02;
+constexpr double kMaxFalseConfidence = 0.005;
+constexpr double kMaxTimeToDetect_s = 0.5;
+
+/// What became of a run, and whether that was expected.
+struct FaultOutcome {
+  std::string text;
+  bool as_expected = false;
+};
+
+/// What became of the runs of one variant.
+struct FaultTally {
+  int runs = 0;
+  int as_expected = 0;
+  int late = 0;                      ///< runs in which a wrong pose was called located for too long
+  double false_confidence = 0.0;     ///< sum over runs of the same length
+  double missed_availability = 0.0;  ///< same
+};
+
+const StoredRun* find_run(const RunGroup& group, const std::string& variant, const std::string& sequence) {
+  const auto found = std::ranges::find_if(group.runs, [&](const StoredRun& run) {
+    return run.identity.variant == variant && run.identity.sequence == sequence;
+  });
+  return found == group.runs.end() ? nullptr : &*found;
+}
+
+FaultOutcome outcome_of(const StoredRun& run, double max_error_m, const std::string& expected) {
+  if (run.outcome != Outcome::kOk) return {outcome_name(run.outcome), false};
+  const std::optional<double> wrong = metric_value(run, metric_id::kFalseConfidence);
+  const std::optional<double> error_m = metric_value(run, metric_id::kErrorAfterRecovery);
+  if (!wrong) return {"n/a", false};
+  const bool honest = *wrong <= kMaxFalseConfidence;
+  const bool survived = honest && error_m && *error_m <= max_error_m;
+  const std::string outcome = survived ? "survive" : honest ? "lose" : "wrong";
+  const std::string error = error_m ? fmt::format("{:.3f} m", *error_m) : "-";
+  return {fmt::format("{}, {}, {:.1f} %", outcome, error, 100.0 * *wrong),
+          outcome == expected || (survived && expected == kExpectLoss)};
+}
+
+/// The cell of a run; counts it.
+std::string cell_of(const RunGroup& group, const RunIdentity& identity, const std::string& expected,
+                    FaultTally& tally) {
+  const StoredRun* run = find_run(group, identity.variant, identity.sequence);
+  if (run == nullptr) return "not run";
+  const StoredRun* undisturbed =
+      find_run(group, identity.variant, identity.sequence.substr(0, identity.sequence.find(" + ")));
+  const double ate = undisturbed == nullptr ? 0.0 : metric_value(*undisturbed, metric_id::kAte).value_or(0.0);
+  const FaultOutcome outcome = outcome_of(*run, std::max(kMinError_m, kMaxErrorRatio * ate), expected);
+  ++tally.runs;
+  tally.as_expected += outcome.as_expected;
+  tally.late += metric_value(*run, metric_id::kTimeToDetect).value_or(0.0) > kMaxTimeToDetect_s;
+  tally.false_confidence += metric_value(*run, metric_id::kFalseConfidence).value_or(0.0);
+  tally.missed_availability += metric_value(*run, metric_id::kMissedAvailability).value_or(0.0);
+  return outcome.text + (outcome.as_expected ? "" : " (!)");
+}
+
+/// Median over the undisturbed sequences of the plan.
+std::string claim_text(const RunGroup& group, const std::string& variant, const BenchPlan& plan) {
+  std::vector<double> claims;
+  for (const std::string& sequence : plan.rendered.sequences) {
+    const StoredRun* run = find_run(group, variant, sequence);
+    const auto claim = run == nullptr ? std::nullopt : metric_value(*run, metric_id::kClaimedThreeSigma);
+    if (claim) claims.push_back(*claim);
+  }
+  const std::optional<double> median = eval::percentile(claims, 0.5);
+  return median ? fmt::format("{:.3f} m", *median) : "-";
+}
+
+/// Matrix and totals of one group of runs.
+class FaultMatrix {
+ public:
+  FaultMatrix(const BenchPlan& plan, const RunGroup& group)
+      : plan_(plan), group_(group), tallies_(plan.variants.size()) {
+    for (const std::string& sequence : plan.rendered.sequences) {
+      for (std::size_t i = 0; i < plan.faults.size(); ++i) {
+        if (plan.faults[i] != kNoFault) add_row(sequence, plan.faults[i], plan.expected[i]);
+      }
+    }
+  }
+
+  [[nodiscard]] GroupRows rows() const { return {.group = &group_, .rows = rows_}; }
+
+  /// One row per variant.
+  [[nodiscard]] report::TableRows totals() const {
+    report::TableRows rows = {{"variant", "runs", "as expected", "false confidence", "missed availability",
+                               "detected after 0.5 s", "3 sigma, undisturbed"}};
+    for (std::size_t v = 0; v < tallies_.size(); ++v) {
+      const FaultTally& tally = tallies_[v];
+      const double runs = std::max(1, tally.runs);
+      rows.push_back({plan_.variants[v], fmt::format("{}", tally.runs),
+                      fmt::format("{} ({:.0f} %)", tally.as_expected, 100.0 * tally.as_expected / runs),
+                      fmt::format("{:.2f} %", 100.0 * tally.false_confidence / runs),
+                      fmt::format("{:.2f} %", 100.0 * tally.missed_availability / runs),
+                      fmt::format("{}", tally.late), claim_text(group_, plan_.variants[v], plan_)});
+    }
+    return rows;
+  }
+
+  /// Whether all runs of the first variant did as expected.
+  [[nodiscard]] bool is_as_expected() const { return tallies_.front().as_expected == tallies_.front().runs; }
+
+ private:
+  void add_row(const std::string& sequence, const std::string& fault, const std::string& expected) {
+    rows_.push_back({sequence, fault, expected});
+    for (std::size_t v = 0; v < plan_.variants.size(); ++v) {
+      const RunIdentity identity{.variant = plan_.variants[v], .sequence = sequence + " + " + fault};
+      rows_.back().push_back(cell_of(group_, identity, expected, tallies_[v]));
+    }
+  }
+
+  const BenchPlan& plan_;
+  const RunGroup& group_;
+  std::vector<FaultTally> tallies_;  ///< per variant
+  report::TableRows rows_;
+};
+
+}  // namespace
+
+int stats_faults(const StatsArguments& arguments) {
+  StatsArguments chosen = arguments;
+  if (chosen.plan.empty()) chosen.plan = "faults";
+  const BenchPlan plan = load_plan(chosen.plan);
+  chosen.plan = plan.name;  // runs are stored under it, also those of a plan file
+  if (plan.expected.empty()) throw InputError(plan.path, "has no key \"expected\"");
+  const Store store(chosen.store);
+  const RunSelection selection = chosen_runs(store, chosen);
+  std::vector<std::string> header = {"sequence", "fault", "expected"};
+  header.insert(header.end(), plan.variants.begin(), plan.variants.end());
+  std::vector<GroupRows> groups;
+  report::TableRows totals;
+  bool all_expected = true;
+  for (const RunGroup& group : selection.groups) {
+    const FaultMatrix matrix(plan, group);
+    groups.push_back(matrix.rows());
+    const report::TableRows rows = matrix.totals();
+    totals.insert(totals.end(), rows.begin() + (totals.empty() ? 0 : 1), rows.end());
+    all_expected = all_expected && matrix.is_as_expected();
+  }
+  print_groups(
+      header, groups,
+      {"Cells: outcome, error after recovery, false confidence; (!): not as expected. The expectation "
+       "is that of the first variant."},
+      chosen);
+  std::ostream& remarks = chosen.csv ? std::cerr : std::cout;
+  remarks << '\n' << report::format_table(totals, report::TableStyle::kMarkdown);
+  return all_expected ? kExitOk : kExitFindings;
+}
+
 namespace {
 
 constexpr const char* kMedianTest = "exact, by order statistics";

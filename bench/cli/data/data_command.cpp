@@ -1,18 +1,251 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
+#include "bench/cli/console.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/plan/sequence_registry.h"
 #include "bench/record/sequence_checksum.h"
+#include "bench/run/frame_cache.h"
+#include "bench/run/sequence_source.h"
+#include "core/base/error.h"
+#include "datasets/cache/cache_space.h"
+#include "datasets/faults/sensor_fault.h"
 #include "datasets/open_sequence.h"
+#include "datasets/sequence_export.h"
+#include "datasets/sequence_validator.h"
+#include "reports/tables/text_table.h"
 
 namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string utc_text(fs::file_time_type time) {
+  const auto seconds =
+      std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::file_clock::to_sys(time));
+  return fmt::format("{:%Y-%m-%d %H:%M:%S}", seconds);
+}
+
+int list_files() {
+  for (const datasets::CacheEntry& entry : datasets::list_cache(frame_cache_folder())) {
+    std::cout << fmt::format("{:<24} {:>6} frames {:>8}  {}  {}\n",
+                             entry.sequence.empty() ? "(damaged)" : entry.sequence, entry.frames,
+                             datasets::size_text(entry.bytes), utc_text(entry.last_used),
+                             entry.file.filename().string());
+  }
+  return kExitOk;
+}
+
+struct CacheSizeArguments {
+  std::string limit;
+};
+
+int show_size(const CacheSizeArguments& arguments) {
+  const fs::path folder = frame_cache_folder();
+  if (!arguments.limit.empty()) {
+    store_frame_cache_limit(folder, datasets::size_from_text("--limit", arguments.limit));
+  }
+  std::cout << fmt::format(
+      "{} of {} in {} files, disk reserve {}\n  {}\n", datasets::size_text(datasets::cache_bytes(folder)),
+      datasets::size_text(frame_cache_limit(folder)), datasets::list_cache(folder).size(),
+      datasets::size_text(datasets::kDefaultDiskReserveBytes), folder.string());
+  return kExitOk;
+}
+
+struct CachePruneArguments {
+  std::string size;
+};
+
+int prune(const CachePruneArguments& arguments) {
+  const fs::path folder = frame_cache_folder();
+  const std::uint64_t limit =
+      arguments.size.empty() ? frame_cache_limit(folder) : datasets::size_from_text("--size", arguments.size);
+  const std::uint64_t removed = datasets::prune_cache(folder, limit);
+  std::cout << fmt::format("removed {}, {} remain\n", datasets::size_text(removed),
+                           datasets::size_text(datasets::cache_bytes(folder)));
+  return kExitOk;
+}
+
+Command cache_list_command() {
+  return {.name = "list",
+          .summary = "List the sequences with decoded frames, the least recently used first; times in UTC",
+          .example = "data cache list",
+          .action = list_files};
+}
+
+Command cache_size_command() {
+  const auto arguments = std::make_shared<CacheSizeArguments>();
+  return {.name = "size",
+          .summary = "Show the used space and its limit",
+          .example = "data cache size --limit 50G",
+          .options = {{"--limit", "Store this limit for all later runs, e.g. 50G; 0 = no frame cache",
+                       &arguments->limit}},
+          .action = [arguments] { return show_size(*arguments); }};
+}
+
+Command cache_prune_command() {
+  const auto arguments = std::make_shared<CachePruneArguments>();
+  return {.name = "prune",
+          .summary = "Remove the least recently used files, and what interrupted runs left",
+          .example = "data cache prune --size 5G",
+          .options = {{"--size", "Size that may remain, e.g. 5G or 0 [the limit]", &arguments->size}},
+          .action = [arguments] { return prune(*arguments); }};
+}
+
+}  // namespace
+
+Command cache_command() {
+  return {
+      .name = "cache",
+      .summary = "Manage the decoded frames that runs keep; limit: $STILLPOINT_CACHE_SIZE or `size --limit`",
+      .example = "data cache list",
+      .subcommands = {cache_list_command(), cache_size_command(), cache_prune_command()}};
+}
+
+namespace {
+
+struct CheckArguments {
+  std::string folder;
+  std::string format;
+  std::string rig_file;
+  std::vector<std::string> topics;
+};
+
+int check(const CheckArguments& arguments) {
+  std::optional<ProgressLine> line;
+  const datasets::CheckOptions options{
+      .open = {.format = arguments.format, .rig_file = arguments.rig_file, .topics = arguments.topics},
+      .progress = [&line](std::size_t done, std::size_t total) {
+        if (!line) line.emplace("decoding", total, "frames");
+        line->update(done);
+      }};
+  const datasets::CheckReport report = datasets::check_sequence(arguments.folder, options);
+  line.reset();
+  std::cout << datasets::report_text(report);
+  return report.exit_code();
+}
+
+}  // namespace
+
+Command check_command() {
+  const auto arguments = std::make_shared<CheckArguments>();
+  return {
+      .name = "check",
+      .summary =
+          "Validate a sequence folder or bag: contents and defects; exit code 0 = no defects, 1 = defects, 2 "
+          "= "
+          "unreadable",
+      .example = "data check my_sequence",
+      .options = {{"DIR", "Sequence folder or bag", &arguments->folder},
+                  {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
+                   &arguments->format},
+                  {"--topics", kTopicsHelp, &arguments->topics},
+                  {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig_file}},
+      .action = [arguments] { return check(*arguments); }};
+}
+
+namespace {
+
+struct ExportArguments {
+  std::string sequence;
+  std::string out;
+  std::string layout = "bag";
+  std::string compression = "none";
+  std::string format;
+  std::string rig;
+  std::vector<std::string> topics;
+};
+
+void write(const datasets::SensorStream& stream, const ExportArguments& arguments,
+           const datasets::ExportControl& control) {
+  if (arguments.layout == "tum") {
+    datasets::export_tum(stream, arguments.out, control);
+  } else if (arguments.layout == "euroc") {
+    datasets::export_euroc(stream, arguments.out, control);
+  } else {
+    datasets::export_bag(stream, arguments.out, arguments.compression, control);
+  }
+}
+
+int export_sequence(const ExportArguments& arguments) {
+  if (arguments.layout != "tum" && arguments.layout != "euroc" && arguments.layout != "bag")
+    throw InputError("--layout", "\"" + arguments.layout + "\" is unknown; expected one of: tum, euroc, bag");
+  if (arguments.out.empty()) throw InputError("--out", "is required: the output folder or bag");
+  if (std::filesystem::exists(arguments.out))
+    throw InputError("--out", arguments.out + " exists; choose another name or remove it");
+  install_interrupt_handlers();
+  const std::unique_ptr<datasets::SensorStream> stream =
+      find_sequence(resolve_sequence(arguments.sequence),
+                    {.format = arguments.format, .rig_file = arguments.rig, .topics = arguments.topics},
+                    {.stop_requested = interrupt_requested});
+  if (!stream) return kExitInterrupted;
+  const std::filesystem::path parent = std::filesystem::absolute(arguments.out).parent_path();
+  std::filesystem::create_directories(parent);
+  {
+    ProgressLine line("exporting " + stream->info().name, stream->info().frame_times.size(), "frames");
+    const datasets::ExportControl control{
+        .progress = [&line](std::size_t done, std::size_t) { line.update(done); },
+        .stop_requested = interrupt_requested};
+    write(*stream, arguments, control);
+  }
+  std::cout << arguments.out << '\n';
+  return kExitOk;
+}
+
+}  // namespace
+
+Command export_command() {
+  const auto arguments = std::make_shared<ExportArguments>();
+  return {
+      .name = "export",
+      .summary = "Write a sequence of any format in another layout, for other systems",
+      .example = "data export my_sequence --layout bag --out my_sequence.bag",
+      .options =
+          {{"SEQ", "Sequence folder, bag or preset name", &arguments->sequence},
+           {"--layout",
+            "Output layout: tum, euroc, or bag (--out FILE.bag for ROS 1, FILE.mcap, or a folder of rosbag2)",
+            &arguments->layout},
+           {"--out", "Output folder or bag; must not exist", &arguments->out},
+           {"--compression", "Of a bag: none, bz2 (ROS 1), lz4 (ROS 1, MCAP) or zstd (MCAP)",
+            &arguments->compression},
+           {"--format", "Format of the input [detected]", &arguments->format},
+           {"--rig", "rig.toml that overrides the calibration of the input", &arguments->rig},
+           {"--topics", kTopicsHelp, &arguments->topics}},
+      .action = [arguments] { return export_sequence(*arguments); }};
+}
+
+namespace {
+
+int list_faults() {
+  report::TableRows rows = {{"kind", "effect", "amount", "default", "range"}};
+  for (const datasets::FaultDescriptor& fault : datasets::fault_descriptors()) {
+    const bool has_amount = !fault.amount.empty();
+    rows.push_back({std::string(fault.name), std::string(fault.summary), std::string(fault.amount),
+                    has_amount ? fmt::format("{}", fault.typical) : "",
+                    has_amount ? fmt::format("{} to {}", fault.min, fault.max) : ""});
+  }
+  std::cout << report::format_table(rows, report::TableStyle::kMarkdown);
+  return kExitOk;
+}
+
+}  // namespace
+
+Command faults_command() {
+  return {.name = "faults",
+          .summary = "List the sensor faults that `run --fault` injects",
+          .example = "data faults",
+          .action = list_faults};
+}
+
 namespace {
 
 struct AddArguments {

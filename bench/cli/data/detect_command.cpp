@@ -5,15 +5,12 @@
 #include <memory>
 
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
-#include "bench/cli/interrupt.h"
-#include "bench/cli/progress.h"
+#include "bench/cli/console.h"
 #include "bench/config/config_file.h"
 #include "bench/fetch/box_recording.h"
 #include "bench/fetch/fetch_sequences.h"
-#include "bench/plan/sequence_argument.h"
+#include "bench/plan/plan_sequences.h"
 #include "bench/record/output_folder.h"
-#include "bench/record/output_guard.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "core/detector/object_detector.h"

@@ -12,8 +12,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "bench/cli/interrupt.h"
-#include "bench/cli/progress.h"
+#include "bench/cli/console.h"
 #include "bench/fetch/data_lock.h"
 #include "bench/plan/bench_plan.h"
 #include "core/base/error.h"

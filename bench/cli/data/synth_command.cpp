@@ -7,10 +7,7 @@
 #include <fmt/format.h>
 
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
-#include "bench/cli/enum_option.h"
-#include "bench/cli/interrupt.h"
-#include "bench/cli/progress.h"
+#include "bench/cli/console.h"
 #include "core/base/error.h"
 #include "datasets/synthetic/sequence/sequence_cache.h"
 

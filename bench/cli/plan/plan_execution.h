@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Options of `bench` that select where the runs of a plan are executed.
+///
+/// Console progress output of plans.
 #pragma once
 
 #include <memory>
@@ -10,6 +12,10 @@
 #include "bench/plan/execution/plan_runner.h"
 
 namespace stillpoint::bench {
+
+/// Hooks that log each step and draw progress lines for renderings and runs on stderr. They stop the plan on
+/// SIGINT and SIGTERM.
+[[nodiscard]] PlanHooks plan_progress();
 
 struct ExecutionArguments {
   std::string executor = "local";

@@ -7,10 +7,9 @@
 #include <fmt/format.h>
 
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
-#include "bench/cli/interrupt.h"
-#include "bench/cli/plan/plan_progress.h"
-#include "bench/executors/job_folder.h"
+#include "bench/cli/console.h"
+#include "bench/cli/plan/plan_execution.h"
+#include "bench/executors/distribution.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {

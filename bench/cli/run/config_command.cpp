@@ -3,9 +3,7 @@
 #include <memory>
 
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
 #include "bench/config/config_file.h"
-#include "bench/config/config_text.h"
 #include "bench/config/toml_source.h"
 
 namespace stillpoint::bench {

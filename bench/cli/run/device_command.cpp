@@ -6,9 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
 #include "bench/profile/meters/device_info.h"
-#include "bench/profile/meters/energy_meter.h"
+#include "bench/profile/meters/run_monitor.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {

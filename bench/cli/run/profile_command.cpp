@@ -1,34 +1,243 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint profile --device`: accuracy and latency on a simulated target device.
+//
+// `stillpoint profile --instructions`: instruction counts of callgrind.
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
-#include "bench/cli/interrupt.h"
-#include "bench/cli/progress.h"
-#include "bench/cli/run/profile_device.h"
-#include "bench/cli/run/profile_instructions.h"
+#include "bench/cli/console.h"
 #include "bench/cli/run/profile_report.h"
-#include "bench/cli/run/run_layout.h"
 #include "bench/config/config_file.h"
 #include "bench/plan/bench_plan.h"
-#include "bench/plan/sequence_argument.h"
+#include "bench/plan/plan_sequences.h"
+#include "bench/process/child_process.h"
+#include "bench/profile/device_file.h"
+#include "bench/profile/instruction_count.h"
 #include "bench/profile/meters/device_info.h"
 #include "bench/profile/meters/process_usage.h"
-#include "bench/profile/meters/throttling.h"
 #include "bench/profile/profile_table.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/output_folder.h"
-#include "bench/record/output_guard.h"
+#include "bench/record/result_values.h"
+#include "bench/record/run_files.h"
+#include "bench/run/odometry_run.h"
+#include "bench/run/run_result.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
+#include "datasets/sensor_stream.h"
+#include "eval/io/text_reader.h"
+#include "eval/metrics/statistics.h"
+#include "reports/tables/text_table.h"
 
 namespace stillpoint::bench {
+
+struct DeviceRequest {
+  std::string device;  ///< embedded name or TOML file
+  RunSpec spec;        ///< `device` is not set
+  double budget_ms = 0.0;
+  std::filesystem::path folder;  ///< output: device.json and trajectory.tum
+};
+
+/// Simulates the device and prints the result. @return exit code
+/// @throws InputError if the device does not exist; rethrows errors of the run
+int profile_on_device(const datasets::SensorStream& stream, DeviceRequest request);
+
+struct InstructionRequest {
+  std::filesystem::path sequence;  ///< folder
+  std::string name;                ///< name of the sequence
+  ConfigRequest config;
+  int frames = 0;                ///< number of frames, from the start
+  std::filesystem::path folder;  ///< output: instructions.json, callgrind.out and the files of the run
+};
+
+/// Counts instructions and prints them. @return exit code
+/// @throws InputError if valgrind is not installed or the run fails
+int profile_instructions(const InstructionRequest& request);
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Dropped frames and latency on the simulated device.
+struct DeviceTiming {
+  std::size_t frames = 0;
+  int dropped = 0;
+  int late_detections = 0;
+  std::int64_t beyond_budget = 0;  ///< poses with a latency above the budget
+  double median_ms = 0.0;          ///< of the latencies
+  double p95_ms = 0.0;
+  double max_ms = 0.0;
+};
+
+DeviceTiming timing_of(const RunSummary& summary, double budget_ms) {
+  const RealtimeReport report = summary.realtime.value_or(RealtimeReport{});
+  const std::vector<double>& latencies = report.latencies_ms;
+  return {.frames = summary.frames,
+          .dropped = report.dropped,
+          .late_detections = report.late_detections,
+          .beyond_budget = std::ranges::count_if(latencies, [&](double ms) { return ms > budget_ms; }),
+          .median_ms = eval::percentile(latencies, 0.5).value_or(0.0),
+          .p95_ms = eval::percentile(latencies, 0.95).value_or(0.0),
+          .max_ms = eval::percentile(latencies, 1.0).value_or(0.0)};
+}
+
+/// One run on a simulated device.
+struct SimulatedRun {
+  DeviceFile device;
+  bool deterministic = false;
+  double budget_ms = 0.0;
+  RunResult result;
+  DeviceTiming timing;
+};
+
+Json json_of(const SimulatedRun& run) {
+  const auto& [device, deterministic, budget_ms, result, timing] = run;
+  return {{"device", device.title},
+          {"source", device.source},
+          {"deterministic", deterministic},
+          {"sequence", result.sequence},
+          {"status", status_name(result.outcome)},
+          {"frames", timing.frames},
+          {"dropped", timing.dropped},
+          {"late_detections", timing.late_detections},
+          {"budget_ms", budget_ms},
+          {"beyond_budget", timing.beyond_budget},
+          {"latency_ms", {{"median", timing.median_ms}, {"p95", timing.p95_ms}, {"max", timing.max_ms}}},
+          {"score", metric_members({.scored = measurements_of(result).scored})}};
+}
+
+void print(const SimulatedRun& run) {
+  const auto& [device, deterministic, budget_ms, result, timing] = run;
+  std::cout << fmt::format(
+      "{}\n{}\n{} frames, {} dropped, {} with late detections; latency {:.1f} ms (median), {:.1f} ms (p95), "
+      "{:.1f} ms (max), {} frames above {:g} ms\n",
+      device.title,
+      deterministic ? "fixed stage costs: the result is deterministic"
+                    : "scaled measured times: the result varies between runs",
+      timing.frames, timing.dropped, timing.late_detections, timing.median_ms, timing.p95_ms, timing.max_ms,
+      timing.beyond_budget, budget_ms);
+  std::cout << result.sequence << ": " << status_name(result.outcome) << '\n'
+            << score_text(*measurements_of(result).scored);
+}
+
+}  // namespace
+
+int profile_on_device(const datasets::SensorStream& stream, DeviceRequest request) {
+  SimulatedRun run{.device = load_device(request.device), .budget_ms = request.budget_ms};
+  request.spec.device = device_model(run.device);
+  run.deterministic = request.spec.device->is_deterministic();
+  ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
+  const auto on_update = [&](const OdometryUpdate& update) {
+    progress.update(static_cast<std::size_t>(update.frame_id) + 1);
+  };
+  run.result = score_run(
+      stream.info(),
+      run_odometry(stream, request.spec,
+                   {.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested}));
+  if (interrupt_requested()) return kExitInterrupted;
+  run.timing = timing_of(run.result.run.summary, request.budget_ms);
+  write_files(request.folder, {{"device.json", json_of(run).dump(2) + "\n"},
+                               {"trajectory.tum", trajectory_text(run.result)}});
+  progress.clear();
+  print(run);
+  std::cout << request.folder.string() << '\n';
+  return run.result.outcome == Outcome::kOk ? kExitOk : kExitFindings;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using FunctionCount = std::pair<std::string, std::int64_t>;
+
+constexpr std::size_t kListedFunctions = 15;
+constexpr std::size_t kListedCharacters = 100;
+
+ProcessSpec run_of(const InstructionRequest& request) {
+  ProcessSpec run;
+  run.program = executable_path();
+  run.arguments = {"run",           fs::absolute(request.sequence).string(),
+                   "--config",      request.config.base,
+                   "--variant",     request.config.variant,
+                   "--out",         ".",
+                   "--max-frames",  std::to_string(request.frames),
+                   "--sequence-id", "unused"};
+  for (const std::string& setting : request.config.settings) {
+    run.arguments.insert(run.arguments.end(), {"--set", setting});
+  }
+  return under_callgrind(std::move(run), fs::absolute(request.folder));
+}
+
+/// Functions with the largest self counts.
+std::vector<FunctionCount> largest_self_counts(const CallgrindCounts& counts) {
+  std::vector<FunctionCount> functions(counts.self.begin(), counts.self.end());
+  std::stable_sort(functions.begin(), functions.end(),
+                   [](const FunctionCount& a, const FunctionCount& b) { return a.second > b.second; });
+  functions.resize(std::min(functions.size(), kListedFunctions));
+  return functions;
+}
+
+std::string in_millions(std::int64_t count, double divisor) {
+  return fmt::format("{:.3f}", 1e-6 * static_cast<double>(count) / divisor);
+}
+
+void print(const std::vector<StageInstructions>& stages, const CallgrindCounts& counts, int frames) {
+  report::TableRows table = {{"stage", "instructions", "million per frame"}};
+  std::int64_t total = 0;
+  for (const auto& [stage, count] : stages) {
+    table.push_back({stage, fmt::format("{}", count), in_millions(count, frames)});
+    total += count;
+  }
+  table.push_back({"all stages", fmt::format("{}", total), in_millions(total, frames)});
+  std::cout << report::format_table(table, report::TableStyle::kText)
+            << "\nfunctions with the largest self counts, whole program, millions (may vary between runs):\n";
+  for (const auto& [function, count] : largest_self_counts(counts)) {
+    std::cout << fmt::format("{:>12}  {}\n", in_millions(count, 1.0), function.substr(0, kListedCharacters));
+  }
+}
+
+Json json_of(const InstructionRequest& request, const std::vector<StageInstructions>& stages,
+             const CallgrindCounts& counts) {
+  Json json = {{"sequence", request.name}, {"base", request.config.base}, {"variant", request.config.variant},
+               {"frames", request.frames}, {"stages", Json::object()},    {"functions", Json::array()}};
+  for (const auto& [stage, count] : stages) json["stages"][stage] = count;
+  for (const auto& [function, count] : largest_self_counts(counts)) {
+    json["functions"].push_back({{"name", function}, {"self", count}});
+  }
+  return json;
+}
+
+}  // namespace
+
+int profile_instructions(const InstructionRequest& request) {
+  const ProcessSpec spec = run_of(request);
+  spdlog::info("executing {} frames under callgrind, about 50 times slower than normal", request.frames);
+  ProcessPool pool(interrupt_requested);
+  pool.start(0, spec);
+  const ProcessResult end = pool.wait_next()->second;
+  if (interrupt_requested()) return kExitInterrupted;
+  const fs::path file = request.folder / kCallgrindFile;
+  if (end.signal != 0 || end.exit_code > kExitFindings) {
+    throw InputError(request.sequence.string(), "the run under callgrind failed: " + last_line(end.messages));
+  }
+  const CallgrindCounts counts = parse_callgrind(eval::read_text_file(file), file.string());
+  const std::vector<StageInstructions> stages = stage_instructions(counts, file.string());
+  write_files(request.folder, {{"instructions.json", json_of(request, stages, counts).dump(2) + "\n"}});
+  print(stages, counts, request.frames);
+  std::cout << fmt::format("{} (open callgrind.out in KCachegrind)\n", request.folder.string());
+  return kExitOk;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

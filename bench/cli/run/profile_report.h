@@ -1,22 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Output of `stillpoint profile`: JSON file and console text.
+///
+/// Drift of times and temperature while one run is repeated: `stillpoint profile --duration`.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "bench/cli/run/profile_drift.h"
+#include <nlohmann/json_fwd.hpp>
+
 #include "bench/profile/meters/allocation_watch.h"
-#include "bench/profile/meters/energy_meter.h"
-#include "bench/profile/meters/hardware_counters.h"
 #include "bench/profile/meters/process_usage.h"
 #include "bench/profile/meters/run_monitor.h"
 #include "bench/profile/profile_table.h"
-#include "bench/profile/recorder_cost.h"
 
 namespace stillpoint::bench {
+
+/// One repetition of the run.
+struct DriftRow {
+  double t_s = 0.0;       ///< end of the repetition, since the start of the first
+  double frame_ms = 0.0;  ///< mean time of all stages per frame
+  std::optional<double> temperature_c{};
+  std::optional<bool> throttled{};  ///< during the repetition
+};
+
+/// "90s", "10m" or "1h", with an optional fraction [s].
+/// @throws InputError unless the text is a positive number with one of these units
+[[nodiscard]] double parse_duration_s(std::string_view text);
+
+/// Null for values that are not available.
+[[nodiscard]] nlohmann::ordered_json drift_json(const std::vector<DriftRow>& rows);
+
+/// The change from the first to the last repetition, "n/a" for values that are not available; empty without
+/// rows.
+[[nodiscard]] std::string drift_text(const std::vector<DriftRow>& rows);
 
 /// One run with its measurements.
 struct Profile {

@@ -1,39 +1,147 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The options --map and --save-map of `run`.
+//
+// Opens the sequence of a run, and plays it as requested.
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
-#include "bench/cli/commands.h"
-#include "bench/cli/interrupt.h"
-#include "bench/cli/progress.h"
-#include "bench/cli/run/map_options.h"
-#include "bench/cli/run/open_with_progress.h"
+#include "bench/cli/console.h"
 #include "bench/cli/run/run_dumps.h"
-#include "bench/cli/run/run_layout.h"
 #include "bench/config/config_file.h"
 #include "bench/model/metrics.h"
-#include "bench/model/utc_time.h"
-#include "bench/plan/sequence_argument.h"
+#include "bench/model/stored_run.h"
+#include "bench/plan/plan_sequences.h"
 #include "bench/profile/meters/process_usage.h"
 #include "bench/profile/meters/run_monitor.h"
 #include "bench/record/map_file.h"
 #include "bench/record/output_folder.h"
-#include "bench/record/output_guard.h"
-#include "bench/record/remembered_checksum.h"
 #include "bench/record/run_files.h"
-#include "bench/run/frame_cache_settings.h"
-#include "bench/run/heartbeat.h"
-#include "bench/run/recorded_boxes.h"
+#include "bench/record/sequence_checksum.h"
+#include "bench/run/frame_cache.h"
+#include "bench/run/odometry_run.h"
+#include "bench/run/run_scores.h"
+#include "bench/run/sequence_source.h"
 #include "core/base/error.h"
+#include "core/config/odometry_config.h"
+#include "datasets/faults/faulty_stream.h"
 #include "datasets/faults/sensor_fault.h"
 #include "datasets/open_sequence.h"
+#include "datasets/ping_pong_playback.h"
+#include "datasets/playback_start.h"
 
 namespace stillpoint::bench {
+
+struct MapOptions {
+  std::string load;       ///< map of an earlier run; empty = none
+  std::string save;       ///< file for the map of this run; empty = none
+  bool final_ba = false;  ///< global bundle adjustment after the last frame
+};
+
+/// Checks the options before the work begins.
+/// @param runs number of runs of the command
+/// @throws InputError without loop closure, for several runs with --save-map, and if the output file must not
+/// be replaced
+void require_map_options(const MapOptions& options, const OdometryConfig& config, std::size_t runs);
+
+/// The map of --map, or null. @throws InputError as `read_map`
+[[nodiscard]] std::shared_ptr<const KeyframeMap> load_map(const MapOptions& options);
+
+/// Writes the map of --save-map, if any. With --map it contains the keyframes of both runs.
+/// @throws InputError if the run was not located in the map of --map
+void save_map(const MapOptions& options, const LoopReport& report);
+
+/// `find_sequence` with a progress line while a preset is rendered.
+/// @return null if interrupted
+[[nodiscard]] std::unique_ptr<datasets::SensorStream> open_with_progress(
+    const std::string& name, const datasets::OpenOptions& options);
+
+/// How a sequence is played.
+struct Playback {
+  double start_s = 0.0;  ///< see datasets/playback_start.h
+  int passes = 1;        ///< see datasets/ping_pong_playback.h
+  std::vector<datasets::SensorFault> faults;
+};
+
+/// The stream from the start on, in passes, with faults relative to the start.
+/// @param stream with at least one frame
+/// @throws InputError as `start_at`, `ping_pong_playback` and `with_faults`
+[[nodiscard]] std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
+                                                             const Playback& playback);
+
+/// Options of the frame cache whose warnings are logged.
+/// @param max_frames 0 = all
+/// @return nullopt unless `enabled`, or as `frame_cache_options`
+[[nodiscard]] std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames);
+
+namespace {
+
+OutputRules rules_of(const MapOptions& options) { return {.inputs = {options.load}, .beginning = kMapMagic}; }
+
+}  // namespace
+
+void require_map_options(const MapOptions& options, const OdometryConfig& config, std::size_t runs) {
+  if (options.load.empty() && options.save.empty() && !options.final_ba) return;
+  if (!config.loop.enabled) {
+    const char* const option = !options.load.empty()  ? "--map"
+                               : options.save.empty() ? "--final-ba"
+                                                      : "--save-map";
+    throw InputError(option, "requires loop closure; add --variant ablations/loop_closure");
+  }
+  if (options.save.empty()) return;
+  if (runs > 1) throw InputError("--save-map", "requires a single run; pass one --variant");
+  require_safe_output(options.save, rules_of(options));
+}
+
+std::shared_ptr<const KeyframeMap> load_map(const MapOptions& options) {
+  return options.load.empty() ? nullptr : std::make_shared<KeyframeMap>(read_map(options.load));
+}
+
+void save_map(const MapOptions& options, const LoopReport& report) {
+  if (options.save.empty()) return;
+  if (!report.map) {
+    throw InputError("--save-map",
+                     "the run was not located in the map of --map, so it cannot extend it; run without --map "
+                     "for a map of its own");
+  }
+  write_output(options.save, map_bytes(*report.map), rules_of(options));
+}
+
+std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& name,
+                                                           const datasets::OpenOptions& options) {
+  std::unique_ptr<ProgressLine> progress;
+  const auto on_rendered = [&](int done, int total) {
+    if (!progress) {
+      progress =
+          std::make_unique<ProgressLine>("rendering " + name, static_cast<std::size_t>(total), "frames");
+    }
+    progress->update(static_cast<std::size_t>(done));
+  };
+  return find_sequence(name, options, {.progress = on_rendered, .stop_requested = interrupt_requested});
+}
+
+std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
+                                               const Playback& playback) {
+  stream = datasets::start_at(std::move(stream), playback.start_s);
+  if (playback.passes > 1) stream = datasets::ping_pong_playback(std::move(stream), playback.passes);
+  return datasets::with_faults(std::move(stream), playback.faults);
+}
+
+std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames) {
+  if (!enabled) return std::nullopt;
+  return frame_cache_options(static_cast<std::size_t>(max_frames),
+                             [](const std::string& text) { spdlog::warn("{}", text); });
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Optional outputs of a run. None of their failures affects the run or its result.
+///
+/// Dynamic labels of all features with their reasons, as CSV.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +9,27 @@
 #include <string>
 #include <vector>
 
-#include "bench/record/label_dump.h"
 #include "bench/run/odometry_run.h"
 #include "core/config/frontend_config.h"
+#include "core/pipeline/runners/runner.h"
 #include "datasets/sensor_stream.h"
 #include "reports/frames/run_video.h"
 #include "reports/frames/worst_frames.h"
 
 namespace stillpoint::bench {
+
+/// Rows of labels.csv, one per feature of each frame that entered the window.
+class LabelDump {
+ public:
+  void add(const FrameReport& report);
+
+  /// CSV with the header `frame,t,id,u_px,v_px,depth_m,age,label,reason,residual_px`; depth 0: not measured,
+  /// empty residual: not evaluated.
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_ = "frame,t,id,u_px,v_px,depth_m,age,label,reason,residual_px\n";
+};
 
 /// The requested outputs.
 struct DumpRequest {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Scores completed runs and writes their files on other threads, so that a worker never waits for them.
+///
+/// Derives the stored outcome of a run from its finished process.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +9,17 @@
 #include <functional>
 #include <future>
 
+#include "bench/plan/bench_plan.h"
 #include "bench/process/child_process.h"
 #include "bench/store/store_writer.h"
+#include "bench/systems/slam_system.h"
 
 namespace stillpoint::bench {
+
+/// The outcome reported by the system, or the limit or signal that terminated it, together with the resource
+/// usage of the process and the metrics of the plan's evaluation protocols.
+[[nodiscard]] RunOutcome outcome_of_run(const SlamSystem& system, const RunRequest& request,
+                                        const ProcessResult& end, const BenchPlan& plan);
 
 /// A run that is ready to be stored.
 struct ScoredRun {

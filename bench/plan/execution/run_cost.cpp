@@ -8,6 +8,7 @@
 #include <optional>
 #include <queue>
 #include <string>
+#include <tuple>
 
 #include "bench/model/metrics.h"
 
@@ -124,6 +125,26 @@ std::vector<std::size_t> divide_evenly(std::span<const double> run_seconds, int 
   }
   bounds.push_back(runs);
   return bounds;
+}
+
+std::vector<std::size_t> execution_order(const PlanMatrix& matrix, std::span<const StoredRun> history,
+                                         int jobs) {
+  std::vector<std::size_t> order;
+  for (std::size_t run = 0; run < matrix.runs.size(); ++run) {
+    if (matrix.sequences[matrix.runs[run].sequence].unavailable_reason.empty()) order.push_back(run);
+  }
+  if (matrix.plan.kind == RunKind::kTiming || jobs == 1) return order;
+  const std::vector<RunCost> costs = expected_costs(matrix, history);
+  std::vector<double> longest_s(matrix.sequences.size(), 0.0);
+  for (const std::size_t run : order) {
+    double& maximum = longest_s[matrix.runs[run].sequence];
+    maximum = std::max(maximum, costs[run].seconds);
+  }
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t run) {
+    const std::size_t sequence = matrix.runs[run].sequence;
+    return std::tuple(longest_s[sequence], longest_s.size() - sequence, costs[run].seconds);
+  });
+  return order;
 }
 
 }  // namespace stillpoint::bench

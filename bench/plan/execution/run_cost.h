@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Expected duration of the runs of a plan, from earlier runs in the store.
+///
+/// Order in which the runs of a plan are started.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -38,5 +41,14 @@ struct RunCost {
 /// runs of a sequence remain together.
 /// @return index of the first run of each part, and the number of runs; every part has at least one run
 [[nodiscard]] std::vector<std::size_t> divide_evenly(std::span<const double> run_seconds, int tasks);
+
+/// Indices of the runs whose sequences are available. Long runs are first, so that the last run does not wait
+/// alone; the runs of a sequence remain together, as they share its cached files, and sequences are sorted
+/// by their longest run. Timing runs, and runs that are executed one at a time, keep the order of the plan,
+/// which alternates the variants.
+/// @param history stored runs from which the durations are expected
+/// @param jobs number of concurrent runs
+[[nodiscard]] std::vector<std::size_t> execution_order(const PlanMatrix& matrix,
+                                                       std::span<const StoredRun> history, int jobs);
 
 }  // namespace stillpoint::bench

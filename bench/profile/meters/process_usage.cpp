@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/profile/meters/process_usage.h"
 
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <string>
 
-#include <sched.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
+#include <linux/perf_event.h>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -118,6 +123,108 @@ nlohmann::ordered_json usage_json(const ProcessUsage& usage, const std::map<int,
           {"major_faults", usage.major_faults},
           {"peak_memory_bytes", usage.peak_memory_bytes},
           {"threads", list}};
+}
+
+namespace {
+
+struct Event {
+  const char* name;
+  std::uint64_t config;
+};
+constexpr Event kEvents[] = {{"cycles", PERF_COUNT_HW_CPU_CYCLES},
+                             {"instructions", PERF_COUNT_HW_INSTRUCTIONS},
+                             {"cache_misses", PERF_COUNT_HW_CACHE_MISSES},
+                             {"branch_misses", PERF_COUNT_HW_BRANCH_MISSES}};
+
+int open_counter(const Event& event) {
+  perf_event_attr attributes{};
+  attributes.type = PERF_TYPE_HARDWARE;
+  attributes.size = sizeof attributes;
+  attributes.config = event.config;
+  attributes.inherit = 1;
+  attributes.exclude_kernel = 1;
+  attributes.exclude_hv = 1;
+  return static_cast<int>(syscall(SYS_perf_event_open, &attributes, 0, -1, -1, PERF_FLAG_FD_CLOEXEC));
+}
+
+}  // namespace
+
+HardwareCounters::HardwareCounters() {
+  for (const Event& event : kEvents) {
+    const int descriptor = open_counter(event);
+    if (descriptor >= 0) {
+      counters_.push_back({event.name, descriptor});
+    } else if (reason_.empty()) {
+      reason_ = describe_counter_error(errno);
+    }
+  }
+  if (!counters_.empty()) reason_.clear();
+}
+
+HardwareCounters::~HardwareCounters() {
+  for (const Counter& counter : counters_) close(counter.descriptor);
+}
+
+std::vector<HardwareCount> HardwareCounters::counts() const {
+  std::vector<HardwareCount> counts;
+  for (const Counter& counter : counters_) {
+    std::int64_t count = 0;
+    if (read(counter.descriptor, &count, sizeof count) == sizeof count)
+      counts.push_back({counter.name, count});
+  }
+  return counts;
+}
+
+std::string describe_counter_error(int error_number) {
+  switch (error_number) {
+    case ENOENT:
+    case ENODEV:
+    case EOPNOTSUPP:
+      return "this machine has none; virtual machines often hide them";
+    case EACCES:
+    case EPERM:
+      return "not permitted; see /proc/sys/kernel/perf_event_paranoid";
+    case ENOSYS:
+      return "this kernel has no perf_event_open";
+    default:
+      return std::strerror(error_number);
+  }
+}
+
+namespace {
+
+constexpr int kIdle = 3;     // column of /proc/stat, after user, nice, system
+constexpr int kIoWait = 4;   // also idle
+constexpr int kColumns = 8;  // up to steal
+
+}  // namespace
+
+MachineLoad parse_machine_load(std::string_view stat) {
+  std::istringstream stream{std::string(stat)};
+  std::string label;
+  stream >> label;
+  MachineLoad load;
+  if (label != "cpu") return load;
+  std::int64_t ticks = 0;
+  for (int column = 0; column < kColumns && stream >> ticks; ++column) {
+    load.total += ticks;
+    if (column != kIdle && column != kIoWait) load.busy += ticks;
+  }
+  return load;
+}
+
+MachineLoad machine_load() {
+  std::ostringstream text;
+  text << std::ifstream("/proc/stat").rdbuf();
+  return parse_machine_load(text.str());
+}
+
+std::vector<Metric> load_metrics(const MachineLoad& before, const MachineLoad& after, double own_s) {
+  const auto total = static_cast<double>(after.total - before.total);
+  if (total <= 0.0) return {};
+  const double own = own_s * static_cast<double>(sysconf(_SC_CLK_TCK));
+  return measured_metrics(
+      {.other_load = std::max(0.0, (static_cast<double>(after.busy - before.busy) - own) / total)});
 }
 
 }  // namespace stillpoint::bench

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Resource usage of this process and its threads, and their CPU affinity.
+///
+/// Hardware performance counters, if the machine and its settings allow them.
+///
+/// Load of the machine during a timing measurement.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
+
+#include "bench/model/metrics.h"
 
 namespace stillpoint::bench {
 
@@ -52,5 +59,54 @@ void pin_to(const std::vector<int>& processors);
 
 [[nodiscard]] nlohmann::ordered_json usage_json(const ProcessUsage& usage,
                                                 const std::map<int, ThreadUsage>& threads);
+
+struct HardwareCount {
+  std::string name;  ///< e.g. "instructions"
+  std::int64_t count = 0;
+};
+
+/// Counts in user mode for this thread and the threads that it starts after construction.
+/// Source: perf_event_open(2).
+class HardwareCounters {
+ public:
+  HardwareCounters();
+  ~HardwareCounters();
+  HardwareCounters(const HardwareCounters&) = delete;
+  HardwareCounters& operator=(const HardwareCounters&) = delete;
+
+  /// Current counts; empty if no counter is available.
+  [[nodiscard]] std::vector<HardwareCount> counts() const;
+
+  /// Why no counter is available; empty if one is.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  struct Counter {
+    const char* name;
+    int descriptor;
+  };
+  std::vector<Counter> counters_;
+  std::string reason_;
+};
+
+/// Describes an error of perf_event_open for the user.
+[[nodiscard]] std::string describe_counter_error(int error_number);
+
+/// Processor time since boot [ticks of sysconf(_SC_CLK_TCK)], summed over all processors.
+struct MachineLoad {
+  std::int64_t busy = 0;
+  std::int64_t total = 0;
+};
+
+[[nodiscard]] MachineLoad machine_load();
+
+/// @param stat text of /proc/stat (proc(5)); user time includes guest time
+[[nodiscard]] MachineLoad parse_machine_load(std::string_view stat);
+
+/// The metrics of source `MetricSource::kMachine`: load by other processes between two measurements. Empty if
+/// /proc/stat is not available.
+/// @param own_s processor time of the timed process [s]
+[[nodiscard]] std::vector<Metric> load_metrics(const MachineLoad& before, const MachineLoad& after,
+                                               double own_s);
 
 }  // namespace stillpoint::bench

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/model/stored_run.h"
-#include "bench/store/maintenance/run_transfer.h"
+#include "bench/store/maintenance/maintenance.h"
 
 namespace stillpoint::bench {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "bench/model/csv/status_text.h"
+#include "bench/model/run_csv.h"
 #include "core/base/timestamp.h"
 #include "core/types/odometry_update.h"
 #include "eval/metrics/frame_to_frame_error.h"

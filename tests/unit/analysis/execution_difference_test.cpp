@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/analysis/execution_difference.h"
+#include "bench/analysis/run_statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/analysis/test_family.h"
+#include "bench/analysis/metric_change.h"
 
 #include <gtest/gtest.h>
 

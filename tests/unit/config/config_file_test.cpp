@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/config/config_text.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/thrown_message.h"
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "bench/config/config_file.h"
-#include "bench/config/config_text.h"
 #include "bench/config/toml_source.h"
 
 namespace stillpoint::bench {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/config/config_text.h"
+#include "bench/config/config_file.h"
 
 #include <gtest/gtest.h>
 
-#include "bench/config/apply_settings.h"
-#include "bench/model/replicates.h"
+#include "bench/config/settings.h"
+#include "bench/model/stored_run.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "bench/plan/dataset_catalogue.h"
+#include "bench/plan/sequence_registry.h"
 #include "datasets/catalogue/catalogue.h"
 #include "tests/support/expect_input_error.h"
 

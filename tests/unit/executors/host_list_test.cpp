@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/executors/host_list.h"
+#include "bench/executors/hosts.h"
 
 #include <gtest/gtest.h>
 

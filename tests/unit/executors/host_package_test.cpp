@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/executors/host_package.h"
+#include "bench/executors/hosts.h"
 
 #include <gtest/gtest.h>
 
-#include "bench/executors/tool.h"
 #include "eval/io/text_reader.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/executors/job_folder.h"
+#include "bench/executors/distribution.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "bench/store/store.h"
-#include "bench/systems/own_odometry.h"
+#include "bench/systems/slam_system.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/executors/scaling_simulation.h"
+#include "bench/executors/distribution.h"
 
 #include <gtest/gtest.h>
 

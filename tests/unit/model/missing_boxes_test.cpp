@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/model/missing_boxes.h"
+#include "bench/model/run_notes.h"
 
 #include <gtest/gtest.h>
 

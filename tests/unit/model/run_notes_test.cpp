@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/model/metrics.h"
-#include "bench/model/protocol_difference.h"
-#include "bench/model/time_source.h"
+#include "bench/model/run_notes.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/ablation_base.h"
+#include "bench/plan/bench_plan.h"
 
 #include <gtest/gtest.h>
 
-#include "bench/plan/bench_plan.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

@@ -5,8 +5,7 @@
 
 #include <csignal>
 
-#include "bench/process/machine_load.h"
-#include "bench/process/process_pool.h"
+#include "bench/profile/meters/process_usage.h"
 
 namespace stillpoint::bench {
 namespace {

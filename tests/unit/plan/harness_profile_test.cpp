@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/execution/harness_profile.h"
+#include "bench/plan/execution/plan_runner.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/systems/own_odometry.h"
+#include "bench/systems/slam_system.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/execution/paired_plan.h"
+#include "bench/plan/plan_matrix.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "bench/model/replicates.h"
+#include "bench/model/stored_run.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {

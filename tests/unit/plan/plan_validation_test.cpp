@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Faults of plans are reported with their line.
-#include "bench/plan/plan_validation.h"
+#include "bench/plan/bench_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/plan/execution/run_order.h"
+#include "bench/plan/execution/run_cost.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Folders and registered names as sequences of plans and commands.
-#include "bench/plan/sequence_argument.h"
+#include "bench/plan/plan_sequences.h"
 
 #include <cstdlib>
 
 #include <gtest/gtest.h>
 
-#include "bench/plan/plan_sequences.h"
 #include "bench/record/sequence_checksum.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/profile/callgrind_file.h"
+#include "bench/profile/instruction_count.h"
 
 #include <gtest/gtest.h>
 
-#include "bench/profile/instruction_count.h"
 #include "tests/support/expect_input_error.h"
 
 namespace stillpoint::bench {

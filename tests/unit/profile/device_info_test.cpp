@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/profile/meters/energy_meter.h"
+#include "bench/profile/meters/run_monitor.h"
 #include "tests/support/sysfs_trees.h"
 
 namespace stillpoint::bench {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Energy and power readings from recorded files: Xavier NX with JetPack 5, AGX Xavier with JetPack 4, laptop.
-#include "bench/profile/meters/energy_files.h"
+#include "bench/profile/meters/device_info.h"
 
 #include <gtest/gtest.h>
 
-#include "bench/profile/meters/energy_meter.h"
+#include "bench/profile/meters/run_monitor.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::bench {

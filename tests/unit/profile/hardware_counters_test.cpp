@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/profile/meters/hardware_counters.h"
+#include "bench/profile/meters/process_usage.h"
 
 #include <cerrno>
 

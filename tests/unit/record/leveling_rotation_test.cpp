@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/record/leveling_rotation.h"
+#include "bench/record/result_values.h"
 
 #include <fstream>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/record/output_guard.h"
+#include "bench/record/output_folder.h"
 
 #include <fstream>
 #include <iterator>

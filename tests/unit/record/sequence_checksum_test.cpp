@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/record/sequence_checksum.h"
 
-#include "bench/record/remembered_checksum.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>

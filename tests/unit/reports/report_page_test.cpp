@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/model/csv/loop_text.h"
+#include "bench/model/run_csv.h"
 #include "bench/store/store_writer.h"
 #include "reports/page/charts/run_series.h"
 #include "reports/page/series_text.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/run/label_score.h"
+#include "bench/run/run_scores.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/run/loop_run.h"
+#include "bench/run/run_scores.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/run/recorded_boxes.h"
+#include "bench/run/odometry_run.h"
 
 #include <gtest/gtest.h>
 

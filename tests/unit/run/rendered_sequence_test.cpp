@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/run/rendered_sequence.h"
+#include "bench/run/sequence_source.h"
 
 #include <gtest/gtest.h>
 

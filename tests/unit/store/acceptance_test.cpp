@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/acceptance.h"
+#include "bench/store/store.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/model/csv/counter_text.h"
+#include "bench/model/run_csv.h"
 
 #include <gtest/gtest.h>
 

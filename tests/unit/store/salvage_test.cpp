@@ -9,9 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/store/acceptance.h"
 #include "bench/store/maintenance/maintenance.h"
-#include "bench/store/readable_files.h"
+#include "bench/store/store.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/store/maintenance/store_equality.h"
+#include "bench/store/maintenance/maintenance.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/console.h"
+#include "bench/record/output_folder.h"
+#include "bench/serve/static_server.h"
+#include "bench/store/store.h"
+#include "core/base/error.h"
+#include "reports/dashboard/dashboard.h"
+#include "reports/dashboard/regression_list.h"
+#include "reports/page/report_page.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportArguments {
+  std::string store;
+  std::string out;
+  std::string plan;
+};
+
+int write_report(const ReportArguments& arguments) {
+  if (arguments.out.empty()) throw InputError("--out", "is required: the output folder of index.html");
+  const fs::path out = arguments.out;
+  require_safe_folder(out, {.names = {"index.html", "tables"}, .marks = {{"index.html", "tables"}}},
+                      {arguments.store});
+  require_writable(out);
+  const Store store(arguments.store);
+  const report::ReportSubject subject = report::report_subject(store, arguments.plan);
+  std::vector<OutputFile> tables;
+  for (const report::ReportTable& table : report::report_tables(subject)) {
+    for (OutputFile& file : report::table_files(table)) tables.push_back(std::move(file));
+  }
+  const std::string page = report::report_html(store, subject);
+  write_files(out / "tables", tables);
+  write_files(out, {{"index.html", page}});
+  std::cout << fmt::format("{} runs; wrote {} ({:.1f} MB) and {} files in {}\n", subject.runs.size(),
+                           (out / "index.html").string(), static_cast<double>(page.size()) / 1e6,
+                           tables.size(), (out / "tables").string());
+  for (const std::string& gap : subject.gaps) spdlog::warn("{}; the page lacks their content", gap);
+  return subject.gaps.empty() ? kExitOk : kExitFindings;
+}
+
+}  // namespace
+
+Command report_command() {
+  const auto arguments = std::make_shared<ReportArguments>();
+  return {.name = "report",
+          .summary =
+              "Write a self-contained HTML report of a store: tables, ablations, trajectories, time series, "
+              "run times",
+          .example = "report build/bench/store.sqlite --out build/report",
+          .options = {{"STORE", "Store created by `stillpoint bench`", &arguments->store},
+                      {"--out", "Output folder of index.html and tables/", &arguments->out},
+                      {"--plan", "Only the runs of this plan [all plans]", &arguments->plan}},
+          .action = [arguments] { return write_report(*arguments); }};
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DashboardArguments {
+  std::string store;
+  std::string out;
+  std::string format = "markdown";
+};
+
+int dashboard(const DashboardArguments& arguments) {
+  if (arguments.out.empty()) throw InputError("--out", "is required: the output folder of index.html");
+  const fs::path out = arguments.out;
+  require_safe_folder(out,
+                      {.names = {"index.html", "regressions.md", "regressions.json", "commits"},
+                       .marks = {{"index.html", "regressions.md"}}},
+                      {arguments.store});
+  require_writable(out);
+  const std::vector<OutputFile> files = report::dashboard_files(Store(arguments.store));
+  std::map<fs::path, std::vector<OutputFile>> by_folder;
+  for (const OutputFile& file : files) {
+    const fs::path path = out / file.name;
+    by_folder[path.parent_path()].push_back({path.filename().string(), file.text});
+  }
+  for (const auto& [folder, contents] : by_folder) write_files(folder, contents);
+  std::cout << fmt::format("wrote {} and {} other files\n", (out / "index.html").string(), files.size() - 1);
+  return kExitOk;
+}
+
+int regressions(const DashboardArguments& arguments) {
+  if (arguments.format != "markdown" && arguments.format != "json")
+    throw InputError("--format",
+                     "unknown format \"" + arguments.format + "\"; expected one of: markdown, json");
+  const auto [history, changes] = report::analyze_history(Store(arguments.store));
+  std::cout << (arguments.format == "json" ? report::regressions_json(history, changes)
+                                           : report::regressions_markdown(history, changes));
+  return report::grouped_shifts(history, changes, ChangeState::kOpen).empty() ? kExitOk : kExitFindings;
+}
+
+}  // namespace
+
+Command dashboard_command() {
+  const auto arguments = std::make_shared<DashboardArguments>();
+  return {.name = "dashboard",
+          .summary = "Write a static HTML dashboard of all metrics over commits, with detected changes",
+          .example = "dashboard build/bench/store.sqlite --out build/dashboard",
+          .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
+                      {"--out", "Output folder of index.html, commits/ and the list of regressions",
+                       &arguments->out}},
+          .action = [arguments] { return dashboard(*arguments); }};
+}
+
+Command regressions_command() {
+  const auto arguments = std::make_shared<DashboardArguments>();
+  return {.name = "regressions",
+          .summary = "List open regressions; exit code 0 = none, 1 = some, 2 = error",
+          .example = "regressions build/bench/store.sqlite --format json",
+          .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
+                      {"--format", "Output format: markdown or json [markdown]", &arguments->format}},
+          .action = [arguments] { return regressions(*arguments); }};
+}
+
+namespace {
+
+struct ServeArguments {
+  std::string store;
+  ServerOptions server;
+};
+
+int serve(const ServeArguments& arguments) {
+  block_interrupts();
+  const StaticServer server(report::dashboard_files(Store(arguments.store)), arguments.server);
+  spdlog::info("serving http://{}:{}/ (current content of the store); press Ctrl-C to stop",
+               arguments.server.address, server.port());
+  if (!arguments.server.address.starts_with("127."))
+    spdlog::warn("{} is not a loopback address: the dashboard is accessible from other machines",
+                 arguments.server.address);
+  wait_for_interrupt();
+  return kExitOk;
+}
+
+}  // namespace
+
+Command serve_command() {
+  const auto arguments = std::make_shared<ServeArguments>();
+  return {.name = "serve",
+          .summary = "Serve the dashboard of a store over HTTP",
+          .example = "serve build/bench/store.sqlite --port 8035",
+          .options =
+              {{"STORE", "Store with the runs of several commits", &arguments->store},
+               {"--port", "Port to listen on; 0 = any free port [8035]", &arguments->server.port, {0, 65535}},
+               {"--address",
+                "IPv4 address to listen on; addresses other than loopback give other machines access "
+                "[127.0.0.1]",
+                &arguments->server.address}},
+          .action = [arguments] { return serve(*arguments); }};
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/model/run_csv.h"
+
+#include <fmt/format.h>
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr std::string_view kCounterHeader =
+    "frame,t_ns,status,tracked_features,window_landmarks,depth_landmarks,dynamic_features,solver_iterations,"
+    "keyframe,reset";
+
+FrameCounters frame_of(const CsvRows& rows, std::string_view text) {
+  FrameCounters frame;
+  frame.frame = rows.number(cut_front(text, ','));
+  frame.t_ns = rows.number(cut_front(text, ','));
+  frame.status = std::string(cut_front(text, ','));
+  for (std::int64_t* value : {&frame.tracked_features, &frame.window_landmarks, &frame.depth_landmarks,
+                              &frame.dynamic_features, &frame.solver_iterations}) {
+    *value = rows.number(cut_front(text, ','));
+  }
+  frame.keyframe = rows.number(cut_front(text, ',')) != 0;
+  frame.reset = rows.number(text) != 0;
+  return frame;
+}
+
+}  // namespace
+
+std::string counter_text(std::span<const FrameCounters> frames) {
+  std::string text = std::string(kCounterHeader) + "\n";
+  for (const FrameCounters& frame : frames) {
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{:d},{:d}\n", frame.frame, frame.t_ns, frame.status,
+                    frame.tracked_features, frame.window_landmarks, frame.depth_landmarks,
+                    frame.dynamic_features, frame.solver_iterations, int{frame.keyframe}, int{frame.reset});
+  }
+  return text;
+}
+
+std::vector<FrameCounters> parse_counters(std::string_view text, const std::string& place) {
+  std::vector<FrameCounters> frames;
+  CsvRows rows{.place = place, .header = kCounterHeader};
+  rows.for_each_row(text, [&](std::string_view row) { frames.push_back(frame_of(rows, row)); });
+  return frames;
+}
+
+namespace {
+
+constexpr std::string_view kLoopHeader =
+    "query_frame,query_t_ns,match_frame,match_t_ns,votes,matches,inliers,residual_px,tx,ty,tz,qx,qy,qz,qw,"
+    "accepted,reason,in_map";
+
+StoredLoop loop_of(const CsvRows& rows, std::string_view text) {
+  StoredLoop loop;
+  static_cast<void>(rows.number(cut_front(text, ',')));  // frames and times are equivalent
+  loop.query_t = Timestamp{rows.number(cut_front(text, ','))};
+  static_cast<void>(rows.number(cut_front(text, ',')));
+  loop.match_t = Timestamp{rows.number(cut_front(text, ','))};
+  cut_front(text, ',');  // votes
+  cut_front(text, ',');  // matches
+  loop.inliers = rows.number(cut_front(text, ','));
+  loop.residual_px = rows.real(cut_front(text, ','));
+  for (int i = 0; i < kPoseColumns; ++i) cut_front(text, ',');
+  loop.accepted = rows.number(cut_front(text, ',')) != 0;
+  loop.reason = std::string(cut_front(text, ','));
+  loop.in_map = rows.number(text) != 0;
+  return loop;
+}
+
+}  // namespace
+
+std::string loop_text(std::span<const LoopRecord> loops) {
+  std::string text = std::string(kLoopHeader) + "\n";
+  for (const LoopRecord& loop : loops) {
+    const Pose& T = loop.T_match_query;
+    const bool accepted = loop.outcome == LoopOutcome::kAccepted;
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{:.4g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{}\n",
+        loop.query_frame, loop.query_t.ns, loop.match_frame, loop.match_t.ns, loop.votes, loop.matches,
+        loop.inliers, loop.residual_px, T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w(),
+        accepted ? 1 : 0, accepted ? "" : outcome_name(loop.outcome), loop.in_map ? 1 : 0);
+  }
+  return text;
+}
+
+std::string keyframe_text(std::span<const MapKeyframe> keyframes) {
+  std::string text = "frame,t_ns,segment,located,tx,ty,tz,qx,qy,qz,qw,processing_ms,memory_bytes\n";
+  for (const MapKeyframe& keyframe : keyframes) {
+    const Pose& T = keyframe.T_m_b;
+    text += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.4g},{}\n",
+                        keyframe.frame, keyframe.t.ns, keyframe.segment, keyframe.is_located ? 1 : 0, T.p.x(),
+                        T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w(), keyframe.cost.processing_ms,
+                        keyframe.cost.memory_bytes);
+  }
+  return text;
+}
+
+std::vector<StoredLoop> parse_loops(std::string_view text, const std::string& place) {
+  std::vector<StoredLoop> loops;
+  CsvRows rows{.place = place, .header = kLoopHeader};
+  rows.for_each_row(text, [&](std::string_view row) { loops.push_back(loop_of(rows, row)); });
+  return loops;
+}
+
+namespace {
+
+constexpr std::string_view kStatusHeader = "frame,t_ns,status,segment,x,y,z,qx,qy,qz,qw,sigma_m,sigma_rad";
+
+FrameClaim claim_of(const CsvRows& rows, std::string_view text) {
+  FrameClaim claim;
+  claim.frame = rows.number(cut_front(text, ','));
+  claim.t_ns = rows.number(cut_front(text, ','));
+  claim.status = std::string(cut_front(text, ','));
+  claim.segment = static_cast<int>(rows.number(cut_front(text, ',')));
+  for (int i = 0; i < kPoseColumns; ++i) cut_front(text, ',');
+  claim.sigma_m = rows.real(cut_front(text, ','));
+  claim.sigma_rad = rows.real(text);
+  return claim;
+}
+
+}  // namespace
+
+std::string claim_text(std::span<const FrameClaim> claims) {
+  std::string text = std::string(kStatusHeader) + "\n";
+  for (const FrameClaim& claim : claims) {
+    const Pose& T = claim.T_w_c;
+    text += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g}\n",
+                        claim.frame, claim.t_ns, claim.status, claim.segment, T.p.x(), T.p.y(), T.p.z(),
+                        T.q.x(), T.q.y(), T.q.z(), T.q.w(), claim.sigma_m, claim.sigma_rad);
+  }
+  return text;
+}
+
+std::vector<FrameClaim> parse_claims(std::string_view text, const std::string& place) {
+  std::vector<FrameClaim> claims;
+  CsvRows rows{.place = place, .header = kStatusHeader};
+  rows.for_each_row(text, [&](std::string_view row) { claims.push_back(claim_of(rows, row)); });
+  return claims;
+}
+
+namespace {
+
+constexpr std::string_view kTimingHeader = "frame,module,ns,calls";
+
+TimingSample sample_of(const CsvRows& rows, std::string_view text) {
+  TimingSample sample;
+  sample.frame = rows.number(cut_front(text, ','));
+  sample.module = std::string(cut_front(text, ','));
+  sample.ns = rows.number(cut_front(text, ','));
+  sample.calls = rows.number(text);
+  return sample;
+}
+
+}  // namespace
+
+std::string timing_text(std::span<const TimingSample> samples) {
+  std::string text = std::string(kTimingHeader) + "\n";
+  for (const TimingSample& sample : samples) {
+    text += fmt::format("{},{},{},{}\n", sample.frame, sample.module, sample.ns, sample.calls);
+  }
+  return text;
+}
+
+std::vector<TimingSample> parse_timings(std::string_view text, const std::string& place) {
+  std::vector<TimingSample> samples;
+  CsvRows rows{.place = place, .header = kTimingHeader};
+  rows.for_each_row(text, [&](std::string_view row) { samples.push_back(sample_of(rows, row)); });
+  return samples;
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Parses lines of a store's CSV files; error messages contain file and line.
+///
+/// Counters of the odometry as CSV: a header, then one line per frame.
+///
+/// Texts of loops.csv: recognized places, and what became of them; and of keyframes.csv.
+///
+/// Text of status.csv: what the odometry claims about each frame.
+///
+/// Timing samples as CSV with the columns `frame,module,ns,calls`.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/model/stored_run.h"
+#include "core/base/error.h"
+#include "core/geometry/pose.h"
+#include "core/types/loop_report.h"
+
+namespace stillpoint::bench {
+
+/// Columns x, y, z, qx, qy, qz, qw.
+inline constexpr int kPoseColumns = 7;
+
+/// Cuts the part before `separator` off the front of `text`.
+inline std::string_view cut_front(std::string_view& text, char separator) {
+  const std::size_t end = text.find(separator);
+  const std::string_view part = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return part;
+}
+
+/// Parser state: the position for error messages.
+struct CsvRows {
+  const std::string& place;
+  std::string_view header;  ///< expected first line
+  long line = 1;
+
+  /// @throws InputError unless `text` is an integer
+  [[nodiscard]] std::int64_t number(std::string_view text) const {
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc{} && end == text.data() + text.size()) return value;
+    const std::string problem = "\"" + std::string(text) + "\" is not an integer";
+    throw InputError(place, line, problem + "; expected columns: " + std::string(header));
+  }
+
+  /// @throws InputError unless `text` is a number
+  [[nodiscard]] double real(std::string_view text) const {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc{} && end == text.data() + text.size()) return value;
+    throw InputError(place, line, "'" + std::string(text) + "' is not a number");
+  }
+
+  /// Calls `take` with every row after the header line.
+  /// @throws InputError if the first line is not the header
+  template <class Take>
+  void for_each_row(std::string_view text, Take&& take) {
+    if (cut_front(text, '\n') != header)
+      throw InputError(place, line, "does not begin with " + std::string(header));
+    while (!text.empty()) {
+      const std::string_view row = cut_front(text, '\n');
+      ++line;
+      if (!row.empty()) take(row);
+    }
+  }
+};
+
+[[nodiscard]] std::string counter_text(std::span<const FrameCounters> frames);
+
+/// @param place name of the text in messages
+/// @throws InputError with the line of the first error
+[[nodiscard]] std::vector<FrameCounters> parse_counters(std::string_view text, const std::string& place);
+
+/// A row of loops.csv, without the pose.
+struct StoredLoop {
+  Timestamp query_t;
+  Timestamp match_t;  ///< with `in_map` on the clock of another run
+  std::int64_t inliers = 0;
+  double residual_px = 0.0;  ///< RMS reprojection error of the inliers [px]
+  bool accepted = false;
+  std::string reason;   ///< why it was refused, see `outcome_name`
+  bool in_map = false;  ///< the match is in the loaded map
+};
+
+[[nodiscard]] std::string loop_text(std::span<const LoopRecord> loops);
+
+/// Optimized poses T_m_b of the keyframes, the time of the loop closure for each, and its memory afterwards.
+[[nodiscard]] std::string keyframe_text(std::span<const MapKeyframe> keyframes);
+
+/// @param place name of the text in error messages
+/// @throws InputError for a malformed text
+[[nodiscard]] std::vector<StoredLoop> parse_loops(std::string_view text, const std::string& place);
+
+/// A row of status.csv.
+struct FrameClaim {
+  std::int64_t frame = 0;
+  std::int64_t t_ns = 0;  ///< timestamp of the image
+  std::string status;
+  int segment = 0;         ///< number of the world frame
+  Pose T_w_c;              ///< also of frames that the trajectory does not contain
+  double sigma_m = 0.0;    ///< of the position along its least certain direction; 0 = not reported
+  double sigma_rad = 0.0;  ///< same for the rotation
+};
+
+[[nodiscard]] std::string claim_text(std::span<const FrameClaim> claims);
+
+/// Without the poses.
+/// @param place name of the text in error messages
+/// @throws InputError for a malformed text
+[[nodiscard]] std::vector<FrameClaim> parse_claims(std::string_view text, const std::string& place);
+
+[[nodiscard]] std::string timing_text(std::span<const TimingSample> samples);
+
+/// @param place name of the text in messages
+/// @throws InputError with the line of the first error
+[[nodiscard]] std::vector<TimingSample> parse_timings(std::string_view text, const std::string& place);
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/model/run_notes.h"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/model/metrics.h"
+#include "eval/metrics/statistics.h"
+
+namespace stillpoint::bench {
+
+std::string missing_boxes_note(const std::vector<const StoredRun*>& runs) {
+  const StoredRun* worst = nullptr;
+  double most = 0.0;
+  for (const StoredRun* run : runs) {
+    const double missing = metric_value(*run, metric_id::kFramesWithoutBoxes).value_or(0.0);
+    if (run->outcome != Outcome::kOk || missing <= most) continue;
+    worst = run;
+    most = missing;
+  }
+  if (worst == nullptr) return "";
+  const std::optional<double> frames = metric_value(*worst, metric_id::kFrames);
+  return fmt::format("no recorded boxes in {}{:.0f}{} frames", runs.size() > 1 ? "up to " : "", most,
+                     frames ? fmt::format(" of {:.0f}", *frames) : "");
+}
+
+namespace {
+
+constexpr std::string_view kStrictPrefix = "strict:";
+
+/// Values of the same runs under the protocol of the table and under a strict one.
+struct ProtocolValues {
+  std::vector<double> shown;
+  std::vector<double> strict;
+  std::size_t different = 0;  ///< runs whose values differ by the factor
+};
+
+/// "compat:tum" of "compat:tum, 0.02 s, one-to-one, rigid alignment".
+std::string protocol_name(const std::string& protocol) {
+  return protocol.empty() ? "the default protocol" : protocol.substr(0, protocol.find(','));
+}
+
+bool is_different(double a, double b, const MetricDescriptor& metric) {
+  const double low = std::min(a, b);
+  const double high = std::max(a, b);
+  const double floor = metric.gate ? metric.gate->floor : 0.0;
+  return high - low > floor && high >= kMaxProtocolFactor * low;
+}
+
+/// Name of the protocol of "strict:se3/ate_rmse_m" if it is strict and of that metric; else empty.
+std::string strict_protocol(const std::string& name, std::string_view metric) {
+  if (!name.starts_with(kStrictPrefix) || without_protocol(name) != metric) return "";
+  return name.substr(0, name.find('/'));
+}
+
+}  // namespace
+
+std::string protocol_difference_note(std::span<const StoredRun* const> runs, std::string_view metric) {
+  const MetricDescriptor* descriptor = find_metric(metric);
+  if (descriptor == nullptr) return "";
+  std::map<std::string, ProtocolValues> protocols;
+  std::string shown_protocol;
+  for (const StoredRun* run : runs) {
+    const auto shown = std::find_if(run->metrics.begin(), run->metrics.end(),
+                                    [&](const Metric& candidate) { return candidate.name == metric; });
+    if (run->outcome != Outcome::kOk || shown == run->metrics.end()) continue;
+    shown_protocol = protocol_name(shown->protocol);
+    for (const Metric& candidate : run->metrics) {
+      const std::string name = strict_protocol(candidate.name, metric);
+      if (name.empty()) continue;
+      ProtocolValues& values = protocols[name];
+      values.shown.push_back(shown->value);
+      values.strict.push_back(candidate.value);
+      values.different += is_different(shown->value, candidate.value, *descriptor) ? 1 : 0;
+    }
+  }
+  std::string note;
+  for (const auto& [name, values] : protocols) {
+    if (values.different == 0) continue;
+    note += fmt::format("{}{} by {}, {} by {}", note.empty() ? "" : "; ",
+                        value_text(*descriptor, *eval::percentile(values.shown, 0.5)), shown_protocol,
+                        value_text(*descriptor, *eval::percentile(values.strict, 0.5)), name);
+    if (values.shown.size() > 1)
+      note += fmt::format(" (medians of {} runs; differ by a factor of {:g} or more in {})",
+                          values.shown.size(), kMaxProtocolFactor, values.different);
+  }
+  return note;
+}
+
+TimeSource time_source(const StoredRun& run) {
+  if (run.identity.kind != "timing") return TimeSource::kShared;
+  return metric_value(run, metric_id::kQuiet) == 0.0 ? TimeSource::kBusy : TimeSource::kUndisturbed;
+}
+
+std::string time_source_note(TimeSource source) {
+  switch (source) {
+    case TimeSource::kUndisturbed:
+      return "";
+    case TimeSource::kBusy:
+      return "times of timing runs while other processes used at least 5 % of the CPU: indicative only; "
+             "repeat the runs on an idle machine";
+    case TimeSource::kShared:
+      return "times of runs that are no timing runs and may have shared the machine: indicative only; "
+             "execute a plan with kind = \"timing\"";
+  }
+  return "";
+}
+
+}  // namespace stillpoint::bench

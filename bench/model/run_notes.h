@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Runs with recorded boxes that lack those of some frames.
+///
+/// Metrics for which a strict evaluation protocol of the same runs gives a very different value.
+///
+/// How far the times of a run are its own: a run that shares the machine lends its times to nothing but
+/// hints.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/model/stored_run.h"
+
+namespace stillpoint::bench {
+
+/// Footnote about the run with the most frames without recorded boxes: "no recorded boxes in 12 of 240
+/// frames", and "in up to 12 of 240 frames" for several runs; empty if there is no such run. Failed runs are
+/// ignored.
+[[nodiscard]] std::string missing_boxes_note(const std::vector<const StoredRun*>& runs);
+
+/// Factor between two protocols from which on a value is not shown without the other one.
+inline constexpr double kMaxProtocolFactor = 2.0;
+
+/// Footnote about a metric for which a "strict:*" protocol differs by `kMaxProtocolFactor` or more, in either
+/// direction and by more than the floor of the metric's gate, in at least one run: "ATE 0.0021 m by
+/// compat:tum, 0.0089 m by strict:se3 (medians of 3 runs; differ by a factor of 2 or more in 1)".
+/// @param runs of one variant on one sequence; failed ones are ignored
+/// @param metric id, e.g. "ate_rmse_m"
+/// @return names both protocols and both values; empty without such a difference
+[[nodiscard]] std::string protocol_difference_note(std::span<const StoredRun* const> runs,
+                                                   std::string_view metric);
+
+/// The best first.
+enum class TimeSource {
+  kUndisturbed,  ///< timing run on an idle machine
+  kBusy,         ///< timing run while other processes used the machine, see the metric "quiet"
+  kShared,       ///< no timing run: other runs may have executed at the same time
+};
+
+[[nodiscard]] TimeSource time_source(const StoredRun& run);
+
+/// Restriction of times from this source and its remedy, as a footnote; empty for undisturbed times.
+[[nodiscard]] std::string time_source_note(TimeSource source);
+
+}  // namespace stillpoint::bench
