@@ -10,7 +10,7 @@
 #include "datasets/formats/formats.h"
 #include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
-#include "eval/io/bag_file.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
-#include "datasets/formats/sequence_content.h"
+#include "datasets/formats/formats.h"
 #include "datasets/open_sequence.h"
 
 namespace stillpoint::datasets {

@@ -12,7 +12,7 @@
 #include "datasets/bags/bag_file.h"
 #include "datasets/read_sequence.h"
 #include "datasets/sequence_plausibility.h"
-#include "eval/io/bag_file.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "eval/metrics/ate.h"
-#include "eval/metrics/coverage.h"
 #include "eval/metrics/rpe.h"
 
 namespace stillpoint::eval {

@@ -65,10 +65,9 @@ trajectories="eval/io eval/trajectory"
 row datasets/io $messages $trajectories
 row datasets/calibration $messages eval/io datasets/io
 row datasets/bags $messages $trajectories datasets/io datasets/calibration
-row datasets/bags/writing $messages datasets/bags datasets/io
 row datasets/formats $messages $trajectories datasets/io datasets/calibration datasets/bags
 row datasets/cache $messages datasets/io datasets/calibration datasets/formats
-row datasets $messages $trajectories datasets/io datasets/calibration datasets/bags datasets/bags/writing datasets/formats datasets/cache
+row datasets $messages $trajectories datasets/io datasets/calibration datasets/bags datasets/formats datasets/cache
 row datasets/synthetic core/base core/geometry
 row datasets/synthetic/materials core/base datasets/synthetic
 row datasets/synthetic/motion $messages $trajectories datasets/io datasets/synthetic
@@ -115,15 +114,13 @@ row bench/micro $core tests/support tests/support/simulated
 
 # --- reports ---
 stored="core/base bench/model bench/store bench/analysis"
-row reports/tables $stored eval/statistics bench/systems
-row reports/tables/formats $stored reports/tables
+row reports/tables $stored bench/config eval/metrics eval/statistics bench/systems
 row reports/drawing core/base core/types datasets/io eval/io eval/openloris eval/protocols eval/statistics bench/run bench/record \
   reports/tables
 row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
-row reports/page/charts $stored core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols reports/tables
-row reports/page $stored bench/config bench/profile bench/record bench/systems bench/plan reports/tables reports/tables/formats \
-  reports/drawing reports/page/charts
+row reports/page $stored core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols bench/config bench/profile bench/record bench/systems bench/plan reports/tables \
+  reports/drawing
 row reports/dashboard $stored bench/record reports/tables reports/page
 
 # --- the program ---
@@ -133,7 +130,7 @@ row bench/cli/run $execution core/config core/pipeline/runners datasets datasets
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
-  reports/tables/formats reports/text reports/page
+  reports/text reports/page
 row bench/cli/analysis $execution datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/plan \
   bench/plan/execution bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
@@ -141,10 +138,10 @@ row bench/cli/analysis $execution datasets/bags eval/io eval/metrics eval/trajec
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
 libraries=(
   '<OpenImageIO/      ^datasets/io/image_module\.cpp$'
-  '<blosc            ^datasets/cache/frame_codec\.cpp$'
-  '<libdeflate       ^datasets/(io/png_decoder|bags/chunk_codec)\.cpp$'
-  '<(bzlib|lz4)       ^datasets/bags/chunk_codec\.cpp$'
-  '<turbojpeg        ^datasets/io/jpeg_encoder\.cpp$'
+  '<blosc            ^datasets/cache/frame_file\.cpp$'
+  '<libdeflate       ^datasets/(io/image_io|bags/bag_chunks)\.cpp$'
+  '<(bzlib|lz4)       ^datasets/bags/bag_chunks\.cpp$'
+  '<turbojpeg        ^datasets/io/image_io\.cpp$'
   '<embree[34]/        ^datasets/synthetic/render/embree\.h$'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'
@@ -156,15 +153,15 @@ libraries=(
   '<opencv2/videoio[./]  ^reports/frames/video_module\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
   '<sqlite3           ^bench/store/|^datasets/bags/'
-  '<zstd              ^bench/store/|^datasets/bags/chunk_codec\.cpp$'
+  '<zstd              ^bench/store/|^datasets/bags/bag_chunks\.cpp$'
   '<cairo            ^reports/drawing/pdf_drawing\.cpp$'
   '<microhttpd        ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
   '<spdlog/           ^bench/cli/'
   '<toml\+\+/         ^bench/(config|systems)/|^datasets/(calibration|catalogue)/'
   '<curl/            ^datasets/download/http_transfer\.cpp$'
-  '<archive          ^datasets/download/archive_reader\.cpp$'
-  '<openssl/         ^datasets/download/file_digests\.cpp$'
+  '<archive          ^datasets/download/archive_extraction\.cpp$'
+  '<openssl/         ^datasets/download/transfer_checks\.cpp$'
   '<yaml-cpp/         ^datasets/io/'
   '<nlohmann/         ^(bench|reports)/|^datasets/formats/'
   '<benchmark/        ^bench/micro/'

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "eval/metrics/statistics.h"
-#include "eval/statistics/level.h"
+#include "eval/statistics/change_points.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include "bench/analysis/commit_history.h"
 #include "bench/store/store.h"
 #include "eval/statistics/change_points.h"
-#include "eval/statistics/paired.h"
+#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::bench {
 

@@ -16,8 +16,8 @@
 #include "bench/model/stored_run.h"
 #include "core/base/module_timings.h"
 #include "eval/metrics/statistics.h"
-#include "eval/statistics/level.h"
-#include "eval/statistics/signed_rank.h"
+#include "eval/statistics/change_points.h"
+#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -32,7 +32,7 @@
 #include "bench/analysis/paired_runs.h"
 #include "bench/model/metrics.h"
 #include "bench/model/stored_run.h"
-#include "eval/statistics/paired.h"
+#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::bench {
 

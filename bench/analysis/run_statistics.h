@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/store/store.h"
-#include "eval/statistics/paired.h"
+#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::bench {
 

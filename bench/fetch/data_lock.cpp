@@ -13,7 +13,7 @@
 #include "bench/record/sequence_checksum.h"
 #include "core/base/error.h"
 #include "datasets/download/download.h"
-#include "datasets/download/file_digests.h"
+#include "datasets/download/transfer_checks.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {

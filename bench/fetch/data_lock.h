@@ -19,7 +19,7 @@
 #include "bench/plan/sequence_registry.h"
 #include "datasets/catalogue/catalogue.h"
 #include "datasets/download/archive_extraction.h"
-#include "datasets/download/transfer_control.h"
+#include "datasets/download/transfer_checks.h"
 
 namespace stillpoint::bench {
 

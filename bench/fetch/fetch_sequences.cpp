@@ -14,8 +14,7 @@
 #include "bench/record/output_folder.h"
 #include "bench/record/sequence_checksum.h"
 #include "core/base/error.h"
-#include "datasets/download/disk_space.h"
-#include "datasets/download/file_kind.h"
+#include "datasets/download/transfer_checks.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_validator.h"
 

@@ -15,10 +15,8 @@
 
 #include "bench/model/stored_run.h"
 #include "core/types/trajectory.h"
-#include "eval/metrics/error_after_loop.h"
-#include "eval/metrics/honesty.h"
-#include "eval/metrics/nees.h"
-#include "eval/metrics/revisits.h"
+#include "eval/metrics/consistency.h"
+#include "eval/metrics/loop_metrics.h"
 #include "eval/score.h"
 
 namespace stillpoint::bench {
@@ -66,7 +64,7 @@ struct RunCounts {
   int resets = 0;
   std::optional<std::int64_t> frames_without_boxes{};  ///< nullopt unless the run used recorded boxes
   double wall_s = 0.0;
-  std::optional<double> claimed_three_sigma_m{};  ///< see eval/metrics/honesty.h
+  std::optional<double> claimed_three_sigma_m{};  ///< see eval/metrics/consistency.h
   std::optional<eval::MeanNees> nees{};           ///< with a ground truth
   std::optional<double> nis_reprojection{};       ///< see core/backend/health/innovation.h
   std::optional<double> nis_inertial{};           ///< same

@@ -19,7 +19,6 @@
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
 #include "datasets/synthetic/sequence/presets.h"
-#include "datasets/synthetic/sequence/request_text.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
-#include "datasets/synthetic/sequence/sequence_cache.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint::bench {
 namespace {

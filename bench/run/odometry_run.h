@@ -26,7 +26,7 @@
 #include "core/pipeline/runners/runner.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
-#include "eval/metrics/honesty.h"
+#include "eval/metrics/consistency.h"
 
 namespace stillpoint::bench {
 

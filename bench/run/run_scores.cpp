@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "eval/metrics/error_after_loop.h"
+#include "eval/metrics/loop_metrics.h"
+#include "eval/metrics/rpe.h"
 #include "eval/metrics/statistics.h"
-#include "eval/metrics/strict_rpe.h"
 #include "eval/score.h"
 
 namespace stillpoint::bench {

@@ -5,9 +5,9 @@
 
 #include "bench/config/spelling.h"
 #include "core/base/error.h"
-#include "datasets/cache/frame_cache_fill.h"
+#include "datasets/cache/frame_cache.h"
 #include "datasets/read_sequence.h"
-#include "datasets/synthetic/sequence/sequence_cache.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint::bench {
 

@@ -18,7 +18,7 @@
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"
-#include "datasets/synthetic/sequence/sequence_cache.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 #include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 

@@ -14,7 +14,7 @@
 #include <tuple>
 
 #include "core/base/error.h"
-#include "datasets/cache/file_digests.h"
+#include "datasets/cache/cache_key.h"
 #include "datasets/cache/frame_file.h"
 
 namespace stillpoint::datasets {

@@ -11,7 +11,7 @@
 #include <poll.h>
 
 #include "core/base/error.h"
-#include "datasets/download/file_kind.h"
+#include "datasets/download/transfer_checks.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/download/file_digests.h"
 #include "datasets/download/http_transfer.h"
+#include "datasets/download/transfer_checks.h"
 
 namespace stillpoint::datasets {
 

@@ -2,20 +2,164 @@
 #include "datasets/faults/faulty_stream.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "datasets/faults/arrival_faults.h"
-#include "datasets/faults/detection_faults.h"
 #include "datasets/faults/image_faults.h"
-#include "datasets/faults/imu_faults.h"
-#include "datasets/faults/occluder.h"
 #include "datasets/synthetic/counter_random.h"
 
 namespace stillpoint::datasets {
+namespace {
+
+constexpr std::int64_t kAfterSuccessor_ns = 1000;
+
+std::vector<FrameArrival> at_timestamps(std::span<const Timestamp> frame_times) {
+  std::vector<FrameArrival> arrivals;
+  for (std::size_t i = 0; i < frame_times.size(); ++i) arrivals.push_back({i, frame_times[i]});
+  return arrivals;
+}
+
+}  // namespace
+
+std::vector<FrameArrival> arrivals_with_fault(std::vector<FrameArrival> arrivals, const SensorFault& fault,
+                                              std::span<const Timestamp> frame_times) {
+  if (arrivals.empty()) arrivals = at_timestamps(frame_times);
+  std::vector<FrameArrival> repeated;
+  for (FrameArrival& arrival : arrivals) {
+    if (!fault.is_active(seconds_between(frame_times.front(), frame_times[arrival.index]))) continue;
+    if (fault.kind == FaultKind::kFrameLate) {
+      arrival.t = after(arrival.t, fault.amount);
+      continue;
+    }
+    const bool chosen = fault.random(arrival.index).chance(fault.amount);
+    if (!chosen || arrival.index + 1 == frame_times.size()) continue;
+    const Timestamp later{frame_times[arrival.index + 1].ns + kAfterSuccessor_ns};
+    if (fault.kind == FaultKind::kFrameReordered) {
+      arrival.t = std::max(arrival.t, later);
+    } else {
+      repeated.push_back({arrival.index, std::max(arrival.t, later)});
+    }
+  }
+  arrivals.insert(arrivals.end(), repeated.begin(), repeated.end());
+  std::ranges::stable_sort(arrivals, {}, &FrameArrival::t);
+  return arrivals;
+}
+
+namespace {
+
+constexpr double kScore = 0.9;
+
+Detection false_person(synth::RandomSequence& random, cv::Size image) {
+  const double width = image.width * random.uniform(0.1, 0.5);
+  const double height = image.height * random.uniform(0.1, 0.5);
+  const double x = random.uniform(0.0, image.width - width);
+  const double y = random.uniform(0.0, image.height - height);
+  return {.class_name = "person",
+          .score = kScore,
+          .box = {.x_min = x, .y_min = y, .x_max = x + width, .y_max = y + height}};
+}
+
+}  // namespace
+
+DetectionSet detections_with_fault(DetectionSet set, const SensorFault& fault, Timestamp start,
+                                   cv::Size image) {
+  if (!fault.is_active(seconds_between(start, set.t))) return set;
+  if (fault.kind != FaultKind::kDetectorHallucinating) {
+    const bool late = fault.kind == FaultKind::kDetectorLate;
+    return {.t = set.t, .state = late ? DetectionState::kLate : DetectionState::kNone, .detections = {}};
+  }
+  const auto index = static_cast<std::size_t>(set.t.ns - start.ns);
+  synth::RandomSequence random = fault.random(index);
+  for (int box = 0; box < static_cast<int>(std::lround(fault.amount)); ++box)
+    set.detections.push_back(false_person(random, image));
+  return set;
+}
+
+namespace {
+
+constexpr std::int64_t kMinStep_ns = 1000;
+
+Eigen::Vector3d random_direction(synth::RandomSequence random) {
+  const double z = random.normal(), y = random.normal(), x = random.normal();
+  return Eigen::Vector3d(x, y, z).normalized();
+}
+
+Eigen::Vector3d clipped(const Eigen::Vector3d& value, double limit) {
+  return value.cwiseMax(-limit).cwiseMin(limit);
+}
+
+/// One active sample with the fault.
+ImuSample changed(ImuSample sample, const SensorFault& fault, std::size_t index) {
+  switch (fault.kind) {
+    case FaultKind::kGyroSaturated:
+      sample.gyro_b = clipped(sample.gyro_b, fault.amount);
+      break;
+    case FaultKind::kAccelSaturated:
+      sample.accel_b = clipped(sample.accel_b, fault.amount);
+      break;
+    case FaultKind::kGyroBias:
+      sample.gyro_b.array() += fault.amount;
+      break;
+    case FaultKind::kAccelBias:
+      sample.accel_b.array() += fault.amount;
+      break;
+    case FaultKind::kShock:
+      sample.accel_b += fault.amount * random_direction(fault.random());
+      break;
+    case FaultKind::kImuJitter:
+      sample.t = after(sample.t, fault.amount * fault.random(index).normal());
+      break;
+    case FaultKind::kTimeOffset:
+    case FaultKind::kClockJump:
+      sample.t = after(sample.t, fault.amount);
+      break;
+    default:
+      STILLPOINT_CHECK(false);
+  }
+  return sample;
+}
+
+/// The first sample of each period of the lower rate.
+std::vector<ImuSample> thinned(const std::vector<ImuSample>& samples, const SensorFault& fault,
+                               Timestamp start) {
+  constexpr double kRounding = 1e-6;  // of times that are multiples of the period
+  std::vector<ImuSample> kept;
+  double last_period = -1.0;
+  for (const ImuSample& sample : samples) {
+    const double elapsed_s = seconds_between(start, sample.t);
+    const double period = std::floor((elapsed_s - fault.onset_s(elapsed_s)) * fault.amount + kRounding);
+    const bool is_active = fault.is_active(elapsed_s);
+    if (!is_active || period != last_period) kept.push_back(sample);
+    last_period = is_active ? period : -1.0;
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<ImuSample> samples_with_fault(std::vector<ImuSample> samples, const SensorFault& fault,
+                                          Timestamp start) {
+  const auto is_active = [&](const ImuSample& sample) {
+    const double elapsed_s = seconds_between(start, sample.t);
+    return fault.kind == FaultKind::kClockJump ? elapsed_s >= fault.start_s : fault.is_active(elapsed_s);
+  };
+  if (fault.kind == FaultKind::kImuGap) {
+    std::erase_if(samples, is_active);
+    return samples;
+  }
+  if (fault.kind == FaultKind::kImuRate) return thinned(samples, fault, start);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (is_active(samples[i])) samples[i] = changed(samples[i], fault, i + 1);
+  }
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    samples[i].t.ns = std::max(samples[i].t.ns, samples[i - 1].t.ns + kMinStep_ns);
+  return samples;
+}
+
 namespace {
 
 bool is_dropped(const SensorFault& fault, double elapsed_s, std::size_t index) {

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "datasets/formats/formats.h"
-#include "datasets/io/image_list.h"
+#include "datasets/formats/image_lists.h"
 #include "datasets/io/imu_file.h"
 #include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"

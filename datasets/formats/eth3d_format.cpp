@@ -6,10 +6,9 @@
 
 #include "core/base/error.h"
 #include "datasets/formats/formats.h"
-#include "datasets/formats/paired_images.h"
+#include "datasets/formats/image_lists.h"
 #include "datasets/io/image_io.h"
-#include "datasets/io/image_list.h"
-#include "eval/io/text_table.h"
+#include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/formats/formats.h"
-#include "datasets/io/image_list.h"
+#include "datasets/formats/image_lists.h"
 #include "datasets/io/imu_file.h"
 #include "datasets/io/sensor_yaml.h"
 #include "eval/io/trajectory_file.h"

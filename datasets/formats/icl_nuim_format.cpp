@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "datasets/formats/formats.h"
-#include "eval/io/text_table.h"
+#include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {

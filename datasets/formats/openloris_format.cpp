@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "datasets/calibration/transform_graph.h"
 #include "datasets/formats/formats.h"
-#include "datasets/formats/paired_images.h"
+#include "datasets/formats/image_lists.h"
 #include "datasets/io/imu_file.h"
 #include "datasets/io/sensor_yaml.h"
 #include "eval/io/trajectory_file.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "datasets/formats/formats.h"
-#include "datasets/formats/paired_images.h"
+#include "datasets/formats/image_lists.h"
 #include "datasets/io/imu_file.h"
 #include "eval/io/trajectory_file.h"
 

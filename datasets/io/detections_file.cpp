@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "eval/io/text_table.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::datasets {
 namespace {

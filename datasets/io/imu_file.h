@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/types/rig.h"
-#include "eval/io/text_table.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::datasets {
 

@@ -5,8 +5,7 @@
 #include <limits>
 
 #include "eval/metrics/ate.h"
-#include "eval/metrics/coverage.h"
-#include "eval/metrics/strict_rpe.h"
+#include "eval/metrics/rpe.h"
 
 namespace stillpoint::eval {
 namespace {

@@ -9,7 +9,6 @@
 #include <string>
 #include <string_view>
 
-#include "eval/io/pose_row.h"
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::eval {

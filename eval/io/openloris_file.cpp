@@ -8,9 +8,8 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "eval/io/pose_row.h"
 #include "eval/io/text_reader.h"
-#include "eval/io/text_table.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::eval {
 namespace {

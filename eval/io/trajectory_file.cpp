@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/io/trajectory_file.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
+#include <system_error>
 
 #include "core/base/error.h"
-#include "eval/io/pose_row.h"
+#include "eval/io/matrix_files.h"
+#include "eval/io/nmea_file.h"
+#include "eval/io/openloris_file.h"
 #include "eval/io/text_reader.h"
-#include "eval/io/text_table.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -129,6 +134,159 @@ std::string format_euroc(const Trajectory& trajectory) {
     text += row;
   }
   return text;
+}
+
+namespace {
+
+constexpr double kNormTolerance = 0.1;          // rounding to 3 decimals changes the norm by 0.1 % only
+constexpr double kGroundTruthTolerance = 0.01;  // rounding to 4 decimals stays far below
+constexpr double kMaxCoordinate = 1e9;          // [m]; limits the loss of precision in sums of squares
+
+}  // namespace
+
+std::optional<Pose> parse_pose(const TextRow& row, const PoseFields& fields) {
+  const bool may_skip = fields.check == PoseCheck::kEstimate;
+  std::array<double, 7> v{};
+  bool finite = true;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    v[i] = may_skip ? row.number(fields.first + i) : row.finite_number(fields.first + i);
+    finite = finite && std::isfinite(v[i]);
+  }
+  if (!finite) return std::nullopt;
+  const Eigen::Quaterniond q = fields.order == QuaternionOrder::kXyzw
+                                   ? Eigen::Quaterniond(v[6], v[3], v[4], v[5])
+                                   : Eigen::Quaterniond(v[3], v[4], v[5], v[6]);
+  const double norm = q.norm();
+  if (may_skip && norm == 0.0) return std::nullopt;
+  if (std::abs(norm - 1.0) > (may_skip ? kNormTolerance : kGroundTruthTolerance)) {
+    throw row.error("the quaternion has norm " + std::to_string(norm) +
+                    ", expected 1; check the order of the columns");
+  }
+  const Eigen::Vector3d p(v[0], v[1], v[2]);
+  if (p.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    throw row.error("position exceeds 1e9 m; is the file in meters?");
+  }
+  return Pose{Eigen::Quaterniond(q.coeffs() / norm), p};
+}
+
+void TrajectoryBuilder::add(const TextRow& row, Timestamp t, const std::optional<Pose>& pose) {
+  std::vector<StampedPose>& poses = loaded_.trajectory.poses;
+  if (!pose) {
+    ++loaded_.repairs.skipped;
+  } else if (poses.empty() || t > poses.back().t) {
+    poses.push_back({t, *pose});
+  } else {
+    sort_in(row, {t, *pose});
+  }
+}
+
+void TrajectoryBuilder::sort_in(const TextRow& row, const StampedPose& pose) {
+  std::vector<StampedPose>& poses = loaded_.trajectory.poses;
+  const double delay_s = seconds_between(pose.t, poses.back().t);
+  if (delay_s > kMaxDisorder_s) {
+    throw row.error("stamp " + format_stamp(pose.t) + " s is " + std::to_string(delay_s) +
+                    " s earlier than a row before; sort the file by time, or split it if it contains several "
+                    "runs");
+  }
+  const auto next = std::lower_bound(poses.begin(), poses.end(), pose.t,
+                                     [](const StampedPose& known, Timestamp t) { return known.t < t; });
+  if (next->t == pose.t) {
+    ++loaded_.repairs.repeated;
+  } else {
+    ++loaded_.repairs.reordered;
+    poses.insert(next, pose);
+  }
+}
+
+void TrajectoryBuilder::require_poses(const std::string& file) const {
+  if (!loaded_.trajectory.poses.empty()) return;
+  throw InputError(file, loaded_.repairs.skipped > 0
+                             ? "no valid pose: all rows have NaN or a zero quaternion"
+                             : "no poses found; expected rows \"t tx ty tz qx qy qz qw\"");
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_bag_extension(const fs::path& path) {
+  const fs::path extension = path.extension();
+  return extension == ".bag" || extension == ".mcap" || extension == ".db3";
+}
+
+}  // namespace
+
+bool is_bag(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return has_bag_extension(path);
+  if (!fs::exists(path / "metadata.yaml", ignored)) return false;
+  return std::any_of(fs::directory_iterator(path, ignored), fs::directory_iterator(),
+                     [](const fs::directory_entry& entry) {
+                       return has_bag_extension(entry.path()) || has_bag_extension(entry.path().stem());
+                     });
+}
+
+namespace {
+
+constexpr std::size_t kMinNanosecondDigits = 16;  // 10^15 ns are 11 days; 10^15 s would be 30 million years
+
+LoadedTrajectory one_sequence(OpenlorisFile file, const TrajectorySource& source) {
+  auto selected = file.sequences.begin();
+  if (source.sequence != 0) {
+    selected = file.sequences.find(source.sequence);
+    if (selected == file.sequences.end()) {
+      throw InputError(source.path.string(), "has no sequence " + std::to_string(source.sequence));
+    }
+  } else if (file.sequences.size() > 1) {
+    throw InputError(source.path.string(), "contains " + std::to_string(file.sequences.size()) +
+                                               " sequences; select one with --seq");
+  }
+  return {std::move(selected->second), file.repairs};
+}
+
+}  // namespace
+
+TrajectoryFormat detect_format(std::string_view text) {
+  if (is_nmea(text)) return TrajectoryFormat::kNmea;
+  RowReader rows(text, "");
+  while (const std::optional<TextRow> row = rows.next()) {
+    if (row->content.find(':') != std::string_view::npos) return TrajectoryFormat::kOpenloris;
+    if (row->fields.size() == 12) return TrajectoryFormat::kKitti;
+    const std::string_view first = row->fields.front();
+    const bool is_integer =
+        std::all_of(first.begin(), first.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return is_integer && first.size() >= kMinNanosecondDigits ? TrajectoryFormat::kEuroc
+                                                              : TrajectoryFormat::kTum;
+  }
+  return TrajectoryFormat::kTum;
+}
+
+LoadedTrajectory read_trajectory(const TrajectorySource& source) {
+  if (is_bag(source.path))
+    throw InputError(source.path.string(), "is a bag; name the topic of the poses, e.g. " +
+                                               source.path.string() + ":/ground_truth");
+  std::error_code ignored;
+  const bool is_folder = std::filesystem::is_directory(source.path, ignored);
+  if (source.format == TrajectoryFormat::kSevenScenes || (!source.format && is_folder)) {
+    return read_seven_scenes(source.path);
+  }
+  const std::string text = read_text_file(source.path);
+  const std::string name = source.path.string();
+  switch (source.format.value_or(detect_format(text))) {
+    case TrajectoryFormat::kEuroc:
+      return parse_euroc(text, name);
+    case TrajectoryFormat::kOpenloris:
+      return one_sequence(parse_openloris(text, name), source);
+    case TrajectoryFormat::kKitti:
+      if (source.times.empty()) {
+        throw InputError(name, "KITTI poses have no time stamps; specify their file with --times");
+      }
+      return parse_kitti(text, name, read_text_file(source.times), source.times.string());
+    case TrajectoryFormat::kNmea:
+      return parse_nmea(text, name);
+    default:
+      return parse_tum(text, name);
+  }
 }
 
 }  // namespace stillpoint::eval

@@ -4,16 +4,26 @@
 ///   EuRoC MAV CSV         `t[ns], px, py, pz, qw, qx, qy, qz`
 /// Lines that begin with '#' and further columns (velocity, biases) are ignored; fields are separated by
 /// spaces, tabs or commas; quaternions are normalized.
+///
+/// Poses in the rows of a text table; common to all text formats of trajectories.
+///
+/// Recognizes the bags of ROS 1 and ROS 2, whose poses `stillpoint eval` reads as BAG:/TOPIC.
+///
+/// Reads trajectories in any supported format.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/fields.h"
 #include "core/types/trajectory.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::eval {
 
@@ -72,5 +82,78 @@ void write_tum(const Trajectory& trajectory, const std::filesystem::path& file);
 
 /// The trajectory in the EuRoC format with 9 decimals, without velocities and biases.
 [[nodiscard]] std::string format_euroc(const Trajectory& trajectory);
+
+enum class QuaternionOrder { kXyzw, kWxyz };
+
+/// Which rows are accepted.
+enum class PoseCheck {
+  kEstimate,     ///< the norm of the quaternion is within 0.1 of 1; a row without a pose is skipped
+  kGroundTruth,  ///< the norm of the quaternion is within 0.01 of 1; every row must be a pose
+};
+
+/// Layout of the seven numbers of a pose: position, then quaternion.
+struct PoseFields {
+  std::size_t first = 1;  ///< index of tx
+  QuaternionOrder order = QuaternionOrder::kXyzw;
+  PoseCheck check = PoseCheck::kEstimate;
+};
+
+/// Parses a pose and normalizes its quaternion.
+/// @return nullopt if the row has no pose (a value that is not finite, or a zero quaternion) and may be
+/// skipped
+/// @throws InputError if a field is not a number, the quaternion is not a rotation, or a coordinate exceeds
+/// 1e9 m
+[[nodiscard]] std::optional<Pose> parse_pose(const TextRow& row, const PoseFields& fields);
+
+/// Collects the poses of a file in order of time.
+class TrajectoryBuilder {
+ public:
+  /// Adds the pose of a row. A row without a pose, and one with the stamp of an earlier row, is counted and
+  /// skipped; one that is up to `kMaxDisorder_s` earlier than the latest pose is counted and sorted in.
+  /// @throws InputError if it is even earlier
+  void add(const TextRow& row, Timestamp t, const std::optional<Pose>& pose);
+
+  /// @param file its name, for messages
+  /// @throws InputError if no pose was added
+  void require_poses(const std::string& file) const;
+
+  [[nodiscard]] LoadedTrajectory release() { return std::move(loaded_); }
+
+ private:
+  void sort_in(const TextRow& row, const StampedPose& pose);
+
+  LoadedTrajectory loaded_;
+};
+
+/// Whether the path is a bag by its name: a file .bag, .mcap or .db3, or a folder with metadata.yaml and one
+/// of these files, as `ros2 bag` writes it.
+[[nodiscard]] bool is_bag(const std::filesystem::path& path);
+
+enum class TrajectoryFormat { kTum, kEuroc, kKitti, kOpenloris, kSevenScenes, kNmea };
+constexpr auto enum_names(TrajectoryFormat) {
+  return EnumNames<TrajectoryFormat, 6>{{{TrajectoryFormat::kTum, "tum"},
+                                         {TrajectoryFormat::kEuroc, "euroc"},
+                                         {TrajectoryFormat::kKitti, "kitti"},
+                                         {TrajectoryFormat::kOpenloris, "openloris"},
+                                         {TrajectoryFormat::kSevenScenes, "7scenes"},
+                                         {TrajectoryFormat::kNmea, "nmea"}}};
+}
+
+struct TrajectorySource {
+  std::filesystem::path path;
+  std::optional<TrajectoryFormat> format = std::nullopt;  ///< nullopt: detected from the content
+  std::filesystem::path times = {};                       ///< file with the time stamps, for KITTI
+  int sequence = 0;                                       ///< sequence number, for OpenLORIS; 0: the only one
+};
+
+/// Reads a trajectory. Format detection: a folder is 7-Scenes; a file that begins with a sentence is NMEA; a
+/// file with a "key: value" line is OpenLORIS; rows of 12 numbers are KITTI; rows whose first field is an
+/// integer of 16 digits or more are EuRoC; other rows are TUM.
+/// @throws InputError for unreadable or malformed input, KITTI without times, or several sequences without a
+/// sequence number
+[[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);
+
+/// The format of a text by the rules of `read_trajectory`.
+[[nodiscard]] TrajectoryFormat detect_format(std::string_view text);
 
 }  // namespace stillpoint::eval

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/metrics/ate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/base/error.h"
+#include "eval/metrics/statistics.h"
 
 namespace stillpoint::eval {
 
@@ -32,6 +36,86 @@ std::optional<AteResult> ate(const Trajectory& gt, const Trajectory& est, const 
                    .rotation_deg = *statistics(errors.rotation_deg),
                    .alignment = alignment,
                    .pairs = matches.size()};
+}
+
+namespace {
+
+/// Median interval of increasing stamps [s]; 0 for fewer than two.
+double median_interval_s(std::span<const Timestamp> stamps) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
+  return percentile(intervals, 0.5).value_or(0.0);
+}
+
+}  // namespace
+
+std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp> expected,
+                               double tolerance_s) {
+  if (expected.empty()) return std::nullopt;
+  const double max_difference_s = std::max(tolerance_s, 0.5 * median_interval_s(expected));
+  std::size_t covered = 0;
+  std::size_t e = 0;
+  for (const Timestamp t : expected) {
+    while (e < est.poses.size() && seconds_between(est.poses[e].t, t) > max_difference_s) ++e;
+    if (e == est.poses.size()) break;
+    if (seconds_between(t, est.poses[e].t) > max_difference_s) continue;
+    ++covered;
+    ++e;
+  }
+  return static_cast<double>(covered) / static_cast<double>(expected.size());
+}
+
+std::optional<double> first_pose_seconds(const Trajectory& est, Timestamp start) {
+  if (est.poses.empty()) return std::nullopt;
+  return std::max(0.0, seconds_between(start, est.poses.front().t));
+}
+
+std::vector<TimeSpan> lost_spans(const Trajectory& est, const TimeSpan& whole, double max_hold_s) {
+  std::vector<TimeSpan> lost;
+  Timestamp covered_until = whole.begin;
+  for (const StampedPose& pose : est.poses) {
+    if (pose.t >= whole.end) break;
+    if (pose.t > covered_until) lost.push_back({covered_until, pose.t});
+    covered_until = std::max(covered_until, after(pose.t, max_hold_s));
+  }
+  if (covered_until < whole.end) lost.push_back({covered_until, whole.end});
+  return lost;
+}
+
+std::optional<double> time_coverage(std::span<const TimeSpan> lost, const TimeSpan& whole) {
+  const double duration_s = seconds_between(whole.begin, whole.end);
+  if (duration_s <= 0.0) return std::nullopt;
+  double lost_s = 0.0;
+  for (const TimeSpan& span : lost) lost_s += seconds_between(span.begin, span.end);
+  return 1.0 - lost_s / duration_s;
+}
+
+double correct_seconds(std::span<const MatchedPose> matches, const AteErrors& errors, Timestamp end,
+                       const CorrectRateOptions& options) {
+  STILLPOINT_CHECK(errors.translation_m.size() == matches.size() &&
+                   errors.rotation_deg.size() == matches.size());
+  double seconds = 0.0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const bool correct = errors.translation_m[i] <= options.max_translation_m &&
+                         errors.rotation_deg[i] <= options.max_rotation_deg;
+    const Timestamp until = i + 1 < matches.size() ? matches[i + 1].t : end;
+    if (correct) seconds += std::clamp(seconds_between(matches[i].t, until), 0.0, options.max_hold_s);
+  }
+  return seconds;
+}
+
+std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
+                                   const CorrectRateOptions& options, double offset_s) {
+  constexpr double kMaxGap = 0.5;  // [s], to each neighbor; value of the OpenLORIS tools
+  if (gt.poses.size() < 2) return std::nullopt;
+  std::vector<MatchedPose> matches =
+      matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
+  if (matches.empty()) return 0.0;
+  for (MatchedPose& match : matches) match.t = after(match.t, offset_s);
+  const AteErrors errors = ate_errors(matches, align(matches, Alignment::kSe3).S_w_v);
+  const double correct = correct_seconds(matches, errors, gt.poses.back().t, options);
+  return correct / seconds_between(gt.poses.front().t, gt.poses.back().t);
 }
 
 }  // namespace stillpoint::eval

@@ -7,14 +7,28 @@
 ///
 /// G_k, E_k: matched poses of ground truth and estimate; p(.), R(.): their translation and rotation; S: the
 /// alignment (see alignment.h) with rotation R_S; N: number of pairs.
+///
+/// Coverage (fraction of a sequence with a pose) and correct rate (fraction with a correct pose).
+///
+/// A pose at t_k is valid during [t_k, t_k + h_k], h_k = min(max_hold_s, t_(k+1) - t_k). With the ground
+/// truth over [t_first, t_last] and the errors e_k, theta_k of ate.h:
+///
+///   time coverage = sum_k h_k / (t_last - t_first)
+///   correct rate  = sum over {k: e_k <= max_translation_m, theta_k <= max_rotation_deg} of h_k
+///                   / (t_last - t_first)
+///
+/// Source of the correct rate: Shi et al., "Are We Ready for Service Robots? The OpenLORIS-Scene Datasets",
+/// ICRA 2020, with max_hold_s = 1.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "eval/metrics/statistics.h"
 #include "eval/trajectory/alignment.h"
+#include "eval/trajectory/association.h"
 
 namespace stillpoint::eval {
 
@@ -42,5 +56,54 @@ struct AteResult {
 /// Rotation angle [rad] in [0, pi]: 2 atan2(|q_v|, |q_w|). Accurate near 0 and pi, where
 /// arccos((trace(R) - 1) / 2) is not.
 [[nodiscard]] double rotation_angle(const Eigen::Quaterniond& q);
+
+/// Fraction of the frames that have a pose. A pose belongs to at most one frame and a frame to at most one
+/// pose, which are at most max(tolerance_s, d / 2) apart, d: median interval of the frames. Poses of a system
+/// that reports more often than there are frames, e.g. at 100 Hz, have no frame of their own and do not
+/// count.
+/// @param est poses with strictly increasing stamps
+/// @param expected frame times of the sequence, strictly increasing
+/// @param tolerance_s greater than the rounding of stamps in files
+/// @return in [0, 1]; nullopt if `expected` is empty
+[[nodiscard]] std::optional<double> coverage(const Trajectory& est, std::span<const Timestamp> expected,
+                                             double tolerance_s = 1e-3);
+
+/// Time from `start` to the first pose [s], 0 for a pose before `start`; nullopt without a pose.
+[[nodiscard]] std::optional<double> first_pose_seconds(const Trajectory& est, Timestamp start);
+
+struct TimeSpan {
+  Timestamp begin;
+  Timestamp end;
+};
+
+/// Intervals of `whole` without a valid pose, in order of time. A pose is valid from its stamp to the next
+/// one, for at most `max_hold_s`.
+[[nodiscard]] std::vector<TimeSpan> lost_spans(const Trajectory& est, const TimeSpan& whole,
+                                               double max_hold_s);
+
+/// Fraction of `whole` outside the lost spans; nullopt if `whole` has no duration.
+[[nodiscard]] std::optional<double> time_coverage(std::span<const TimeSpan> lost, const TimeSpan& whole);
+
+/// Error thresholds of a correct pose, and how long a pose stays valid.
+struct CorrectRateOptions {
+  double max_translation_m = std::numeric_limits<double>::infinity();
+  double max_rotation_deg = std::numeric_limits<double>::infinity();
+  double max_hold_s = 1.0;  ///< a pose is valid until the next one, at most this long
+};
+
+/// Correct rate as defined above, after SE(3) alignment over all matches. Ground truth is interpolated
+/// between neighbors that are both less than 0.5 s away.
+/// @return 0 if no pose matches; nullopt if the ground truth has fewer than two poses
+[[nodiscard]] std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
+                                                 const CorrectRateOptions& options = {},
+                                                 double offset_s = 0.0);
+
+/// Numerator of the correct rate [s].
+/// @param matches in order of time
+/// @param errors e_k and theta_k of `matches`
+/// @param end end of the validity of the last pose, if `max_hold_s` does not end it before
+/// @param options thresholds of e_k and theta_k; how long a pose is valid
+[[nodiscard]] double correct_seconds(std::span<const MatchedPose> matches, const AteErrors& errors,
+                                     Timestamp end, const CorrectRateOptions& options);
 
 }  // namespace stillpoint::eval

@@ -1,13 +1,109 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/metrics/rpe.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "eval/metrics/ate.h"
 
 namespace stillpoint::eval {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// Yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
+double yaw_of(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
+
+/// First index >= `begin` with the path length of `index`; several poses have it where the camera rests.
+std::size_t first_with_length(std::span<const double> lengths_m, std::size_t begin, std::size_t index) {
+  const auto first = lengths_m.begin();
+  const auto last = first + static_cast<std::ptrdiff_t>(index);
+  const auto found = std::lower_bound(first + static_cast<std::ptrdiff_t>(begin), last, lengths_m[index]);
+  return static_cast<std::size_t>(found - first);
+}
+
+}  // namespace
+
+std::vector<PosePair> pairs_over_frames(std::size_t poses, std::size_t step, bool every_start) {
+  STILLPOINT_CHECK(step > 0);
+  std::vector<PosePair> pairs;
+  for (std::size_t i = 0; i + step < poses; i += every_start ? 1 : step) pairs.push_back({i, i + step});
+  return pairs;
+}
+
+PosePairs pairs_over_seconds(std::span<const MatchedPose> matches, double delta_s, double tolerance_s) {
+  PosePairs result;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const Timestamp target = after(matches[i].t, delta_s);
+    const auto difference = [&](std::size_t k) { return std::abs(seconds_between(target, matches[k].t)); };
+    j = std::max(j, i);
+    while (j + 1 < matches.size() && difference(j + 1) < difference(j)) ++j;
+    if (j > i && difference(j) <= tolerance_s) {
+      result.pairs.push_back({i, j});
+    } else {
+      ++result.dropped;
+    }
+  }
+  return result;
+}
+
+std::vector<double> path_lengths(std::span<const MatchedPose> matches, PathOf of) {
+  const auto position = [of](const MatchedPose& match) -> const Eigen::Vector3d& {
+    return of == PathOf::kGroundTruth ? match.gt.p : match.est.p;
+  };
+  std::vector<double> lengths;
+  lengths.reserve(matches.size());
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    lengths.push_back(i == 0 ? 0.0
+                             : lengths.back() + (position(matches[i]) - position(matches[i - 1])).norm());
+  }
+  return lengths;
+}
+
+PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, double tolerance_m) {
+  PosePairs result;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i + 1 < lengths_m.size(); ++i) {
+    const auto difference = [&](std::size_t k) { return std::abs(lengths_m[k] - lengths_m[i] - delta_m); };
+    j = std::max(j, i + 1);
+    // The closest is the first pose at or beyond the target length, or the last position before it.
+    while (j + 1 < lengths_m.size() && lengths_m[j] - lengths_m[i] < delta_m) ++j;
+    std::size_t best = j;
+    if (lengths_m[j] - lengths_m[i] < delta_m) {
+      best = first_with_length(lengths_m, i + 1, j);
+    } else if (j > i + 1 && difference(j - 1) <= difference(j)) {
+      best = first_with_length(lengths_m, i + 1, j - 1);
+    }
+    if (difference(best) <= tolerance_m) {
+      result.pairs.push_back({i, best});
+    } else {
+      ++result.dropped;
+    }
+  }
+  return result;
+}
+
+RelativeErrors relative_errors(std::span<const MatchedPose> matches, std::span<const PosePair> pairs) {
+  RelativeErrors errors;
+  for (const auto& [from, to] : pairs) {
+    const Pose gt_motion = matches[from].gt.inverse() * matches[to].gt;
+    const Pose est_motion = matches[from].est.inverse() * matches[to].est;
+    const Pose error = gt_motion.inverse() * est_motion;
+    const Eigen::Matrix3d R_w_e = matches[to].est.R();
+    errors.translation_m.push_back(error.p.norm());
+    errors.rotation_deg.push_back(kDegrees * rotation_angle(error.q));
+    errors.yaw_deg.push_back(kDegrees * std::abs(yaw_of(R_w_e * error.R() * R_w_e.transpose())));
+  }
+  return errors;
+}
+
 namespace {
 
 std::vector<double> stamps_of(const Trajectory& trajectory) {
@@ -107,6 +203,102 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
   result.translation_m = *statistics(translation_m);
   result.rotation_deg = *statistics(rotation_deg);
   return result;
+}
+
+StrictRpeResult strict_rpe(std::span<const MatchedPose> matches, double delta_s) {
+  constexpr double kMaxDeltaFraction = 0.1;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < matches.size(); ++i) {
+    intervals.push_back(seconds_between(matches[i - 1].t, matches[i].t));
+  }
+  StrictRpeResult result;
+  result.tolerance_s = std::min(0.5 * percentile(intervals, 0.5).value_or(0.0), kMaxDeltaFraction * delta_s);
+  const PosePairs found = pairs_over_seconds(matches, delta_s, result.tolerance_s);
+  const RelativeErrors errors = relative_errors(matches, found.pairs);
+  result.dropped = found.dropped;
+  if (!found.pairs.empty()) {
+    result.errors = StrictRpe{*statistics(errors.translation_m), *statistics(errors.rotation_deg)};
+  }
+  return result;
+}
+
+std::vector<MatchedPose> strict_matches(const Trajectory& gt, const Trajectory& est, double offset_s) {
+  constexpr double kMaxGap = 0.11;  // [s]
+  return matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
+}
+
+namespace {
+
+constexpr std::array<double, 5> kPathFractions{0.1, 0.2, 0.3, 0.4, 0.5};
+
+std::vector<double> lengths_for(std::span<const double> path_m, const SegmentOptions& options) {
+  if (!options.lengths_m.empty() || path_m.empty() || path_m.back() <= 0.0) return options.lengths_m;
+  std::vector<double> lengths;
+  for (const double fraction : kPathFractions) lengths.push_back(fraction * path_m.back());
+  return lengths;
+}
+
+}  // namespace
+
+std::vector<SegmentErrors> segment_errors(std::span<const MatchedPose> matches,
+                                          const SegmentOptions& options) {
+  const std::vector<double> path_m = path_lengths(matches, PathOf::kGroundTruth);
+  std::vector<SegmentErrors> segments;
+  for (const double length_m : lengths_for(path_m, options)) {
+    PosePairs found = pairs_over_meters(path_m, length_m, options.tolerance * length_m);
+    if (found.pairs.empty()) continue;
+    if (options.shift_starts) {
+      for (std::size_t k = 0; k < found.pairs.size(); ++k) found.pairs[k].from = k;
+    }
+    const RelativeErrors errors = relative_errors(matches, found.pairs);
+    segments.push_back({.length_m = length_m,
+                        .translation_m = *statistics(errors.translation_m),
+                        .rotation_deg = *statistics(errors.rotation_deg),
+                        .yaw_deg = *statistics(errors.yaw_deg),
+                        .translation_lower_quartile_m = *percentile(errors.translation_m, 0.25),
+                        .translation_upper_quartile_m = *percentile(errors.translation_m, 0.75),
+                        .dropped = found.dropped});
+  }
+  return segments;
+}
+
+std::optional<double> drift_percent(std::span<const SegmentErrors> segments) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const SegmentErrors& segment : segments) {
+    const double segment_count = static_cast<double>(segment.translation_m.count);
+    sum += segment_count * segment.translation_m.mean / segment.length_m;
+    count += segment_count;
+  }
+  if (count == 0.0) return std::nullopt;
+  return 100.0 * sum / count;
+}
+
+double FrameToFrameError::next(const std::optional<MatchedPose>& pose) {
+  const std::optional<MatchedPose> previous = std::exchange(previous_, pose);
+  if (!previous) return std::numeric_limits<double>::quiet_NaN();
+  if (!pose) return std::numeric_limits<double>::infinity();
+  const Pose gt_motion = previous->gt.inverse() * pose->gt;
+  const Pose est_motion = previous->est.inverse() * pose->est;
+  return (gt_motion.inverse() * est_motion).p.norm();
+}
+
+WorstFrames::Insertion WorstFrames::insert(std::size_t frame, double value) {
+  if (std::isnan(value)) return {};
+  const auto position =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.value < value; });
+  if (position == entries_.end() && entries_.size() >= capacity_) return {};
+  entries_.insert(position, {frame, value});
+  if (entries_.size() <= capacity_) return {.inserted = true, .evicted = std::nullopt};
+  const Insertion insertion{.inserted = true, .evicted = entries_.back().frame};
+  entries_.pop_back();
+  return insertion;
+}
+
+std::vector<std::size_t> WorstFrames::frames() const {
+  std::vector<std::size_t> frames;
+  for (const Entry& entry : entries_) frames.push_back(entry.frame);
+  return frames;
 }
 
 }  // namespace stillpoint::eval

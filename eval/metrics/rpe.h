@@ -7,16 +7,91 @@
 ///
 /// E_i, E_j: estimated poses at t_i and t_j; G_i, G_j: ground truth closest in time to them; F_i: error of
 /// pair i; p(.), R(.): translation and rotation; N: number of pairs.
+///
+/// Relative pose errors between pairs of matched poses that are a fixed time, path length or number of frames
+/// apart.
+///
+///   F_ij  = (G_i^-1 G_j)^-1 (E_i^-1 E_j)
+///   trans = |p(F_ij)|,  rot = angle(R(F_ij)),  yaw = |first ZYX Euler angle of R(E_j) R(F_ij) R(E_j)^T|
+///
+/// G, E: ground truth and estimate; i, j: start and end of the pair; p(.), R(.): translation, rotation.
+/// Sources: evo_rpe; Zhang and Scaramuzza, IROS 2018 (rpg_trajectory_evaluation), for the yaw error in the
+/// world frame.
+///
+/// Strict relative pose error: the RPE of relative_error.h over pairs of matches delta_s apart, with a
+/// tolerance on the time difference, so that gaps and sparse estimates do not lower the error:
+///
+///   j = argmin_j |t_j - (t_i + delta_s)|;  pair (i, j) is used if
+///   |t_j - (t_i + delta_s)| <= min(median(t_(k+1) - t_k) / 2, delta_s / 10)
+///
+/// Relative errors over segments (sub-trajectories) of fixed length, as in Zhang and Scaramuzza, IROS 2018:
+/// trans, rot and yaw of relative_error.h over pairs (k, m) with m = argmin_m |s_m - (s_k + d)|, where s is
+/// the path length of the ground truth and d the length of the segment.
+///
+/// Relative pose error between consecutive frames, and the frames with the largest errors.
+///
+///   e_k = |p((G_(k-1)^-1 G_k)^-1 (E_(k-1)^-1 E_k))|
+///
+/// G_k, E_k: ground truth and estimate at frame k; p(.): translation. Independent of the alignment.
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "core/base/fields.h"
 #include "eval/metrics/statistics.h"
 #include "eval/trajectory/association.h"
 
 namespace stillpoint::eval {
+
+/// Start and end of a relative motion, as indices of matches.
+struct PosePair {
+  std::size_t from = 0;
+  std::size_t to = 0;
+
+  friend bool operator==(const PosePair&, const PosePair&) = default;
+};
+
+/// Pairs found, and the number of starts without an end within the tolerance.
+struct PosePairs {
+  std::vector<PosePair> pairs;
+  std::size_t dropped = 0;
+};
+
+/// Pairs (i, i + step) for i = 0, step, 2 step, ... (default of evo), or for every i (evo's all_pairs).
+[[nodiscard]] std::vector<PosePair> pairs_over_frames(std::size_t poses, std::size_t step, bool every_start);
+
+/// Pairs every match with the one whose time is closest to `delta_s` later. Pairs that miss `delta_s` by more
+/// than `tolerance_s` are dropped, so a gap does not distort the error and no pose is paired with itself.
+[[nodiscard]] PosePairs pairs_over_seconds(std::span<const MatchedPose> matches, double delta_s,
+                                           double tolerance_s);
+
+/// Path length from the first match to each [m].
+enum class PathOf { kGroundTruth, kEstimate };
+[[nodiscard]] std::vector<double> path_lengths(std::span<const MatchedPose> matches, PathOf of);
+
+/// Pairs every match with the later one whose path length from it is closest to `delta_m`, the first of
+/// equally close ones. Pairs that miss `delta_m` by more than `tolerance_m` are dropped. Same pairs as evo's
+/// all_pairs in meters, which has a tolerance of 10 %.
+/// @param lengths_m non-decreasing, as from `path_lengths`
+/// @param delta_m desired path length between the matches of a pair
+/// @param tolerance_m inclusive
+[[nodiscard]] PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m,
+                                          double tolerance_m);
+
+/// trans, rot and yaw of every pair, in the order of the pairs.
+struct RelativeErrors {
+  std::vector<double> translation_m;
+  std::vector<double> rotation_deg;
+  std::vector<double> yaw_deg;  ///< about the world's z axis, in [0, 180]
+};
+
+/// @param matches aligned, if the yaw error shall refer to the vertical axis of the ground truth
+/// @param pairs indices into `matches`
+[[nodiscard]] RelativeErrors relative_errors(std::span<const MatchedPose> matches,
+                                             std::span<const PosePair> pairs);
 
 enum class RpeUnit { kSeconds, kFrames, kMeters };
 constexpr auto enum_names(RpeUnit) {
@@ -43,5 +118,91 @@ struct RpeResult {
 /// @return nullopt if no pair is left
 [[nodiscard]] std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est,
                                            const RpeOptions& options = {});
+
+struct StrictRpe {
+  Statistics translation_m;  ///< over delta_s
+  Statistics rotation_deg;
+};
+
+/// `errors` is absent if no pair is left.
+struct StrictRpeResult {
+  std::optional<StrictRpe> errors;
+  std::size_t dropped = 0;   ///< starts without an end within the tolerance
+  double tolerance_s = 0.0;  ///< right-hand side of the condition above
+};
+
+/// Strict RPE as defined above. A run with one pose per 2.5 s has no pair for delta_s = 1. Starts less than
+/// delta_s before the last match count as dropped, too.
+[[nodiscard]] StrictRpeResult strict_rpe(std::span<const MatchedPose> matches, double delta_s);
+
+/// Matches for the strict protocols: ground truth interpolated at the stamp of each estimated pose, between
+/// neighbors that are both less than 0.11 s away (one interval at 10 Hz, plus jitter).
+[[nodiscard]] std::vector<MatchedPose> strict_matches(const Trajectory& gt, const Trajectory& est,
+                                                      double offset_s = 0.0);
+
+/// Errors of all segments of one length; quartiles for box plots.
+struct SegmentErrors {
+  double length_m = 0.0;
+  Statistics translation_m;
+  Statistics rotation_deg;
+  Statistics yaw_deg;
+  double translation_lower_quartile_m = 0.0;
+  double translation_upper_quartile_m = 0.0;
+  std::size_t dropped = 0;  ///< starts without an end within the tolerance
+};
+
+struct SegmentOptions {
+  std::vector<double> lengths_m;  ///< empty: 10, 20, 30, 40, 50 % of the ground truth's path length
+  double tolerance = 0.02;        ///< on |s_m - (s_k + d)|, relative to d
+  /// Assign the k-th end found to start k even if earlier starts have no end, as rpg_trajectory_evaluation
+  /// does.
+  bool shift_starts = false;
+};
+
+/// @param matches aligned
+/// @param options lengths of the segments and how their ends are found
+/// @return one entry per length that has at least one segment
+[[nodiscard]] std::vector<SegmentErrors> segment_errors(std::span<const MatchedPose> matches,
+                                                        const SegmentOptions& options);
+
+/// Drift: mean over all segments of |p(F_km)| / d, in percent.
+[[nodiscard]] std::optional<double> drift_percent(std::span<const SegmentErrors> segments);
+
+class FrameToFrameError {
+ public:
+  /// To be called for every frame in order.
+  /// @param pose estimate and ground truth of the frame; nullopt if either is missing
+  /// @return e_k [m]; infinity at the first frame without a pose after one with a pose; NaN at other frames
+  ///         where this frame or the previous one has no pose
+  [[nodiscard]] double next(const std::optional<MatchedPose>& pose);
+
+ private:
+  std::optional<MatchedPose> previous_;
+};
+
+/// The `capacity` frames with the largest values.
+class WorstFrames {
+ public:
+  explicit WorstFrames(std::size_t capacity) : capacity_(capacity) {}
+
+  struct Insertion {
+    bool inserted = false;
+    std::optional<std::size_t> evicted;  ///< frame removed to stay within the capacity
+  };
+
+  /// Among equal values, frames inserted earlier rank higher. NaN is ignored.
+  Insertion insert(std::size_t frame, double value);
+
+  /// In order of decreasing value.
+  [[nodiscard]] std::vector<std::size_t> frames() const;
+
+ private:
+  struct Entry {
+    std::size_t frame = 0;
+    double value = 0.0;
+  };
+  std::size_t capacity_;
+  std::vector<Entry> entries_;  ///< in order of decreasing value
+};
 
 }  // namespace stillpoint::eval

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <random>
+
+#include "eval/metrics/statistics.h"
+#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -114,6 +118,197 @@ std::vector<ChangePoint> change_points(std::span<const double> values, const Cha
   std::sort(changes.begin(), changes.end(),
             [](const ChangePoint& a, const ChangePoint& b) { return a.index < b.index; });
   return changes;
+}
+
+namespace {
+
+bool all_positive(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
+}
+
+std::vector<double> logarithms(std::span<const double> values) {
+  std::vector<double> result;
+  for (const double value : values) result.push_back(std::log(value));
+  return result;
+}
+
+/// The change of the test's shift by a monotone function.
+template <typename Function>
+RelativeChange mapped(const RankSum& test, std::size_t count, const Function& map) {
+  RelativeChange change{
+      .count = count, .median = map(test.shift), .p_value = test.p_value, .interval = std::nullopt};
+  if (test.interval) change.interval = {.low = map(test.interval->low), .high = map(test.interval->high)};
+  return change;
+}
+
+/// Var(S) of the Mann-Kendall test: Kendall, Rank Correlation Methods, 1975, chapter 4.
+double mann_kendall_variance(std::span<const double> values) {
+  const auto weight = [](double n) { return n * (n - 1.0) * (2.0 * n + 5.0); };
+  std::map<double, std::size_t> ties;
+  for (const double value : values) ++ties[value];
+  double sum = weight(static_cast<double>(values.size()));
+  for (const auto& [value, count] : ties) sum -= weight(static_cast<double>(count));
+  return sum / 18.0;
+}
+
+/// @param residuals sum of |r_i|; may be 0
+double bayesian_information_criterion(double residuals, std::size_t values, std::size_t parameters) {
+  const auto n = static_cast<double>(values);
+  const double scale = std::max(residuals / n, 1e-300);
+  return 2.0 * n * std::log(scale) + static_cast<double>(parameters) * std::log(n);
+}
+
+double residuals_to_median(std::span<const double> values) {
+  const double median = percentile(values, 0.5).value_or(0.0);
+  double sum = 0.0;
+  for (const double value : values) sum += std::abs(value - median);
+  return sum;
+}
+
+double residuals_to_line(std::span<const double> values, const Trend& line) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    sum += std::abs(values[i] - line.intercept - line.slope * static_cast<double>(i));
+  return sum;
+}
+
+/// Slopes between all values.
+std::vector<double> pairwise_slopes(std::span<const double> values) {
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t k = i + 1; k < values.size(); ++k)
+      slopes.push_back((values[k] - values[i]) / static_cast<double>(k - i));
+  }
+  return slopes;
+}
+
+/// y_i - slope (first + i).
+std::vector<double> without_slope(std::span<const double> values, double slope, double first) {
+  std::vector<double> flat;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    flat.push_back(values[i] - slope * (first + static_cast<double>(i)));
+  return flat;
+}
+
+/// Two adjacent segments.
+struct Segments {
+  std::span<const double> before;
+  std::span<const double> after;
+
+  [[nodiscard]] std::vector<double> values() const {
+    std::vector<double> all(before.begin(), before.end());
+    all.insert(all.end(), after.begin(), after.end());
+    return all;
+  }
+  /// The nearest `count` values on each side of the boundary.
+  [[nodiscard]] Segments near(std::size_t count) const {
+    return {before.last(std::min(count, before.size())), after.first(std::min(count, after.size()))};
+  }
+  /// Median slope within the segments; 0 if each has one value.
+  [[nodiscard]] double common_slope() const {
+    std::vector<double> slopes = pairwise_slopes(before);
+    const std::vector<double> slopes_after = pairwise_slopes(after);
+    slopes.insert(slopes.end(), slopes_after.begin(), slopes_after.end());
+    return percentile(slopes, 0.5).value_or(0.0);
+  }
+};
+
+/// Levels of both segments at the boundary.
+struct TwoLevels {
+  double step = 0.0;
+  double residuals = 0.0;  ///< sum of |r_i|
+};
+
+/// @param slope_before, slope_after trends that are removed
+TwoLevels two_levels(const Segments& segments, double slope_before, double slope_after) {
+  // Index 0 at the boundary, between the last value before and the first one after it.
+  const double first = 0.5 - static_cast<double>(segments.before.size());
+  const std::vector<double> before = without_slope(segments.before, slope_before, first);
+  const std::vector<double> after = without_slope(segments.after, slope_after, 0.5);
+  return {.step = *percentile(after, 0.5) - *percentile(before, 0.5),
+          .residuals = residuals_to_median(before) + residuals_to_median(after)};
+}
+
+/// Whether a line explains the values better than a step with or without a trend, see `step_beside_trend`.
+bool is_line(const Segments& segments) {
+  const std::vector<double> values = segments.values();
+  const std::optional<Trend> line = trend_of(values);
+  if (!line) return false;
+  const double slope = segments.common_slope();
+  const auto criterion = [&](double residuals, std::size_t parameters) {
+    return bayesian_information_criterion(residuals, values.size(), parameters);
+  };
+  return criterion(residuals_to_line(values, *line), 2) <
+         std::min(criterion(two_levels(segments, 0.0, 0.0).residuals, 6),
+                  criterion(two_levels(segments, slope, slope).residuals, 8));
+}
+
+}  // namespace
+
+std::optional<RelativeChange> level_change(std::span<const double> before, std::span<const double> after,
+                                           double confidence) {
+  if (before.empty() || after.empty()) return std::nullopt;
+  const std::size_t count = std::min(before.size(), after.size());
+  if (all_positive(before) && all_positive(after)) {
+    const RankSum test = *rank_sum(logarithms(before), logarithms(after), confidence);
+    return mapped(test, count, [](double x) { return std::expm1(x); });
+  }
+  const double level = std::abs(*percentile(before, 0.5));
+  if (level == 0.0 && *percentile(after, 0.5) != 0.0) return std::nullopt;
+  if (level == 0.0) return RelativeChange{.count = count};
+  return mapped(*rank_sum(before, after, confidence), count, [&](double shift) { return shift / level; });
+}
+
+std::optional<Trend> trend_of(std::span<const double> values) {
+  constexpr std::size_t kMinValues = 4;
+  if (values.size() < kMinValues) return std::nullopt;
+  double signs = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t k = i + 1; k < values.size(); ++k) {
+      const double rise = values[k] - values[i];
+      signs += rise > 0.0 ? 1.0 : (rise < 0.0 ? -1.0 : 0.0);
+    }
+  }
+  Trend trend{.slope = *percentile(pairwise_slopes(values), 0.5), .intercept = 0.0, .p_value = 1.0};
+  trend.intercept = *percentile(without_slope(values, trend.slope, 0.0), 0.5);
+  const double variance = mann_kendall_variance(values);
+  const double corrected = std::max(std::abs(signs) - 1.0, 0.0);  // for continuity
+  if (variance > 0.0) trend.p_value = std::erfc(corrected / std::sqrt(2.0 * variance));
+  return trend;
+}
+
+bool linear_trend_fits_better(std::span<const double> values, const Trend& trend,
+                              const std::vector<std::size_t>& changes) {
+  double to_levels = 0.0;
+  std::size_t first = 0;
+  for (const std::size_t change : changes) {
+    to_levels += residuals_to_median(values.subspan(first, change - first));
+    first = change;
+  }
+  to_levels += residuals_to_median(values.subspan(first));
+  return bayesian_information_criterion(residuals_to_line(values, trend), values.size(), 2) <
+         bayesian_information_criterion(to_levels, values.size(), 2 * changes.size() + 1);
+}
+
+double step_beside_trend(std::span<const double> before, std::span<const double> after) {
+  constexpr std::size_t kNear = 20;
+  constexpr std::size_t kMinForSlope = 7;  // with fewer values the slope of a segment says little
+  const Segments whole{before, after};
+  const Segments near = whole.near(kNear);
+  if (is_line(near)) return 0.0;
+  std::vector<double> steps = {two_levels(whole, 0.0, 0.0).step};
+  for (const Segments& segments : {whole, near}) {
+    const double slope = segments.common_slope();
+    steps.push_back(two_levels(segments, slope, slope).step);
+  }
+  if (std::min(near.before.size(), near.after.size()) >= kMinForSlope) {
+    const Segments only_before{near.before, {}};
+    const Segments only_after{near.after, {}};
+    steps.push_back(two_levels(near, only_before.common_slope(), only_after.common_slope()).step);
+  }
+  const auto [low, high] = std::minmax_element(steps.begin(), steps.end());
+  if (*low < 0.0 && *high > 0.0) return 0.0;
+  return *low >= 0.0 ? *low : *high;
 }
 
 }  // namespace stillpoint::eval

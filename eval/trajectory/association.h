@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Association of estimated poses with ground truth by time stamp.
+///
+/// Checks that an estimate and its ground truth are of the same time.
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/types/trajectory.h"
@@ -80,5 +83,11 @@ struct MatchedPose {
 /// a - (b + b_offset_s) [s]; `kExact` subtracts integers and rounds once.
 [[nodiscard]] double stamp_difference(Timestamp a, Timestamp b, double b_offset_s,
                                       StampArithmetic arithmetic);
+
+/// @param gt, est not empty
+/// @param offset_s added to the stamps of the estimate
+/// @param place the estimate, as the user wrote it
+/// @throws InputError if no stamp of one lies between the first and the last of the other
+void require_overlap(const Trajectory& gt, const Trajectory& est, double offset_s, const std::string& place);
 
 }  // namespace stillpoint::eval

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Dashboard of all metrics over commits as static files; a pure function of the store.
+///
+/// Page of one commit: its change points, and its metrics compared with the previous measurement.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "bench/analysis/history_changes.h"
@@ -9,6 +12,11 @@
 #include "bench/store/store.h"
 
 namespace stillpoint::report {
+
+/// A self-contained page without scripts.
+/// @param commit index into `history.commits`
+[[nodiscard]] std::string commit_html(const bench::CommitHistory& history,
+                                      const bench::HistoryChanges& changes, std::size_t commit);
 
 struct AnalyzedHistory {
   bench::CommitHistory history;

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Labels of commits, subjects and changes.
+///
+/// JSON data of the dashboard.
+///
+/// List of open regressions as Markdown and as JSON for CI.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bench/analysis/history_changes.h"
 
@@ -23,5 +28,37 @@ namespace stillpoint::report {
 
 /// Four significant digits and the unit.
 [[nodiscard]] std::string value_label(double value, const std::string& unit);
+
+/// Path of a commit's page relative to the dashboard; contains only [A-Za-z0-9./-] for any commit name.
+[[nodiscard]] std::string commit_file(const bench::Commit& commit);
+
+/// Distinct subjects in the order of the series; series of one subject are contiguous.
+[[nodiscard]] std::vector<bench::HistorySubject> subjects_of(const bench::CommitHistory& history);
+
+/// JSON: commits, plans, machines, subjects, series, shifts, drifts and tooltips of metrics; they refer to
+/// each other by index.
+[[nodiscard]] std::string dashboard_data(const bench::CommitHistory& history,
+                                         const bench::HistoryChanges& changes);
+
+/// All shifts of one metric between the same two commits, over all subjects.
+struct ShiftGroup {
+  std::string metric;
+  std::size_t before = 0;  ///< commit indices, as in `LevelShift`
+  std::size_t after = 0;
+  std::vector<const bench::LevelShift*> shifts;  ///< the largest first
+};
+
+/// Newest commit first; within a commit failures first, then by falling change.
+[[nodiscard]] std::vector<ShiftGroup> grouped_shifts(const bench::CommitHistory& history,
+                                                     const bench::HistoryChanges& changes,
+                                                     bench::ChangeState state);
+
+/// A table of open regressions, followed by metrics that drift for the worse.
+[[nodiscard]] std::string regressions_markdown(const bench::CommitHistory& history,
+                                               const bench::HistoryChanges& changes);
+
+/// {"open": [...], "drifting": [...]}: one entry per series.
+[[nodiscard]] std::string regressions_json(const bench::CommitHistory& history,
+                                           const bench::HistoryChanges& changes);
 
 }  // namespace stillpoint::report

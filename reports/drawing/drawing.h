@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Vector drawing as a list of marks, written as SVG, PDF or PNG.
+///
+/// Size and colors that plots have in common.
+///
+/// Drawings as files whose extension selects the format.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "bench/record/output_folder.h"
 
 namespace stillpoint::report {
 
@@ -63,5 +70,26 @@ struct Drawing {
 /// Writes a PNG of `scale` pixels per unit of the drawing, antialiased.
 /// @throws InputError if the file cannot be written
 void write_drawing_png(const std::filesystem::path& file, const Drawing& drawing, double scale);
+
+inline constexpr double kPlotWidth = 800.0;
+inline constexpr double kPlotMargin = 60.0;
+inline constexpr Color kBlack{20, 20, 20};
+inline constexpr Color kGray{200, 200, 200};
+inline constexpr Color kBlue{30, 90, 200};
+inline constexpr Color kRed{190, 30, 40};
+/// Of the lines of a plot, in their order.
+inline constexpr std::array<Color, 6> kLineColors{
+    {kBlue, {220, 110, 20}, {40, 150, 60}, {170, 50, 160}, kRed, {100, 100, 100}}};
+
+/// Checks a file name before the work begins: its extension, and what it would replace.
+/// @param rules without `beginning`, which the format determines
+/// @throws InputError if the extension is not .svg, .pdf or .png, or as bench::require_safe_output
+void require_drawing_file(const std::filesystem::path& file, bench::OutputRules rules);
+
+/// Checks as `require_drawing_file`, and writes an SVG or PDF, or a PNG of `scale` pixels per unit of the
+/// drawing.
+/// @throws InputError in addition if the file cannot be written
+void write_drawing(const std::filesystem::path& file, const Drawing& drawing, double scale,
+                   bench::OutputRules rules);
 
 }  // namespace stillpoint::report

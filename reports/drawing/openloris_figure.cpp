@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "reports/drawing/style.h"
+#include "reports/drawing/drawing.h"
 
 namespace stillpoint::report {
 namespace {

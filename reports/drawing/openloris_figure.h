@@ -6,7 +6,7 @@
 /// below: strict T.RPE [m/s] and R.RPE [deg/s], "-" where a system has no pose pair 1 s apart.
 #pragma once
 
-#include "eval/openloris/scene_score.h"
+#include "eval/openloris/benchmark.h"
 #include "reports/drawing/drawing.h"
 
 namespace stillpoint::report {

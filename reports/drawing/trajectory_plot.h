@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Top view of trajectories and their position errors over time.
+///
+/// Plan of trajectories with a scale bar and an arrow to the north; without a map of the surroundings.
 #pragma once
 
 #include <string>
@@ -21,5 +23,13 @@ struct PlottedRun {
 /// Upper part: ground truth (black) and aligned estimates in the two axes along which the ground truth is
 /// longest, to scale and completely visible. Lower part: position error [m] over time [s].
 [[nodiscard]] Drawing trajectory_plot(const Trajectory& gt, const std::vector<PlottedRun>& runs);
+
+/// x of the ground truth to the right and y up, to scale: east and north if the ground truth is that of a
+/// GNSS receiver (eval/io/nmea_file.h). Estimates are drawn as aligned by their evaluation; all of each
+/// trajectory is visible.
+[[nodiscard]] Drawing local_map(const Trajectory& gt, const std::vector<PlottedRun>& runs);
+
+/// Length of a scale bar: the largest of 1, 2, 5, 10, ... [m] that is at most a third of `width_m`.
+[[nodiscard]] double scale_bar_m(double width_m);
 
 }  // namespace stillpoint::report

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -11,16 +13,96 @@
 #include "bench/model/run_csv.h"
 #include "bench/model/run_notes.h"
 #include "bench/profile/timeline.h"
-#include "reports/page/charts/flame_stacks.h"
-#include "reports/page/charts/run_series.h"
-#include "reports/page/charts/segment_curves.h"
-#include "reports/page/page_images.h"
-#include "reports/page/series_text.h"
-#include "reports/tables/escaping.h"
+#include "reports/page/chart_data.h"
 #include "reports/tables/run_cells.h"
-#include "reports/tables/timing_runs.h"
+#include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
+namespace {
+
+constexpr std::uint16_t kNoValue = 0xFFFF;
+constexpr double kSteps = 65534.0;
+
+}  // namespace
+
+std::string base64(std::span<const unsigned char> bytes) {
+  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kAlphabet[group >> (18 - 6 * k) & 0x3F] : '=';
+  }
+  return text;
+}
+
+nlohmann::ordered_json packed_series(std::span<const double> values) {
+  double low = 0.0;
+  double high = 0.0;
+  bool is_first = true;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = is_first ? value : std::min(low, value);
+    high = is_first ? value : std::max(high, value);
+    is_first = false;
+  }
+  const double step = high > low ? (high - low) / kSteps : 1.0;
+  std::vector<unsigned char> bytes;
+  for (const double value : values) {
+    const auto number =
+        std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - low) / step)) : kNoValue;
+    bytes.push_back(static_cast<unsigned char>(number & 0xFF));
+    bytes.push_back(static_cast<unsigned char>(number >> 8));
+  }
+  return {{"low", low}, {"step", step}, {"data", base64(bytes)}};
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string image_base64(const bench::Store& store, const bench::StoredRun& run, const std::string& kind) {
+  const std::string jpeg = store.attachment(run, kind);
+  return base64({reinterpret_cast<const unsigned char*>(jpeg.data()), jpeg.size()});
+}
+
+/// Frames of a run that have an image, worst first.
+std::vector<std::size_t> frames_with_image(const RunSeries& series) {
+  std::vector<std::size_t> frames = series.worst;
+  std::erase_if(frames, [&](std::size_t frame) { return !series.images.contains(frame); });
+  return frames;
+}
+
+}  // namespace
+
+std::vector<std::string> page_images(const bench::Store& store, std::span<const bench::StoredRun> runs,
+                                     std::span<const RunSeries> series, std::size_t budget_bytes) {
+  std::vector<Json> images(runs.size(), Json::object());
+  std::vector<std::vector<std::size_t>> frames;
+  std::size_t ranks = 0;
+  for (const RunSeries& one : series) {
+    frames.push_back(frames_with_image(one));
+    ranks = std::max(ranks, frames.back().size());
+  }
+  bool is_full = false;
+  for (std::size_t rank = 0; rank < ranks && !is_full; ++rank) {
+    for (std::size_t run = 0; run < runs.size() && !is_full; ++run) {
+      if (rank >= frames[run].size()) continue;
+      const std::size_t frame = frames[run][rank];
+      std::string text = image_base64(store, runs[run], series[run].images.at(frame));
+      is_full = text.size() > budget_bytes;
+      if (is_full) continue;
+      budget_bytes -= text.size();
+      images[run][std::to_string(frame)] = std::move(text);
+    }
+  }
+  std::vector<std::string> texts;
+  for (const Json& json : images) texts.push_back(json.dump());
+  return texts;
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -1,16 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// JSON data of a report page: list of runs, time series, ground truths and manifests.
+///
+/// Compact text encoding of time series for embedding in a page.
+///
+/// Annotated images embedded in a report page.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "bench/store/store.h"
-#include "reports/page/charts/box_plot.h"
+#include "reports/page/chart_data.h"
 
 namespace stillpoint::report {
+
+/// RFC 4648, with padding.
+[[nodiscard]] std::string base64(std::span<const unsigned char> bytes);
+
+/// {"low", "step", "data"}: value = low + step * (16-bit little-endian number), 65535 = missing. The
+/// quantization error is at most 1/131068 of the range.
+[[nodiscard]] nlohmann::ordered_json packed_series(std::span<const double> values);
+
+/// JSON of each run: frame index -> JPEG in base64. Images are added in rounds, the worst frame of every run
+/// first, then the second worst of every run, until the budget is used up: every run gets its worst frames.
+///
+/// @param series       of each run
+/// @param budget_bytes base64 size of all images together
+/// @throws InputError if an image is missing or damaged
+[[nodiscard]] std::vector<std::string> page_images(const bench::Store& store,
+                                                   std::span<const bench::StoredRun> runs,
+                                                   std::span<const RunSeries> series,
+                                                   std::size_t budget_bytes);
 
 struct PageData {
   std::string index;  ///< JSON: runs; truths and manifests by hash; flames; segments; tooltips of metrics

@@ -2,12 +2,89 @@
 #include "reports/page/plan_ablations.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
+#include "bench/analysis/run_statistics.h"
 #include "bench/plan/bench_plan.h"
 #include "reports/tables/run_cells.h"
+#include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
+namespace {
+
+/// Color saturation [%]: 60 from a factor of two on, in either direction.
+int color_depth(double change) {
+  const double octaves = std::log2(std::max(1.0 + change, 1e-3));
+  return static_cast<int>(std::lround(60.0 * std::min(std::abs(octaves), 1.0)));
+}
+
+const char* direction_class(double change) {
+  if (change == 0.0) return "equal";
+  return change > 0.0 ? "worse" : "better";
+}
+
+/// Hatched unless the change is significant.
+std::string cell_html(const bench::AblationRow& row) {
+  std::string lost = row.newly_failed == 0 ? "" : fmt::format("<br>{} lost", row.newly_failed);
+  if (!row.change) return "<td class=\"empty\">-" + lost + "</td>";
+  const eval::RelativeChange& change = *row.change;
+  return fmt::format("<td class=\"{}{}\" style=\"--depth:{}%\">{}<span class=\"interval\">{}</span>{}</td>",
+                     direction_class(change.median), eval::is_significant(change) ? "" : " insignificant",
+                     color_depth(change.median), percent_text(change.median), interval_text(change), lost);
+}
+
+std::string caption_html(const PlanAblation& ablation, const bench::MetricDescriptor& metric) {
+  const std::string base =
+      escape_html(ablation.base) +
+      (ablation.is_base_of_plan ? ", base of plan " + escape_html(ablation.plan)
+                                : ", which these variants of plan " + escape_html(ablation.plan) + " extend");
+  return fmt::format(
+      "<caption>Change of {} relative to {}: Hodges-Lehmann estimate over n pairs of equal sequence and "
+      "seed, and its exact 95 % interval (Wilcoxon signed-rank test); hatched: not significant, because "
+      "the interval contains 0 or n is too small for one. {}</caption>\n",
+      metric.id, base, bench::tooltip(metric));
+}
+
+std::string head_html(const std::vector<std::string>& sequences) {
+  std::string text =
+      "<thead><tr><th scope=\"col\">variant</th>"
+      "<th scope=\"col\">all</th>";
+  for (const std::string& sequence : sequences)
+    text += "<th scope=\"col\">" + escape_html(sequence) + "</th>";
+  return text + "</tr></thead>";
+}
+
+}  // namespace
+
+std::string heat_map_html(const PlanAblation& ablation, const bench::MetricDescriptor& metric) {
+  const std::vector<bench::AblationRow> rows =
+      bench::ablation(ablation.runs, ablation.base, std::string(metric.id));
+  const bool has_pairs = std::any_of(rows.begin(), rows.end(), [](const bench::AblationRow& row) {
+    return row.change.has_value() || row.newly_failed > 0;
+  });
+  if (!has_pairs) return "";
+  std::vector<std::string> columns =
+      distinct(ablation.runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
+  std::string text = "<div class=\"table\"><table class=\"heat\">" + caption_html(ablation, metric) +
+                     head_html(columns) + "<tbody>";
+  columns.insert(columns.begin(), "");  // all sequences
+  for (const std::string& variant : distinct(ablation.runs, system_label)) {
+    if (variant == ablation.base) continue;
+    text += "\n<tr><th scope=\"row\">" + escape_html(variant) + "</th>";
+    for (const std::string& sequence : columns) {
+      const auto found = std::find_if(rows.begin(), rows.end(), [&](const bench::AblationRow& row) {
+        return row.variant == variant && row.sequence == sequence;
+      });
+      text += found == rows.end() ? "<td class=\"empty\">-</td>" : cell_html(*found);
+    }
+    text += "</tr>";
+  }
+  return text + "</tbody></table></div>\n";
+}
+
 namespace {
 
 /// Runs of this odometry in a plan, outside sweeps.

@@ -1,16 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A self-contained HTML report of a store, and its tables as files; a pure function of the store.
+///
+/// Converts stored runs on OpenLORIS scenes to input of the OpenLORIS benchmark.
+///
+/// Summary sentences of a report: number of runs, failures, best variant, changes since an earlier build.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "bench/analysis/comparison.h"
+#include "bench/model/stored_run.h"
 #include "bench/record/output_folder.h"
 #include "bench/store/store.h"
+#include "eval/openloris/benchmark.h"
 #include "reports/page/plan_ablations.h"
 #include "reports/tables/report_table.h"
 
 namespace stillpoint::report {
+
+/// Runs on sequences named after an OpenLORIS scene, rendered or recorded, excluding sweeps; each seed counts
+/// as one sequence of its scene. `systems` is empty without such runs.
+/// @throws InputError if files of a run are missing or damaged
+[[nodiscard]] eval::OpenlorisBenchmark openloris_of_runs(const bench::Store& store,
+                                                         std::span<const bench::StoredRun> runs);
+
+/// Number of runs, and the failed ones; at most five are listed individually.
+[[nodiscard]] std::vector<std::string> outcome_sentences(std::span<const bench::StoredRun> runs);
+
+/// The variant with the smallest median ATE on most sequences; empty with fewer than two variants.
+[[nodiscard]] std::string best_sentence(std::span<const bench::StoredRun> runs);
+
+/// Metrics that improved or regressed since an earlier build.
+/// @param base name of that build
+[[nodiscard]] std::vector<std::string> change_sentences(const std::string& base,
+                                                        const bench::Comparison& comparison);
 
 /// Contents of a report page.
 struct ReportSubject {

@@ -11,7 +11,6 @@
 #include "bench/systems/published_table.h"
 #include "core/base/module_timings.h"
 #include "reports/tables/run_cells.h"
-#include "reports/tables/timing_runs.h"
 
 namespace stillpoint::report {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/statistics/median_interval.h"
+#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::report {
 

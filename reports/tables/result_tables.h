@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Result tables: metrics by variant and sequence, module times by variant, comparisons with published
 /// results.
+///
+/// A metric on all sequences of a dataset: published systems beside ours, one row per sequence.
+///
+/// Measured and published results in one table: one row per system, marked by source.
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bench/model/stored_run.h"
@@ -21,5 +26,26 @@ namespace stillpoint::report {
 /// Published rows above measured ones, on the sequences (or modules) they share; no rows if there are none.
 [[nodiscard]] ReportTable published_comparison_table(std::span<const bench::StoredRun> runs,
                                                      const bench::PublishedTable& published);
+
+struct DatasetTableLayout {
+  std::string name;  ///< base name of the files
+  std::string title;
+  std::vector<std::string> sequences;  ///< of the plan; also those without data
+  std::vector<std::string> variants;   ///< of the plan
+};
+
+/// Sequences without data are rows without numbers. The last row contains the mean of each column over the
+/// sequences with a number; a note states how many these are.
+/// @param published may have no rows; its metric selects the numbers of the runs
+[[nodiscard]] ReportTable dataset_table(const DatasetTableLayout& layout,
+                                        std::span<const bench::StoredRun> runs,
+                                        const bench::PublishedTable& published);
+
+/// A Markdown table with one column per sequence (or module): measured medians first, then the published rows
+/// that share a column, followed by sources, notes and limits of comparability. Times are those of
+/// undisturbed timing runs only. Empty without shared columns, except for a line that names the omitted
+/// times.
+[[nodiscard]] std::string published_comparison(std::span<const bench::StoredRun> runs,
+                                               const bench::PublishedTable& published);
 
 }  // namespace stillpoint::report

@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "reports/tables/escaping.h"
-#include "reports/tables/text_table.h"
+#include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/bags/writing/bag_writer.h"
-#include "datasets/bags/writing/serialize.h"
+#include "datasets/bags/bag_file.h"
+#include "datasets/bags/messages.h"
 #include "tests/support/temporary_folder.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

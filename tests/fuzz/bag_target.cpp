@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "datasets/bags/bag_streams.h"
+#include "datasets/bags/bag_geometry.h"
 #include "datasets/bags/bag_topics.h"
-#include "datasets/bags/bag_trajectory.h"
 #include "datasets/bags/messages.h"
+#include "datasets/formats/bag_format.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::datasets {

@@ -13,8 +13,8 @@
 #include "core/base/error.h"
 #include "datasets/catalogue/catalogue.h"
 #include "datasets/download/archive_extraction.h"
-#include "datasets/download/file_kind.h"
-#include "datasets/download/response_headers.h"
+#include "datasets/download/http_transfer.h"
+#include "datasets/download/transfer_checks.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "eval/io/any_trajectory.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
+#include "eval/io/trajectory_file.h"
 #include "eval/protocols/protocol.h"
 
 namespace stillpoint::eval {

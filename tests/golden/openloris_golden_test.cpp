@@ -4,8 +4,6 @@
 
 #include "eval/io/openloris_file.h"
 #include "eval/openloris/benchmark.h"
-#include "eval/openloris/robot_frames.h"
-#include "eval/openloris/sequence_score.h"
 #include "eval/trajectory/alignment.h"
 #include "tests/golden/golden_file.h"
 #include "tests/support/test_data.h"

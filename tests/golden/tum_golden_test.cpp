@@ -5,7 +5,6 @@
 
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/ate.h"
-#include "eval/metrics/relative_error.h"
 #include "eval/metrics/rpe.h"
 #include "tests/golden/golden_file.h"
 #include "tests/support/test_data.h"

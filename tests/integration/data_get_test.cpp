@@ -9,8 +9,8 @@
 #include <sys/mount.h>
 #include <unistd.h>
 
-#include "datasets/bags/writing/bag_writer.h"
-#include "datasets/bags/writing/serialize.h"
+#include "datasets/bags/bag_file.h"
+#include "datasets/bags/messages.h"
 #include "tests/support/sequences/dataset_host.h"
 #include "tests/support/sequences/sequence_folders.h"
 #include "tests/support/test_data.h"

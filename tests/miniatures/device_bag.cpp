@@ -13,9 +13,9 @@
 #include <string>
 #include <string_view>
 
-#include "datasets/bags/chunk_codec.h"
-#include "datasets/bags/writing/bag_writer.h"
-#include "datasets/bags/writing/serialize.h"
+#include "datasets/bags/bag_chunks.h"
+#include "datasets/bags/bag_file.h"
+#include "datasets/bags/messages.h"
 #include "datasets/calibration/rig_file.h"
 #include "datasets/io/detections_file.h"
 #include "datasets/open_sequence.h"

@@ -4,10 +4,9 @@
 
 #include <random>
 
-#include "eval/compare/time_offset.h"
+#include "eval/compare/conventions.h"
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
-#include "eval/metrics/strict_rpe.h"
 #include "tests/support/simulated/smooth_path.h"
 
 namespace stillpoint::eval {

@@ -13,7 +13,7 @@
 #include "bench/store/store.h"
 #include "core/base/error.h"
 #include "reports/dashboard/dashboard.h"
-#include "reports/dashboard/regression_list.h"
+#include "reports/dashboard/history_text.h"
 #include "reports/page/report_page.h"
 
 namespace stillpoint::bench {

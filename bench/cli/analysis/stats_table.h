@@ -10,7 +10,7 @@
 
 #include "bench/analysis/run_groups.h"
 #include "bench/analysis/run_statistics.h"
-#include "reports/tables/text_table.h"
+#include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
 

@@ -22,7 +22,7 @@
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"
 #include "datasets/sequence_validator.h"
-#include "reports/tables/text_table.h"
+#include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
 namespace {

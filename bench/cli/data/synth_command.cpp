@@ -9,7 +9,7 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
 #include "core/base/error.h"
-#include "datasets/synthetic/sequence/sequence_cache.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint::bench {
 namespace {

@@ -26,7 +26,7 @@
 #include "bench/systems/published_table.h"
 #include "bench/systems/slam_system.h"
 #include "core/base/error.h"
-#include "reports/text/published_comparison.h"
+#include "reports/tables/result_tables.h"
 
 namespace stillpoint::bench {
 

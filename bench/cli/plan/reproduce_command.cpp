@@ -31,14 +31,13 @@
 #include "eval/io/openloris_file.h"
 #include "eval/openloris/benchmark.h"
 #include "eval/trajectory/alignment.h"
-#include "reports/drawing/drawing_file.h"
+#include "reports/drawing/drawing.h"
 #include "reports/drawing/openloris_figure.h"
 #include "reports/page/report_page.h"
-#include "reports/tables/dataset_table.h"
-#include "reports/tables/formats/table_formats.h"
 #include "reports/tables/paper_tables.h"
 #include "reports/tables/result_tables.h"
-#include "reports/text/evaluation_table.h"
+#include "reports/tables/table_formats.h"
+#include "reports/text/evaluation_report.h"
 
 namespace stillpoint::bench {
 

@@ -38,7 +38,7 @@
 #include "datasets/sensor_stream.h"
 #include "eval/io/text_reader.h"
 #include "eval/metrics/statistics.h"
-#include "reports/tables/text_table.h"
+#include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "reports/tables/text_table.h"
+#include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
 

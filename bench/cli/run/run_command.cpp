@@ -36,8 +36,7 @@
 #include "datasets/faults/faulty_stream.h"
 #include "datasets/faults/sensor_fault.h"
 #include "datasets/open_sequence.h"
-#include "datasets/ping_pong_playback.h"
-#include "datasets/playback_start.h"
+#include "datasets/sensor_stream.h"
 
 namespace stillpoint::bench {
 
@@ -67,8 +66,8 @@ void save_map(const MapOptions& options, const LoopReport& report);
 
 /// How a sequence is played.
 struct Playback {
-  double start_s = 0.0;  ///< see datasets/playback_start.h
-  int passes = 1;        ///< see datasets/ping_pong_playback.h
+  double start_s = 0.0;  ///< see datasets/sensor_stream.h
+  int passes = 1;        ///< see datasets/sensor_stream.h
   std::vector<datasets::SensorFault> faults;
 };
 

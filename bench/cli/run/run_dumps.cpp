@@ -7,9 +7,8 @@
 
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
-#include "reports/drawing/cost_trend.h"
+#include "reports/drawing/cost_plots.h"
 #include "reports/drawing/drawing.h"
-#include "reports/drawing/loop_cost_plot.h"
 
 namespace stillpoint::bench {
 

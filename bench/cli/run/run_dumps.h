@@ -13,8 +13,7 @@
 #include "core/config/frontend_config.h"
 #include "core/pipeline/runners/runner.h"
 #include "datasets/sensor_stream.h"
-#include "reports/frames/run_video.h"
-#include "reports/frames/worst_frames.h"
+#include "reports/frames/annotated_frames.h"
 
 namespace stillpoint::bench {
 

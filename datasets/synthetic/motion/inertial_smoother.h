@@ -7,9 +7,14 @@
 /// p'' = R (a - b_a) + g (linear in p). q, R: attitude T_w_b; w, a: gyroscope and accelerometer samples; b:
 /// their biases, estimated in alternation with the fit. Continuous-time fusion after Furgale, Barfoot and
 /// Sibley (2012).
+///
+/// Linear least squares with a banded normal matrix, as in spline fitting.
 #pragma once
 
 #include <span>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "core/base/timestamp.h"
 #include "core/types/rig.h"
@@ -17,6 +22,26 @@
 #include "datasets/synthetic/motion/path_spline.h"
 
 namespace stillpoint::synth {
+
+/// Accumulates the normal equations A^T W A x = A^T W b in band storage and solves them by banded Cholesky
+/// factorization (Golub and Van Loan, 4.3).
+class BandedLeastSquares {
+ public:
+  /// @param unknowns number of unknowns @param band maximum row length @param columns number of right-hand
+  /// sides
+  BandedLeastSquares(int unknowns, int band, int columns);
+
+  /// Adds weight * |row * x[first, first + row.size()) - value|^2 for each column of x; `value` has one
+  /// number per column.
+  void add(int first, std::span<const double> row, std::span<const double> value, double weight);
+
+  /// @return unknowns x columns. The rows added must determine every unknown.
+  [[nodiscard]] Eigen::MatrixXd solve() const;
+
+ private:
+  Eigen::MatrixXd normal_;  // (i - j, j) holds entry (i, j), i >= j
+  Eigen::MatrixXd rhs_;
+};
 
 /// Standard deviations per sample, and fit parameters.
 struct SmootherConfig {

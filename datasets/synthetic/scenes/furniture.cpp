@@ -2,11 +2,59 @@
 #include "datasets/synthetic/scenes/furniture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "datasets/synthetic/materials/surfaces.h"
 
 namespace stillpoint::synth {
+namespace {
+
+template <class Paint>
+std::vector<int> add_textures(Builder& builder, int count, const Paint& paint, RandomSequence& random) {
+  std::vector<int> numbers;
+  for (int i = 0; i < count; ++i) numbers.push_back(builder.add_texture(paint(random)));
+  return numbers;
+}
+
+}  // namespace
+
+Palette make_palette(Builder& builder, std::uint64_t seed) {
+  RandomSequence random(random_key(seed, RandomStream::kTexture));
+  const auto add = [&builder](const cv::Mat& texture) { return builder.add_texture(texture); };
+  Palette palette;
+  palette.carpet = add(paint_carpet(Color(128, 132, 142), random));
+  palette.tiles = add(paint_tiles(Color(185, 178, 165), 4, random));
+  palette.plaster = add(paint_plaster(Color(205, 203, 196), random));
+  palette.ceiling = add(paint_ceiling(random));
+  palette.lamp = add(blank_canvas(4, 4, Color(255, 255, 250)));
+  palette.oak = add(paint_wood(Color(190, 155, 112), random));
+  palette.walnut = add(paint_wood(Color(120, 88, 62), random));
+  palette.metal = add(paint_plain(Color(165, 168, 172), 8.0, random));
+  palette.dark_plastic = add(paint_plain(Color(58, 58, 62), 8.0, random));
+  palette.light_plastic = add(paint_plain(Color(205, 203, 195), 6.0, random));
+  palette.paint = add(paint_plaster(Color(170, 180, 185), random));
+  palette.carton = add(paint_carton(random));
+  palette.door = add(paint_door(Color(150, 112, 78), random));
+  palette.window = add(paint_window(random));
+  const auto fabric = [](RandomSequence& r) { return paint_fabric(random_color(r, 140.0, 0.6), r); };
+  const auto plain = [](RandomSequence& r) { return paint_plain(random_color(r, 200.0, 0.7), 10.0, r); };
+  palette.fabrics = add_textures(builder, 4, fabric, random);
+  palette.posters = add_textures(builder, 10, paint_poster, random);
+  palette.noticeboards = add_textures(builder, 2, paint_noticeboard, random);
+  palette.papers = add_textures(builder, 6, paint_paper, random);
+  palette.screens = add_textures(builder, 4, paint_screen, random);
+  palette.keyboards = add_textures(builder, 1, paint_keyboard, random);
+  palette.spines = add_textures(builder, 3, paint_book_spines, random);
+  palette.packages = add_textures(builder, 3, paint_packages, random);
+  palette.plain_colors = add_textures(builder, 6, plain, random);
+  return palette;
+}
+
+int pick_random(const std::vector<int>& textures, RandomSequence& random) {
+  return textures[static_cast<std::size_t>(random.index(static_cast<int>(textures.size())))];
+}
+
 namespace {
 
 using Eigen::Vector3d;
@@ -213,6 +261,105 @@ void add_carton_pile(const SceneContext& context, const Placement& placement) {
 void add_bin(Builder& builder, const Placement& placement, const Palette& palette) {
   builder.set_frame(placement.position, placement.yaw);
   builder.add_cylinder({Vector3d::Zero(), 0.17, 0.4, 16}, palette.dark_plastic, 0.3);
+}
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kOffWall_m = 0.015;  // distance of hung quads and skirting from the wall
+
+}  // namespace
+
+std::array<Wall, 4> Room::walls() const {
+  const double width = high.x() - low.x(), depth = high.y() - low.y();
+  return {Wall{{low.x(), high.y(), 0.0}, Vector3d::UnitX(), width},
+          Wall{{high.x(), high.y(), 0.0}, -Vector3d::UnitY(), depth},
+          Wall{{high.x(), low.y(), 0.0}, -Vector3d::UnitX(), width},
+          Wall{{low.x(), low.y(), 0.0}, Vector3d::UnitY(), depth}};
+}
+
+void add_wall(const SceneContext& context, const Wall& wall, double height, const RoomStyle& style) {
+  Builder& builder = context.builder;
+  const Palette& palette = context.palette;
+  constexpr double kWallRepeat_m = 2.0;
+  const Vector3d up(0.0, 0.0, height), skirting(0.0, 0.0, 0.1);
+  const Vector3d inward = wall.right.cross(Vector3d::UnitZ());
+  builder.set_frame(Vector3d::Zero(), 0.0);
+  builder.add_surface({wall.lower_left + up, wall.length * wall.right, -up}, style.wall, kWallRepeat_m);
+  builder.add_surface({wall.lower_left + skirting + kOffWall_m * inward, wall.length * wall.right, -skirting},
+                      palette.walnut, 1.0);
+}
+
+void add_room(const SceneContext& context, const Room& room, const RoomStyle& style) {
+  add_floor_and_ceiling(context, room, style);
+  for (const Wall& wall : room.walls()) add_wall(context, wall, room.height, style);
+}
+
+void add_floor_and_ceiling(const SceneContext& context, const Room& room, const RoomStyle& style) {
+  Builder& builder = context.builder;
+  const Palette& palette = context.palette;
+  const Vector3d x(room.high.x() - room.low.x(), 0.0, 0.0), y(0.0, room.high.y() - room.low.y(), 0.0);
+  constexpr double kCeilingRepeat_m = 0.6;
+  builder.set_frame(Vector3d::Zero(), 0.0);
+  builder.add_surface({{room.low.x(), room.high.y(), 0.0}, x, -y}, style.floor, style.floor_repeat_m);
+  builder.add_surface({{room.low.x(), room.low.y(), room.height}, x, y}, style.ceiling, kCeilingRepeat_m);
+  const int columns = std::max(1, static_cast<int>(std::lround(x.x() / style.lamp_spacing)));
+  const int rows = std::max(1, static_cast<int>(std::lround(y.y() / style.lamp_spacing)));
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const Vector3d center(room.low.x() + x.x() * (column + 0.5) / columns,
+                            room.low.y() + y.y() * (row + 0.5) / rows, room.height - 0.03);
+      builder.add_lamp(center, {1.2, 0.3}, style.lamp_power, palette.lamp);
+    }
+  }
+}
+
+std::array<Wall, 2> add_partition(const SceneContext& context, const Partition& partition, int texture) {
+  constexpr double kHalfThickness_m = 0.06, kRepeat_m = 2.0;
+  Builder& builder = context.builder;
+  const Vector2d along = partition.to - partition.from;
+  const double length = along.norm();
+  const Vector3d from(partition.from.x(), partition.from.y(), 0.0);
+  builder.set_frame(from, std::atan2(along.y(), along.x()));
+  builder.add_box({0.0, -kHalfThickness_m, partition.bottom}, {length, kHalfThickness_m, partition.height},
+                  texture, kRepeat_m);
+  const Vector3d right(along.x() / length, along.y() / length, 0.0);
+  const Vector3d side = kHalfThickness_m * right.cross(Vector3d::UnitZ());
+  return {Wall{from + length * right - side, -right, length}, Wall{from + side, right, length}};
+}
+
+void hang(Builder& builder, const Wall& wall, const WallArea& area, int texture) {
+  const auto& [at, size] = area;
+  builder.set_frame(Vector3d::Zero(), 0.0);
+  const Vector3d inward = wall.right.cross(Vector3d::UnitZ());
+  const Vector3d corner =
+      wall.lower_left + at.x() * wall.right + Vector3d(0.0, 0.0, at.y() + size.y()) + kOffWall_m * inward;
+  builder.add_textured_quad({corner, size.x() * wall.right, Vector3d(0.0, 0.0, -size.y())}, texture);
+}
+
+void decorate(const SceneContext& context, const Wall& wall, const Decoration& decoration) {
+  const auto& [builder, palette, random] = context;
+  const double lift = decoration.lift;
+  double along = random.uniform(0.2, 0.6);
+  while (along < wall.length - 0.9) {
+    const double gap = random.uniform(0.15, 0.5) / decoration.density;
+    if (random.chance(0.2) && along + 1.8 < wall.length) {
+      const int notices = pick_random(palette.noticeboards, random);
+      hang(builder, wall, {{along, lift + random.uniform(1.1, 1.3)}, {1.6, 0.8}}, notices);
+      along += 1.6 + gap;
+    } else if (random.chance(0.75)) {
+      const double width = random.uniform(0.45, 0.7);
+      const int poster = pick_random(palette.posters, random);
+      hang(builder, wall, {{along, lift + random.uniform(1.15, 1.4)}, {width, 1.3 * width}}, poster);
+      along += width + gap;
+    } else {
+      const int paper = pick_random(palette.papers, random);
+      hang(builder, wall, {{along, lift + random.uniform(1.3, 1.7)}, {0.21, 0.297}}, paper);
+      along += 0.21 + gap;
+    }
+  }
 }
 
 }  // namespace stillpoint::synth

@@ -2,9 +2,10 @@
 /// Rooms and furniture of the synthetic scenes.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "datasets/synthetic/counter_random.h"
 #include "datasets/synthetic/render/world.h"

@@ -6,8 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "datasets/synthetic/motion/hand_motion.h"
-#include "datasets/synthetic/motion/robot_motion.h"
+#include "datasets/synthetic/motion/camera_motion.h"
 #include "datasets/synthetic/render/world.h"
 #include "datasets/synthetic/scenes/furniture.h"
 

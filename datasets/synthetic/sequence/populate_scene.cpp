@@ -2,8 +2,7 @@
 #include "datasets/synthetic/sequence/populate_scene.h"
 
 #include "core/base/error.h"
-#include "datasets/synthetic/actors/person.h"
-#include "datasets/synthetic/actors/unknown_movers.h"
+#include "datasets/synthetic/actors/movers.h"
 
 namespace stillpoint::synth {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/synthetic/actors/actor.h"
-#include "datasets/synthetic/actors/walk.h"
+#include "datasets/synthetic/actors/movers.h"
 #include "datasets/synthetic/motion/path_spline.h"
 #include "datasets/synthetic/scenes/scenes.h"
 #include "datasets/synthetic/sequence/presets.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Description of a sequence to render: a named preset and its adjustable parameters.
+///
+/// Text form of a request: written next to the sequence, and hashed for the cache key.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +12,8 @@
 
 #include "core/base/fields.h"
 #include "core/types/rig.h"
-#include "datasets/synthetic/motion/imu_model.h"
-#include "datasets/synthetic/sensors/color_sensor.h"
-#include "datasets/synthetic/sensors/depth_sensor.h"
-#include "datasets/synthetic/sensors/object_boxes.h"
+#include "datasets/synthetic/motion/path_spline.h"
+#include "datasets/synthetic/sensors/sensor_models.h"
 
 namespace stillpoint {
 
@@ -172,5 +172,16 @@ void check_request(const SynthRequest& request);
 
 /// Camera pose in the body frame for the simulated presets: RealSense D435i, color camera to IMU.
 [[nodiscard]] Pose realsense_T_b_c();
+
+/// Incremented whenever the output for an unchanged request changes.
+inline constexpr int kRendererVersion = 7;
+
+/// The renderer version and every field of the request, one TOML line each.
+[[nodiscard]] std::string request_text(const SynthRequest& request);
+
+/// Cache key: 64-bit FNV-1a hash of the text and of the contents of the referenced files, as 16 hexadecimal
+/// digits.
+/// @throws InputError if one of those files cannot be read
+[[nodiscard]] std::string request_key(const SynthRequest& request);
 
 }  // namespace stillpoint::synth

@@ -1,12 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Recorded motion to render along: smoothed trajectory and original IMU samples.
+///
+/// Timestamps of the images of a rendered sequence: at equal intervals, or those of a recording.
+///
+/// Motion of the OpenLORIS robots, from the ground truth of the data set (Shi et al. 2020).
 #pragma once
 
-#include "datasets/synthetic/motion/imu_model.h"
+#include <filesystem>
+#include <vector>
+
+#include "core/base/timestamp.h"
+#include "datasets/synthetic/motion/camera_motion.h"
 #include "datasets/synthetic/motion/inertial_smoother.h"
+#include "datasets/synthetic/motion/path_spline.h"
 #include "datasets/synthetic/sequence/presets.h"
 
 namespace stillpoint::synth {
+
+/// One entry per frame; the depth image of a frame shows the scene at the time of its color image.
+struct FrameTimes {
+  std::vector<Timestamp> color;  ///< increasing
+  std::vector<Timestamp> depth;  ///< equal to `color` unless recorded
+};
+
+/// Times of a recording with the frames that it lost. A line has the time of the color image [s], and may
+/// have that of the depth image in its third field, as written by the association script of TUM RGB-D; the
+/// other fields are names of files. Lines that begin with # are skipped.
+/// @param file the recording @param seconds duration from the first frame on
+/// @return in whole microseconds
+/// @throws InputError with file:line if a time cannot be read or does not increase, and if there is no frame
+[[nodiscard]] FrameTimes load_recorded_times(const std::filesystem::path& file, double seconds);
+
+/// Default location of the ground truth of the scene "home":
+/// $STILLPOINT_DATA/openloris/groundtruth/gt_home_1.txt, else below ../shared/data. It may not exist.
+[[nodiscard]] std::filesystem::path home_ground_truth_file();
+
+/// Sequences 2, 5 and the last three quarters of 1, each of which begins about where the one before it ends:
+/// one tour of 241 s that visits all rooms twice. They are joined by cubic curves along both headings.
+/// @param file OpenLORIS text with the sequences 1, 2 and 5, poses of base_link
+/// @return times from 0; the camera is mounted as on the robot, but looks exactly forward
+/// @throws InputError if the file cannot be read or lacks a sequence
+[[nodiscard]] RobotTrack load_home_track(const std::filesystem::path& file);
+
+/// One recorded sequence, and the timestamp of its first pose.
+struct RecordedTrack {
+  RobotTrack track;  ///< times from 0
+  Timestamp first;
+};
+
+/// A sequence of any scene. The camera looks exactly forward, at the height of that of the robot of the
+/// scene.
+/// @param file OpenLORIS text, poses of base_link @param sequence its number
+/// @throws InputError if the file cannot be read, or the sequence is missing or has fewer than two poses
+[[nodiscard]] RecordedTrack load_track(const std::filesystem::path& file, int sequence);
+
+/// Closed routes of two people on floor that the tour does not cross.
+[[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> home_walking_routes();
 
 struct RecordedMotion {
   SmoothedMotion smoothed;

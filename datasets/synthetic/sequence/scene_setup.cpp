@@ -9,7 +9,6 @@
 
 #include "core/base/error.h"
 #include "datasets/synthetic/counter_random.h"
-#include "datasets/synthetic/sequence/home_motion.h"
 #include "datasets/synthetic/sequence/populate_scene.h"
 #include "datasets/synthetic/sequence/recorded_motion.h"
 

@@ -8,12 +8,11 @@
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"
 #include "datasets/synthetic/actors/actor.h"
-#include "datasets/synthetic/motion/imu_model.h"
 #include "datasets/synthetic/motion/path_spline.h"
 #include "datasets/synthetic/render/frame_renderer.h"
 #include "datasets/synthetic/scenes/scenes.h"
 #include "datasets/synthetic/sequence/presets.h"
-#include "datasets/synthetic/sequence/recorded_times.h"
+#include "datasets/synthetic/sequence/recorded_motion.h"
 
 namespace stillpoint::synth {
 

@@ -6,7 +6,7 @@
 
 #include "core/geometry/so3.h"
 #include "core/types/trajectory.h"
-#include "eval/metrics/honesty.h"
+#include "eval/metrics/consistency.h"
 
 namespace stillpoint::test {
 

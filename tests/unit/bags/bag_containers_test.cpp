@@ -8,10 +8,9 @@
 #include <tuple>
 #include <vector>
 
+#include "datasets/bags/bag_chunks.h"
 #include "datasets/bags/bag_file.h"
-#include "datasets/bags/chunk_codec.h"
-#include "datasets/bags/writing/bag_writer.h"
-#include "datasets/bags/writing/byte_writer.h"
+#include "datasets/bags/byte_stream.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "datasets/bags/writing/bag_writer.h"
-#include "datasets/bags/writing/serialize.h"
+#include "datasets/bags/bag_file.h"
+#include "datasets/bags/messages.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"
 #include "datasets/sequence_validator.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/bags/bag_trajectory.h"
+#include "datasets/bags/bag_geometry.h"
 
 #include <gtest/gtest.h>
 
-#include "datasets/bags/writing/bag_writer.h"
-#include "datasets/bags/writing/serialize.h"
+#include "datasets/bags/bag_file.h"
+#include "datasets/bags/messages.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/bags/image_message.h"
+#include "datasets/bags/bag_topics.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "datasets/bags/writing/serialize.h"
 #include "tests/support/expect_input_error.h"
 
 namespace stillpoint::datasets {

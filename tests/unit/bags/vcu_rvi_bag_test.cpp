@@ -2,8 +2,8 @@
 // Bags as those of VCU-RVI: accelerations in g with inverted sign, and neither CameraInfo nor transforms.
 #include <gtest/gtest.h>
 
-#include "datasets/bags/writing/bag_writer.h"
-#include "datasets/bags/writing/serialize.h"
+#include "datasets/bags/bag_file.h"
+#include "datasets/bags/messages.h"
 #include "datasets/open_sequence.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/cache/frame_cache.h"
-#include "datasets/cache/frame_cache_fill.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/cache/frame_codec.h"
+#include "datasets/cache/frame_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/io/image_list.h"
+#include "datasets/formats/image_lists.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/playback_start.h"
+#include "datasets/sensor_stream.h"
 
 #include <gtest/gtest.h>
 

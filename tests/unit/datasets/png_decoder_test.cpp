@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/io/png_decoder.h"
+#include "datasets/io/image_io.h"
 
 #include <gtest/gtest.h>
 #include <libdeflate.h>
@@ -8,8 +8,6 @@
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include "datasets/io/image_io.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/download/response_headers.h"
+#include "datasets/download/http_transfer.h"
 
 #include <gtest/gtest.h>
-
-#include "datasets/download/partial_file.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "eval/statistics/level.h"
-
 namespace stillpoint::eval {
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "eval/metrics/coverage.h"
+#include "eval/metrics/ate.h"
 
 #include <gtest/gtest.h>
 

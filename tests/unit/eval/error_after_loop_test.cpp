@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "eval/metrics/error_after_loop.h"
+#include "eval/metrics/loop_metrics.h"
 
 #include <gtest/gtest.h>
 

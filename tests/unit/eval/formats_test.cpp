@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "eval/io/any_trajectory.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
+#include "eval/io/trajectory_file.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/simulated/smooth_path.h"
 #include "tests/support/temporary_folder.h"

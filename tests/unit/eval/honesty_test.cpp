@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "eval/metrics/honesty.h"
+#include "eval/metrics/consistency.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "eval/io/any_trajectory.h"
+#include "eval/io/trajectory_file.h"
 #include "tests/support/expect_input_error.h"
 
 namespace stillpoint::eval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "eval/trajectory/overlap.h"
+#include "eval/trajectory/association.h"
 
 #include <gtest/gtest.h>
 

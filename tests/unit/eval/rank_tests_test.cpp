@@ -7,9 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "eval/statistics/median_interval.h"
-#include "eval/statistics/rank_sum.h"
-#include "eval/statistics/signed_rank.h"
+#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::eval {
 namespace {

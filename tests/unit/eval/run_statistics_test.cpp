@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "eval/statistics/paired.h"
+#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::eval {
 namespace {

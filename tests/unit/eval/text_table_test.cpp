@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "eval/io/text_table.h"
+#include "eval/io/text_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/drawing/cost_trend.h"
+#include "reports/drawing/cost_plots.h"
 
 #include <cmath>
 

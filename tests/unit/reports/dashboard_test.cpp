@@ -7,9 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/store/store_writer.h"
-#include "reports/dashboard/commit_page.h"
 #include "reports/dashboard/history_text.h"
-#include "reports/dashboard/regression_list.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

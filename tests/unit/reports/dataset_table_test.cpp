@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/tables/dataset_table.h"
+#include "reports/tables/result_tables.h"
 
 #include <gtest/gtest.h>
 

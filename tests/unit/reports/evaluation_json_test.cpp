@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/text/evaluation_json.h"
+#include "reports/text/evaluation_report.h"
 
 #include <gtest/gtest.h>
 

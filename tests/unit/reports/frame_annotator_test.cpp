@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/frames/frame_annotator.h"
+#include "reports/frames/annotated_frames.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>

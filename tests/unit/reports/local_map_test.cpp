@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/drawing/local_map.h"
+#include "reports/drawing/trajectory_plot.h"
 
 #include <gtest/gtest.h>
 

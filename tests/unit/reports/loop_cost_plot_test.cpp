@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/drawing/loop_cost_plot.h"
+#include "reports/drawing/cost_plots.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "reports/text/evaluation_table.h"
+#include "reports/text/evaluation_report.h"
 
 namespace stillpoint::report {
 namespace {

@@ -3,11 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/store/store_writer.h"
-#include "reports/page/charts/flame_stacks.h"
-#include "reports/page/charts/openloris_runs.h"
-#include "reports/page/charts/segment_curves.h"
-#include "reports/page/disambiguate_names.h"
-#include "reports/page/page_images.h"
+#include "reports/page/chart_data.h"
+#include "reports/page/page_data.h"
+#include "reports/page/report_page.h"
+#include "reports/page/report_subject.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

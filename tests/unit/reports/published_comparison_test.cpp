@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/text/published_comparison.h"
+#include "reports/tables/result_tables.h"
 
 #include <gtest/gtest.h>
 

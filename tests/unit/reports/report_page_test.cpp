@@ -11,9 +11,8 @@
 
 #include "bench/model/run_csv.h"
 #include "bench/store/store_writer.h"
-#include "reports/page/charts/run_series.h"
-#include "reports/page/series_text.h"
-#include "reports/page/summary.h"
+#include "reports/page/chart_data.h"
+#include "reports/page/page_data.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

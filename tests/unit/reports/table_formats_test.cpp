@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/tables/formats/table_formats.h"
+#include "reports/tables/table_formats.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/tables/text_table.h"
+#include "reports/tables/text_format.h"
 
 #include <gtest/gtest.h>
 

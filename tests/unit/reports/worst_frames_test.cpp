@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "reports/frames/worst_frames.h"
+#include "reports/frames/annotated_frames.h"
 
 #include <set>
 

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "datasets/synthetic/actors/actor.h"
-#include "datasets/synthetic/motion/hand_motion.h"
+#include "datasets/synthetic/motion/camera_motion.h"
 #include "datasets/synthetic/render/lightmap.h"
 #include "datasets/synthetic/render/mover_tiles.h"
 

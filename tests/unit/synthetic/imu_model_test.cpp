@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/motion/imu_model.h"
+#include "datasets/synthetic/motion/path_spline.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/geometry/so3.h"
-#include "datasets/synthetic/motion/hand_motion.h"
+#include "datasets/synthetic/motion/camera_motion.h"
 
 namespace stillpoint::synth {
 namespace {

@@ -5,9 +5,8 @@
 
 #include "core/geometry/so3.h"
 #include "datasets/synthetic/counter_random.h"
-#include "datasets/synthetic/motion/banded_least_squares.h"
-#include "datasets/synthetic/motion/hand_motion.h"
-#include "datasets/synthetic/motion/imu_model.h"
+#include "datasets/synthetic/motion/camera_motion.h"
+#include "datasets/synthetic/motion/path_spline.h"
 #include "datasets/synthetic/sequence/recorded_motion.h"
 #include "tests/support/test_data.h"
 

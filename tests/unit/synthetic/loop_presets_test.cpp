@@ -8,7 +8,7 @@
 
 #include "core/geometry/so3.h"
 #include "datasets/synthetic/render/lightmap.h"
-#include "datasets/synthetic/sequence/request_text.h"
+#include "datasets/synthetic/sequence/presets.h"
 #include "datasets/synthetic/sequence/scene_setup.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/test_data.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/sensors/object_boxes.h"
+#include "datasets/synthetic/sensors/sensor_models.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/so3.h"
-#include "datasets/synthetic/motion/hand_motion.h"
+#include "datasets/synthetic/motion/camera_motion.h"
 
 namespace stillpoint::synth {
 namespace {

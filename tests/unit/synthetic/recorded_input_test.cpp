@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "datasets/open_sequence.h"
+#include "datasets/synthetic/sequence/presets.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
-#include "datasets/synthetic/sequence/request_text.h"
 #include "datasets/synthetic/sequence/scene_setup.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"

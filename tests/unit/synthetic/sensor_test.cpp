@@ -4,8 +4,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "datasets/synthetic/sensors/color_sensor.h"
-#include "datasets/synthetic/sensors/depth_sensor.h"
+#include "datasets/synthetic/sensors/sensor_models.h"
 
 namespace stillpoint::synth {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/sequence/sequence_cache.h"
+#include "datasets/synthetic/sequence/render_sequence.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
-#include "datasets/synthetic/sequence/request_text.h"
+#include "datasets/synthetic/sequence/presets.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::synth {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/synthetic/actors/walk.h"
+#include "datasets/synthetic/actors/movers.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "datasets/synthetic/actors/person.h"
-#include "datasets/synthetic/motion/robot_motion.h"
+#include "datasets/synthetic/motion/camera_motion.h"
 
 namespace stillpoint::synth {
 namespace {

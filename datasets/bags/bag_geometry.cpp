@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/bags/bag_geometry.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "core/base/error.h"
+#include "datasets/bags/messages.h"
+#include "eval/io/trajectory_file.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr std::string_view kTransforms = "/tf";
+constexpr std::string_view kStaticTransforms = "/tf_static";
+constexpr std::string_view kTransformsOfFrames = "/tf:";
+constexpr double kMaxInterpolation_s = 1.0;  ///< between two transforms; robots publish at 10 Hz or more
+
+using Link = std::pair<std::string, std::string>;  // parent, child
+
+bool is_transforms_type(std::string_view type) {
+  return type == "tf2_msgs/TFMessage" || type == "tf/tfMessage";
+}
+
+/// Calls `action(connection, message, time of recording)` for all messages of a topic, in the order of their
+/// bytes.
+template <class Action>
+void for_each_message(const BagFile& bag, std::string_view topic, const Action& action) {
+  std::vector<MessageReference> selected;
+  std::ranges::copy_if(bag.messages(), std::back_inserter(selected), [&](const MessageReference& reference) {
+    return bag.connection(reference).topic == topic;
+  });
+  for (const MessageReference& reference : in_file_order(selected)) {
+    const std::string bytes = bag.payload(reference);
+    const std::string place = bag.place(reference);
+    const BagConnection& connection = bag.connection(reference);
+    action(connection, SerializedMessage{.bytes = bytes, .format = connection.format, .place = place},
+           reference.message.t);
+  }
+}
+
+Timestamp stamp_or(Timestamp stamp, Timestamp recorded) { return stamp.ns == 0 ? recorded : stamp; }
+
+/// Sorts poses by time and drops repeated ones.
+eval::LoadedTrajectory sorted_trajectory(std::vector<StampedPose> poses, eval::RowRepairs repairs) {
+  for (std::size_t i = 1; i < poses.size(); ++i) repairs.reordered += poses[i].t < poses[i - 1].t;
+  std::ranges::stable_sort(poses, {}, &StampedPose::t);
+  const auto repeated = std::ranges::unique(poses, {}, &StampedPose::t);
+  repairs.repeated += repeated.size();
+  poses.erase(repeated.begin(), repeated.end());
+  return {.trajectory = {.frame = {}, .poses = std::move(poses)}, .repairs = repairs};
+}
+
+eval::LoadedTrajectory trajectory_of_topic(const BagFile& bag, const std::string& topic) {
+  std::vector<StampedPose> poses;
+  eval::RowRepairs repairs;
+  std::string frame;
+  for_each_message(
+      bag, topic, [&](const BagConnection& connection, const SerializedMessage& message, Timestamp recorded) {
+        if (!is_pose_type(connection.type))
+          throw InputError(bag.path().string() + ":" + topic,
+                           "has the type " + connection.type +
+                               ", which contains no pose; expected PoseStamped, Odometry or "
+                               "TransformStamped, or /tf:PARENT.CHILD");
+        const PoseMessage pose = parse_pose(message, connection.type);
+        frame = pose.child;
+        if (pose.pose) {
+          poses.push_back({.t = stamp_or(pose.header.stamp, recorded), .T_w_f = *pose.pose});
+        } else {
+          ++repairs.skipped;
+        }
+      });
+  eval::LoadedTrajectory loaded = sorted_trajectory(std::move(poses), repairs);
+  loaded.trajectory.frame = frame;
+  return loaded;
+}
+
+/// The moving transforms of a bag, each in the order of time.
+std::map<Link, std::vector<StampedPose>> read_moving_transforms(const BagFile& bag) {
+  std::map<Link, std::vector<StampedPose>> links;
+  for_each_message(
+      bag, kTransforms,
+      [&](const BagConnection& connection, const SerializedMessage& message, Timestamp recorded) {
+        if (!is_transforms_type(connection.type)) return;
+        for (const PoseMessage& transform : parse_transforms(message)) {
+          if (!transform.pose) continue;
+          links[{transform.header.frame, transform.child}].push_back(
+              {.t = stamp_or(transform.header.stamp, recorded), .T_w_f = *transform.pose});
+        }
+      });
+  for (auto& [link, poses] : links) poses = sorted_trajectory(std::move(poses), {}).trajectory.poses;
+  return links;
+}
+
+/// The transform at a time between two of its messages.
+std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, Timestamp t) {
+  const auto next = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
+  if (next == poses.end()) return std::nullopt;
+  if (next->t == t) return next->T_w_f;
+  if (next == poses.begin()) return std::nullopt;
+  const StampedPose& last = *std::prev(next);
+  const double interval = seconds_between(last.t, next->t);
+  if (interval > kMaxInterpolation_s) return std::nullopt;
+  return interpolate(last.T_w_f, next->T_w_f, seconds_between(last.t, t) / interval);
+}
+
+std::string list_of(const std::map<Link, std::vector<StampedPose>>& links) {
+  std::string text;
+  for (const auto& [link, poses] : links) text += (text.empty() ? "" : ", ") + link.first + "." + link.second;
+  return text.empty() ? "none" : text;
+}
+
+/// The moving links whose value changes the pose of `child` in `parent`.
+std::vector<Link> links_between(const std::map<Link, std::vector<StampedPose>>& moving,
+                                const std::vector<NamedTransform>& all, const std::string& parent,
+                                const std::string& child) {
+  std::vector<Link> path;
+  for (const auto& [link, poses] : moving) {
+    // A tree has one path: without one of its links, the frames are not connected.
+    std::vector<NamedTransform> others;
+    std::ranges::copy_if(all, std::back_inserter(others), [&link](const NamedTransform& other) {
+      return other.parent != link.first || other.child != link.second;
+    });
+    if (!find_transform(others, parent, child)) path.push_back(link);
+  }
+  return path;
+}
+
+eval::LoadedTrajectory trajectory_of_frames(const BagFile& bag, const std::string& parent,
+                                            const std::string& child) {
+  const std::map<Link, std::vector<StampedPose>> moving = read_moving_transforms(bag);
+  std::vector<NamedTransform> links = read_static_transforms(bag);
+  const std::size_t fixed = links.size();
+  for (const auto& [link, poses] : moving)
+    links.push_back({.parent = link.first, .child = link.second, .T_parent_child = poses.front().T_w_f});
+  if (!find_transform(links, parent, child))
+    throw InputError(bag.path().string() + ":/tf", "no chain of transforms connects \"" + parent +
+                                                       "\" and \"" + child + "\"; the moving ones are " +
+                                                       list_of(moving));
+  const std::vector<Link> path = links_between(moving, links, parent, child);
+  if (path.empty())
+    throw InputError(bag.path().string() + ":/tf", "\"" + child + "\" does not move in \"" + parent +
+                                                       "\"; the moving transforms are " + list_of(moving));
+  const Link& fastest =
+      *std::ranges::max_element(path, {}, [&moving](const Link& link) { return moving.at(link).size(); });
+  std::vector<StampedPose> poses;
+  for (const StampedPose& sample : moving.at(fastest)) {
+    std::vector<NamedTransform> now(links.begin(), links.begin() + static_cast<std::ptrdiff_t>(fixed));
+    for (const Link& link : path) {
+      if (const std::optional<Pose> pose = pose_at(moving.at(link), sample.t))
+        now.push_back({.parent = link.first, .child = link.second, .T_parent_child = *pose});
+    }
+    if (const std::optional<Pose> pose = find_transform(now, parent, child))
+      poses.push_back({.t = sample.t, .T_w_f = *pose});
+  }
+  eval::LoadedTrajectory loaded = sorted_trajectory(std::move(poses), {});
+  loaded.trajectory.frame = child;
+  return loaded;
+}
+
+}  // namespace
+
+std::optional<BagTopic> parse_bag_topic(const std::string& text) {
+  const std::size_t separator = text.find(":/");
+  if (separator == std::string::npos || !eval::is_bag(text.substr(0, separator))) return std::nullopt;
+  return BagTopic{.bag = text.substr(0, separator), .topic = text.substr(separator + 1)};
+}
+
+std::vector<NamedTransform> read_static_transforms(const BagFile& bag) {
+  std::map<Link, Pose> links;
+  for_each_message(bag, kStaticTransforms,
+                   [&](const BagConnection& connection, const SerializedMessage& message, Timestamp) {
+                     if (!is_transforms_type(connection.type)) return;
+                     for (const PoseMessage& transform : parse_transforms(message)) {
+                       if (transform.pose) links[{transform.header.frame, transform.child}] = *transform.pose;
+                     }
+                   });
+  std::vector<NamedTransform> transforms;
+  for (const auto& [link, pose] : links)
+    transforms.push_back({.parent = link.first, .child = link.second, .T_parent_child = pose});
+  return transforms;
+}
+
+eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string& topic) {
+  eval::LoadedTrajectory loaded;
+  if (topic.starts_with(kTransformsOfFrames)) {
+    const std::string frames = topic.substr(kTransformsOfFrames.size());
+    const std::size_t separator = frames.find('.');
+    if (separator == std::string::npos)
+      throw InputError(bag.path().string() + ":" + topic,
+                       "has no child frame; expected /tf:PARENT.CHILD, e.g. /tf:map.base_link");
+    loaded = trajectory_of_frames(bag, frames.substr(0, separator), frames.substr(separator + 1));
+  } else {
+    loaded = trajectory_of_topic(bag, topic);
+  }
+  if (loaded.trajectory.poses.empty()) {
+    std::set<std::string> topics;
+    for (const BagConnection& connection : bag.connections()) {
+      if (is_pose_type(connection.type) || is_transforms_type(connection.type))
+        topics.insert(connection.topic);
+    }
+    std::string text;
+    for (const std::string& name : topics) text += (text.empty() ? "" : ", ") + name;
+    throw InputError(bag.path().string() + ":" + topic,
+                     "contains no poses; the topics with poses are " + (text.empty() ? "none" : text));
+  }
+  return loaded;
+}
+
+namespace {
+
+constexpr std::string_view kCameraInfo = "sensor_msgs/CameraInfo";
+constexpr std::size_t kMaxDistortion = 5;  ///< coefficients of `Camera`
+
+/// "/camera/color" of "/camera/color/image_raw/compressed".
+std::string camera_name(std::string topic) {
+  for (const std::string_view transport : {"/compressedDepth", "/compressed"}) {
+    if (topic.ends_with(transport)) topic.resize(topic.size() - transport.size());
+  }
+  return topic.substr(0, topic.rfind('/'));
+}
+
+std::optional<CameraInfoMessage> calibrated(const BagFile& bag, const MessageReference& reference) {
+  const std::string bytes = bag.payload(reference);
+  const std::string place = bag.place(reference);
+  const CameraInfoMessage info =
+      parse_camera_info({.bytes = bytes, .format = bag.connection(reference).format, .place = place});
+  return info.K[0] > 0.0 && info.K[4] > 0.0 ? std::optional(info) : std::nullopt;
+}
+
+/// The model of OpenCV with 8 coefficients has three more of a denominator.
+bool has_only_radial_tangential(const CameraInfoMessage& info) {
+  return std::all_of(info.D.begin() + static_cast<std::ptrdiff_t>(std::min(kMaxDistortion, info.D.size())),
+                     info.D.end(), [](double coefficient) { return coefficient == 0.0; });
+}
+
+}  // namespace
+
+std::optional<CameraInfoMessage> find_camera_info(const BagFile& bag, const std::string& image_topic,
+                                                  const std::string& image_frame) {
+  const std::string beside = camera_name(image_topic) + "/camera_info";
+  const std::string of_stream = realsense_stream(image_topic).value_or("") + "/info/camera_info";
+  std::set<std::string> seen;
+  std::optional<CameraInfoMessage> of_frame;
+  for (const MessageReference& reference : bag.messages()) {
+    const BagConnection& connection = bag.connection(reference);
+    if (connection.type != kCameraInfo || !seen.insert(connection.topic).second) continue;
+    const std::optional<CameraInfoMessage> info = calibrated(bag, reference);
+    if (connection.topic == beside || connection.topic == of_stream) return info;
+    if (info && !of_frame && !image_frame.empty() && info->header.frame == image_frame) of_frame = info;
+  }
+  return of_frame;
+}
+
+Camera camera_of(const CameraInfoMessage& info, const std::string& image_topic, const std::string& place) {
+  Camera camera{.width = static_cast<int>(info.width),
+                .height = static_cast<int>(info.height),
+                .fx = info.K[0],
+                .fy = info.K[4],
+                .cx = info.K[2],
+                .cy = info.K[5]};
+  if (image_topic.find("rect") != std::string::npos && info.P[0] > 0.0) {
+    camera.fx = info.P[0];
+    camera.fy = info.P[5];
+    camera.cx = info.P[2];
+    camera.cy = info.P[6];
+    return camera;
+  }
+  if (std::ranges::all_of(info.D, [](double coefficient) { return coefficient == 0.0; })) return camera;
+  const std::string& model = info.distortion_model;
+  if (model == "equidistant" || model == "fisheye" || model == "kannala_brandt4" ||
+      model == "kannala_brandt") {
+    camera.model = CameraModel::kKannalaBrandt;
+  } else if (!(model == "plumb_bob" || model == "radial-tangential" || model == "Brown Conrady" ||
+               model == "brown_conrady" || model.empty() ||
+               (model == "rational_polynomial" && has_only_radial_tangential(info)))) {
+    throw InputError(place, "the distortion model \"" + model +
+                                "\" is not supported; calibrate the camera as plumb_bob or equidistant and "
+                                "write it to a rig.toml");
+  }
+  std::copy_n(info.D.begin(), std::min(info.D.size(), kMaxDistortion), camera.distortion.begin());
+  return camera;
+}
+
+std::optional<std::string> realsense_stream(const std::string& topic) {
+  if (!topic.starts_with("/device_")) return std::nullopt;
+  const std::size_t sensor = topic.find("/sensor_", 1);
+  const std::size_t stream = sensor == std::string::npos ? sensor : topic.find('/', sensor + 1);
+  if (stream == std::string::npos) return std::nullopt;
+  return topic.substr(0, topic.find('/', stream + 1));
+}
+
+RealsenseStreams read_realsense_streams(const BagFile& bag) {
+  RealsenseStreams streams;
+  for (const MessageReference& reference : bag.messages()) {
+    const BagConnection& connection = bag.connection(reference);
+    const bool is_extrinsic = connection.type == "geometry_msgs/Transform";
+    // Written with a space or an underscore, depending on the version.
+    const bool is_unit = connection.type == "std_msgs/Float32" &&
+                         (connection.topic.find("Depth Units/value") != std::string::npos ||
+                          connection.topic.find("Depth_Units/value") != std::string::npos);
+    const std::optional<std::string> stream = realsense_stream(connection.topic);
+    if (!stream || (!is_extrinsic && !is_unit)) continue;
+    const std::string bytes = bag.payload(reference);
+    const std::string place = bag.place(reference);
+    const SerializedMessage message{.bytes = bytes, .format = connection.format, .place = place};
+    if (is_unit) {
+      const double meters = parse_float(message);
+      if (meters > 0.0) streams.depth_units_per_m = 1.0 / meters;
+    } else if (const std::optional<Pose> pose = parse_transform(message)) {
+      streams.links.push_back({.parent = connection.topic.substr(connection.topic.rfind('/') + 1),
+                               .child = *stream,
+                               .T_parent_child = *pose});
+    }
+  }
+  return streams;
+}
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Poses in bags as trajectories, and the fixed transforms between coordinate frames.
+///
+/// Calibration of the cameras of a bag.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "datasets/bags/bag_file.h"
+#include "datasets/bags/messages.h"
+#include "datasets/calibration/transform_graph.h"
+#include "eval/io/trajectory_file.h"
+
+namespace stillpoint::datasets {
+
+/// The parts of "FILE.bag:/topic".
+struct BagTopic {
+  std::filesystem::path bag;
+  std::string topic;
+};
+
+/// @return nullopt if the text before its first ":/" is not the name of a bag
+[[nodiscard]] std::optional<BagTopic> parse_bag_topic(const std::string& text);
+
+/// The poses of a topic of type PoseStamped, PoseWithCovarianceStamped, TransformStamped or Odometry; or,
+/// with the topic "/tf:PARENT.CHILD" (the notation of evo), of the frame CHILD in PARENT along the chain of
+/// transforms in /tf and /tf_static. The times are those of the transform of the chain with the most
+/// messages; the others are interpolated. Stamps that are 0 are replaced by the time of recording. Poses
+/// without a rotation, repeated and unordered ones are skipped or sorted, and counted.
+/// @throws InputError if there is no such topic, it has no poses, or the frames are not connected
+[[nodiscard]] eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string& topic);
+
+/// The transforms of /tf_static, the last one of each pair of frames.
+[[nodiscard]] std::vector<NamedTransform> read_static_transforms(const BagFile& bag);
+
+/// The first camera info of an image topic: of the topic `camera_info` beside it, in recordings of
+/// librealsense of `info/camera_info`, else of any topic whose message has the frame of the images.
+/// @return nullopt without one, or if it is not calibrated (fx = 0)
+[[nodiscard]] std::optional<CameraInfoMessage> find_camera_info(const BagFile& bag,
+                                                                const std::string& image_topic,
+                                                                const std::string& image_frame);
+
+/// The camera of an image topic. A topic with "rect" in its name has rectified images: focal lengths and
+/// principal point of P, without distortion. Others: K and D, models plumb_bob, rational_polynomial
+/// without its denominator, equidistant, and any model whose coefficients are all 0.
+/// @throws InputError if the distortion model is another one
+[[nodiscard]] Camera camera_of(const CameraInfoMessage& info, const std::string& image_topic,
+                               const std::string& place);
+
+/// Recordings of librealsense: topics /device_N/sensor_M/STREAM/..., no frames in the headers. Their
+/// extrinsics are in the topics STREAM/tf/REFERENCE.
+struct RealsenseStreams {
+  std::vector<NamedTransform> links;  ///< the streams, named as by `realsense_stream`, in their reference
+  double depth_units_per_m = 1000.0;
+};
+
+/// "/device_0/sensor_1/Color_0" of a topic of that stream; nullopt in other bags.
+[[nodiscard]] std::optional<std::string> realsense_stream(const std::string& topic);
+
+/// Reads the extrinsics and the unit of depth.
+[[nodiscard]] RealsenseStreams read_realsense_streams(const BagFile& bag);
+
+}  // namespace stillpoint::datasets

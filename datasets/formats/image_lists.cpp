@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/formats/image_lists.h"
+
+#include <string>
+
+#include "core/base/error.h"
+
+namespace stillpoint::datasets {
+
+std::vector<StampedFile> read_image_list(const std::filesystem::path& list, const std::filesystem::path& root,
+                                         eval::TimeUnit unit, FaultLog& faults) {
+  const std::string text = eval::read_text_file(list);
+  const std::string name = list.string();
+  std::vector<StampedFile> images;
+  eval::for_each_row(text, name, faults, [&](const eval::TextRow& row) {
+    const StampedFile image{.t = row.time(0, unit), .file = root / row.text(1)};
+    if (!images.empty()) row.require_increasing(images.back().t, image.t);
+    images.push_back(image);
+  });
+  faults.guard([&] {
+    if (images.empty()) throw InputError(name, "lists no images; is the sequence complete?");
+  });
+  return images;
+}
+
+namespace {
+
+std::vector<StampedFile> read_list(const std::filesystem::path& list, FaultLog& faults) {
+  return read_image_list(list, list.parent_path(), eval::TimeUnit::kSeconds, faults);
+}
+
+std::vector<Timestamp> stamps_of(const std::vector<StampedFile>& files) {
+  std::vector<Timestamp> stamps;
+  for (const StampedFile& file : files) stamps.push_back(file.t);
+  return stamps;
+}
+
+}  // namespace
+
+PairedImages pair_images(const std::filesystem::path& color_list, const std::filesystem::path& depth_list,
+                         FaultLog& faults, MissingImages missing) {
+  std::vector<StampedFile> color = read_list(color_list, faults);
+  std::vector<StampedFile> depth = read_list(depth_list, faults);
+  std::size_t dropped = 0;
+  if (missing == MissingImages::kDrop) {
+    const auto is_missing = [](const StampedFile& image) { return !std::filesystem::exists(image.file); };
+    dropped = std::erase_if(color, is_missing) + std::erase_if(depth, is_missing);
+  }
+  PairedImages images{.times = {}, .files = {}, .color_images = color.size(), .missing = dropped};
+  // The pairs are in the order of the second list, which the frame times must follow.
+  for (const auto& [in_depth, in_color] :
+       eval::associate_tum(stamps_of(depth), stamps_of(color), kImageAssociation)) {
+    images.times.push_back(color[in_color].t);
+    images.files.push_back(
+        FrameFiles{.color = color[in_color].file,
+                   .depth = depth[in_depth].file,
+                   .depth_offset_s = seconds_between(color[in_color].t, depth[in_depth].t)});
+  }
+  if (images.times.empty()) {
+    throw InputError(depth_list.string(), "no depth image is less than 20 ms from a color image of " +
+                                              color_list.filename().string() +
+                                              "; are both of the same recording?");
+  }
+  return images;
+}
+
+SequenceContent with_frames(SequenceContent content, const PairedImages& images) {
+  content.info.frame_times = images.times;
+  content.frame_files = images.files;
+  if (const std::size_t unpaired = images.color_images - images.times.size(); unpaired > 0) {
+    content.info.notes.push_back(std::to_string(unpaired) + " of " + std::to_string(images.color_images) +
+                                 " color images have no depth image less than 20 ms away and are dropped");
+  }
+  if (images.missing > 0)
+    content.info.warnings.push_back("images: " + std::to_string(images.missing) +
+                                    " images of the lists do not exist and are dropped");
+  return content;
+}
+
+}  // namespace stillpoint::datasets

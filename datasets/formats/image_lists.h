@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Lists of timestamped image files.
+///
+/// Frames of the formats that list color and depth images with separate timestamps.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/timestamp.h"
+#include "datasets/formats/formats.h"
+#include "eval/io/text_reader.h"
+#include "eval/trajectory/association.h"
+
+namespace stillpoint::datasets {
+
+struct StampedFile {
+  Timestamp t;
+  std::filesystem::path file;
+};
+
+/// Reads rows `t path`, paths relative to `root`. The images need not exist.
+/// @param list text file; `unit` is the unit of its stamps
+/// @return strictly increasing in time, not empty
+/// @throws InputError if the list is missing, empty or unsorted
+[[nodiscard]] std::vector<StampedFile> read_image_list(const std::filesystem::path& list,
+                                                       const std::filesystem::path& root, eval::TimeUnit unit,
+                                                       FaultLog& faults);
+
+/// Of color and depth images: the default of the tools of the TUM RGB-D benchmark.
+inline constexpr eval::AssociationOptions kImageAssociation{.max_difference_s = 0.02};
+
+/// The frames of a sequence.
+struct PairedImages {
+  std::vector<Timestamp> times;
+  std::vector<FrameFiles> files;  ///< one per time
+  std::size_t color_images = 0;   ///< of the list, including those without depth
+  std::size_t missing = 0;        ///< listed images that do not exist and were dropped
+};
+
+/// Whether listed images that do not exist are dropped before pairing; else decoding reports them.
+enum class MissingImages { kKeep, kDrop };
+
+/// Pairs the images of two lists, less than 20 ms apart, into frames with the timestamp of the color image,
+/// as `eval::associate_tum` does. Color images without depth are dropped.
+/// @throws InputError if a list is missing, empty or unsorted, or there are no pairs
+[[nodiscard]] PairedImages pair_images(const std::filesystem::path& color_list,
+                                       const std::filesystem::path& depth_list, FaultLog& faults,
+                                       MissingImages missing = MissingImages::kKeep);
+
+/// `content` with the frames, and a note on the color images that were dropped.
+[[nodiscard]] SequenceContent with_frames(SequenceContent content, const PairedImages& images);
+
+}  // namespace stillpoint::datasets

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/metrics/consistency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "core/base/error.h"
+#include "core/geometry/so3.h"
+#include "eval/metrics/statistics.h"
+#include "eval/trajectory/association.h"
+
+namespace stillpoint::eval {
+namespace {
+
+constexpr double kWrong_m = 0.05;
+constexpr double kWrong_rad = 2.0 * M_PI / 180.0;
+constexpr double kSigmas = 3.0;
+constexpr std::size_t kMinAligned = 10;
+constexpr double kMaxTruthDistance_s = 0.05;
+
+/// A frame with a true pose, and its errors after alignment.
+struct Assessed {
+  const ClaimedPose* pose = nullptr;
+  Pose truth;
+  double error_m = 0.0;
+  double error_rad = 0.0;
+  bool small = false;  ///< excess below the absolute limits
+  bool wrong = false;
+
+  [[nodiscard]] bool located() const { return pose->claim == PoseClaim::kLocated; }
+  [[nodiscard]] bool first_world() const { return pose->segment == 0; }
+};
+
+/// True pose closest in time; nullopt if none is near.
+std::optional<Pose> truth_at(const Trajectory& gt, Timestamp t) {
+  const auto later = std::ranges::lower_bound(gt.poses, t, {}, &StampedPose::t);
+  const StampedPose* nearest = nullptr;
+  if (later != gt.poses.end()) nearest = &*later;
+  if (later != gt.poses.begin()) {
+    const StampedPose& before = *std::prev(later);
+    if (nearest == nullptr || seconds_between(before.t, t) < seconds_between(t, nearest->t))
+      nearest = &before;
+  }
+  if (nearest == nullptr || std::abs(seconds_between(nearest->t, t)) > kMaxTruthDistance_s)
+    return std::nullopt;
+  return nearest->T_w_f;
+}
+
+std::vector<Assessed> with_truth(const Trajectory& gt, std::span<const ClaimedPose> claims) {
+  std::vector<Assessed> frames;
+  for (const ClaimedPose& claim : claims) {
+    const std::optional<Pose> truth = truth_at(gt, claim.t);
+    if (truth) frames.push_back({.pose = &claim, .truth = *truth});
+  }
+  return frames;
+}
+
+/// Sets errors and labels. @return false if the alignment is not determined
+bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin) {
+  const auto is_reference = [&](const Assessed& frame) {
+    return frame.located() && frame.first_world() && (!fault_begin || frame.pose->t < *fault_begin);
+  };
+  std::vector<MatchedPose> reference;
+  for (const Assessed& frame : frames) {
+    if (is_reference(frame))
+      reference.push_back({.t = frame.pose->t, .gt = frame.truth, .est = frame.pose->T_w_c});
+  }
+  if (reference.size() < kMinAligned) return false;
+  const Similarity S = align(reference, Alignment::kSe3).S_w_v;
+  double drift_m = 0.0, drift_rad = 0.0;
+  for (Assessed& frame : frames) {
+    const std::vector<MatchedPose> match{{.t = frame.pose->t, .gt = frame.truth, .est = frame.pose->T_w_c}};
+    const AteErrors errors = ate_errors(match, S);
+    frame.error_m = errors.translation_m.front();
+    frame.error_rad = errors.rotation_deg.front() * M_PI / 180.0;
+    if (!is_reference(frame)) continue;
+    drift_m = std::max(drift_m, frame.error_m);
+    drift_rad = std::max(drift_rad, frame.error_rad);
+  }
+  for (Assessed& frame : frames) {
+    const double excess_m = frame.error_m - drift_m, excess_rad = frame.error_rad - drift_rad;
+    frame.small = excess_m <= kWrong_m && excess_rad <= kWrong_rad;
+    frame.wrong = excess_m > std::max(kWrong_m, kSigmas * frame.pose->sigma_m) ||
+                  excess_rad > std::max(kWrong_rad, kSigmas * frame.pose->sigma_rad);
+  }
+  return true;
+}
+
+double missed_availability(const std::vector<Assessed>& frames) {
+  bool started = false;
+  std::size_t missed = 0;
+  for (const Assessed& frame : frames) {
+    started |= frame.located();
+    missed += started && frame.pose->claim == PoseClaim::kLost && frame.first_world() && frame.small;
+  }
+  return static_cast<double>(missed) / static_cast<double>(frames.size());
+}
+
+std::optional<double> time_to_detect(const std::vector<Assessed>& frames, Timestamp begin) {
+  const auto wrong = std::ranges::find_if(frames, [&](const Assessed& frame) {
+    return frame.pose->t >= begin && frame.first_world() && frame.wrong;
+  });
+  if (wrong == frames.end()) return std::nullopt;
+  const auto reported =
+      std::find_if(wrong, frames.end(), [](const Assessed& frame) { return !frame.located(); });
+  const Timestamp end = reported == frames.end() ? frames.back().pose->t : reported->pose->t;
+  return seconds_between(wrong->pose->t, end);
+}
+
+void add_recovery(const std::vector<Assessed>& frames, Timestamp end, Honesty& result) {
+  const auto recovered = std::ranges::find_if(frames, [&](const Assessed& frame) {
+    return frame.pose->t >= end && frame.first_world() && frame.located() && !frame.wrong;
+  });
+  if (recovered == frames.end()) return;
+  result.time_to_recover_s = seconds_between(end, recovered->pose->t);
+  double squared = 0.0;
+  int count = 0;
+  for (auto frame = recovered; frame != frames.end(); ++frame) {
+    if (!frame->located() || !frame->first_world()) continue;
+    squared += frame->error_m * frame->error_m;
+    ++count;
+  }
+  result.error_after_recovery_m = std::sqrt(squared / count);
+}
+
+}  // namespace
+
+std::optional<Honesty> honesty(const Trajectory& gt, std::span<const ClaimedPose> claims,
+                               std::span<const TimeSpan> faults) {
+  std::vector<Assessed> frames = with_truth(gt, claims);
+  const std::optional<Timestamp> begin =
+      faults.empty() ? std::nullopt : std::optional<Timestamp>(faults.front().begin);
+  if (!assess(frames, begin)) return std::nullopt;
+  Honesty result{.missed_availability = missed_availability(frames)};
+  const auto wrong = std::ranges::count_if(
+      frames, [](const Assessed& frame) { return frame.located() && frame.first_world() && frame.wrong; });
+  result.false_confidence = static_cast<double>(wrong) / static_cast<double>(frames.size());
+  if (faults.empty()) return result;
+  result.time_to_detect_s = time_to_detect(frames, *begin);
+  Timestamp end = *begin;
+  for (const TimeSpan& fault : faults) {
+    if (fault.end < frames.back().pose->t) end = std::max(end, fault.end);
+  }
+  add_recovery(frames, end, result);
+  return result;
+}
+
+std::optional<double> claimed_three_sigma_m(std::span<const ClaimedPose> claims) {
+  std::vector<double> bounds;
+  for (const ClaimedPose& claim : claims) {
+    if (claim.claim == PoseClaim::kLocated && claim.sigma_m > 0.0) bounds.push_back(kSigmas * claim.sigma_m);
+  }
+  return percentile(bounds, 0.5);
+}
+
+namespace {
+
+constexpr double kConverged_s = 3.0;  // initialization, gravity and biases; as in scripts/nees.sh
+constexpr double kMaxTruthGap_s = 0.1;
+
+bool is_positive_definite(const Eigen::Matrix3d& covariance) {
+  return Eigen::LLT<Eigen::Matrix3d>(covariance).info() == Eigen::Success;
+}
+
+double squared_mahalanobis(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
+                           const char* quantity) {
+  const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
+  if (factor.info() != Eigen::Success) {
+    throw InputError(std::string(quantity) + " covariance", "is not positive definite");
+  }
+  return error.dot(factor.solve(error));
+}
+
+}  // namespace
+
+Nees nees(const Pose& gt, const Pose& est, const Eigen::Matrix3d& rotation_covariance,
+          const Eigen::Matrix3d& position_covariance) {
+  const Eigen::Vector3d rotation_error = -log_so3(gt.q * est.q.conjugate());
+  return {squared_mahalanobis(rotation_error, rotation_covariance, "rotation"),
+          squared_mahalanobis(gt.p - est.p, position_covariance, "position")};
+}
+
+std::optional<MeanNees> mean_nees(const Trajectory& gt, std::span<const ClaimedPose> claims) {
+  Trajectory located;
+  std::vector<const ClaimedPose*> sources;
+  for (const ClaimedPose& claim : claims) {
+    if (claim.claim != PoseClaim::kLocated || claim.segment != 0) continue;
+    located.poses.push_back({.t = claim.t, .T_w_f = claim.T_w_c});
+    sources.push_back(&claim);
+  }
+  const std::vector<InterpolatedPair> pairs = associate_interpolated(gt, located, kMaxTruthGap_s);
+  const std::vector<MatchedPose> poses = matched_poses(gt, located, pairs);
+  MeanNees sum;
+  int count = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const ClaimedPose& claim = *sources[pairs[i].est];
+    if (seconds_between(poses.front().t, claim.t) < kConverged_s ||
+        !is_positive_definite(claim.position_covariance) ||
+        !is_positive_definite(claim.rotation_covariance)) {
+      continue;
+    }
+    const Pose truth = poses.front().est * (poses.front().gt.inverse() * poses[i].gt);
+    const Nees frame = nees(truth, poses[i].est, claim.rotation_covariance, claim.position_covariance);
+    sum.rotation += frame.rotation / 3.0;
+    sum.position += frame.position / 3.0;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return MeanNees{.rotation = sum.rotation / count, .position = sum.position / count};
+}
+
+}  // namespace stillpoint::eval

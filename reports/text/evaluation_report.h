@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Evaluations of trajectories as tables and per-pose lists.
+///
+/// Evaluations as JSON in full precision; null = no data.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "eval/compare/common_support.h"
+#include "eval/io/trajectory_file.h"
+#include "eval/openloris/benchmark.h"
+#include "eval/protocols/protocol.h"
+#include "reports/tables/text_format.h"
+
+namespace stillpoint::report {
+
+/// One estimated trajectory and its evaluation under each chosen protocol.
+struct EvaluatedRun {
+  std::string name;
+  Trajectory est;
+  eval::RowRepairs repairs = {};  ///< of the file of the estimate
+  std::vector<eval::Evaluation> evaluations;
+};
+
+/// One row per estimate and protocol; "n/a" without data. Coverage precedes the errors.
+[[nodiscard]] std::string evaluation_table(const std::vector<EvaluatedRun>& runs, TableStyle style);
+
+/// The ranking on the common support.
+[[nodiscard]] std::string comparison_table(const eval::Comparison& comparison, TableStyle style);
+
+/// OpenLORIS scores: one row per system and scene; every definition of correct rate and error has a column of
+/// its own.
+[[nodiscard]] std::string openloris_table(const eval::OpenlorisBenchmark& benchmark, TableStyle style);
+
+/// First line of `per_pose_csv`: `run,protocol,t,translation_m,rotation_deg`.
+[[nodiscard]] std::string per_pose_header();
+
+/// The header, and one row per matched pose.
+[[nodiscard]] std::string per_pose_csv(const std::vector<EvaluatedRun>& runs);
+
+/// Description of each protocol used: association, alignment, and what it ignores.
+[[nodiscard]] std::string explanation_text(const std::vector<EvaluatedRun>& runs);
+
+/// All fields except the per-pose errors.
+[[nodiscard]] nlohmann::ordered_json evaluation_json(const eval::Evaluation& evaluation);
+
+[[nodiscard]] nlohmann::ordered_json comparison_json(const eval::Comparison& comparison);
+
+/// system -> scene -> scores, including those of each sequence.
+[[nodiscard]] nlohmann::ordered_json openloris_json(const eval::OpenlorisEvaluation& evaluation);
+
+}  // namespace stillpoint::report
