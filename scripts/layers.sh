@@ -92,7 +92,7 @@ row bench/config core/base core/config bench/model
 row bench/store core/base core/types eval/io bench/model
 row bench/store/maintenance core/base eval/io bench/model bench/store
 row bench/process core/base bench/model
-row bench/run $common core/pipeline/runners datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/metrics eval/trajectory \
+row bench/run $common core/pipeline core/pipeline/runners datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/metrics eval/trajectory \
   bench/model bench/config
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
@@ -172,7 +172,7 @@ libraries=(
 threads=(
   'core/frontend/detect/thread_pool\.(h|cpp)'
   'core/pipeline/(threaded_odometry|loop_worker)\.(h|cpp)'
-  'core/pipeline/runners/(realtime_runner|pacing_clock)\.(h|cpp)'
+  'core/pipeline/runners/(realtime_runner|pacing)\.(h|cpp)'
   'datasets/synthetic/sequence/render_sequence\.cpp'
   'bench/plan/execution/(sequence_renderer|outcome_scorer)\.(h|cpp)'
   'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'

@@ -4,7 +4,7 @@
 /// Current time as recorded in stores and manifests.
 ///
 /// Replicates of a deterministic run: runs with the same config and data, whose input is perturbed with
-/// different seeds (core/pipeline/stages/input_perturbation.h). The seed is the last part of the config hash,
+/// different seeds (core/pipeline/stages/replication.h). The seed is the last part of the config hash,
 /// "0123456789abcdef-perturbed-3", so that replicates have different identities and are recognized as such.
 #pragma once
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "core/base/fields.h"
-#include "core/pipeline/runners/device.h"
+#include "core/pipeline/runners/runner.h"
 
 namespace stillpoint::bench {
 

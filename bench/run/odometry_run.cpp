@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <span>
 #include <string>
@@ -192,27 +193,17 @@ class RunRecorder {
 
   [[nodiscard]] std::size_t frames_planned() const { return run_.frames_planned; }
 
-  void add(const OdometryUpdate& update) {
+  void add(const FrameReport& report) {
     const auto begin = std::chrono::steady_clock::now();
+    const OdometryUpdate& update = report.update;
     record(update);
     if (spec_.keep_spans) record_spans(update);
     // The runner's time of image decoding is the time of waiting for decoded frames.
     decoded_.for_items.ns += update.timings[Module::kImageDecoding].ns;
     decoded_.for_items.waits += update.timings[Module::kImageDecoding].calls;
     run_.recording += std::chrono::steady_clock::now() - begin;
-  }
-
-  /// Adds the poses at IMU rate, and scores the labels of a frame if the sequence has ground truth for them.
-  void add(const FrameReport& report) {
-    if (imu_rate_) imu_rate_->add(report.update, report.available);
-    if (spec_.mode == "realtime") return;  // decoding labels would slow down the run
-    drifted_.add(report.tracked);
-    if (report.dynamic.labels.empty()) return;
-    const std::optional<datasets::MotionLabels> labels =
-        stream_.load_labels(static_cast<std::size_t>(report.frame.id));
-    if (!labels) return;
-    if (!run_.label_score) run_.label_score.emplace();
-    run_.label_score->add(report.tracked.features, report.dynamic.labels, *labels, drifted_);
+    if (imu_rate_) imu_rate_->add(update, report.available);
+    if (spec_.mode != "realtime") score_labels(report);  // decoding labels would slow down the run
   }
 
   [[nodiscard]] OdometryRun finish(RunSummary summary, double wall_s, const FramePrefetcher& prefetcher) {
@@ -229,6 +220,17 @@ class RunRecorder {
   }
 
  private:
+  /// If the sequence has ground truth for them.
+  void score_labels(const FrameReport& report) {
+    drifted_.add(report.tracked);
+    if (report.dynamic.labels.empty()) return;
+    const std::optional<datasets::MotionLabels> labels =
+        stream_.load_labels(static_cast<std::size_t>(report.frame.id));
+    if (!labels) return;
+    if (!run_.label_score) run_.label_score.emplace();
+    run_.label_score->add(report.tracked.features, report.dynamic.labels, *labels, drifted_);
+  }
+
   /// The runner's time of image decoding is left out: the prefetcher measures the decoding itself.
   void record(const OdometryUpdate& update) {
     for (std::size_t i = 0; i < kModuleCount; ++i) {
@@ -293,23 +295,25 @@ class RunRecorder {
   ChannelWaits decoded_{.channel = kDecodedFrames, .for_items = {}, .for_room = {}};
 };
 
-RunSummary run_in_mode(const RunSpec& spec, const SensorInput& input, const RunControl& control) {
-  if (spec.device)
-    return run_on_device(input, spec.config, control, {.device = *spec.device, .speed = spec.speed});
-  if (spec.mode == "sequential") return run_sequential(input, spec.config, control);
-  if (spec.mode == "pipelined") return run_pipelined(input, spec.config, control);
-  if (spec.mode == "realtime") return run_realtime(input, spec.config, control, spec.speed);
-  throw InputError("--mode",
-                   "\"" + spec.mode + "\" is unknown; use \"sequential\", \"pipelined\" or \"realtime\"");
+void require_valid(const RunSpec& spec, const datasets::SequenceInfo& info) {
+  require_recorded_boxes(spec.config, info);
+  if (spec.config.pipeline.imu_rate && !spec.config.imu.enabled)
+    throw InputError("pipeline.imu_rate", "requires an IMU; set imu.enabled = true, or leave it out");
+  if (std::ranges::find(kRunModes, spec.mode) == kRunModes.end()) {
+    throw InputError("--mode",
+                     "\"" + spec.mode + "\" is unknown; use \"sequential\", \"pipelined\" or \"realtime\"");
+  }
 }
 
-/// Runs `work` on a new thread, whose heap is empty. The state of the main thread's heap, and with it the
-/// number of instructions of an allocation, depends on the timing of threads that libraries start. Decoding
-/// the first image beforehand makes the decoding library start its threads.
-template <class Work>
-RunSummary on_fresh_thread(const datasets::SensorStream& stream, const Work& work) {
+/// `run_sequential` on a new thread, whose heap is empty. The state of the main thread's heap, and with it
+/// the number of instructions of an allocation, depends on the timing of threads that libraries start.
+/// Decoding the first image beforehand makes the decoding library start its threads.
+RunSummary run_on_fresh_thread(const datasets::SensorStream& stream, const SensorInput& input,
+                               const OdometryConfig& config, const RunControl& control) {
   static_cast<void>(stream.load_frame(0));
-  return std::async(std::launch::async, work).get();
+  return std::async(std::launch::async, run_sequential, std::cref(input), std::cref(config),
+                    std::cref(control))
+      .get();
 }
 
 ReadAhead read_ahead(const datasets::SensorStream& stream, const RunSpec& spec) {
@@ -332,29 +336,27 @@ bool needs_color(const RunSpec& spec) {
   return spec.decode_color || spec.config.detector.kind == DetectorKind::kNetwork;
 }
 
-OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
-                         const RunControl& control) {
-  require_recorded_boxes(spec.config, stream.info());
-  if (spec.config.pipeline.imu_rate && !spec.config.imu.enabled)
-    throw InputError("pipeline.imu_rate", "requires an IMU; set imu.enabled = true, or leave it out");
+OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec, RunControl control) {
+  require_valid(spec, stream.info());
   RunRecorder recorder(stream, spec);
   FramePrefetcher prefetcher([&](std::size_t index) { return load_frame(stream, spec, index); },
                              recorder.frames_planned(), read_ahead(stream, spec));
-  const auto on_update = [&](const OdometryUpdate& update) {
-    recorder.add(update);
-    if (control.on_update) control.on_update(update);
-  };
-  const auto on_frame = [&](const FrameReport& report) {
-    recorder.add(report);
-    if (control.on_frame) control.on_frame(report);
-  };
+  control.on_frame.emplace(control.on_frame.begin(),
+                           [&](const FrameReport& report) { recorder.add(report); });
+  const SensorInput input = input_of(stream.info(), spec, prefetcher);
   const auto start = std::chrono::steady_clock::now();
-  const auto work = [&] {
-    return run_in_mode(
-        spec, input_of(stream.info(), spec, prefetcher),
-        {.on_update = on_update, .on_frame = on_frame, .stop_requested = control.stop_requested});
-  };
-  RunSummary summary = spec.deterministic_counts ? on_fresh_thread(stream, work) : work();
+  RunSummary summary;
+  if (spec.device) {
+    summary = run_on_device(input, spec.config, control, {.device = *spec.device, .speed = spec.speed});
+  } else if (spec.mode == "pipelined") {
+    summary = run_pipelined(input, spec.config, control);
+  } else if (spec.mode == "realtime") {
+    summary = run_realtime(input, spec.config, control, spec.speed);
+  } else if (spec.deterministic_counts) {
+    summary = run_on_fresh_thread(stream, input, spec.config, control);
+  } else {
+    summary = run_sequential(input, spec.config, control);
+  }
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return recorder.finish(std::move(summary), wall_s, prefetcher);
 }

@@ -22,7 +22,7 @@
 #include "bench/run/run_scores.h"
 #include "core/base/module_timings.h"
 #include "core/config/odometry_config.h"
-#include "core/pipeline/runners/imu_rate_poses.h"
+#include "core/pipeline/imu_rate_poses.h"
 #include "core/pipeline/runners/runner.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
@@ -90,8 +90,8 @@ struct RunSpec {
   std::shared_ptr<const KeyframeMap> map;  ///< of an earlier run, for relocalization; requires `loop.enabled`
   bool decode_color = false;               ///< the color image of every frame will be used, e.g. for a video
   bool keep_spans = false;                 ///< record time spans, for timelines
-  bool deterministic_counts = false;       ///< without prefetching and on a thread with a separate heap, for
-                                           ///< reproducible instruction counts
+  bool deterministic_counts = false;       ///< without prefetching, "sequential" on a thread with a separate
+                                           ///< heap, for reproducible instruction counts
 };
 
 /// Time span of a module, and the frame that it processed.
@@ -145,10 +145,10 @@ struct OdometryRun {
 /// then.
 [[nodiscard]] bool needs_color(const RunSpec& spec);
 
-/// @param control `on_update` may be empty
+/// @param control its callbacks are invoked after the frame was recorded
 /// @throws InputError for an unknown mode, a sequence without frames or without the recorded boxes that the
 /// config uses, and errors of the runner
 [[nodiscard]] OdometryRun run_odometry(const datasets::SensorStream& stream, const RunSpec& spec,
-                                       const RunControl& control);
+                                       RunControl control);
 
 }  // namespace stillpoint::bench

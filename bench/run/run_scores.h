@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "bench/model/metrics.h"
-#include "core/pipeline/runners/imu_rate_poses.h"
+#include "core/pipeline/imu_rate_poses.h"
 #include "core/types/loop_report.h"
 #include "core/types/rig.h"
 #include "core/types/tracked_frame.h"

@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// IMU samples received ahead of the frames that need them.
+/// Queue of the received IMU samples, and the times up to which a frame needs them.
+///
+/// A stage gets the samples up to the exposure of a frame plus a lookahead, however early later ones were
+/// received: its results are then independent of timing. Each stage has its own estimate of the time offset
+/// between camera and IMU (the feedback to the tracker lags behind), and so its own position in the queue.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <condition_variable>
+#include <cstddef>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 #include "core/config/odometry_config.h"
@@ -32,22 +41,51 @@ constexpr double kImuLookahead_s = 0.02;
   return config.imu.enabled ? imu_end_of(t, time_offset_s) : kNone;
 }
 
-/// First in, first out. Makes the samples that a frame is processed with independent of how early they were
-/// received, and the results deterministic.
+/// First in, first out, with one position per reader. Any number of threads may add and read.
 class ImuQueue {
  public:
-  void add(const ImuSample& sample) { samples_.push_back(sample); }
+  enum class Reader : std::size_t { kTracking, kOptimization, kPrediction };
 
-  /// Removes the samples up to time `end` and passes them to `sink`.
+  void add(const ImuSample& sample) {
+    const std::scoped_lock lock(mutex_);
+    samples_.push_back(sample);
+    newest_ = std::max(newest_, sample.t);
+    changed_.notify_all();
+  }
+
+  /// Announces that no more samples will be added, so that `wait_until` no longer waits.
+  void finish() {
+    const std::scoped_lock lock(mutex_);
+    finished_ = true;
+    changed_.notify_all();
+  }
+
+  /// Blocks until a sample at or after `t` has been added, or `finish` was called.
+  void wait_until(Timestamp t) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return finished_ || newest_ >= t; });
+  }
+
+  /// Passes the samples up to time `end` that the reader has not read yet to `sink`, up to the first one that
+  /// is later. Samples that all readers have read are removed.
   template <class Sink>
-  void feed_until(Timestamp end, const Sink& sink) {
-    auto sample = samples_.begin();
-    for (; sample != samples_.end() && sample->t <= end; ++sample) sink(*sample);
-    samples_.erase(samples_.begin(), sample);
+  void read_until(Reader reader, Timestamp end, const Sink& sink) {
+    const std::scoped_lock lock(mutex_);
+    std::size_t& next = next_[static_cast<std::size_t>(reader)];
+    for (; next < samples_.size() && samples_[next].t <= end; ++next) sink(samples_[next]);
+    const std::size_t read = *std::ranges::min_element(next_);
+    samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(read));
+    for (std::size_t& position : next_) position -= read;
   }
 
  private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  // All guarded by mutex_.
   std::vector<ImuSample> samples_;
+  std::array<std::size_t, 3> next_{};                           ///< indices in `samples_`, by reader
+  Timestamp newest_{std::numeric_limits<std::int64_t>::min()};  ///< latest sample added so far
+  bool finished_ = false;
 };
 
 }  // namespace stillpoint

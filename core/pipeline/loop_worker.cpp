@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/base/thread_name.h"
 
 namespace stillpoint {
@@ -151,17 +150,6 @@ LoopReport LoopWorker::finish(OptimizationStage& optimization) {
   LoopReport report = closure_.finish();
   report.dropped_keyframes = dropped_;
   return report;
-}
-
-void use_map(LoopWorker* loop, const KeyframeMap& map) {
-  if (loop == nullptr)
-    throw InputError("loop.enabled", "is off, but a map requires loop closure; set it to true");
-  loop->use_map(map);
-}
-
-std::optional<LoopReport> finish_loops(LoopWorker* loop, OptimizationStage& optimization) {
-  if (loop == nullptr) return std::nullopt;
-  return loop->finish(optimization);
 }
 
 }  // namespace stillpoint

@@ -87,12 +87,4 @@ class LoopWorker {
   std::jthread thread_;  ///< last member: joined before the others are destroyed
 };
 
-/// As `LoopWorker::use_map`. @param loop null if `loop.enabled` is off
-/// @throws InputError if it is null
-void use_map(LoopWorker* loop, const KeyframeMap& map);
-
-/// As `LoopWorker::finish`. @param loop null if `loop.enabled` is off
-/// @return nullopt if it is null
-[[nodiscard]] std::optional<LoopReport> finish_loops(LoopWorker* loop, OptimizationStage& optimization);
-
 }  // namespace stillpoint

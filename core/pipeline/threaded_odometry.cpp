@@ -3,22 +3,14 @@
 
 #include <array>
 #include <atomic>
-#include <mutex>
+#include <memory>
 #include <thread>
 #include <utility>
 
 #include "core/base/bounded_channel.h"
 #include "core/base/thread_name.h"
-#include "core/pipeline/frame_order.h"
-#include "core/pipeline/imu_inbox.h"
-#include "core/pipeline/loop_worker.h"
-#include "core/pipeline/stages/frame_report.h"
-#include "core/pipeline/stages/optimize_frame.h"
-#include "core/pipeline/stages/stage_messages.h"
-#include "core/pipeline/stages/tracking_stage.h"
-#include "core/pipeline/state_predictor.h"
+#include "core/pipeline/frame_stepper.h"
 #include "core/pipeline/thread_errors.h"
-#include "core/pipeline/window_rate.h"
 
 namespace stillpoint {
 namespace {
@@ -29,7 +21,7 @@ constexpr std::size_t kChannelCapacity = 4;
 }  // namespace
 
 struct ThreadedOdometry::Impl {
-  Impl(const OdometryConfig& configuration, const Rig& calibration, ThreadedOdometryOptions settings);
+  Impl(const OdometryConfig& config, const Rig& rig, ThreadedOdometryOptions settings);
 
   void track();
   void detect();
@@ -37,21 +29,12 @@ struct ThreadedOdometry::Impl {
 
   /// Closes all channels, so that all threads finish.
   void close();
-  void finish_imu();
   void join();
   bool push(FrameJob job);
-  void publish(const FrameJob& job, const OdometryUpdate& update);
 
-  OdometryConfig config;
-  Rig rig;
   ThreadedOdometryOptions options;
-  WindowRate rate;                   ///< tracking thread only
-  TrackingStage tracking;            ///< tracking thread only
-  OptimizationStage optimization;    ///< optimization thread only
-  std::unique_ptr<LoopWorker> loop;  ///< same; null if off
-  FrameOrder order;                  ///< thread of `add_frame` only
-  ImuInbox imu_of_tracker;
-  ImuInbox imu_of_estimator;
+  FrameStepper stepper;
+  FrameOrder order;  ///< thread of `add_frame` only
   BoundedChannel<FrameJob> frames;
   BoundedChannel<Frame> to_detect{kChannelCapacity};
   BoundedChannel<FrameJob> tracked{kChannelCapacity};
@@ -61,27 +44,17 @@ struct ThreadedOdometry::Impl {
   std::atomic<bool> accepts_frames = true;
   std::atomic<bool> stopped = false;  ///< queued frames are to be discarded
   std::atomic<std::size_t> dropped = 0;
-  std::mutex mutex;
-  StatePredictor predictor;             ///< guarded by mutex
-  ImuHealth imu_health;                 ///< guarded by mutex
   std::array<std::jthread, 3> threads;  ///< last member: joined before the others are destroyed
 };
 
-ThreadedOdometry::Impl::Impl(const OdometryConfig& configuration, const Rig& calibration,
-                             ThreadedOdometryOptions settings)
-    : config(configuration),
-      rig(calibration),
-      options(std::move(settings)),
-      rate(config.backend.rate_hz),
-      tracking(config, rig),
-      optimization(config, rig),
+ThreadedOdometry::Impl::Impl(const OdometryConfig& config, const Rig& rig, ThreadedOdometryOptions settings)
+    : options(std::move(settings)),
+      stepper(config, rig, LoopExecution::kThread),
       frames(options.queue_capacity),
-      feedback(static_cast<std::size_t>(config.pipeline.feedback_lag) + 2),
-      predictor(config.imu.max_gap_s) {
-  if (config.loop.enabled) loop = std::make_unique<LoopWorker>(config, rig, LoopExecution::kThread);
+      feedback(static_cast<std::size_t>(config.pipeline.feedback_lag) + 2) {
   // The tracker consumes one message per frame and blocks on an empty channel: the initial messages are the
   // lag.
-  for (int i = 0; i <= config.pipeline.feedback_lag; ++i) feedback.push({optimization.feedback(), {}});
+  for (int i = 0; i <= config.pipeline.feedback_lag; ++i) feedback.push({stepper.feedback(), {}});
   const auto start = [this](void (Impl::*work)()) {
     return std::jthread([this, work] { errors.guard([&] { (this->*work)(); }, [this] { close(); }); });
   };
@@ -92,17 +65,13 @@ void ThreadedOdometry::Impl::track() {
   name_this_thread("tracking");
   while (std::optional<FrameJob> job = frames.pop()) {
     const Timestamp t = job->frame.t;
-    job->enters_window = rate.admits(t);
+    job->enters_window = stepper.enters_window(t);
     if (job->enters_window && !to_detect.push(job->frame)) return;
     std::optional<TrackerFeedback> message = feedback.pop();
     if (!message) return;
-    const double time_offset_s = message->feedback.motion.time_offset_s;
-    imu_of_tracker.wait_until(needed_imu(t, config, time_offset_s));
+    stepper.wait_for_imu(t, message->feedback.motion.time_offset_s);
     if (stopped) return;
-    imu_of_tracker.feed_until(imu_end_of(t, time_offset_s),
-                              [this](const ImuSample& s) { tracking.add_imu(s); });
-    job->tracked = tracking.process(job->frame, job->enters_window, message->feedback,
-                                    std::move(message->recycled_frame));
+    job->tracked = stepper.track(job->frame, message->feedback, std::move(message->recycled_frame));
     job->feedback = std::move(message->feedback);
     if (!tracked.push(std::move(*job))) return;
   }
@@ -131,31 +100,15 @@ void ThreadedOdometry::Impl::optimize() {
       detections = detected.pop();
       if (!detections) return;
     }
-    const double time_offset_s = optimization.motion_state().time_offset_s;
-    imu_of_estimator.wait_until(needed_imu(job->frame.t, config, time_offset_s));
+    stepper.wait_for_imu(job->frame.t, stepper.time_offset_s());
     if (stopped) return;
-    imu_of_estimator.feed_until(imu_end_of(job->frame.t, time_offset_s),
-                                [this](const ImuSample& s) { optimization.add_imu(s); });
-    OdometryUpdate& update = optimize_frame(*job, detections, optimization);
-    if (loop) loop->correct(optimization, update);
-    publish(*job, update);
-    feedback.push({optimization.feedback(std::move(job->feedback)), std::move(job->tracked)});
-  }
-}
-
-void ThreadedOdometry::Impl::publish(const FrameJob& job, const OdometryUpdate& update) {
-  {
-    const std::scoped_lock lock(mutex);
-    predictor.set(optimization.motion_state(), update.status);
-    imu_health = optimization.imu_health();
-  }
-  if (options.on_update) options.on_update(update);
-  if (options.on_frame) {
-    options.on_frame({.frame = job.frame,
-                      .tracked = job.tracked,
-                      .dynamic = optimization.dynamic(),
-                      .update = update,
-                      .available = imu_end_of(job.frame.t, update.time_offset_s)});
+    const OdometryUpdate& update = stepper.optimize(*job, detections);
+    notify(options.on_frame, {.frame = job->frame,
+                              .tracked = job->tracked,
+                              .dynamic = stepper.dynamic(),
+                              .update = update,
+                              .available = imu_end_of(job->frame.t, update.time_offset_s)});
+    feedback.push({stepper.feedback(std::move(job->feedback)), std::move(job->tracked)});
   }
 }
 
@@ -166,12 +119,7 @@ void ThreadedOdometry::Impl::close() {
   tracked.close();
   detected.close();
   feedback.close();
-  finish_imu();
-}
-
-void ThreadedOdometry::Impl::finish_imu() {
-  imu_of_tracker.finish();
-  imu_of_estimator.finish();
+  stepper.finish_imu();
 }
 
 void ThreadedOdometry::Impl::join() {
@@ -194,16 +142,9 @@ ThreadedOdometry::ThreadedOdometry(const OdometryConfig& config, const Rig& rig,
 
 ThreadedOdometry::~ThreadedOdometry() { stop(); }
 
-void ThreadedOdometry::add_imu(const ImuSample& sample) {
-  {
-    const std::scoped_lock lock(impl_->mutex);
-    impl_->predictor.add_imu(sample);
-  }
-  impl_->imu_of_estimator.add(sample);
-  impl_->imu_of_tracker.add(sample);
-}
+void ThreadedOdometry::add_imu(const ImuSample& sample) { impl_->stepper.add_imu(sample); }
 
-void ThreadedOdometry::finish_imu() { impl_->finish_imu(); }
+void ThreadedOdometry::finish_imu() { impl_->stepper.finish_imu(); }
 
 bool ThreadedOdometry::add_frame(Frame frame, const std::optional<ModuleSpan>& decoding) {
   impl_->errors.rethrow();
@@ -217,7 +158,7 @@ bool ThreadedOdometry::add_frame(Frame frame, const std::optional<ModuleSpan>& d
 void ThreadedOdometry::finish() {
   impl_->accepts_frames = false;
   impl_->frames.close();
-  impl_->finish_imu();
+  impl_->stepper.finish_imu();
   impl_->join();
   impl_->errors.rethrow();
 }
@@ -228,28 +169,17 @@ void ThreadedOdometry::stop() noexcept {
   impl_->join();
 }
 
-std::optional<NavState> ThreadedOdometry::state() const {
-  const std::scoped_lock lock(impl_->mutex);
-  return impl_->predictor.state();
-}
+std::optional<NavState> ThreadedOdometry::state() const { return impl_->stepper.state(); }
 
-std::optional<NavState> ThreadedOdometry::state_at(Timestamp t) const {
-  const std::scoped_lock lock(impl_->mutex);
-  return impl_->predictor.state_at(t);
-}
+std::optional<NavState> ThreadedOdometry::state_at(Timestamp t) const { return impl_->stepper.state_at(t); }
 
-void ThreadedOdometry::use_map(const KeyframeMap& map) { stillpoint::use_map(impl_->loop.get(), map); }
+void ThreadedOdometry::use_map(const KeyframeMap& map) { impl_->stepper.use_map(map); }
 
-std::optional<LoopReport> ThreadedOdometry::finish_loops() {
-  return stillpoint::finish_loops(impl_->loop.get(), impl_->optimization);
-}
+std::optional<LoopReport> ThreadedOdometry::finish_loops() { return impl_->stepper.finish_loops(); }
 
 std::size_t ThreadedOdometry::dropped_frames() const { return impl_->dropped; }
 
-ImuHealth ThreadedOdometry::imu_health() const {
-  const std::scoped_lock lock(impl_->mutex);
-  return impl_->imu_health;
-}
+ImuHealth ThreadedOdometry::imu_health() const { return impl_->stepper.imu_health(); }
 
 std::vector<ChannelWaits> ThreadedOdometry::waits() const {
   return {impl_->to_detect.waits("frames to detect"), impl_->tracked.waits("tracked frames"),

@@ -13,6 +13,7 @@
 #include "core/base/module_timings.h"
 #include "core/base/timestamp.h"
 #include "core/config/odometry_config.h"
+#include "core/pipeline/stages/frame_report.h"
 #include "core/types/detection.h"
 #include "core/types/frame.h"
 #include "core/types/loop_report.h"
@@ -21,8 +22,6 @@
 #include "core/types/rig.h"
 
 namespace stillpoint {
-
-struct FrameReport;  // core/pipeline/stages/frame_report.h
 
 /// What `ThreadedOdometry::add_frame` does if the queue of frames is full.
 enum class FullQueuePolicy { kBlock, kDropOldest };
@@ -33,10 +32,9 @@ struct ThreadedOdometryOptions {
   /// Detector, called on the detection thread with the frames that enter the window, in order. Empty: no
   /// detections.
   std::function<DetectionSet(const Frame&)> detect;
-  /// Called on the optimization thread, in order of the frames; the arguments are valid during the call.
-  std::function<void(const OdometryUpdate&)> on_update;
-  std::function<void(const FrameReport&)> on_frame;  ///< same, after `on_update`
-  std::size_t queue_capacity = 2;                    ///< frames waiting for IMU samples or the tracker, >= 1
+  /// Called on the optimization thread; the report is valid during the call.
+  FrameCallbacks on_frame;
+  std::size_t queue_capacity = 2;  ///< frames waiting for IMU samples or the tracker, >= 1
   FullQueuePolicy full_queue = FullQueuePolicy::kBlock;
 };
 

@@ -138,13 +138,12 @@ int profile_on_device(const datasets::SensorStream& stream, DeviceRequest reques
   request.spec.device = device_model(run.device);
   run.deterministic = request.spec.device->is_deterministic();
   ProgressLine progress(stream.info().name, stream.info().frame_times.size(), "frames");
-  const auto on_update = [&](const OdometryUpdate& update) {
-    progress.update(static_cast<std::size_t>(update.frame_id) + 1);
+  const auto on_frame = [&](const FrameReport& report) {
+    progress.update(static_cast<std::size_t>(report.update.frame_id) + 1);
   };
   run.result = score_run(
       stream.info(),
-      run_odometry(stream, request.spec,
-                   {.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested}));
+      run_odometry(stream, request.spec, {.on_frame = {on_frame}, .stop_requested = interrupt_requested}));
   if (interrupt_requested()) return kExitInterrupted;
   run.timing = timing_of(run.result.run.summary, request.budget_ms);
   write_files(request.folder, {{"device.json", json_of(run).dump(2) + "\n"},
@@ -334,18 +333,17 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
   EnergyWatch energy(arguments);
   const HardwareCounters counters;
   const ProcessUsage before = process_usage();
-  const auto on_update = [&](const OdometryUpdate& update) {
+  const auto on_frame = [&](const FrameReport& report) {
     allocations.end_frame();
-    progress.update(static_cast<std::size_t>(update.frame_id) + 1);
-    if (update.frame_id % kFramesBetweenSamples == 0) {
+    progress.update(static_cast<std::size_t>(report.update.frame_id) + 1);
+    if (report.update.frame_id % kFramesBetweenSamples == 0) {
       thread_usage.sample();
-      energy.sample(update.frame_id + 1);
+      energy.sample(report.update.frame_id + 1);
     }
     allocations.begin_frame();
   };
-  Profile profile{
-      .run = run_odometry(stream, spec_of(arguments),
-                          {.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested})};
+  Profile profile{.run = run_odometry(stream, spec_of(arguments),
+                                      {.on_frame = {on_frame}, .stop_requested = interrupt_requested})};
   profile.usage = usage_between(before, process_usage());
   profile.counters = counters.counts();
   profile.counters_missing = counters.reason();

@@ -3,6 +3,7 @@
 //
 // Opens the sequence of a run, and plays it as requested.
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -229,31 +230,29 @@ DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& con
           .images = static_cast<std::size_t>(arguments.images)};
 }
 
-/// Executes a run, and passes its frames to the dumps.
-RunResult execute(const datasets::SensorStream& stream, const RunArguments& arguments,
-                  const ConfiguredRun& configured, RunDumps& dumps) {
-  const std::optional<Heartbeat> heartbeat =
-      arguments.heartbeat.empty() ? std::nullopt : std::make_optional<Heartbeat>(arguments.heartbeat);
-  ProgressLine progress(stream.info().name + " " + configured.variant, stream.info().frame_times.size(),
-                        "frames");
-  RunMonitor monitor(arguments.deterministic_counts ? "" : arguments.sysfs_root);
-  const auto on_update = [&](const OdometryUpdate& update) {
+/// Log, progress line, heartbeat, and the meters of the machine during a run.
+class RunWatch {
+ public:
+  RunWatch(const datasets::SequenceInfo& info, const RunArguments& arguments, const std::string& variant)
+      : heartbeat_(arguments.heartbeat.empty() ? std::nullopt
+                                               : std::make_optional<Heartbeat>(arguments.heartbeat)),
+        progress_(info.name + " " + variant, info.frame_times.size(), "frames"),
+        monitor_(arguments.deterministic_counts ? "" : arguments.sysfs_root) {}
+
+  void frame_done(const OdometryUpdate& update) {
     log_update(update);
-    monitor.frame_done();
-    if (heartbeat) heartbeat->beat(update.frame_id);
-    progress.update(static_cast<std::size_t>(update.frame_id) + 1);
-  };
-  RunControl control{.on_update = on_update, .on_frame = {}, .stop_requested = interrupt_requested};
-  if (dumps.needs_frames()) control.on_frame = [&](const FrameReport& report) { dumps.add(report); };
-  const double start_s = process_age_s();
-  OdometryRun odometry_run = run_odometry(stream, configured.spec, control);
-  odometry_run.device = monitor.finish();
-  RunResult result = score_run(stream.info(), std::move(odometry_run), configured.faults);
-  result.start_s = start_s;
-  result.variant = configured.variant;
-  result.mode = configured.spec.mode;
-  return result;
-}
+    monitor_.frame_done();
+    if (heartbeat_) heartbeat_->beat(update.frame_id);
+    progress_.update(static_cast<std::size_t>(update.frame_id) + 1);
+  }
+
+  [[nodiscard]] std::optional<DeviceScore> finish() { return monitor_.finish(); }
+
+ private:
+  const std::optional<Heartbeat> heartbeat_;
+  ProgressLine progress_;
+  RunMonitor monitor_;
+};
 
 /// --sequence-id, or the checksum of the sequence.
 std::string id_of(const datasets::SequenceInfo& info, const RunArguments& arguments) {
@@ -328,7 +327,19 @@ std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
 int run_configured(const datasets::SensorStream& stream, const RunArguments& arguments,
                    const ConfiguredRun& configured) {
   RunDumps dumps(dump_request(arguments, configured), stream.info(), configured.spec.config.frontend);
-  const RunResult result = execute(stream, arguments, configured, dumps);
+  RunControl control{.stop_requested = interrupt_requested};
+  std::optional<RunWatch> watch(std::in_place, stream.info(), arguments, configured.variant);
+  control.on_frame.emplace_back([&](const FrameReport& report) { watch->frame_done(report.update); });
+  if (dumps.needs_frames())
+    control.on_frame.emplace_back([&](const FrameReport& report) { dumps.add(report); });
+  const double start_s = process_age_s();
+  OdometryRun odometry_run = run_odometry(stream, configured.spec, control);
+  odometry_run.device = watch->finish();
+  RunResult result = score_run(stream.info(), std::move(odometry_run), configured.faults);
+  watch.reset();  // removes the progress line
+  result.start_s = start_s;
+  result.variant = configured.variant;
+  result.mode = configured.spec.mode;
   write_run(configured.folder, result, manifest_of(stream.info(), arguments, configured));
   print_result(result, configured.folder);
   if (result.run.loops && (result.run.loops->report.map || !interrupt_requested()))
@@ -338,7 +349,8 @@ int run_configured(const datasets::SensorStream& stream, const RunArguments& arg
   return std::max(exit_code(result.outcome), failures.empty() ? kExitOk : kExitFindings);
 }
 
-int run(const RunArguments& arguments) {
+int run(const std::shared_ptr<const RunArguments>& shared) {
+  const RunArguments& arguments = *shared;
   require_known_dumps(arguments.dumps);
   install_interrupt_handlers();
   const std::vector<ConfiguredRun> runs = plan_runs(arguments);
@@ -401,7 +413,7 @@ Command run_command() {
           .summary = "Run the odometry on one sequence; write trajectory, scores and manifest",
           .example = "run walking_xyz --variant wo_circular_mask --start 5 --out /tmp/run",
           .options = run_options(arguments),
-          .action = [arguments] { return run(*arguments); }};
+          .action = std::bind_front(run, arguments)};
 }
 
 }  // namespace stillpoint::bench

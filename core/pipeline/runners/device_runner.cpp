@@ -7,11 +7,9 @@
 
 #include "core/base/error.h"
 #include "core/detector/opencv_threads.h"
-#include "core/pipeline/assembly.h"
-#include "core/pipeline/loop_worker.h"
-#include "core/pipeline/runners/device_cores.h"
-#include "core/pipeline/runners/runner_parts.h"
-#include "core/pipeline/stages/optimize_frame.h"
+#include "core/pipeline/frame_stepper.h"
+#include "core/pipeline/runners/pacing.h"
+#include "core/pipeline/runners/sequence_feed.h"
 
 namespace stillpoint {
 namespace {
@@ -39,63 +37,56 @@ class DeviceRun {
  public:
   DeviceRun(const SensorInput& input, const OdometryConfig& config, const RunControl& control,
             const DeviceClock& clock)
-      : input_(input),
+      : start_(input.frame_times.front()),
         config_(config),
         control_(control),
         clock_(clock),
-        order_(input),
-        stages_(assemble(input, config)),
-        cores_(clock.device.cores),
-        imu_of_tracker_(input.imu),
-        imu_of_estimator_(input.imu) {
+        feed_(input, config, control),
+        detector_(make_detector(input, config)),
+        stepper_(config, input.rig, LoopExecution::kInline),
+        cores_(clock.device.cores) {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / clock.speed;
-    if (config.loop.enabled) loop_ = std::make_unique<LoopWorker>(config, input.rig, LoopExecution::kInline);
-    if (loop_ && input.map) loop_->use_map(*input.map);
-    summary_.skipped = order_.skipped();
-    feedback_.push_back({stages_.optimization.feedback(), Time{}});
+    if (input.map) stepper_.use_map(*input.map);
+    feedback_.push_back({stepper_.feedback(), Time{}});
   }
 
   RunSummary run() {
-    while (const std::optional<FrameArrival> arrival = next_frame()) {
-      if (control_.stop_requested && control_.stop_requested()) {
-        summary_.interrupted = true;
-        break;
-      }
-      LoadedFrame loaded = load_frame(input_, arrival->index);
-      if (loaded.job) {
-        process(*loaded.job, virtual_time(loaded.job->frame.t));
-      } else {
-        summary_.skipped.push_back({arrival->index, std::move(loaded.error)});
-      }
+    while (const std::optional<std::size_t> index = next_frame()) {
+      if (feed_.stop_requested()) break;
+      std::optional<FrameJob> job = feed_.load(*index);
+      if (job) process(*job, virtual_time(job->frame.t));
     }
-    if (loop_) summary_.loops = loop_->finish(stages_.optimization);
-    summary_.realtime = std::move(report_);
-    return completed(std::move(summary_), stages_.optimization.imu_health(), *stages_.detector);
+    RunSummary summary = std::move(feed_).completed(stepper_.imu_health(), *detector_);
+    summary.resets = resets_;
+    summary.loops = stepper_.finish_loops();
+    summary.realtime = std::move(report_);
+    return summary;
   }
 
  private:
   [[nodiscard]] Time virtual_time(Timestamp t) const {
-    const double seconds = seconds_between(input_.frame_times.front(), t);
+    const double seconds = seconds_between(start_, t);
     return Time(std::llround(1e9 * seconds / clock_.speed));
   }
 
   /// The recorded time that corresponds to a time of the virtual clock.
   [[nodiscard]] Timestamp recorded_time(Time time) const {
-    return after(input_.frame_times.front(), 1e-9 * clock_.speed * static_cast<double>(time.count()));
+    return after(start_, 1e-9 * clock_.speed * static_cast<double>(time.count()));
   }
 
-  /// The next frame that the tracker accepts; advances `now_` to that time.
-  std::optional<FrameArrival> next_frame() {
-    const std::size_t count = order_.count();
+  /// Index of the next frame that the tracker accepts; advances `now_` to that time.
+  std::optional<std::size_t> next_frame() {
+    const ArrivalOrder& order = feed_.order();
+    const std::size_t count = order.count();
     if (next_ >= count) return std::nullopt;
-    now_ = std::max(now_, virtual_time(order_[next_].t));
+    now_ = std::max(now_, virtual_time(order[next_].t));
     std::size_t arrived = next_;
-    while (arrived < count && virtual_time(order_[arrived].t) <= now_) ++arrived;
+    while (arrived < count && virtual_time(order[arrived].t) <= now_) ++arrived;
     const std::size_t queued = std::min(arrived - next_, kMaxQueuedFrames);
     report_.dropped += static_cast<int>(arrived - next_ - queued);
     next_ = arrived - queued;
-    summary_.frames = std::max(summary_.frames, order_[arrived - 1].index + 1);
-    return order_[next_++];
+    feed_.summary().frames = std::max(feed_.summary().frames, order[arrived - 1].index + 1);
+    return order[next_++].index;
   }
 
   /// Newest feedback that is available at `now_`.
@@ -106,11 +97,9 @@ class DeviceRun {
 
   void process(FrameJob& job, Time exposed) {
     const Feedback& feedback = available_feedback();
-    imu_of_tracker_.feed_until(imu_end_of(job.frame.t, feedback.motion.time_offset_s), stages_.tracking);
-    imu_of_estimator_.feed_until(imu_end_of(job.frame.t, stages_.optimization.motion_state().time_offset_s),
-                                 stages_.optimization);
-    job.enters_window = stages_.rate.admits(job.frame.t);
-    job.tracked = stages_.tracking.process(job.frame, job.enters_window, feedback);
+    feed_.add_imu(job.frame.t, stepper_);
+    job.enters_window = stepper_.enters_window(job.frame.t);
+    job.tracked = stepper_.track(job.frame, feedback);
     const Time tracked_at =
         cores_.occupy(now_, cost_of(clock_.device.tracking, job.tracked.timings[Module::kTrackingThread]));
     if (job.enters_window) detect(job.frame);
@@ -122,7 +111,7 @@ class DeviceRun {
   /// A busy detector skips the frame.
   void detect(const Frame& frame) {
     if (detector_free_ > now_) return;
-    DeviceDetection detection{.job = detect_objects(*stages_.detector, frame), .available_at = {}};
+    DeviceDetection detection{.job = detect_objects(*detector_, frame), .available_at = {}};
     const bool is_disabled = config_.detector.kind == DetectorKind::kNone;
     const Time cost = is_disabled ? Time{}
                                   : cost_of(clock_.device.detection,
@@ -140,21 +129,20 @@ class DeviceRun {
       start = end_of_detection_wait(job.frame.t, start);
       found = take_detection(job.frame.t, start);
     }
-    OdometryUpdate& update = optimize_frame(job, found, stages_.optimization);
+    const OdometryUpdate& update = stepper_.optimize(job, found);
     const ModuleTime measured = update.timings[Module::kOptimizationThread];
-    if (loop_) loop_->correct(stages_.optimization, update);
-    summary_.resets += update.counters.reset;
+    resets_ += update.counters.reset;
     const bool free = !job.enters_window && clock_.device.optimization.fixed_ms;
     const Time cost = free ? Time{} : cost_of(clock_.device.optimization, measured);
     optimization_start_ = start;
     optimizer_free_ = cores_.occupy(start, cost);
     report_.latencies_ms.push_back(1e-6 * static_cast<double>((optimizer_free_ - exposed).count()));
-    notify(control_, {.frame = job.frame,
-                      .tracked = job.tracked,
-                      .dynamic = stages_.optimization.dynamic(),
-                      .update = update,
-                      .available = recorded_time(optimizer_free_)});
-    feedback_.push_back({stages_.optimization.feedback(), optimizer_free_});
+    notify(control_.on_frame, {.frame = job.frame,
+                               .tracked = job.tracked,
+                               .dynamic = stepper_.dynamic(),
+                               .update = update,
+                               .available = recorded_time(optimizer_free_)});
+    feedback_.push_back({stepper_.feedback(), optimizer_free_});
   }
 
   /// Time at which the detections of the frame at `t` are available or the wait for them times out.
@@ -178,19 +166,17 @@ class DeviceRun {
     return std::move(*newest);
   }
 
-  const SensorInput& input_;
+  Timestamp start_;  ///< of the virtual clock
   const OdometryConfig& config_;
   const RunControl& control_;
   const DeviceClock& clock_;
-  ArrivalOrder order_;
-  Stages stages_;
-  std::unique_ptr<LoopWorker> loop_;  ///< null if off
-  RunSummary summary_;
+  SequenceFeed feed_;
+  std::unique_ptr<ObjectDetector> detector_;
+  FrameStepper stepper_;
   RealtimeReport report_;
+  int resets_ = 0;
   DeviceCores cores_;
-  ImuFeed imu_of_tracker_;
-  ImuFeed imu_of_estimator_;
-  std::size_t next_ = 0;  ///< in `order_`
+  std::size_t next_ = 0;  ///< in the order of arrivals
   Time now_{};            ///< of the tracker
   Time detector_free_{};
   Time optimizer_free_{};

@@ -7,12 +7,9 @@
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
 #include "core/detector/opencv_threads.h"
-#include "core/pipeline/assembly.h"
-#include "core/pipeline/loop_worker.h"
-#include "core/pipeline/runners/detection_queue.h"
-#include "core/pipeline/runners/pacing_clock.h"
-#include "core/pipeline/runners/runner_parts.h"
-#include "core/pipeline/stages/optimize_frame.h"
+#include "core/pipeline/frame_stepper.h"
+#include "core/pipeline/runners/pacing.h"
+#include "core/pipeline/runners/sequence_feed.h"
 #include "core/pipeline/thread_errors.h"
 
 namespace stillpoint {
@@ -20,23 +17,20 @@ namespace {
 
 /// The optimization waits for IMU samples up to this much later than a frame: the sample at the exposure is
 /// interpolated, and the estimated time offset may increase. Less than offline, since it adds to the latency.
-constexpr double kRealtimeImuLookahead_s = 0.005;
+constexpr ImuLookahead kLookahead{.tracking_s = 0.0, .optimization_s = 0.005};
 
 class RealtimeRun {
  public:
   RealtimeRun(const SensorInput& input, const OdometryConfig& config, const RunControl& control, double speed)
-      : input_(input),
-        config_(config),
+      : config_(config),
         control_(control),
-        stages_(assemble(input, config)),
-        order_(input),
+        feed_(input, config, control),
+        detector_(make_detector(input, config)),
+        stepper_(config, input.rig, LoopExecution::kRealtime, kLookahead),
         clock_(input.frame_times.empty() ? Timestamp{} : input.frame_times.front(), speed) {
     report_.deadline_ms = 1e3 * median_interval_s(input.frame_times) / speed;
-    if (config.loop.enabled)
-      loop_ = std::make_unique<LoopWorker>(config, input.rig, LoopExecution::kRealtime);
-    if (loop_ && input.map) loop_->use_map(*input.map);
-    summary_.skipped = order_.skipped();
-    feedback_.push({stages_.optimization.feedback(), {}});
+    if (input.map) stepper_.use_map(*input.map);
+    feedback_.push({stepper_.feedback(), {}});
   }
 
   RunSummary run() {
@@ -50,28 +44,28 @@ class RealtimeRun {
       errors_.guard([this] { optimize(); }, [this] { close(); });
     }
     errors_.rethrow();
-    summary_.waits = {exposed_.waits("exposed frames"), to_detect_.waits("frames to detect"),
-                      tracked_.waits("tracked frames")};
-    if (loop_) summary_.loops = loop_->finish(stages_.optimization);
-    summary_.realtime = std::move(report_);
-    return completed(std::move(summary_), stages_.optimization.imu_health(), *stages_.detector);
+    RunSummary summary = std::move(feed_).completed(stepper_.imu_health(), *detector_);
+    summary.resets = resets_;
+    summary.waits = {exposed_.waits("exposed frames"), to_detect_.waits("frames to detect"),
+                     tracked_.waits("tracked frames")};
+    summary.loops = stepper_.finish_loops();
+    summary.realtime = std::move(report_);
+    return summary;
   }
 
  private:
+  /// Delivers the frames and their samples at the recorded times.
   void expose() {
     name_this_thread("camera");
-    for (std::size_t k = 0; k < order_.count(); ++k) {
-      const std::size_t i = order_[k].index;
-      if (!clock_.wait_until(order_[k].t, control_.stop_requested)) {
-        summary_.interrupted = true;
+    const ArrivalOrder& order = feed_.order();
+    for (std::size_t k = 0; k < order.count(); ++k) {
+      if (!clock_.wait_until(order[k].t, control_.stop_requested)) {
+        feed_.summary().interrupted = true;
         break;
       }
-      summary_.frames = i + 1;
-      LoadedFrame loaded = load_frame(input_, i);
-      if (loaded.job) {
-        report_.dropped += exposed_.push_dropping_oldest(std::move(*loaded.job)).has_value();
-      } else {
-        summary_.skipped.push_back({i, std::move(loaded.error)});
+      if (std::optional<FrameJob> job = feed_.load(order[k].index)) {
+        feed_.add_imu(job->frame.t, stepper_);
+        report_.dropped += exposed_.push_dropping_oldest(std::move(*job)).has_value();
       }
     }
     exposed_.close();
@@ -79,19 +73,15 @@ class RealtimeRun {
 
   void track() {
     name_this_thread("tracking");
-    ImuFeed imu(input_.imu);
     TrackerFeedback newest;
     while (std::optional<FrameJob> job = exposed_.pop()) {
-      job->enters_window = stages_.rate.admits(job->frame.t);
+      job->enters_window = stepper_.enters_window(job->frame.t);
       if (job->enters_window) to_detect_.push_dropping_oldest(job->frame);
       if (std::optional<TrackerFeedback> newer = feedback_.pop_for({})) {
         job->feedback = std::move(newest.feedback);
         newest = std::move(*newer);
       }
-      const Feedback& feedback = newest.feedback;
-      imu.feed_until(after(job->frame.t, feedback.motion.time_offset_s), stages_.tracking);
-      job->tracked = stages_.tracking.process(job->frame, job->enters_window, feedback,
-                                              std::move(newest.recycled_frame));
+      job->tracked = stepper_.track(job->frame, newest.feedback, std::move(newest.recycled_frame));
       if (!tracked_.push(std::move(*job))) return;
     }
     to_detect_.close();
@@ -101,29 +91,23 @@ class RealtimeRun {
   void detect() {
     name_this_thread("detection");
     while (const std::optional<Frame> frame = to_detect_.pop()) {
-      detected_.put(detect_objects(*stages_.detector, *frame));
+      detected_.put(detect_objects(*detector_, *frame));
     }
   }
 
   void optimize() {
-    ImuFeed imu(input_.imu);
     while (std::optional<FrameJob> job = tracked_.pop()) {
       const Timestamp t = job->frame.t;
-      const Timestamp imu_end =
-          after(t, stages_.optimization.motion_state().time_offset_s + kRealtimeImuLookahead_s);
-      clock_.wait_until(imu_end, {});
-      imu.feed_until(imu_end, stages_.optimization);
-      OdometryUpdate& update = optimize_frame(*job, detections_for(*job), stages_.optimization);
-      if (loop_) loop_->correct(stages_.optimization, update);
-      summary_.resets += update.counters.reset;
-      notify(control_, {.frame = job->frame,
-                        .tracked = job->tracked,
-                        .dynamic = stages_.optimization.dynamic(),
-                        .update = update,
-                        .available = after(t, clock_.seconds_late(t))});
+      clock_.wait_until(after(t, stepper_.time_offset_s() + kLookahead.optimization_s), {});
+      const OdometryUpdate& update = stepper_.optimize(*job, detections_for(*job));
+      resets_ += update.counters.reset;
+      notify(control_.on_frame, {.frame = job->frame,
+                                 .tracked = job->tracked,
+                                 .dynamic = stepper_.dynamic(),
+                                 .update = update,
+                                 .available = after(t, clock_.seconds_late(t))});
       report_.latencies_ms.push_back(1e3 * clock_.wall_seconds_late(t));
-      feedback_.push_dropping_oldest(
-          {stages_.optimization.feedback(std::move(job->feedback)), std::move(job->tracked)});
+      feedback_.push_dropping_oldest({stepper_.feedback(std::move(job->feedback)), std::move(job->tracked)});
     }
   }
 
@@ -144,14 +128,13 @@ class RealtimeRun {
     tracked_.close();
   }
 
-  const SensorInput& input_;
   const OdometryConfig& config_;
   const RunControl& control_;
-  Stages stages_;
-  std::unique_ptr<LoopWorker> loop_;  ///< null if off
-  RunSummary summary_;     ///< `frames`, `skipped`, `interrupted`: camera thread only, while it runs
-  RealtimeReport report_;  ///< same for `dropped`
-  ArrivalOrder order_;
+  SequenceFeed feed_;  ///< camera thread only, while it runs
+  std::unique_ptr<ObjectDetector> detector_;
+  FrameStepper stepper_;
+  RealtimeReport report_;  ///< `dropped`: camera thread only, while it runs
+  int resets_ = 0;
   PacingClock clock_;
   BoundedChannel<FrameJob> exposed_{kMaxQueuedFrames};
   BoundedChannel<Frame> to_detect_{1};

@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "core/detector/opencv_threads.h"
-#include "core/pipeline/assembly.h"
 #include "core/pipeline/odometry.h"
-#include "core/pipeline/runners/runner_parts.h"
+#include "core/pipeline/runners/sequence_feed.h"
 #include "core/pipeline/threaded_odometry.h"
 
 namespace stillpoint {
@@ -22,25 +21,24 @@ RunSummary run_sequential(const SensorInput& input, const OdometryConfig& config
   const std::unique_ptr<ObjectDetector> detector = make_detector(input, config);
   Odometry odometry(config, input.rig);
   if (input.map) odometry.use_map(*input.map);
-  FrameLoader loader(input, control);
-  ImuFeed imu(input.imu);
+  SequenceFeed feed(input, config, control);
   int resets = 0;
-  while (const std::optional<FrameJob> job = loader.next()) {
+  while (const std::optional<FrameJob> job = feed.next()) {
     const Frame& frame = job->frame;
-    imu.feed_through(last_imu_end_of(frame.t, config, input.rig), odometry);
+    feed.add_imu(frame.t, odometry);
     DetectionJob detections;
     if (odometry.enters_window(frame.t)) detections = detect_objects(*detector, frame);
     OdometryUpdate& update = odometry.track(frame, detections.set);
     update.timings.add(*job->decoding, 1);
     if (detections.timing) update.timings.add(*detections.timing, 1);
     resets += update.counters.reset;
-    notify(control, {.frame = frame,
-                     .tracked = odometry.tracked(),
-                     .dynamic = odometry.dynamic(),
-                     .update = update,
-                     .available = imu_end_of(frame.t, update.time_offset_s)});
+    notify(control.on_frame, {.frame = frame,
+                              .tracked = odometry.tracked(),
+                              .dynamic = odometry.dynamic(),
+                              .update = update,
+                              .available = imu_end_of(frame.t, update.time_offset_s)});
   }
-  RunSummary summary = completed(loader.summary(), odometry.imu_health(), *detector);
+  RunSummary summary = std::move(feed).completed(odometry.imu_health(), *detector);
   summary.resets = resets;
   summary.loops = odometry.finish_loops();
   return summary;
@@ -50,25 +48,19 @@ RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config,
   const ScopedOpencvThreads threads(config.detector.threads);
   const std::unique_ptr<ObjectDetector> detector = make_detector(input, config);
   int resets = 0;  // written by the optimization thread
+  FrameCallbacks on_frame = control.on_frame;
+  on_frame.emplace_back([&](const FrameReport& report) { resets += report.update.counters.reset; });
   ThreadedOdometry odometry(config, input.rig,
                             {.detect = [&](const Frame& frame) { return detector->detect(frame); },
-                             .on_update =
-                                 [&](const OdometryUpdate& update) {
-                                   resets += update.counters.reset;
-                                   if (control.on_update) control.on_update(update);
-                                 },
-                             .on_frame = control.on_frame});
+                             .on_frame = std::move(on_frame)});
   if (input.map) odometry.use_map(*input.map);
-  FrameLoader loader(input, control);
-  ImuFeed imu(input.imu);
-  while (std::optional<FrameJob> job = loader.next()) {
-    if (!imu.feed_through(last_imu_end_of(job->frame.t, config, input.rig), odometry)) {
-      odometry.finish_imu();
-    }
+  SequenceFeed feed(input, config, control);
+  while (std::optional<FrameJob> job = feed.next()) {
+    if (!feed.add_imu(job->frame.t, odometry)) odometry.finish_imu();
     odometry.add_frame(std::move(job->frame), job->decoding);
   }
   odometry.finish();
-  RunSummary summary = completed(loader.summary(), odometry.imu_health(), *detector);
+  RunSummary summary = std::move(feed).completed(odometry.imu_health(), *detector);
   summary.resets = resets;
   summary.loops = odometry.finish_loops();
   summary.waits = odometry.waits();

@@ -1,29 +1,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Runs the stages over a sequence, in four modes. Paper Sec. II.
+/// Runs the odometry over a sequence: its sensor data, the four modes, and what a run reports. Paper Sec. II.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/bounded_channel.h"
 #include "core/config/odometry_config.h"
 #include "core/detector/object_detector.h"
-#include "core/pipeline/runners/device.h"
-#include "core/pipeline/sensor_input.h"
 #include "core/pipeline/stages/frame_report.h"
+#include "core/types/detection.h"
+#include "core/types/frame.h"
 #include "core/types/loop_report.h"
 #include "core/types/rig.h"
 
 namespace stillpoint {
 
-/// Both `on_` callbacks are invoked in order of the frames, on one thread: that of the optimization in
-/// `run_pipelined`, else the one that called the runner. Any callback may be empty.
+/// Sensor data of a sequence. The spans must outlive the run.
+struct SensorInput {
+  Rig rig;
+  std::span<const Timestamp> frame_times;  ///< ascending
+  /// In order of time; a frame may arrive twice, and those beyond `frame_times` are ignored. Empty: each
+  /// frame arrives at its timestamp.
+  std::span<const FrameArrival> arrivals{};
+  std::span<const ImuSample> imu;            ///< ascending; may be empty
+  std::span<const DetectionSet> detections;  ///< recorded boxes; may be empty
+  std::span<const DetectionSet> true_boxes;  ///< ground truth boxes; may be empty
+  /// Injected faults: applied to the results of a network or a simulation; may be empty.
+  std::function<DetectionSet(DetectionSet)> change_detections{};
+  /// Decodes a frame; called by one thread at a time, with ascending index.
+  /// @throws InputError for a frame that cannot be read
+  std::function<Frame(std::size_t index)> load_frame;
+  std::shared_ptr<const KeyframeMap> map;  ///< of an earlier run, for relocalization; may be null
+};
+
+/// Execution time of one call of a stage on the device.
+struct StageCost {
+  std::optional<double> fixed_ms;  ///< constant time; the optimization stage then takes no time for a frame
+                                   ///< that does not enter the window
+  double factor = 1.0;             ///< without `fixed_ms`: multiple of the time measured on this machine
+};
+
+/// Timing model of a target device.
+struct DeviceModel {
+  int cores = 2;                            ///< stages that can run at the same time, >= 1
+  bool detector_has_own_processor = false;  ///< detection occupies no core
+  StageCost tracking;
+  StageCost detection;
+  StageCost optimization;
+  [[nodiscard]] bool is_deterministic() const {
+    return tracking.fixed_ms && detection.fixed_ms && optimization.fixed_ms;
+  }
+};
+
 struct RunControl {
-  std::function<void(const OdometryUpdate&)> on_update;
-  std::function<void(const FrameReport&)> on_frame;
-  std::function<bool()> stop_requested;  ///< polled before each frame, from any thread
+  /// Invoked on one thread: that of the optimization in `run_pipelined`, else the one that called the runner.
+  FrameCallbacks on_frame = {};
+  std::function<bool()> stop_requested = {};  ///< polled before each frame, from any thread; may be empty
 };
 
 /// A frame that could not be read, and the error.
@@ -61,8 +98,8 @@ struct RunSummary {
                                         const RunControl& control);
 
 /// One thread each for tracking, detection and optimization (`ThreadedOdometry`), while the calling thread
-/// loads the frames. The feedback to the tracker has the lag of the
-/// config, so that the result is bit-identical to that of `run_sequential`.
+/// loads the frames. The feedback to the tracker has the lag of the config, so that the result is
+/// bit-identical to that of `run_sequential`.
 /// @throws InputError as `run_sequential`
 [[nodiscard]] RunSummary run_pipelined(const SensorInput& input, const OdometryConfig& config,
                                        const RunControl& control);

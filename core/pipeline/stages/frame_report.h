@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Inputs and results of one frame, for dumps and videos.
+/// Inputs and results of one frame, as passed to the callbacks of the odometry.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/dynamic/semantic_mask.h"
@@ -35,5 +36,12 @@ struct FrameReport {
   /// the last sample that the frame waits for has arrived; in paced modes: when it was computed.
   Timestamp available{};
 };
+
+/// Called for each frame, one after the other. The callbacks are invoked in the order of the frames.
+using FrameCallbacks = std::vector<std::function<void(const FrameReport&)>>;
+
+inline void notify(const FrameCallbacks& callbacks, const FrameReport& report) {
+  for (const auto& callback : callbacks) callback(report);
+}
 
 }  // namespace stillpoint

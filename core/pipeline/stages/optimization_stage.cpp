@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/pipeline/stages/consistency_view.h"
-#include "core/pipeline/stages/state_hash.h"
+#include "core/pipeline/stages/replication.h"
 
 namespace stillpoint {
 namespace {

@@ -10,10 +10,10 @@
 #include "core/dynamic/feature_recognition.h"
 #include "core/dynamic/missed_detection.h"
 #include "core/dynamic/moving_consistency.h"
-#include "core/pipeline/stages/feedback.h"
 #include "core/pipeline/stages/frame_report.h"
-#include "core/pipeline/stages/input_perturbation.h"
 #include "core/pipeline/stages/keyframe_collector.h"
+#include "core/pipeline/stages/replication.h"
+#include "core/pipeline/stages/stage_messages.h"
 
 namespace stillpoint {
 

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Messages between the stages. Paper Sec. II.
+/// Messages between the stages: feedback, frames and detections. Paper Sec. II.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
-#include "core/pipeline/stages/feedback.h"
+#include "core/backend/state_prediction.h"
 #include "core/types/detection.h"
 #include "core/types/frame.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {
+
+/// Feedback from the optimization stage to the tracking stage.
+struct Feedback {
+  MotionState motion;                     ///< for the motion prediction of the tracker
+  std::vector<std::int64_t> dynamic_ids;  ///< features currently labeled dynamic, ascending
+};
 
 /// From optimization to tracking.
 struct TrackerFeedback {

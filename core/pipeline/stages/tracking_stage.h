@@ -6,8 +6,8 @@
 
 #include "core/config/odometry_config.h"
 #include "core/frontend/feature_tracker.h"
-#include "core/pipeline/stages/feedback.h"
-#include "core/pipeline/stages/input_perturbation.h"
+#include "core/pipeline/stages/replication.h"
+#include "core/pipeline/stages/stage_messages.h"
 #include "core/types/nav_state.h"
 
 namespace stillpoint {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/pipeline/sensor_input.h"
+#include "core/pipeline/runners/runner.h"
 #include "tests/support/random.h"
 
 namespace stillpoint {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Detections of a detector that is slower than the camera, in real-time mode.
-#include "core/pipeline/runners/detection_queue.h"
+#include "core/pipeline/runners/pacing.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/pipeline/runners/device_cores.h"
+#include "core/pipeline/runners/pacing.h"
 #include "core/pipeline/runners/runner.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/simulated/sliding_plane.h"
@@ -32,9 +32,7 @@ DeviceResult run(const DeviceModel& device, double speed = 1.0) {
   const SlidingPlane plane(kFrames);
   DeviceResult result;
   const RunControl control{
-      .on_update = [&](const OdometryUpdate& update) { result.positions.push_back(update.T_w_c.p); },
-      .on_frame = {},
-      .stop_requested = {}};
+      .on_frame = {[&](const FrameReport& report) { result.positions.push_back(report.update.T_w_c.p); }}};
   result.summary = run_on_device(plane.input(), visual_config(), control, {.device = device, .speed = speed});
   return result;
 }
@@ -53,9 +51,7 @@ TEST(RunOnDevice, WithoutCostsIsBitEqualToSequential) {
   std::vector<Eigen::Vector3d> sequential;
   static_cast<void>(run_sequential(
       plane.input(), visual_config(),
-      {.on_update = [&](const OdometryUpdate& update) { sequential.push_back(update.T_w_c.p); },
-       .on_frame = {},
-       .stop_requested = {}}));
+      {.on_frame = {[&](const FrameReport& report) { sequential.push_back(report.update.T_w_c.p); }}}));
   EXPECT_EQ(run(device_of(0.0, 0.0, 0.0, 3)).positions, sequential);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pipeline/runners/imu_rate_poses.h"
+#include "core/pipeline/imu_rate_poses.h"
 
 #include <gtest/gtest.h>
 
@@ -129,9 +129,7 @@ ImuRateOutput output_of(const decltype(run_sequential)& runner) {
   const OdometryConfig config = inertial_config(1);
   ImuRatePoses poses(config, samples);
   const RunControl control{
-      .on_update = {},
-      .on_frame = [&](const FrameReport& report) { poses.add(report.update, report.available); },
-      .stop_requested = {}};
+      .on_frame = {[&](const FrameReport& report) { poses.add(report.update, report.available); }}};
   static_cast<void>(runner(input, config, control));
   return poses.take();
 }

@@ -59,7 +59,7 @@ TEST(LoopWorker, AThreadGivesTheSameCorrectionsToTheBit) {
   ASSERT_LT(expected.first_correction(), kFrames) << "no loop was found";
   Corrected threaded;
   ThreadedOdometry odometry(loop_config(10), plane.input().rig,
-                            {.on_update = [&](const OdometryUpdate& update) { threaded.add(update); }});
+                            {.on_frame = {[&](const FrameReport& report) { threaded.add(report.update); }}});
   odometry.finish_imu();
   for (int k = 0; k < kFrames; ++k) odometry.add_frame(returning_frame(plane, k));
   odometry.finish();
@@ -91,7 +91,7 @@ TEST(LoopWorker, CurrentFramesAreLocatedInAMapWithinASecondWithAndWithoutAThread
               0.02);
   Corrected threaded;
   ThreadedOdometry odometry(loop_config(30), plane.input().rig,
-                            {.on_update = [&](const OdometryUpdate& update) { threaded.add(update); }});
+                            {.on_frame = {[&](const FrameReport& report) { threaded.add(report.update); }}});
   odometry.use_map(*mapped.map);
   odometry.finish_imu();
   for (int k = kStart; k < kFrames; ++k) odometry.add_frame(returning_frame(plane, k));
@@ -137,8 +137,9 @@ TEST(LoopWorker, AfterALossTheViewThatComesBackIsLocatedInTheSameWorldWithAndWit
     }
   }
   std::vector<OdometryUpdate> threaded;
-  ThreadedOdometry other(loop_config(10), plane.input().rig,
-                         {.on_update = [&](const OdometryUpdate& update) { threaded.push_back(update); }});
+  ThreadedOdometry other(
+      loop_config(10), plane.input().rig,
+      {.on_frame = {[&](const FrameReport& report) { threaded.push_back(report.update); }}});
   other.finish_imu();
   for (int k = 0; k < kEnd; ++k) other.add_frame(interrupted_frame(plane, k));
   other.finish();

@@ -52,11 +52,9 @@ TEST(Odometry, IsBitEqualToTheSequentialRunnerForEachLag) {
   const SlidingPlane plane(kFrames);
   for (const int lag : {0, 1, 3}) {
     std::vector<StateHashes> expected, actual;
-    static_cast<void>(
-        run_sequential(plane.input(), visual_config(lag),
-                       {.on_update = [&](const OdometryUpdate& update) { expected.push_back(update.hashes); },
-                        .on_frame = {},
-                        .stop_requested = {}}));
+    static_cast<void>(run_sequential(
+        plane.input(), visual_config(lag),
+        {.on_frame = {[&](const FrameReport& report) { expected.push_back(report.update.hashes); }}}));
     Odometry odometry(visual_config(lag), plane.input().rig);
     for (std::size_t i = 0; i < kFrames; ++i) actual.push_back(odometry.track(plane.frame(i)).hashes);
     ASSERT_EQ(expected.size(), actual.size());

@@ -54,13 +54,10 @@ TEST_P(RunnerIn, IsAllocationFreeInTheSteadyState) {
   std::vector<std::size_t> counts;
   counts.reserve(kFrames);
   int lost = 0;
-  const RunControl control{.on_update =
-                               [&](const OdometryUpdate& update) {
-                                 counts.push_back(bench::allocation_count());
-                                 lost += !is_located(update.status);
-                               },
-                           .on_frame = {},
-                           .stop_requested = {}};
+  const RunControl control{.on_frame = {[&](const FrameReport& report) {
+                             counts.push_back(bench::allocation_count());
+                             lost += !is_located(report.update.status);
+                           }}};
   static_cast<void>(GetParam()(motion.input(), config_with({}), control));
   ASSERT_EQ(counts.size(), kFrames);
   EXPECT_EQ(lost, 0);
@@ -76,14 +73,11 @@ TEST(PipelinedRunner, TrackingAndOptimizationAreAllocationFreeBesideLoopClosure)
   tracking.reserve(kFrames);
   optimization.reserve(kFrames);
   std::size_t corrected = 0;
-  const RunControl control{.on_update =
-                               [&](const OdometryUpdate& update) {
-                                 tracking.push_back(bench::allocation_count_of("tracking"));
-                                 optimization.push_back(bench::allocation_count_of("optimization"));
-                                 corrected += !update.T_m_w.p.isZero(0.0);
-                               },
-                           .on_frame = {},
-                           .stop_requested = {}};
+  const RunControl control{.on_frame = {[&](const FrameReport& report) {
+                             tracking.push_back(bench::allocation_count_of("tracking"));
+                             optimization.push_back(bench::allocation_count_of("optimization"));
+                             corrected += !report.update.T_m_w.p.isZero(0.0);
+                           }}};
   const RunSummary summary =
       run_pipelined(motion.input(),
                     config_with({"loop.enabled=true", "loop.min_gap_s=0.3", "loop.min_translation_m=0.05",

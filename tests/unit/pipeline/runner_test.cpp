@@ -20,9 +20,7 @@ constexpr int kFrames = 40;
 struct PositionRecorder {
   std::vector<Eigen::Vector3d> positions;
   RunControl control() {
-    return {.on_update = [this](const OdometryUpdate& update) { positions.push_back(update.T_w_c.p); },
-            .on_frame = {},
-            .stop_requested = {}};
+    return {.on_frame = {[this](const FrameReport& report) { positions.push_back(report.update.T_w_c.p); }}};
   }
 };
 
@@ -64,9 +62,7 @@ std::set<int> opencv_threads_in(decltype(&run_sequential) run, int before, int w
   config.detector.threads = wanted;
   std::set<int> seen;
   static_cast<void>(run(plane.input(), config,
-                        {.on_update = [&](const OdometryUpdate&) { seen.insert(cv::getNumThreads()); },
-                         .on_frame = {},
-                         .stop_requested = {}}));
+                        {.on_frame = {[&](const FrameReport&) { seen.insert(cv::getNumThreads()); }}}));
   EXPECT_EQ(cv::getNumThreads(), before);
   return seen;
 }
@@ -143,9 +139,7 @@ TEST(Runner, PropagatesExceptionsFromAnyThread) {
   EXPECT_THROW(static_cast<void>(run_realtime(input, visual_config(), recorder.control(), 20.0)),
                std::runtime_error);
   const RunControl failing_sink{
-      .on_update = [](const OdometryUpdate&) { throw std::runtime_error("disk error"); },
-      .on_frame = {},
-      .stop_requested = {}};
+      .on_frame = {[](const FrameReport&) { throw std::runtime_error("disk error"); }}};
   EXPECT_THROW(static_cast<void>(run_pipelined(plane.input(), visual_config(), failing_sink)),
                std::runtime_error);
 }

@@ -20,7 +20,7 @@ using Positions = std::vector<Eigen::Vector3d>;
 
 /// Records the positions of all updates.
 ThreadedOdometryOptions recording(Positions& positions) {
-  return {.on_update = [&](const OdometryUpdate& update) { positions.push_back(update.T_w_c.p); }};
+  return {.on_frame = {[&](const FrameReport& report) { positions.push_back(report.update.T_w_c.p); }}};
 }
 
 Positions run_single_threaded(const SlidingPlane& plane, const std::vector<ImuSample>& imu,
@@ -77,10 +77,11 @@ TEST(ThreadedOdometry, WaitsForTheSamplesOfAFrame) {
   std::promise<void> updated;
   std::atomic<bool> complete = false;
   bool was_complete = false;
-  ThreadedOdometry odometry(inertial_config(), inertial_plane_rig(plane), {.on_update = [&](const auto&) {
-                              was_complete = complete;
-                              updated.set_value();
-                            }});
+  ThreadedOdometry odometry(inertial_config(), inertial_plane_rig(plane),
+                            {.on_frame = {[&](const FrameReport&) {
+                               was_complete = complete;
+                               updated.set_value();
+                             }}});
   odometry.add_frame(plane.frame(0));
   const Timestamp needed = after(plane.frame(0).t, 0.02);
   for (Timestamp t = after(needed, -0.1); t < needed; t = after(t, 0.005)) odometry.add_imu(plane_imu_at(t));
@@ -140,10 +141,11 @@ TEST(ThreadedOdometry, StopReleasesABlockedCaller) {
 TEST(ThreadedOdometry, DropsTheOldestFrameOfAFullQueueIfConfigured) {
   const SlidingPlane plane(8);
   std::vector<std::int64_t> ids;
-  ThreadedOdometry odometry(inertial_config(), inertial_plane_rig(plane),
-                            {.on_update = [&](const auto& update) { ids.push_back(update.frame_id); },
-                             .queue_capacity = 2,
-                             .full_queue = FullQueuePolicy::kDropOldest});
+  ThreadedOdometry odometry(
+      inertial_config(), inertial_plane_rig(plane),
+      {.on_frame = {[&](const FrameReport& report) { ids.push_back(report.update.frame_id); }},
+       .queue_capacity = 2,
+       .full_queue = FullQueuePolicy::kDropOldest});
   // Without samples, the tracker holds at most one frame and the queue two.
   for (std::size_t i = 0; i < 8; ++i) odometry.add_frame(plane.frame(i));
   EXPECT_GE(odometry.dropped_frames(), 5u);
@@ -165,7 +167,7 @@ TEST(ThreadedOdometry, DetectsInFramesThatEnterTheWindow) {
   const auto on_frame = [&](const FrameReport& report) {
     if (!report.dynamic.boxes.empty()) boxed.push_back(report.frame.id);
   };
-  ThreadedOdometry odometry(config, plane.input().rig, {.detect = detect, .on_frame = on_frame});
+  ThreadedOdometry odometry(config, plane.input().rig, {.detect = detect, .on_frame = {on_frame}});
   for (std::size_t i = 0; i < 7; ++i) odometry.add_frame(plane.frame(i));
   odometry.finish();
   EXPECT_EQ(detected, (std::vector<std::int64_t>{0, 3, 6}));
@@ -208,7 +210,7 @@ void expect_exception_of_a_thread(ThreadedOdometryOptions options, Frame last) {
 TEST(ThreadedOdometry, PropagatesTheExceptionOfEachThread) {
   const SlidingPlane plane(20);
   expect_exception_of_a_thread<std::runtime_error>(
-      {.on_update = [](const OdometryUpdate&) { throw std::runtime_error("disk error"); }}, {});
+      {.on_frame = {[](const FrameReport&) { throw std::runtime_error("disk error"); }}}, {});
   expect_exception_of_a_thread<std::runtime_error>(
       {.detect = [](const Frame&) -> DetectionSet { throw std::runtime_error("no network"); }}, {});
   Frame wrong = plane.frame(19);

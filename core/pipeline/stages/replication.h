@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Numerically negligible perturbation of the input. The odometry is deterministic, but a different rounding
-/// may change a decision (an inlier, a keyframe), and with it the result. Runs with different perturbations
-/// are replicates from which the size of such changes is measured.
+/// Replicates of a deterministic run: a negligible perturbation of its input, and hashes of the module states
+/// after each frame, of which the first difference locates where two runs diverge.
+///
+/// The odometry is deterministic, but a different rounding may change a decision (an inlier, a keyframe), and
+/// with it the result. Runs with different perturbations are replicates from which the size of such changes
+/// is measured:
 ///
 ///   w' = w (1 + r u),  z' = z (1 + r u),  b' = b + (z' - z) / f
 ///
@@ -11,12 +14,21 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "core/types/nav_state.h"
+#include "core/types/odometry_update.h"
 #include "core/types/rig.h"
 #include "core/types/tracked_frame.h"
 
 namespace stillpoint {
 
+/// FNV-1a, 64 bits (Fowler, Noll, Vo 1991), over the bit patterns of all values.
+[[nodiscard]] std::uint64_t state_hash(std::span<const TrackedFeature> features);
+[[nodiscard]] std::uint64_t state_hash(std::span<const DynamicLabel> labels);
+[[nodiscard]] std::uint64_t state_hash(const NavState& state);
+
+/// Perturbation of one run, see above.
 class InputPerturbation {
  public:
   /// @param seed 0: nothing is changed, not a single bit

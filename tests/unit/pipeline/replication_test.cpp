@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pipeline/stages/input_perturbation.h"
+#include "core/pipeline/stages/replication.h"
 
 #include <gtest/gtest.h>
 
@@ -70,11 +70,9 @@ std::vector<std::uint64_t> state_hashes(const Run& run, int perturbation_seed) {
   OdometryConfig config = visual_config();
   config.pipeline.perturbation_seed = perturbation_seed;
   std::vector<std::uint64_t> hashes;
-  static_cast<void>(
-      run(plane.input(), config,
-          {.on_update = [&](const OdometryUpdate& update) { hashes.push_back(update.hashes.optimization); },
-           .on_frame = {},
-           .stop_requested = {}}));
+  static_cast<void>(run(plane.input(), config, {.on_frame = {[&](const FrameReport& report) {
+                                                  hashes.push_back(report.update.hashes.optimization);
+                                                }}}));
   return hashes;
 }
 

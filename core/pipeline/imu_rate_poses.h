@@ -1,17 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
+/// State at IMU rate: propagates the newest estimated state with all samples received so far. Paper Sec. II.
+///
 /// Camera pose at each IMU sample, as known when the sample arrives (causal). Paper Sec. II: "the pose is
 /// propagated at IMU rate".
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/backend/state_prediction.h"
 #include "core/config/odometry_config.h"
-#include "core/pipeline/state_predictor.h"
+#include "core/pipeline/imu_rate_poses.h"
+#include "core/types/odometry_update.h"
 #include "core/types/rig.h"
 #include "core/types/trajectory.h"
 
 namespace stillpoint {
+
+class StatePredictor {
+ public:
+  /// @param max_gap_s time for which the newest sample is held
+  explicit StatePredictor(double max_gap_s) : imu_(max_gap_s) {}
+
+  void add_imu(const ImuSample& sample) { imu_.add(sample); }
+
+  /// Sets the estimate after a frame.
+  void set(const MotionState& motion, OdometryStatus status);
+
+  /// As `Odometry::state`.
+  [[nodiscard]] std::optional<NavState> state() const;
+  /// As `Odometry::state_at`.
+  [[nodiscard]] std::optional<NavState> state_at(Timestamp t);
+
+ private:
+  ImuBuffer imu_;
+  MotionState motion_;
+  bool valid_ = false;
+};
 
 /// Change of the predicted pose when a new estimate replaces the one that it was propagated from, at one IMU
 /// sample.
