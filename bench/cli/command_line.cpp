@@ -87,11 +87,14 @@ struct CommandLine {
   std::vector<std::string> names;  ///< of the selected command and subcommand
 };
 
-/// Prints help or version to stdout and returns 0.
+/// Prints help or version to stdout.
 /// @throws InputError for any other parse result, as it is a usage error
-int finish_parsing(const CLI::App& app, const CLI::ParseError& error, const CommandLine& line,
-                   const std::vector<Command>& commands) {
-  if (error.get_exit_code() == 0) return app.exit(error);
+void finish_parsing(const CLI::App& app, const CLI::ParseError& error, const CommandLine& line,
+                    const std::vector<Command>& commands) {
+  if (error.get_exit_code() == 0) {
+    app.exit(error);
+    return;
+  }
   const std::vector<std::string> remaining = app.remaining(true);
   const auto option = std::ranges::find_if(
       remaining, [](const std::string& word) { return word.size() > 1 && word.starts_with('-'); });
@@ -99,22 +102,6 @@ int finish_parsing(const CLI::App& app, const CLI::ParseError& error, const Comm
   std::ranges::replace(message, '\n', ' ');
   if (option != remaining.end()) message = unknown_option(*option, find_command(line.names, commands));
   throw InputError("command line", message + "; try --help");
-}
-
-int parse_and_execute(const CommandLine& line, const std::vector<Command>& commands) {
-  CLI::App app("RGB-D inertial odometry for dynamic scenes, and its benchmark harness", "stillpoint");
-  app.require_subcommand(1);
-  app.set_version_flag("--version", build_info().version + " (" + build_info().git_commit + ")");
-  bool verbose = false;
-  app.add_flag("-v,--verbose", verbose, kVerboseHelp);
-  for (const Command& command : commands) add_command(app, command, verbose);
-  try {
-    app.parse(std::vector<std::string>(line.words.rbegin(), line.words.rend()));  // CLI11 expects this order
-  } catch (const CLI::ParseError& error) {
-    return finish_parsing(app, error, line, commands);
-  }
-  log_to_stderr(verbose);
-  return find_command(line.names, commands)->action();
 }
 
 /// The text with control characters and invalid UTF-8 as `\xNN`, so that all of it is visible; line breaks of
@@ -136,12 +123,29 @@ int print_error(const std::string& message, int exit_code) {
 
 }  // namespace
 
-int run_command_line(int argc, char** argv, const std::vector<Command>& commands) {
+std::function<int()> parse_command_line(int argc, char** argv, const std::vector<Command>& commands) {
+  for (int i = 1; i < argc; ++i) require_utf8("argument", argv[i]);
+  CommandLine line{.words = without_help_word({argv + 1, argv + argc}), .names = {}};
+  line.names = selected_names(line.words, commands);
+  CLI::App app("RGB-D inertial odometry for dynamic scenes, and its benchmark harness", "stillpoint");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", build_info().version + " (" + build_info().git_commit + ")");
+  bool verbose = false;
+  app.add_flag("-v,--verbose", verbose, kVerboseHelp);
+  for (const Command& command : commands) add_command(app, command, verbose);
   try {
-    for (int i = 1; i < argc; ++i) require_utf8("argument", argv[i]);
-    CommandLine line{.words = without_help_word({argv + 1, argv + argc}), .names = {}};
-    line.names = selected_names(line.words, commands);
-    return parse_and_execute(line, commands);
+    app.parse(std::vector<std::string>(line.words.rbegin(), line.words.rend()));  // CLI11 expects this order
+  } catch (const CLI::ParseError& error) {
+    finish_parsing(app, error, line, commands);
+    return [] { return kExitOk; };
+  }
+  log_to_stderr(verbose);
+  return find_command(line.names, commands)->action;
+}
+
+int report_exception() {
+  try {
+    throw;
   } catch (const InputError& error) {
     return print_error(error.what(), kExitBadInput);
   } catch (const std::filesystem::filesystem_error& error) {

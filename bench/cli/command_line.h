@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Declarative description of subcommands; parses the command line and executes the selected one.
-///
-/// The subcommands of the program, one source file each (`run` in run_command.cpp etc.).
-///
-/// Options whose values are the names of an enum (`enum_names` of core/base/fields.h).
-///
-/// Checks the names of commands and options on a command line before it is parsed, to suggest the nearest
-/// one.
+/// The command line: declarative description of the subcommands and their options, parsing, and selection of
+/// one. Names are checked before the words are parsed, to suggest the nearest one. The subcommands of the
+/// program have one source file each (`run` in run_command.cpp etc.).
 #pragma once
 
 #include <functional>
@@ -61,9 +56,15 @@ inline constexpr int kExitInconclusive = 3;   ///< completed, but the data do no
 inline constexpr int kExitInternal = 70;      ///< a bug in the program, or out of memory; EX_SOFTWARE
 inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells report it
 
-/// @return exit code of the command; `kExitBadInput`, with one line on stderr, for invalid usage or
-/// InputError
-[[nodiscard]] int run_command_line(int argc, char** argv, const std::vector<Command>& commands);
+/// Sets the options and the log level. @return the action of the selected command; after --help or --version,
+/// whose text is printed, one that does nothing
+/// @throws InputError for invalid usage
+[[nodiscard]] std::function<int()> parse_command_line(int argc, char** argv,
+                                                      const std::vector<Command>& commands);
+
+/// Prints the exception that is being handled to stderr: one line for an InputError.
+/// @return the exit code: `kExitBadInput` or `kExitInternal`
+[[nodiscard]] int report_exception();
 
 /// Help of the option --topics, of which the values are passed to `OpenOptions::topics`.
 inline constexpr const char* kTopicsHelp =

@@ -41,12 +41,19 @@ int finish_output(int exit_code) {
 int main(int argc, char** argv) {
   using namespace stillpoint::bench;
   prepare_process();
-  return finish_output(run_command_line(
-      argc, argv,
-      {run_command(), eval_command(), bench_command(), worker_command(), plan_command(), store_command(),
-       stats_command(), compare_command(), profile_command(), report_command(), dashboard_command(),
-       regressions_command(), serve_command(), reproduce_command(), detect_command(), config_command(),
-       data_command(), device_command()}));
+  int exit_code = kExitOk;
+  try {
+    const auto action = parse_command_line(
+        argc, argv,
+        {run_command(), eval_command(), bench_command(), worker_command(), plan_command(), store_command(),
+         stats_command(), compare_command(), profile_command(), report_command(), dashboard_command(),
+         regressions_command(), serve_command(), reproduce_command(), detect_command(), config_command(),
+         data_command(), device_command()});
+    exit_code = action();
+  } catch (...) {
+    exit_code = report_exception();
+  }
+  return finish_output(exit_code);
 }
 
 // Highway measures the resolution of the processor's timer for its micro-benchmarks whenever its shared
