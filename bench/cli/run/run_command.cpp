@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The options --map and --save-map of `run`.
-//
-// Opens the sequence of a run, and plays it as requested.
+// `stillpoint run`: opens the sequence, executes its runs one after the other, and writes their files.
 #include <algorithm>
 #include <functional>
 #include <iostream>
