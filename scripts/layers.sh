@@ -35,10 +35,11 @@ row core/backend/factors $common core/imu
 row core/backend/window $common core/imu core/backend/factors
 window="core/imu core/backend/factors core/backend/window"
 row core/backend/solvers $common $window
-row core/backend/start $common $window core/backend/solvers
-row core/backend/marginalization $common $window core/backend/solvers
-row core/backend/health $common $window core/backend/start
-backend="$window core/backend/solvers core/backend/start core/backend/marginalization core/backend/health"
+row core/backend/reference $common $window core/backend/solvers
+row core/backend/vision $common $window
+row core/backend/start $common $window core/backend/solvers core/backend/vision
+row core/backend/health $common $window core/backend/vision
+backend="$window core/backend/solvers core/backend/reference core/backend/vision core/backend/start core/backend/health"
 row core/backend $common $backend
 row core/loop $common core/backend/factors
 row core/pipeline/stages $common core/imu core/frontend core/dynamic core/detector core/loop core/backend \
@@ -144,11 +145,11 @@ libraries=(
   '<turbojpeg        ^datasets/io/image_io\.cpp$'
   '<embree[34]/        ^datasets/synthetic/render/embree\.h$'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
-  '<ceres/            ^core/backend/(factors|solvers)/|^core/loop/'
+  '<ceres/            ^core/backend/(factors|reference)/|^core/loop/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
   '<opencv2/core[./]  ^core/(types|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
   '<opencv2/imgproc[./]  ^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
-  '<opencv2/calib3d[./]  ^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/relative_pose\.cpp$'
+  '<opencv2/calib3d[./]  ^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/monocular_structure\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'
   '<opencv2/videoio[./]  ^reports/frames/video_module\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'

@@ -5,8 +5,8 @@
 /// Ceres and by the Schur solver.
 #include <benchmark/benchmark.h>
 
-#include "core/backend/marginalization/frame_marginalizer.h"
-#include "core/backend/solvers/window_solver.h"
+#include "core/backend/sliding_window.h"
+#include "core/backend/solvers/marginalization.h"
 #include "tests/support/simulated/simulated_window.h"
 
 namespace stillpoint {

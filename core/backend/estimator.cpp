@@ -1,298 +1,363 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/estimator.h"
 
+#include <cmath>
 #include <utility>
 
 #include "core/backend/factors/gravity_direction.h"
-#include "core/backend/online_calibration.h"
-#include "core/backend/solvers/window_problem.h"
-#include "core/backend/standstill.h"
-#include "core/backend/start/config_check.h"
-#include "core/backend/start/depth_initialization.h"
-#include "core/backend/start/frozen_world.h"
-#include "core/backend/start/initial_prior.h"
-#include "core/backend/start/initializer.h"
-#include "core/backend/start/monocular_structure.h"
 #include "core/backend/window/landmark_tracks.h"
-#include "core/base/error.h"
+#include "core/geometry/so3.h"
 
 namespace stillpoint {
 namespace {
 
-/// Largest bias change from the linearization point for which the first-order correction is used.
-constexpr double kRepropagateGyro = 0.01;  // [rad/s]
-constexpr double kRepropagateAccel = 0.1;  // [m/s^2]
+/// 99 % quantile of the chi-square distribution with six degrees of freedom.
+constexpr double kMaxPoseDistance = 16.81;
 
-ImuNoise configured_noise(const ImuNoise& stated, const ImuConfig& config) {
+/// Acceleration of a camera in the hand.
+constexpr double kAcceleration = 2.0;         // [m/s^2]
+constexpr double kAngularAcceleration = 5.0;  // [rad/s^2]
+
+/// The rig with the configured noise of the IMU.
+Rig with_configured_noise(Rig rig, const ImuConfig& config) {
   const auto density = [&](double configured, double of_sequence) {
     return config.noise_scale * (configured > 0.0 ? configured : of_sequence);
   };
-  return {density(config.gyro_noise, stated.gyro_noise), density(config.accel_noise, stated.accel_noise),
-          density(config.gyro_walk, stated.gyro_walk), density(config.accel_walk, stated.accel_walk)};
+  const ImuNoise stated = rig.imu_noise;
+  rig.imu_noise = {
+      density(config.gyro_noise, stated.gyro_noise), density(config.accel_noise, stated.accel_noise),
+      density(config.gyro_walk, stated.gyro_walk), density(config.accel_walk, stated.accel_walk)};
+  return rig;
 }
 
-MonitorOptions monitor_options(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed) {
-  return {.uses_imu = imu.enabled,
-          .inlier_threshold = kLocalizationInlier_px / rig.camera.focal_px(),
-          .bearing_sigma = backend.feature_sigma_px / rig.camera.focal_px(),
-          .max_dead_reckoning_s = backend.max_dead_reckoning_s,
-          .max_relocalization_s = backend.max_relocalization_s,
-          .seed = static_cast<std::uint32_t>(seed)};
+/// Covariance of (dp, dtheta) that constant velocity adds to the pose of `newest`, see StateCovariance. With
+/// the predicted motion d = (p_k - p_n, Log(q_n^-1 q_k)) during t, and the accelerations a,
+///
+///   Q = d d^T + diag((a t^2)^2).
+///
+/// The first term covers a camera that stopped: when it repeats an image, its time stamps are doubtful, too.
+Matrix6 prediction_covariance(const NavState& newest, const NavState& predicted) {
+  Eigen::Matrix<double, 6, 1> motion;
+  motion << predicted.T_w_b.p - newest.T_w_b.p, log_so3(newest.T_w_b.q.conjugate() * predicted.T_w_b.q);
+  const double t = seconds_between(newest.t, predicted.t);
+  Matrix6 covariance = motion * motion.transpose();
+  covariance.diagonal().head<3>().array() += std::pow(kAcceleration * t * t, 2);
+  covariance.diagonal().tail<3>().array() += std::pow(kAngularAcceleration * t * t, 2);
+  return covariance;
+}
+
+/// A pose found in the map, given the pose by dead reckoning: nothing if it contradicts the covariance that
+/// dead reckoning claims, or if it differs by no more than its own error and so confirms dead reckoning;
+/// else both are fused.
+std::optional<UncertainPose> corrected_by_map(const UncertainPose& reckoned, const UncertainPose& found) {
+  const Pose& T_w_b = reckoned.T_w_f;
+  const bool confirmed = squared_distance(T_w_b, found.T_w_f, found.covariance) <= kMaxPoseDistance;
+  const bool agrees =
+      squared_distance(T_w_b, found.T_w_f, reckoned.covariance + found.covariance) <= kMaxPoseDistance;
+  if (confirmed || !agrees) return std::nullopt;
+  return fuse(reckoned, found);
 }
 
 }  // namespace
 
 Estimator::Estimator(const BackendConfig& backend, const ImuConfig& imu, const Rig& rig, int seed)
-    : backend_(backend),
-      imu_config_(imu),
-      rig_(rig),
-      seed_(static_cast<std::uint32_t>(seed)),
+    : uses_imu_(imu.enabled),
       imu_(imu.max_gap_s),
-      solver_(make_window_solver(backend.solver)),
-      camera_rotations_(rig.camera.focal_px()),
-      rotation_aligner_(backend, rig),
-      monitor_(monitor_options(backend, imu, rig, seed)),
-      step_check_(rig.camera.focal_px()),
-      bias_check_(rig.camera.focal_px()) {
-  if (imu.enabled && !rig.has_imu) {
-    throw InputError("imu.enabled", "the sequence has no inertial data; run with --variant vo");
+      calibration_(backend, imu.enabled, rig),
+      start_(backend, imu, rig),
+      window_(backend, rig, seed, calibration_.calibrated_window()),
+      monitor_(backend, imu, with_configured_noise(rig, imu), seed) {}
+
+OdometryUpdate& Estimator::process(const TrackedFrame& frame, DynamicLabeler* dynamic) {
+  begin_update(frame.id);
+  update_.counters.tracked_features = static_cast<int>(frame.features.size());
+  monitor_.begin_frame(frame, frame.repeated && newest_covariance_ && previous_.t < newest_.t);
+  relocalize(frame);
+  append(frame);
+  if (dynamic != nullptr) {
+    label(dynamic->labels_by_detections(frame));
+    if (dynamic->uses_prediction()) label_at_prediction(*dynamic);
   }
-  check_config(backend, imu);
-  rig_.imu_noise = configured_noise(rig.imu_noise, imu);
-  window_ = calibrated_window();
+  const bool alive = refine();
+  if (dynamic != nullptr) {
+    label(dynamic->labels_after_refinement(
+        {.window = window(), .failed = !alive, .oldest_motion = window_.oldest_motion()}));
+  }
+  slide();
+  report(monitor_.reason() == StatusReason::kRepeatedImage ? bridged_ : newest_);
+  free_calibration(frame.t);
+  if (!calibration_.awaits_alignment()) drop_old_samples(motion_state(), imu_);
+  return update_;
+}
+
+OdometryUpdate& Estimator::predict(std::int64_t frame_id, Timestamp t) {
+  begin_update(frame_id);
+  report(extrapolate(motion_state(), imu_, t));
+  return update_;
 }
 
 MotionState Estimator::motion_state() const {
+  const Window& window = window_.states();
   return {.newest = newest_,
           .previous = previous_,
-          .T_b_c = window_.T_b_c,
-          .gravity_w = window_.gravity_w,
-          .time_offset_s = window_.time_offset_s,
-          .initialized = !window_.frames.empty(),
-          .uses_imu = uses_imu(),
-          .inertial = window_.inertial && inertial_check_.is_consistent()};
-}
-
-void Estimator::push_frame(const TrackedFrame& frame) {
-  WindowFrame next;
-  next.id = frame.id;
-  next.time_offset_s = window_.time_offset_s;
-  if (window_.frames.empty()) {
-    next.state = newest_;
-    next.state.t = frame.t;
-    return begin_window(std::move(next));
-  }
-  next.state = extrapolate(motion_state(), imu_, frame.t);
-  if (uses_imu()) integrate_samples(window_.frames.back(), next);
-  window_.frames.push_back(std::move(next));
-}
-
-/// Missing samples of an inertial window are replaced by those of a constant velocity; wrong and missing ones
-/// get a large noise, so that vision determines the motion.
-void Estimator::integrate_samples(const WindowFrame& last, WindowFrame& next) {
-  const Timestamp begin = after(last.state.t, last.time_offset_s);
-  const Timestamp end = after(next.state.t, next.time_offset_s);
-  const std::vector<ImuSample>& samples = imu_.samples_up_to(begin, end);
-  evidence_.imu_defect = inspector_.inspect(samples, imu_config_.max_gap_s);
-  if (evidence_.imu_defect == StatusReason::kImuGap) inertial_check_.missing(end);
-  if (evidence_.imu_defect == StatusReason::kNone && !inertial_check_.is_consistent()) {
-    evidence_.imu_defect = StatusReason::kImuInconsistent;
-  }
-  const bool missing = samples.size() < 2;
-  if (missing && (!window_.inertial || begin >= end)) return;
-  next.imu_is_reliable = evidence_.imu_defect == StatusReason::kNone;
-  const ImuNoise noise = next.imu_is_reliable ? rig_.imu_noise : unreliable_noise(rig_.imu_noise);
-  next.from_previous.emplace(noise, last.state.gyro_bias, last.state.accel_bias,
-                             window_.sample_pool.acquire());
-  if (missing) {
-    next.from_previous->integrate(constant_velocity_samples(last.state, window_.gravity_w, begin, end));
-  } else {
-    next.from_previous->integrate(samples);
-  }
-  next.gyro_b = next.from_previous->samples().back().gyro_b;
-  next.accel_b = next.from_previous->samples().back().accel_b;
-  if (next.imu_is_reliable && averages_imu()) average_imu_at_exposure(imu_, next);
-}
-
-void Estimator::repropagate_preintegrations() {
-  for (std::size_t i = 1; i < window_.frames.size(); ++i) {
-    std::optional<Preintegration>& imu = window_.frames[i].from_previous;
-    const NavState& state = window_.frames[i - 1].state;
-    if (!imu) continue;
-    const bool far = (state.gyro_bias - imu->gyro_bias()).norm() > kRepropagateGyro ||
-                     (state.accel_bias - imu->accel_bias()).norm() > kRepropagateAccel;
-    if (far) imu->repropagate(state.gyro_bias, state.accel_bias);
-  }
-}
-
-void Estimator::try_initialize_imu() {
-  if (!uses_imu() || window_.inertial) return;
-  const double span = seconds_between(window_.frames.front().state.t, window_.frames.back().state.t);
-  const bool instant = backend_.initializer.kind == InitializerKind::kInstant && window_.newest() >= 4;
-  if (!is_full() && !(instant && span >= backend_.initializer.min_span_s)) return;
-  std::optional<Window> visual =
-      has_metric_scale() ? window_ : reconstruct_window(window_, backend_, rig_.camera.focal_px(), *solver_);
-  if (!visual) return;
-  const std::optional<InertialAlignment> alignment =
-      align_with_imu(*visual, imu_config_.gravity, backend_.initializer);
-  if (!alignment) return;
-  const Pose anchor = window_.frames.front().state.T_w_b;
-  if (backend_.gravity == GravityModel::kEstimated) {
-    apply_alignment_to_frozen_world(*alignment, anchor, *visual);
-  } else {
-    apply_alignment(*alignment, anchor, *visual);
-  }
-  window_ = std::move(*visual);
-  window_.prior = initial_prior(window_, backend_);
-  inertial_check_.reset();
-}
-
-void Estimator::slide(bool keyframe) {
-  if (!is_full()) return;
-  if (!has_metric_scale()) {
-    keyframe ? remove_oldest_frame(window_) : remove_second_newest_frame(window_);
-    window_.prior = initial_prior(window_, backend_);
-  } else if (keyframe) {
-    LinearPrior prior = solver_->marginalize_oldest(window_, pixel_noise_.applied_to(backend_),
-                                                    rig_.camera.focal_px(), std::move(discarded_prior_));
-    add_calibration_walk(backend_, window_.agrees_with_rig,
-                         seconds_between(window_.frames[0].state.t, window_.frames[1].state.t), prior);
-    remove_marginalized_information(backend_, window_);
-    remove_oldest_frame(window_);
-    discarded_prior_ = std::exchange(window_.prior, std::move(prior));
-  } else {
-    window_.prior = marginalizer_.remove(window_.newest() - 1, std::move(window_.prior));
-    remove_second_newest_frame(window_);
-  }
-  // Nothing connected the removed frame to the others: fix the gauge at the new oldest frame.
-  if (window_.prior.empty()) window_.prior = initial_prior(window_, backend_);
+          .T_b_c = window.T_b_c,
+          .gravity_w = window.gravity_w,
+          .time_offset_s = window.time_offset_s,
+          .initialized = !window.frames.empty(),
+          .uses_imu = uses_imu_,
+          .inertial = window.inertial && monitor_.trusts_imu()};
 }
 
 void Estimator::begin_update(std::int64_t frame_id) {
   ModuleTimings timings = std::move(update_.timings);
   timings.clear();
   update_ = {.frame_id = frame_id, .timings = std::move(timings)};
-  oldest_motion_.reset();
 }
 
-void Estimator::add(const TrackedFrame& frame) {
-  begin_update(frame.id);
-  update_.counters.tracked_features = static_cast<int>(frame.features.size());
-  evidence_ = {.t = frame.t,
-               .features = static_cast<int>(frame.features.size()),
-               .bridged = frame.repeated && newest_covariance_ && previous_.t < newest_.t};
-  relocalize(frame);
-  push_frame(frame);
+/// While dead reckoning or lost: restarts the window at the pose found in the map of trusted landmarks.
+void Estimator::relocalize(const TrackedFrame& frame) {
+  const Pose& T_b_c = window().T_b_c;
+  const Pose predicted = extrapolate(motion_state(), imu_, frame.t).T_w_b;
+  const std::optional<UncertainPose> on_map = monitor_.relocalize(frame, product(predicted, T_b_c));
+  if (!on_map) return;
+  UncertainPose found = in_frame(*on_map, T_b_c.inverse());
+  if (!monitor_.awaits_map()) {
+    if (const std::optional<UncertainPose> reckoned = dead_reckoned_pose(frame.t)) {
+      const std::optional<UncertainPose> corrected = corrected_by_map(*reckoned, found);
+      if (!corrected) return;
+      found = *corrected;
+    }
+  }
+  restart(window().gravity_w);
+  newest_.T_w_b = found.T_w_f;
+  newest_.t = frame.t;
+  previous_ = newest_;
+  monitor_.relocated();
+}
+
+/// Pose at `t` by inertial data alone, with the covariance that the optimization claims. It includes the
+/// drift before the loss of vision, which the map shares: after a long path it is larger than the error by
+/// which the map and this pose differ.
+std::optional<UncertainPose> Estimator::dead_reckoned_pose(Timestamp t) {
+  if (window_.empty() || !window().inertial) return std::nullopt;
+  const std::optional<WindowCovariance> claim = window_.covariance(false);
+  const double offset_s = window().time_offset_s;
+  const std::vector<ImuSample>& samples = imu_.samples_up_to(after(newest_.t, offset_s), after(t, offset_s));
+  if (!claim || samples.size() < 2) return std::nullopt;
+  Preintegration motion(monitor_.imu_noise(true), newest_.gyro_bias, newest_.accel_bias);
+  motion.integrate(samples);
+  return predicted_pose(newest_, claim->newest, motion, window().gravity_w);
+}
+
+/// Appends the frame at its predicted pose.
+void Estimator::append(const TrackedFrame& frame) {
+  WindowFrame next;
+  next.id = frame.id;
+  next.time_offset_s = window().time_offset_s;
+  if (window_.empty()) {
+    next.state = newest_;
+    next.state.t = frame.t;
+    start_.begin(std::move(next), calibration_, imu_, window_.states());
+  } else {
+    next.state = extrapolate(motion_state(), imu_, frame.t);
+    if (uses_imu_) preintegrate(next);
+    window_.append(std::move(next));
+  }
   const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
-  add_observations(frame, rig_, backend_.depth, window_);
-  reject_depth_of_another_scale();
+  window_.add_features(frame);
+  monitor_.check_depth(newest_covariance_, window_.states());
 }
 
-void Estimator::mark_dynamic(std::span<const DynamicLabel> labels) {
-  auto landmark = window_.landmarks.begin();
-  for (const DynamicLabel& label : labels) {
-    while (landmark != window_.landmarks.end() && landmark->id < label.id) ++landmark;
-    if (landmark == window_.landmarks.end()) return;
-    if (landmark->id != label.id) continue;
-    if (label.reason == LabelReason::kStatic) restart_track(*landmark);
-    const bool cleared = landmark->dynamic && label.label == LabelClass::kStable;
-    landmark->dynamic = label.label != LabelClass::kStable;
-    if (!cleared) continue;
-    landmark->inverse_depth = 0.0;  // it was estimated before the point moved
-    landmark->source = DepthSource::kNone;
-  }
+void Estimator::preintegrate(WindowFrame& next) {
+  const WindowFrame& last = window().frames.back();
+  const Timestamp begin = after(last.state.t, last.time_offset_s);
+  const Timestamp end = after(next.state.t, next.time_offset_s);
+  const std::vector<ImuSample>& samples = imu_.samples_up_to(begin, end);
+  const bool reliable = monitor_.inspect(samples, end);
+  window_.preintegrate({.samples = samples,
+                        .begin = begin,
+                        .end = end,
+                        .noise = monitor_.imu_noise(reliable),
+                        .is_reliable = reliable},
+                       imu_, next);
 }
 
-void Estimator::solve() {
-  initialize_depths(backend_, rig_.camera.focal_px(), window_);
-  const ScopedTimer solve_timer(update_.timings, Module::kWindowSolve);
-  const Pose oldest = window_.frames.front().state.T_w_b;
-  const SolveReport report =
-      solver_->solve(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px());
-  unusable_solves_ = report.usable ? 0 : unusable_solves_ + 1;
-  update_.at_bound = limit_calibration(rig_, backend_, window_);
-  if (!window_.inertial) restore_gauge(oldest, backend_, window_);
-  if (backend_.covariance && report.usable) compute_covariance();
-  if (backend_.reprojection_error_px > 0.0) {
-    pixel_noise_.observe(error_monitor_.median_px(window_, rig_.camera.focal_px()), backend_);
-  }
-  update_.counters.window_landmarks = report.landmarks;
-  update_.counters.depth_landmarks = report.depth_landmarks;
-  update_.counters.solver_iterations = report.iterations;
+/// Vision determines the pose if inertial data is wrong; no label follows from a prediction then.
+void Estimator::label_at_prediction(DynamicLabeler& dynamic) {
+  monitor_.check_step(imu_, window_.states());
+  if (window_.has_inertial_prediction()) label(dynamic.labels_at_prediction(window(), predicted_camera()));
 }
 
-void Estimator::compute_covariance() {
-  const bool oldest_leaves = keyframe_ && is_full();
-  const std::optional<WindowCovariance> covariance =
-      solver_->covariance(window_, pixel_noise_.applied_to(backend_), rig_.camera.focal_px(), oldest_leaves);
-  if (!covariance) return;
-  update_.covariance = covariance->newest;
-  contradiction_.add_to(*update_.covariance, window_.frames.back().state.t);
-  oldest_motion_ = covariance->oldest_motion;
-  compare_with_rig(covariance->rig);
+/// Camera pose of the newest frame as predicted by inertial data, with its covariance relative to the frame
+/// before, which the optimization claims; absent without reliable data, or if no covariance is known.
+std::optional<UncertainPose> Estimator::predicted_camera() const {
+  if (!window_.has_inertial_prediction() || window().newest() < 1) return std::nullopt;
+  const WindowFrame& newest = window().frames.back();
+  const WindowFrame& before = window().frames[window().frames.size() - 2];
+  if (!newest.from_previous || before.state.t != newest_.t) return std::nullopt;
+  if (!newest_covariance_ || !newest_covariance_->inertial) return std::nullopt;
+  const UncertainPose motion =
+      predicted_motion(newest_, *newest_covariance_, *newest.from_previous, window().gravity_w);
+  return in_frame(compose({.T_w_f = before.state.T_w_b}, motion), window().T_b_c);
 }
 
+/// Optimizes the window. @return false if the window was cleared
 bool Estimator::refine() {
   const ScopedTimer timer(update_.timings, Module::kStateOptimization);
-  keyframe_ = is_second_newest_keyframe(window_, backend_, rig_.camera.focal_px());
-  record_reprojection_nis();
-  check_inertial_data();
-  check_biases();
-  localized_ = localize_newest();
-  update_.counters.keyframe = keyframe_;
-  if (!localized_) {
+  window_.choose_keyframe();
+  check_data();
+  const bool located = window_.localize_newest();
+  update_.counters.keyframe = window_.keyframe();
+  if (!located) {
     discard_newest();
     return true;
   }
-  try_initialize_imu();
-  repropagate_preintegrations();
-  if (backend_.zero_velocity.enabled) {
-    window_.frames.back().at_rest = is_at_rest(window_, imu_, backend_.zero_velocity,
-                                               {rig_.imu_noise, imu_config_.gravity, rig_.camera.focal_px()});
-    update_.counters.at_rest = window_.frames.back().at_rest;
+  if (start_.initialize(window_.states(), window_.solver())) monitor_.world_changed();
+  window_.prepare_solve();
+  update_.counters.at_rest = window_.states().frames.back().at_rest = monitor_.detects_rest(imu_, window());
+  const Eigen::Vector3d gravity_before = window().gravity_w;
+  if (window_.has_metric_scale()) solve();
+  return accept_or_reset(gravity_before);
+}
+
+void Estimator::check_data() {
+  const std::optional<UncertainPose> camera = predicted_camera();
+  Expectation expected{.before = newest_, .camera = camera, .residual_sigma = window_.residual_sigma()};
+  if (monitor_.has_unexpected_features(expected, window())) {
+    window_.expect_errors();
+    expected.residual_sigma = window_.residual_sigma();
   }
-  const Eigen::Vector3d gravity_before = window_.gravity_w;
-  if (has_metric_scale()) solve();
-  evidence_.failure = failure();
-  if (evidence_.failure != StatusReason::kNone) {
+  monitor_.check_inertial_data(expected, imu_, window_.states());
+  monitor_.check_biases(imu_, window_.states());
+  update_.nis = monitor_.innovations();
+}
+
+void Estimator::solve() {
+  const ScopedTimer timer(update_.timings, Module::kWindowSolve);
+  const SlidingWindow::Solution solution = window_.solve(calibration_);
+  update_.at_bound = solution.at_bound;
+  update_.counters.window_landmarks = solution.report.landmarks;
+  update_.counters.depth_landmarks = solution.report.depth_landmarks;
+  update_.counters.solver_iterations = solution.report.iterations;
+  if (!solution.covariance) return;
+  update_.covariance = solution.covariance->newest;
+  monitor_.add_contradiction(window().frames.back().state.t, *update_.covariance);
+  calibration_.compare_with_rig(solution.covariance->rig, window_.states().agrees_with_rig);
+}
+
+/// The biases were part of a divergence, and are forgotten with it.
+bool Estimator::accept_or_reset(const Eigen::Vector3d& gravity_before) {
+  const StatusReason failure = SensorMonitor::failure_of(window(), newest_, window_.unusable_solves());
+  if (failure != StatusReason::kNone) {
     update_.counters.reset = true;
     restart(gravity_before);
-    forget_biases();
+    newest_.gyro_bias.setZero();
+    newest_.accel_bias.setZero();
+    previous_ = newest_;
   } else {
     previous_ = newest_;
-    newest_ = window_.frames.back().state;
+    newest_ = window().frames.back().state;
     newest_covariance_ = update_.covariance;
   }
-  return update_status();
+  return update_status(true, failure);
 }
 
-void Estimator::finish() {
-  if (!window_.frames.empty()) {
-    const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
-    const ScopedTimer slide_timer(update_.timings, Module::kMarginalization);
-    slide(keyframe_);
+/// The newest frame was located by neither vision nor inertial data. A window that has not started begins
+/// anew: its poses would depend on this one.
+void Estimator::discard_newest() {
+  const NavState predicted = window().frames.back().state;
+  if (monitor_.status() == OdometryStatus::kInitializing) {
+    restart(window().gravity_w);
+  } else {
+    window_.discard_newest();
   }
-  report(monitor_.reason() == StatusReason::kRepeatedImage ? bridged_ : newest_);
-  free_calibration();
-  if (!aligns_rotations()) drop_old_samples(motion_state(), imu_);
+  static_cast<void>(update_status(false, StatusReason::kNone));
+  if (monitor_.reason() == StatusReason::kRepeatedImage) {
+    bridged_ = predicted;
+    update_.covariance = newest_covariance_;
+    update_.covariance->state.topLeftCorner<6, 6>() += prediction_covariance(newest_, predicted);
+    return;
+  }
+  previous_ = newest_;
+  newest_.v_w.setZero();
 }
 
-void Estimator::predict(std::int64_t frame_id, Timestamp t) {
-  begin_update(frame_id);
-  report(extrapolate(motion_state(), imu_, t));
+/// @return false if the window was cleared
+bool Estimator::update_status(bool located, StatusReason failure) {
+  const bool clear = monitor_.update_status({.located = located,
+                                             .has_metric_scale = window_.has_metric_scale(),
+                                             .failure = failure,
+                                             .covariance = update_.covariance},
+                                            window());
+  if (clear) restart(window().gravity_w);
+  return failure == StatusReason::kNone && !clear;
+}
+
+void Estimator::slide() {
+  if (window_.empty()) return;
+  const ScopedTimer timer(update_.timings, Module::kStateOptimization, ScopedTimer::Kind::kPart);
+  const ScopedTimer slide_timer(update_.timings, Module::kMarginalization);
+  window_.slide();
+}
+
+/// Makes calibration that the data contradicts variable. With a wrong rotation or depth scale, the states of
+/// the window are far from the true ones, and its prior is linearized at the wrong point: it starts anew, for
+/// which vision is needed.
+void Estimator::free_calibration(Timestamp now) {
+  if (monitor_.status() == OdometryStatus::kDeadReckoning) return;
+  if (calibration_.awaits_alignment()) {
+    const std::optional<RotationAlignment> alignment = start_.align_rotations(window(), now, imu_);
+    if (alignment && calibration_.align(*alignment)) restart_with_calibration(alignment->gyro_bias);
+  } else if (calibration_.has_other_depth_scale() && window().agrees_with_rig.depth_scale) {
+    restart_with_calibration(newest_.gyro_bias);
+  }
+}
+
+/// With the newest frame, at the same pose of its camera. Gravity and biases were estimated with the
+/// calibration of the rig: gravity is uncertain, and the bias of the accelerometer is forgotten.
+/// @param gyro_bias known without that calibration, or hardly affected by it
+void Estimator::restart_with_calibration(const Eigen::Vector3d& gyro_bias) {
+  const Pose T_before_after = product(window().T_b_c, calibration_.calibrated_window().T_b_c.inverse());
+  NavState previous = previous_;
+  previous.T_w_b = product(previous.T_w_b, T_before_after);
+  const bool had_frame = !window_.empty();
+  const std::int64_t id = had_frame ? window().frames.back().id : 0;
+  std::vector<Landmark> landmarks = landmarks_of_newest(window());
+  forget_calibrated_gravity(window_.states());
+  restart(window().gravity_w);
+  monitor_.calibration_changed();
+  newest_.T_w_b = product(newest_.T_w_b, T_before_after);
+  newest_.gyro_bias = gyro_bias;
+  newest_.accel_bias.setZero();
+  previous_ = previous;
+  if (!had_frame) return;
+  start_.begin({.id = id, .state = newest_, .time_offset_s = window().time_offset_s}, calibration_, imu_,
+               window_.states());
+  window_.states().landmarks = std::move(landmarks);
+}
+
+/// Clears the window; the next frame starts at the last valid pose, so the world frame is preserved.
+/// @param gravity_w before the solve that failed; an estimated one is kept with its covariance
+void Estimator::restart(const Eigen::Vector3d& gravity_w) {
+  window_.restart(WindowStart::restarted(window(), gravity_w, calibration_));
+  newest_.v_w.setZero();
+  previous_ = newest_;
+  newest_covariance_.reset();
+  monitor_.window_restarted();
 }
 
 void Estimator::report(const NavState& state) {
+  const Window& window = window_.states();
   update_.state = state;
-  update_.T_w_c = state.T_w_b * window_.T_b_c;
+  update_.T_w_c = state.T_w_b * window.T_b_c;
   update_.status = monitor_.status();
   update_.reason = monitor_.reason();
   update_.segment = monitor_.segment();
   update_.inertial = motion_state().inertial;
-  update_.time_offset_s = window_.time_offset_s;
-  update_.depth_scale = window_.depth_scale;
-  update_.agrees_with_rig = window_.agrees_with_rig;
-  if (window_.gravity_covariance) update_.q_level_w = level_rotation(window_.gravity_w);
+  update_.time_offset_s = window.time_offset_s;
+  update_.depth_scale = window.depth_scale;
+  update_.agrees_with_rig = window.agrees_with_rig;
+  if (window.gravity_covariance) update_.q_level_w = level_rotation(window.gravity_w);
 }
 
 }  // namespace stillpoint

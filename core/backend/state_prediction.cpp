@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/state_prediction.h"
 
+#include "core/backend/vision/camera_pose.h"
+#include "core/config/monitor_config.h"
 #include "core/geometry/so3.h"
 #include "core/imu/propagation.h"
 
 namespace stillpoint {
 namespace {
 
-/// Margin for later changes of the estimated time offset (0.2 s) and for the comparison with vision.
-constexpr double kRetention_s = 0.9;
-
 Pose constant_velocity(const NavState& previous, const NavState& newest, Timestamp t) {
   const double fraction = seconds_between(newest.t, t) / seconds_between(previous.t, newest.t);
-  const Pose step = previous.T_w_b.inverse() * newest.T_w_b;
-  return newest.T_w_b * Pose{exp_so3(fraction * log_so3(step.q)), fraction * step.p};
+  const Pose step = product(previous.T_w_b.inverse(), newest.T_w_b);
+  return product(newest.T_w_b, Pose{exp_so3(fraction * log_so3(step.q)), fraction * step.p});
 }
 
 }  // namespace
@@ -47,12 +46,24 @@ UncertainPose predicted_motion(const NavState& state, const StateCovariance& cla
   J.block<3, 3>(Index::kPosition, Index::kRotation) = imu.duration_s() * skew(R_b_w * state.v_w);
   J.block<3, 3>(Index::kPosition, Index::kVelocity) = imu.duration_s() * R_b_w;
   J.rightCols<6>() = imu.jacobian().topRightCorner<6, 6>();
-  return {.T_w_f = state.T_w_b.inverse() * imu.predict(state, gravity_w).T_w_b,
+  return {.T_w_f = product(state.T_w_b.inverse(), imu.predict(state, gravity_w).T_w_b),
           .covariance = J * claimed.state * J.transpose() + imu.covariance().topLeftCorner<6, 6>()};
 }
 
+UncertainPose predicted_pose(const NavState& state, const StateCovariance& claimed, const Preintegration& imu,
+                             const Eigen::Vector3d& gravity_w) {
+  // In the body frame of the state, as the errors of the preintegration.
+  Matrix15 Q = Matrix15::Identity();
+  Q.block<3, 3>(ImuErrorIndex::kPosition, ImuErrorIndex::kPosition) = state.T_w_b.R();
+  Q.block<3, 3>(ImuErrorIndex::kVelocity, ImuErrorIndex::kVelocity) = state.T_w_b.R();
+  const Matrix15 J = Q * imu.jacobian() * Q.transpose();
+  const Matrix15 covariance = J * claimed.state * J.transpose() + Q * imu.covariance() * Q.transpose();
+  return {.T_w_f = imu.predict(state, gravity_w).T_w_b, .covariance = covariance.topLeftCorner<6, 6>()};
+}
+
 void drop_old_samples(const MotionState& motion, ImuBuffer& imu) {
-  if (motion.initialized) imu.drop_before(after(motion.newest.t, motion.time_offset_s - kRetention_s));
+  if (motion.initialized)
+    imu.drop_before(after(motion.newest.t, motion.time_offset_s - kMonitor.bias.history_s));
 }
 
 MotionPrior motion_prior(const MotionState& motion, ImuBuffer& imu, Timestamp from, Timestamp to) {

@@ -36,6 +36,12 @@ struct MotionState {
 [[nodiscard]] UncertainPose predicted_motion(const NavState& state, const StateCovariance& claimed,
                                              const Preintegration& imu, const Eigen::Vector3d& gravity_w);
 
+/// Pose after inertial data alone, with the covariance of the state propagated as in Preintegration.
+/// @param claimed of `state`, inertial
+/// @param imu     from `state` on
+[[nodiscard]] UncertainPose predicted_pose(const NavState& state, const StateCovariance& claimed,
+                                           const Preintegration& imu, const Eigen::Vector3d& gravity_w);
+
 /// Drops IMU samples older than the newest state.
 void drop_old_samples(const MotionState& motion, ImuBuffer& imu);
 

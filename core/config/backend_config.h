@@ -121,7 +121,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("max_scale_sigma", config.max_scale_sigma, 1e-3, 10.0);
 }
 
-/// Zero-velocity factor for frames at rest; see core/backend/standstill.h. Not in the paper.
+/// Zero-velocity factor for frames at rest; see core/backend/health/standstill.h. Not in the paper.
 struct ZeroVelocityConfig {
   bool enabled = false;
   double statistic = 12.0;        ///< largest statistic of inertial samples at rest; its mean is 6 at rest

@@ -9,9 +9,7 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include "core/backend/factors/gravity_manifold.h"
-#include "core/backend/factors/pose_manifold.h"
-#include "core/backend/factors/problem_options.h"
+#include "core/backend/factors/ceres_manifolds.h"
 #include "core/loop/pose_graph_factors.h"
 
 namespace stillpoint {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Residuals of the pose graph and of the bundle adjustment of its keyframes. Poses are blocks (p, q xyzw);
 /// Jacobians are in the tangent space p + d, q * Exp(theta), in the first six of seven columns, see
-/// core/backend/factors/pose_manifold.h.
+/// core/backend/factors/ceres_manifolds.h.
 #pragma once
 
 #include <array>

@@ -7,8 +7,7 @@
 #include <ceres/cost_function.h>
 #include <Eigen/Core>
 
-#include "core/backend/factors/gravity_manifold.h"
-#include "core/backend/factors/pose_manifold.h"
+#include "core/backend/factors/ceres_manifolds.h"
 
 namespace stillpoint {
 

@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/monitor_config.h"
+
 namespace stillpoint {
 namespace {
 
-constexpr double kUnreliableGyro = 1.0;    // [rad/s/sqrt(Hz)]
-constexpr double kUnreliableAccel = 20.0;  // [m/s^2/sqrt(Hz)]
-constexpr int kSaturatedSamples = 4;
-constexpr int kPlateauSamples = 8;
-constexpr double kPlateau_s = 0.03;
 constexpr double kRounding = 1e-12;
 
 /// Whether one axis is at the limit for some samples, while the others vary.
@@ -21,7 +18,8 @@ bool is_saturated(std::span<const ImuSample> samples, double limit, const Vector
     int at_limit = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       at_limit = std::abs(vector(samples[i])[axis]) == limit ? at_limit + 1 : 0;
-      if (at_limit >= kSaturatedSamples && vector(samples[i]) != vector(samples[i - 1])) return true;
+      if (at_limit >= kMonitor.samples.saturated_samples && vector(samples[i]) != vector(samples[i - 1]))
+        return true;
     }
   }
   return false;
@@ -30,8 +28,8 @@ bool is_saturated(std::span<const ImuSample> samples, double limit, const Vector
 }  // namespace
 
 ImuNoise unreliable_noise(const ImuNoise& noise) {
-  return {.gyro_noise = std::max(noise.gyro_noise, kUnreliableGyro),
-          .accel_noise = std::max(noise.accel_noise, kUnreliableAccel),
+  return {.gyro_noise = std::max(noise.gyro_noise, kMonitor.samples.unreliable_gyro),
+          .accel_noise = std::max(noise.accel_noise, kMonitor.samples.unreliable_accel),
           .gyro_walk = noise.gyro_walk,
           .accel_walk = noise.accel_walk};
 }
@@ -49,8 +47,8 @@ bool SampleInspector::has_plateau(std::span<const ImuSample> samples) {
         plateau = {.value = values[axis], .begin = sample.t};
       ++plateau.samples;
       plateau.others_vary |= plateau.samples > 1 && (values - last).norm() > 1e-6;
-      found |= plateau.samples >= kPlateauSamples && plateau.value != 0.0 && plateau.others_vary &&
-               seconds_between(plateau.begin, sample.t) >= kPlateau_s;
+      found |= plateau.samples >= kMonitor.samples.plateau_samples && plateau.value != 0.0 &&
+               plateau.others_vary && seconds_between(plateau.begin, sample.t) >= kMonitor.samples.plateau_s;
     }
     last_gyro_ = sample.gyro_b;
     last_accel_ = sample.accel_b;

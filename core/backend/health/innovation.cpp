@@ -6,11 +6,11 @@
 
 #include <Eigen/LU>
 
+#include "core/config/monitor_config.h"
+
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kMinInnovations = 8;
-constexpr double kMinInnovationDepth = 0.05;  // [m]
 const double kMedianOfChiSquare2 = 2.0 * std::log(2.0);
 
 }  // namespace
@@ -25,13 +25,13 @@ std::optional<double> reprojection_nis(const Window& window, const UncertainPose
       continue;
     }
     const Eigen::Vector3d p_c = T_c_w * window.position(landmark, landmark.inverse_depth);
-    if (p_c.z() < kMinInnovationDepth) continue;
+    if (p_c.z() < kMonitor.vision.min_depth_m) continue;
     const Eigen::Vector2d v = landmark.observations.back().bearing - p_c.hnormalized();
     const Eigen::Matrix2d S =
         projection_covariance(camera, p_c) + residual_sigma * residual_sigma * Eigen::Matrix2d::Identity();
     distances.push_back(v.dot(S.inverse() * v));
   }
-  if (distances.size() < kMinInnovations) return std::nullopt;
+  if (static_cast<int>(distances.size()) < kMonitor.innovation.min_landmarks) return std::nullopt;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::ranges::nth_element(distances, middle);
   return *middle / kMedianOfChiSquare2;

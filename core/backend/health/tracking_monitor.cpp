@@ -1,28 +1,73 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/health/tracking_monitor.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/backend/vision/vision_assessment.h"
+#include "core/config/monitor_config.h"
 
 namespace stillpoint {
 namespace {
 
+constexpr std::size_t kReservedPoints = 1024;  // so that updates allocate no memory
+
+}  // namespace
+
+TrustedMap::TrustedMap() {
+  for (Version* version : {&newest_, &candidate_, &earlier_}) version->points.reserve(kReservedPoints);
+}
+
+void TrustedMap::update(const Window& window) {
+  newest_.t = window.frames.back().state.t;
+  newest_.points.clear();
+  for (const Landmark& landmark : window.landmarks) {
+    if (is_usable(landmark)) newest_.points.push_back({landmark.id, window.position(landmark)});
+  }
+  if (!candidate_.points.empty() &&
+      seconds_between(candidate_.t, newest_.t) < kMonitor.tracking.version_age_s)
+    return;
+  std::swap(earlier_, candidate_);
+  candidate_ = newest_;
+}
+
+void TrustedMap::discard_newest() {
+  newest_ = earlier_;
+  candidate_ = earlier_;
+}
+
+void TrustedMap::clear() {
+  for (Version* version : {&newest_, &candidate_, &earlier_}) version->points.clear();
+}
+
+std::optional<UncertainPose> TrustedMap::locate(const TrackedFrame& frame, const Pose& prediction,
+                                                CameraPoseOptions options, double bearing_sigma) {
+  observations_.clear();
+  auto point = newest_.points.begin();
+  for (const TrackedFeature& feature : frame.features) {
+    while (point != newest_.points.end() && point->id < feature.id) ++point;
+    if (point == newest_.points.end()) break;
+    if (point->id == feature.id) observations_.push_back({point->p_w, feature.bearing});
+  }
+  const auto matched = static_cast<int>(observations_.size());
+  if (matched < kMonitor.tracking.min_map_features) return std::nullopt;
+  options.min_inliers =
+      std::max(options.min_inliers, static_cast<int>(kMonitor.tracking.min_map_inlier_ratio * matched));
+  const std::optional<CameraPose> found = estimate_camera_pose(observations_, prediction, options);
+  if (!found) return std::nullopt;
+  return with_covariance(observations_, found->T_w_c, bearing_sigma, options.inlier_threshold);
+}
+
+namespace {
+
 using enum OdometryStatus;
 
-/// Limits of the distance between a pose found by the map and the predicted one: constant and per second.
-constexpr double kGate_m = 0.5;
-constexpr double kGateRate_m = 2.0;
-constexpr double kGate_rad = 0.5;
-constexpr double kGateRate_rad = 1.5;
-
-/// Features in a frame from which a new segment can begin.
-constexpr int kVisibleFeatures = 20;
-
-/// Longest time without a new image for which constant velocity gives a pose: three frames at 30 Hz.
-constexpr double kMaxRepetition_s = 0.12;
-
 bool is_plausible(const Pose& predicted, const Pose& found, double seconds) {
-  return (predicted.p - found.p).norm() <= kGate_m + kGateRate_m * seconds &&
-         predicted.q.angularDistance(found.q) <= kGate_rad + kGateRate_rad * seconds;
+  return (predicted.p - found.p).norm() <=
+             kMonitor.tracking.gate_m + kMonitor.tracking.gate_rate_m * seconds &&
+         predicted.q.angularDistance(found.q) <=
+             kMonitor.tracking.gate_rad + kMonitor.tracking.gate_rate_rad * seconds;
 }
 
 }  // namespace
@@ -58,7 +103,7 @@ bool TrackingMonitor::is_too_uncertain(const FrameEvidence& evidence) const {
 /// Whether constant velocity since vision last located the camera replaces an image that is missing.
 bool TrackingMonitor::bridges(const FrameEvidence& evidence) const {
   return evidence.bridged && is_located(status_) &&
-         seconds_between(located_at_, evidence.t) <= kMaxRepetition_s;
+         seconds_between(located_at_, evidence.t) <= kMonitor.tracking.max_repetition_s;
 }
 
 TrackingMonitor::Decision TrackingMonitor::decide(const FrameEvidence& evidence) const {
@@ -81,7 +126,7 @@ TrackingMonitor::Decision TrackingMonitor::decide(const FrameEvidence& evidence)
 bool TrackingMonitor::patience_is_over(const FrameEvidence& evidence) {
   if (status_ != kLost) {
     visible_since_.reset();
-  } else if (!visible_since_ && evidence.features >= kVisibleFeatures) {
+  } else if (!visible_since_ && evidence.features >= kMonitor.tracking.visible_features) {
     visible_since_ = evidence.t;
   }
   return visible_since_ && seconds_between(*visible_since_, evidence.t) > options_.max_relocalization_s;

@@ -4,7 +4,7 @@
 
 #include "core/backend/factors/relative_pose_linearization.h"
 #include "core/backend/solvers/reduced_system.h"
-#include "core/backend/window/observation_model.h"
+#include "core/backend/solvers/window_problem.h"
 
 namespace stillpoint {
 

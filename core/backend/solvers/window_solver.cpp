@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/window_solver.h"
 
-#include "core/backend/solvers/ceres_solver.h"
-#include "core/backend/solvers/schur_solver.h"
 #include "core/base/error.h"
 
 namespace stillpoint {
@@ -22,16 +20,6 @@ SolveReport WindowSolver::solve(Window& window, const BackendConfig& config, dou
   const SolveReport report = minimize(window, config, focal_px);
   if (report.usable) invalidate_lost_depths(config.depth, window);
   return report;
-}
-
-std::unique_ptr<WindowSolver> make_window_solver(WindowSolverKind kind) {
-  switch (kind) {
-    case WindowSolverKind::kCeres:
-      return std::make_unique<CeresSolver>();
-    case WindowSolverKind::kSchur:
-      return std::make_unique<SchurSolver>();
-  }
-  check_failed("a solver of this kind exists", __FILE__, __LINE__);
 }
 
 }  // namespace stillpoint

@@ -2,7 +2,6 @@
 /// Nonlinear least squares over the window: the state optimization of Paper Sec. II.
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "core/backend/window/window.h"
@@ -99,8 +98,5 @@ class WindowSolver {
   [[nodiscard]] virtual SolveReport minimize(Window& window, const BackendConfig& config,
                                              double focal_px) = 0;
 };
-
-/// Creates the solver selected by `BackendConfig::solver`.
-[[nodiscard]] std::unique_ptr<WindowSolver> make_window_solver(WindowSolverKind kind);
 
 }  // namespace stillpoint

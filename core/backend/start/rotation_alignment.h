@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Initial rotation of the camera on the body and time offset, from rotations alone.
+/// Initial rotation of the camera on the body and time offset, from rotations alone: those of the camera by
+/// its features, and those of the body by the gyroscope.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "core/backend/vision/feature_views.h"
 #include "core/config/backend_config.h"
 #include "core/geometry/pose.h"
 #include "core/imu/imu_buffer.h"
@@ -77,6 +79,24 @@ class RotationAligner {
   Unknowns prior_information_;
   std::optional<Timestamp> first_;  ///< stamp of the first frame
   std::vector<CameraRotation> rotations_;
+};
+
+/// Successive rotations of the camera over 0.2 s or more. States and calibration of the window are only their
+/// initial guess.
+class CameraRotations {
+ public:
+  /// @param focal_px of the camera
+  explicit CameraRotations(double focal_px);
+
+  /// Adds the newest frame of a window with an IMU.
+  /// @param window with labels of the newest features
+  /// @return the rotation since the last view, if the frame is late enough for another view and at least 20
+  /// features determine it
+  [[nodiscard]] std::optional<CameraRotation> add(const Window& window);
+
+ private:
+  FeatureViews views_;
+  Timestamp last_;  ///< stamp of the frame of the newest view
 };
 
 }  // namespace stillpoint

@@ -47,19 +47,11 @@ OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const Dete
   if (last_frame_ && frame.t <= *last_frame_) return predict(frame);
   last_frame_ = frame.t;
   dynamic_.clear();
+  detections_ = &detections;
   OdometryUpdate& update = estimator_.update();
   {
     const ScopedTimer timer(update.timings, Module::kOptimizationThread);
-    estimator_.add(frame);
-    apply_semantic_mask(frame, detections);
-    check_motion_before_solve();
-    if (estimator_.refine()) {
-      check_motion_after_solve();
-    } else {
-      reset_recognition();
-    }
-    if (keyframes_) keyframes_->before_slide(estimator_.window(), estimator_.oldest_motion());
-    estimator_.finish();
+    estimator_.process(frame, this);
     if (keyframes_) {
       keyframes_->set_located(is_located(update.status), update.segment);
       keyframes_->after_slide(estimator_.window(), frame, dynamic_);
@@ -75,8 +67,7 @@ OdometryUpdate& OptimizationStage::process(const TrackedFrame& frame, const Dete
 
 OdometryUpdate& OptimizationStage::predict(const TrackedFrame& frame) {
   dynamic_.clear();
-  estimator_.predict(frame.id, frame.t);
-  OdometryUpdate& update = estimator_.update();
+  OdometryUpdate& update = estimator_.predict(frame.id, frame.t);
   update.hashes = {.tracking = state_hash(frame.features), .optimization = state_hash(update.state)};
   return update;
 }
@@ -105,51 +96,52 @@ void OptimizationStage::recycle(DepartedKeyframe keyframe) {
 }
 
 /// Sec. III-C and III-D.
-void OptimizationStage::apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections) {
+DynamicLabeler::Labels OptimizationStage::labels_by_detections(const TrackedFrame& frame) {
   const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition);
   if (config_.mask != DynamicMask::kOff) {
-    dynamic_.boxes = box_tracker_.update(detections);
+    dynamic_.boxes = box_tracker_.update(*detections_);
     boxes_ = boxes_of(dynamic_.boxes, std::move(boxes_));
     dynamic_.mask.assign(boxes_, {.pixels = frame.depth, .units_per_m = frame.depth_units_per_m},
                          {camera_.width, camera_.height}, config_);
   }
-  apply_labels(recognition_.classify(frame, dynamic_.mask));
+  return dynamic_.labels = recognition_.classify(frame, dynamic_.mask);
 }
 
-/// Sec. III-E at the predicted pose, which requires inertial data.
-void OptimizationStage::check_motion_before_solve() {
-  if (!config_.moving_consistency || !config_.gate_before_solve) return;
-  estimator_.check_prediction();
-  if (!estimator_.has_inertial_prediction()) return;
+/// Sec. III-E at the predicted pose.
+DynamicLabeler::Labels OptimizationStage::labels_at_prediction(const Window& window,
+                                                               const std::optional<UncertainPose>& camera) {
   const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition, Kind::kPart);
   std::optional<PredictionError> error;
-  if (config_.gate_probability > 0.0) {
-    if (const std::optional<UncertainPose> camera = estimator_.predicted_camera())
-      error = {.camera = *camera, .bearing_sigma = feature_sigma_px_ / camera_.focal_px()};
+  if (config_.gate_probability > 0.0 && camera)
+    error = {.camera = *camera, .bearing_sigma = feature_sigma_px_ / camera_.focal_px()};
+  update_view(window);
+  residuals_ = gate_on_prediction(view_, error, std::move(residuals_));
+  return dynamic_.labels = recognition_.gate(residuals_);
+}
+
+DynamicLabeler::Labels OptimizationStage::labels_after_refinement(const RefinedWindow& refined) {
+  Labels labels;
+  if (refined.failed) {
+    reset_recognition();
+  } else if (config_.moving_consistency) {
+    labels = check_motion(refined.window);
   }
-  residuals_ = gate_on_prediction(update_view(), error, std::move(residuals_));
-  apply_labels(recognition_.gate(residuals_));
+  if (keyframes_) keyframes_->before_slide(refined.window, refined.oldest_motion);
+  return labels;
 }
 
 /// Sec. III-E at the optimized poses.
-void OptimizationStage::check_motion_after_solve() {
-  if (!config_.moving_consistency) return;
+DynamicLabeler::Labels OptimizationStage::check_motion(const Window& window) {
   const ScopedTimer timer(estimator_.update().timings, Module::kDynamicRecognition, Kind::kPart);
-  const ConsistencyView& view = update_view();
+  update_view(window);
   std::span<const std::int64_t> readmitted;
-  if (config_.min_static_frames > 0) readmitted = static_readmission_.update(view);
-  residuals_ = consistency_residuals(view, std::move(residuals_));
-  apply_labels(recognition_.check(residuals_, readmitted));
+  if (config_.min_static_frames > 0) readmitted = static_readmission_.update(view_);
+  residuals_ = consistency_residuals(view_, std::move(residuals_));
+  return dynamic_.labels = recognition_.check(residuals_, readmitted);
 }
 
-const ConsistencyView& OptimizationStage::update_view() {
-  view_ = consistency_view(estimator_.window(), camera_.focal_px(), feature_sigma_px_, std::move(view_));
-  return view_;
-}
-
-void OptimizationStage::apply_labels(const std::vector<DynamicLabel>& labels) {
-  dynamic_.labels = labels;
-  estimator_.mark_dynamic(dynamic_.labels);
+void OptimizationStage::update_view(const Window& window) {
+  view_ = consistency_view(window, camera_.focal_px(), feature_sigma_px_, std::move(view_));
 }
 
 /// After a tracking failure.

@@ -18,7 +18,7 @@
 namespace stillpoint {
 
 /// Combines the estimator with dynamic feature recognition. Single-threaded; the runners provide the threads.
-class OptimizationStage {
+class OptimizationStage final : private DynamicLabeler {
  public:
   /// @throws InputError if the rig lacks a sensor that the configuration requires
   OptimizationStage(const OdometryConfig& config, const Rig& rig);
@@ -51,11 +51,17 @@ class OptimizationStage {
   void recycle(DepartedKeyframe keyframe);
 
  private:
-  void apply_semantic_mask(const TrackedFrame& frame, const DetectionSet& detections);
-  void check_motion_before_solve();
-  void check_motion_after_solve();
-  [[nodiscard]] const ConsistencyView& update_view();
-  void apply_labels(const std::vector<DynamicLabel>& labels);
+  // What the estimator asks for in `process`.
+  [[nodiscard]] Labels labels_by_detections(const TrackedFrame& frame) override;
+  [[nodiscard]] bool uses_prediction() const override {
+    return config_.moving_consistency && config_.gate_before_solve;
+  }
+  [[nodiscard]] Labels labels_at_prediction(const Window& window,
+                                            const std::optional<UncertainPose>& camera) override;
+  [[nodiscard]] Labels labels_after_refinement(const RefinedWindow& refined) override;
+
+  [[nodiscard]] Labels check_motion(const Window& window);
+  void update_view(const Window& window);
   void reset_recognition();
 
   DynamicConfig config_;
@@ -67,6 +73,7 @@ class OptimizationStage {
   FeatureRecognition recognition_;
   StaticReadmission static_readmission_;
   DynamicReport dynamic_;
+  const DetectionSet* detections_ = nullptr;    ///< of the frame that is processed
   std::vector<std::int64_t> dynamic_ids_;       ///< of the last frame that entered the window
   std::optional<Timestamp> last_frame_;         ///< same
   std::optional<KeyframeCollector> keyframes_;  ///< if loop closure is on

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "tests/support/process_frame.h"
+#include "core/backend/estimator.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -132,7 +132,7 @@ FaultyRun run_with_faults(const FaultyScenario& scenario, Odometry& odometry, co
 inline FaultyRun run_with_faults(const FaultyScenario& scenario) {
   Estimator estimator(scenario.backend, imu_config_of(scenario), rig_of(scenario), 1);
   return run_with_faults(scenario, estimator, [&](const TrackedFrame& frame) -> const OdometryUpdate& {
-    return process_frame(estimator, frame);
+    return estimator.process(frame);
   });
 }
 

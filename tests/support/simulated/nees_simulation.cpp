@@ -3,8 +3,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/backend/estimator.h"
 #include "core/backend/factors/gravity_direction.h"
-#include "tests/support/process_frame.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -99,7 +99,7 @@ std::vector<std::vector<NeesTerm>> simulate_nees(const OdometryConfig& config, c
     const double t = 0.1 + i / kRate_hz;
     for (; sample < imu.size() && to_seconds(imu[sample].t) < t + 0.15; ++sample)
       estimator.add_imu(imu[sample]);
-    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
+    const OdometryUpdate& update = estimator.process(motion.frame(i, t));
     const bool valid = update.status == OdometryStatus::kTracking && update.covariance;
     if (valid && !T_we_wt) {
       const WindowFrame& first = estimator.window().frames.front();

@@ -2,7 +2,7 @@
 /// A full estimator window on a simulated trajectory, for tests and benchmarks of the backend.
 #pragma once
 
-#include "tests/support/process_frame.h"
+#include "core/backend/estimator.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -41,7 +41,7 @@ inline Window simulated_window(const SimulatedWindowOptions& options = {}) {
   Estimator estimator(options.config, imu, SimulatedMotion::rig(), 1);
   for (const ImuSample& sample : motion.imu(0.1 * options.frames + 1.0)) estimator.add_imu(sample);
   for (int i = 0; i < options.frames; ++i) {
-    static_cast<void>(process_frame(estimator, motion.frame(i, 0.1 + 0.1 * i)));
+    estimator.process(motion.frame(i, 0.1 + 0.1 * i));
   }
   Window window = estimator.window();
   window.frames.back().state.T_w_b.p += Eigen::Vector3d(0.01, -0.005, 0.01);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/backend/estimator.h"
 #include "core/geometry/so3.h"
-#include "tests/support/process_frame.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -88,7 +88,7 @@ Calibrated calibrate(const CalibrationError& error, const BackendConfig& config)
   Estimator estimator(config, {}, rig, 1);
   for (const ImuSample& sample : motion.imu(kSeconds + 0.5)) estimator.add_imu(sample);
   const int frames = static_cast<int>(kSeconds * kRate_hz);
-  for (int i = 0; i < frames; ++i) process_frame(estimator, motion.frame(i, 0.1 + i / kRate_hz));
+  for (int i = 0; i < frames; ++i) estimator.process(motion.frame(i, 0.1 + i / kRate_hz));
 
   const OdometryUpdate& last = estimator.update();
   const Pose& T_b_c = estimator.window().T_b_c;
@@ -176,7 +176,7 @@ TEST(CalibrationConvergence, ADepthSensorThatFailsForAWhileDoesNotChangeTheScale
   Estimator estimator(config, {}, SimulatedMotion::rig(), 1);
   for (const ImuSample& sample : motion.imu(14.5)) estimator.add_imu(sample);
   for (int i = 0; i < 420; ++i) {
-    process_frame(estimator, (i >= 240 && i < 390 ? faulty : motion).frame(i, 0.1 + i / kRate_hz));
+    estimator.process((i >= 240 && i < 390 ? faulty : motion).frame(i, 0.1 + i / kRate_hz));
   }
   EXPECT_TRUE(estimator.update().agrees_with_rig.depth_scale);
   EXPECT_EQ(estimator.update().depth_scale, 1.0);
@@ -200,7 +200,7 @@ FrameErrors largest_frame_errors(const BackendConfig& config, const SimulatedMot
   std::optional<Pose> before;
   for (int i = 0; i < 240; ++i) {
     const double t = 0.1 + i / kRate_hz;
-    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
+    const OdometryUpdate& update = estimator.process(motion.frame(i, t));
     if (before) {
       EXPECT_TRUE(is_located(update.status)) << i;
       const Pose found = before->inverse() * update.T_w_c;
@@ -275,7 +275,7 @@ TEST(CalibrationConvergence, TheExtrinsicsDoNotTurnTheTrajectoryOfTheCamera) {
   std::optional<Pose> T_we_wt;
   for (int i = 0; i < 300; ++i) {
     const double t = 0.1 + i / kRate_hz;
-    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
+    const OdometryUpdate& update = estimator.process(motion.frame(i, t));
     const Pose true_T_w_c = SimulatedMotion::state(t).T_w_b * T_b_c;
     if (!T_we_wt && update.status == OdometryStatus::kTracking) T_we_wt = update.T_w_c * true_T_w_c.inverse();
     if (i < 299) continue;
@@ -292,7 +292,7 @@ TEST(CalibrationConvergence, WithoutAnImuTheDepthScaleStaysAtOne) {
   no_imu.enabled = false;
   const SimulatedMotion motion{.pixel_noise_px = 0.5, .depth_noise = 0.003, .depth_factor = 0.9};
   Estimator estimator(config, no_imu, SimulatedMotion::rig(), 1);
-  for (int i = 0; i < 60; ++i) process_frame(estimator, motion.frame(i, 0.1 + i / kRate_hz));
+  for (int i = 0; i < 60; ++i) estimator.process(motion.frame(i, 0.1 + i / kRate_hz));
   EXPECT_EQ(estimator.update().depth_scale, 1.0);
 }
 

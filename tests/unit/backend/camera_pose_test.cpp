@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/start/camera_pose.h"
+#include "core/backend/vision/camera_pose.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/health/contradiction.h"
+#include "core/backend/health/bias_monitor.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/health/depth_scale.h"
+#include "core/backend/health/depth_monitor.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/imu_queue.h"
-#include "tests/support/process_frame.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -49,7 +48,7 @@ SimulatedRun simulate(const SimulatedMotion& motion, const BackendConfig& backen
   for (int i = 0; i < static_cast<int>(seconds * kRate_hz); ++i) {
     const double t = 0.1 + i / kRate_hz;
     for (; next < imu.size() && to_seconds(imu[next].t) < t + 0.05; ++next) estimator.add_imu(imu[next]);
-    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
+    const OdometryUpdate& update = estimator.process(motion.frame(i, t));
     if (!is_located(update.status)) continue;
     const Pose truth = SimulatedMotion::state(t + motion.time_offset_s).T_w_b;
     if (!T_first) {
@@ -116,7 +115,7 @@ TEST(Estimator, ARestartKeepsGravityWithItsCovariance) {
   Eigen::Vector3d before = Eigen::Vector3d::Zero(), after = before;
   bool reset = false, known = false;
   for (int i = 0; i < 150; ++i) {
-    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, 0.1 + i / kRate_hz));
+    const OdometryUpdate& update = estimator.process(motion.frame(i, 0.1 + i / kRate_hz));
     if (update.counters.reset) known = estimator.window().gravity_covariance.has_value();
     reset |= update.counters.reset;
     (reset ? after : before) = estimator.window().gravity_w;
@@ -172,7 +171,7 @@ TEST(Estimator, LosesNoPoseAtALargeTimeOffsetWithTheSamplesThatRunnersProvide) {
     const double t = 0.1 + i / kRate_hz;
     const Timestamp end = imu_end_of(from_seconds(t), estimator.motion_state().time_offset_s);
     for (; imu[next].t <= end; ++next) estimator.add_imu(imu[next]);
-    const OdometryUpdate& update = process_frame(estimator, motion.frame(i, t));
+    const OdometryUpdate& update = estimator.process(motion.frame(i, t));
     poses += is_located(update.status);
     lost += update.status == OdometryStatus::kLost;
   }

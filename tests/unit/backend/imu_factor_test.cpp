@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/factors/imu_factor.h"
+#include "core/backend/reference/state_factors.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/backend/start/frozen_world.h"
 #include "core/imu/imu_buffer.h"
 #include "tests/support/simulated/simulated_motion.h"
 

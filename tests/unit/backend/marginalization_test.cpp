@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/marginalization/frame_marginalizer.h"
+#include "core/backend/solvers/marginalization.h"
 
 #include <gtest/gtest.h>
 
+#include "core/backend/sliding_window.h"
 #include "core/backend/solvers/window_problem.h"
-#include "core/backend/solvers/window_solver.h"
 #include "core/backend/start/initial_prior.h"
 #include "core/backend/window/landmark_tracks.h"
 #include "tests/support/simulated/window_world.h"

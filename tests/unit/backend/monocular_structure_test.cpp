@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/start/monocular_structure.h"
+#include "core/backend/sliding_window.h"
 
 #include <gtest/gtest.h>
 

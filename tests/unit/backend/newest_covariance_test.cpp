@@ -7,8 +7,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/backend/marginalization/normal_equations.h"
-#include "core/backend/solvers/ceres_solver.h"
+#include "core/backend/reference/ceres_solver.h"
+#include "core/backend/reference/normal_equations.h"
 #include "core/backend/solvers/schur_solver.h"
 #include "tests/support/simulated/simulated_window.h"
 

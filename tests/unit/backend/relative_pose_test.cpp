@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/start/relative_pose.h"
+#include "core/backend/start/monocular_structure.h"
 
 #include <gtest/gtest.h>
 

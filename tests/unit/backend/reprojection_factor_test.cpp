@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/factors/reprojection_factor.h"
+#include "core/backend/reference/reprojection_factor.h"
 
 #include <gtest/gtest.h>
 

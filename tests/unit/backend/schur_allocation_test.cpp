@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/profile/meters/allocation_counter.h"
-#include "core/backend/health/trusted_map.h"
+#include "core/backend/health/tracking_monitor.h"
 #include "core/backend/solvers/schur_solver.h"
 #include "tests/support/simulated/simulated_window.h"
 

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/backend/marginalization/normal_equations.h"
-#include "core/backend/solvers/ceres_solver.h"
-#include "core/backend/solvers/zero_velocity_term.h"
+#include "core/backend/reference/ceres_solver.h"
+#include "core/backend/reference/normal_equations.h"
+#include "core/backend/solvers/reduced_system.h"
 #include "tests/support/simulated/simulated_window.h"
 
 namespace stillpoint {

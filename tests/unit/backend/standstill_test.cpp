@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/standstill.h"
+#include "core/backend/health/standstill.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "tests/support/process_frame.h"
+#include "core/backend/estimator.h"
 #include "tests/support/simulated/simulated_motion.h"
 
 namespace stillpoint {
@@ -73,7 +73,7 @@ StandingRun run_standing(const ZeroVelocityConfig& zero_velocity) {
     const bool is_covered = t >= kCover_s && t < kUncover_s;
     TrackedFrame frame = motion.frame(i, t);
     if (is_covered) frame = covered(std::move(frame), t, random);
-    const OdometryUpdate& update = process_frame(estimator, frame);
+    const OdometryUpdate& update = estimator.process(frame);
     if (t < kStop_s + 0.8) run.false_rest += update.counters.at_rest;
     if (t < kCover_s) before = update.state.T_w_b.p;
     if (t < kCover_s) continue;

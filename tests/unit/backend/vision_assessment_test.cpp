@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/health/vision_assessment.h"
+#include "core/backend/vision/vision_assessment.h"
 
 #include <gtest/gtest.h>
 

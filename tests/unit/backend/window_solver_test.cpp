@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/backend/solvers/window_solver.h"
+#include "core/backend/sliding_window.h"
 
 #include <gtest/gtest.h>
 

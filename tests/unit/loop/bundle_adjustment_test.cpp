@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/backend/factors/pose_manifold.h"
+#include "core/backend/factors/ceres_manifolds.h"
 #include "core/loop/pose_graph_factors.h"
 #include "tests/support/simulated/simulated_pose_graph.h"
 #include "tests/unit/loop/random_features.h"

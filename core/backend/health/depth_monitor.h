@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Detection of a depth sensor whose scale has changed, and rejection of its depth.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/backend/window/window.h"
+#include "core/types/nav_state.h"
+
+namespace stillpoint {
+
+/// Compares the depths d_k measured in the newest frame with the depths z_k of the same static landmarks at
+/// its predicted pose, as known from earlier frames. The scale is the median of d_k / (s z_k) with the
+/// estimated depth scale s of the window, if at least 15 landmarks are compared and half of the ratios are
+/// within 2 % of it.
+class DepthScale {
+ public:
+  /// @return nullopt without a common scale
+  [[nodiscard]] std::optional<double> of_newest(const Window& window);
+
+ private:
+  std::vector<double> ratios_;  ///< buffer of `of_newest`
+};
+
+/// Rejects measured depth whose scale differs from that of known landmarks, for at most 10 s: if the
+/// contradiction persists, the landmarks are wrong.
+class DepthMonitor {
+ public:
+  /// @param max_error largest accepted error of the scale; 0 = no check
+  explicit DepthMonitor(double max_error) : max_error_(max_error) {}
+
+  /// Removes the depths measured in the newest frame if their scale contradicts the landmarks.
+  /// @param covariance of the newest state, if it is known: an estimated scale must be certain. While the
+  ///   scale of the rig is compared with the data, the comparison needs the depth until it is certain.
+  void update(const std::optional<StateCovariance>& covariance, Window& window);
+
+  /// After a restart with another depth scale.
+  void reset() { rejected_since_.reset(); }
+
+ private:
+  [[nodiscard]] bool knows_scale(const std::optional<StateCovariance>& covariance,
+                                 const Window& window) const;
+
+  double max_error_;
+  DepthScale scale_;
+  std::optional<Timestamp> rejected_since_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/health/inertial_checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/config/monitor_config.h"
+#include "core/geometry/so3.h"
+#include "core/imu/propagation.h"
+
+namespace stillpoint {
+namespace {
+
+bool explains(const Eigen::Vector3d& change, const Eigen::Vector3d& error) {
+  return change.dot(error) >= kMonitor.inertial_error.min_cosine * change.norm() * error.norm() &&
+         change.norm() >= kMonitor.inertial_error.min_change_ratio * error.norm();
+}
+
+/// The motion due to the specific force alone: T_w_b = (dq, dp), v_w = dv. Absent without samples.
+std::optional<NavState> preintegrated(Timestamp begin, Timestamp end, const NavState& biases,
+                                      ImuBuffer& imu) {
+  const std::vector<ImuSample>& samples = imu.samples_up_to(begin, end);
+  if (samples.size() < 2) return std::nullopt;
+  const NavState start{.t = begin, .gyro_bias = biases.gyro_bias, .accel_bias = biases.accel_bias};
+  return propagate(start, samples, Eigen::Vector3d::Zero());
+}
+
+}  // namespace
+
+// Inlined, g++ 12 moves the vectors by an instruction that valgrind 3.19 cannot decode, and no instructions
+// can be counted.
+[[gnu::noinline]] bool InertialError::accel_is_explained() const { return explains(accel_change_w, accel_w); }
+
+[[gnu::noinline]] bool InertialError::gyro_is_explained() const { return explains(gyro_change_b, gyro_b); }
+
+double InertialError::severity() const {
+  return std::max(
+      accel_w.norm() / (kMonitor.inertial_error.accel + kMonitor.inertial_error.sigmas * accel_sigma),
+      gyro_b.norm() / (kMonitor.inertial_error.gyro + kMonitor.inertial_error.sigmas * gyro_sigma));
+}
+
+std::optional<InertialError> inertial_error(const VisualPoses& poses, const NavState& state,
+                                            const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
+  const auto& [A, B, C] = poses;
+  const std::optional<NavState> ab = preintegrated(A.t, B.t, state, imu);
+  const std::optional<NavState> bc = preintegrated(B.t, C.t, state, imu);
+  if (!ab || !bc) return std::nullopt;
+  const double T1 = seconds_between(A.t, B.t), T2 = seconds_between(B.t, C.t);
+  const auto& [dq1, dp1] = ab->T_w_b;
+  const auto& [dq2, dp2] = bc->T_w_b;
+  const Eigen::Vector3d &dv1 = ab->v_w, &dv2 = bc->v_w;
+  const Eigen::Vector3d v_1 =
+      (B.T_w_b.p - A.T_w_b.p) / T1 + 0.5 * T1 * gravity_w + A.T_w_b.q * Eigen::Vector3d(dv1 - dp1 / T1);
+  const Eigen::Vector3d v_2 =
+      (C.T_w_b.p - B.T_w_b.p) / T2 - 0.5 * T2 * gravity_w - B.T_w_b.q * Eigen::Vector3d(dp2 / T2);
+  const double T = T1 + T2;
+  const double sigma_m = std::max({A.sigma_m, B.sigma_m, C.sigma_m});
+  const double sigma_rad = std::max(A.sigma_rad, C.sigma_rad);
+  return InertialError{
+      .accel_w = (v_1 - v_2) * 2.0 / T,
+      .gyro_b = log_so3(C.T_w_b.q.conjugate() * (A.T_w_b.q * dq1 * dq2)) / T,
+      .accel_sigma = 2.0 * sigma_m * std::sqrt(2.0 / (T1 * T1) + 2.0 / (T2 * T2)) / T,
+      .gyro_sigma = sigma_rad * std::sqrt(2.0) / T,
+      .accel_change_w = B.T_w_b.q * Eigen::Vector3d(dv2 / T2) - A.T_w_b.q * Eigen::Vector3d(dv1 / T1),
+      .gyro_change_b = log_so3(dq2) / T2 - log_so3(dq1) / T1};
+}
+
+std::optional<std::size_t> InertialCheck::pose_before(Timestamp t) const {
+  for (std::size_t i = poses_.size(); i-- > 0;) {
+    if (seconds_between(poses_[i].t, t) >= kMonitor.inertial.interval_s) return i;
+  }
+  return std::nullopt;
+}
+
+/// Of the error over the last two intervals.
+std::optional<InertialError> InertialCheck::error_at(const VisualPose& pose, const NavState& state,
+                                                     const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
+  const std::optional<std::size_t> middle = pose_before(pose.t);
+  if (!middle) return std::nullopt;
+  const VisualPose& B = poses_[*middle];
+  const std::optional<std::size_t> first = pose_before(B.t);
+  if (!first) return std::nullopt;
+  return inertial_error({.A = poses_[*first], .B = B, .C = pose}, state, gravity_w, imu);
+}
+
+bool InertialCheck::update(const VisualPose& pose, const NavState& state, const Eigen::Vector3d& gravity_w,
+                           ImuBuffer& imu) {
+  if (resume_at_ && pose.t < *resume_at_) return consistent_;
+  const std::optional<InertialError> error = error_at(pose, state, gravity_w, imu);
+  std::erase_if(poses_, [&](const VisualPose& old) {
+    return seconds_between(old.t, pose.t) > kMonitor.inertial.history_s;
+  });
+  poses_.push_back(pose);
+  if (!error) return consistent_;
+  const double severity = error->severity();
+  agreeing_frames_ = severity < kMonitor.inertial.agreeing_severity ? agreeing_frames_ + 1 : 0;
+  if (severity > kMonitor.inertial.min_change_severity && error->is_explained()) changed_at_ = pose.t;
+  const bool changed =
+      changed_at_ && seconds_between(*changed_at_, pose.t) < kMonitor.inertial.after_change_s;
+  const bool was_missing =
+      missing_at_ && seconds_between(*missing_at_, pose.t) < kMonitor.inertial.after_gap_s;
+  const bool has_reason = changed || was_missing || !std::isfinite(severity);
+  if (!(severity <= 1.0) && has_reason) consistent_ = false;
+  if (agreeing_frames_ >= kMonitor.inertial.agreeing_frames && !held_) consistent_ = true;
+  return consistent_;
+}
+
+void InertialCheck::interrupt(Timestamp t) {
+  poses_.clear();
+  resume_at_ = after(t, kMonitor.inertial.settling_s);
+}
+
+void InertialCheck::contradict() {
+  consistent_ = false;
+  agreeing_frames_ = 0;
+}
+
+void InertialCheck::reset() {
+  resume_at_.reset();
+  changed_at_.reset();
+  poses_.clear();
+  held_ = false;
+  consistent_ = true;
+  agreeing_frames_ = 0;
+}
+
+namespace {
+
+/// Three views by their indices.
+struct Views {
+  std::size_t first;
+  std::size_t middle;
+  std::size_t last;
+};
+
+/// The newest view and earlier ones with the given intervals.
+std::optional<Views> spaced(const FeatureViews& views, double interval_s) {
+  const std::size_t last = views.size() - 1;
+  const std::optional<std::size_t> middle = views.before(views[last].t, interval_s);
+  if (!middle) return std::nullopt;
+  const std::optional<std::size_t> first = views.before(views[*middle].t, interval_s);
+  if (!first) return std::nullopt;
+  return Views{*first, *middle, last};
+}
+
+/// The poses of three views by vision, and the error of the inertial data between them.
+struct ViewError {
+  VisualPose B;
+  VisualPose C;
+  InertialError error;
+};
+
+/// With the pose of the first view as estimated so far: the others are relative to it.
+std::optional<ViewError> error_between(const Views& chosen, FeatureViews& views, const Window& window,
+                                       ImuBuffer& imu) {
+  const VisualPose A{.t = views[chosen.first].t, .T_w_b = views[chosen.first].T_w_b};
+  const std::optional<VisualPose> B = views.pose_after(A, chosen.first, chosen.middle, window.T_b_c);
+  if (!B) return std::nullopt;
+  const std::optional<VisualPose> C = views.pose_after(*B, chosen.middle, chosen.last, window.T_b_c);
+  if (!C) return std::nullopt;
+  const std::optional<InertialError> error =
+      inertial_error({.A = A, .B = *B, .C = *C}, window.frames.back().state, window.gravity_w, imu);
+  if (!error) return std::nullopt;
+  return ViewError{*B, *C, *error};
+}
+
+}  // namespace
+
+/// Whether the mean specific force or angular rate differs between (first, middle] and (middle, newest].
+bool StepCheck::data_changed(std::size_t first, std::size_t middle) const {
+  Eigen::Vector3d accel[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  Eigen::Vector3d gyro[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (std::size_t i = first + 1; i < views_.size(); ++i) {
+    accel[i > middle] += views_[i].velocity_w;
+    gyro[i > middle] += views_[i].rotation_b;
+  }
+  const double T1 = seconds_between(views_[first].t, views_[middle].t);
+  const double T2 = seconds_between(views_[middle].t, views_[views_.size() - 1].t);
+  return (accel[1] / T2 - accel[0] / T1).norm() > kMonitor.step.accel ||
+         (gyro[1] / T2 - gyro[0] / T1).norm() > kMonitor.step.gyro;
+}
+
+bool StepCheck::is_wrong(const Window& window, ImuBuffer& imu) {
+  static_cast<void>(views_.add(window));
+  const std::optional<Views> chosen = spaced(views_, kMonitor.inertial.interval_s);
+  if (!chosen || !data_changed(chosen->first, chosen->middle)) return false;
+  const std::optional<ViewError> found = error_between(*chosen, views_, window, imu);
+  if (!found) return false;
+  const InertialError& error = found->error;
+  const bool accel = error.accel_w.norm() > kMonitor.step.accel + kMonitor.step.sigmas * error.accel_sigma;
+  const bool gyro = error.gyro_b.norm() > kMonitor.step.gyro + kMonitor.step.sigmas * error.gyro_sigma;
+  return (accel && error.accel_is_explained()) || (gyro && error.gyro_is_explained());
+}
+
+namespace {
+
+/// Errors that the longest rule needs.
+constexpr std::size_t kMaxErrors = 6;
+
+struct BiasError {
+  Eigen::Vector3d e;
+  double sigma;
+  bool explained;
+
+  [[nodiscard]] bool exceeds(const BiasLimit& limit) const {
+    return e.norm() > limit.base + limit.sigmas * sigma;
+  }
+  [[nodiscard]] bool has_direction_of(const BiasError& other) const {
+    return e.dot(other.e) >= kMonitor.bias.min_cosine * e.norm() * other.e.norm();
+  }
+};
+
+BiasError gyro_bias_error(const MeasuredBiases& measured, const NavState& state) {
+  return {measured.gyro - state.gyro_bias, measured.gyro_sigma, measured.gyro_explained};
+}
+
+BiasError accel_bias_error(const MeasuredBiases& measured, const NavState& state) {
+  return {measured.accel - state.accel_bias, measured.accel_sigma, measured.accel_explained};
+}
+
+bool is_certain(const VisualPose& pose, std::size_t tracked) {
+  return pose.features >= kMonitor.bias.certain_features &&
+         pose.features >= kMonitor.bias.certain_ratio * static_cast<double>(tracked);
+}
+
+/// Whether the newest errors of one sensor have one direction and fulfill a rule.
+template <class ErrorOf>
+bool fulfills(const BiasStepRule& rule, const std::vector<MeasuredBiases>& measured,
+              const ErrorOf& error_of) {
+  const auto errors = static_cast<std::size_t>(rule.errors);
+  if (measured.size() < errors) return false;
+  const BiasError newest = error_of(measured.back());
+  bool explained = !rule.explained;
+  for (std::size_t i = measured.size() - errors; i < measured.size(); ++i) {
+    const BiasError error = error_of(measured[i]);
+    if (!error.exceeds(rule.limit) || !error.has_direction_of(newest)) return false;
+    if (rule.certain && !measured[i].certain) return false;
+    explained = explained || error.explained;
+  }
+  return explained;
+}
+
+bool is_step(const std::vector<MeasuredBiases>& measured, const NavState& state) {
+  const auto gyro = [&](const BiasStepRule& rule) {
+    return fulfills(rule, measured, [&](const auto& biases) { return gyro_bias_error(biases, state); });
+  };
+  const auto accel = [&](const BiasStepRule& rule) {
+    return fulfills(rule, measured, [&](const auto& biases) { return accel_bias_error(biases, state); });
+  };
+  return std::ranges::any_of(kMonitor.bias.gyro_rules, gyro) ||
+         std::ranges::any_of(kMonitor.bias.accel_rules, accel);
+}
+
+}  // namespace
+
+BiasCheck::Result BiasCheck::update(const Window& window, ImuBuffer& imu) {
+  if (!views_.add(window)) return Result::kUnknown;
+  const std::optional<MeasuredBiases> newest = measure(window, imu);
+  if (!newest) {
+    measured_.clear();
+    return Result::kUnknown;
+  }
+  if (!measured_.empty() && seconds_between(measured_.back().t, newest->t) > kMonitor.bias.max_pause_s)
+    measured_.clear();
+  if (measured_.size() == kMaxErrors) measured_.erase(measured_.begin());
+  measured_.push_back(*newest);
+  const NavState& state = window.frames.back().state;
+  const BiasError gyro = gyro_bias_error(*newest, state), accel = accel_bias_error(*newest, state);
+  const bool agrees =
+      !gyro.exceeds(kMonitor.bias.gyro_agreement) && !accel.exceeds(kMonitor.bias.accel_agreement);
+  if (!agrees && is_step(measured_, state)) return Result::kStep;
+  const bool differs =
+      gyro.exceeds(kMonitor.bias.gyro_difference) || accel.exceeds(kMonitor.bias.accel_difference);
+  if (!newest->certain) return differs ? Result::kDoubtful : Result::kUnknown;
+  if (agrees) return Result::kAgrees;
+  return differs ? Result::kDiffers : Result::kUnknown;
+}
+
+std::optional<MeasuredBiases> BiasCheck::measure(const Window& window, ImuBuffer& imu) {
+  const std::optional<Views> chosen = spaced(views_, kMonitor.bias.interval_s);
+  if (!chosen) return std::nullopt;
+  const std::optional<ViewError> found = error_between(*chosen, views_, window, imu);
+  if (!found) return std::nullopt;
+  const auto& [B, C, error] = *found;
+  const NavState& state = window.frames.back().state;
+  return MeasuredBiases{.t = C.t,
+                        .gyro = state.gyro_bias + error.gyro_b,
+                        .accel = state.accel_bias + B.T_w_b.q.conjugate() * error.accel_w,
+                        .gyro_sigma = error.gyro_sigma,
+                        .accel_sigma = error.accel_sigma,
+                        .certain = is_certain(B, views_[chosen->middle].points.size()) &&
+                                   is_certain(C, views_[chosen->last].points.size()),
+                        .gyro_explained = error.gyro_is_explained(),
+                        .accel_explained = error.accel_is_explained()};
+}
+
+}  // namespace stillpoint

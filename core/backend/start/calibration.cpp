@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/start/calibration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/backend/start/initial_prior.h"
+#include "core/geometry/covariance.h"
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kAlignedDegreesOfFreedom = 4;     // rotation and time offset
+constexpr double kAveragingHalfWidth_s = 0.02;  // as far as samples are available after the newest exposure
+
+/// Limits `value` to [center - bound, center + bound]. @return whether it was outside
+bool clamp_around(double center, double bound, double& value) {
+  const double limited = std::clamp(value, center - bound, center + bound);
+  const bool at_bound = limited != value;
+  value = limited;
+  return at_bound;
+}
+
+/// @return whether either part was outside of its bound
+bool limit_extrinsics(const Pose& calibrated, const BackendConfig& config, Pose& T_b_c) {
+  const Eigen::Vector3d translation = T_b_c.p - calibrated.p;
+  const Eigen::Vector3d rotation = log_so3(calibrated.q.conjugate() * T_b_c.q);
+  const bool translated = translation.norm() > config.extrinsics_bound_m;
+  const bool rotated = rotation.norm() > config.extrinsics_bound_rad;
+  if (translated) T_b_c.p = calibrated.p + config.extrinsics_bound_m * translation.normalized();
+  if (rotated) T_b_c.q = calibrated.q * exp_so3(config.extrinsics_bound_rad * rotation.normalized());
+  return translated || rotated;
+}
+
+}  // namespace
+
+Calibration::Calibration(const BackendConfig& config, bool uses_imu, const Rig& rig)
+    : config_(config), uses_imu_(uses_imu), rig_(rig) {}
+
+Window Calibration::calibrated_window() const {
+  Window window;
+  window.T_b_c = rig_.T_b_c;
+  window.time_offset_s = rig_.time_offset_s;
+  window.time_offset_model = config_.time_offset_model;
+  const bool starts_with_rig = uses_imu_ && config_.calibration_agreement_probability > 0.0;
+  window.agrees_with_rig = {
+      .extrinsics = starts_with_rig && config_.estimate_extrinsics,
+      .depth_scale = starts_with_rig && config_.depth.estimate_scale && !depth_scale_found_};
+  if (depth_scale_found_) window.depth_scale = depth_scale_found_->value;
+  if (!is_aligned_otherwise()) return window;
+  window.T_b_c.q = rotation_alignment_->q_b_c;
+  window.time_offset_s = rotation_alignment_->time_offset_s;
+  window.agrees_with_rig.extrinsics = false;
+  return window;
+}
+
+LinearPrior Calibration::prior() const {
+  const Window window = calibrated_window();
+  BackendConfig config = config_;
+  if (depth_scale_found_)
+    config.depth.scale_sigma = std::min(config.depth.scale_sigma, depth_scale_found_->sigma);
+  if (!is_aligned_otherwise()) return calibration_prior(window, config);
+  return aligned_calibration_prior(window, config, rotation_alignment_->covariance);
+}
+
+bool Calibration::awaits_alignment() const {
+  return config_.initializer.align_rotations && uses_imu_ && config_.estimate_extrinsics &&
+         config_.depth.usage != DepthUsage::kOff && !rotation_alignment_;
+}
+
+bool Calibration::align(const RotationAlignment& alignment) {
+  rotation_alignment_ = alignment;
+  return is_aligned_otherwise();
+}
+
+bool Calibration::agrees_with_rig(double contradiction, int degrees_of_freedom) const {
+  return chi_square_tail(contradiction, degrees_of_freedom) >=
+         1.0 - config_.calibration_agreement_probability;
+}
+
+bool Calibration::is_aligned_otherwise() const {
+  return rotation_alignment_ &&
+         !agrees_with_rig(rotation_alignment_->rig_contradiction, kAlignedDegreesOfFreedom);
+}
+
+/// The step is one of Gauss-Newton from the rig: its error of second order is about its square.
+Calibration::DepthScaleEstimate Calibration::found_depth_scale(const RigContradiction& contradiction) {
+  const double step = contradiction.depth_scale_step;
+  return {.value = 1.0 + step, .sigma = std::hypot(contradiction.depth_scale_sigma, step * step)};
+}
+
+void Calibration::compare_with_rig(const RigContradiction& contradiction, AgreesWithRig& agrees) {
+  if (agrees.depth_scale) {
+    depth_scale_found_.reset();
+    if (!agrees_with_rig(contradiction.depth_scale, local_size(BlockKind::kDepthScale)))
+      depth_scale_found_ = found_depth_scale(contradiction);
+  }
+  if (!awaits_alignment())
+    agrees.extrinsics &= agrees_with_rig(contradiction.extrinsics, local_size(BlockKind::kExtrinsics));
+}
+
+CalibrationAtBound Calibration::limit(Window& window) const {
+  return limit_calibration(rig_, config_, window);
+}
+
+void average_imu_at_exposure(const ImuBuffer& imu, WindowFrame& frame) {
+  const Timestamp exposure = after(frame.state.t, frame.time_offset_s);
+  const std::optional<ImuSample> mean = imu.mean_around(exposure, kAveragingHalfWidth_s);
+  if (!mean) return;
+  frame.gyro_b = mean->gyro_b;
+  frame.accel_b = mean->accel_b;
+}
+
+void add_calibration_walk(const BackendConfig& config, const AgreesWithRig& agrees, double seconds,
+                          LinearPrior& prior) {
+  const double root = std::sqrt(seconds);
+  const double m = root * config.extrinsics_walk_m;
+  const double rad = root * config.extrinsics_walk_rad;
+  add_random_step(BlockKind::kTimeOffset, std::array{root * config.time_offset_walk}, prior);
+  if (!agrees.extrinsics) add_random_step(BlockKind::kExtrinsics, std::array{m, m, m, rad, rad, rad}, prior);
+  if (!agrees.depth_scale)
+    add_random_step(BlockKind::kDepthScale, std::array{root * config.depth.scale_walk}, prior);
+}
+
+CalibrationAtBound limit_calibration(const Rig& rig, const BackendConfig& config, Window& window) {
+  return {.time_offset = clamp_around(rig.time_offset_s, config.time_offset_bound_s, window.time_offset_s),
+          .extrinsics = limit_extrinsics(rig.T_b_c, config, window.T_b_c),
+          .depth_scale = clamp_around(1.0, config.depth.scale_bound, window.depth_scale)};
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Online calibration: time offset, camera pose on the body, depth scale.
+#pragma once
+
+#include <optional>
+
+#include "core/backend/solvers/window_solver.h"
+#include "core/backend/start/rotation_alignment.h"
+#include "core/backend/window/window.h"
+#include "core/config/backend_config.h"
+#include "core/imu/imu_buffer.h"
+#include "core/types/odometry_update.h"
+
+namespace stillpoint {
+
+/// The calibration that a window starts with, and whether it is that of the rig. Estimated extrinsics and
+/// depth scale have the values of the rig until the data contradicts those with
+/// `calibration_agreement_probability`. Then a window starts with what was found so far: rotation and time
+/// offset by a RotationAlignment, the depth scale by the score test (RigContradiction). The lever arm is
+/// estimated by the window itself.
+class Calibration {
+ public:
+  Calibration(const BackendConfig& config, bool uses_imu, const Rig& rig);
+
+  /// Without frames, with the calibration that `prior` is about.
+  [[nodiscard]] Window calibrated_window() const;
+
+  /// About the rig. A depth scale that was found is known by the residuals of windows that are given up, and
+  /// rotation and time offset, if they contradict the rig, by the rotations that they were aligned with.
+  [[nodiscard]] LinearPrior prior() const;
+
+  /// Whether rotation and time offset are to be aligned at the start, and are not yet. The features need
+  /// measured depth, by which the window can also start anew without an IMU.
+  [[nodiscard]] bool awaits_alignment() const;
+
+  /// @return whether it contradicts the rig: windows start with it from now on
+  [[nodiscard]] bool align(const RotationAlignment& alignment);
+
+  /// Compares the rig with the residuals of the last solve. Until rotations are aligned, it is not known
+  /// which value is wrong.
+  /// @param agrees of the window; calibration that contradicts the rig becomes variable
+  void compare_with_rig(const RigContradiction& contradiction, AgreesWithRig& agrees);
+
+  /// Whether the last comparison found another depth scale than that of the rig.
+  [[nodiscard]] bool has_other_depth_scale() const { return depth_scale_found_.has_value(); }
+
+  /// `limit_calibration` about the rig.
+  CalibrationAtBound limit(Window& window) const;
+
+ private:
+  /// Ratio of measured to true depth.
+  struct DepthScaleEstimate {
+    double value = 1.0;
+    double sigma = 0.0;  ///< standard deviation
+  };
+
+  [[nodiscard]] static DepthScaleEstimate found_depth_scale(const RigContradiction& contradiction);
+  [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
+  /// Whether there is an alignment that contradicts the rig.
+  [[nodiscard]] bool is_aligned_otherwise() const;
+
+  BackendConfig config_;
+  bool uses_imu_;
+  Rig rig_;
+  std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
+  std::optional<DepthScaleEstimate> depth_scale_found_;  ///< contradicts the rig
+};
+
+/// Sets what the IMU measures at the exposure of a frame to means over up to 40 ms around it, if there are
+/// samples on both sides. Image velocities and the inertial residual's derivative by the time offset are
+/// computed from them: the noise of a single sample would count as information about the time offset, and
+/// bias it towards its current value.
+void average_imu_at_exposure(const ImuBuffer& imu, WindowFrame& frame);
+
+/// Whether that is done: the calibration is observed by inertial data at the exposures.
+[[nodiscard]] inline bool averages_imu(const BackendConfig& config) {
+  return config.time_offset_model == TimeOffsetModel::kInertial || config.prior == PriorModel::kConsistent;
+}
+
+/// Adds the configured random walks of time offset, extrinsics and depth scale to a prior.
+/// @param agrees calibration that does not walk
+/// @param seconds by which the prior advances: from the oldest frame to the next one
+void add_calibration_walk(const BackendConfig& config, const AgreesWithRig& agrees, double seconds,
+                          LinearPrior& prior);
+
+/// Moves the calibration of a window back into its bounds around the calibrated values of the rig: the time
+/// offset and the depth scale are clamped, the translation and the rotation vector of the extrinsics relative
+/// to the rig are shortened. An estimate outside of them is implausible, and IMU samples are only provided up
+/// to the bound of the time offset (see `last_imu_end_of`).
+/// @return which values were at their bound
+CalibrationAtBound limit_calibration(const Rig& rig, const BackendConfig& config, Window& window);
+
+}  // namespace stillpoint

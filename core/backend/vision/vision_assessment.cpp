@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/vision/vision_assessment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "core/config/monitor_config.h"
+#include "core/geometry/covariance.h"
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+using Matrix6 = UncertainPose::Matrix6;
+
+/// Information H of the inliers about T_c_w, perturbed on the left.
+struct BearingInformation {
+  int inliers = 0;
+  Matrix6 H = Matrix6::Zero();
+  double squared_error = 0.0;  ///< sum over the inliers, in units of the variance of a bearing
+
+  /// Absent if the inliers leave a direction undetermined.
+  [[nodiscard]] std::optional<Matrix6> covariance() const {
+    const Eigen::FullPivLU<Matrix6> factor(H);
+    if (inliers < 3 || !factor.isInvertible()) return std::nullopt;
+    return factor.inverse();
+  }
+};
+
+BearingInformation bearing_information(const std::vector<PointObservation>& points, const Pose& T_w_c,
+                                       double bearing_sigma) {
+  BearingInformation information;
+  const Pose T_c_w = T_w_c.inverse();
+  for (const PointObservation& point : points) {
+    const Eigen::Vector3d p_c = T_c_w * point.p_w;
+    if (p_c.z() < kMonitor.vision.min_depth_m) continue;
+    const Eigen::Vector2d projected = p_c.hnormalized();
+    const double error = (projected - point.bearing).norm();
+    if (!(error <= kMonitor.vision.inlier_sigmas * bearing_sigma)) continue;
+    ++information.inliers;
+    information.squared_error += std::pow(error / bearing_sigma, 2);
+    Eigen::Matrix<double, 2, 3> J_point;
+    J_point << 1.0, 0.0, -projected.x(), 0.0, 1.0, -projected.y();
+    J_point /= p_c.z() * bearing_sigma;
+    Eigen::Matrix<double, 2, 6> J;
+    J << J_point, -J_point * skew(p_c);
+    information.H.noalias() += J.transpose() * J;
+  }
+  return information;
+}
+
+}  // namespace
+
+bool VisionAssessment::is_located(bool inertial) const {
+  return inliers >= kMonitor.vision.min_inliers &&
+         inliers >=
+             (inertial ? kMonitor.vision.min_inertial_inlier_ratio : kMonitor.vision.min_inlier_ratio) *
+                 features;
+}
+
+bool VisionAssessment::has_few_features() const { return inliers < kMonitor.vision.few_inliers; }
+
+bool VisionAssessment::has_weak_geometry() const {
+  return !(sigma_m < kMonitor.vision.weak_m && sigma_rad < kMonitor.vision.weak_rad);
+}
+
+VisionAssessment assess_vision(const std::vector<PointObservation>& points, const Pose& T_w_c,
+                               double bearing_sigma) {
+  const BearingInformation information = bearing_information(points, T_w_c, bearing_sigma);
+  VisionAssessment assessment{.features = static_cast<int>(points.size()), .inliers = information.inliers};
+  const std::optional<Matrix6> covariance = information.covariance();
+  if (!covariance) return assessment;
+  assessment.sigma_m = largest_sigma(covariance->topLeftCorner<3, 3>());
+  assessment.sigma_rad = largest_sigma(covariance->bottomRightCorner<3, 3>());
+  return assessment;
+}
+
+std::optional<UncertainPose> with_covariance(const std::vector<PointObservation>& points, const Pose& T_w_c,
+                                             double bearing_sigma, double threshold) {
+  const double sigma = threshold / kMonitor.vision.inlier_sigmas;
+  const BearingInformation information = bearing_information(points, T_w_c, sigma);
+  const std::optional<Matrix6> covariance = information.covariance();
+  if (!covariance || information.inliers <= 3) return std::nullopt;
+  const double variance = std::max(std::pow(bearing_sigma / sigma, 2),
+                                   information.squared_error / (2.0 * information.inliers - 6.0));
+  // T_c_w = (Exp(phi), rho) T_c_w' moves the camera by -R_w_c rho and turns it by -phi in its own frame.
+  Matrix6 J = Matrix6::Identity();
+  J.topLeftCorner<3, 3>() = T_w_c.R();
+  return UncertainPose{T_w_c, variance * J * *covariance * J.transpose()};
+}
+
+bool VisionAssessment::may_contradict_imu(int tracked) const {
+  return !has_few_features() && !has_weak_geometry() &&
+         inliers >= kMonitor.vision.min_agreeing_ratio * features &&
+         inliers >= kMonitor.vision.min_known_ratio * tracked;
+}
+
+}  // namespace stillpoint

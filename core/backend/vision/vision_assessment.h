@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// How well vision determines the newest camera pose.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/backend/vision/camera_pose.h"
+#include "core/geometry/covariance.h"
+
+namespace stillpoint {
+
+/// Information of static points of known position about a camera pose. With the Jacobians J_k of the bearings
+/// by the pose and their standard deviation s,
+///
+///   H = sum over inliers k of J_k^T J_k / s^2,    covariance = H^-1.
+struct VisionAssessment {
+  int features = 0;        ///< static features in the newest frame whose position is known
+  int inliers = 0;         ///< of those, with a small reprojection error
+  double sigma_m = 1e3;    ///< standard deviation of the position along its least certain direction
+  double sigma_rad = 1e3;  ///< same for the rotation
+
+  /// At least eight inliers, and three tenths of all, or one tenth if inertial data agree with the pose,
+  /// because the others may belong to moving objects: otherwise the pose is not that of the camera.
+  [[nodiscard]] bool is_located(bool inertial) const;
+  /// Located by few features, or with an uncertain direction.
+  [[nodiscard]] bool has_few_features() const;
+  [[nodiscard]] bool has_weak_geometry() const;
+  /// Whether the pose may contradict inertial data: it is well determined, and seven tenths of the features
+  /// agree with it, which are at least a quarter of all tracked ones. Behind a person who just came before
+  /// the camera few features of known position remain, and some of those are on the person.
+  /// @param tracked number of features in the newest frame
+  [[nodiscard]] bool may_contradict_imu(int tracked) const;
+};
+
+/// Camera pose with its covariance, in the frame of the camera. The standard deviation of the bearings
+/// follows from their residuals, because the positions of the points have errors, too: for n inliers
+///
+///   s^2 = max(bearing_sigma^2, sum_k |r_k|^2 / (2 n - 6)).
+/// @param bearing_sigma claimed standard deviation of a bearing
+/// @param threshold     of inliers [normalized image plane]
+/// @return nothing if fewer than four inliers remain, or if they leave a direction undetermined
+[[nodiscard]] std::optional<UncertainPose> with_covariance(const std::vector<PointObservation>& points,
+                                                           const Pose& T_w_c, double bearing_sigma,
+                                                           double threshold);
+
+/// @param bearing_sigma standard deviation s of a bearing; inliers are within five times of it
+[[nodiscard]] VisionAssessment assess_vision(const std::vector<PointObservation>& points, const Pose& T_w_c,
+                                             double bearing_sigma);
+
+}  // namespace stillpoint

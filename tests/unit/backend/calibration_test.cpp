@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/start/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+BackendConfig bounded_config() {
+  BackendConfig config;
+  config.time_offset_bound_s = 0.1;
+  config.extrinsics_bound_m = 0.05;
+  config.extrinsics_bound_rad = 0.1;
+  config.depth.scale_bound = 0.3;
+  return config;
+}
+
+TEST(CalibrationBounds, LeaveAPlausibleCalibrationUnchanged) {
+  Rig rig;
+  rig.time_offset_s = 0.02;
+  Window window;
+  window.time_offset_s = 0.119;
+  window.T_b_c = Pose{exp_so3({0.0, 0.09, 0.0}), {0.03, 0.03, 0.0}};
+  window.depth_scale = 0.71;
+  const Window before = window;
+  const CalibrationAtBound at_bound = limit_calibration(rig, bounded_config(), window);
+  EXPECT_FALSE(at_bound.time_offset || at_bound.extrinsics || at_bound.depth_scale);
+  EXPECT_EQ(window.time_offset_s, before.time_offset_s);
+  EXPECT_EQ(window.T_b_c.p, before.T_b_c.p);
+  EXPECT_EQ(window.T_b_c.q.coeffs(), before.T_b_c.q.coeffs());
+  EXPECT_EQ(window.depth_scale, before.depth_scale);
+}
+
+TEST(CalibrationBounds, LimitTheDeviationFromTheRig) {
+  Rig rig;
+  rig.T_b_c = Pose{exp_so3({0.3, 0.0, 0.0}), {0.1, 0.0, 0.0}};
+  rig.time_offset_s = 0.02;
+  Window window;
+  window.time_offset_s = -0.32;
+  window.T_b_c = Pose{rig.T_b_c.q * exp_so3({0.0, 0.2, 0.0}), {0.1, 0.3, 0.4}};
+  window.depth_scale = 1.5;
+  const CalibrationAtBound at_bound = limit_calibration(rig, bounded_config(), window);
+  EXPECT_TRUE(at_bound.time_offset && at_bound.extrinsics && at_bound.depth_scale);
+  EXPECT_DOUBLE_EQ(window.time_offset_s, -0.08);
+  EXPECT_LT((window.T_b_c.p - Eigen::Vector3d(0.1, 0.03, 0.04)).norm(), 1e-12);  // 0.05 of (0.3, 0.4)
+  EXPECT_NEAR(window.T_b_c.q.angularDistance(rig.T_b_c.q), 0.1, 1e-12);
+  EXPECT_DOUBLE_EQ(window.depth_scale, 1.3);
+}
+
+BackendConfig estimating_config() {
+  BackendConfig config;
+  config.estimate_extrinsics = true;
+  config.depth.estimate_scale = true;
+  config.calibration_agreement_probability = 0.999;
+  return config;
+}
+
+TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
+  Rig rig;
+  rig.T_b_c.p.x() = 0.1;
+  rig.time_offset_s = 0.02;
+  Calibration calibration(estimating_config(), true, rig);
+  AgreesWithRig agrees = calibration.calibrated_window().agrees_with_rig;
+  EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
+  // 16.8 is the 0.99 quantile of six degrees of freedom.
+  calibration.compare_with_rig({.extrinsics = 16.8, .depth_scale = 0.0}, agrees);
+  EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
+  calibration.compare_with_rig({.extrinsics = 30.0, .depth_scale = 0.0}, agrees);
+  EXPECT_FALSE(agrees.extrinsics);
+  const Window window = calibration.calibrated_window();
+  EXPECT_EQ(window.T_b_c.p, rig.T_b_c.p);
+  EXPECT_EQ(window.time_offset_s, rig.time_offset_s);
+  EXPECT_EQ(window.depth_scale, 1.0);
+}
+
+TEST(Calibration, StartsWithTheDepthScaleThatWasFound) {
+  Calibration calibration(estimating_config(), true, {});
+  AgreesWithRig agrees = calibration.calibrated_window().agrees_with_rig;
+  calibration.compare_with_rig({.depth_scale = 25.0, .depth_scale_step = 0.1, .depth_scale_sigma = 0.02},
+                               agrees);
+  ASSERT_TRUE(calibration.has_other_depth_scale());
+  const Window window = calibration.calibrated_window();
+  EXPECT_DOUBLE_EQ(window.depth_scale, 1.1);
+  EXPECT_FALSE(window.agrees_with_rig.depth_scale);
+}
+
+TEST(Calibration, StartsWithAnAlignmentThatContradictsTheRig) {
+  BackendConfig config = estimating_config();
+  config.initializer.align_rotations = true;
+  Calibration calibration(config, true, {});
+  ASSERT_TRUE(calibration.awaits_alignment());
+  RotationAlignment alignment{.q_b_c = exp_so3({0.0, 0.1, 0.0}), .time_offset_s = 0.03};
+  alignment.covariance = 1e-6 * Eigen::Matrix4d::Identity();
+  alignment.rig_contradiction = 100.0;
+  EXPECT_TRUE(calibration.align(alignment));
+  EXPECT_FALSE(calibration.awaits_alignment());
+  EXPECT_EQ(calibration.calibrated_window().time_offset_s, 0.03);
+  EXPECT_EQ(calibration.calibrated_window().T_b_c.q.coeffs(), alignment.q_b_c.coeffs());
+  alignment.rig_contradiction = 1.0;
+  EXPECT_FALSE(calibration.align(alignment));
+  EXPECT_EQ(calibration.calibrated_window().time_offset_s, 0.0);
+}
+
+}  // namespace
+}  // namespace stillpoint
