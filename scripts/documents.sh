@@ -27,14 +27,14 @@ done <<<"$paths"
 rows_without_path="$(cut -d'|' -f3 <<<"$rows" | grep -vc '`' || true)"
 ((rows_without_path == 0)) || complain "$map: $rows_without_path row(s) of the paper map name no path"
 
-# Links are relative to the document, paths in code marks to the root. Words with wildcards or in capitals are no paths.
+# Links (outside of code blocks) are relative to the document, paths in code marks to the root. Words with wildcards or in capitals are no paths.
 count=0
 while read -r document; do
   [[ -f "$document" ]] || continue
   count=$((count + 1))
   while read -r target; do
     [[ -e "$(dirname "$document")/$target" ]] || complain "$document: links to $target, which does not exist"
-  done < <(grep -oE '(\]\(|src=")[^)#"]+' "$document" | sed -E 's/^(\]\(|src=")//' | grep -vE '^https?:' || true)
+  done < <(sed '/^ *```/,/^ *```/d' "$document" | grep -oE '(\]\(|src=")[^)#"]+' | sed -E 's/^(\]\(|src=")//' | grep -vE '^https?:' || true)
   [[ "$document" != CHANGELOG.md ]] || continue
   while read -r path; do
     exists "$path" || complain "$document: names $path, which does not exist"
