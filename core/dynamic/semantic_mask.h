@@ -61,6 +61,7 @@ struct DepthBand {
 /// or center pixels, keeps features in front of the object, and finds legs in a box whose center shows the
 /// wall between them.
 ///
+/// @param depth    may be empty
 /// @param box      with positive area; may exceed the image
 /// @param extent_m maximum extent of the object to either side of the mode [m], > 0
 /// @return [0, inf) if the box has no valid depth
