@@ -66,7 +66,7 @@ struct RunCounts {
   double wall_s = 0.0;
   std::optional<double> claimed_three_sigma_m{};  ///< see eval/metrics/consistency.h
   std::optional<eval::MeanNees> nees{};           ///< with a ground truth
-  std::optional<double> nis_reprojection{};       ///< see core/backend/health/innovation.h
+  std::optional<double> nis_reprojection{};       ///< see core/backend/vision/vision_assessment.h
   std::optional<double> nis_inertial{};           ///< same
 };
 

@@ -92,7 +92,7 @@ struct OdometryCounters {
 };
 
 /// Normalized innovation squared of a frame at its predicted pose, 1 in the mean for true covariances; see
-/// core/backend/health/innovation.h. Absent without a covariance or reliable inertial data.
+/// core/backend/vision/vision_assessment.h. Absent without a covariance or reliable inertial data.
 struct Innovations {
   std::optional<double> reprojection;
   std::optional<double> inertial;  ///< also absent at rest, or if vision does not determine the pose

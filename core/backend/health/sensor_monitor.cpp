@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/backend/health/innovation.h"
 #include "core/backend/health/standstill.h"
 #include "core/backend/vision/vision_assessment.h"
 #include "core/config/monitor_config.h"

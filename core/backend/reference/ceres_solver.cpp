@@ -13,7 +13,7 @@
 #include "core/backend/reference/ceres_residuals.h"
 #include "core/backend/reference/normal_equations.h"
 #include "core/backend/solvers/marginalization.h"
-#include "core/backend/solvers/newest_covariance.h"
+#include "core/backend/solvers/window_solver.h"
 
 namespace stillpoint {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Dense normal equations over the window's states; marginalization by Schur complement and square root.
+/// Dense normal equations over all states of a window, from the residuals of Ceres.
 #pragma once
 
 #include <vector>

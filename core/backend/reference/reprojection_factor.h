@@ -23,25 +23,8 @@ struct ReprojectionMeasurement {
   double inverse_depth_j = 0.0;  ///< measured in j [1/m]; used by the depth row only
 };
 
-/// Two rows of bearing error and, with `Rows == 3`, one of inverse depth. Qin et al. 2018, Eq. (25), on the
-/// normalized image plane instead of the unit sphere. With the bearings u_i, u_j and their velocities, td the
-/// time offset, e_k the row readout offset minus the time offset at which state k is defined, s the depth
-/// scale (ratio of measured to true depth), and lambda the inverse depth in the host:
-///
-///   u_k(td) = u_k - (td + e_k) du_k/dt,  k = i, j         (shifted to the time of the state)
-///   P       = T_c_b T_bj_w T_w_bi T_b_c [u_i(td); 1; lambda]
-///   r_u     = (P_xy / P_z - u_j(td)) / sigma_u
-///   r_d     = rho((lambda / (s P_z) - lambda_j) / sigma_d),   rho(d) = d / sqrt(1 + (d/c)^2)
-///
-/// P is homogeneous: lambda times the point in camera j.
-/// lambda_j is the inverse depth measured in j; lambda / P_z is the true one. The scale divides the
-/// prediction: a factor on the measurement would scale its noise, and the cost would decrease with it. The
-/// bounded rho (Geman & McClure 1985) keeps a depth measured across an object's edge from outweighing the
-/// bearing.
-///
-/// Scaling the point by lambda removes the pole at infinity: the residual is defined for every inverse depth,
-/// including zero and negative values, and for points behind camera j. One outlier therefore cannot make the
-/// solver reject a step.
+/// The residual of reprojection_rows.h: two rows of bearing error and, with `Rows == 3`, one of inverse
+/// depth.
 ///
 /// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, with `Rows == 3` s, lambda. The derivative
 /// of the relative pose of the cameras is evaluated with the first estimates in place of the poses, where

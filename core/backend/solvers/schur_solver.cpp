@@ -8,8 +8,8 @@
 
 #include "core/backend/factors/gravity_direction.h"
 #include "core/backend/solvers/marginalization.h"
-#include "core/backend/solvers/newest_covariance.h"
 #include "core/backend/solvers/reduced_system.h"
+#include "core/backend/solvers/window_solver.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "core/backend/solvers/newest_covariance.h"
 #include "core/backend/solvers/visual_terms.h"
 #include "core/backend/solvers/window_solver.h"
 

@@ -11,7 +11,7 @@ namespace stillpoint {
 /// Which landmarks are used.
 enum class LandmarkSelection { kAll, kHostedByOldest };
 
-/// Reprojection residuals (see ReprojectionFactor), their normal equations and the Schur complement.
+/// Reprojection residuals (see reprojection_rows.h), their normal equations and the Schur complement.
 ///
 /// An observation depends on the states only through the relative pose of its two cameras and the time
 /// offset. Its rows r are therefore linearized with respect to y = (nu, omega, td), where (nu, omega) is the

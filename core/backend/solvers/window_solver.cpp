@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/solvers/window_solver.h"
 
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
 #include "core/base/error.h"
 
 namespace stillpoint {
@@ -20,6 +25,73 @@ SolveReport WindowSolver::solve(Window& window, const BackendConfig& config, dou
   const SolveReport report = minimize(window, config, focal_px);
   if (report.usable) invalidate_lost_depths(config.depth, window);
   return report;
+}
+
+std::vector<BlockRef> newest_blocks(const Window& window, const BackendConfig& config,
+                                    std::vector<BlockRef> recycled) {
+  std::vector<BlockRef> blocks = std::move(recycled);
+  blocks.clear();
+  const VariableGlobals globals = variable_globals(window, config);
+  blocks.push_back({BlockKind::kPose, window.newest()});
+  if (window.inertial) blocks.push_back({BlockKind::kSpeedBias, window.newest()});
+  if (globals.gravity) blocks.push_back({BlockKind::kGravity});
+  if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
+  if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
+  if (globals.depth_scale) blocks.push_back({BlockKind::kDepthScale});
+  return blocks;
+}
+
+StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestMatrix& covariance) {
+  StateCovariance result;
+  int column = 0;
+  for (const BlockRef block : blocks) {
+    switch (block.kind) {
+      case BlockKind::kPose:
+        result.state.topLeftCorner<6, 6>() = covariance.block<6, 6>(column, column);
+        break;
+      case BlockKind::kSpeedBias:  // follows the pose
+        result.state = covariance.topLeftCorner<15, 15>();
+        result.inertial = true;
+        break;
+      case BlockKind::kGravity:
+        result.gravity = covariance.block<2, 2>(column, column);
+        break;
+      case BlockKind::kExtrinsics:
+        result.extrinsics = covariance.block<6, 6>(column, column);
+        break;
+      case BlockKind::kTimeOffset:
+        result.time_offset = covariance(column, column);
+        break;
+      case BlockKind::kDepthScale:
+        result.depth_scale = covariance(column, column);
+        break;
+    }
+    column += local_size(block.kind);
+  }
+  return result;
+}
+
+RigContradiction rig_contradiction(const AgreesWithRig& constant, std::span<const BlockRef> blocks,
+                                   const NewestMatrix& covariance, const NewestVector& step) {
+  RigContradiction result;
+  int column = 0;
+  for (const BlockRef block : blocks) {
+    if (block.kind == BlockKind::kExtrinsics && constant.extrinsics) {
+      const auto d = step.segment<6>(column);
+      result.extrinsics = d.dot(covariance.block<6, 6>(column, column).llt().solve(d));
+    }
+    if (block.kind == BlockKind::kDepthScale && constant.depth_scale) {
+      result.depth_scale_step = step[column];
+      result.depth_scale_sigma = std::sqrt(covariance(column, column));
+      result.depth_scale = step[column] * step[column] / covariance(column, column);
+    }
+    column += local_size(block.kind);
+  }
+  return result;
+}
+
+UncertainPose oldest_motion_of(const Window& window, const NewestMatrix& covariance) {
+  return relative_pose(window.frames[0].state.T_w_b, window.frames[1].state.T_w_b, Matrix12(covariance));
 }
 
 }  // namespace stillpoint

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares the covariances of the newest state and of the motion between the oldest ones with the inverse of
 // the information of all states and landmarks.
-#include "core/backend/solvers/newest_covariance.h"
+#include "core/backend/solvers/window_solver.h"
 
 #include <gtest/gtest.h>
 
