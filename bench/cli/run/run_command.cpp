@@ -321,32 +321,32 @@ std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
   return played(std::move(stream), {arguments.start_s, arguments.passes, runs.front().faults});
 }
 
-/// Executes a run and writes its files, then its dumps. @return exit code
-int run_configured(const datasets::SensorStream& stream, const RunArguments& arguments,
-                   const ConfiguredRun& configured) {
-  RunDumps dumps(dump_request(arguments, configured), stream.info(), configured.spec.config.frontend);
+RunControl control_of(RunWatch& watch, RunDumps& dumps) {
   RunControl control{.stop_requested = interrupt_requested};
-  std::optional<RunWatch> watch(std::in_place, stream.info(), arguments, configured.variant);
-  control.on_frame.emplace_back([&](const FrameReport& report) { watch->frame_done(report.update); });
+  control.on_frame.emplace_back([&](const FrameReport& report) { watch.frame_done(report.update); });
   if (dumps.needs_frames())
     control.on_frame.emplace_back([&](const FrameReport& report) { dumps.add(report); });
-  const double start_s = process_age_s();
-  OdometryRun odometry_run = run_odometry(stream, configured.spec, control);
-  odometry_run.device = watch->finish();
-  RunResult result = score_run(stream.info(), std::move(odometry_run), configured.faults);
-  watch.reset();  // removes the progress line
-  result.start_s = start_s;
+  return control;
+}
+
+RunResult result_of(OdometryRun executed, const datasets::SequenceInfo& info,
+                    const ConfiguredRun& configured) {
+  RunResult result = score_run(info, std::move(executed), configured.faults);
   result.variant = configured.variant;
   result.mode = configured.spec.mode;
-  write_run(configured.folder, result, manifest_of(stream.info(), arguments, configured));
-  print_result(result, configured.folder);
+  return result;
+}
+
+/// Saves the map of a run and its dumps. @return exit code
+int save_map_and_dumps(const RunArguments& arguments, const RunResult& result, RunDumps& dumps) {
   if (result.run.loops && (result.run.loops->report.map || !interrupt_requested()))
     save_map(arguments.map, result.run.loops->report);
   const auto failures = dumps.finish(interrupt_requested() ? nullptr : &result.run);
   for (const std::string& failure : failures) spdlog::warn("{}", failure);
-  return std::max(exit_code(result.outcome), failures.empty() ? kExitOk : kExitFindings);
+  return failures.empty() ? kExitOk : kExitFindings;
 }
 
+/// Executes each configured run, and writes its files, then its dumps. @return exit code
 int run(const std::shared_ptr<const RunArguments>& shared) {
   const RunArguments& arguments = *shared;
   require_known_dumps(arguments.dumps);
@@ -354,12 +354,23 @@ int run(const std::shared_ptr<const RunArguments>& shared) {
   const std::vector<ConfiguredRun> runs = plan_runs(arguments);
   const std::unique_ptr<datasets::SensorStream> stream = open(arguments, runs);
   if (!stream) return kExitInterrupted;
-  for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
-  for (const ConfiguredRun& configured : runs) require_recorded_boxes(configured.spec.config, stream->info());
+  const datasets::SequenceInfo& info = stream->info();
+  for (const std::string& note : info.notes) spdlog::info("{}", note);
+  for (const ConfiguredRun& configured : runs) require_recorded_boxes(configured.spec.config, info);
   int code = kExitOk;
-  for (const ConfiguredRun& configured : with_folders(runs, arguments, stream->info())) {
+  for (const ConfiguredRun& configured : with_folders(runs, arguments, info)) {
     if (interrupt_requested()) return kExitInterrupted;
-    code = std::max(code, run_configured(*stream, arguments, configured));
+    RunDumps dumps(dump_request(arguments, configured), info, configured.spec.config.frontend);
+    std::optional<RunWatch> watch(std::in_place, info, arguments, configured.variant);
+    const double start_s = process_age_s();
+    OdometryRun executed = run_odometry(*stream, configured.spec, control_of(*watch, dumps));
+    executed.device = watch->finish();
+    RunResult result = result_of(std::move(executed), info, configured);
+    result.start_s = start_s;
+    watch.reset();  // removes the progress line
+    write_run(configured.folder, result, manifest_of(info, arguments, configured));
+    print_result(result, configured.folder);
+    code = std::max({code, exit_code(result.outcome), save_map_and_dumps(arguments, result, dumps)});
   }
   return code;
 }
