@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Format-independent access to a recorded or rendered sequence: metadata at once, images on demand.
-///
-/// Plays a sequence from a later time on, as if the recording started there.
-///
-/// Plays a sequence forwards and backwards alternately: an arbitrarily long sequence with continuous motion.
+/// Format-independent access to a recorded or rendered sequence: metadata at once, images on demand. A stream
+/// can be played from a later time on, or forwards and backwards alternately.
 #pragma once
 
 #include <cstddef>
@@ -35,13 +32,15 @@ class SensorStream {
   [[nodiscard]] virtual std::optional<MotionLabels> load_labels(std::size_t index) const = 0;
 };
 
-/// Everything earlier than `start_s` after the first frame is left out: frames, IMU samples, boxes and true
-/// poses. The stamps are those of the sequence, frames are numbered from 0.
+/// Plays a sequence from a later time on, as if the recording started there: everything earlier than
+/// `start_s` after the first frame is left out: frames, IMU samples, boxes and true poses. The stamps are
+/// those of the sequence, frames are numbered from 0.
 /// @param stream without injected faults
 /// @param start_s >= 0 [s]; 0 or a stream without frames: the stream as it is
 /// @throws InputError if no frame is left
 [[nodiscard]] std::unique_ptr<SensorStream> start_at(std::unique_ptr<SensorStream> stream, double start_s);
 
+/// Plays a sequence forwards and backwards alternately: an arbitrarily long sequence with continuous motion.
 /// Frames, boxes and ground-truth poses continue without a jump in pose or time; the frame at a turning point
 /// occurs once. IMU samples are dropped: time-reversed accelerometer samples are not physically valid.
 /// @param stream decoded on demand

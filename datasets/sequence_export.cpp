@@ -4,14 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <functional>
 #include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "datasets/bags/bag_chunks.h"
 #include "datasets/bags/bag_file.h"
 #include "datasets/bags/bag_topics.h"
 #include "datasets/bags/messages.h"
@@ -191,8 +189,6 @@ void export_euroc(const SensorStream& stream, const fs::path& folder, const Expo
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kCameraFrame = "camera_color_optical_frame";
 constexpr const char* kImuFrame = "camera_imu_optical_frame";

@@ -12,7 +12,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <memory>
 
 #include "core/base/error.h"
 
@@ -224,8 +223,7 @@ std::uint32_t crc32_of(std::string_view bytes, std::uint32_t previous) {
 
 namespace {
 
-/// The two images of a frame, and those that other threads decode.
-constexpr std::size_t kKeptChunks = 8;
+constexpr std::size_t kKeptChunks = 8;          ///< the two images of a frame, and those of other threads
 constexpr std::size_t kKeptBytes = 64'000'000;  ///< but at least one chunk
 
 int open_for_reading(const std::filesystem::path& path) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a bag contains, without its messages: connections, chunks, and the position of each message.
-///
-/// Compression of the chunks of bags. The only component that depends on bzip2, LZ4 and zstd.
-///
-/// Reads parts of a file, and of its compressed chunks.
+/// The index of a bag (connections, chunks, and the position of each message), and access to its chunks:
+/// compression, and reading of parts. The only component that depends on bzip2, LZ4 and zstd.
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,6 @@
 
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
-#include "datasets/bags/bag_chunks.h"
 #include "datasets/io/file_descriptor.h"
 #include "datasets/io/sensor_yaml.h"
 #include "eval/io/text_reader.h"
@@ -44,6 +43,12 @@ std::vector<fs::path> files_of_folder(const fs::path& folder) {
 std::string ros1_type(std::string type) {
   const std::size_t middle = type.find("/msg/");
   return middle == std::string::npos ? type : type.replace(middle, 5, "/");
+}
+
+void require_compression(const fs::path& path, bool supported, const char* supported_names) {
+  if (!supported)
+    throw InputError(path.string(),
+                     std::string("this container has no such compression; use one of: ") + supported_names);
 }
 
 }  // namespace
@@ -129,17 +134,7 @@ std::vector<MessageReference> in_file_order(std::span<const MessageReference> me
   return sorted;
 }
 
-namespace {
-
-void require_compression(const std::filesystem::path& path, bool supported, const char* supported_names) {
-  if (!supported)
-    throw InputError(path.string(),
-                     std::string("this container has no such compression; use one of: ") + supported_names);
-}
-
-}  // namespace
-
-BagWriter::BagWriter(const std::filesystem::path& path, ChunkCompression compression) {
+BagWriter::BagWriter(const fs::path& path, ChunkCompression compression) {
   if (path.extension() == ".bag") {
     require_compression(path, compression != ChunkCompression::kZstd, "none, bz2, lz4");
     writer_ = std::make_unique<Ros1Writer>(path, compression);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bags of all containers: ROS 1 (.bag), MCAP (.mcap), SQLite (.db3), and the folders of rosbag2.
-///
-/// Writes bags of all containers.
+/// Reads and writes bags of all containers: ROS 1 (.bag), MCAP (.mcap), SQLite (.db3), and the folders of
+/// rosbag2.
 #pragma once
 
 #include <cstdint>

@@ -9,8 +9,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "datasets/bags/messages.h"
-#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Poses in bags as trajectories, and the fixed transforms between coordinate frames.
-///
-/// Calibration of the cameras of a bag.
+/// Geometry of a bag: poses of a topic as a trajectory, the fixed transforms between coordinate frames, and
+/// the calibration of the cameras.
 #pragma once
 
 #include <filesystem>

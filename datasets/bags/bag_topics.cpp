@@ -11,8 +11,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
@@ -207,6 +205,15 @@ bool contains_any(const std::string& topic, std::initializer_list<std::string_vi
 /// "/camera" of "/camera/color/image_raw".
 std::string_view first_name(std::string_view topic) { return topic.substr(0, topic.find('/', 1)); }
 
+/// All connections of one topic.
+struct TopicSummary {
+  std::string topic;
+  std::string type;
+  std::size_t messages = 0;
+  ImageContent image = ImageContent::kOther;  ///< of its first message
+  std::string encoding;                       ///< encoding or format of its first image
+};
+
 /// Sets content and encoding from the first message; a message that cannot be parsed is of no use.
 TopicSummary with_encoding(TopicSummary summary, const BagFile& bag, const MessageReference& first) {
   const std::string place = bag.place(first);
@@ -223,6 +230,22 @@ TopicSummary with_encoding(TopicSummary summary, const BagFile& bag, const Messa
   } catch (const InputError&) {  // kOther
   }
   return summary;
+}
+
+/// The topics with at least one message, in alphabetical order. Reads the first message of image topics.
+std::vector<TopicSummary> summarize_topics(const BagFile& bag) {
+  std::map<std::string, std::pair<TopicSummary, const MessageReference*>> topics;
+  for (const MessageReference& reference : bag.messages()) {
+    const BagConnection& connection = bag.connection(reference);
+    const auto [entry, is_new] = topics.try_emplace(
+        connection.topic, TopicSummary{.topic = connection.topic, .type = connection.type, .encoding = {}},
+        &reference);
+    ++entry->second.first.messages;
+  }
+  std::vector<TopicSummary> summaries;
+  for (const auto& [name, topic] : topics)
+    summaries.push_back(with_encoding(topic.first, bag, *topic.second));
+  return summaries;
 }
 
 int color_rank(const TopicSummary& topic) {
@@ -330,21 +353,6 @@ BagTopics with_request(BagTopics selected, const std::string& request,
 }
 
 }  // namespace
-
-std::vector<TopicSummary> summarize_topics(const BagFile& bag) {
-  std::map<std::string, std::pair<TopicSummary, const MessageReference*>> topics;
-  for (const MessageReference& reference : bag.messages()) {
-    const BagConnection& connection = bag.connection(reference);
-    const auto [entry, is_new] = topics.try_emplace(
-        connection.topic, TopicSummary{.topic = connection.topic, .type = connection.type, .encoding = {}},
-        &reference);
-    ++entry->second.first.messages;
-  }
-  std::vector<TopicSummary> summaries;
-  for (const auto& [name, topic] : topics)
-    summaries.push_back(with_encoding(topic.first, bag, *topic.second));
-  return summaries;
-}
 
 BagTopics select_topics(const BagFile& bag, std::span<const std::string> requested) {
   const std::vector<TopicSummary> topics = summarize_topics(bag);

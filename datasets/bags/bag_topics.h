@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Selects the topics of a bag that make up a sequence.
-///
-/// Pixels of image messages.
+/// The topics of a bag: what their images contain and how these are decoded, and which topics make up a
+/// sequence.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -46,18 +44,6 @@ inline constexpr double kFloatDepthUnitsPerM = 5000.0;
 /// @throws InputError as above
 [[nodiscard]] cv::Mat decode_depth_message(const ImageMessage& image, std::string_view place);
 [[nodiscard]] cv::Mat decode_depth_message(const CompressedImageMessage& image, std::string_view place);
-
-/// All connections of one topic.
-struct TopicSummary {
-  std::string topic;
-  std::string type;
-  std::size_t messages = 0;
-  ImageContent image = ImageContent::kOther;  ///< of its first message
-  std::string encoding;                       ///< encoding or format of its first image
-};
-
-/// The topics with at least one message, in alphabetical order. Reads the first message of image topics.
-[[nodiscard]] std::vector<TopicSummary> summarize_topics(const BagFile& bag);
 
 /// Selected topics; empty where the bag has none.
 struct BagTopics {

@@ -2,9 +2,6 @@
 #include "datasets/bags/byte_stream.h"
 
 #include <system_error>
-#include <utility>
-
-#include "core/base/error.h"
 
 namespace stillpoint::datasets {
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Reads numbers and texts from bytes of a bag; every access is checked.
-///
-/// Appends numbers and texts to bytes of a bag: the inverse of `ByteReader`, little endian.
-///
-/// A binary file that gets its name when it is complete.
+/// Bytes of bags: a reader of numbers and texts whose every access is checked, its inverse, and a file that
+/// gets its name when it is complete.
 #pragma once
 
 #include <algorithm>
@@ -29,6 +26,7 @@ struct ByteLayout {
   bool terminated_texts = false;  ///< whether the length of a text includes a final 0
 };
 
+/// Reads numbers and texts in their order.
 class ByteReader {
  public:
   /// @param bytes, place must outlive this object; `place` is named in errors
@@ -94,6 +92,7 @@ class ByteReader {
 
 inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
+/// Appends numbers and texts, little endian.
 class ByteWriter {
  public:
   /// @param max_alignment see `ByteLayout`
@@ -139,7 +138,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Writes to NAME.part, which is removed unless `finish` is called.
+/// A binary file: writes to NAME.part, which is removed unless `finish` is called.
 class OutputFile {
  public:
   /// @throws InputError if it cannot be created

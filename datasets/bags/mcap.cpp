@@ -2,19 +2,35 @@
 #include "datasets/bags/mcap.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
-#include <string_view>
-#include <utility>
 
 #include "core/base/error.h"
-#include "datasets/bags/bag_chunks.h"
-#include "datasets/bags/byte_stream.h"
 #include "datasets/bags/messages.h"
 
 namespace stillpoint::datasets {
 namespace {
+
+namespace mcap {
+
+/// First and last bytes of a file.
+constexpr std::string_view kMagic = "\x89MCAP0\r\n";
+constexpr std::uint64_t kRecordHeadBytes = 9;  ///< opcode, length
+
+enum Opcode : std::uint8_t {
+  kHeader = 1,
+  kFooter = 2,
+  kSchema = 3,
+  kChannel = 4,
+  kMessage = 5,
+  kChunk = 6,
+  kMessageIndex = 7,
+  kChunkIndex = 8,
+  kStatistics = 11,
+  kDataEnd = 15,
+};
+
+}  // namespace mcap
 
 constexpr std::uint64_t kMessageHead = 22;          ///< channel, sequence number, log time, publish time
 constexpr std::uint64_t kChunkHeadBytes = 4096;     ///< contains the fields of a chunk before its records

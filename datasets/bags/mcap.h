@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Records of MCAP files: opcode (1 byte), length (8 bytes, little endian), fields. Specification:
-/// mcap.dev/spec.
-///
-/// MCAP files (mcap.dev/spec) with messages of ROS 1 or ROS 2.
-///
-/// Writes MCAP files with messages of ROS 2.
+/// Reads MCAP files with messages of ROS 1 or ROS 2, and writes those with messages of ROS 2. A file consists
+/// of records: opcode (1 byte), length (8 bytes, little endian), fields. Specification: mcap.dev/spec.
 #pragma once
 
 #include <cstddef>
@@ -19,27 +15,6 @@
 
 #include "datasets/bags/bag_chunks.h"
 #include "datasets/bags/byte_stream.h"
-
-namespace stillpoint::datasets::mcap {
-
-/// First and last bytes of a file.
-inline constexpr std::string_view kMagic = "\x89MCAP0\r\n";
-inline constexpr std::uint64_t kRecordHeadBytes = 9;  ///< opcode, length
-
-enum Opcode : std::uint8_t {
-  kHeader = 1,
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7,
-  kChunkIndex = 8,
-  kStatistics = 11,
-  kDataEnd = 15,
-};
-
-}  // namespace stillpoint::datasets::mcap
 
 namespace stillpoint::datasets {
 

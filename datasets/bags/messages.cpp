@@ -2,7 +2,6 @@
 #include "datasets/bags/messages.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "datasets/bags/byte_stream.h"

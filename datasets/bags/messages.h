@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The messages of ROS 1 and ROS 2 that describe a sequence.
+/// The messages of ROS 1 and ROS 2 that describe a sequence: their fields, and how they are parsed and
+/// serialized.
 ///
 /// Both have the same fields, except that a header of ROS 1 begins with a sequence number. The bytes of ROS 1
 /// have no gaps; those of CDR (OMG DDSI-RTPS 2.2, chapter 10) begin with an encapsulation identifier, and
 /// align each number to its size.
-///
-/// Serializes messages: the inverse of the functions of datasets/bags/messages.h.
 #pragma once
 
 #include <array>
@@ -122,7 +121,8 @@ struct NavSatFixMessage {
 /// std_msgs/Float32
 [[nodiscard]] float parse_float(const SerializedMessage& message);
 
-/// Orientation is written as unknown (its first covariance is -1), covariances as 0.
+/// Inverse of `parse_imu` and so on. Orientation is written as unknown (its first covariance is -1),
+/// covariances as 0.
 [[nodiscard]] std::string serialize(const ImuMessage& message, WireFormat format);
 [[nodiscard]] std::string serialize(const ImageMessage& message, WireFormat format);
 [[nodiscard]] std::string serialize(const CompressedImageMessage& message, WireFormat format);

@@ -3,16 +3,10 @@
 
 #include <algorithm>
 #include <initializer_list>
-#include <map>
 #include <optional>
 #include <set>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "core/base/error.h"
-#include "datasets/bags/bag_chunks.h"
-#include "datasets/bags/byte_stream.h"
 #include "datasets/bags/messages.h"
 
 namespace stillpoint::datasets {
@@ -292,7 +286,6 @@ std::string Ros1Bag::payload(const BagMessage& message, std::uint64_t max_bytes)
 
 namespace {
 
-constexpr std::string_view kFirstLine = "#ROSBAG V2.0\n";
 constexpr std::size_t kBagHeaderBytes = 4096;  ///< header and padding
 constexpr std::int64_t kMaxSeconds = UINT32_MAX;
 
@@ -314,7 +307,7 @@ std::string record(const std::string& header, std::string_view data) {
 
 Ros1Writer::Ros1Writer(const std::filesystem::path& path, ChunkCompression compression)
     : file_(path), path_(path.string()), compression_(compression) {
-  file_.append(kFirstLine);
+  file_.append(kVersion2);
   file_.append(bag_header(0));
 }
 

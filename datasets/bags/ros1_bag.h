@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// ROS 1 bags, format 2.0 (wiki.ros.org/Bags/Format/2.0).
-///
-/// Writes ROS 1 bags, format 2.0.
+/// Reads and writes ROS 1 bags, format 2.0 (wiki.ros.org/Bags/Format/2.0).
 #pragma once
 
 #include <cstdint>

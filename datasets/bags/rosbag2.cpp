@@ -14,6 +14,8 @@
 namespace stillpoint::datasets {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::string text_at(sqlite3_stmt* statement, int column) {
   const auto* const text = reinterpret_cast<const char*>(sqlite3_column_text(statement, column));
   return text == nullptr
@@ -23,7 +25,7 @@ std::string text_at(sqlite3_stmt* statement, int column) {
 
 }  // namespace
 
-Rosbag2Database::Rosbag2Database(std::filesystem::path file) : file_(std::move(file)) {
+Rosbag2Database::Rosbag2Database(fs::path file) : file_(std::move(file)) {
   require_regular_file(file_);
   sqlite3* opened = nullptr;
   const int result = sqlite3_open_v2(file_.c_str(), &opened, SQLITE_OPEN_READONLY, nullptr);
@@ -113,8 +115,6 @@ std::string Rosbag2Database::payload(const BagMessage& message) const {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string sql_literal(std::string_view text) {
   std::string result = "'";

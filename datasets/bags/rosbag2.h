@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// SQLite databases of rosbag2 (extension .db3).
-///
-/// Writes folders of rosbag2 with one SQLite database.
+/// Reads SQLite databases of rosbag2 (extension .db3), and writes folders of rosbag2 with one of them.
 #pragma once
 
 #include <sqlite3.h>

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <fstream>
 #include <sstream>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -16,7 +15,6 @@
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
 #include "datasets/cache/frame_file.h"
-#include "datasets/io/file_descriptor.h"
 #include "datasets/io/image_io.h"
 
 namespace stillpoint::datasets {
@@ -149,7 +147,7 @@ class Bits {
   std::vector<std::uint64_t> words_;
 };
 
-bool is_png(const std::filesystem::path& file) {
+bool is_png(const fs::path& file) {
   return file.empty() || file.extension() == ".png" || file.extension() == ".PNG";
 }
 
@@ -184,7 +182,7 @@ std::uint64_t cache_key(const SequenceContent& content, std::span<const FrameDig
   return bits.hash(content_hash(decoder_of(content)));
 }
 
-std::filesystem::path frame_file(const std::filesystem::path& cache, std::uint64_t key) {
+fs::path frame_file(const fs::path& cache, std::uint64_t key) {
   return cache / (hash_text(key) + kFrameFileExtension);
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Key of a frame cache file: everything that determines the decoded images.
-///
-/// Digests of the files of a sequence, remembered together with size, time of modification and inode of each
-/// file.
+/// Key of a frame cache file: everything that determines the decoded images. The digests of the image files
+/// are remembered together with size, time of modification and inode of each file, and thus computed once.
 #pragma once
 
 #include <cstdint>

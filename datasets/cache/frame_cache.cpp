@@ -5,11 +5,9 @@
 #include <filesystem>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
-#include "datasets/cache/cache_key.h"
 #include "datasets/io/image_io.h"
 
 namespace stillpoint::datasets {
@@ -17,19 +15,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Files that may be read to complete the digests: those that were written just before the digests were
+/// saved, or that a user touched.
+constexpr int kMaxDigestedFiles = 16;
+
 std::size_t frames_to_cache(const SequenceContent& content, const FrameCacheOptions& options) {
   const std::size_t all = content.frame_files.size();
   return options.max_frames == 0 ? all : std::min(all, options.max_frames);
 }
 
-/// Files that may be read to complete the digests: those that were written just before the digests were
-/// saved, or that a user touched.
-constexpr int kMaxDigestedFiles = 16;
-
 bool has_expected_images(const Frame& frame, const Camera& camera) {
   const cv::Size size(camera.width, camera.height);
   return frame.gray.type() == CV_8UC1 && frame.gray.size() == size &&
          (frame.depth.empty() || (frame.depth.type() == CV_16UC1 && frame.depth.size() == size));
+}
+
+/// Digests of all images, which are remembered as well.
+std::vector<FrameDigest> digest_images(const SequenceContent& content, FileDigests& digests) {
+  const auto digest = [&digests](const fs::path& file) {
+    const std::optional<FileDigest> result = digest_of_file(file);
+    if (!result) throw InputError(file.string(), "cannot be read, or changed while it was read");
+    digests.add(file, *result);
+    return result->digest;
+  };
+  std::vector<FrameDigest> frames;
+  for (const FrameFiles& files : content.frame_files)
+    frames.push_back({.color = digest(files.color), .depth = digest(files.depth)});
+  return frames;
 }
 
 }  // namespace
@@ -263,32 +275,12 @@ std::size_t FrameCache::copy_undamaged_blocks(const FrameFileReader& damaged) {
   return bad_blocks;
 }
 
-/// Decodes all further frames that are not in the file.
+/// From then on, frames that are not in the file are decoded.
 void FrameCache::disable(const std::string& reason) {
   writer_.reset();
   writing_ = false;
   if (options_.warn) options_.warn(reason + "; the run continues without writing the frame cache");
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-/// Digests of all images, which are remembered as well.
-std::vector<FrameDigest> digest_images(const SequenceContent& content, FileDigests& digests) {
-  const auto digest = [&digests](const fs::path& file) {
-    const std::optional<FileDigest> result = digest_of_file(file);
-    if (!result) throw InputError(file.string(), "cannot be read, or changed while it was read");
-    digests.add(file, *result);
-    return result->digest;
-  };
-  std::vector<FrameDigest> frames;
-  for (const FrameFiles& files : content.frame_files)
-    frames.push_back({.color = digest(files.color), .depth = digest(files.depth)});
-  return frames;
-}
-
-}  // namespace
 
 FrameCacheFill::FrameCacheFill(FrameCacheOptions options, std::string sequence)
     : options_(std::move(options)), sequence_(std::move(sequence)), space_(options_) {}

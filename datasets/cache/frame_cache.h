@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Keeps the decoded gray and depth images of sequences on disk.
-///
-/// Writes the frame cache of a sequence while the sequence is rendered, so that its first run decodes
-/// nothing.
+/// Keeps the decoded gray and depth images of sequences on disk: written by the first run while it decodes
+/// them (`FrameCache`), or while a sequence is rendered, so that its first run decodes nothing
+/// (`FrameCacheFill`).
 #pragma once
 
 #include <cstddef>
@@ -82,7 +81,8 @@ class FrameCache {
   bool repaired_ = false;  ///< whether a damaged file was found
 };
 
-/// Problems end the writing with a warning; the first run decodes the images then.
+/// Writes the cache file of a sequence while it is rendered. Problems end the writing with a warning; the
+/// first run decodes the images then.
 class FrameCacheFill {
  public:
   /// @param sequence name for listings; renderings with the same name are not written at the same time

@@ -10,8 +10,6 @@
 #include <array>
 #include <bit>
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <system_error>
 #include <type_traits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The cache file of one sequence: compressed frames in the order in which they were decoded.
+/// The cache file of one sequence: losslessly compressed gray and depth images in the order of decoding.
 ///
 ///   header   magic, version, image size, name of the sequence, checksum
 ///   blocks   frame number, sizes, flags, checksum; compressed gray image; compressed depth image
@@ -10,10 +10,8 @@
 /// a power failure loses or damages is found by the checksums. Integers are little-endian, checksums are
 /// XXH64.
 ///
-/// Lossless compression of gray and depth images.
-///
-/// Blosc with LZ4: it decodes an 848x480 frame in 0.9 ms, 20 times faster than its PNG files. Measured per
-/// frame on one core of a loaded machine, size / encoding / decoding:
+/// Images are compressed by Blosc with LZ4: it decodes an 848x480 frame in 0.9 ms, 20 times faster than its
+/// PNG files. Measured per frame on one core of a loaded machine, size / encoding / decoding:
 ///
 ///   gray 848x480 (rendered market)       depth of the same frames
 ///   LZ4, rows      396 kB 0.90 0.11 ms   LZ4, bytes              272 kB 2.14 0.87 ms
@@ -73,6 +71,10 @@ struct PackedFrame {
 
 /// Part of the key of a file: files of other versions are never opened.
 constexpr std::uint32_t kFrameFileVersion = 1;
+
+/// Name extensions of the complete and of unfinished files.
+constexpr const char* kFrameFileExtension = ".frames";
+constexpr const char* kPartialExtension = ".partial";
 
 /// What the header of a file contains.
 struct FrameFileInfo {
@@ -163,9 +165,5 @@ class FrameFileWriter {
 
 /// Removes files of writers that no longer exist. Files that are being written are locked and remain.
 void remove_abandoned_files(const std::filesystem::path& folder);
-
-/// Name extensions of the two kinds of files.
-constexpr const char* kFrameFileExtension = ".frames";
-constexpr const char* kPartialExtension = ".partial";
 
 }  // namespace stillpoint::datasets

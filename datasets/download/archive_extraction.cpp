@@ -9,12 +9,15 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "datasets/download/transfer_checks.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -43,7 +46,37 @@ std::string error_of(archive* reader) {
   return text == nullptr ? "damaged" : escaped_utf8(text);
 }
 
-}  // namespace
+enum class EntryKind { kFile, kFolder };
+
+struct ArchiveEntry {
+  fs::path path;  ///< relative, normal, without ".."
+  EntryKind kind = EntryKind::kFile;
+};
+
+/// Sequential reader of the entries of an archive.
+class ArchiveReader {
+ public:
+  /// @throws InputError if the file cannot be opened, or is not a tar, zip or 7z archive
+  explicit ArchiveReader(const fs::path& file);
+
+  /// The next entry; empty at the end. Entries that are the folder itself are skipped.
+  /// @throws InputError if the archive is damaged, or the entry is encrypted, a link or a device, or has a
+  /// path outside of the archive
+  [[nodiscard]] std::optional<ArchiveEntry> next();
+
+  /// Reads the next bytes of the current entry. @return number of bytes; 0 at the end
+  /// @throws InputError if the archive is damaged
+  [[nodiscard]] std::size_t read(std::span<char> bytes);
+
+  /// Number of bytes of the archive that were read.
+  [[nodiscard]] std::uint64_t position() const;
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const;
+
+  fs::path file_;
+  std::unique_ptr<archive, int (*)(archive*)> archive_;
+};
 
 ArchiveReader::ArchiveReader(const fs::path& file) : file_(file), archive_(new_reader(), archive_read_free) {
   if (archive_read_open_filename(archive_.get(), file.c_str(), kReadBytes) != ARCHIVE_OK)
@@ -88,10 +121,6 @@ std::size_t ArchiveReader::read(std::span<char> bytes) {
 std::uint64_t ArchiveReader::position() const {
   return static_cast<std::uint64_t>(std::max<la_int64_t>(0, archive_filter_bytes(archive_.get(), -1)));
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t kBlockBytes = 1U << 20U;
 constexpr double kUnratedBytes = 100e6;                // small archives may be compressed to any extent

@@ -19,7 +19,6 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "datasets/download/transfer_checks.h"
 
 namespace stillpoint::datasets {
 namespace {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One attempt to transfer the content of an address to a partial file.
-///
-/// A file that is being downloaded: FILE.part, and FILE.part.state with what identifies its content.
-///
-/// The headers of an HTTP response that a download uses.
+/// One attempt to transfer the content of an address to a partial file. FILE.part has the bytes so far,
+/// FILE.part.state what identifies their content, from the headers of the HTTP response; a later attempt
+/// continues there if the content is still the same.
 #pragma once
 
 #include <cstdint>
@@ -72,6 +70,7 @@ struct ContentRange {
 /// Empty if malformed or inconsistent.
 [[nodiscard]] std::optional<ContentRange> parse_content_range(std::string_view text);
 
+/// The headers of a response that a download uses.
 struct ResponseHeaders {
   std::string etag;  ///< empty if weak: a weak validator does not identify bytes
   std::string last_modified;

@@ -16,8 +16,10 @@
 
 namespace stillpoint::datasets {
 namespace {
+
 constexpr std::uint64_t kReserveBytes = 64'000'000;
 constexpr double kBytesPerMb = 1e6;
+
 }  // namespace
 
 void require_disk_space(const std::filesystem::path& folder, std::uint64_t bytes) {

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How long operations of this folder report their progress and are stopped.
-///
-/// Checks disk space before it is needed.
-///
-/// Recognizes the kind of a file by its first bytes.
-///
-/// Cryptographic digests of files.
+/// What the operations of this folder have in common: how they report their progress and are stopped, and
+/// the checks of disk space, kind and digests of a file.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +12,7 @@
 
 namespace stillpoint::datasets {
 
-/// Empty functions are not called.
+/// Progress and end of a long operation. Empty functions are not called.
 struct TransferControl {
   /// Bytes that are complete, and their total; the total is 0 while it is not known.
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;

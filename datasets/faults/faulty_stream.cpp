@@ -4,11 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
+#include <opencv2/core/types.hpp>
 
 #include "core/base/error.h"
+#include "core/types/detection.h"
+#include "core/types/frame.h"
+#include "core/types/rig.h"
 #include "datasets/faults/image_faults.h"
 #include "datasets/synthetic/counter_random.h"
 
@@ -23,8 +28,17 @@ std::vector<FrameArrival> at_timestamps(std::span<const Timestamp> frame_times) 
   return arrivals;
 }
 
-}  // namespace
-
+/// Arrivals with a fault of target `kArrival`, which concerns the frames with a timestamp in its active
+/// interval:
+///
+///   frame_late         t <- t + a
+///   frame_reordered    with probability a: t <- 1 us after the timestamp of the next frame
+///   frame_duplicated   with probability a: also arrives 1 us after the timestamp of the next frame
+///
+/// a: amount. The last frame of the sequence has no next one and is not changed by the last two.
+/// @param arrivals    empty: each frame arrives at its timestamp
+/// @param frame_times of the sequence; the first is the start of the schedule
+/// @return in order of time
 std::vector<FrameArrival> arrivals_with_fault(std::vector<FrameArrival> arrivals, const SensorFault& fault,
                                               std::span<const Timestamp> frame_times) {
   if (arrivals.empty()) arrivals = at_timestamps(frame_times);
@@ -49,8 +63,6 @@ std::vector<FrameArrival> arrivals_with_fault(std::vector<FrameArrival> arrivals
   return arrivals;
 }
 
-namespace {
-
 constexpr double kScore = 0.9;
 
 Detection false_person(synth::RandomSequence& random, cv::Size image) {
@@ -63,8 +75,10 @@ Detection false_person(synth::RandomSequence& random, cv::Size image) {
           .box = {.x_min = x, .y_min = y, .x_max = x + width, .y_max = y + height}};
 }
 
-}  // namespace
-
+/// The result of a detector for one frame, with a fault of target `kDetections`: while it is active, the set
+/// becomes `kNone` or `kLate`, or gets `amount` additional boxes of class "person" at random places, each a
+/// tenth to a half of the image wide and high. The places depend on the fault and the time only.
+/// @param start time of the first frame
 DetectionSet detections_with_fault(DetectionSet set, const SensorFault& fault, Timestamp start,
                                    cv::Size image) {
   if (!fault.is_active(seconds_between(start, set.t))) return set;
@@ -78,8 +92,6 @@ DetectionSet detections_with_fault(DetectionSet set, const SensorFault& fault, T
     set.detections.push_back(false_person(random, image));
   return set;
 }
-
-namespace {
 
 constexpr std::int64_t kMinStep_ns = 1000;
 
@@ -139,8 +151,18 @@ std::vector<ImuSample> thinned(const std::vector<ImuSample>& samples, const Sens
   return kept;
 }
 
-}  // namespace
-
+/// Samples as the sensor would have delivered them with a fault of target `kImu`. Within the active interval:
+///
+///   imu_gap, imu_rate    samples are removed
+///   gyro_saturated, accel_saturated    w <- clamp(w, -a, a),  f <- clamp(f, -a, a)  per axis
+///   gyro_bias, accel_bias              w <- w + a (1, 1, 1),  f <- f + a (1, 1, 1)
+///   shock                              f <- f + a u,  u: random unit vector, the same for each interval
+///   imu_jitter, time_offset            t <- t + n, n ~ N(0, a^2);  t <- t + a
+///
+/// clock_jump shifts the stamps of all samples from its start on. a: amount. Samples whose shifted stamps
+/// would not increase keep their order and are moved to 1 us after their predecessor.
+/// @param samples in increasing order of time
+/// @param start time of the first frame
 std::vector<ImuSample> samples_with_fault(std::vector<ImuSample> samples, const SensorFault& fault,
                                           Timestamp start) {
   const auto is_active = [&](const ImuSample& sample) {
@@ -159,8 +181,6 @@ std::vector<ImuSample> samples_with_fault(std::vector<ImuSample> samples, const 
     samples[i].t.ns = std::max(samples[i].t.ns, samples[i - 1].t.ns + kMinStep_ns);
   return samples;
 }
-
-namespace {
 
 bool is_dropped(const SensorFault& fault, double elapsed_s, std::size_t index) {
   if (fault.kind != FaultKind::kDropped || !fault.is_active(elapsed_s)) return false;

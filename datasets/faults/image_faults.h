@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Faults of single frames: functions from a frame to a frame. Images are copied before they are changed,
-/// because copies of a frame share their pixels.
-///
-/// A person directly in front of the camera: the trunk fills a part of the image at its full height.
+/// Faults of single frames: functions from a frame to a frame, and a person directly in front of the camera.
+/// Images are copied before they are changed, because copies of a frame share their pixels.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +13,8 @@
 
 namespace stillpoint::datasets {
 
-/// The person of one fault. The clothes are those of rendered people.
+/// The person of one fault, whose trunk fills a part of the image at its full height. The clothes are those
+/// of rendered people.
 class Occluder {
  public:
   /// @param image    size of the images

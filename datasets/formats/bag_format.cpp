@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bags of ROS 1 and ROS 2, and recordings of librealsense, as sequences.
 #include "datasets/formats/bag_format.h"
 
 #include <algorithm>
@@ -9,19 +8,16 @@
 #include <utility>
 
 #include "core/base/content_hash.h"
-#include "core/base/error.h"
 #include "datasets/bags/bag_geometry.h"
-#include "datasets/bags/bag_topics.h"
 #include "datasets/bags/messages.h"
 #include "datasets/formats/image_lists.h"
 #include "datasets/io/imu_file.h"
-#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 namespace {
 
-constexpr std::uint64_t kHeaderBytes =
-    1024;  ///< contains the header of a message and the encoding of an image
+/// Contains the header of a message and the encoding of an image.
+constexpr std::uint64_t kHeaderBytes = 1024;
 
 /// Items of one topic; repaired stamps are counted.
 template <class Item>
@@ -32,7 +28,7 @@ class Stream {
     items_.push_back(item);
   }
 
-  /// The items, sorted and without repeated stamps; warnings are appended to `streams`.
+  /// The items, sorted and without repeated stamps; warnings are appended to `warnings`.
   [[nodiscard]] std::vector<Item> finish(const std::string& place, std::vector<std::string>& warnings) {
     std::ranges::stable_sort(items_, {}, &Item::t);
     const auto repeated = std::ranges::unique(items_, {}, &Item::t);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Reads a bag with selected topics; see `kBagFormat` for the topics by type and name.
-///
-/// The sensor streams of a bag: inertial samples, and the stamps and positions of images.
+/// Reads bags of ROS 1 and ROS 2, and recordings of librealsense, as sequences, with selected topics; see
+/// `kBagFormat` for the topics by type and name.
 #pragma once
 
 #include <filesystem>
@@ -23,6 +22,7 @@ struct StampedImage {
   MessageReference message;
 };
 
+/// The sensor streams of a bag: inertial samples, and the stamps and positions of images.
 struct BagStreams {
   std::vector<StampedImage> color;  ///< strictly increasing in time, as all streams
   std::vector<StampedImage> depth;

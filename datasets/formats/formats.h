@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Registry of the supported sequence formats. A new format is one file in this folder, which defines a
+/// The supported sequence formats: what a reader returns (the metadata of a sequence and the paths of its
+/// image files), and the list of the readers. A new format is one file in this folder, which defines a
 /// `SequenceFormat`, and its declaration and entry in the list below.
-///
-/// Result of a format reader: the metadata of the sequence and the paths of its image files.
 #pragma once
 
 #include <array>

@@ -3,8 +3,6 @@
 
 #include <string>
 
-#include "core/base/error.h"
-
 namespace stillpoint::datasets {
 
 std::vector<StampedFile> read_image_list(const std::filesystem::path& list, const std::filesystem::path& root,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Lists of timestamped image files.
-///
-/// Frames of the formats that list color and depth images with separate timestamps.
+/// Lists of image files with timestamps, and the frames of the formats that list color and depth images
+/// separately.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// An open file that is closed on destruction, and its state on disk.
-///
-/// Reads whole binary files.
+/// Binary files: an open file that is closed on destruction, the state of a file on disk, and its content.
 #pragma once
 
 #include <fcntl.h>

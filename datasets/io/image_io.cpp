@@ -10,9 +10,6 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -29,6 +26,11 @@ constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::size_t kChunkOverhead = 12;  ///< length, type and checksum
 constexpr std::uint32_t kMaxSide_px = 1 << 15;
 constexpr std::size_t kMaxCompression = 1100;  ///< of deflate: 1032
+
+/// Luma with weights in 1/2^14, rounded.
+constexpr std::uint8_t luma(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
+  return static_cast<std::uint8_t>((4899 * red + 9617 * green + 1868 * blue + 8192) >> 14);
+}
 
 std::uint32_t big_endian(std::string_view bytes) {
   std::uint32_t value = 0;
@@ -205,26 +207,6 @@ std::optional<DecodedPng> decode_png(std::string_view bytes, PngPixels pixels) {
   return DecodedPng{.image = image, .is_color = file->channels == 3};
 }
 
-std::optional<std::vector<unsigned char>> encode_jpeg(const cv::Mat& image, int quality) {
-  STILLPOINT_CHECK(!image.empty() && image.depth() == CV_8U &&
-                   (image.channels() == 1 || image.channels() == 3));
-  const bool is_gray = image.channels() == 1;
-  // Color at half the resolution, as cameras and most programs write it.
-  const int subsampling = is_gray ? TJSAMP_GRAY : TJSAMP_420;
-  const std::unique_ptr<void, int (*)(void*)> encoder(tjInitCompress(), tjDestroy);
-  const unsigned long capacity = tjBufSize(image.cols, image.rows, subsampling);
-  if (!encoder || capacity == static_cast<unsigned long>(-1)) return std::nullopt;
-  std::vector<unsigned char> bytes(capacity);
-  unsigned char* data = bytes.data();
-  unsigned long size = capacity;
-  const int failed =
-      tjCompress2(encoder.get(), image.data, image.cols, static_cast<int>(image.step[0]), image.rows,
-                  is_gray ? TJPF_GRAY : TJPF_RGB, &data, &size, subsampling, quality, TJFLAG_NOREALLOC);
-  if (failed != 0) return std::nullopt;
-  bytes.resize(size);
-  return bytes;
-}
-
 namespace {
 
 /// Loads OpenImageIO at the first call. @throws InputError if it is not installed
@@ -297,6 +279,28 @@ std::optional<DecodedPng> decode_fast(const std::filesystem::path& file, PngPixe
 }
 
 using Bytes = std::vector<unsigned char>;
+
+/// By libjpeg-turbo: runs write annotated images, for which OpenImageIO is not loaded.
+/// @return nullopt if the encoder fails, e.g. for an image of more than 65500 rows
+std::optional<Bytes> encode_jpeg(const cv::Mat& image, int quality) {
+  STILLPOINT_CHECK(!image.empty() && image.depth() == CV_8U &&
+                   (image.channels() == 1 || image.channels() == 3));
+  const bool is_gray = image.channels() == 1;
+  // Color at half the resolution, as cameras and most programs write it.
+  const int subsampling = is_gray ? TJSAMP_GRAY : TJSAMP_420;
+  const std::unique_ptr<void, int (*)(void*)> encoder(tjInitCompress(), tjDestroy);
+  const unsigned long capacity = tjBufSize(image.cols, image.rows, subsampling);
+  if (!encoder || capacity == static_cast<unsigned long>(-1)) return std::nullopt;
+  Bytes bytes(capacity);
+  unsigned char* data = bytes.data();
+  unsigned long size = capacity;
+  const int failed =
+      tjCompress2(encoder.get(), image.data, image.cols, static_cast<int>(image.step[0]), image.rows,
+                  is_gray ? TJPF_GRAY : TJPF_RGB, &data, &size, subsampling, quality, TJFLAG_NOREALLOC);
+  if (failed != 0) return std::nullopt;
+  bytes.resize(size);
+  return bytes;
+}
 
 /// Writes to a temporary name, then renames, so that no partial file remains.
 void write_atomically(const std::filesystem::path& file, const Bytes& bytes) {

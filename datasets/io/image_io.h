@@ -1,55 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Reads and writes image files as cv::Mat: common PNG files by `decode_png`, JPEG output by libjpeg-turbo,
-/// all others by OpenImageIO, which is loaded when the first one is met.
-///
+/// Reads and writes image files as cv::Mat. Common PNG files are decoded by `decode_png`, JPEG files are
+/// written by libjpeg-turbo; all others are left to OpenImageIO, which is loaded when the first one is met.
 /// All functions are thread-safe. Error messages name the file.
 ///
-/// Conversion of color to gray.
-///
-/// Decodes the common kinds of PNG files in half the time of libpng: libdeflate decompresses whole buffers.
-/// CPU time per image, OpenImageIO / libspng / this decoder / gray only:
+/// `decode_png` takes half the time of libpng: libdeflate decompresses whole buffers. CPU time per image,
+/// OpenImageIO / libspng / this decoder / gray only:
 ///   color 848x480 (rendered)  6.2 / 5.1 / 4.4 / 2.9 ms   depth  3.8 / 3.1 / 1.4 ms
 ///   color 640x480 (D435)      5.4 / 4.6 / 3.3 / 2.4 ms   depth  3.2 / 3.0 / 1.3 ms
-///
-/// Encodes JPEG images with libjpeg-turbo: runs write annotated images, for which OpenImageIO is not loaded.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
 namespace stillpoint::datasets {
-
-/// Luma of ITU-R BT.601, Y = 0.299 R + 0.587 G + 0.114 B, with weights in 1/2^14, rounded.
-[[nodiscard]] constexpr std::uint8_t luma(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
-  return static_cast<std::uint8_t>((4899 * red + 9617 * green + 1868 * blue + 8192) >> 14);
-}
-
-/// What to return for a color image.
-enum class PngPixels { kAsStored, kGray };
-
-struct DecodedPng {
-  cv::Mat image;          ///< CV_8UC1, CV_8UC3 (R, G, B) or CV_16UC1
-  bool is_color = false;  ///< whether the file is in color
-};
-
-/// Decodes images without interlacing, transparency or palette, with 8 bits of gray or RGB, or 16 bits of
-/// gray.
-/// @param bytes the whole file
-/// @param pixels `kGray`: RGB is converted by `luma`
-/// @return nullopt for all other images and for damaged ones, which OpenImageIO decodes or describes
-[[nodiscard]] std::optional<DecodedPng> decode_png(std::string_view bytes,
-                                                   PngPixels pixels = PngPixels::kAsStored);
-
-/// @param image   CV_8UC1 or CV_8UC3 (R, G, B), not empty
-/// @param quality 1 to 100
-/// @return nullopt if the encoder fails, e.g. for an image of more than 65500 rows
-[[nodiscard]] std::optional<std::vector<unsigned char>> encode_jpeg(const cv::Mat& image, int quality);
 
 /// Decodes a gray or color image (PNG, JPEG or any other format of OpenImageIO) of 8 bits per channel.
 /// @return CV_8UC1, or CV_8UC3 in the order R, G, B; an alpha channel is dropped
@@ -76,7 +43,23 @@ struct GrayImage {
 [[nodiscard]] cv::Mat decode_image(std::string_view bytes, const std::string& name);
 [[nodiscard]] cv::Mat decode_depth(std::string_view bytes, const std::string& name);
 
-/// Luma of an RGB image, see luma.h; a gray image is returned unchanged.
+/// What to return for a color image.
+enum class PngPixels { kAsStored, kGray };
+
+struct DecodedPng {
+  cv::Mat image;          ///< CV_8UC1, CV_8UC3 (R, G, B) or CV_16UC1
+  bool is_color = false;  ///< whether the file is in color
+};
+
+/// Decodes images without interlacing, transparency or palette, with 8 bits of gray or RGB, or 16 bits of
+/// gray.
+/// @param bytes the whole file
+/// @param pixels `kGray`: RGB is converted as by `to_gray`
+/// @return nullopt for all other images and for damaged ones, which OpenImageIO decodes or describes
+[[nodiscard]] std::optional<DecodedPng> decode_png(std::string_view bytes,
+                                                   PngPixels pixels = PngPixels::kAsStored);
+
+/// Luma of an RGB image by ITU-R BT.601, Y = 0.299 R + 0.587 G + 0.114 B; a gray image is returned unchanged.
 /// @param image CV_8UC3 (R, G, B) or CV_8UC1
 [[nodiscard]] cv::Mat to_gray(const cv::Mat& image);
 

@@ -18,7 +18,7 @@ struct NamedRun {
 
 struct CompareOptions {
   Alignment alignment = Alignment::kSe3;
-  double max_hold_s = 1.0;    ///< validity of a pose, see coverage.h
+  double max_hold_s = 1.0;    ///< validity of a pose, see ate.h
   double min_coverage = 0.5;  ///< runs with a smaller time coverage count as failed
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Detects violations of conventions (units, frames, quaternion order) that explain implausible errors.
-///
-/// Estimation of a constant time offset between an estimate and its ground truth.
+/// Detects violations of conventions (units, constant time offset, frames, quaternion order) that explain
+/// implausible errors of an estimate.
 #pragma once
 
 #include <optional>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Text file input and output: lines, numbers and exact time stamps.
-///
-/// Text tables: one record per line, fields separated by spaces, tabs or commas, `#` starts a comment line.
-/// Errors name file and line.
+/// Text files: whole files, lines, exact numbers and time stamps, and tables with one record per line, whose
+/// fields are separated by spaces, tabs or commas; `#` starts a comment line. Errors name file and line.
 #pragma once
 
 #include <filesystem>

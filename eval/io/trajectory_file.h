@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Trajectories in text formats with one pose per row (s or ns, m):
+/// Reads trajectories of all supported formats, and writes those with one pose per row (s or ns, m):
 ///   TUM RGB-D benchmark   `t[s] tx ty tz qx qy qz qw`
 ///   EuRoC MAV CSV         `t[ns], px, py, pz, qw, qx, qy, qz`
 /// Lines that begin with '#' and further columns (velocity, biases) are ignored; fields are separated by
-/// spaces, tabs or commas; quaternions are normalized.
-///
-/// Poses in the rows of a text table; common to all text formats of trajectories.
-///
-/// Recognizes the bags of ROS 1 and ROS 2, whose poses `stillpoint eval` reads as BAG:/TOPIC.
-///
-/// Reads trajectories in any supported format.
+/// spaces, tabs or commas; quaternions are normalized. The readers of the other formats use `parse_pose` and
+/// `TrajectoryBuilder`, too. Bags of ROS 1 and ROS 2 are only recognized here; `stillpoint eval` reads their
+/// poses as BAG:/TOPIC.
 #pragma once
 
 #include <cstddef>
@@ -46,6 +42,37 @@ struct LoadedTrajectory {
   Trajectory trajectory;
   RowRepairs repairs;
 };
+
+/// Whether the path is a bag by its name: a file .bag, .mcap or .db3, or a folder with metadata.yaml and one
+/// of these files, as `ros2 bag` writes it.
+[[nodiscard]] bool is_bag(const std::filesystem::path& path);
+
+enum class TrajectoryFormat { kTum, kEuroc, kKitti, kOpenloris, kSevenScenes, kNmea };
+constexpr auto enum_names(TrajectoryFormat) {
+  return EnumNames<TrajectoryFormat, 6>{{{TrajectoryFormat::kTum, "tum"},
+                                         {TrajectoryFormat::kEuroc, "euroc"},
+                                         {TrajectoryFormat::kKitti, "kitti"},
+                                         {TrajectoryFormat::kOpenloris, "openloris"},
+                                         {TrajectoryFormat::kSevenScenes, "7scenes"},
+                                         {TrajectoryFormat::kNmea, "nmea"}}};
+}
+
+struct TrajectorySource {
+  std::filesystem::path path;
+  std::optional<TrajectoryFormat> format = std::nullopt;  ///< nullopt: detected from the content
+  std::filesystem::path times = {};                       ///< file with the time stamps, for KITTI
+  int sequence = 0;                                       ///< sequence number, for OpenLORIS; 0: the only one
+};
+
+/// Reads a trajectory. Format detection: a folder is 7-Scenes; a file that begins with a sentence is NMEA; a
+/// file with a "key: value" line is OpenLORIS; rows of 12 numbers are KITTI; rows whose first field is an
+/// integer of 16 digits or more are EuRoC; other rows are TUM.
+/// @throws InputError for unreadable or malformed input, KITTI without times, or several sequences without a
+/// sequence number
+[[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);
+
+/// The format of a text by the rules of `read_trajectory`.
+[[nodiscard]] TrajectoryFormat detect_format(std::string_view text);
 
 /// Reads an estimated trajectory. Rows without a pose and rows that repeat a stamp are skipped, rows that are
 /// slightly out of order are sorted; all are counted.
@@ -124,36 +151,5 @@ class TrajectoryBuilder {
 
   LoadedTrajectory loaded_;
 };
-
-/// Whether the path is a bag by its name: a file .bag, .mcap or .db3, or a folder with metadata.yaml and one
-/// of these files, as `ros2 bag` writes it.
-[[nodiscard]] bool is_bag(const std::filesystem::path& path);
-
-enum class TrajectoryFormat { kTum, kEuroc, kKitti, kOpenloris, kSevenScenes, kNmea };
-constexpr auto enum_names(TrajectoryFormat) {
-  return EnumNames<TrajectoryFormat, 6>{{{TrajectoryFormat::kTum, "tum"},
-                                         {TrajectoryFormat::kEuroc, "euroc"},
-                                         {TrajectoryFormat::kKitti, "kitti"},
-                                         {TrajectoryFormat::kOpenloris, "openloris"},
-                                         {TrajectoryFormat::kSevenScenes, "7scenes"},
-                                         {TrajectoryFormat::kNmea, "nmea"}}};
-}
-
-struct TrajectorySource {
-  std::filesystem::path path;
-  std::optional<TrajectoryFormat> format = std::nullopt;  ///< nullopt: detected from the content
-  std::filesystem::path times = {};                       ///< file with the time stamps, for KITTI
-  int sequence = 0;                                       ///< sequence number, for OpenLORIS; 0: the only one
-};
-
-/// Reads a trajectory. Format detection: a folder is 7-Scenes; a file that begins with a sentence is NMEA; a
-/// file with a "key: value" line is OpenLORIS; rows of 12 numbers are KITTI; rows whose first field is an
-/// integer of 16 digits or more are EuRoC; other rows are TUM.
-/// @throws InputError for unreadable or malformed input, KITTI without times, or several sequences without a
-/// sequence number
-[[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);
-
-/// The format of a text by the rules of `read_trajectory`.
-[[nodiscard]] TrajectoryFormat detect_format(std::string_view text);
 
 }  // namespace stillpoint::eval

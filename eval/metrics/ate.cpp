@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/base/error.h"
-#include "eval/metrics/statistics.h"
 
 namespace stillpoint::eval {
 

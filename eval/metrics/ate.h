@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Absolute trajectory error (ATE): pose errors after alignment (Sturm et al., IROS 2012). Paper Sec. IV.
+/// Absolute trajectory error (ATE): pose errors after alignment (Sturm et al., IROS 2012; paper Sec. IV); and
+/// the fractions of a sequence with a pose (coverage) and with a correct one (correct rate).
 ///
 ///   e_k     = |S p(E_k) - p(G_k)|                  translation error of pair k [m]
 ///   theta_k = angle((R_S R(E_k))^T R(G_k))         rotation error of pair k
@@ -8,10 +9,8 @@
 /// G_k, E_k: matched poses of ground truth and estimate; p(.), R(.): their translation and rotation; S: the
 /// alignment (see alignment.h) with rotation R_S; N: number of pairs.
 ///
-/// Coverage (fraction of a sequence with a pose) and correct rate (fraction with a correct pose).
-///
 /// A pose at t_k is valid during [t_k, t_k + h_k], h_k = min(max_hold_s, t_(k+1) - t_k). With the ground
-/// truth over [t_first, t_last] and the errors e_k, theta_k of ate.h:
+/// truth over [t_first, t_last]:
 ///
 ///   time coverage = sum_k h_k / (t_last - t_first)
 ///   correct rate  = sum over {k: e_k <= max_translation_m, theta_k <= max_rotation_deg} of h_k

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whether a system knows when its pose is wrong, and how it recovers from sensor faults.
+/// Consistency of the errors that a system claims with its true ones: whether it knows when its pose is
+/// wrong, how it recovers from sensor faults (`honesty`), and whether its covariances are of the right size
+/// (`nees`).
 ///
 /// For frame k: E_k the reported pose in the world frame of its segment, G_k the true one, s_k and r_k the
 /// claimed standard deviations of position and rotation. S aligns the located poses before the first fault
@@ -17,7 +19,7 @@
 ///                         first segment; a fault that lasts to the last frame ends at its begin
 ///   error after recovery  RMSE of e_k of the located poses of the first segment from then on
 ///
-/// Normalized estimation error squared (NEES): consistency of an estimate with its covariance.
+/// Normalized estimation error squared (NEES), of the rotation and of the position:
 ///
 ///   e_R = -Log(R_g R_e^T),  e_p = p_g - p_e,  NEES_R = e_R^T P_R^-1 e_R,  NEES_p = e_p^T P_p^-1 e_p
 ///

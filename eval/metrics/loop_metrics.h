@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Precision and recall of loop closure, from true poses.
+/// Metrics of loop closure: precision and recall from true poses, and its effect while running.
 ///
 /// A loop between query q and match m with the claimed pose T_mq of the camera at q in that at m is true if
 ///
@@ -11,8 +11,8 @@
 ///
 ///   recall = recognized revisits / revisits
 ///
-/// Effect of loop closure while running: the errors of the odometry and of the causal trajectory, which
-/// has the corrections known at each frame, once loops correct it.
+/// The effect is the ratio of the errors of the causal trajectory, which has the corrections known at each
+/// frame, and of the odometry, once loops correct it.
 ///
 ///   e(T) = sqrt(1/N sum |S p(T_k) - p(G_k)|^2)   over the frames k with t_k >= t_1 + 1 s
 ///   ratio = e(causal) / e(odometry)

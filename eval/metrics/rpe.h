@@ -1,38 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Relative pose error (RPE) as evaluate_rpe.py of the TUM RGB-D benchmark computes it with --fixed_delta
-/// (Sturm et al., IROS 2012). T.RPE and R.RPE of the paper, Sec. IV.
+/// Relative pose error (RPE): errors of the motion between two times, by all definitions in use. G: ground
+/// truth; E: estimate; p(.), R(.): translation and rotation.
+///
+/// `rpe`: as evaluate_rpe.py of the TUM RGB-D benchmark computes it with --fixed_delta (Sturm et al., IROS
+/// 2012). T.RPE and R.RPE of the paper, Sec. IV.
 ///
 ///   F_i   = (E_j^-1 E_i)^-1 (G_j^-1 G_i),  j = argmin_j |t_j - (t_i + delta)|
 ///   T.RPE = sqrt(1/N sum_i |p(F_i)|^2),  R.RPE = sqrt(1/N sum_i angle(R(F_i))^2)
 ///
 /// E_i, E_j: estimated poses at t_i and t_j; G_i, G_j: ground truth closest in time to them; F_i: error of
-/// pair i; p(.), R(.): translation and rotation; N: number of pairs.
+/// pair i; N: number of pairs.
 ///
-/// Relative pose errors between pairs of matched poses that are a fixed time, path length or number of frames
-/// apart.
+/// `relative_errors`: of pairs (i, j) of matched poses that are a fixed time, path length or number of frames
+/// apart. Sources: evo_rpe; Zhang and Scaramuzza, IROS 2018 (rpg_trajectory_evaluation), for the yaw error in
+/// the world frame.
 ///
 ///   F_ij  = (G_i^-1 G_j)^-1 (E_i^-1 E_j)
 ///   trans = |p(F_ij)|,  rot = angle(R(F_ij)),  yaw = |first ZYX Euler angle of R(E_j) R(F_ij) R(E_j)^T|
 ///
-/// G, E: ground truth and estimate; i, j: start and end of the pair; p(.), R(.): translation, rotation.
-/// Sources: evo_rpe; Zhang and Scaramuzza, IROS 2018 (rpg_trajectory_evaluation), for the yaw error in the
-/// world frame.
-///
-/// Strict relative pose error: the RPE of relative_error.h over pairs of matches delta_s apart, with a
-/// tolerance on the time difference, so that gaps and sparse estimates do not lower the error:
+/// `strict_rpe`: trans and rot over pairs of matches delta_s apart, with a tolerance on the time difference,
+/// so that gaps and sparse estimates do not lower the error:
 ///
 ///   j = argmin_j |t_j - (t_i + delta_s)|;  pair (i, j) is used if
 ///   |t_j - (t_i + delta_s)| <= min(median(t_(k+1) - t_k) / 2, delta_s / 10)
 ///
-/// Relative errors over segments (sub-trajectories) of fixed length, as in Zhang and Scaramuzza, IROS 2018:
-/// trans, rot and yaw of relative_error.h over pairs (k, m) with m = argmin_m |s_m - (s_k + d)|, where s is
-/// the path length of the ground truth and d the length of the segment.
+/// `segment_errors`: trans, rot and yaw over segments (sub-trajectories) of fixed length, as in Zhang and
+/// Scaramuzza, IROS 2018: pairs (k, m) with m = argmin_m |s_m - (s_k + d)|, where s is the path length of the
+/// ground truth and d the length of the segment.
 ///
-/// Relative pose error between consecutive frames, and the frames with the largest errors.
+/// `FrameToFrameError`: trans between consecutive frames, independent of the alignment.
 ///
 ///   e_k = |p((G_(k-1)^-1 G_k)^-1 (E_(k-1)^-1 E_k))|
-///
-/// G_k, E_k: ground truth and estimate at frame k; p(.): translation. Independent of the alignment.
 #pragma once
 
 #include <cstddef>
@@ -111,10 +109,10 @@ struct RpeResult {
   std::size_t dropped_gt = 0;  ///< pairs without ground truth within twice its median interval
 };
 
-/// RPE as defined above; t is the time, the index or the path length of a pose, depending on the unit. As in
-/// the tool there is no limit on |t_j - (t_i + delta)|, and a pair is dropped if j is the last pose.
-/// Alignment does not affect the result. Uses all pairs; the tool samples 10000 of them at random if there
-/// are more.
+/// RPE of the TUM tools, see above; t is the time, the index or the path length of a pose, depending on the
+/// unit. As in the tool there is no limit on |t_j - (t_i + delta)|, and a pair is dropped if j is the last
+/// pose. Alignment does not affect the result. Uses all pairs; the tool samples 10000 of them at random if
+/// there are more.
 /// @return nullopt if no pair is left
 [[nodiscard]] std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est,
                                            const RpeOptions& options = {});
@@ -168,6 +166,7 @@ struct SegmentOptions {
 /// Drift: mean over all segments of |p(F_km)| / d, in percent.
 [[nodiscard]] std::optional<double> drift_percent(std::span<const SegmentErrors> segments);
 
+/// Relative pose error between each frame and the previous one.
 class FrameToFrameError {
  public:
   /// To be called for every frame in order.

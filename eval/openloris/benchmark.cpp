@@ -5,16 +5,15 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <string>
 
 #include "core/base/error.h"
 #include "eval/io/openloris_file.h"
-#include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
-#include "eval/trajectory/alignment.h"
 
 namespace stillpoint::eval {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kRelocalizationScale = 60.0;  // [s]
 
@@ -272,8 +271,6 @@ Pose openloris_frame(std::string_view scene, std::string_view frame) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 5> kScenes{"home", "cafe", "corridor", "office", "market"};
 

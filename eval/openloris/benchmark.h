@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Scores a folder of OpenLORIS results (one subfolder per system) against a folder of ground truth.
+/// The OpenLORIS-Scene metrics (Shi et al., ICRA 2020; evaluate.py of its tools): of one run on one sequence,
+/// of one system over the sequences of a scene, and of a folder of results (one subfolder per system) against
+/// a folder of ground truth.
 ///
-/// The OpenLORIS-Scene metrics of one run on one sequence (Shi et al., ICRA 2020; evaluate.py of its tools).
+/// One run on one sequence:
 ///
 ///   correct(k)  = e_k <= max_translation_m and theta_k <= max_rotation_deg   (e_k, theta_k: see ate.h)
 ///   c           = sum over correct k of min(max_hold_s, t_(k+1) - t_k),  t_(N+1) = t_max
@@ -12,7 +14,7 @@
 /// t_k: stamps of the N matches; t_min: start of the ground truth; t_max: the later one of the end of the
 /// ground truth and t_N.
 ///
-/// OpenLORIS-Scene metrics of one system over the sequences q of a scene (Shi et al., ICRA 2020):
+/// One system over the sequences q of a scene:
 ///
 ///   figure correct rate = sum_q c_q / sum_q d_q        over all sequences of the ground truth
 ///   CR-T                = sum_q r_q T_q / sum_q T_q    over sequences with a result
@@ -20,9 +22,7 @@
 ///   pooled ATE          = sqrt(sum_q n_q a_q^2 / sum_q n_q)
 ///
 /// c_q: correct time; d_q: duration of the ground truth; T_q: time since the first match; r_q = c_q / T_q;
-/// n_q: number of correct poses; a_q: their ATE RMSE (see sequence_score.h).
-///
-/// Extrinsic calibration of the two OpenLORIS-Scene robots.
+/// n_q: number of correct poses; a_q: their ATE RMSE, C_ATE.
 #pragma once
 
 #include <cstddef>
@@ -99,7 +99,7 @@ struct PooledRpe {
 /// One system on one sequence.
 struct OpenlorisRun {
   OpenlorisSequenceScore score;
-  std::optional<Statistics> rpe_m;  ///< strict RPE with delta 1 s, see strict_rpe.h
+  std::optional<Statistics> rpe_m;  ///< strict RPE with delta 1 s, see rpe.h
   std::optional<Statistics> rpe_deg;
   std::size_t rpe_dropped = 0;
 };

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Evaluation protocols: named, versioned definitions of association, alignment and metrics. Each result is
-/// stored with the name, version and description of its protocol.
-///
-/// Protocols that reproduce the numbers of public tools, including their known limitations.
-///
-/// Strict protocols: exact time stamps, no interpolation or RPE pair across a gap, coverage with every error.
+/// stored with the name, version and description of its protocol. The protocols `compat:` reproduce the
+/// numbers of public tools, including their known limitations. The protocols `strict:` use exact time stamps,
+/// no interpolation or RPE pair across a gap, and state the coverage with every error.
 #pragma once
 
 #include <optional>
@@ -67,13 +65,6 @@ struct Evaluation {
   std::vector<PoseError> per_pose;
 };
 
-/// RPE of a protocol, and the warnings that belong to it.
-struct RpeEvaluation {
-  std::optional<Statistics> translation_m;
-  std::optional<Statistics> rotation_deg;
-  std::vector<std::string> notes;
-};
-
 struct EvaluationInput {
   const Trajectory& gt;
   const Trajectory& est;  ///< of the same body frame as gt
@@ -95,27 +86,5 @@ struct Protocol {
 /// @throws InputError for an unknown protocol, for options that the protocol does not support, or if the
 /// alignment of a strict protocol is not determined
 [[nodiscard]] Evaluation evaluate(std::string_view protocol, const EvaluationInput& input);
-
-[[nodiscard]] Evaluation evaluate_compat_tum(const EvaluationInput& input);
-[[nodiscard]] Evaluation evaluate_compat_evo(const EvaluationInput& input);
-[[nodiscard]] Evaluation evaluate_compat_rpg(const EvaluationInput& input);
-[[nodiscard]] Evaluation evaluate_compat_openloris(const EvaluationInput& input);
-
-/// An evaluation with the alignment, the ATE and the errors per pose; the other fields are empty.
-[[nodiscard]] Evaluation ate_evaluation(std::span<const MatchedPose> matches,
-                                        const AlignmentResult& alignment);
-
-/// `evaluation` with an RPE and its notes.
-[[nodiscard]] Evaluation with_rpe(Evaluation evaluation, const RpeEvaluation& rpe);
-
-/// @param input both trajectories have the same body frame
-/// @param alignment used unless the options override it
-/// @throws InputError if the matches do not determine the alignment, or for an RPE over frames
-[[nodiscard]] Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment);
-
-template <Alignment kAlignment>
-[[nodiscard]] Evaluation evaluate_strict(const EvaluationInput& input) {
-  return evaluate_strict(input, kAlignment);
-}
 
 }  // namespace stillpoint::eval

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <map>
 #include <random>
 
 #include "eval/metrics/statistics.h"
-#include "eval/statistics/rank_tests.h"
 
 namespace stillpoint::eval {
 namespace {

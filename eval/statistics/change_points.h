@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Change points of a series of scalars by E-divisive (Matteson and James, "A Nonparametric Approach for
-/// Multiple Change Point Analysis of Multivariate Data", JASA 109, 2014) with exponent alpha = 1.
+/// Changes of a series of scalars: where it has steps, how large a step is, and whether a linear trend
+/// explains the values better than steps.
 ///
-/// Divergence of two adjacent segments X = {x_1 .. x_n}, Y = {y_1 .. y_m} (their Sec. 2):
+/// Change points by E-divisive (Matteson and James, "A Nonparametric Approach for Multiple Change Point
+/// Analysis of Multivariate Data", JASA 109, 2014) with exponent alpha = 1. Divergence of two adjacent
+/// segments X = {x_1 .. x_n}, Y = {y_1 .. y_m} (their Sec. 2):
 ///
 ///   E(X, Y) = 2 / (n m) sum_(i,j) |x_i - y_j|
 ///             - C(n,2)^-1 sum_(i<k) |x_i - x_k| - C(m,2)^-1 sum_(j<k) |y_j - y_k|
@@ -13,13 +15,11 @@
 /// not exceed the significance level; Q_r: maximum after permutation r of the values within all current
 /// segments, R: number of permutations. The procedure ends with the first change that is not significant.
 ///
-/// Relative change between two levels of a series, and tests for a linear trend instead of steps.
-///
-/// Theil-Sen line (Theil 1950, Sen 1968) of values y_0 .. y_(n-1):
+/// Trend by the Theil-Sen line (Theil 1950, Sen 1968) of values y_0 .. y_(n-1):
 ///
 ///   slope = median over i < k of (y_k - y_i) / (k - i),  intercept = median over i of (y_i - slope i)
 ///
-/// Mann-Kendall test of no trend (Mann 1945, Kendall 1975), with ties and continuity correction:
+/// and the Mann-Kendall test of no trend (Mann 1945, Kendall 1975), with ties and continuity correction:
 ///
 ///   S = sum over i < k of sign(y_k - y_i)
 ///   Var(S) = (n (n-1) (2n+5) - sum over ties of t (t-1) (2t+5)) / 18,  t: number of equal values

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Exact null distributions of rank statistics, and the confidence intervals that they give.
+/// Distribution-free tests by ranks, exact for any number of values, and the estimates and confidence
+/// intervals that belong to them: of a median, of the shift between two samples, of paired differences.
 ///
-/// Sign statistics: with ranks r_1 .. r_n and independent signs of probability 1/2,
+/// Null distribution of sign statistics: with ranks r_1 .. r_n and independent signs of probability 1/2,
 ///
 ///   T = sum of r_i with a positive sign,  P_i(T = t) = 1/2 P_(i-1)(T = t) + 1/2 P_(i-1)(T = t - r_i)
 ///
@@ -20,31 +21,29 @@
 ///
 ///   interval of theta = [c_(k), c_(N+1-k)],  k = max{k: P(T <= k - 1) <= (1 - confidence) / 2}
 ///
-/// c_(k): k-th smallest candidate. With ties the confidence is larger (Noether, JASA 62, 1967).
+/// c_(k): k-th smallest candidate. With ties the confidence is larger (Noether, JASA 62, 1967). The three
+/// tests below are cases of it:
 ///
-/// Exact confidence interval of a median by order statistics (Thompson, Ann. Math. Statist. 7, 1936):
+/// 1. Median by order statistics (Thompson, Ann. Math. Statist. 7, 1936):
 ///
 ///   P(x_(k) <= median <= x_(n+1-k)) >= 1 - 2 P(B <= k - 1),  B ~ binomial(n, 1/2)
 ///
 /// x_(k): k-th smallest of n values. It holds for any distribution of the values. The widest interval, k = 1,
 /// misses the median with probability 2^(1-n), so there is none at 95 % for n < 6.
 ///
-/// Exact two-sample rank test (Mann and Whitney, Ann. Math. Statist. 18, 1947) of values x_1 .. x_m and
-/// y_1 .. y_n:
+/// 2. Two-sample rank test (Mann and Whitney, as above) of values x_1 .. x_m and y_1 .. y_n:
 ///
 ///   U+ = #{(i, j): y_j > x_i},  U- = #{(i, j): y_j < x_i},  p = min(1, 2 P(U <= m n - max(U+, U-)))
 ///
 /// Pairs of equal values thus count against a difference, which keeps p valid with ties. Estimate and
-/// interval of the shift from x to y (Hodges and Lehmann, Ann. Math. Statist. 34, 1963) from the N = m n
-/// differences d_ij = y_j - x_i:
+/// interval of the shift from x to y from the N = m n differences d_ij = y_j - x_i:
 ///
 ///   estimate = median of d_ij,  interval = [d_(k), d_(N+1-k)]
 ///
-/// k: see eval/statistics/rank_tests.h. The interval excludes 0 if and only if p <= 1 - confidence.
-/// The smallest p is 2 m! n! / (m + n)!, so 95 % requires for instance 4 and 4, or 3 and 5 values.
+/// The interval excludes 0 if and only if p <= 1 - confidence. The smallest p is 2 m! n! / (m + n)!, so 95 %
+/// requires for instance 4 and 4, or 3 and 5 values.
 ///
-/// Wilcoxon signed-rank test of paired differences, exact for any number of pairs (Wilcoxon, Biometrics
-/// Bull. 1, 1945):
+/// 3. Signed-rank test of paired differences (Wilcoxon, as above):
 ///
 ///   T+ = sum of the ranks of d_i > 0,  T- = sum of the ranks of d_i < 0
 ///   p = min(1, 2 P(T <= min(T+, T-)))
@@ -53,16 +52,12 @@
 /// distribution of T is conditional on these ranks. If both programs are equal, exchanging the values of a
 /// pair changes nothing, so d_i is symmetric about 0, which is all that the test assumes.
 ///
-/// Estimate and interval (Hodges and Lehmann, Ann. Math. Statist. 34, 1963) from the N = n (n + 1) / 2 means
-/// of two differences, w_ij = (d_i + d_j) / 2, i <= j:
+/// Estimate and interval from the N = n (n + 1) / 2 means of two differences, w_ij = (d_i + d_j) / 2, i <= j:
 ///
 ///   estimate = median of w_ij (pseudomedian),  interval = [w_(k), w_(N+1-k)]
 ///
-/// k: see eval/statistics/rank_tests.h. Zeros are not omitted here, and ties make the interval wider,
-/// so that it may contain 0 although p is small.
-///
-/// Paired comparison of two variants that were measured under the same conditions, by the exact signed-rank
-/// test (eval/statistics/rank_tests.h).
+/// Zeros are not omitted here, and ties make the interval wider, so that it may contain 0 although p is
+/// small.
 #pragma once
 
 #include <cstddef>
@@ -119,6 +114,7 @@ struct Spread {
 /// @return nullopt for an empty list
 [[nodiscard]] std::optional<Spread> spread(std::span<const double> values, double confidence = 0.95);
 
+/// Result of the two-sample rank test.
 struct RankSum {
   double shift = 0.0;
   double p_value = 1.0;
@@ -140,6 +136,7 @@ struct RankSum {
 /// @param significance in (0, 1]
 [[nodiscard]] std::size_t smallest_count(double significance);
 
+/// Result of the signed-rank test.
 struct SignedRank {
   std::size_t count = 0;
   double estimate = 0.0;  ///< pseudomedian, in the unit of the differences
@@ -173,6 +170,7 @@ struct PairedDifference {
   double effect = 0.0;  ///< `rank_biserial`: 1 if every pair increased, -1 if every pair decreased
 };
 
+/// Paired comparison of two variants that were measured under the same conditions, by the signed-rank test.
 /// @param pairs finite values
 /// @param confidence of the interval, in (0, 1)
 /// @return nullopt without pairs

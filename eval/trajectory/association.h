@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Association of estimated poses with ground truth by time stamp.
-///
-/// Checks that an estimate and its ground truth are of the same time.
+/// Association of estimated poses with ground truth by time stamp, and the check that both are of the same
+/// time.
 #pragma once
 
 #include <cstddef>

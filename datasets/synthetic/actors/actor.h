@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Moving objects of a scene: rigid parts whose poses are functions of time.
-///
-/// Rigid parts of moving objects: limbs and boxes as small triangle meshes.
+/// Moving objects of a scene: rigid parts (limbs and boxes as small triangle meshes) whose poses are
+/// functions of time.
 #pragma once
 
 #include <array>

@@ -286,7 +286,6 @@ Actor make_seated_person(Builder& builder, int object, const Placement& seat, st
 
 namespace {
 
-using Eigen::Vector3d;
 constexpr int kFine_px = 512, kPlain_px = 256;
 
 /// Poses of `count` parts that form one rigid body.

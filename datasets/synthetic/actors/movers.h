@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Motion along a closed route with random stops and camera avoidance.
-///
-/// People: articulated bodies that walk, or sit and make small movements.
-///
-/// Moving objects of classes that a person detector does not report: a loaded cart, an office chair.
+/// What moves in a scene: people, who walk, or sit and make small movements; and a loaded cart and an office
+/// chair, of classes that a person detector does not report. All but the seated follow a closed route with
+/// random stops and keep clear of the camera.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +32,8 @@ struct CameraMotion {
   double to_s = 0.0;
 };
 
-/// Simulated once on construction, so that `at` is a pure function of time.
+/// Motion along a closed route with random stops and camera avoidance. Simulated once on construction, so
+/// that `at` is a pure function of time.
 class Walk {
  public:
   Walk(const ClosedRoute& route, const WalkStyle& style, const CameraMotion& camera,

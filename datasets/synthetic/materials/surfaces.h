@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Procedural textures of the synthetic world. All are CV_8UC3 with power-of-two sides.
-///
-/// Drawing primitives of procedural textures: multi-scale noise, text, simple illustrations.
+/// Procedural textures of the synthetic world, and the primitives that draw them: multi-scale noise, text,
+/// simple illustrations. All textures are CV_8UC3 with power-of-two sides.
 #pragma once
 
 #include <opencv2/core.hpp>

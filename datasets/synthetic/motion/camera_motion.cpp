@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <vector>
 
 #include "core/base/error.h"
 #include "core/geometry/so3.h"

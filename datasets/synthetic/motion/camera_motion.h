@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Closed route on the floor: a polygon with rounded corners, parametrized by arc length.
-///
-/// Paths of a hand-held camera: sums of sinusoids, including hand tremor.
-///
-/// Paths of a wheeled robot with a forward-looking camera: a closed route or a recorded track, with
-/// vibration.
+/// Paths of a camera: held in a hand (sums of sinusoids, including hand tremor), or looking forward on a
+/// wheeled robot with vibration that follows a closed route or a recorded track.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +13,7 @@
 
 namespace stillpoint::synth {
 
+/// Closed route on the floor: a polygon with rounded corners, parametrized by arc length.
 class ClosedRoute {
  public:
   /// The route starts shortly after the first corner.
@@ -52,9 +49,9 @@ struct Viewpoint {
 /// y, pitch positive downwards, roll positive clockwise as seen from behind the camera.
 [[nodiscard]] Eigen::Quaterniond camera_attitude(double yaw, double pitch, double roll);
 
-/// Path of the body that carries the camera. Mean speeds as listed for the TUM
-/// sequences: xyz 0.2-0.3 m/s, rpy 20 deg/s (peaks 40-50), halfsphere 0.2 m/s and 18 deg/s, static 0.01 m/s.
-/// Amplitudes ramp from 40 % to 100 % over the first two seconds, for a moving but gentle start.
+/// Path of the body that carries a hand-held camera. Mean speeds as listed for the TUM sequences: xyz 0.2-0.3
+/// m/s, rpy 20 deg/s (peaks 40-50), halfsphere 0.2 m/s and 18 deg/s, static 0.01 m/s. Amplitudes ramp from 40
+/// % to 100 % over the first two seconds, for a moving but gentle start.
 [[nodiscard]] PathSpline hand_path(HandMotion motion, const Viewpoint& view, const PathRequest& request);
 
 struct RobotRoute {
@@ -65,8 +62,8 @@ struct RobotRoute {
   double camera_height_m = 1.1;
 };
 
-/// Path of the body that carries the camera. The seed determines the start (within the
-/// first 2 m of the route) and the vibration. Wheel vibration: 0.4 mm and 0.1 degree at 7-17 Hz.
+/// Path of the body along a route. The seed determines the start (within the first 2 m of the route) and the
+/// vibration. Wheel vibration: 0.4 mm and 0.1 degree at 7-17 Hz.
 [[nodiscard]] PathSpline robot_path(const RobotRoute& route, const PathRequest& request);
 
 /// Pose of a robot's base on the floor.

@@ -2,13 +2,11 @@
 /// Smooth path from noisy motion-capture poses and the IMU samples recorded with them.
 ///
 /// Motion capture is accurate at low frequencies, but has per-sample noise and gaps; the IMU is accurate at
-/// high frequencies, but drifts. A quintic B-spline is fitted to both by linear least squares: to the poses,
-/// to the angular rates, dq/dt = q * (w - b_w) / 2 (linear in q), and to the accelerations,
-/// p'' = R (a - b_a) + g (linear in p). q, R: attitude T_w_b; w, a: gyroscope and accelerometer samples; b:
-/// their biases, estimated in alternation with the fit. Continuous-time fusion after Furgale, Barfoot and
-/// Sibley (2012).
-///
-/// Linear least squares with a banded normal matrix, as in spline fitting.
+/// high frequencies, but drifts. A quintic B-spline is fitted to both by linear least squares, whose normal
+/// matrix is banded: to the poses, to the angular rates, dq/dt = q * (w - b_w) / 2 (linear in q), and to the
+/// accelerations, p'' = R (a - b_a) + g (linear in p). q, R: attitude T_w_b; w, a: gyroscope and
+/// accelerometer samples; b: their biases, estimated in alternation with the fit. Continuous-time fusion
+/// after Furgale, Barfoot and Sibley (2012).
 #pragma once
 
 #include <span>

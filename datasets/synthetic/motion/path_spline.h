@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Smooth path of a body with exact derivatives: source of ideal IMU samples and ground-truth poses.
-///
-/// IMU measurement model on a smooth path.
+/// Smooth path of a body with exact derivatives, the source of ground-truth poses and ideal IMU samples; and
+/// the measurement model of an IMU on it.
 #pragma once
 
 #include <array>

@@ -266,7 +266,6 @@ void add_bin(Builder& builder, const Placement& placement, const Palette& palett
 namespace {
 
 using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 constexpr double kOffWall_m = 0.015;  // distance of hung quads and skirting from the wall
 

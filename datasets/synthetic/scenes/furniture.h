@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Rooms and furniture of the synthetic scenes.
+/// Rooms and furniture of the synthetic scenes, and the palette of textures that they share.
 #pragma once
 
 #include <array>

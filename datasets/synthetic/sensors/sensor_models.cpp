@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <vector>
 
 #include "datasets/synthetic/counter_random.h"
 

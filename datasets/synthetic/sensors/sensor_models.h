@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Color camera model: vignetting, exposure, shot and read noise, response curve.
-///
-/// Active-stereo depth camera model, registered to the color camera.
-///
-/// Bounding boxes of moving objects in a rendered frame, and a simulated person detector.
+/// Models of the sensors: a color camera (vignetting, exposure, shot and read noise, response curve), an
+/// active-stereo depth camera that is registered to it, and a person detector, with the true bounding boxes
+/// of the moving objects in a rendered frame.
 #pragma once
 
 #include <cstdint>

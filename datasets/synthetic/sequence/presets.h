@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Description of a sequence to render: a named preset and its adjustable parameters.
-///
-/// Text form of a request: written next to the sequence, and hashed for the cache key.
+/// Description of a sequence to render: a named preset and its adjustable parameters, and their text, which
+/// is written beside the sequence and hashed for the cache key.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Recorded motion to render along: smoothed trajectory and original IMU samples.
-///
-/// Timestamps of the images of a rendered sequence: at equal intervals, or those of a recording.
-///
-/// Motion of the OpenLORIS robots, from the ground truth of the data set (Shi et al. 2020).
+/// What a rendered sequence takes from recordings: the frame times with the frames that were lost, the motion
+/// of the OpenLORIS robots (ground truth of the data set, Shi et al. 2020), and a motion with its original
+/// IMU samples, smoothed to render along.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +15,8 @@
 
 namespace stillpoint::synth {
 
-/// One entry per frame; the depth image of a frame shows the scene at the time of its color image.
+/// Timestamps of the images, at equal intervals or as recorded: one entry per frame; the depth image of a
+/// frame shows the scene at the time of its color image.
 struct FrameTimes {
   std::vector<Timestamp> color;  ///< increasing
   std::vector<Timestamp> depth;  ///< equal to `color` unless recorded
@@ -57,6 +56,7 @@ struct RecordedTrack {
 /// Closed routes of two people on floor that the tour does not cross.
 [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> home_walking_routes();
 
+/// Smoothed trajectory and original IMU samples.
 struct RecordedMotion {
   SmoothedMotion smoothed;
   Timestamp epoch;     ///< timestamp of path time 0, the first frame

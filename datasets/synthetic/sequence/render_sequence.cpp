@@ -11,7 +11,6 @@
 #include <mutex>
 #include <optional>
 #include <thread>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,7 +18,6 @@
 #include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
 #include "datasets/synthetic/counter_random.h"
-#include "datasets/synthetic/sequence/presets.h"
 #include "datasets/synthetic/sequence/scene_setup.h"
 
 namespace stillpoint::synth {
@@ -175,8 +173,6 @@ void SequenceWriter::write_boxes(const std::string& file, const std::vector<Dete
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Calls `work(index)` once for every index below `count`, from several threads. The first exception stops
 /// all threads and is rethrown.
@@ -363,8 +359,6 @@ bool render_sequence(const SynthRequest& request, const fs::path& folder, const 
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 fs::path variable(const char* name) {
   const char* value = std::getenv(name);

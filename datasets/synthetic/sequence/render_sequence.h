@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Renders a whole sequence into a folder with multiple threads.
-///
-/// Writes the files of a rendered sequence in OpenLORIS or TUM RGB-D layout.
-///
-/// On-disk cache of rendered sequences.
+/// Renders a sequence into a folder in OpenLORIS or TUM RGB-D layout, with multiple threads, and keeps
+/// rendered sequences in a cache on disk.
 #pragma once
 
 #include <cstddef>
