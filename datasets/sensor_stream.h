@@ -32,7 +32,7 @@ class SensorStream {
   [[nodiscard]] virtual std::optional<MotionLabels> load_labels(std::size_t index) const = 0;
 };
 
-/// Plays a sequence from a later time on, as if the recording started there: everything earlier than
+/// Plays a sequence from a later time on, as if the recording started there. Everything earlier than
 /// `start_s` after the first frame is left out: frames, IMU samples, boxes and true poses. The stamps are
 /// those of the sequence, frames are numbered from 0.
 /// @param stream without injected faults

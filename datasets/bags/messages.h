@@ -121,7 +121,7 @@ struct NavSatFixMessage {
 /// std_msgs/Float32
 [[nodiscard]] float parse_float(const SerializedMessage& message);
 
-/// Inverse of `parse_imu` and so on. Orientation is written as unknown (its first covariance is -1),
+/// Inverse functions of the parsers above. Orientation is written as unknown (its first covariance is -1),
 /// covariances as 0.
 [[nodiscard]] std::string serialize(const ImuMessage& message, WireFormat format);
 [[nodiscard]] std::string serialize(const ImageMessage& message, WireFormat format);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What moves in a scene: people, who walk, or sit and make small movements; and a loaded cart and an office
-/// chair, of classes that a person detector does not report. All but the seated follow a closed route with
-/// random stops and keep clear of the camera.
+/// What moves in a scene: people, articulated bodies that walk, or sit and make small movements; and a loaded
+/// cart and an office chair, of classes that a person detector does not report. All but the seated follow a
+/// closed route with random stops and keep clear of the camera.
 #pragma once
 
 #include <cstdint>
