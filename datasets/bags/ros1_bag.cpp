@@ -387,7 +387,7 @@ void Ros1Writer::finish() {
   const std::uint64_t index_position = file_.position();
   for (const std::string& connection : connections_) file_.append(connection);
   for (const ChunkInfo& info : chunks_) file_.append(chunk_info_record(info));
-  file_.overwrite(kFirstLine.size(), bag_header(index_position));
+  file_.overwrite(kVersion2.size(), bag_header(index_position));
   file_.finish();
 }
 
