@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Size, significance and class of the change of one metric.
-///
-/// Correction for the number of tests in one comparison, and the number of pairs that it requires.
+/// Changes of metrics between the paired runs of two builds: the values of each metric and the test that is
+/// valid for them, the level of significance, corrected for the number of tests in one comparison, and size,
+/// significance and class of each change.
 ///
 /// A comparison tests m metrics at once: five of accuracy for each variant and sequence, and fourteen of cost
 /// for each variant, 150 in all for the plan `quick`. The probability that any metric of an unchanged program
@@ -19,8 +19,6 @@
 /// test of two samples). Replicates on one input need fewer runs: for 150 tests 8 per side, where pairs would
 /// have to be 13; pairs are better where inputs or the state of the machine differ. Step-down procedures
 /// (Holm) have the same first step, and save no pairs.
-///
-/// Values of the compared metrics over paired runs, and the test that is valid for them.
 #pragma once
 
 #include <cstddef>
@@ -36,29 +34,7 @@
 
 namespace stillpoint::bench {
 
-/// Largest probability of a false statement in one comparison.
-inline constexpr double kSignificance = 0.05;
-
-struct TestFamily {
-  std::size_t tests = 0;         ///< m
-  double level = kSignificance;  ///< largest p-value of a significant change, a / K
-};
-
-/// @param smallest_p p*_j of each metric that differs between base and head
-[[nodiscard]] TestFamily test_family(std::span<const double> smallest_p);
-
-/// Smallest two-sided p-value of the rank test of two samples; 1 if one is empty.
-[[nodiscard]] double smallest_rank_sum_p(std::size_t first, std::size_t second);
-
-/// Smallest number of replicates per side whose rank test reaches a p-value of `level`.
-/// @param level in (0, 1]
-[[nodiscard]] std::size_t replicates_for(double level);
-
-/// Smallest number of pairs per run with which each metric of a plan can be significant.
-/// @param runs the runs of one program, without repetitions
-/// @return 1 for runs that count instructions, which need no test
-[[nodiscard]] std::size_t pairs_for_plan(std::span<const RunIdentity> runs);
-
+/// The test of the change of a metric.
 enum class ChangeTest {
   kExact,       ///< none: the metric has no noise, each difference is caused by the program (instructions)
   kPairs,       ///< signed-rank test over pairs: times, memory, and accuracy over several inputs
@@ -93,6 +69,30 @@ struct MetricSeries {
 /// Whether the series is tested: base and head differ, and not exactly known.
 [[nodiscard]] bool is_tested(const MetricSeries& series);
 
+/// Largest probability of a false statement in one comparison.
+inline constexpr double kSignificance = 0.05;
+
+/// The tests of one comparison.
+struct TestFamily {
+  std::size_t tests = 0;         ///< m
+  double level = kSignificance;  ///< largest p-value of a significant change, a / K
+};
+
+/// @param smallest_p p*_j of each metric that differs between base and head
+[[nodiscard]] TestFamily test_family(std::span<const double> smallest_p);
+
+/// Smallest two-sided p-value of the rank test of two samples; 1 if one is empty.
+[[nodiscard]] double smallest_rank_sum_p(std::size_t first, std::size_t second);
+
+/// Smallest number of replicates per side whose rank test reaches a p-value of `level`.
+/// @param level in (0, 1]
+[[nodiscard]] std::size_t replicates_for(double level);
+
+/// Smallest number of pairs per run with which each metric of a plan can be significant.
+/// @param runs the runs of one program, without repetitions
+/// @return 1 for runs that count instructions, which need no test
+[[nodiscard]] std::size_t pairs_for_plan(std::span<const RunIdentity> runs);
+
 /// Smallest p-value that a tested series can reach with its number of pairs.
 [[nodiscard]] double smallest_p_of(const MetricSeries& series);
 
@@ -115,7 +115,7 @@ struct MetricChange {
   eval::RelativeChange
       change;  ///< number of pairs, estimate, p-value, 95 % interval if there are enough pairs
   ChangeTest test = ChangeTest::kPairs;
-  double level = kSignificance;  ///< largest p-value that is significant, see bench/analysis/metric_change.h
+  double level = kSignificance;  ///< largest p-value that is significant, see `TestFamily`
   /// Confidence interval at 1 - `level`; nullopt if there are too few pairs for it.
   std::optional<eval::Interval> adjusted_interval{};
   double largest = 0.0;     ///< largest absolute relative change of a pair
@@ -132,9 +132,8 @@ struct MetricChange {
 ///   kSame          |difference of the medians| < floor
 ///   kWorse         m >= margin and p <= level
 ///   kBetter        m <= -margin and p <= level
-///   kSame          -margin <= l and u <= margin; without interval: no pair changed (cost), or no pair
-///   changed by
-///                  more than the margin (accuracy, which has no noise apart from rounding)
+///   kSame          -margin <= l and u <= margin; without interval: no pair changed (cost), or
+///                  none by more than the margin (accuracy, which has no noise apart from rounding)
 ///   kInconclusive  otherwise
 ///
 /// Instructions (`ChangeTest::kExact`) are compared with the margin only: the count of a program is the same

@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/model/stored_run.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
 
@@ -20,6 +19,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* kUnknownHost = "unknown machine";
+constexpr const char* kAllBuilds = "all";
+constexpr std::size_t kMaxListed = 8;
 
 std::string text_at(const Json& json, const char* part, const char* name) {
   const auto found = json.find(part);
@@ -82,9 +83,6 @@ std::vector<RunOrigin> run_origins(const Store& store, std::span<const StoredRun
 }
 
 namespace {
-
-constexpr const char* kAllBuilds = "all";
-constexpr std::size_t kMaxListed = 8;
 
 /// A run, and where it comes from.
 struct OriginRun {

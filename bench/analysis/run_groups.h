@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Groups of runs that may be pooled in one statistic.
-///
-/// Where a run comes from, by its manifest: commit, machine and config.
+/// Groups of runs that may be pooled in one statistic, and where a run comes from, by its manifest: commit,
+/// machine and config.
 #pragma once
 
 #include <span>
@@ -15,6 +14,7 @@ namespace stillpoint::bench {
 /// `RunIdentity::system` of this odometry.
 inline constexpr const char* kOwnSystem = "stillpoint";
 
+/// Where a run comes from.
 struct RunOrigin {
   std::string commit;  ///< git commit, with "+" and a hash of uncommitted changes if any; else the build name
   std::string time;    ///< UTC commit time; empty if not in the manifest
@@ -23,8 +23,8 @@ struct RunOrigin {
   std::string config;
 };
 
-/// A run without a manifest (interrupted) is assigned to the machine of the previous run, and to the config
-/// of the runs with the same config hash.
+/// Origins of the runs of a store. A run without a manifest (interrupted) is assigned to the machine of the
+/// previous run, and to the config of the runs with the same config hash.
 /// @param runs in the order of their start
 /// @return one element per run
 [[nodiscard]] std::vector<RunOrigin> run_origins(const Store& store, std::span<const StoredRun> runs);
@@ -38,6 +38,7 @@ struct RunGroup {
   std::vector<StoredRun> runs;
 };
 
+/// The groups of selected runs.
 struct RunSelection {
   std::vector<RunGroup> groups;       ///< in the order of their first runs
   std::vector<std::string> left_out;  ///< sentences about the runs that are in no group

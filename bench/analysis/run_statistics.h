@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Statistics over runs: spread over repetitions, ablation effects, sweep curves, and repeatability.
-///
-/// Differences between two executions of the same run, e.g. on two machines or architectures.
+/// Statistics over runs: spread over repetitions, ablation effects, sweep curves, and repeatability, in one
+/// store and between two executions of the same run, e.g. on two machines or architectures.
 #pragma once
 
 #include <optional>
@@ -80,6 +79,7 @@ struct StageDifference {
 [[nodiscard]] std::vector<StageDifference> stage_differences(const std::string& frames,
                                                              const std::string& others);
 
+/// Differences between two executions of the same run.
 struct ExecutionDifference {
   std::string label;                    ///< sequence, variant, seed
   std::size_t frames = 0;               ///< that both executed

@@ -12,11 +12,9 @@
 #include <fmt/format.h>
 
 #include "bench/executors/hosts.h"
-#include "bench/plan/execution/plan_runner.h"
 #include "bench/plan/execution/run_cost.h"
 #include "bench/process/file_lock.h"
 #include "bench/record/output_folder.h"
-#include "bench/store/maintenance/maintenance.h"
 #include "bench/store/store.h"
 #include "bench/systems/slam_system.h"
 #include "core/base/content_hash.h"
@@ -142,8 +140,6 @@ MergeReport merge_tasks(const fs::path& folder, const fs::path& store) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string host_name() {
   std::array<char, 256> name{};

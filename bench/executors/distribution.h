@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Executes a plan in tasks: the missing runs are divided, executed by workers with stores of their own, and
 /// merged. Each step may be interrupted at any time: the next call collects what was completed, and executes
-/// the rest.
+/// the rest. A simulation tells what limits the speedup, and how large a plan must be.
 ///
-/// A folder with which several workers execute a plan, on this or on other machines. It contains
+/// The workers, on this or on other machines, share a job folder. It contains
 ///   plan.toml        the plan
 ///   build            of the program that divided the plan
 ///   keys-K           keys of the runs of task K = 1, 2, ..., one per line
 ///   store-K.sqlite   the store of task K, with its files
 ///   data/            recorded sequences that were copied to this machine; optional
 ///   lock             shared lock of every worker
-///
-/// Simulates the execution of a plan by many workers: what limits the speedup, and how large a plan must be.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +25,7 @@
 
 namespace stillpoint::bench {
 
-/// Replaces the job in a folder; existing stores remain.
+/// Writes the job of a plan into a folder, instead of an earlier one; existing stores remain.
 /// @param tasks keys of the runs of each task
 /// @throws InputError if the folder cannot be written
 void write_job(const std::filesystem::path& folder, const BenchPlan& plan,
@@ -55,6 +53,7 @@ void wait_for_workers(const std::filesystem::path& folder);
 /// be repeated after an interruption.
 MergeReport merge_tasks(const std::filesystem::path& folder, const std::filesystem::path& store);
 
+/// How a plan is divided.
 struct DistributionOptions {
   std::filesystem::path store;
   int tasks = 4;              ///< at most; fewer if there are fewer runs
@@ -78,12 +77,14 @@ struct Executor {
 /// @return an absolute path; the folder exists
 [[nodiscard]] std::filesystem::path job_folder(const BenchPlan& plan, const std::filesystem::path& store);
 
-/// Waits while another process distributes the same plan into the same store.
+/// Divides a plan, executes its tasks and merges their stores. Waits while another process distributes the
+/// same plan into the same store.
 /// @throws InputError if timing runs have no machine class, if a recorded sequence lacks boxes that a config
 /// uses, or as the executor
 [[nodiscard]] PlanReport distribute_plan(const PlanMatrix& matrix, const DistributionOptions& options,
                                          const Executor& executor);
 
+/// A run of a plan whose execution by many workers is simulated.
 struct SimulatedRun {
   double seconds = 0.0;
   std::size_t sequence = 0;

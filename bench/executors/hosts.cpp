@@ -10,8 +10,6 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -152,8 +150,7 @@ bool is_host_word(std::string_view text) {
   return !text.empty() && is_letter(text.front()) && std::ranges::all_of(text, is_allowed);
 }
 
-std::vector<Host> parse_hosts(std::string_view text, const std::string& place,
-                              const std::filesystem::path& program) {
+std::vector<Host> parse_hosts(std::string_view text, const std::string& place, const fs::path& program) {
   std::vector<Host> hosts;
   eval::LineReader lines(text);
   for (long number = 1; const auto line = lines.next(); ++number) {
@@ -173,8 +170,6 @@ std::vector<Host> parse_hosts(std::string_view text, const std::string& place,
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t kBlockBytes = 1 << 20;
 

@@ -1,18 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Programs of the system that the executors call: sbatch, squeue, ssh, rsync, parallel.
-///
-/// The file of `bench --hosts`: machines that execute tasks of a plan over ssh.
-///
-/// One host per line; "#" begins a comment. The host is a name that ssh resolves, `NAME` or `USER@NAME`;
-/// port, keys and aliases belong into the configuration of ssh. Optional words follow, in any order:
-///   program=/PATH  this program on the host; by default the path of the calling program
-///   package=/FILE  a build for that host, on this machine, which is copied to it: a root file system
-///   (.tar.zst,
-///                  scripts/image.sh) or, for hosts with its libraries, a Debian package (.deb)
-///   class=NAME     machine class; timing runs are executed on hosts of one class only
-///   tasks=N        concurrent tasks, 1 to 1000; by default 1
-///
-/// A build of this program that is copied to hosts which lack it.
+/// Other machines that execute tasks of a plan: their list, the package of this program that is copied to
+/// those which lack it, and the programs that reach them: sbatch, squeue, ssh, rsync, parallel.
 #pragma once
 
 #include <filesystem>
@@ -23,6 +11,7 @@
 
 namespace stillpoint::bench {
 
+/// Result of a program of the system.
 struct ToolResult {
   int exit_code = 0;  ///< 128 + signal number if terminated by a signal
   std::string output;
@@ -48,6 +37,7 @@ std::string require_tool(const ToolCall& call);
 /// checked.
 [[nodiscard]] bool is_plain_word(const std::string& word);
 
+/// A machine that executes tasks of a plan over ssh.
 struct Host {
   std::string name;
   std::string program;  ///< absolute path; not used if there is a package
@@ -56,6 +46,14 @@ struct Host {
   int tasks = 1;
 };
 
+/// Parses the file of `bench --hosts`: one host per line; "#" begins a comment. The host is a name that ssh
+/// resolves, `NAME` or `USER@NAME`; port, keys and aliases belong into the configuration of ssh. Optional
+/// words follow, in any order:
+///   program=/PATH  this program on the host; by default the path of the calling program
+///   package=/FILE  a build for that host, on this machine, which is copied to it: a root file system
+///                  (.tar.zst, scripts/image.sh) or, for hosts with its libraries, a Debian package (.deb)
+///   class=NAME     machine class; timing runs are executed on hosts of one class only
+///   tasks=N        concurrent tasks, 1 to 1000; by default 1
 /// @param place name of the text in messages
 /// @param program default of `Host::program`
 /// @throws InputError with the line of the first error, for a repeated host, or if there is no host
@@ -66,6 +64,7 @@ struct Host {
 /// a letter or digit.
 [[nodiscard]] bool is_host_word(std::string_view text);
 
+/// A build of this program that is copied to hosts which lack it.
 struct HostPackage {
   std::filesystem::path tree;  ///< the extracted files, on this machine
   std::string name;            ///< 16 digits that identify the content

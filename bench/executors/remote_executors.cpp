@@ -7,13 +7,10 @@
 #include <memory>
 #include <set>
 #include <sstream>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bench/executors/distribution.h"
-#include "bench/executors/hosts.h"
 #include "bench/process/child_process.h"
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
@@ -204,8 +201,6 @@ Executor ssh_executor(const PlanMatrix& matrix, const DistributionOptions& optio
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 // Slurm passes the words after the script to it as they are, so nothing is inserted into the texts.
 constexpr const char* kTaskScript =

@@ -13,7 +13,6 @@
 #include "bench/record/sequence_checksum.h"
 #include "core/base/error.h"
 #include "datasets/download/download.h"
-#include "datasets/download/transfer_checks.h"
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
@@ -21,6 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using datasets::CatalogueArchive;
+using datasets::CatalogueDataset;
 
 constexpr const char* kLockName = "stillpoint.lock.json";
 
@@ -46,6 +47,32 @@ void change_lock(const fs::path& root, const Change& change) {
   DataLock lock = read_data_lock(root);
   change(lock);
   write_files(root, {{kLockName, lock_text(lock)}});
+}
+
+/// Records a downloaded file unless it is recorded; safe for several processes.
+/// @throws InputError if it cannot be written
+void lock_file(const fs::path& root, const std::string& key, const LockedFile& file) {
+  change_lock(root, [&](DataLock& lock) { lock.files.insert({key, file}); });
+}
+
+datasets::DownloadRequest request_of(const CatalogueDataset& dataset, const CatalogueArchive& archive,
+                                     const FetchOptions& options) {
+  datasets::DownloadRequest request{.file = download_path(options.root, dataset, archive.file),
+                                    .urls = archive.urls,
+                                    .bytes = archive.bytes,
+                                    .sha256 = archive.sha256,
+                                    .md5 = archive.md5,
+                                    .md5_suffix = dataset.md5_suffix,
+                                    .settings = {},
+                                    .attempts = options.attempts,
+                                    .first_backoff_s = options.first_backoff_s};
+  if (!options.mirror.empty())
+    request.urls.insert(request.urls.begin(), options.mirror + "/" + dataset.name + "/" + archive.file);
+  request.settings.user_agent = dataset.user_agent;
+  request.settings.stall_timeout_s = options.stall_timeout_s;
+  const char* token = dataset.token_variable.empty() ? nullptr : std::getenv(dataset.token_variable.c_str());
+  if (token != nullptr) request.settings.token = token;
+  return request;
 }
 
 }  // namespace
@@ -74,38 +101,6 @@ DataLock read_data_lock(const fs::path& root) {
 void lock_licence(const fs::path& root, const std::string& dataset) {
   change_lock(root, [&](DataLock& lock) { lock.licences.insert({dataset, utc_now()}); });
 }
-
-void lock_file(const fs::path& root, const std::string& key, const LockedFile& file) {
-  change_lock(root, [&](DataLock& lock) { lock.files.insert({key, file}); });
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-using datasets::CatalogueArchive;
-using datasets::CatalogueDataset;
-
-datasets::DownloadRequest request_of(const CatalogueDataset& dataset, const CatalogueArchive& archive,
-                                     const FetchOptions& options) {
-  datasets::DownloadRequest request{.file = download_path(options.root, dataset, archive.file),
-                                    .urls = archive.urls,
-                                    .bytes = archive.bytes,
-                                    .sha256 = archive.sha256,
-                                    .md5 = archive.md5,
-                                    .md5_suffix = dataset.md5_suffix,
-                                    .settings = {},
-                                    .attempts = options.attempts,
-                                    .first_backoff_s = options.first_backoff_s};
-  if (!options.mirror.empty())
-    request.urls.insert(request.urls.begin(), options.mirror + "/" + dataset.name + "/" + archive.file);
-  request.settings.user_agent = dataset.user_agent;
-  request.settings.stall_timeout_s = options.stall_timeout_s;
-  const char* token = dataset.token_variable.empty() ? nullptr : std::getenv(dataset.token_variable.c_str());
-  if (token != nullptr) request.settings.token = token;
-  return request;
-}
-
-}  // namespace
 
 fs::path download_path(const fs::path& root, const CatalogueDataset& dataset, const std::string& file) {
   return root / dataset.name / "downloads" / fs::path(file).filename();
@@ -136,8 +131,6 @@ bool download_locked(const CatalogueDataset& dataset, const CatalogueArchive& ar
   }
   return true;
 }
-
-namespace fs = std::filesystem;
 
 VerifiedState verify_sequence(const RegisteredSequence& sequence) {
   std::error_code ignored;

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// stillpoint.lock.json in the folder of downloads: digests of the files that were downloaded first, and the
-/// licences that were accepted.
-///
-/// How sequences of the catalogue are fetched.
-///
-/// Download of one file of the catalogue, verified by published digests and the lock file.
-///
-/// Verifies registered sequences and kept archives against the digests of their first use.
+/// Downloads of the catalogue, verified: stillpoint.lock.json in the folder of downloads contains the digests
+/// of the files that were downloaded first, and the licences that were accepted. Later downloads, registered
+/// sequences and kept archives are compared with them.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +27,7 @@ struct LockedFile {
   bool published = false;  ///< verified by a published digest; false: trusted on first use
 };
 
+/// Content of the lock file.
 struct DataLock {
   std::map<std::string, std::string> licences;  ///< date of acceptance by dataset
   std::map<std::string, LockedFile> files;      ///< by "dataset/file"
@@ -45,10 +41,7 @@ struct DataLock {
 /// @throws InputError if it cannot be written
 void lock_licence(const std::filesystem::path& root, const std::string& dataset);
 
-/// Records a downloaded file unless it is recorded; safe for several processes.
-/// @throws InputError if it cannot be written
-void lock_file(const std::filesystem::path& root, const std::string& key, const LockedFile& file);
-
+/// How sequences of the catalogue are fetched.
 struct FetchOptions {
   std::filesystem::path root;  ///< sequences are stored in ROOT/DATASET/FOLDER
   std::string mirror;          ///< address that serves MIRROR/DATASET/FILE, tried first; empty = none

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "bench/fetch/box_recording.h"
-#include "bench/fetch/data_lock.h"
 #include "bench/plan/sequence_registry.h"
 #include "bench/process/file_lock.h"
 #include "bench/record/output_folder.h"
@@ -80,6 +79,16 @@ fs::path extracted_folder(const InstalledSequence& place) {
                        "\"; the host has changed them, or the catalogue is wrong: correct the folder there");
 }
 
+namespace {
+
+using datasets::CatalogueArchive;
+using datasets::CatalogueEntry;
+
+/// Opens the extracted sequence, moves it to FOLDER/SEQUENCE.FOLDER and registers it. An equal folder that is
+/// already there, left by an interrupted call, is used.
+/// @return a line for the user
+/// @throws InputError if the archives did not contain it, it is not a readable sequence, or another folder
+/// has its place
 std::string install_sequence(const InstalledSequence& place) {
   const auto& [dataset, sequence, staging, folder] = place;
   const fs::path extracted = extracted_folder(place);
@@ -93,14 +102,6 @@ std::string install_sequence(const InstalledSequence& place) {
                     Registration::kReplace);
   return fmt::format("registered {}: {} ({}, checksum {})", name, target.string(), format, checksum);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-using datasets::CatalogueArchive;
-using datasets::CatalogueDataset;
-using datasets::CatalogueEntry;
-using datasets::CatalogueSequence;
 
 /// Extracted files per byte of an archive: images hardly compress, and a nested archive exists with its
 /// content for a moment.

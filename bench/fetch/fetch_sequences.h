@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Downloads, extracts, validates and registers sequences of the catalogue.
-///
-/// Moves an extracted sequence to its final folder and registers it.
 #pragma once
 
 #include <filesystem>
@@ -25,13 +23,6 @@ struct InstalledSequence {
 /// folder are moved into one.
 /// @throws InputError if the archives do not contain it
 [[nodiscard]] std::filesystem::path extracted_folder(const InstalledSequence& place);
-
-/// Opens the extracted sequence, moves it to FOLDER/SEQUENCE.FOLDER and registers it. An equal folder that is
-/// already there, left by an interrupted call, is used.
-/// @return a line for the user
-/// @throws InputError if the archives did not contain it, it is not a readable sequence, or another folder
-/// has its place
-[[nodiscard]] std::string install_sequence(const InstalledSequence& place);
 
 /// The folder of downloads: $STILLPOINT_DATA, else stillpoint in $XDG_DATA_HOME or ~/.local/share.
 [[nodiscard]] std::filesystem::path download_root();

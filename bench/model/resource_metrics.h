@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Metrics of cost: time and memory of the process, executed instructions, and the load of the machine.
-///
-/// Metrics of energy and throttling.
+/// Metrics of what a run uses: time and memory of the process, executed instructions, the load of the
+/// machine, and its energy and throttling.
 #pragma once
 
 #include "bench/model/metrics.h"

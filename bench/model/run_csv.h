@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Parses lines of a store's CSV files; error messages contain file and line.
-///
-/// Counters of the odometry as CSV: a header, then one line per frame.
-///
-/// Texts of loops.csv: recognized places, and what became of them; and of keyframes.csv.
-///
-/// Text of status.csv: what the odometry claims about each frame.
-///
-/// Timing samples as CSV with the columns `frame,module,ns,calls`.
+/// The CSV files of a run in a store, written and parsed: a header, then one row per frame, module of a
+/// frame, recognized place, or keyframe. Error messages of the parsers contain file and line.
 #pragma once
 
-#include <charconv>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -18,14 +10,10 @@
 #include <vector>
 
 #include "bench/model/stored_run.h"
-#include "core/base/error.h"
 #include "core/geometry/pose.h"
 #include "core/types/loop_report.h"
 
 namespace stillpoint::bench {
-
-/// Columns x, y, z, qx, qy, qz, qw.
-inline constexpr int kPoseColumns = 7;
 
 /// Cuts the part before `separator` off the front of `text`.
 inline std::string_view cut_front(std::string_view& text, char separator) {
@@ -35,43 +23,7 @@ inline std::string_view cut_front(std::string_view& text, char separator) {
   return part;
 }
 
-/// Parser state: the position for error messages.
-struct CsvRows {
-  const std::string& place;
-  std::string_view header;  ///< expected first line
-  long line = 1;
-
-  /// @throws InputError unless `text` is an integer
-  [[nodiscard]] std::int64_t number(std::string_view text) const {
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error == std::errc{} && end == text.data() + text.size()) return value;
-    const std::string problem = "\"" + std::string(text) + "\" is not an integer";
-    throw InputError(place, line, problem + "; expected columns: " + std::string(header));
-  }
-
-  /// @throws InputError unless `text` is a number
-  [[nodiscard]] double real(std::string_view text) const {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error == std::errc{} && end == text.data() + text.size()) return value;
-    throw InputError(place, line, "'" + std::string(text) + "' is not a number");
-  }
-
-  /// Calls `take` with every row after the header line.
-  /// @throws InputError if the first line is not the header
-  template <class Take>
-  void for_each_row(std::string_view text, Take&& take) {
-    if (cut_front(text, '\n') != header)
-      throw InputError(place, line, "does not begin with " + std::string(header));
-    while (!text.empty()) {
-      const std::string_view row = cut_front(text, '\n');
-      ++line;
-      if (!row.empty()) take(row);
-    }
-  }
-};
-
+/// Text of counters.csv: the work of the odometry for each frame.
 [[nodiscard]] std::string counter_text(std::span<const FrameCounters> frames);
 
 /// @param place name of the text in messages
@@ -89,9 +41,11 @@ struct StoredLoop {
   bool in_map = false;  ///< the match is in the loaded map
 };
 
+/// Text of loops.csv: recognized places, and what became of them.
 [[nodiscard]] std::string loop_text(std::span<const LoopRecord> loops);
 
-/// Optimized poses T_m_b of the keyframes, the time of the loop closure for each, and its memory afterwards.
+/// Text of keyframes.csv: optimized poses T_m_b of the keyframes, the time of the loop closure for each, and
+/// its memory afterwards.
 [[nodiscard]] std::string keyframe_text(std::span<const MapKeyframe> keyframes);
 
 /// @param place name of the text in error messages
@@ -109,6 +63,7 @@ struct FrameClaim {
   double sigma_rad = 0.0;  ///< same for the rotation
 };
 
+/// Text of status.csv: what the odometry claims about each frame.
 [[nodiscard]] std::string claim_text(std::span<const FrameClaim> claims);
 
 /// Without the poses.
@@ -116,6 +71,7 @@ struct FrameClaim {
 /// @throws InputError for a malformed text
 [[nodiscard]] std::vector<FrameClaim> parse_claims(std::string_view text, const std::string& place);
 
+/// Timing samples with the columns `frame,module,ns,calls`.
 [[nodiscard]] std::string timing_text(std::span<const TimingSample> samples);
 
 /// @param place name of the text in messages

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -11,24 +10,10 @@
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
-
-std::string missing_boxes_note(const std::vector<const StoredRun*>& runs) {
-  const StoredRun* worst = nullptr;
-  double most = 0.0;
-  for (const StoredRun* run : runs) {
-    const double missing = metric_value(*run, metric_id::kFramesWithoutBoxes).value_or(0.0);
-    if (run->outcome != Outcome::kOk || missing <= most) continue;
-    worst = run;
-    most = missing;
-  }
-  if (worst == nullptr) return "";
-  const std::optional<double> frames = metric_value(*worst, metric_id::kFrames);
-  return fmt::format("no recorded boxes in {}{:.0f}{} frames", runs.size() > 1 ? "up to " : "", most,
-                     frames ? fmt::format(" of {:.0f}", *frames) : "");
-}
-
 namespace {
 
+/// Factor between two protocols from which on a value is not shown without the other one.
+constexpr double kMaxProtocolFactor = 2.0;
 constexpr std::string_view kStrictPrefix = "strict:";
 
 /// Values of the same runs under the protocol of the table and under a strict one.
@@ -57,6 +42,21 @@ std::string strict_protocol(const std::string& name, std::string_view metric) {
 }
 
 }  // namespace
+
+std::string missing_boxes_note(const std::vector<const StoredRun*>& runs) {
+  const StoredRun* worst = nullptr;
+  double most = 0.0;
+  for (const StoredRun* run : runs) {
+    const double missing = metric_value(*run, metric_id::kFramesWithoutBoxes).value_or(0.0);
+    if (run->outcome != Outcome::kOk || missing <= most) continue;
+    worst = run;
+    most = missing;
+  }
+  if (worst == nullptr) return "";
+  const std::optional<double> frames = metric_value(*worst, metric_id::kFrames);
+  return fmt::format("no recorded boxes in {}{:.0f}{} frames", runs.size() > 1 ? "up to " : "", most,
+                     frames ? fmt::format(" of {:.0f}", *frames) : "");
+}
 
 std::string protocol_difference_note(std::span<const StoredRun* const> runs, std::string_view metric) {
   const MetricDescriptor* descriptor = find_metric(metric);

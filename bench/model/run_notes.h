@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Runs with recorded boxes that lack those of some frames.
-///
-/// Metrics for which a strict evaluation protocol of the same runs gives a very different value.
-///
-/// How far the times of a run are its own: a run that shares the machine lends its times to nothing but
-/// hints.
+/// Footnotes of tables on what makes runs incomparable: frames without recorded boxes, a metric whose value
+/// depends on the evaluation protocol, and times that were measured while other processes used the machine.
 #pragma once
 
 #include <span>
@@ -21,11 +17,8 @@ namespace stillpoint::bench {
 /// ignored.
 [[nodiscard]] std::string missing_boxes_note(const std::vector<const StoredRun*>& runs);
 
-/// Factor between two protocols from which on a value is not shown without the other one.
-inline constexpr double kMaxProtocolFactor = 2.0;
-
-/// Footnote about a metric for which a "strict:*" protocol differs by `kMaxProtocolFactor` or more, in either
-/// direction and by more than the floor of the metric's gate, in at least one run: "ATE 0.0021 m by
+/// Footnote about a metric for which a "strict:*" protocol differs by a factor of 2 or more, in either
+/// direction, and by more than the floor of the metric's gate, in at least one run: "ATE 0.0021 m by
 /// compat:tum, 0.0089 m by strict:se3 (medians of 3 runs; differ by a factor of 2 or more in 1)".
 /// @param runs of one variant on one sequence; failed ones are ignored
 /// @param metric id, e.g. "ate_rmse_m"
@@ -33,7 +26,7 @@ inline constexpr double kMaxProtocolFactor = 2.0;
 [[nodiscard]] std::string protocol_difference_note(std::span<const StoredRun* const> runs,
                                                    std::string_view metric);
 
-/// The best first.
+/// How far the times of a run are its own; the best first.
 enum class TimeSource {
   kUndisturbed,  ///< timing run on an idle machine
   kBusy,         ///< timing run while other processes used the machine, see the metric "quiet"

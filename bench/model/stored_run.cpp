@@ -13,12 +13,6 @@
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
-
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
-}
-
 namespace {
 
 constexpr std::array<std::pair<Outcome, std::string_view>, 7> kNames = {
@@ -31,6 +25,7 @@ constexpr std::array<std::pair<Outcome, std::string_view>, 7> kNames = {
      {Outcome::kBadData, "bad_data"}}};
 
 constexpr std::string_view kLostStatus = "failed";
+constexpr std::string_view kPerturbationMark = "-perturbed-";  // before the seed in a config hash
 
 }  // namespace
 
@@ -70,20 +65,21 @@ std::optional<double> metric_value(const StoredRun& run, std::string_view name) 
   return std::nullopt;
 }
 
-namespace {
-
-constexpr std::string_view kMark = "-perturbed-";
-
-}  // namespace
-
 std::string perturbed_hash(const std::string& hash, int seed) {
-  return seed == 0 ? hash : hash + std::string(kMark) + std::to_string(seed);
+  return seed == 0 ? hash : hash + std::string(kPerturbationMark) + std::to_string(seed);
 }
 
 std::string_view unperturbed_hash(std::string_view config_hash) {
-  return config_hash.substr(0, config_hash.find(kMark));
+  return config_hash.substr(0, config_hash.find(kPerturbationMark));
 }
 
-bool is_perturbed(std::string_view config_hash) { return config_hash.find(kMark) != std::string_view::npos; }
+bool is_perturbed(std::string_view config_hash) {
+  return config_hash.find(kPerturbationMark) != std::string_view::npos;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+}
 
 }  // namespace stillpoint::bench

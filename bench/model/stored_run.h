@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Data types of a run in a store.
-///
-/// Current time as recorded in stores and manifests.
+/// The record of a run in a store: its identity, outcome, metrics and times.
 ///
 /// Replicates of a deterministic run: runs with the same config and data, whose input is perturbed with
 /// different seeds (core/pipeline/stages/replication.h). The seed is the last part of the config hash,
@@ -16,9 +14,6 @@
 #include <vector>
 
 namespace stillpoint::bench {
-
-/// Current time, UTC, ISO 8601, e.g. "2025-01-31T12:00:00Z".
-[[nodiscard]] std::string utc_now();
 
 /// Identity of a run: runs with equal members are executed only once. A sweep varies one config key, its
 /// axis.
@@ -151,5 +146,8 @@ inline constexpr std::string_view kPerturbationKey = "pipeline.perturbation_seed
 
 /// Whether the hash is that of a perturbed run.
 [[nodiscard]] bool is_perturbed(std::string_view config_hash);
+
+/// Current time as recorded in stores and manifests: UTC, ISO 8601, e.g. "2025-01-31T12:00:00Z".
+[[nodiscard]] std::string utc_now();
 
 }  // namespace stillpoint::bench

@@ -19,7 +19,6 @@
 #include "bench/run/odometry_run.h"
 #include "bench/systems/published_table.h"
 #include "bench/systems/slam_system.h"
-#include "core/base/error.h"
 #include "datasets/faults/sensor_fault.h"
 #include "eval/protocols/protocol.h"
 
@@ -106,20 +105,6 @@ std::vector<int> parse_cpu_list(const std::string& cores) {
     for (int processor = first; processor <= last; ++processor) processors.push_back(processor);
   }
   return processors;
-}
-
-BenchPlan load_plan(const std::string& name) {
-  const TomlSource source = find_toml(name, TomlKind::kPlan);
-  const std::vector<Setting> settings = parse_settings(source.text, source.path);
-  BenchPlan plan = parse_plan(settings);
-  plan.name = std::filesystem::path(source.path).stem().string();
-  plan.path = source.path;
-  for (const Setting& setting : settings)
-    plan.places[setting.key] = fmt::format("{}:{}", setting.file, setting.line);
-  plan.text = source.text;
-  if (plan.title.empty()) plan.title = plan.name;
-  validate_plan(plan);
-  return plan;
 }
 
 namespace {
@@ -246,8 +231,6 @@ void require_ablation_base(const BenchPlan& plan) {
   throw InputError("ablation_base \"" + base + "\" is no variant of the plan" + suggestion(base, known));
 }
 
-}  // namespace
-
 void validate_plan(const BenchPlan& plan) {
   static_cast<void>(at_place(plan, "base", [&] { return load_config({plan.base, "", {}}); }));
   require_settings(plan);
@@ -270,6 +253,22 @@ void validate_plan(const BenchPlan& plan) {
   at_place(plan, "table.published", [&] {
     for (const std::string& table : plan.table.published) static_cast<void>(load_published(table));
   });
+}
+
+}  // namespace
+
+BenchPlan load_plan(const std::string& name) {
+  const TomlSource source = find_toml(name, TomlKind::kPlan);
+  const std::vector<Setting> settings = parse_settings(source.text, source.path);
+  BenchPlan plan = parse_plan(settings);
+  plan.name = std::filesystem::path(source.path).stem().string();
+  plan.path = source.path;
+  for (const Setting& setting : settings)
+    plan.places[setting.key] = fmt::format("{}:{}", setting.file, setting.line);
+  plan.text = source.text;
+  if (plan.title.empty()) plan.title = plan.name;
+  validate_plan(plan);
+  return plan;
 }
 
 void require_runs(const BenchPlan& plan) {

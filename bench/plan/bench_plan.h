@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A benchmark plan: sequences x variants x seeds x repetitions, and the layout of the result table.
-///
-/// Adds the line of a plan file to errors about what the line refers to.
-///
-/// Validates what a plan refers to, so that errors are reported before its first run.
-///
-/// The base of a stored plan's ablation, and the variants that are compared with it.
+/// A benchmark plan: sequences x variants x seeds x repetitions, and the layout of the result table; read
+/// from a file and validated, so that errors are reported with the line of the plan before its first run.
+/// Also the base of a stored plan's ablation, and the variants that are compared with it.
 #pragma once
 
 #include <map>
@@ -146,10 +142,12 @@ void visit_fields(Visitor&& field, Config& config) {
   field("table", config.table);
 }
 
-/// Reads a plan and validates everything that it refers to.
+/// Reads a plan, loads each config of it, and checks its presets, sweeps, protocols, systems, processors and
+/// published tables. Recorded sequences are checked when the plan is expanded.
 /// @param name embedded name ("quick") or path of a TOML file
-/// @throws InputError if it does not exist, for every fault of the file, and for an unknown variant, protocol
-/// or key
+/// @throws InputError if it does not exist; with file and line of the plan for every fault of the file, an
+/// unknown name (with the nearest one), a value out of range, and a seed, variant, system, protocol or sweep
+/// value that is listed twice
 [[nodiscard]] BenchPlan load_plan(const std::string& name);
 
 /// Parses a CPU list such as "0,2-3".
@@ -173,12 +171,6 @@ decltype(auto) at_place(const BenchPlan& plan, const std::string& key, const Act
     throw InputError(place_of(plan, key), error.what());
   }
 }
-
-/// Loads each config of the plan, and checks its presets, sweeps, protocols, systems, processors and
-/// published tables. Recorded sequences are checked when the plan is expanded.
-/// @throws InputError with file and line of the plan for an unknown name (with the nearest one), a value out
-/// of range, and a seed, variant, system, protocol or sweep value that is listed twice
-void validate_plan(const BenchPlan& plan);
 
 /// Requires that the plan names a sequence, and that each group of sequences has a variant or a system.
 /// @throws InputError with the missing key

@@ -7,10 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/config/config_file.h"
-#include "bench/model/stored_run.h"
-#include "bench/plan/bench_plan.h"
-#include "bench/plan/plan_sequences.h"
 #include "bench/process/child_process.h"
 #include "core/base/content_hash.h"
 #include "datasets/faults/sensor_fault.h"

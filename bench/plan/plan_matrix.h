@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Expands a plan to the list of its runs.
-///
-/// Alternating runs of two builds, so that slow changes of the machine state affect both equally.
+/// The runs of a plan, and those of a plan with two builds of the program.
 #pragma once
 
 #include <filesystem>
@@ -63,9 +61,9 @@ struct ProgramPair {
 [[nodiscard]] PlanMatrix single_runs(BenchPlan plan);
 
 /// Repeats each run `pairs` times with both programs, in the order base, head, head, base (ABBA): base is
-/// first in odd repetitions. Repetition i has the perturbation seed i - 1, equal for base and head: the pairs
-/// of a deterministic program are replicates, and the first one is the unperturbed run. A plan that varies
-/// the perturbation itself is not changed.
+/// first in odd repetitions, so that slow changes of the machine state affect both equally. Repetition i has
+/// the perturbation seed i - 1, equal for base and head: the pairs of a deterministic program are replicates,
+/// and the first one is the unperturbed run. A plan that varies the perturbation itself is not changed.
 /// @param runs as from `single_runs`
 /// @param pairs at least 1
 [[nodiscard]] PlanMatrix paired_plan(PlanMatrix runs, const ProgramPair& programs, int pairs);

@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <type_traits>
-#include <vector>
 
 #include "bench/config/spelling.h"
 #include "bench/plan/sequence_registry.h"
@@ -18,7 +16,6 @@
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
-#include "datasets/synthetic/sequence/presets.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -103,8 +100,8 @@ std::map<std::string, RegisteredSequence> known_sequences() {
   return known;
 }
 
-}  // namespace
-
+/// The sequence of a registration, after reading all its files to verify the checksum.
+/// @throws InputError if the folder does not exist, or its files have changed since the registration
 PlanSequence verified_sequence(const RegisteredSequence& registered) {
   if (!datasets::is_sequence_path(registered.folder)) {
     throw InputError("sequence \"" + registered.name + "\"",
@@ -123,8 +120,6 @@ PlanSequence verified_sequence(const RegisteredSequence& registered) {
           .folder = registered.folder,
           .unavailable_reason = ""};
 }
-
-namespace {
 
 /// Whether a pattern of [recorded] is a path; names of sequences have no slash.
 bool is_path(const std::string& pattern) { return pattern.find('/') != std::string::npos; }
@@ -274,10 +269,8 @@ fs::path sequence_folder(const PlanSequence& sequence, const synth::RenderContro
 
 namespace {
 
-namespace fs = std::filesystem;
-
-[[noreturn]] void throw_unknown(const std::string& argument,
-                                const std::vector<RegisteredSequence>& registry) {
+[[noreturn]] void throw_unresolved(const std::string& argument,
+                                   const std::vector<RegisteredSequence>& registry) {
   const std::string place = "sequence \"" + argument + "\"";
   std::error_code ignored;
   if (fs::exists(argument, ignored)) {
@@ -310,7 +303,7 @@ std::string resolve_sequence(const std::string& given) {
   const std::vector<RegisteredSequence> registry = read_registry(registry_file());
   const auto registered = std::ranges::find(registry, argument, &RegisteredSequence::name);
   if (registered == registry.end()) {
-    if (!is_preset) throw_unknown(argument, registry);
+    if (!is_preset) throw_unresolved(argument, registry);
     return argument;
   }
   if (is_preset) {

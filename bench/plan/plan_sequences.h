@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Resolves the sequence names and globs of a plan.
-///
-/// Sets numeric fields of a rendering request by their names.
-///
-/// The argument SEQ of commands on one sequence: a folder, a registered name, a name of the
-/// catalogue or a preset.
+/// Sequences by their names: those of a plan, with globs, and the argument SEQ of commands on one sequence,
+/// which is a folder, a registered name, a name of the catalogue or a preset.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +10,6 @@
 #include <vector>
 
 #include "bench/plan/bench_plan.h"
-#include "bench/plan/sequence_registry.h"
 #include "datasets/synthetic/sequence/presets.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
 
@@ -54,10 +49,6 @@ struct PlanSequence {
 /// @throws InputError if a required sequence is not available, a folder given by its path does not exist, the
 /// files of a registered sequence have changed, or two folders have the same name
 [[nodiscard]] std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group);
-
-/// The sequence of a registration, after reading all its files to verify the checksum.
-/// @throws InputError if the folder does not exist, or its files have changed since the registration
-[[nodiscard]] PlanSequence verified_sequence(const RegisteredSequence& registered);
 
 /// Folder with the files of the sequence, rendered first if necessary; empty if the rendering was stopped.
 /// @throws InputError if it cannot be rendered or no longer exists

@@ -93,8 +93,6 @@ void register_sequence(const fs::path& file, const RegisteredSequence& sequence,
   write_files(file.parent_path(), {{file.filename().string(), registry_text(sequences)}});
 }
 
-namespace fs = std::filesystem;
-
 fs::path user_catalogue_folder() {
   if (const char* folder = std::getenv("STILLPOINT_CATALOGUE")) return folder;
   return registry_file().parent_path() / "catalogue";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Registry of named recorded sequences with their checksums at registration.
-///
-/// The catalogue of public datasets: embedded files, and those of the user.
+/// The recorded sequences that are known: the registry of names with checksums at registration, and the
+/// catalogue of public datasets, of embedded files and those of the user.
 #pragma once
 
 #include <filesystem>

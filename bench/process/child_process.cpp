@@ -17,7 +17,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
-#include <utility>
 
 namespace stillpoint::bench {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A child process with a time and a memory limit: a crash or a runaway run fails alone and does not affect
+/// Child processes with a time and a memory limit: a crash or a runaway run fails alone and does not affect
 /// the other runs of a plan.
-///
-/// Concurrent child processes, managed from one thread.
 #pragma once
 
 #include <sys/types.h>
@@ -96,6 +94,7 @@ class ChildProcess {
 /// Runs one child process until it exits.
 [[nodiscard]] ProcessResult run_process(const ProcessSpec& spec);
 
+/// Concurrent child processes, managed from one thread.
 class ProcessPool {
  public:
   /// @param stop_requested polled at least ten times per second; on true all children get SIGTERM

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Executed instructions per stage of the odometry: reproducible between runs of the same binary, independent
-/// of the machine's load.
-///
-/// Parser of Valgrind's callgrind output.
+/// Executed instructions per stage of the odometry, counted by Valgrind's callgrind: reproducible between
+/// runs of the same binary, independent of the machine's load.
 #pragma once
 
 #include <cstdint>

@@ -101,10 +101,7 @@ double timer_ns() {
 double stages_ns(const OdometryRun& run) {
   std::int64_t sum = 0;
   for (const ModuleTimings& frame : run.frame_timings) {
-    for (const Module stage :
-         {Module::kTrackingThread, Module::kObjectDetection, Module::kOptimizationThread}) {
-      sum += frame[stage].ns;
-    }
+    for (const Module stage : kStages) sum += frame[stage].ns;
   }
   return static_cast<double>(sum);
 }

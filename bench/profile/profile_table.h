@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Time per module and thread of one run, extending the columns of Paper Table III.
-///
-/// Overhead of the instrumentation, measured.
+/// Time per module and thread of one run, extending the columns of Paper Table III, and the cost of measuring
+/// it.
 #pragma once
 
 #include <optional>
@@ -40,6 +39,7 @@ struct DeadlineMisses {
 [[nodiscard]] nlohmann::ordered_json profile_json(const std::vector<ProfileRow>& rows,
                                                   const DeadlineMisses& misses);
 
+/// Overhead of the instrumentation, measured.
 struct RecorderCost {
   double timer_ns = 0.0;  ///< of one `ScopedTimer`, median of several batches
   double timers_per_frame = 0.0;

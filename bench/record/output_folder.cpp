@@ -86,8 +86,6 @@ void write_files(const fs::path& folder, const std::vector<OutputFile>& files) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int kMaxLinks = 40;  // as Linux
 
 /// The file that a path leads to; it need not exist.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Atomic output of a group of files: all of them complete, or none.
-///
-/// Protects inputs, and files that this program did not write, against being overwritten by its outputs.
+/// Output of files that is safe: a group of files is complete or absent, and inputs and files that this
+/// program did not write are not overwritten.
 #pragma once
 
 #include <filesystem>

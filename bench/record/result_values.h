@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Metrics and module times of a run in result.json, and their conversion to those of a store.
-///
-/// The rotation that levels the world of a run, from its result.json.
+/// Values in result.json of a run, written and read back: metrics and module times, which are converted to
+/// those of a store, and the rotation that levels the world of the run.
 #pragma once
 
 #include <filesystem>

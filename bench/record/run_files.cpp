@@ -15,7 +15,6 @@
 #include "bench/config/config_file.h"
 #include "bench/model/run_csv.h"
 #include "bench/profile/timeline.h"
-#include "bench/record/output_folder.h"
 #include "bench/record/result_values.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
@@ -23,42 +22,6 @@
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
-
-namespace {
-
-/// @return the file, unless it contains something else than a heartbeat
-const std::filesystem::path& checked(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_regular_file(file, error) &&
-      std::filesystem::file_size(file, error) > sizeof(std::int64_t))
-    throw InputError(file.string(), "exists and is no heartbeat file; remove it or choose another name");
-  return file;
-}
-
-}  // namespace
-
-Heartbeat::Heartbeat(const std::filesystem::path& file)
-    : descriptor_(open(checked(file).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) {
-    throw InputError(file.string(),
-                     std::string("cannot be written: ") + std::strerror(errno) + "; check its folder");
-  }
-}
-
-Heartbeat::~Heartbeat() { close(descriptor_); }
-
-void Heartbeat::beat(std::int64_t frame) const {
-  // One write of 8 bytes, so that a reader never sees a partial number. A failure does not abort the run.
-  static_cast<void>(!pwrite(descriptor_, &frame, sizeof frame, 0));
-}
-
-std::optional<std::int64_t> read_heartbeat(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::int64_t frame = 0;
-  if (!stream.read(reinterpret_cast<char*>(&frame), sizeof frame)) return std::nullopt;
-  return frame;
-}
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -168,6 +131,97 @@ Json weights_json(const DetectorConfig& detector) {
   return hash_text(content_hash(bytes));
 }
 
+std::string manifest_json(const RunManifest& manifest) {
+  Json config = Json::object();
+  // These values have the same syntax in TOML and JSON.
+  for (const auto& [key, value] : config_entries(manifest.config)) config[key] = Json::parse(value);
+  Json json;
+  json["schema"] = 1;
+  json["started"] = manifest.started;
+  json["sequence"] = {
+      {"name", manifest.sequence},
+      {"format", manifest.sequence_format},
+      {"checksum", manifest.sequence_checksum.empty() ? Json(nullptr) : Json(manifest.sequence_checksum)}};
+  json["faults"] = manifest.faults;
+  json["config"] = {{"base", manifest.base},
+                    {"variant", manifest.variant},
+                    {"hash", config_hash(manifest.config)},
+                    {"resolved", config}};
+  json["map"] = nullptr;
+  if (!manifest.map_checksum.empty()) json["map"] = {{"checksum", manifest.map_checksum}};
+  json["mode"] = manifest.mode;
+  json["seed"] = manifest.config.seed;
+  json["weights"] = weights_json(manifest.config.detector);
+  json["threads"] = {{"odometry", 1},
+                     {"detection_pool", manifest.config.frontend.grid.threads},
+                     {"decoding", kMaxDecodingThreads}};
+  json["build"] = {{"version", manifest.build.version},         {"git_commit", manifest.build.git_commit},
+                   {"git_time", manifest.build.git_time},       {"git_dirty", manifest.build.git_dirty},
+                   {"git_changes", manifest.build.git_changes}, {"type", manifest.build.build_type},
+                   {"compiler", manifest.build.compiler},       {"flags", manifest.build.flags},
+                   {"packages", manifest.build.packages}};
+  json["host"] = host_json(manifest.host);
+  return json.dump(kIndent) + "\n";
+}
+
+/// Time per frame and module of the odometry.
+std::string timings_csv(const OdometryRun& run) {
+  std::vector<TimingSample> samples;
+  for (std::size_t frame = 0; frame < run.frame_timings.size(); ++frame) {
+    for (std::size_t i = 0; i < kModuleCount; ++i) {
+      const auto module = static_cast<Module>(i);
+      const ModuleTime& time = run.frame_timings[frame][module];
+      if (time.calls == 0 || module == Module::kImageDecoding) continue;
+      samples.push_back({.frame = static_cast<std::int64_t>(frame),
+                         .module = std::string(module_name(module)),
+                         .ns = time.ns,
+                         .calls = time.calls});
+    }
+  }
+  return timing_text(samples);
+}
+
+/// Hash of each module's state after each frame.
+std::string frames_csv(const OdometryRun& run) {
+  std::string text = "frame,tracking,dynamic,optimization\n";
+  for (std::size_t frame = 0; frame < run.frame_hashes.size(); ++frame) {
+    const StateHashes& hashes = run.frame_hashes[frame];
+    text += std::to_string(frame) + "," + hash_text(hashes.tracking) + "," + hash_text(hashes.dynamic) + "," +
+            hash_text(hashes.optimization) + "\n";
+  }
+  return text;
+}
+
+/// Claims about all frames, with the poses that the trajectory does not contain.
+std::string status_csv(const OdometryRun& run) {
+  std::vector<FrameClaim> claims;
+  for (std::size_t i = 0; i < run.claims.size(); ++i) {
+    const eval::ClaimedPose& claim = run.claims[i];
+    claims.push_back({.frame = run.frame_counters[i].frame,
+                      .t_ns = claim.t.ns,
+                      .status = run.frame_counters[i].status,
+                      .segment = claim.segment,
+                      .T_w_c = claim.T_w_c,
+                      .sigma_m = claim.sigma_m,
+                      .sigma_rad = claim.sigma_rad});
+  }
+  return claim_text(claims);
+}
+
+/// `run` and the modes of `profile` may use the same folder.
+std::vector<std::vector<std::string>> marks() {
+  return {{"result.json", "manifest.json"}, {"profile.json"}, {"device.json"}, {"instructions.json"}};
+}
+
+/// @return the file, unless it contains something else than a heartbeat
+const std::filesystem::path& checked(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error) &&
+      std::filesystem::file_size(file, error) > sizeof(std::int64_t))
+    throw InputError(file.string(), "exists and is no heartbeat file; remove it or choose another name");
+  return file;
+}
+
 }  // namespace
 
 std::string result_json(const RunResult& result) {
@@ -202,81 +256,6 @@ std::string result_json(const RunResult& result) {
   return json.dump(kIndent) + "\n";
 }
 
-std::string manifest_json(const RunManifest& manifest) {
-  Json config = Json::object();
-  // These values have the same syntax in TOML and JSON.
-  for (const auto& [key, value] : config_entries(manifest.config)) config[key] = Json::parse(value);
-  Json json;
-  json["schema"] = 1;
-  json["started"] = manifest.started;
-  json["sequence"] = {
-      {"name", manifest.sequence},
-      {"format", manifest.sequence_format},
-      {"checksum", manifest.sequence_checksum.empty() ? Json(nullptr) : Json(manifest.sequence_checksum)}};
-  json["faults"] = manifest.faults;
-  json["config"] = {{"base", manifest.base},
-                    {"variant", manifest.variant},
-                    {"hash", config_hash(manifest.config)},
-                    {"resolved", config}};
-  json["map"] = nullptr;
-  if (!manifest.map_checksum.empty()) json["map"] = {{"checksum", manifest.map_checksum}};
-  json["mode"] = manifest.mode;
-  json["seed"] = manifest.config.seed;
-  json["weights"] = weights_json(manifest.config.detector);
-  json["threads"] = {{"odometry", 1},
-                     {"detection_pool", manifest.config.frontend.grid.threads},
-                     {"decoding", kMaxDecodingThreads}};
-  json["build"] = {{"version", manifest.build.version},         {"git_commit", manifest.build.git_commit},
-                   {"git_time", manifest.build.git_time},       {"git_dirty", manifest.build.git_dirty},
-                   {"git_changes", manifest.build.git_changes}, {"type", manifest.build.build_type},
-                   {"compiler", manifest.build.compiler},       {"flags", manifest.build.flags},
-                   {"packages", manifest.build.packages}};
-  json["host"] = host_json(manifest.host);
-  return json.dump(kIndent) + "\n";
-}
-
-std::string timings_csv(const OdometryRun& run) {
-  std::vector<TimingSample> samples;
-  for (std::size_t frame = 0; frame < run.frame_timings.size(); ++frame) {
-    for (std::size_t i = 0; i < kModuleCount; ++i) {
-      const auto module = static_cast<Module>(i);
-      const ModuleTime& time = run.frame_timings[frame][module];
-      if (time.calls == 0 || module == Module::kImageDecoding) continue;
-      samples.push_back({.frame = static_cast<std::int64_t>(frame),
-                         .module = std::string(module_name(module)),
-                         .ns = time.ns,
-                         .calls = time.calls});
-    }
-  }
-  return timing_text(samples);
-}
-
-std::string frames_csv(const OdometryRun& run) {
-  std::string text = "frame,tracking,dynamic,optimization\n";
-  for (std::size_t frame = 0; frame < run.frame_hashes.size(); ++frame) {
-    const StateHashes& hashes = run.frame_hashes[frame];
-    text += std::to_string(frame) + "," + hash_text(hashes.tracking) + "," + hash_text(hashes.dynamic) + "," +
-            hash_text(hashes.optimization) + "\n";
-  }
-  return text;
-}
-
-/// Claims about all frames, with the poses that the trajectory does not contain.
-std::string status_csv(const OdometryRun& run) {
-  std::vector<FrameClaim> claims;
-  for (std::size_t i = 0; i < run.claims.size(); ++i) {
-    const eval::ClaimedPose& claim = run.claims[i];
-    claims.push_back({.frame = run.frame_counters[i].frame,
-                      .t_ns = claim.t.ns,
-                      .status = run.frame_counters[i].status,
-                      .segment = claim.segment,
-                      .T_w_c = claim.T_w_c,
-                      .sigma_m = claim.sigma_m,
-                      .sigma_rad = claim.sigma_rad});
-  }
-  return claim_text(claims);
-}
-
 std::string trajectory_text(const RunResult& result) {
   const std::string poses = eval::format_tum(result.run.trajectory);
   return result.outcome == Outcome::kInterrupted ? "# partial: " + result.failure + "\n" + poses : poses;
@@ -303,15 +282,6 @@ void write_run(const std::filesystem::path& folder, const RunResult& result, con
   write_files(folder, files);
 }
 
-namespace {
-
-/// `run` and the modes of `profile` may use the same folder.
-std::vector<std::vector<std::string>> marks() {
-  return {{"result.json", "manifest.json"}, {"profile.json"}, {"device.json"}, {"instructions.json"}};
-}
-
-}  // namespace
-
 OutputLayout run_layout() {
   return {.names = {"trajectory.tum", "trajectory_imu.tum", "trajectory_loop.tum", "trajectory_optimized.tum",
                     "loops.csv", "keyframes.csv", "result.json", "timings.csv", "frames.csv", "counters.csv",
@@ -326,6 +296,28 @@ OutputLayout profile_layout() {
   return {.names = {"profile.json", "trace.json", "stacks.folded", "device.json", "trajectory.tum",
                     "instructions.json"},
           .marks = marks()};
+}
+
+Heartbeat::Heartbeat(const std::filesystem::path& file)
+    : descriptor_(open(checked(file).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) {
+    throw InputError(file.string(),
+                     std::string("cannot be written: ") + std::strerror(errno) + "; check its folder");
+  }
+}
+
+Heartbeat::~Heartbeat() { close(descriptor_); }
+
+void Heartbeat::beat(std::int64_t frame) const {
+  // One write of 8 bytes, so that a reader never sees a partial number. A failure does not abort the run.
+  static_cast<void>(!pwrite(descriptor_, &frame, sizeof frame, 0));
+}
+
+std::optional<std::int64_t> read_heartbeat(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::int64_t frame = 0;
+  if (!stream.read(reinterpret_cast<char*>(&frame), sizeof frame)) return std::nullopt;
+  return frame;
 }
 
 }  // namespace stillpoint::bench

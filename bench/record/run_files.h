@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The files of a run: trajectory.tum, result.json, timings.csv, frames.csv, counters.csv, stacks.folded,
-/// manifest.json, trajectory_imu.tum with `pipeline.imu_rate`, and trajectory_loop.tum (with the corrections
-/// known at each frame), trajectory_optimized.tum (with all corrections) loops.csv and keyframes.csv with
-/// `loop.enabled`.
-///
-/// File with the id of the last processed frame; reports the progress of a run, also after a crash.
-///
-/// Contents of the output folders of `run` and `profile`, and how earlier outputs are recognized.
+/// The files of a run, written, and recognized in output folders of `run` and `profile`: trajectory.tum,
+/// result.json, timings.csv, frames.csv, counters.csv, status.csv, stacks.folded, manifest.json,
+/// trajectory_imu.tum with `pipeline.imu_rate`, and trajectory_loop.tum (with the corrections known at each
+/// frame), trajectory_optimized.tum (with all corrections), loops.csv and keyframes.csv with `loop.enabled`;
+/// and the id of the last processed frame while the run is executed.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/record/output_folder.h"
 #include "bench/record/run_environment.h"
@@ -20,26 +18,6 @@
 #include "core/config/odometry_config.h"
 
 namespace stillpoint::bench {
-
-/// File name in a run's folder.
-inline constexpr const char* kHeartbeatFile = "heartbeat";
-
-class Heartbeat {
- public:
-  /// @throws InputError if the file cannot be created, or exists with other content
-  explicit Heartbeat(const std::filesystem::path& file);
-  ~Heartbeat();
-  Heartbeat(const Heartbeat&) = delete;
-  Heartbeat& operator=(const Heartbeat&) = delete;
-
-  void beat(std::int64_t frame) const;
-
- private:
-  int descriptor_;
-};
-
-/// Nothing if the file does not exist or is empty.
-[[nodiscard]] std::optional<std::int64_t> read_heartbeat(const std::filesystem::path& file);
 
 /// What is necessary to reproduce a run, and to decide which results are comparable with it.
 struct RunManifest {
@@ -60,15 +38,6 @@ struct RunManifest {
 /// Text of result.json; numbers without data are null.
 [[nodiscard]] std::string result_json(const RunResult& result);
 
-/// Text of manifest.json.
-[[nodiscard]] std::string manifest_json(const RunManifest& manifest);
-
-/// Text of timings.csv: time per frame and module of the odometry, see bench/model/run_csv.h.
-[[nodiscard]] std::string timings_csv(const OdometryRun& run);
-
-/// Text of frames.csv: hash of each module's state after each frame.
-[[nodiscard]] std::string frames_csv(const OdometryRun& run);
-
 /// Text of trajectory.tum; that of an interrupted run starts with the comment "# partial".
 [[nodiscard]] std::string trajectory_text(const RunResult& result);
 
@@ -76,8 +45,30 @@ struct RunManifest {
 /// @throws InputError if the folder cannot be written
 void write_run(const std::filesystem::path& folder, const RunResult& result, const RunManifest& manifest);
 
+/// Contents of the output folder of `run`, and how an earlier output is recognized.
 [[nodiscard]] OutputLayout run_layout();
-[[nodiscard]] OutputLayout video_layout();  ///< of --video
-[[nodiscard]] OutputLayout profile_layout();
+[[nodiscard]] OutputLayout video_layout();    ///< of --video
+[[nodiscard]] OutputLayout profile_layout();  ///< of `profile`
+
+/// File name in a run's folder.
+inline constexpr const char* kHeartbeatFile = "heartbeat";
+
+/// File with the id of the last processed frame; reports the progress of a run, also after a crash.
+class Heartbeat {
+ public:
+  /// @throws InputError if the file cannot be created, or exists with other content
+  explicit Heartbeat(const std::filesystem::path& file);
+  ~Heartbeat();
+  Heartbeat(const Heartbeat&) = delete;
+  Heartbeat& operator=(const Heartbeat&) = delete;
+
+  void beat(std::int64_t frame) const;
+
+ private:
+  int descriptor_;
+};
+
+/// Nothing if the file does not exist or is empty.
+[[nodiscard]] std::optional<std::int64_t> read_heartbeat(const std::filesystem::path& file);
 
 }  // namespace stillpoint::bench

@@ -50,8 +50,6 @@ std::string sequence_checksum(const fs::path& folder) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 /// A file that was modified more recently could be modified again without a change of its time.
 constexpr std::int64_t kTimeResolution_ns = 100'000'000;
 

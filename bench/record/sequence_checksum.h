@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Checksum of a sequence folder.
-///
-/// Checksum of a sequence folder without reading all of its files in every run.
+/// Checksum of a sequence folder, remembered so that not all of its files are read in every run.
 #pragma once
 
 #include <filesystem>

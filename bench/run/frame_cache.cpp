@@ -66,8 +66,7 @@ std::optional<datasets::FrameCacheOptions> frame_cache_options(
       .folder = folder, .max_bytes = limit, .max_frames = max_frames, .warn = warn};
 }
 
-void fill_frame_cache(const std::filesystem::path& folder, int max_frames,
-                      const std::function<bool()>& stop_requested) {
+void fill_frame_cache(const fs::path& folder, int max_frames, const std::function<bool()>& stop_requested) {
   const auto limit = static_cast<std::size_t>(max_frames);
   const std::optional<datasets::FrameCacheOptions> cache = frame_cache_options(limit, {});
   if (!cache) return;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where the frame cache of this user is, and how large it may become.
-///
-/// Decodes a sequence ahead of runs whose time is measured.
+/// The frame cache of this user: where it is, how large it may become, and how a sequence is decoded into it
+/// ahead of runs whose time is measured.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,6 @@
 #include "bench/run/run_scores.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "eval/metrics/loop_metrics.h"
 #include "eval/metrics/rpe.h"

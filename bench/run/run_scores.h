@@ -1,32 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Detects tracks that no longer follow their initial scene point, from the ground-truth trajectory and the
-/// measured depth.
-///
-/// Accuracy of dynamic labels, evaluated against the per-pixel ground truth of rendered sequences.
-///
-/// Trajectories and score of a run with loop closure.
-///
-/// Scores the poses at IMU rate of a run.
+/// Scores of a run beside that of its trajectory: accuracy of dynamic labels against the per-pixel ground
+/// truth of rendered sequences, loop closure, and the poses at IMU rate.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "bench/model/metrics.h"
 #include "core/pipeline/imu_rate_poses.h"
 #include "core/types/loop_report.h"
-#include "core/types/rig.h"
 #include "core/types/tracked_frame.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
 
 namespace stillpoint::bench {
 
-/// Tracks drift at T-junctions of two edges, or when an occluding object passes. The feature then moves
-/// although the scene is static, and neither dynamic label is wrong.
+/// Detects tracks that no longer follow their initial scene point, from the ground-truth trajectory and the
+/// measured depth. Tracks drift at T-junctions of two edges, or when an occluding object passes. The feature
+/// then moves although the scene is static, and neither dynamic label is wrong.
 class DriftedTracks {
  public:
   /// Keeps a reference to `info`.
@@ -56,7 +49,7 @@ class DriftedTracks {
   std::map<std::int64_t, Track> tracks_;
 };
 
-/// Counts of features, each feature counted once per frame.
+/// Accuracy of dynamic labels: counts of features, each feature counted once per frame.
 ///
 /// Excluded are features of age 1, which no check has processed yet; features on the outline of an object,
 /// where a corner belongs to both sides; and features on an undetectable object at rest, where both labels
@@ -86,6 +79,7 @@ struct LabelScore {
            const datasets::MotionLabels& truth, const DriftedTracks& drifted);
 };
 
+/// Trajectories of a run with loop closure.
 struct LoopRun {
   /// T_m_c with the correction known at each frame; the frames of the odometry's trajectory, with a loaded
   /// map from the relocalization on, and those of later segments that are located in the map.
@@ -107,7 +101,7 @@ struct LoopRun {
 /// @param odometry the first segment, without corrections
 [[nodiscard]] LoopScore score_loops(const Trajectory& gt, const Trajectory& odometry, const LoopRun& run);
 
-/// Each number is absent if there is no data for it.
+/// Scores the poses at IMU rate of a run; each number is absent if there is no data for it.
 /// @param gt of the camera
 /// @param frame_rate trajectory of the same run at frame rate
 [[nodiscard]] ImuRateScore score_imu_rate(const Trajectory& gt, const ImuRateOutput& output,

@@ -7,7 +7,6 @@
 #include "core/base/error.h"
 #include "datasets/cache/frame_cache.h"
 #include "datasets/read_sequence.h"
-#include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint::bench {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Opens a sequence by folder, or by the name of a preset that is rendered on demand.
-///
-/// Renders a sequence into the sequence cache and the frame cache.
+/// Opens a sequence by folder, or by the name of a preset, which is rendered on demand into the sequence
+/// cache and the frame cache.
 #pragma once
 
 #include <filesystem>

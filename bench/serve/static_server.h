@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// HTTP server of files in memory. Requests never access the file system.
-///
-/// Limit on the connections of a server that closes old ones in favor of new ones.
+/// HTTP server of files that it holds in memory; requests never access the file system. Old connections are
+/// closed in favor of new ones.
 #pragma once
 
 #include <chrono>
@@ -13,6 +12,8 @@
 #include <vector>
 
 #include "bench/record/output_folder.h"
+
+struct MHD_Daemon;
 
 namespace stillpoint::bench {
 
@@ -35,12 +36,6 @@ class ConnectionLimit {
   std::size_t limit_;
   std::map<int, Clock::time_point> opened_;  ///< without those that were shut down
 };
-
-}  // namespace stillpoint::bench
-
-struct MHD_Daemon;
-
-namespace stillpoint::bench {
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< IPv4; the default is accessible from this machine only

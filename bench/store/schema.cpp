@@ -2,10 +2,8 @@
 #include "bench/store/schema.h"
 
 #include <array>
-#include <string>
 #include <string_view>
 
-#include "bench/model/stored_run.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The tables of a store, and the migration of older stores.
-///
-/// Rows of the tables of a store as structs.
+/// The tables of a store, the migration of older stores, and rows of the tables as structs.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/store/store.h"
 
-#include <algorithm>
 #include <unordered_map>
 
 #include "bench/model/run_csv.h"
@@ -10,64 +9,6 @@
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::bench {
-namespace {
-
-Database existing_store(const std::filesystem::path& file) {
-  static_cast<void>(Database(file, DatabaseAccess::kRead));  // throws if there is none
-  Database database(file, DatabaseAccess::kWrite);
-  migrate(database);
-  return database;
-}
-
-}  // namespace
-
-std::vector<Acceptance> read_acceptances(const Database& database) {
-  std::vector<Acceptance> acceptances;
-  if (database.integer("SELECT count(*) FROM sqlite_master WHERE name = 'acceptance'") == 0)
-    return acceptances;
-  Statement rows = database.prepare(
-      "SELECT build, metric, variant, sequence, reason, accepted FROM acceptance "
-      "ORDER BY build, metric, variant, sequence");
-  while (rows.step()) {
-    acceptances.push_back(
-        {rows.text(0), rows.text(1), rows.text(2), rows.text(3), rows.text(4), rows.text(5)});
-  }
-  return acceptances;
-}
-
-void write_acceptances(const std::filesystem::path& file, const std::vector<Acceptance>& acceptances) {
-  const Database database = existing_store(file);
-  Transaction transaction(database);
-  for (const Acceptance& acceptance : acceptances) {
-    database
-        .prepare(
-            "INSERT OR REPLACE INTO acceptance (build, metric, variant, sequence, reason, accepted) "
-            "VALUES (?, ?, ?, ?, ?, ?)")
-        .bind(acceptance.commit)
-        .bind(acceptance.metric)
-        .bind(acceptance.variant)
-        .bind(acceptance.sequence)
-        .bind(acceptance.reason)
-        .bind(acceptance.accepted)
-        .step();
-  }
-  transaction.commit();
-}
-
-bool withdraw_acceptance(const std::filesystem::path& file, const Acceptance& acceptance) {
-  const Database database = existing_store(file);
-  Transaction transaction(database);
-  database.prepare("DELETE FROM acceptance WHERE build = ? AND metric = ? AND variant = ? AND sequence = ?")
-      .bind(acceptance.commit)
-      .bind(acceptance.metric)
-      .bind(acceptance.variant)
-      .bind(acceptance.sequence)
-      .step();
-  const bool removed = database.integer("SELECT changes()") > 0;
-  transaction.commit();
-  return removed;
-}
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -160,7 +101,19 @@ std::vector<StoredRun> Store::plan_runs(const std::string& plan) const {
                    "contains no plan \"" + plan + "\"; it contains: " + (known.empty() ? "none" : known));
 }
 
-std::vector<Acceptance> Store::acceptances() const { return read_acceptances(database_); }
+std::vector<Acceptance> Store::acceptances() const {
+  std::vector<Acceptance> acceptances;
+  if (database_.integer("SELECT count(*) FROM sqlite_master WHERE name = 'acceptance'") == 0)
+    return acceptances;
+  Statement rows = database_.prepare(
+      "SELECT build, metric, variant, sequence, reason, accepted FROM acceptance "
+      "ORDER BY build, metric, variant, sequence");
+  while (rows.step()) {
+    acceptances.push_back(
+        {rows.text(0), rows.text(1), rows.text(2), rows.text(3), rows.text(4), rows.text(5)});
+  }
+  return acceptances;
+}
 
 std::int64_t Store::unfinished() const {
   return database_.integer("SELECT count(*) FROM run WHERE state = 'running'");
@@ -201,6 +154,13 @@ std::vector<TimingSample> Store::timing_samples(const StoredRun& run) const {
 
 namespace {
 
+Database existing_store(const fs::path& file) {
+  static_cast<void>(Database(file, DatabaseAccess::kRead));  // throws if there is none
+  Database database(file, DatabaseAccess::kWrite);
+  migrate(database);
+  return database;
+}
+
 bool is_readable(const Store& store, const StoredRun& run, const std::string& kind) {
   try {
     static_cast<void>(store.attachment(run, kind));
@@ -211,6 +171,39 @@ bool is_readable(const Store& store, const StoredRun& run, const std::string& ki
 }
 
 }  // namespace
+
+void write_acceptances(const fs::path& file, const std::vector<Acceptance>& acceptances) {
+  const Database database = existing_store(file);
+  Transaction transaction(database);
+  for (const Acceptance& acceptance : acceptances) {
+    database
+        .prepare(
+            "INSERT OR REPLACE INTO acceptance (build, metric, variant, sequence, reason, accepted) "
+            "VALUES (?, ?, ?, ?, ?, ?)")
+        .bind(acceptance.commit)
+        .bind(acceptance.metric)
+        .bind(acceptance.variant)
+        .bind(acceptance.sequence)
+        .bind(acceptance.reason)
+        .bind(acceptance.accepted)
+        .step();
+  }
+  transaction.commit();
+}
+
+bool withdraw_acceptance(const fs::path& file, const Acceptance& acceptance) {
+  const Database database = existing_store(file);
+  Transaction transaction(database);
+  database.prepare("DELETE FROM acceptance WHERE build = ? AND metric = ? AND variant = ? AND sequence = ?")
+      .bind(acceptance.commit)
+      .bind(acceptance.metric)
+      .bind(acceptance.variant)
+      .bind(acceptance.sequence)
+      .step();
+  const bool removed = database.integer("SELECT changes()") > 0;
+  transaction.commit();
+  return removed;
+}
 
 ReadableRuns without_unreadable_files(const Store& store, std::vector<StoredRun> runs) {
   ReadableRuns result;

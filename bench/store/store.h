@@ -3,10 +3,6 @@
 ///
 ///   const Store store("bench.sqlite");
 ///   for (const StoredRun& run : store.runs({.sequence = "walking_xyz"})) store.trajectory(run);
-///
-/// Reviewed and accepted changes of metrics, with their reasons.
-///
-/// Runs of a store of which some attached files are missing or damaged.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +16,7 @@
 
 namespace stillpoint::bench {
 
-/// Accepts the change of a metric at a commit; an empty variant or sequence matches all.
+/// A reviewed and accepted change of a metric at a commit; an empty variant or sequence matches all.
 struct Acceptance {
   std::string commit;
   std::string metric;  ///< name of a metric or of a module
@@ -29,17 +25,6 @@ struct Acceptance {
   std::string reason;
   std::string accepted;  ///< UTC, ISO 8601
 };
-
-/// Sorted by commit, metric, variant and sequence. A store of schema 1 has none.
-[[nodiscard]] std::vector<Acceptance> read_acceptances(const Database& database);
-
-/// Adds acceptances to a store; one of the same commit, metric, variant and sequence is replaced. An older
-/// store is migrated.
-/// @throws InputError if there is no such store, or it cannot be written
-void write_acceptances(const std::filesystem::path& file, const std::vector<Acceptance>& acceptances);
-
-/// Removes an acceptance; its reason and time are ignored. @return false if there was none
-[[nodiscard]] bool withdraw_acceptance(const std::filesystem::path& file, const Acceptance& acceptance);
 
 /// Selects runs; an empty member matches all.
 struct RunFilter {
@@ -77,7 +62,8 @@ class Store {
 
   [[nodiscard]] std::vector<StoredPlan> plans() const;
 
-  /// Accepted changes of metrics.
+  /// Accepted changes of metrics, sorted by commit, metric, variant and sequence. A store of schema 1 has
+  /// none.
   [[nodiscard]] std::vector<Acceptance> acceptances() const;
 
   /// Number of runs without an outcome: running, or interrupted.
@@ -112,6 +98,15 @@ class Store {
   BlobFiles blobs_;
 };
 
+/// Adds acceptances to a store; one of the same commit, metric, variant and sequence is replaced. An older
+/// store is migrated.
+/// @throws InputError if there is no such store, or it cannot be written
+void write_acceptances(const std::filesystem::path& file, const std::vector<Acceptance>& acceptances);
+
+/// Removes an acceptance; its reason and time are ignored. @return false if there was none
+[[nodiscard]] bool withdraw_acceptance(const std::filesystem::path& file, const Acceptance& acceptance);
+
+/// Runs of a store of which some attached files may be missing or damaged.
 struct ReadableRuns {
   std::vector<StoredRun> runs;    ///< without the unreadable files
   std::vector<std::string> gaps;  ///< one line per run with unreadable files

@@ -9,9 +9,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <vector>
 
-#include "bench/model/stored_run.h"
 #include "bench/store/schema.h"
 #include "core/base/error.h"
 
@@ -30,6 +28,27 @@ std::string new_name() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::to_string(getpid()) + "-" +
          std::to_string(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
+}
+
+constexpr const char* kInsertRun =
+    "INSERT INTO run (key, system, variant, sequence, sequence_id, config_hash, build, mode, kind, cores, "
+    "seed, repetition, axis, axis_value, state, worker, started) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'running', ?, ?)";
+
+Database open_for_writing(const fs::path& file) {
+  std::error_code ignored;  // opening the database reports the error
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), ignored);
+  Database database(file, DatabaseAccess::kWrite);
+  migrate(database);
+  Statement check = database.prepare("PRAGMA quick_check(1)");
+  if (!check.step() || check.text(0) != "ok") {
+    std::string fault = check.text(0);
+    std::ranges::replace(fault, '\n', ' ');
+    throw InputError(file.string(), "is damaged (" + fault +
+                                        "); save what is readable with `stillpoint store salvage STORE OUT`, "
+                                        "and continue with OUT");
+  }
+  return database;
 }
 
 }  // namespace
@@ -76,34 +95,6 @@ void WorkerLock::remove_stale() const {
     fs::remove(workers_ / (name + ".lock"), ignored);
   }
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kInsertRun =
-    "INSERT INTO run (key, system, variant, sequence, sequence_id, config_hash, build, mode, kind, cores, "
-    "seed, "
-    "repetition, axis, axis_value, state, worker, started) "
-    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'running', ?, ?)";
-
-Database open_for_writing(const fs::path& file) {
-  std::error_code ignored;  // opening the database reports the error
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), ignored);
-  Database database(file, DatabaseAccess::kWrite);
-  migrate(database);
-  Statement check = database.prepare("PRAGMA quick_check(1)");
-  if (!check.step() || check.text(0) != "ok") {
-    std::string fault = check.text(0);
-    std::ranges::replace(fault, '\n', ' ');
-    throw InputError(file.string(), "is damaged (" + fault +
-                                        "); save what is readable with `stillpoint store salvage STORE OUT`, "
-                                        "and continue with OUT");
-  }
-  return database;
-}
-
-}  // namespace
 
 StoreWriter::StoreWriter(const fs::path& file)
     : database_(open_for_writing(file)),

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Crash-safe writer of a store: a process that is killed at any time loses at most the runs that it was
 /// executing.
-///
-/// Liveness of worker processes: each holds a file lock (flock), which the kernel releases when it exits.
 #pragma once
 
 #include <filesystem>
@@ -16,6 +14,7 @@
 
 namespace stillpoint::bench {
 
+/// Liveness of worker processes: each holds a file lock (flock), which the kernel releases when it exits.
 class WorkerLock {
  public:
   /// Registers this process as a worker, with a folder of its own.
@@ -42,6 +41,7 @@ class WorkerLock {
   int lock_ = -1;
 };
 
+/// Answer to a worker that wants to execute a run.
 enum class RunLease {
   kGranted,        ///< to this worker
   kDone,           ///< the run is completed

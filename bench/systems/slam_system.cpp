@@ -2,7 +2,6 @@
 #include "bench/systems/slam_system.h"
 
 #include <map>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -26,6 +25,7 @@ namespace stillpoint::bench {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 std::string replaced(std::string text, const std::string& placeholder, const std::string& value) {
   for (std::size_t at = text.find(placeholder); at != std::string::npos;
@@ -49,7 +49,7 @@ fs::path exported(const RunRequest& request, ExportLayout layout) {
 }
 
 std::string manifest_text(const ExternalSystem& system, const RunRequest& request) {
-  nlohmann::ordered_json json;
+  Json json;
   json["schema"] = 1;
   json["system"] = {{"name", system.name}, {"version", system.version}, {"command", system.command}};
   json["sequence"] = {{"name", request.identity.sequence}, {"id", request.identity.sequence_id}};
@@ -58,8 +58,8 @@ std::string manifest_text(const ExternalSystem& system, const RunRequest& reques
 }
 
 /// The document itself, or its member "timings" as in a result.json.
-nlohmann::ordered_json timings_of(const fs::path& file) {
-  const nlohmann::ordered_json json = nlohmann::ordered_json::parse(eval::read_text_file(file));
+Json timings_of(const fs::path& file) {
+  const Json json = Json::parse(eval::read_text_file(file));
   return json.contains("timings") ? json.at("timings") : json;
 }
 
@@ -132,9 +132,6 @@ RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& 
 }
 
 namespace {
-
-namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr int kBadInput = 2;  // exit codes of the program, see bench/cli/command_line.h
 constexpr std::string_view kErrorPrefix = "stillpoint: error: ";

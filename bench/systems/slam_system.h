@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Interface of systems that can be benchmarked: run on a sequence, write a trajectory.
-///
-/// An external SLAM system: its description (name, command line, input layout, output files) and its runs.
-///
-/// The odometry of this project, run as a child process: `stillpoint run`.
+/// Systems that can be benchmarked: run on a sequence, write a trajectory. The interface and its two
+/// implementations: external SLAM systems, and the odometry of this project.
 #pragma once
 
 #include <filesystem>
@@ -56,9 +53,9 @@ constexpr auto enum_names(ExportLayout) {
       {{ExportLayout::kAsIs, "as_is"}, {ExportLayout::kTum, "tum"}, {ExportLayout::kEuroc, "euroc"}}};
 }
 
-/// Contents of a file in bench/systems/ or provided by the user. Placeholders in the command: {sequence} is
-/// the folder of the sequence, {out} an empty output folder, {here} the folder of this file, {seed} and
-/// {repetition} those of the run.
+/// Description of an external system: contents of a file in bench/systems/ or provided by the user.
+/// Placeholders in the command: {sequence} is the folder of the sequence, {out} an empty output folder,
+/// {here} the folder of this file, {seed} and {repetition} those of the run.
 struct ExternalSystem {
   std::string name;
   std::string version = "unknown";   ///< part of the run key: a change invalidates cached runs
@@ -101,6 +98,7 @@ class ExternalRun : public SlamSystem {
   ExternalSystem system_;
 };
 
+/// The odometry of this project, run as a child process: `stillpoint run`.
 class OwnOdometry : public SlamSystem {
  public:
   [[nodiscard]] ProcessSpec command(const RunRequest& request) const override;

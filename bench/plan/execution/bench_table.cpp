@@ -2,17 +2,14 @@
 #include "bench/plan/execution/bench_table.h"
 
 #include <algorithm>
-#include <map>
 #include <tuple>
 #include <unordered_map>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/model/metrics.h"
-#include "bench/model/run_notes.h"
 #include "bench/record/result_values.h"
 #include "eval/metrics/statistics.h"
 
@@ -105,11 +102,6 @@ BenchRow row_of(const Group& group, const std::string& unavailable_reason) {
 
 }  // namespace
 
-std::string row_status(const BenchRow& row) {
-  if (!row.is_available) return "skipped";
-  return row.outcome ? outcome_name(*row.outcome) : "not run";
-}
-
 std::vector<BenchRow> plan_rows(const PlanMatrix& matrix, const Store& store) {
   std::unordered_map<std::string, StoredRun> stored;
   for (StoredRun& run : store.runs()) stored[run.key] = std::move(run);
@@ -122,7 +114,14 @@ std::vector<BenchRow> plan_rows(const PlanMatrix& matrix, const Store& store) {
 
 namespace {
 
+/// "ok", the name of another outcome, "not run" or "skipped".
+std::string row_status(const BenchRow& row) {
+  if (!row.is_available) return "skipped";
+  return row.outcome ? outcome_name(*row.outcome) : "not run";
+}
+
 using Cells = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
 
 /// The columns of the paper's Table III, in its order, and their headings in this table.
 struct TimedColumn {
@@ -217,18 +216,18 @@ std::string separator_line(const std::vector<std::size_t>& widths, std::size_t t
   return text + "\n";
 }
 
-nlohmann::ordered_json row_json(const BenchRow& row) {
-  nlohmann::ordered_json timings = nlohmann::ordered_json::object();
+Json row_json(const BenchRow& row) {
+  Json timings = Json::object();
   for (std::size_t i = 0; i < kModuleCount; ++i) {
     if (row.mean_ms[i]) timings[std::string(module_name(static_cast<Module>(i)))] = *row.mean_ms[i];
   }
-  nlohmann::ordered_json json = {{"sequence", row.sequence},
-                                 {"variant", row.variant},
-                                 {"sweep", row.sweep},
-                                 {"status", row_status(row)},
-                                 {"reason", row.reason},
-                                 {"runs", row.runs},
-                                 {"succeeded_runs", row.succeeded_runs}};
+  Json json = {{"sequence", row.sequence},
+               {"variant", row.variant},
+               {"sweep", row.sweep},
+               {"status", row_status(row)},
+               {"reason", row.reason},
+               {"runs", row.runs},
+               {"succeeded_runs", row.succeeded_runs}};
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory))
     json[std::string(metric->id)] = number_or_null(metric_of(row, *metric));
   json["mean_ms"] = timings;
@@ -270,10 +269,10 @@ std::string markdown_table(std::span<const BenchRow> rows) {
 }
 
 std::string json_table(const std::string& title, std::span<const BenchRow> rows) {
-  nlohmann::ordered_json json;
+  Json json;
   json["schema"] = 1;
   json["title"] = title;
-  json["rows"] = nlohmann::ordered_json::array();
+  json["rows"] = Json::array();
   for (const BenchRow& row : rows) json["rows"].push_back(row_json(row));
   return json.dump(2) + "\n";
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Formats rows as a Markdown table and as JSON.
-///
-/// Aggregates the runs of one variant on one sequence into a table row.
+/// The result table of a plan: runs aggregated into rows, as a Markdown table and as JSON.
 #pragma once
 
 #include <array>
@@ -19,7 +17,8 @@
 
 namespace stillpoint::bench {
 
-/// Metrics are medians over the succeeded runs; absent ones are shown as "n/a".
+/// The runs of one variant on one sequence. Metrics are medians over the succeeded runs; absent ones are
+/// shown as "n/a".
 struct BenchRow {
   std::string sequence;
   std::string variant;
@@ -33,9 +32,6 @@ struct BenchRow {
   std::array<std::optional<double>, kModuleCount> mean_ms;
   TimeSource time_source = TimeSource::kUndisturbed;  ///< of `mean_ms`: the worst among the runs
 };
-
-/// "ok", the name of another outcome, "not run" or "skipped".
-[[nodiscard]] std::string row_status(const BenchRow& row);
 
 /// All rows of a plan in its order, including those without executed runs.
 [[nodiscard]] std::vector<BenchRow> plan_rows(const PlanMatrix& matrix, const Store& store);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Scores completed runs and writes their files on other threads, so that a worker never waits for them.
-///
-/// Derives the stored outcome of a run from its finished process.
+/// Derives the stored outcome of a run from its finished process, and scores completed runs and writes their
+/// files on other threads, so that a worker never waits for them.
 #pragma once
 
 #include <cstddef>
@@ -30,6 +29,7 @@ struct ScoredRun {
   double writing_s = 0.0;  ///< of the attachments
 };
 
+/// Scores completed runs on other threads.
 class OutcomeScorer {
  public:
   /// @param writer must outlive this object; only `write_files` is called on other threads

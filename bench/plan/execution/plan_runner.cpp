@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
-#include <optional>
+#include <filesystem>
 #include <set>
 
 #include <fmt/format.h>
@@ -15,7 +15,6 @@
 #include "bench/plan/execution/outcome_scorer.h"
 #include "bench/plan/execution/run_cost.h"
 #include "bench/plan/execution/sequence_renderer.h"
-#include "bench/process/child_process.h"
 #include "bench/profile/meters/process_usage.h"
 #include "bench/run/frame_cache.h"
 #include "bench/run/odometry_run.h"
@@ -25,6 +24,7 @@
 namespace stillpoint::bench {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// A line of the profile; `text` is its label, and `id` its name in JSON.
@@ -134,8 +134,6 @@ void require_recorded_boxes(const PlanMatrix& matrix) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kLeasePollMs = 200;
 

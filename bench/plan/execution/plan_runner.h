@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Executes the runs of a plan that are not yet in the store, each in a child process.
-///
-/// Where the time of a plan goes: odometry, images, start of processes, scoring, storing.
-///
-/// Checks that the recorded sequences of a plan have the boxes that its configs require.
+/// Executes the runs of a plan that are not yet in the store, each in a child process, and measures where the
+/// time of the plan goes.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -19,9 +15,9 @@
 
 namespace stillpoint::bench {
 
-/// Durations [s], summed over the executed runs. A worker executes one run at a time; its time is divided
-/// among the first group and waiting. The second group is spent on other threads, or while no run is
-/// executed.
+/// Where the time of a plan goes: odometry, images, start of processes, scoring, storing. Durations [s],
+/// summed over the executed runs. A worker executes one run at a time; its time is divided among the first
+/// group and waiting. The second group is spent on other threads, or while no run is executed.
 struct HarnessProfile {
   std::size_t runs = 0;
   int workers = 1;
@@ -64,6 +60,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Checks that the recorded sequences of a plan have the boxes that its configs require.
 /// @throws InputError naming the first run whose sequence has no detections.txt although its config uses
 /// recorded boxes; runs of external systems and of other programs are not checked
 void require_recorded_boxes(const PlanMatrix& matrix);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Expected duration of the runs of a plan, from earlier runs in the store.
-///
-/// Order in which the runs of a plan are started.
+/// Expected duration of the runs of a plan, from earlier runs in the store, and the order in which they are
+/// started.
 #pragma once
 
 #include <cstddef>

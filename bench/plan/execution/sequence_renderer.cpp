@@ -4,7 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include "bench/plan/execution/plan_runner.h"
 #include "core/base/error.h"
 #include "core/base/thread_name.h"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Renders the next sequence of a plan on another thread while runs are executed.
-///
-/// Folders of the sequences of a plan, some of which are rendered when their first run is due, or while runs
-/// of another sequence are executed.
+/// Folders of the sequences of a plan, some of which are rendered when their first run is due, or on another
+/// thread while runs of another sequence are executed.
 #pragma once
 
 #include <atomic>
@@ -11,7 +9,6 @@
 #include <functional>
 #include <future>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "bench/plan/execution/plan_runner.h"
@@ -20,6 +17,7 @@
 
 namespace stillpoint::bench {
 
+/// Renders the next sequence of a plan on another thread while runs are executed.
 class SequenceRenderer {
  public:
   /// @param stop_requested polled before each frame, from any thread
@@ -56,7 +54,7 @@ class SequenceRenderer {
   std::future<Rendered> rendered_;
 };
 
-/// Sequences are given by their index in `PlanMatrix::sequences`.
+/// The folders of all sequences of a plan, which are given by their index in `PlanMatrix::sequences`.
 class SequenceFolders {
  public:
   /// @param matrix, hooks must outlive this object

@@ -5,15 +5,22 @@
 #include <array>
 #include <charconv>
 #include <fstream>
+#include <functional>
 #include <set>
 #include <sstream>
+#include <system_error>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 namespace stillpoint::bench {
+namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kCpuFolder = "sys/devices/system/cpu";
+
+/// First line without surrounding white space and zero bytes; nothing if it is empty or not readable.
 std::optional<std::string> line_in(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
@@ -24,6 +31,7 @@ std::optional<std::string> line_in(const fs::path& file) {
   return line.substr(begin, line.find_last_not_of(kBlank) - begin + 1);
 }
 
+/// Nothing unless the whole text is one decimal integer that fits 64 bits.
 std::optional<std::int64_t> number_of(std::string_view text) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -31,11 +39,13 @@ std::optional<std::int64_t> number_of(std::string_view text) {
   return value;
 }
 
+/// The number of a file that contains nothing else in its first line.
 std::optional<std::int64_t> number_in(const fs::path& file) {
   const std::optional<std::string> line = line_in(file);
   return line ? number_of(*line) : std::nullopt;
 }
 
+/// Entries whose names begin with `start`, sorted by name; empty if the folder does not exist.
 std::vector<fs::path> entries_of(const fs::path& folder, std::string_view start) {
   std::vector<fs::path> entries;
   std::error_code error;
@@ -45,10 +55,6 @@ std::vector<fs::path> entries_of(const fs::path& folder, std::string_view start)
   std::ranges::sort(entries);
   return entries;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 /// The power of a rail below 1 kW, beyond which no device with these sensors is supplied.
 std::optional<double> valid_power_w(double power_w) {
@@ -200,8 +206,6 @@ std::optional<double> device_power_w(const std::vector<RailPower>& rails) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 using Readings = std::map<std::string, std::int64_t>;
 
 Readings with(Readings readings, const fs::path& file) {
@@ -230,11 +234,11 @@ std::optional<bool> any_worse(const Readings& before, const Readings& after, Com
 
 ThrottleState read_throttle_state(const fs::path& root) {
   ThrottleState state;
-  for (const fs::path& cpu : entries_of(root / "sys/devices/system/cpu", "cpu")) {
+  for (const fs::path& cpu : entries_of(root / kCpuFolder, "cpu")) {
     for (const char* counter : {"core_throttle_count", "package_throttle_count"})
       state.events = with(std::move(state.events), cpu / "thermal_throttle" / counter);
   }
-  for (const fs::path& policy : entries_of(root / "sys/devices/system/cpu/cpufreq", "policy"))
+  for (const fs::path& policy : entries_of(root / kCpuFolder / "cpufreq", "policy"))
     state.limits_khz = with(std::move(state.limits_khz), policy / "scaling_max_freq");
   for (const fs::path& device : entries_of(root / "sys/class/thermal", "cooling_device")) {
     if (!is_fan(device)) state.cooling = with(std::move(state.cooling), device / "cur_state");
@@ -252,10 +256,7 @@ std::optional<bool> throttled_between(const ThrottleState& before, const Throttl
 
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-const char* const kCpuFolder = "sys/devices/system/cpu";
 
 std::optional<std::string> governors(const fs::path& root) {
   std::set<std::string> names;

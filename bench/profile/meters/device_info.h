@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Processors, power mode, temperatures and power rails of the machine.
-///
-/// Values in files of /sys, /proc and /etc: one line per file.
-///
-/// Sources of energy and power readings: RAPL of x86 processors, INA3221 and INA238 sensors and `tegrastats`
-/// of Jetson devices. A value that is missing, not readable, negative or beyond the range of the sensor is
-/// no value, and a sum that lacks a part is none.
-///
-/// Whether the processor was slowed down because of its temperature or power.
+/// State of the machine at one moment, from files of /sys, /proc and /etc: processors, power mode,
+/// temperatures, throttling, and sources of energy and power readings, which are RAPL of x86 processors, and
+/// INA3221 and INA238 sensors and `tegrastats` of Jetson devices. A value that is missing, not readable,
+/// negative or beyond the range of the sensor is no value, and a sum that lacks a part is none.
 #pragma once
 
 #include <cstdint>
@@ -21,19 +16,6 @@
 #include <nlohmann/json_fwd.hpp>
 
 namespace stillpoint::bench {
-
-/// First line without surrounding white space and zero bytes; nothing if it is empty or not readable.
-[[nodiscard]] std::optional<std::string> line_in(const std::filesystem::path& file);
-
-/// Nothing unless the whole text is one decimal integer that fits 64 bits.
-[[nodiscard]] std::optional<std::int64_t> number_of(std::string_view text);
-
-/// The number of a file that contains nothing else in its first line.
-[[nodiscard]] std::optional<std::int64_t> number_in(const std::filesystem::path& file);
-
-/// Entries whose names begin with `start`, sorted by name; empty if the folder does not exist.
-[[nodiscard]] std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder,
-                                                            std::string_view start);
 
 /// Energy counter of a RAPL zone, e.g. "package-0". It wraps around at `range_uj`.
 struct EnergyCounter {
@@ -77,7 +59,8 @@ struct RailPower {
 /// Nothing without rails, or if a rail that is used has no valid value.
 [[nodiscard]] std::optional<double> device_power_w(const std::vector<RailPower>& rails);
 
-/// Readings of one moment, by the path of their file.
+/// What slows the processor down because of its temperature or power: readings of one moment, by the path of
+/// their file.
 struct ThrottleState {
   std::map<std::string, std::int64_t> events;      ///< thermal_throttle counts since boot
   std::map<std::string, std::int64_t> limits_khz;  ///< largest allowed frequency of each cpufreq policy

@@ -14,7 +14,6 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
-#include <string>
 
 #include <linux/perf_event.h>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Resource usage of this process and its threads, and their CPU affinity.
-///
-/// Hardware performance counters, if the machine and its settings allow them.
-///
-/// Load of the machine during a timing measurement.
+/// What the kernel counts: resource usage of this process and its threads, hardware performance counters, and
+/// the load of the machine. Also the CPU affinity, on which these depend.
 #pragma once
 
 #include <cstdint>
@@ -65,7 +62,8 @@ struct HardwareCount {
   std::int64_t count = 0;
 };
 
-/// Counts in user mode for this thread and the threads that it starts after construction.
+/// Hardware performance counters, if the machine and its settings allow them. Counts in user mode for this
+/// thread and the threads that it starts after construction.
 /// Source: perf_event_open(2).
 class HardwareCounters {
  public:
@@ -92,7 +90,8 @@ class HardwareCounters {
 /// Describes an error of perf_event_open for the user.
 [[nodiscard]] std::string describe_counter_error(int error_number);
 
-/// Processor time since boot [ticks of sysconf(_SC_CLK_TCK)], summed over all processors.
+/// Load of the machine: processor time since boot [ticks of sysconf(_SC_CLK_TCK)], summed over all
+/// processors.
 struct MachineLoad {
   std::int64_t busy = 0;
   std::int64_t total = 0;

@@ -4,10 +4,38 @@
 #include <cmath>
 #include <utility>
 
-#include "bench/profile/meters/device_info.h"
 #include "core/base/thread_name.h"
 
 namespace stillpoint::bench {
+namespace {
+
+constexpr std::chrono::seconds kIdleTime{1};
+constexpr std::chrono::milliseconds kSampleInterval{50};
+
+/// Energy above idle per frame between two samples; nothing without frames.
+std::optional<double> joules_per_frame(const EnergySample& from, const EnergySample& to, double idle_w) {
+  if (to.frames <= from.frames) return std::nullopt;
+  const double joules = to.joules - from.joules - idle_w * (to.t_s - from.t_s);
+  return joules / static_cast<double>(to.frames - from.frames);
+}
+
+/// Standard deviation of the energy per frame over intervals of 1 s; nothing with less than two.
+std::optional<double> spread(std::span<const EnergySample> samples, double idle_w) {
+  std::vector<double> values;
+  const EnergySample* from = &samples.front();
+  for (const EnergySample& sample : samples) {
+    if (sample.t_s - from->t_s < 1.0) continue;
+    if (const auto value = joules_per_frame(*from, sample, idle_w)) values.push_back(*value);
+    from = &sample;
+  }
+  if (values.size() < 2) return std::nullopt;
+  double mean = 0.0, squares = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+}  // namespace
 
 EnergyMeter::EnergyMeter(std::filesystem::path root, std::filesystem::path tegrastats, Time now)
     : root_(std::move(root)), tegrastats_(std::move(tegrastats)), source_("RAPL"), last_(now) {
@@ -52,36 +80,6 @@ std::optional<EnergyUse> EnergyMeter::use(Time now) {
   sample(now);
   return so_far();
 }
-
-namespace {
-
-constexpr std::chrono::seconds kIdleTime{1};
-constexpr std::chrono::milliseconds kSampleInterval{50};
-
-/// Energy above idle per frame between two samples; nothing without frames.
-std::optional<double> joules_per_frame(const EnergySample& from, const EnergySample& to, double idle_w) {
-  if (to.frames <= from.frames) return std::nullopt;
-  const double joules = to.joules - from.joules - idle_w * (to.t_s - from.t_s);
-  return joules / static_cast<double>(to.frames - from.frames);
-}
-
-/// Standard deviation of the energy per frame over intervals of 1 s; nothing with less than two.
-std::optional<double> spread(std::span<const EnergySample> samples, double idle_w) {
-  std::vector<double> values;
-  const EnergySample* from = &samples.front();
-  for (const EnergySample& sample : samples) {
-    if (sample.t_s - from->t_s < 1.0) continue;
-    if (const auto value = joules_per_frame(*from, sample, idle_w)) values.push_back(*value);
-    from = &sample;
-  }
-  if (values.size() < 2) return std::nullopt;
-  double mean = 0.0, squares = 0.0;
-  for (const double value : values) mean += value / static_cast<double>(values.size());
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
-}  // namespace
 
 DeviceScore energy_score(std::span<const EnergySample> samples, double idle_w) {
   DeviceScore score;

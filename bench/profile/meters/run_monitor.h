@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Energy per frame and throttling during a run.
-///
-/// Energy consumption of the machine during a measurement.
 #pragma once
 
 #include <atomic>
@@ -22,6 +20,7 @@
 
 namespace stillpoint::bench {
 
+/// Energy consumption of the machine during a measurement.
 struct EnergyUse {
   double joules = 0.0;  ///< of the whole machine or processor, not only of this process
   std::string source;   ///< "RAPL", "INA3221" or "tegrastats"

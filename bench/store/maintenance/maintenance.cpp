@@ -13,7 +13,6 @@
 #include "bench/model/metrics.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
-#include "bench/store/store_writer.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -138,8 +137,6 @@ MergeReport merge_stores(const fs::path& from, const fs::path& into) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Attachments that contain times, or messages with paths.
 constexpr std::array<std::string_view, 4> kVolatileAttachments = {"result", "timings", "stacks", "log"};

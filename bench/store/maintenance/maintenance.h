@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Maintenance of a store: verification, garbage collection and merge.
-///
-/// Transfer of completed runs into a store.
-///
-/// Comparison of two stores by content: whether the same plan gave the same results at two places.
+/// Maintenance of stores: verification, garbage collection, transfer of completed runs, and comparison by
+/// content.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +13,6 @@
 #include "bench/store/store_writer.h"
 
 namespace stillpoint::bench {
-
-struct MergeReport {
-  std::size_t added = 0;
-  std::size_t present = 0;  ///< already in the target store
-};
 
 /// Adds a completed run unless the store already contains it. @return whether it was added
 bool add_run(StoreWriter& writer, const RunIdentity& identity, const RunOutcome& outcome);
@@ -38,15 +30,21 @@ struct GarbageReport {
 /// Removes files and manifests that no run references, and the folders of dead workers.
 GarbageReport collect_garbage(const std::filesystem::path& file);
 
+struct MergeReport {
+  std::size_t added = 0;
+  std::size_t present = 0;  ///< already in the target store
+};
+
 /// Adds the completed runs of `from` to `into`, with their plans, manifests, files and acceptances. `into` is
 /// created if it does not exist; runs that it already contains are not changed.
 /// @throws InputError if a file of `from` is missing or damaged; runs added before remain
 MergeReport merge_stores(const std::filesystem::path& from, const std::filesystem::path& into);
 
 /// Differences between the completed runs and the plans of two stores, one line each; empty if they are
-/// equal. A run is compared by its identity, outcome, metrics, manifest, timed modules and attachments. Not
-/// compared: what depends on the machine or on the time of execution, that is, times, memory and load, the
-/// host in the manifest, time stamps, and the attachments "result", "timings", "stacks" and "log".
+/// equal, as after execution of the same plan at two places. A run is compared by its identity, outcome,
+/// metrics, manifest, timed modules and attachments. Not compared: what depends on the machine or on the time
+/// of execution, that is, times, memory and load, the host in the manifest, time stamps, and the attachments
+/// "result", "timings", "stacks" and "log".
 /// @throws InputError if one of them cannot be read
 [[nodiscard]] std::vector<std::string> store_differences(const std::filesystem::path& first,
                                                          const std::filesystem::path& second);

@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <set>
 
+#include "bench/store/database.h"
 #include "bench/store/maintenance/maintenance.h"
 #include "bench/store/schema.h"
 #include "bench/store/store.h"
@@ -73,7 +75,52 @@ void copy_to(const fs::path& from, const fs::path& to) {
     throw InputError(from.string(), "cannot be copied to " + to.string() + ": " + error.message());
 }
 
-}  // namespace
+/// "a DESC, b DESC" of {"a", "b"} with the direction " DESC".
+std::string order_text(const std::vector<std::string>& columns, const char* direction) {
+  std::string text;
+  for (const std::string& column : columns) text += (text.empty() ? "" : ", ") + column + direction;
+  return text;
+}
+
+/// A private copy of a damaged store; the store itself is only read as a file.
+class DamagedDatabase {
+ public:
+  /// Copies the file and its write-ahead log. If the first page is damaged, which contains the list of
+  /// tables, it is replaced by that of an empty store: the tables of stores have the same root pages unless
+  /// the store was migrated from an older schema.
+  /// @param folder for the copy; must not exist, removed by the destructor
+  /// @throws InputError if the file cannot be copied, or is not a store
+  DamagedDatabase(const fs::path& store, fs::path folder);
+  ~DamagedDatabase();
+  DamagedDatabase(const DamagedDatabase&) = delete;
+  DamagedDatabase& operator=(const DamagedDatabase&) = delete;
+
+  [[nodiscard]] const Database& database() const { return *database_; }
+  [[nodiscard]] bool has_replaced_header() const { return replaced_header_; }
+
+  /// Calls `use(row)` for each readable row of a query: in ascending order of the columns `order` up to the
+  /// first damaged page, and then in descending order down to the last one.
+  /// @param query without ORDER BY; an index must contain the rows in this order
+  /// @return whether all rows were readable
+  template <class Use>
+  bool for_each_row(const std::string& query, const std::vector<std::string>& order, const Use& use) const {
+    for (const char* direction : {"", " DESC"}) {
+      try {
+        Statement rows = database_->prepare(query + " ORDER BY " + order_text(order, direction));
+        while (rows.step()) use(rows);
+        return *direction == '\0';
+      } catch (const InputError&) {
+        continue;  // a damaged page; the rows behind it are read from the other end
+      }
+    }
+    return false;
+  }
+
+ private:
+  fs::path folder_;
+  std::unique_ptr<Database> database_;
+  bool replaced_header_ = false;
+};
 
 DamagedDatabase::DamagedDatabase(const fs::path& store, fs::path folder) : folder_(std::move(folder)) {
   if (!fs::is_regular_file(store)) throw InputError(store.string(), "there is no such store");
@@ -109,16 +156,6 @@ DamagedDatabase::~DamagedDatabase() {
   std::error_code ignored;
   fs::remove_all(folder_, ignored);
 }
-
-std::string order_text(const std::vector<std::string>& columns, const char* direction) {
-  std::string text;
-  for (const std::string& column : columns) text += (text.empty() ? "" : ", ") + column + direction;
-  return text;
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 
 /// Reads a damaged store, counts the rows and notes what is lost.
 class Salvage {

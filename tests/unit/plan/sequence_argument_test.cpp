@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/plan/sequence_registry.h"
 #include "bench/record/sequence_checksum.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
