@@ -76,15 +76,12 @@ inline constexpr const char* kTopicsHelp =
 inline constexpr const char* kSysfsRootHelp =
     "Folder with recorded sys, proc, etc and var instead of those of this machine [/]";
 
-[[nodiscard]] Command run_command();             ///< `stillpoint run`: odometry on one sequence
-[[nodiscard]] Command eval_command();            ///< `stillpoint eval`: score trajectory files
-[[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: score result files by scene
-[[nodiscard]] Command bench_command();           ///< `stillpoint bench`: execute a benchmark plan
-[[nodiscard]] Command worker_command();          ///< `stillpoint worker`: execute tasks of a plan
-[[nodiscard]] Command plan_command();            ///< `stillpoint plan`: list plans and their runs
-[[nodiscard]] Command store_command();           ///< `stillpoint store`: inspect and maintain stores
-/// `stillpoint store accept`, `withdraw` and `accepted`: accepted metric changes
-[[nodiscard]] std::vector<Command> acceptance_commands();
+[[nodiscard]] Command run_command();          ///< `stillpoint run`: odometry on one sequence
+[[nodiscard]] Command eval_command();         ///< `stillpoint eval`: score trajectory files
+[[nodiscard]] Command bench_command();        ///< `stillpoint bench`: execute a benchmark plan
+[[nodiscard]] Command worker_command();       ///< `stillpoint worker`: execute tasks of a plan
+[[nodiscard]] Command plan_command();         ///< `stillpoint plan`: list plans and their runs
+[[nodiscard]] Command store_command();        ///< `stillpoint store`: inspect and maintain stores
 [[nodiscard]] Command stats_command();        ///< `stillpoint stats`: statistics over runs
 [[nodiscard]] Command compare_command();      ///< `stillpoint compare`: regression gate
 [[nodiscard]] Command profile_command();      ///< `stillpoint profile`: profile one run

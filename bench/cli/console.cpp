@@ -13,6 +13,9 @@
 namespace stillpoint::bench {
 namespace {
 
+constexpr std::chrono::milliseconds kRedrawInterval{100};
+constexpr const char* kClearLine = "\r\033[K";
+
 // A global, as a signal handler has no other state. The only one of the program.
 volatile std::sig_atomic_t g_interrupted = 0;
 
@@ -49,24 +52,6 @@ void wait_for_interrupt() {
   sigwait(&signals, &signal);
 }
 
-namespace {
-constexpr std::chrono::milliseconds kRedrawInterval{100};
-constexpr const char* kClearLine = "\r\033[K";
-}  // namespace
-
-std::string duration_text(double seconds) {
-  const auto whole_seconds = std::llround(seconds);
-  if (whole_seconds < 60) return fmt::format("{} s", whole_seconds);
-  const auto minutes = std::llround(seconds / 60.0);
-  if (minutes < 60) return fmt::format("{} min", minutes);
-  return fmt::format("{} h {} min", minutes / 60, minutes % 60);
-}
-
-std::string rate_text(std::size_t runs, double seconds) {
-  return fmt::format("{} runs in {}, {:.3g} runs per minute", runs, duration_text(seconds),
-                     60.0 * static_cast<double>(runs) / std::max(seconds, 1e-3));
-}
-
 ProgressLine::ProgressLine(std::string label, std::size_t total, std::string unit)
     : label_(std::move(label)),
       total_(total),
@@ -96,6 +81,19 @@ void ProgressLine::update(std::size_t done) {
   if (now - drawn_ < kRedrawInterval) return;
   drawn_ = now;
   draw();
+}
+
+std::string duration_text(double seconds) {
+  const auto whole_seconds = std::llround(seconds);
+  if (whole_seconds < 60) return fmt::format("{} s", whole_seconds);
+  const auto minutes = std::llround(seconds / 60.0);
+  if (minutes < 60) return fmt::format("{} min", minutes);
+  return fmt::format("{} h {} min", minutes / 60, minutes % 60);
+}
+
+std::string rate_text(std::size_t runs, double seconds) {
+  return fmt::format("{} runs in {}, {:.3g} runs per minute", runs, duration_text(seconds),
+                     60.0 * static_cast<double>(runs) / std::max(seconds, 1e-3));
 }
 
 }  // namespace stillpoint::bench

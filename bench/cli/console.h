@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Handling of SIGINT and SIGTERM: the first signal requests a stop, the second one terminates the process.
-///
-/// Progress line on stderr with rate and estimated remaining time; no output if stderr is not a terminal.
+/// What commands that run long share on a terminal: a progress line, and SIGINT and SIGTERM, of which the
+/// first requests a stop and the second one terminates the process.
 #pragma once
 
 #include <chrono>
@@ -22,6 +21,7 @@ void block_interrupts();
 /// Waits for SIGINT or SIGTERM, which must be blocked (`block_interrupts`).
 void wait_for_interrupt();
 
+/// Progress line on stderr with rate and estimated remaining time; no output if stderr is not a terminal.
 class ProgressLine {
  public:
   /// @param unit of the counts, e.g. "frames"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Benchmarks of the marginalization of one frame of a full inertial window.
-//
-/// Benchmarks of one state optimization: eight iterations over a full inertial window with 150 landmarks, by
-/// Ceres and by the Schur solver.
+/// Benchmarks of the back end with a full inertial window: the marginalization of one frame, and one state
+/// optimization of eight iterations with 150 landmarks, by Ceres and by the Schur solver.
 #include <benchmark/benchmark.h>
 
 #include "core/backend/sliding_window.h"
@@ -11,6 +9,9 @@
 
 namespace stillpoint {
 namespace {
+
+constexpr auto kCeres = static_cast<std::int64_t>(WindowSolverKind::kCeres);
+constexpr auto kSchur = static_cast<std::int64_t>(WindowSolverKind::kSchur);
 
 /// @param state range: solver
 void marginalize_oldest_frame(benchmark::State& state) {
@@ -26,8 +27,8 @@ void marginalize_oldest_frame(benchmark::State& state) {
 }
 BENCHMARK(marginalize_oldest_frame)
     ->ArgName("schur")
-    ->Arg(static_cast<std::int64_t>(WindowSolverKind::kCeres))
-    ->Arg(static_cast<std::int64_t>(WindowSolverKind::kSchur))
+    ->Arg(kCeres)
+    ->Arg(kSchur)
     ->Unit(benchmark::kMillisecond);
 
 void marginalize_second_newest_frame(benchmark::State& state) {
@@ -45,9 +46,6 @@ void marginalize_second_newest_frame(benchmark::State& state) {
   }
 }
 BENCHMARK(marginalize_second_newest_frame)->Unit(benchmark::kMillisecond);
-
-}  // namespace
-namespace {
 
 void solve(benchmark::State& state, const BackendConfig& config) {
   const Window initial_window = simulated_window();
@@ -77,8 +75,6 @@ void solve_with_fixed_depth(benchmark::State& state) {
   solve(state, config);
 }
 
-constexpr auto kCeres = static_cast<std::int64_t>(WindowSolverKind::kCeres);
-constexpr auto kSchur = static_cast<std::int64_t>(WindowSolverKind::kSchur);
 BENCHMARK(solve_with_weighted_depth)
     ->ArgName("schur")
     ->Arg(kCeres)

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Synthetic images with natural image statistics, for benchmarks of the front end.
-/// Benchmarks of detecting 130 features in an image of 848x480 px: grid FAST versus Shi-Tomasi.
-//
-/// Benchmarks of KLT at 848x480 and of the whole tracking thread with 130 features; "items" are points or
-/// frames.
-//
-/// Benchmarks of the patch tracker versus cv::calcOpticalFlowPyrLK with the same 150 points and initial
-/// guesses, without building the pyramids. Reports the median error and the number of correct matches.
+/// Benchmarks of the front end in synthetic images of 848x480 px: detection of 130 features by grid FAST and
+/// Shi-Tomasi; KLT, and the whole tracking thread with 130 features ("items" are points or frames); and the
+/// patch tracker versus cv::calcOpticalFlowPyrLK with the same 150 points and initial guesses, without
+/// building the pyramids, for which the median error and the number of correct matches are reported.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -23,14 +19,15 @@
 #include "core/frontend/patch/patch_tracker.h"
 
 namespace stillpoint {
+namespace {
 
 /// Image size of OpenLORIS, as used in the paper.
-inline const cv::Size kImageSize(848, 480);
+const cv::Size kImageSize(848, 480);
 
 /// "Dead leaves" image (overlapping rectangles with a power-law size distribution, which reproduces the
 /// statistics of edges, flat areas and corners in natural images; Lee, Mumford and Huang 2001) with sensor
 /// noise. `shift_px` moves the view to the right.
-inline cv::Mat dead_leaves_image(int shift_px = 0) {
+cv::Mat dead_leaves_image(int shift_px = 0) {
   constexpr int kMaxShiftPx = 64;
   constexpr int kLeaves = 3000;
   cv::Mat leaves(kImageSize.height, kImageSize.width + kMaxShiftPx, CV_8UC1, cv::Scalar(128));
@@ -48,8 +45,6 @@ inline cv::Mat dead_leaves_image(int shift_px = 0) {
   cv::add(image, noise, image, cv::noArray(), CV_8UC1);
   return image;
 }
-
-namespace {
 
 constexpr int kMinDistancePx = 30;
 
@@ -109,9 +104,6 @@ BENCHMARK(shi_tomasi)
     ->Arg(90)
     ->UseRealTime()
     ->Unit(benchmark::kMicrosecond);
-
-}  // namespace
-namespace {
 
 constexpr int kWindowPx = 21;
 constexpr int kShiftPx = 4;
@@ -188,9 +180,6 @@ BENCHMARK(track_frame)
     ->Arg(static_cast<int>(OutlierModel::kEpipolar))
     ->Arg(static_cast<int>(OutlierModel::kRigid))
     ->Unit(benchmark::kMicrosecond);
-
-}  // namespace
-namespace {
 
 constexpr double kMismatch_px = 2.0;  // matches farther from the true position are wrong
 

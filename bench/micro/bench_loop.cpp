@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Benchmark of place recognition: one query among 5,000 places of 300 features. A third of the features are
-/// noisy copies of 1,000 patterns, as in repeated textures.
-//
-/// Benchmark of the pose graph: 10,000 keyframes with 500 loops, of which a tenth is false.
+/// Benchmarks of loop closure: place recognition, one query among 5,000 places of 300 features, a third of
+/// which are noisy copies of 1,000 patterns, as in repeated textures; and the pose graph of 10,000 keyframes
+/// with 500 loops, of which a tenth is false.
 #include <random>
 
 #include <benchmark/benchmark.h>
@@ -52,9 +51,6 @@ void query_place(benchmark::State& state) {
 }
 
 BENCHMARK(query_place)->Arg(500)->Arg(5000)->Unit(benchmark::kMillisecond);
-
-}  // namespace
-namespace {
 
 /// @param state ranges: keyframes, loops
 void optimize_graph(benchmark::State& state) {

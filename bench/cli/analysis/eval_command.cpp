@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Command line arguments of `eval`.
+// `stillpoint eval`: evaluates trajectory files; `stillpoint eval openloris`: result files of a benchmark by
+// scene.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -27,6 +28,12 @@
 #include "reports/text/evaluation_report.h"
 
 namespace stillpoint::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kPlotPixelsPerUnit = 1.5;  // of PNG files
+constexpr const char* kFigureExtensions[] = {".svg", ".png"};
 
 struct EvalArguments {
   std::string ground_truth;
@@ -53,11 +60,6 @@ struct EvalArguments {
   bool force = false;
 };
 
-[[nodiscard]] eval::ProtocolOptions protocol_options(const EvalArguments& arguments);
-
-/// @param a receives the values when the command line is parsed
-[[nodiscard]] std::vector<Option> options_of(EvalArguments& a);
-
 eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   eval::ProtocolOptions options;
   if (!arguments.alignment.empty())
@@ -69,50 +71,6 @@ eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   options.offset_s = arguments.offset_s;
   return options;
 }
-
-std::vector<Option> options_of(EvalArguments& a) {
-  return {
-      {"GT",
-       "Ground-truth trajectory: a file, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD for a chain of "
-       "transforms)",
-       &a.ground_truth},
-      {"EST", "Estimated trajectories of the same body frame", &a.estimates},
-      {"--protocol",
-       "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
-       "repeated",
-       &a.protocols,
-       {},
-       "--recipe"},
-      {"--align", "Override the alignment of the protocol: " + enum_list<eval::Alignment>(), &a.alignment},
-      {"--align-first", "Align with the first N matches only", &a.align_first, {1, 1e9}},
-      {"--level", "File with leveling_rotation_xyzw, for alignment yaw [result.json beside EST]", &a.level},
-      {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta, {1e-6, 1e6}},
-      {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
-      {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s, {-1e9, 1e9}},
-      {"--find-offset", "Estimate the time offset and print it, without applying it", &a.find_offset},
-      {"--max-difference",
-       "Override the maximum time difference of matched poses of the protocol [s]",
-       &a.max_difference_s,
-       {1e-9, 1e6}},
-      {"--format", "Trajectory format: " + enum_list<eval::TrajectoryFormat>() + " [detected]", &a.format},
-      {"--times", "File of time stamps of a KITTI trajectory", &a.times},
-      {"--seq", "Sequence number in an OpenLORIS file", &a.sequence, {0, 1e9}},
-      {"--explain", "Print a description of each protocol", &a.explain},
-      {"--json", "Print JSON with full precision", &a.json},
-      {"--csv", "Print CSV", &a.csv},
-      {"--markdown", "Print Markdown", &a.markdown},
-      {"--map", "Write a plan with scale and north arrow; GT may be NMEA sentences of a GNSS receiver",
-       &a.map},
-      {"--plot", "Write a plot of trajectories and errors (.svg, .pdf or .png)", &a.plot},
-      {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
-      {"--force", "Replace existing files of --plot and --per-pose", &a.force}};
-}
-
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr double kPlotPixelsPerUnit = 1.5;  // of PNG files
 
 /// Reads a trajectory; its skipped and sorted rows are logged.
 eval::LoadedTrajectory load(const EvalArguments& arguments, const std::string& path) {
@@ -300,22 +258,44 @@ int evaluate_files(const EvalArguments& arguments) {
   return kExitOk;
 }
 
-}  // namespace
-
-Command eval_command() {
-  const auto arguments = std::make_shared<EvalArguments>();
+/// @param a receives the values when the command line is parsed
+std::vector<Option> options_of(EvalArguments& a) {
   return {
-      .name = "eval",
-      .summary = "Evaluate trajectories against ground truth with named protocols",
-      .example = "eval groundtruth.txt trajectory.tum --protocol compat:tum --protocol strict:se3 --explain",
-      .options = options_of(*arguments),
-      .action = [arguments] { return evaluate_files(*arguments); },
-      .subcommands = {eval_openloris_command()}};
+      {"GT",
+       "Ground-truth trajectory: a file, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD for a chain of "
+       "transforms)",
+       &a.ground_truth},
+      {"EST", "Estimated trajectories of the same body frame", &a.estimates},
+      {"--protocol",
+       "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
+       "repeated",
+       &a.protocols,
+       {},
+       "--recipe"},
+      {"--align", "Override the alignment of the protocol: " + enum_list<eval::Alignment>(), &a.alignment},
+      {"--align-first", "Align with the first N matches only", &a.align_first, {1, 1e9}},
+      {"--level", "File with leveling_rotation_xyzw, for alignment yaw [result.json beside EST]", &a.level},
+      {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta, {1e-6, 1e6}},
+      {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
+      {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s, {-1e9, 1e9}},
+      {"--find-offset", "Estimate the time offset and print it, without applying it", &a.find_offset},
+      {"--max-difference",
+       "Override the maximum time difference of matched poses of the protocol [s]",
+       &a.max_difference_s,
+       {1e-9, 1e6}},
+      {"--format", "Trajectory format: " + enum_list<eval::TrajectoryFormat>() + " [detected]", &a.format},
+      {"--times", "File of time stamps of a KITTI trajectory", &a.times},
+      {"--seq", "Sequence number in an OpenLORIS file", &a.sequence, {0, 1e9}},
+      {"--explain", "Print a description of each protocol", &a.explain},
+      {"--json", "Print JSON with full precision", &a.json},
+      {"--csv", "Print CSV", &a.csv},
+      {"--markdown", "Print Markdown", &a.markdown},
+      {"--map", "Write a plan with scale and north arrow; GT may be NMEA sentences of a GNSS receiver",
+       &a.map},
+      {"--plot", "Write a plot of trajectories and errors (.svg, .pdf or .png)", &a.plot},
+      {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
+      {"--force", "Replace existing files of --plot and --per-pose", &a.force}};
 }
-
-namespace {
-
-constexpr const char* kFigureExtensions[] = {".svg", ".png"};
 
 struct OpenlorisArguments {
   std::string results;
@@ -361,8 +341,6 @@ int evaluate_folder(const OpenlorisArguments& arguments) {
   return kExitOk;
 }
 
-}  // namespace
-
 Command eval_openloris_command() {
   const auto arguments = std::make_shared<OpenlorisArguments>();
   OpenlorisArguments& a = *arguments;
@@ -382,6 +360,19 @@ Command eval_openloris_command() {
                   {"--csv", "Print CSV", &a.csv},
                   {"--markdown", "Print Markdown", &a.markdown}},
       .action = [arguments] { return evaluate_folder(*arguments); }};
+}
+
+}  // namespace
+
+Command eval_command() {
+  const auto arguments = std::make_shared<EvalArguments>();
+  return {
+      .name = "eval",
+      .summary = "Evaluate trajectories against ground truth with named protocols",
+      .example = "eval groundtruth.txt trajectory.tum --protocol compat:tum --protocol strict:se3 --explain",
+      .options = options_of(*arguments),
+      .action = [arguments] { return evaluate_files(*arguments); },
+      .subcommands = {eval_openloris_command()}};
 }
 
 }  // namespace stillpoint::bench

@@ -66,8 +66,6 @@ Command report_command() {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 struct DashboardArguments {
   std::string store;
   std::string out;

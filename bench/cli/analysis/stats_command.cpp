@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stillpoint stats ablation`.
-//
-// `stillpoint stats repeat`.
-//
-// `stillpoint stats faults`.
+// `stillpoint stats`: ablation, repeat, faults, summary and sweep.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -21,31 +17,6 @@
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
-
-/// Prints the paired differences of each variant from its base: `arguments.base`, or else the `ablation_base`
-/// of each plan.
-/// @return exit code
-/// @throws InputError if neither is given; the message lists the variants
-[[nodiscard]] int stats_ablation(const StatsArguments& arguments);
-
-/// Prints for each repeated run whether its repetitions are bit-equal, else the first frame and stage that
-/// differ. With another store (`StatsArguments::other`): for each run that both contain, the first frame in
-/// which each stage differs, the largest distance of the poses, and both ATE.
-/// @return exit code: findings if a run differs
-/// @throws InputError if there is nothing to compare
-[[nodiscard]] int stats_repeat(const StatsArguments& arguments);
-
-/// Prints a matrix of the faults of a plan and the variants: whether each run did as the plan expects, its
-/// error after recovery and its false confidence; below it one row of totals per variant: false confidence
-/// and missed availability of all frames, runs in which a wrong pose was called located for more than 0.5 s,
-/// and the claimed standard deviation of undisturbed runs.
-///
-/// A run survived if it recovered in the same world with an error of at most three times the ATE of the
-/// undisturbed run, or 2 cm, and a false confidence of at most 0.5 %. Else it lost honestly if its false
-/// confidence is that small, and is wrong if not.
-/// @return exit code: findings if a run of the first variant did not do as expected
-[[nodiscard]] int stats_faults(const StatsArguments& arguments);
-
 namespace {
 
 std::vector<std::string> variants_of(const std::vector<StoredRun>& runs) {
@@ -158,8 +129,10 @@ AblationTable table_of(const std::vector<Ablation>& ablations, const std::string
   throw InputError("--base", fmt::format("{}; existing variants: {}", problem, fmt::join(variants, ", ")));
 }
 
-}  // namespace
-
+/// Prints the paired differences of each variant from its base: `arguments.base`, or else the `ablation_base`
+/// of each plan.
+/// @return exit code
+/// @throws InputError if neither is given; the message lists the variants
 int stats_ablation(const StatsArguments& arguments) {
   const Store store(arguments.store);
   const RunSelection selection = chosen_runs(store, arguments);
@@ -189,8 +162,6 @@ int stats_ablation(const StatsArguments& arguments) {
       groups, notes, arguments);
   return kExitOk;
 }
-
-namespace {
 
 int compare_repetitions(const Store& store, const RunSelection& selection, const StatsArguments& arguments) {
   std::vector<GroupRows> groups;
@@ -263,16 +234,17 @@ int compare_stores(const Store& store, const RunSelection& selection, const Stat
   return all_equal ? kExitOk : kExitFindings;
 }
 
-}  // namespace
-
+/// Prints for each repeated run whether its repetitions are bit-equal, else the first frame and stage that
+/// differ. With another store (`StatsArguments::other`): for each run that both contain, the first frame in
+/// which each stage differs, the largest distance of the poses, and both ATE.
+/// @return exit code: findings if a run differs
+/// @throws InputError if there is nothing to compare
 int stats_repeat(const StatsArguments& arguments) {
   const Store store(arguments.store);
   const RunSelection selection = chosen_runs(store, arguments);
   return arguments.other.empty() ? compare_repetitions(store, selection, arguments)
                                  : compare_stores(store, selection, arguments);
 }
-
-namespace {
 
 constexpr double kMaxErrorRatio = 3.0;
 constexpr double kMinError_m = 0.02;
@@ -391,8 +363,15 @@ class FaultMatrix {
   report::TableRows rows_;
 };
 
-}  // namespace
-
+/// Prints a matrix of the faults of a plan and the variants: whether each run did as the plan expects, its
+/// error after recovery and its false confidence; below it one row of totals per variant: false confidence
+/// and missed availability of all frames, runs in which a wrong pose was called located for more than 0.5 s,
+/// and the claimed standard deviation of undisturbed runs.
+///
+/// A run survived if it recovered in the same world with an error of at most three times the ATE of the
+/// undisturbed run, or 2 cm, and a false confidence of at most 0.5 %. Else it lost honestly if its false
+/// confidence is that small, and is wrong if not.
+/// @return exit code: findings if a run of the first variant did not do as expected
 int stats_faults(const StatsArguments& arguments) {
   StatsArguments chosen = arguments;
   if (chosen.plan.empty()) chosen.plan = "faults";
@@ -422,8 +401,6 @@ int stats_faults(const StatsArguments& arguments) {
   remarks << '\n' << report::format_table(totals, report::TableStyle::kMarkdown);
   return all_expected ? kExitOk : kExitFindings;
 }
-
-namespace {
 
 constexpr const char* kMedianTest = "exact, by order statistics";
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Common part of the subcommands of `store`.
-#include <algorithm>
+// `stillpoint store`: inspects, checks and merges stores of runs, and accepts changes of their metrics.
 #include <iostream>
 #include <memory>
 #include <ranges>
@@ -23,18 +22,19 @@
 #include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
+namespace {
+
+constexpr std::size_t kListedCandidates = 5;
 
 /// Adds the option `--store` and the action to a command.
 /// @param arguments target of the options; must have a member `store`
 template <class Arguments>
-[[nodiscard]] Command store_subcommand(Command command, const std::shared_ptr<Arguments>& arguments,
-                                       int (*action)(const Arguments&)) {
+Command store_subcommand(Command command, const std::shared_ptr<Arguments>& arguments,
+                         int (*action)(const Arguments&)) {
   command.options.push_back({"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store});
   command.action = [arguments, action] { return action(*arguments); };
   return command;
 }
-
-namespace {
 
 struct AcceptArguments {
   std::string store = "build/bench/store.sqlite";
@@ -102,8 +102,7 @@ int list(const AcceptArguments& arguments) {
   return kExitOk;
 }
 
-}  // namespace
-
+/// `accept`, `withdraw` and `accepted`.
 std::vector<Command> acceptance_commands() {
   const auto arguments = std::make_shared<AcceptArguments>();
   Acceptance& subject = arguments->subject;
@@ -130,10 +129,6 @@ std::vector<Command> acceptance_commands() {
                             .example = "store accepted"},
                            arguments, list)};
 }
-
-namespace {
-
-constexpr std::size_t kListedCandidates = 5;
 
 struct StoreArguments {
   std::string store = "build/bench/store.sqlite";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Subcommands of `stillpoint data` on the catalogue of public datasets: catalogue, get, verify.
 #include <fnmatch.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@ namespace {
 
 using datasets::CatalogueArchive;
 using datasets::CatalogueDataset;
+using datasets::CatalogueEntry;
 using datasets::CatalogueSequence;
 
 std::size_t available_sequences(const CatalogueDataset& dataset) {
@@ -132,27 +134,27 @@ struct GetArguments {
   double backoff_s = 1.0;
 };
 
-std::vector<datasets::CatalogueEntry> selected_entries(
-    const GetArguments& arguments, const std::vector<datasets::CatalogueDataset>& catalogues) {
+std::vector<CatalogueEntry> selected_entries(const GetArguments& arguments,
+                                             const std::vector<CatalogueDataset>& catalogues) {
   if (!arguments.plan.empty()) return plan_entries(arguments.plan, catalogues);
   if (arguments.sequences.empty())
     throw InputError("data get", "requires the name of a sequence, or --for PLAN");
-  std::vector<datasets::CatalogueEntry> entries;
+  std::vector<CatalogueEntry> entries;
   for (const std::string& pattern : arguments.sequences) {
-    const std::vector<datasets::CatalogueEntry> found = datasets::matching_entries(catalogues, pattern);
+    const std::vector<CatalogueEntry> found = datasets::matching_entries(catalogues, pattern);
     if (found.empty()) {
       std::vector<std::string> names;
-      for (const datasets::CatalogueDataset& dataset : catalogues) {
-        for (const datasets::CatalogueSequence& sequence : dataset.sequences)
+      for (const CatalogueDataset& dataset : catalogues) {
+        for (const CatalogueSequence& sequence : dataset.sequences)
           names.push_back(datasets::catalogue_name(dataset, sequence));
       }
       throw InputError("sequence \"" + pattern + "\"",
                        "is not in the catalogue" + suggestion(pattern, names) +
                            "; `stillpoint data catalogue` lists the datasets");
     }
-    for (const datasets::CatalogueEntry& entry : found) {
+    for (const CatalogueEntry& entry : found) {
       const bool is_new = std::ranges::none_of(
-          entries, [&](const datasets::CatalogueEntry& known) { return known.sequence == entry.sequence; });
+          entries, [&](const CatalogueEntry& known) { return known.sequence == entry.sequence; });
       if (is_new) entries.push_back(entry);
     }
   }
@@ -161,8 +163,8 @@ std::vector<datasets::CatalogueEntry> selected_entries(
 
 int get(const GetArguments& arguments) {
   install_interrupt_handlers();
-  const std::vector<datasets::CatalogueDataset> catalogues = load_catalogues();
-  const std::vector<datasets::CatalogueEntry> entries = selected_entries(arguments, catalogues);
+  const std::vector<CatalogueDataset> catalogues = load_catalogues();
+  const std::vector<CatalogueEntry> entries = selected_entries(arguments, catalogues);
   const FetchOptions options{.root = arguments.to,
                              .mirror = arguments.mirror,
                              .keep_archives = arguments.keep_archives,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Expected duration of a plan as text.
+// `stillpoint bench` executes a plan, or estimates its duration; `stillpoint plan` lists plans and their
+// runs.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -29,26 +30,21 @@
 #include "reports/tables/result_tables.h"
 
 namespace stillpoint::bench {
+namespace {
 
+namespace fs = std::filesystem;
+
+constexpr const char* kProfileFile = "profile.json";
+
+/// Plans are multiplied until they have this many runs per simulated worker.
+constexpr std::size_t kMaxRunsPerWorker = 64;
+
+/// What executes the runs of an estimate.
 struct EstimatedWorkers {
   int jobs = 1;       ///< concurrent accuracy runs on this machine
   int tasks = 0;      ///< of an executor; 0 = none
   int simulated = 0;  ///< workers of a simulation; 0 = none
 };
-
-/// Expected wall time of the runs that are not in the store, and what the expectation is based on. Rendering
-/// of sequences is not included.
-/// @param store need not exist
-/// @param workers `tasks` > 0 adds the expected wall times with 1, 2, 4, ... up to that many tasks;
-/// `simulated` > 0 adds a simulation of the plan and of its multiples with as many tasks as workers, or
-/// `tasks`
-[[nodiscard]] std::string estimate_text(const PlanMatrix& matrix, const std::filesystem::path& store,
-                                        const EstimatedWorkers& workers);
-
-namespace {
-
-/// Plans are multiplied until they have this many runs per simulated worker.
-constexpr std::size_t kMaxRunsPerWorker = 64;
 
 /// How many expected durations have each source.
 std::string source_text(const std::vector<RunCost>& costs) {
@@ -108,12 +104,14 @@ std::vector<SimulatedRun> simulated_runs(const PlanMatrix& matrix, const std::ve
   return runs;
 }
 
-}  // namespace
-
-std::string estimate_text(const PlanMatrix& matrix, const std::filesystem::path& store,
-                          const EstimatedWorkers& workers) {
-  const std::vector<StoredRun> history =
-      std::filesystem::exists(store) ? Store(store).runs() : std::vector<StoredRun>{};
+/// Expected wall time of the runs that are not in the store, and what the expectation is based on. Rendering
+/// of sequences is not included.
+/// @param store need not exist
+/// @param workers `tasks` > 0 adds the expected wall times with 1, 2, 4, ... up to that many tasks;
+/// `simulated` > 0 adds a simulation of the plan and of its multiples with as many tasks as workers, or
+/// `tasks`
+std::string estimate_text(const PlanMatrix& matrix, const fs::path& store, const EstimatedWorkers& workers) {
+  const std::vector<StoredRun> history = fs::exists(store) ? Store(store).runs() : std::vector<StoredRun>{};
   std::set<std::string> stored;
   for (const StoredRun& run : history) stored.insert(run.key);
   PlanMatrix pending = matrix;
@@ -134,12 +132,6 @@ std::string estimate_text(const PlanMatrix& matrix, const std::filesystem::path&
                      duration_text(scheduled_seconds(seconds, jobs))) +
          source_text(costs) + scaling;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kProfileFile = "profile.json";
 
 struct BenchArguments {
   std::string plan;

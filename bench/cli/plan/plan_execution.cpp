@@ -6,7 +6,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
 #include "bench/executors/remote_executors.h"
 #include "bench/process/child_process.h"

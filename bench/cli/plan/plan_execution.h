@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Options of `bench` that select where the runs of a plan are executed.
-///
-/// Console progress output of plans.
+/// Execution of a plan by a command: where its runs are executed, and progress output on the console.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +14,7 @@ namespace stillpoint::bench {
 /// SIGINT and SIGTERM.
 [[nodiscard]] PlanHooks plan_progress();
 
+/// Options of `bench` that select where the runs of a plan are executed.
 struct ExecutionArguments {
   std::string executor = "local";
   std::string hosts;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scores the OpenLORIS runs of a plan by scene: the sequences of a scene are joined as in the tools of the
-// dataset (Shi et al., ICRA 2020), with one alignment and rates weighted by time.
+// `stillpoint reproduce`: executes the plans of the paper's tables and of the datasets, and writes their
+// tables.
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -40,14 +40,6 @@
 #include "reports/text/evaluation_report.h"
 
 namespace stillpoint::bench {
-
-/// Writes the trajectories and the ground truth in the format of the tools to OUT/openloris, and the figure
-/// of the paper to OUT/openloris_figure.svg.
-/// @return the table of scores; empty without a completed run
-/// @throws InputError if a file cannot be read or written
-[[nodiscard]] std::string openloris_scene_table(const PlanMatrix& matrix, const Store& store,
-                                                const std::filesystem::path& out);
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,8 +105,12 @@ std::size_t write_results(const PlanMatrix& matrix, const Store& store, const fs
   return count;
 }
 
-}  // namespace
-
+/// Scores the OpenLORIS runs of a plan by scene: the sequences of a scene are joined as in the tools of the
+/// dataset (Shi et al., ICRA 2020), with one alignment and rates weighted by time.
+/// Writes the trajectories and the ground truth in the format of the tools to OUT/openloris, and the figure
+/// of the paper to OUT/openloris_figure.svg.
+/// @return the table of scores; empty without a completed run
+/// @throws InputError if a file cannot be read or written
 std::string openloris_scene_table(const PlanMatrix& matrix, const Store& store, const fs::path& out) {
   const fs::path folder = out / "openloris";
   fs::remove_all(folder / "results");
@@ -127,10 +123,6 @@ std::string openloris_scene_table(const PlanMatrix& matrix, const Store& store, 
                         {.force = true});
   return report::openloris_table(evaluation.benchmark, report::TableStyle::kMarkdown);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 struct ReproduceArguments {
   std::string target;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stillpoint profile --device`: accuracy and latency on a simulated target device.
-//
-// `stillpoint profile --instructions`: instruction counts of callgrind.
+// `stillpoint profile`: times, energy and allocations of one run; with --device accuracy and latency on a
+// simulated target device, with --instructions instruction counts of callgrind.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -41,33 +40,18 @@
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::bench {
+namespace {
 
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A run on a simulated device.
 struct DeviceRequest {
   std::string device;  ///< embedded name or TOML file
   RunSpec spec;        ///< `device` is not set
   double budget_ms = 0.0;
-  std::filesystem::path folder;  ///< output: device.json and trajectory.tum
+  fs::path folder;  ///< output: device.json and trajectory.tum
 };
-
-/// Simulates the device and prints the result. @return exit code
-/// @throws InputError if the device does not exist; rethrows errors of the run
-int profile_on_device(const datasets::SensorStream& stream, DeviceRequest request);
-
-struct InstructionRequest {
-  std::filesystem::path sequence;  ///< folder
-  std::string name;                ///< name of the sequence
-  ConfigRequest config;
-  int frames = 0;                ///< number of frames, from the start
-  std::filesystem::path folder;  ///< output: instructions.json, callgrind.out and the files of the run
-};
-
-/// Counts instructions and prints them. @return exit code
-/// @throws InputError if valgrind is not installed or the run fails
-int profile_instructions(const InstructionRequest& request);
-
-namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Dropped frames and latency on the simulated device.
 struct DeviceTiming {
@@ -131,8 +115,8 @@ void print(const SimulatedRun& run) {
             << score_text(*measurements_of(result).scored);
 }
 
-}  // namespace
-
+/// Simulates the device and prints the result. @return exit code
+/// @throws InputError if the device does not exist; rethrows errors of the run
 int profile_on_device(const datasets::SensorStream& stream, DeviceRequest request) {
   SimulatedRun run{.device = load_device(request.device), .budget_ms = request.budget_ms};
   request.spec.device = device_model(run.device);
@@ -154,9 +138,15 @@ int profile_on_device(const datasets::SensorStream& stream, DeviceRequest reques
   return run.result.outcome == Outcome::kOk ? kExitOk : kExitFindings;
 }
 
-namespace {
+/// A run under callgrind.
+struct InstructionRequest {
+  fs::path sequence;  ///< folder
+  std::string name;   ///< name of the sequence
+  ConfigRequest config;
+  int frames = 0;   ///< number of frames, from the start
+  fs::path folder;  ///< output: instructions.json, callgrind.out and the files of the run
+};
 
-namespace fs = std::filesystem;
 using FunctionCount = std::pair<std::string, std::int64_t>;
 
 constexpr std::size_t kListedFunctions = 15;
@@ -216,8 +206,8 @@ Json json_of(const InstructionRequest& request, const std::vector<StageInstructi
   return json;
 }
 
-}  // namespace
-
+/// Counts instructions and prints them. @return exit code
+/// @throws InputError if valgrind is not installed or the run fails
 int profile_instructions(const InstructionRequest& request) {
   const ProcessSpec spec = run_of(request);
   spdlog::info("executing {} frames under callgrind, about 50 times slower than normal", request.frames);
@@ -236,10 +226,6 @@ int profile_instructions(const InstructionRequest& request) {
   std::cout << fmt::format("{} (open callgrind.out in KCachegrind)\n", request.folder.string());
   return kExitOk;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 /// Command line arguments of `profile`.
 struct ProfileArguments {

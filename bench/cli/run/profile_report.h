@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Output of `stillpoint profile`: JSON file and console text.
-///
-/// Drift of times and temperature while one run is repeated: `stillpoint profile --duration`.
+/// Output of `stillpoint profile`: JSON file and console text, with --duration also the drift of times and
+/// temperature while the run is repeated.
 #pragma once
 
 #include <map>

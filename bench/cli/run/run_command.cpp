@@ -38,55 +38,23 @@
 #include "datasets/sensor_stream.h"
 
 namespace stillpoint::bench {
+namespace {
 
+namespace fs = std::filesystem;
+
+/// The options --map, --save-map and --final-ba.
 struct MapOptions {
   std::string load;       ///< map of an earlier run; empty = none
   std::string save;       ///< file for the map of this run; empty = none
   bool final_ba = false;  ///< global bundle adjustment after the last frame
 };
 
+OutputRules rules_of(const MapOptions& options) { return {.inputs = {options.load}, .beginning = kMapMagic}; }
+
 /// Checks the options before the work begins.
 /// @param runs number of runs of the command
 /// @throws InputError without loop closure, for several runs with --save-map, and if the output file must not
 /// be replaced
-void require_map_options(const MapOptions& options, const OdometryConfig& config, std::size_t runs);
-
-/// The map of --map, or null. @throws InputError as `read_map`
-[[nodiscard]] std::shared_ptr<const KeyframeMap> load_map(const MapOptions& options);
-
-/// Writes the map of --save-map, if any. With --map it contains the keyframes of both runs.
-/// @throws InputError if the run was not located in the map of --map
-void save_map(const MapOptions& options, const LoopReport& report);
-
-/// `find_sequence` with a progress line while a preset is rendered.
-/// @return null if interrupted
-[[nodiscard]] std::unique_ptr<datasets::SensorStream> open_with_progress(
-    const std::string& name, const datasets::OpenOptions& options);
-
-/// How a sequence is played.
-struct Playback {
-  double start_s = 0.0;  ///< see datasets/sensor_stream.h
-  int passes = 1;        ///< see datasets/sensor_stream.h
-  std::vector<datasets::SensorFault> faults;
-};
-
-/// The stream from the start on, in passes, with faults relative to the start.
-/// @param stream with at least one frame
-/// @throws InputError as `start_at`, `ping_pong_playback` and `with_faults`
-[[nodiscard]] std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
-                                                             const Playback& playback);
-
-/// Options of the frame cache whose warnings are logged.
-/// @param max_frames 0 = all
-/// @return nullopt unless `enabled`, or as `frame_cache_options`
-[[nodiscard]] std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames);
-
-namespace {
-
-OutputRules rules_of(const MapOptions& options) { return {.inputs = {options.load}, .beginning = kMapMagic}; }
-
-}  // namespace
-
 void require_map_options(const MapOptions& options, const OdometryConfig& config, std::size_t runs) {
   if (options.load.empty() && options.save.empty() && !options.final_ba) return;
   if (!config.loop.enabled) {
@@ -100,10 +68,13 @@ void require_map_options(const MapOptions& options, const OdometryConfig& config
   require_safe_output(options.save, rules_of(options));
 }
 
+/// The map of --map, or null. @throws InputError as `read_map`
 std::shared_ptr<const KeyframeMap> load_map(const MapOptions& options) {
   return options.load.empty() ? nullptr : std::make_shared<KeyframeMap>(read_map(options.load));
 }
 
+/// Writes the map of --save-map, if any. With --map it contains the keyframes of both runs.
+/// @throws InputError if the run was not located in the map of --map
 void save_map(const MapOptions& options, const LoopReport& report) {
   if (options.save.empty()) return;
   if (!report.map) {
@@ -114,6 +85,8 @@ void save_map(const MapOptions& options, const LoopReport& report) {
   write_output(options.save, map_bytes(*report.map), rules_of(options));
 }
 
+/// `find_sequence` with a progress line while a preset is rendered.
+/// @return null if interrupted
 std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& name,
                                                            const datasets::OpenOptions& options) {
   std::unique_ptr<ProgressLine> progress;
@@ -127,6 +100,16 @@ std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& na
   return find_sequence(name, options, {.progress = on_rendered, .stop_requested = interrupt_requested});
 }
 
+/// How a sequence is played.
+struct Playback {
+  double start_s = 0.0;  ///< see datasets/sensor_stream.h
+  int passes = 1;        ///< see datasets/sensor_stream.h
+  std::vector<datasets::SensorFault> faults;
+};
+
+/// The stream from the start on, in passes, with faults relative to the start.
+/// @param stream with at least one frame
+/// @throws InputError as `start_at`, `ping_pong_playback` and `with_faults`
 std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
                                                const Playback& playback) {
   stream = datasets::start_at(std::move(stream), playback.start_s);
@@ -134,15 +117,14 @@ std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorS
   return datasets::with_faults(std::move(stream), playback.faults);
 }
 
+/// Options of the frame cache whose warnings are logged.
+/// @param max_frames 0 = all
+/// @return nullopt unless `enabled`, or as `frame_cache_options`
 std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames) {
   if (!enabled) return std::nullopt;
   return frame_cache_options(static_cast<std::size_t>(max_frames),
                              [](const std::string& text) { spdlog::warn("{}", text); });
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 struct RunArguments {
   std::string sequence, base = "stillpoint", mode = "sequential";

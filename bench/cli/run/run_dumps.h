@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Optional outputs of a run. None of their failures affects the run or its result.
-///
-/// Dynamic labels of all features with their reasons, as CSV.
+/// Optional outputs of a run: dynamic labels of all features, plots of its cost, annotated images and a
+/// video. None of their failures affects the run or its result.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +16,8 @@
 
 namespace stillpoint::bench {
 
-/// Rows of labels.csv, one per feature of each frame that entered the window.
+/// Dynamic labels with their reasons: rows of labels.csv, one per feature of each frame that entered the
+/// window.
 class LabelDump {
  public:
   void add(const FrameReport& report);
@@ -42,6 +42,7 @@ struct DumpRequest {
 /// Values of --dump. @throws InputError for a name that is not one of them
 void require_known_dumps(const std::vector<std::string>& names);
 
+/// The outputs of one run.
 class RunDumps {
  public:
   /// Creates the folders, so that unusable ones are reported before the run.
