@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <limits>
 #include <set>
-#include <vector>
 
 #include <fmt/format.h>
 

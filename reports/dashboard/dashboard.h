@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Dashboard of all metrics over commits as static files; a pure function of the store.
-///
-/// Page of one commit: its change points, and its metrics compared with the previous measurement.
 #pragma once
 
 #include <string>
@@ -13,11 +11,6 @@
 
 namespace stillpoint::report {
 
-/// A self-contained page without scripts.
-/// @param commit index into `history.commits`
-[[nodiscard]] std::string commit_html(const bench::CommitHistory& history,
-                                      const bench::HistoryChanges& changes, std::size_t commit);
-
 struct AnalyzedHistory {
   bench::CommitHistory history;
   bench::HistoryChanges changes;
@@ -26,6 +19,12 @@ struct AnalyzedHistory {
 /// Commit history of a store with its change points and drifts.
 /// @throws InputError if the store has no finished runs of Stillpoint
 [[nodiscard]] AnalyzedHistory analyze_history(const bench::Store& store);
+
+/// Page of one commit: its change points, and its metrics compared with the previous measurement.
+/// Self-contained, without scripts.
+/// @param commit index into `history.commits`
+[[nodiscard]] std::string commit_html(const bench::CommitHistory& history,
+                                      const bench::HistoryChanges& changes, std::size_t commit);
 
 /// index.html, regressions.md, regressions.json, and one page per commit in commits/.
 /// @throws InputError as `analyze_history`

@@ -216,8 +216,6 @@ std::string dashboard_data(const bench::CommitHistory& history, const bench::His
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Sort key: newly failing runs rank above any change of a metric.
 double magnitude(const bench::LevelShift& shift) {
   return shift.change ? std::abs(shift.change->median) : std::numeric_limits<double>::infinity();
@@ -235,7 +233,7 @@ Json subject_json(const bench::CommitHistory& history, const bench::HistorySerie
   return json;
 }
 
-Json shift_json(const bench::CommitHistory& history, const bench::LevelShift& shift) {
+Json regression_json(const bench::CommitHistory& history, const bench::LevelShift& shift) {
   const bench::HistorySeries& series = history.series[shift.series];
   Json json = subject_json(history, series);
   json["last_commit_before"] = clean_line(history.commits[shift.before].name);
@@ -330,7 +328,8 @@ std::string regressions_markdown(const bench::CommitHistory& history, const benc
 std::string regressions_json(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   Json json = {{"open", Json::array()}, {"drifting", Json::array()}};
   for (const ShiftGroup& group : grouped_shifts(history, changes, bench::ChangeState::kOpen)) {
-    for (const bench::LevelShift* shift : group.shifts) json["open"].push_back(shift_json(history, *shift));
+    for (const bench::LevelShift* shift : group.shifts)
+      json["open"].push_back(regression_json(history, *shift));
   }
   for (const bench::MetricDrift& drift : changes.drifts) {
     if (drift.worse) json["drifting"].push_back(drift_json(history, drift));

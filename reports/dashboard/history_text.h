@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Labels of commits, subjects and changes.
-///
-/// JSON data of the dashboard.
-///
-/// List of open regressions as Markdown and as JSON for CI.
+/// A history of metrics over commits as text: labels of commits, subjects and changes, JSON data of the
+/// dashboard, and the list of open regressions as Markdown and as JSON for CI.
 #pragma once
 
 #include <string>

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "reports/drawing/drawing.h"
 
 namespace stillpoint::report {
 namespace {
@@ -133,8 +131,6 @@ Drawing cost_plot(const CostTrend& trend) {
 
 namespace {
 
-constexpr double kLoopPlotHeight = 320.0;
-
 double megabytes(const MapKeyframe& keyframe) {
   return 1e-6 * static_cast<double>(keyframe.cost.memory_bytes);
 }
@@ -167,7 +163,7 @@ std::vector<Mark> texts(std::span<const MapKeyframe> keyframes, double highest_m
                fmt::format("its memory: 0 to {:.1f} MB; {:.1f} kB per keyframe", megabytes(keyframes.back()),
                            added_kb / static_cast<double>(keyframes.size() - 1)),
                kRed),
-          text(kLoopPlotHeight - kPlotMargin + 24.0,
+          text(kHeight - kPlotMargin + 24.0,
                fmt::format("{} keyframes over {:.0f} s", keyframes.size(),
                            seconds_between(keyframes.front().t, keyframes.back().t)),
                kBlack)};
@@ -177,7 +173,7 @@ std::vector<Mark> texts(std::span<const MapKeyframe> keyframes, double highest_m
 
 Drawing loop_cost_plot(std::span<const MapKeyframe> keyframes, double window_s) {
   const std::vector<FrameCost> medians = cost_trend(times_of(keyframes), window_s).medians;
-  const double bottom = kLoopPlotHeight - kPlotMargin;
+  const double bottom = kHeight - kPlotMargin;
   const double end_s = medians.back().t_s;
   const double highest_ms = std::ranges::max(medians, {}, &FrameCost::ms).ms;
   const double highest_mb = megabytes(keyframes.back());
@@ -185,7 +181,7 @@ Drawing loop_cost_plot(std::span<const MapKeyframe> keyframes, double window_s) 
     return Point2{kPlotMargin + (kPlotWidth - 2.0 * kPlotMargin) * t_s / end_s,
                   bottom - (bottom - kPlotMargin) * value / std::max(highest, 1e-6)};
   };
-  Drawing drawing{kPlotWidth, kLoopPlotHeight, texts(keyframes, highest_ms, window_s)};
+  Drawing drawing{kPlotWidth, kHeight, texts(keyframes, highest_ms, window_s)};
   drawing.marks.push_back(Polyline{{place(0.0, 0.0, 1.0), place(end_s, 0.0, 1.0)}, kGray, 1.5});
   Polyline memory{{}, kRed, 2.0};
   for (const FrameCost& one : medians) {

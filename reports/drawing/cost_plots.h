@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Trend of the processing time per frame over a long run.
-///
-/// Time of the loop closure per keyframe, and the memory that it uses, over a run.
+/// Plots of what a long run costs: the trend of the processing time per frame, and the time of the loop
+/// closure per keyframe with the memory that it uses.
 #pragma once
 
 #include <optional>

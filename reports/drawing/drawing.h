@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Vector drawing as a list of marks, written as SVG, PDF or PNG.
-///
-/// Size and colors that plots have in common.
-///
-/// Drawings as files whose extension selects the format.
+/// Vector drawing as a list of marks, written as SVG, PDF or PNG, also to a file whose extension selects the
+/// format.
 #pragma once
 
 #include <array>
@@ -71,6 +68,7 @@ struct Drawing {
 /// @throws InputError if the file cannot be written
 void write_drawing_png(const std::filesystem::path& file, const Drawing& drawing, double scale);
 
+// Size and colors that plots have in common.
 inline constexpr double kPlotWidth = 800.0;
 inline constexpr double kPlotMargin = 60.0;
 inline constexpr Color kBlack{20, 20, 20};

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "eval/io/nmea_file.h"
-#include "reports/drawing/drawing.h"
 
 namespace stillpoint::report {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Top view of trajectories and their position errors over time.
-///
-/// Plan of trajectories with a scale bar and an arrow to the north; without a map of the surroundings.
+/// Drawings of trajectories: top view with position errors over time, and plan with a scale bar and an arrow
+/// to the north, without a map of the surroundings.
 #pragma once
 
 #include <string>

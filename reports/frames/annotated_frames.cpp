@@ -10,11 +10,12 @@
 #include "core/base/error.h"
 #include "datasets/io/image_io.h"
 #include "datasets/io/shared_module.h"
-#include "eval/metrics/rpe.h"
 #include "eval/trajectory/alignment.h"
 
 namespace stillpoint::report {
 namespace {
+
+namespace fs = std::filesystem;
 
 // R, G, B
 const cv::Scalar kStable(60, 220, 60);
@@ -95,6 +96,11 @@ bool is_same(const Pose& a, const Pose& b) { return a.p == b.p && a.q.coeffs() =
 
 }  // namespace
 
+AnnotationStyle annotation_style(const FrontendConfig& frontend) {
+  return {.stable_radius_px = frontend.circular_mask ? frontend.min_distance_px : 0,
+          .unstable_radius_px = frontend.circular_mask ? frontend.unstable_radius_px : 0};
+}
+
 FrameAnnotator::Tracks FrameAnnotator::extended_tracks(const FrameReport& report) const {
   Tracks now;
   for (const TrackedFeature& feature : report.tracked.features) {
@@ -159,21 +165,23 @@ cv::Mat FrameAnnotator::annotate(const FrameReport& report) {
 
 namespace {
 
-VideoSink open(const std::filesystem::path& file, cv::Size size, double rate_hz) {
+constexpr double kDefaultRate_hz = 30.0;
+
+VideoSink open(const fs::path& file, cv::Size size, double rate_hz) {
   const auto* const module =
       static_cast<const VideoModule*>(datasets::module_symbol("video", "stillpoint_video_module"));
   return module->open(file, size, rate_hz);
 }
 
-bool is_written(const std::filesystem::path& file) {
+bool is_written(const fs::path& file) {
   std::error_code problem;
-  const std::uintmax_t bytes = std::filesystem::file_size(file, problem);
+  const std::uintmax_t bytes = fs::file_size(file, problem);
   return !problem && bytes > 0;
 }
 
 }  // namespace
 
-VideoFile::VideoFile(std::filesystem::path file, cv::Size size, double rate_hz)
+VideoFile::VideoFile(fs::path file, cv::Size size, double rate_hz)
     : file_(std::move(file)), size_(size.width / 2 * 2, size.height / 2 * 2) {
   STILLPOINT_CHECK(!size_.empty() && rate_hz > 0.0);
   encoder_ = open(file_, size_, rate_hz);
@@ -197,16 +205,10 @@ void VideoFile::finish() {
   if (!is_written(file_)) throw InputError(file_.string(), "is incomplete; is the disk full?");
 }
 
-namespace {
-
-constexpr double kDefaultRate_hz = 30.0;
-
-}  // namespace
-
-RunVideo::RunVideo(std::filesystem::path folder, AnnotationStyle style, double rate_hz)
+RunVideo::RunVideo(fs::path folder, AnnotationStyle style, double rate_hz)
     : folder_(std::move(folder)), annotator_(style), rate_hz_(rate_hz) {
   std::error_code problem;
-  std::filesystem::create_directories(folder_ / "frames", problem);
+  fs::create_directories(folder_ / "frames", problem);
   if (problem) {
     throw InputError(folder_.string(),
                      "cannot be created (" + problem.message() + "); choose another --video folder");
@@ -230,8 +232,6 @@ double mean_rate_hz(const std::vector<Timestamp>& times) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kMaxWidth_px = 400;
 constexpr int kJpegQuality = 70;  // text and thin circles stay legible
@@ -290,10 +290,5 @@ std::optional<eval::MatchedPose> WorstFrames::matched(const OdometryUpdate& upda
 }
 
 fs::path WorstFrames::file_of(std::size_t frame) const { return folder_ / fmt::format("{:06}.jpg", frame); }
-
-AnnotationStyle annotation_style(const FrontendConfig& frontend) {
-  return {.stable_radius_px = frontend.circular_mask ? frontend.min_distance_px : 0,
-          .unstable_radius_px = frontend.circular_mask ? frontend.unstable_radius_px : 0};
-}
 
 }  // namespace stillpoint::report

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Draws odometry results onto a frame: detections, semantic mask, circular masks, features and their tracks.
-///
-/// Encodes images to an .mp4 file.
-///
-/// Writes annotated frames of a run as JPEG files and as a video.
-///
-/// Writes annotated images of a run's worst frames only.
+/// Frames with the results of the odometry drawn onto them, written as JPEG files and as a video: all of a
+/// run, or the worst ones only.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +12,6 @@
 #include <opencv2/core/mat.hpp>
 
 #include "core/pipeline/runners/runner.h"
-#include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
 #include "eval/metrics/rpe.h"
 #include "reports/frames/video_module.h"
@@ -31,6 +25,10 @@ struct AnnotationStyle {
   std::size_t track_length = 10;  ///< frames
 };
 
+/// Radii of the circular masks that a tracker with this configuration uses.
+[[nodiscard]] AnnotationStyle annotation_style(const FrontendConfig& frontend);
+
+/// Draws odometry results onto a frame: detections, semantic mask, circular masks, features and their tracks.
 /// Call it for every frame in order: tracks and lost features are derived from the preceding frames.
 ///
 /// Green: stable. Red: on a dynamic object. Magenta: moving (moving consistency check). White: no label yet.
@@ -67,7 +65,8 @@ class FrameAnnotator {
   int correction_frames_ = 0;  ///< for which it is still written
 };
 
-/// H.264 if OpenCV has an encoder for it, else MPEG-4. The file is complete only after `finish`.
+/// Encodes images to an .mp4 file: H.264 if OpenCV has an encoder for it, else MPEG-4. The file is complete
+/// only after `finish`.
 class VideoFile {
  public:
   /// @param size    of the images, both sides >= 2; an odd last row or column is cropped, as H.264 requires
@@ -111,8 +110,9 @@ class RunVideo {
 /// Mean frame rate [Hz]; 30 Hz with fewer than two stamps.
 [[nodiscard]] double mean_rate_hz(const std::vector<Timestamp>& times);
 
-/// Keeps `000042.jpg` for frame 42 if that is among the frames with the largest frame-to-frame error so far;
-/// files that drop out of this set are deleted. At most 400 px wide, about 25 kB each.
+/// Writes annotated images of a run's worst frames only: keeps `000042.jpg` for frame 42 if that is among the
+/// frames with the largest frame-to-frame error so far; files that drop out of this set are deleted. At most
+/// 400 px wide, about 25 kB each.
 class WorstFrames {
  public:
   /// @param folder   created if missing; *.jpg files of an earlier run are deleted
@@ -134,8 +134,5 @@ class WorstFrames {
   eval::WorstFrames worst_;
   std::vector<std::optional<Pose>> truth_;  ///< T_w_c of each frame of the sequence
 };
-
-/// Radii of the circular masks that a tracker with this configuration uses.
-[[nodiscard]] AnnotationStyle annotation_style(const FrontendConfig& frontend);
 
 }  // namespace stillpoint::report

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,7 +24,18 @@
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
+namespace {
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kMaxWorstFrames = 20;
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+constexpr double kStampToleranceS = 1e-3;  // some files round their stamps
+/// As in the tables: TUM's association and rigid alignment over all pairs.
+constexpr const char* kProtocol = "compat:tum";
+
+/// @param manifest of the run, JSON; empty or without faults: no bands
+/// @param first, last timestamps of the frames
+/// @throws InputError for faults of an unknown kind
 std::vector<FaultBand> fault_bands(const std::string& manifest, Timestamp first, Timestamp last) {
   std::vector<FaultBand> bands;
   const nlohmann::json json = nlohmann::json::parse(manifest, nullptr, false);
@@ -38,15 +48,6 @@ std::vector<FaultBand> fault_bands(const std::string& manifest, Timestamp first,
   }
   return bands;
 }
-
-namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMaxWorstFrames = 20;
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
-constexpr double kStampToleranceS = 1e-3;  // some files round their stamps
-/// As in the tables: TUM's association and rigid alignment over all pairs.
-constexpr const char* kProtocol = "compat:tum";
 
 /// Frame stamps; pose stamps for systems without frame counters.
 std::vector<Timestamp> stamps_of(const std::vector<bench::FrameCounters>& counters, const Trajectory& path) {

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Times at which sensor faults were injected into a run.
-///
-/// Per-frame time series of a run: position, errors, counters and module times.
-///
-/// Relative pose error over path segments of increasing length, by variant.
-///
-/// Box plot of module times: quartiles, 5th and 95th percentile, and maximum.
-///
-/// Parses folded stacks, for a flame chart.
+/// Data of the charts of a report page: times at which sensor faults were injected, per-frame time series of
+/// a run (position, errors, counters and module times), relative pose error over path segments of increasing
+/// length, box plots of module times, and stacks of a flame chart.
 #pragma once
 
 #include <map>
@@ -18,7 +12,6 @@
 #include <vector>
 
 #include "bench/store/store.h"
-#include "core/base/timestamp.h"
 
 namespace stillpoint::report {
 
@@ -29,18 +22,13 @@ struct FaultBand {
   std::string fault;  ///< as in `--fault`
 };
 
-/// @param manifest of the run, JSON; empty or without faults: no bands
-/// @param first, last timestamps of the frames
-/// @throws InputError for faults of an unknown kind
-[[nodiscard]] std::vector<FaultBand> fault_bands(const std::string& manifest, Timestamp first,
-                                                 Timestamp last);
-
 /// One value per frame; NaN = missing.
 struct SeriesColumn {
   std::string name;  ///< e.g. "error_m", "x", "ms:feature_tracking"
   std::vector<double> values;
 };
 
+/// Per-frame time series of a run.
 struct RunSeries {
   double start_s = 0.0;     ///< stamp of the first frame
   std::vector<double> t_s;  ///< since the first frame
@@ -58,6 +46,7 @@ struct RunSeries {
 /// @throws InputError if files of the run are missing or damaged
 [[nodiscard]] RunSeries run_series(const bench::Store& store, const bench::StoredRun& run);
 
+/// Relative pose error of a variant over path segments of increasing length.
 struct SegmentCurve {
   std::string label;
   std::size_t runs = 0;  ///< with any error
@@ -78,6 +67,7 @@ struct SegmentFigure {
 [[nodiscard]] std::vector<SegmentFigure> segment_figures(const bench::Store& store,
                                                          std::span<const bench::StoredRun> runs);
 
+/// Quartiles, 5th and 95th percentile, and maximum.
 struct PlotBox {
   std::string group;  ///< heading of consecutive boxes, e.g. the module
   std::string label;

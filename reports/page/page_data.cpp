@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
+#include <map>
 
 #include <nlohmann/json.hpp>
 
@@ -13,12 +13,13 @@
 #include "bench/model/run_csv.h"
 #include "bench/model/run_notes.h"
 #include "bench/profile/timeline.h"
-#include "reports/page/chart_data.h"
 #include "reports/tables/run_cells.h"
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr std::uint16_t kNoValue = 0xFFFF;
 constexpr double kSteps = 65534.0;
@@ -38,7 +39,7 @@ std::string base64(std::span<const unsigned char> bytes) {
   return text;
 }
 
-nlohmann::ordered_json packed_series(std::span<const double> values) {
+Json packed_series(std::span<const double> values) {
   double low = 0.0;
   double high = 0.0;
   bool is_first = true;
@@ -60,8 +61,6 @@ nlohmann::ordered_json packed_series(std::span<const double> values) {
 }
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string image_base64(const bench::Store& store, const bench::StoredRun& run, const std::string& kind) {
   const std::string jpeg = store.attachment(run, kind);
@@ -104,8 +103,6 @@ std::vector<std::string> page_images(const bench::Store& store, std::span<const 
 }
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxTruthPoints = 2000;          // more than a plot can resolve
 constexpr std::size_t kImageBudgetBytes = 12'000'000;  // small enough to send the page by mail

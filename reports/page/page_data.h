@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// JSON data of a report page: list of runs, time series, ground truths and manifests.
-///
-/// Compact text encoding of time series for embedding in a page.
-///
-/// Annotated images embedded in a report page.
+/// Data that is embedded in a report page: JSON lists of runs, time series in a compact encoding, ground
+/// truths, manifests, and annotated images.
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>

@@ -89,6 +89,23 @@ std::string change_text(const bench::MetricChange& change) {
                      interval_text(change.change));
 }
 
+/// Metrics that improved or regressed since an earlier build.
+/// @param base name of that build
+std::vector<std::string> change_sentences(const std::string& base, const bench::Comparison& comparison) {
+  std::vector<std::string> sentences = {fmt::format("Compared with build {}: {}; {}.", base,
+                                                    change_class_name(comparison.result()),
+                                                    count_sentence(comparison))};
+  for (const bench::ChangeClass wanted : {bench::ChangeClass::kWorse, bench::ChangeClass::kBetter}) {
+    std::size_t listed = 0;
+    for (const bench::MetricChange& change : comparison.changes) {
+      if (change.result != wanted || listed++ >= kMaxListed) continue;
+      sentences.push_back((wanted == bench::ChangeClass::kWorse ? "Worse: " : "Better: ") +
+                          change_text(change) + ".");
+    }
+  }
+  return sentences;
+}
+
 }  // namespace
 
 std::vector<std::string> outcome_sentences(std::span<const bench::StoredRun> runs) {
@@ -135,21 +152,6 @@ std::string best_sentence(std::span<const bench::StoredRun> runs) {
       "{} {} the smallest median {} on {} of {} sequences ({}; not a statement of significance).",
       fmt::join(winners, ", "), verb, bench::headline_metric().label, most, compared,
       count_text(*fewest, *largest));
-}
-
-std::vector<std::string> change_sentences(const std::string& base, const bench::Comparison& comparison) {
-  std::vector<std::string> sentences = {fmt::format("Compared with build {}: {}; {}.", base,
-                                                    change_class_name(comparison.result()),
-                                                    count_sentence(comparison))};
-  for (const bench::ChangeClass wanted : {bench::ChangeClass::kWorse, bench::ChangeClass::kBetter}) {
-    std::size_t listed = 0;
-    for (const bench::MetricChange& change : comparison.changes) {
-      if (change.result != wanted || listed++ >= kMaxListed) continue;
-      sentences.push_back((wanted == bench::ChangeClass::kWorse ? "Worse: " : "Better: ") +
-                          change_text(change) + ".");
-    }
-  }
-  return sentences;
 }
 
 namespace {

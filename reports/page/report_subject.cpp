@@ -8,10 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/analysis/run_groups.h"
-#include "bench/store/store.h"
 #include "bench/systems/published_table.h"
 #include "core/base/error.h"
-#include "reports/page/report_page.h"
 #include "reports/tables/paper_tables.h"
 #include "reports/tables/result_tables.h"
 #include "reports/tables/table_formats.h"
@@ -94,8 +92,6 @@ std::vector<bench::StoredRun> renamed(std::vector<bench::StoredRun> runs, const 
 
 namespace {
 
-constexpr const char* kOwnSystem = "stillpoint";
-
 std::vector<bench::StoredPlan> chosen_plans(const bench::Store& store, const std::string& plan) {
   std::vector<bench::StoredPlan> plans = store.plans();
   if (!plan.empty())
@@ -115,7 +111,7 @@ std::string title_of(const bench::Store& store, const std::vector<bench::StoredP
 ReportSubject with_newest_build(ReportSubject subject) {
   const std::string newest = bench::newest_build(subject.runs);
   const auto is_older = [&](const bench::StoredRun& run) {
-    return run.identity.system == kOwnSystem && run.identity.build != newest;
+    return run.identity.system == bench::kOwnSystem && run.identity.build != newest;
   };
   std::copy_if(subject.runs.begin(), subject.runs.end(), std::back_inserter(subject.other_runs), is_older);
   std::erase_if(subject.runs, is_older);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Disambiguates variant and sequence names that plans of one page use for different configs or data.
+/// The subject of a report: the plans and runs of a store that it shows, and their tables. Variant and
+/// sequence names that the plans use for different configs or data are disambiguated.
 #pragma once
 
 #include <map>
@@ -8,7 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "bench/model/stored_run.h"
+#include "bench/record/output_folder.h"
 #include "bench/store/store.h"
+#include "reports/page/plan_ablations.h"
+#include "reports/tables/report_table.h"
 
 namespace stillpoint::report {
 
@@ -23,7 +28,31 @@ struct NameChanges {
 [[nodiscard]] NameChanges disambiguate_names(std::span<const bench::StoredPlan> plans,
                                              std::span<const bench::StoredRun> runs);
 
+/// The runs with their new names.
 [[nodiscard]] std::vector<bench::StoredRun> renamed(std::vector<bench::StoredRun> runs,
                                                     const NameChanges& changes);
+
+/// Contents of a report page.
+struct ReportSubject {
+  std::string title;
+  std::vector<bench::StoredPlan> plans;      ///< the plans that the runs belong to
+  std::vector<bench::StoredRun> runs;        ///< shown on the page
+  std::vector<bench::StoredRun> other_runs;  ///< of other builds, for the comparison
+  std::vector<std::string> gaps;             ///< runs with missing or damaged files, one sentence each
+  std::vector<std::string> published;        ///< names of published tables to compare with
+  std::vector<ReportTable> paper;            ///< the paper's tables that plans of the page reproduce
+  PlanAblations ablations;                   ///< of `plans`, with the names that each plan uses
+};
+
+/// All plans of the store or a single one; of each plan the runs of the newest build.
+/// @param plan name; empty: all plans, or all runs where there are no plans
+/// @throws InputError if the store has no such plan or no finished runs
+[[nodiscard]] ReportSubject report_subject(const bench::Store& store, const std::string& plan);
+
+/// Paper tables, metric tables, module times, and comparisons with published tables.
+[[nodiscard]] std::vector<ReportTable> report_tables(const ReportSubject& subject);
+
+/// A table as NAME.md, NAME.tex, NAME.csv and NAME.json.
+[[nodiscard]] std::vector<bench::OutputFile> table_files(const ReportTable& table);
 
 }  // namespace stillpoint::report

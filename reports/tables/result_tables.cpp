@@ -5,7 +5,6 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -284,7 +283,7 @@ Measured measured(std::span<const bench::StoredRun> runs, const bench::Published
 }
 
 /// Columns that also occur in a published row.
-std::vector<std::string> shared_columns(const Measured& table, const bench::PublishedTable& published) {
+std::vector<std::string> columns_in_both(const Measured& table, const bench::PublishedTable& published) {
   std::vector<std::string> shared;
   std::copy_if(
       table.columns.begin(), table.columns.end(), std::back_inserter(shared), [&](const std::string& column) {
@@ -348,7 +347,7 @@ std::string omission_sentence(std::size_t disturbed) {
 std::string published_comparison(std::span<const bench::StoredRun> runs,
                                  const bench::PublishedTable& published) {
   const Measured table = measured(runs, published);
-  const std::vector<std::string> columns = shared_columns(table, published);
+  const std::vector<std::string> columns = columns_in_both(table, published);
   const std::string omitted = omission_sentence(table.disturbed);
   if (columns.empty()) return omitted.empty() ? "" : published.title + ": " + omitted + "\n";
   TableRows rows = {{"system", "source"}};

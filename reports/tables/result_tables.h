@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Result tables: metrics by variant and sequence, module times by variant, comparisons with published
-/// results.
-///
-/// A metric on all sequences of a dataset: published systems beside ours, one row per sequence.
-///
-/// Measured and published results in one table: one row per system, marked by source.
+/// Result tables: metrics by variant and sequence, module times by variant, a metric on all sequences of a
+/// dataset with published systems beside ours, and measured and published results in one table.
 #pragma once
 
 #include <span>
@@ -27,6 +23,7 @@ namespace stillpoint::report {
 [[nodiscard]] ReportTable published_comparison_table(std::span<const bench::StoredRun> runs,
                                                      const bench::PublishedTable& published);
 
+/// What the table of a dataset shows.
 struct DatasetTableLayout {
   std::string name;  ///< base name of the files
   std::string title;
@@ -34,7 +31,8 @@ struct DatasetTableLayout {
   std::vector<std::string> variants;   ///< of the plan
 };
 
-/// Sequences without data are rows without numbers. The last row contains the mean of each column over the
+/// A metric on all sequences of a dataset, one row per sequence, published systems beside ours. Sequences
+/// without data are rows without numbers. The last row contains the mean of each column over the
 /// sequences with a number; a note states how many these are.
 /// @param published may have no rows; its metric selects the numbers of the runs
 [[nodiscard]] ReportTable dataset_table(const DatasetTableLayout& layout,

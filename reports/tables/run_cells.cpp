@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "bench/analysis/run_statistics.h"
 #include "bench/model/metrics.h"
-#include "bench/model/run_notes.h"
 
 namespace stillpoint::report {
 namespace {
@@ -33,27 +33,11 @@ std::string infinite_note(const std::vector<const bench::StoredRun*>& runs, std:
                                   count == 1 ? "has" : "have");
 }
 
-}  // namespace
+/// A number of a run; nullopt if it has none.
+using RunNumber = std::function<std::optional<double>(const bench::StoredRun&)>;
 
-std::string system_label(const bench::RunIdentity& identity) {
-  if (identity.system == "stillpoint") return identity.variant;
-  return identity.variant.empty() ? identity.system : identity.system + " " + identity.variant;
-}
-
-std::vector<std::string> distinct(std::span<const bench::StoredRun> runs,
-                                  const std::function<std::string(const bench::RunIdentity&)>& name) {
-  std::vector<std::string> names;
-  for (const bench::StoredRun& run : runs) {
-    const std::string value = name(run.identity);
-    if (std::find(names.begin(), names.end(), value) == names.end()) names.push_back(value);
-  }
-  return names;
-}
-
-std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
-  return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
-}
-
+/// Median over the successful runs, with a note about the failed ones.
+/// @param runs repetitions of one benchmark case; an empty list gives an empty cell
 TableCell run_cell(const std::vector<const bench::StoredRun*>& runs, const RunNumber& number) {
   TableCell cell;
   std::vector<double> values;
@@ -82,6 +66,37 @@ TableCell run_cell(const std::vector<const bench::StoredRun*>& runs, const RunNu
   return cell;
 }
 
+/// `run_cell` over the mean time of a module.
+TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs, const std::string& module) {
+  return run_cell(runs, [&](const bench::StoredRun& run) -> std::optional<double> {
+    for (const bench::ModuleCost& cost : run.costs) {
+      if (cost.module == module) return cost.mean_ms;
+    }
+    return std::nullopt;
+  });
+}
+
+}  // namespace
+
+std::string system_label(const bench::RunIdentity& identity) {
+  if (identity.system == "stillpoint") return identity.variant;
+  return identity.variant.empty() ? identity.system : identity.system + " " + identity.variant;
+}
+
+std::vector<std::string> distinct(std::span<const bench::StoredRun> runs,
+                                  const std::function<std::string(const bench::RunIdentity&)>& name) {
+  std::vector<std::string> names;
+  for (const bench::StoredRun& run : runs) {
+    const std::string value = name(run.identity);
+    if (std::find(names.begin(), names.end(), value) == names.end()) names.push_back(value);
+  }
+  return names;
+}
+
+std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs) {
+  return distinct(runs, [](const bench::RunIdentity& identity) { return identity.sequence; });
+}
+
 TableCell with_note(TableCell cell, const std::string& note) {
   if (!note.empty()) cell.note += (cell.note.empty() ? "" : "; ") + note;
   return cell;
@@ -108,15 +123,6 @@ TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::str
   const bool is_accuracy =
       descriptor != nullptr && descriptor->source == bench::MetricSource::kTrajectory && cell.number;
   return is_accuracy ? with_note(std::move(cell), bench::missing_boxes_note(runs)) : cell;
-}
-
-TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs, const std::string& module) {
-  return run_cell(runs, [&](const bench::StoredRun& run) -> std::optional<double> {
-    for (const bench::ModuleCost& cost : run.costs) {
-      if (cost.module == module) return cost.mean_ms;
-    }
-    return std::nullopt;
-  });
 }
 
 TableCell mean_cell(std::span<const TableCell> cells) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Aggregates stored runs into table cells.
-///
-/// Selects the runs whose times are shown: undisturbed timing runs where there are any.
+/// Aggregates stored runs into table cells, and selects the runs whose times are shown: undisturbed timing
+/// runs where there are any.
 #pragma once
 
 #include <functional>
@@ -27,24 +26,15 @@ namespace stillpoint::report {
 /// Names of the sequences in the order of first appearance.
 [[nodiscard]] std::vector<std::string> sequences_of(std::span<const bench::StoredRun> runs);
 
-/// A number of a run; nullopt if it has none.
-using RunNumber = std::function<std::optional<double>(const bench::StoredRun&)>;
-
-/// Median over the successful runs, with a note about the failed ones.
-/// @param runs repetitions of one benchmark case; an empty list gives an empty cell
-[[nodiscard]] TableCell run_cell(const std::vector<const bench::StoredRun*>& runs, const RunNumber& number);
-
 /// The cell with another remark in its footnote; an empty remark changes nothing.
 [[nodiscard]] TableCell with_note(TableCell cell, const std::string& note);
 
-/// `run_cell` over the replicates of a metric (see `bench::metric_spread`), with its protocol, and footnotes
-/// where a strict protocol gives a very different value, recorded boxes are missing, or a value is infinite.
+/// Median of a metric over the successful runs, with a note about the failed ones; over its replicates (see
+/// `bench::metric_spread`), with its protocol, and footnotes where a strict protocol gives a very different
+/// value, recorded boxes are missing, or a value is infinite.
+/// @param runs repetitions of one benchmark case; an empty list gives an empty cell
 [[nodiscard]] TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs,
                                     std::string_view metric);
-
-/// `run_cell` over the mean time of a module.
-[[nodiscard]] TableCell cost_cell(const std::vector<const bench::StoredRun*>& runs,
-                                  const std::string& module);
 
 /// The mean of cells that all have a number; else an empty cell. It is suspicious if one of them is.
 [[nodiscard]] TableCell mean_cell(std::span<const TableCell> cells);

@@ -2,6 +2,8 @@
 #include "reports/tables/table_formats.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +11,13 @@
 #include "reports/tables/text_format.h"
 
 namespace stillpoint::report {
+namespace {
+
+/// Consecutive columns under one heading.
+struct ColumnGroup {
+  std::string name;
+  std::size_t columns = 0;
+};
 
 std::vector<ColumnGroup> column_groups(const ReportTable& table) {
   std::vector<ColumnGroup> groups;
@@ -20,20 +29,24 @@ std::vector<ColumnGroup> column_groups(const ReportTable& table) {
   return groups;
 }
 
+/// Whether any column belongs to a named group.
 bool has_groups(const ReportTable& table) {
   return std::any_of(table.columns.begin(), table.columns.end(),
                      [](const TableColumn& column) { return !column.group.empty(); });
 }
 
+/// Whether any row names its source.
 bool has_sources(const ReportTable& table) {
   return std::any_of(table.rows.begin(), table.rows.end(),
                      [](const TableRow& row) { return !row.source.empty(); });
 }
 
+/// "ATE [m]"; the name alone for a column without unit.
 std::string column_heading(const TableColumn& column) {
   return column.unit.empty() ? column.name : column.name + " [" + column.unit + "]";
 }
 
+/// Footnote 1 is "a"; after "z" comes "aa".
 std::string note_letter(std::size_t number) {
   constexpr std::size_t kLetters = 26;
   std::string letters;
@@ -42,8 +55,6 @@ std::string note_letter(std::size_t number) {
   }
   return letters;
 }
-
-namespace {
 
 std::string markdown_cell(const TableColumn& column, const TableCell& cell, TableDetail detail,
                           const std::vector<std::string>& notes) {

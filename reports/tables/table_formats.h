@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Formats a table as Markdown, LaTeX, CSV, JSON and HTML. Numbers are printed identically in all formats.
-///
-/// Table header layout shared by all formats.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -31,25 +28,5 @@ namespace stillpoint::report {
 
 /// A table element with caption and footnotes; measured numbers refer to their runs by data-runs.
 [[nodiscard]] std::string table_html(const ReportTable& table);
-
-/// Consecutive columns under one heading.
-struct ColumnGroup {
-  std::string name;
-  std::size_t columns = 0;
-};
-
-[[nodiscard]] std::vector<ColumnGroup> column_groups(const ReportTable& table);
-
-/// Whether any column belongs to a named group.
-[[nodiscard]] bool has_groups(const ReportTable& table);
-
-/// Whether any row names its source.
-[[nodiscard]] bool has_sources(const ReportTable& table);
-
-/// "ATE [m]"; the name alone for a column without unit.
-[[nodiscard]] std::string column_heading(const TableColumn& column);
-
-/// Footnote 1 is "a"; after "z" comes "aa".
-[[nodiscard]] std::string note_letter(std::size_t number);
 
 }  // namespace stillpoint::report

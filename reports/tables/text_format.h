@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Escapes untrusted text (names from users and files) for each output format.
-///
-/// Relative changes as text: size, number of values, and interval.
-///
-/// Formats rows of cells as aligned text, Markdown or CSV.
-///
-/// HTML building blocks shared by all pages.
+/// Blocks of text that tables and pages consist of: untrusted text (names from users and files) escaped for
+/// each output format, relative changes, rows of cells as aligned text, Markdown or CSV, and HTML.
 #pragma once
 
 #include <functional>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Evaluations of trajectories as tables and per-pose lists.
-///
-/// Evaluations as JSON in full precision; null = no data.
+/// Evaluations of trajectories as tables, per-pose lists, and JSON in full precision, where null means no
+/// data.
 #pragma once
 
 #include <string>
