@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Checks what of CONTRIBUTING.md a few patterns can check: licence lines, lengths of files and functions, numbers of
+# Checks what of CONTRIBUTING.md a few patterns can check: licence lines, sizes of files, functions and folders, numbers of
 # parameters, include guards, and words that are not to be in sources. Prints each fault as a file; exit 1 if there is one.
 #   scripts/style.sh [ROOT]
 set -euo pipefail
@@ -63,6 +63,8 @@ complain "using namespace at file scope" < <(sources | xargs grep -l '^using nam
 complain "TODO without an issue" < <(sources | xargs grep -lE 'TODO($|[^(]|\([^#])|FIXME' || true)
 
 report < <(large_functions)
+report < <(sources | grep -v '^tests/' | xargs --no-run-if-empty -n1 dirname | sort | uniq -c |
+  awk '$1 > 20 { print $2 ": more than 20 files" }')
 
 ((faults == 0)) || { echo "style: $faults fault(s)"; exit 1; }
 echo "style: clean"

@@ -20,6 +20,12 @@ expect_fault style.sh "core/imu/a.h: no #pragma once" "a header without a guard"
 tree_with core/imu/a.cpp "$licence
 $(yes '// line' | head -n 600)"
 expect_fault style.sh "core/imu/a.cpp: more than 600 lines" "a file of 601 lines"
+empty_tree
+for number in {1..20}; do put "core/imu/a$number.cpp" "$licence"; done
+put core/imu/detail/a.cpp "$licence"
+expect_clean style.sh "a folder of 20 files, and one below it"
+put core/imu/a21.cpp "$licence"
+expect_fault style.sh "core/imu: more than 20 files" "a folder of 21 files"
 tree_with core/imu/a.cpp "$licence
 using namespace std;"
 expect_fault style.sh "core/imu/a.cpp: using namespace at file scope" "using namespace"
