@@ -75,13 +75,13 @@ std::vector<cv::Point2f> corners_of(const cv::Mat& gray) {
 }
 
 /// Error of the bearing of a point that is seen from another pose; infinite behind the camera.
-double bearing_error(const PointCorrespondence& seen, const Pose& T_to_from) {
-  const Eigen::Vector3d p = T_to_from * seen.point;
+double bearing_error(const PointObservation& seen, const Pose& T_to_from) {
+  const Eigen::Vector3d p = T_to_from * seen.p_w;
   if (p.z() <= 0.0) return std::numeric_limits<double>::infinity();
   return (p.hnormalized() - seen.bearing).norm();
 }
 
-PointCorrespondence correspondence(const Track& track, const Eigen::Vector2d& bearing) {
+PointObservation correspondence(const Track& track, const Eigen::Vector2d& bearing) {
   return {track.known_depth * track.feature.bearing.homogeneous(), bearing};
 }
 
@@ -101,7 +101,7 @@ void replace(std::span<const Track> lost, std::span<const Track> found, std::vec
 /// Motion of the camera T_now_lost, if the image shows the lost view.
 std::optional<Pose> ViewRecovery::motion_since(const View& lost, const cv::Mat& gray) const {
   const std::vector<cv::Point2f> corners = corners_of(gray);
-  std::vector<PointCorrespondence> matches;
+  std::vector<PointObservation> matches;
   for (const auto& [before, now] :
        match(describe(lost.gray, pixels_of(lost.tracks)), describe(gray, corners))) {
     const Track& track = lost.tracks[before];
@@ -113,7 +113,7 @@ std::optional<Pose> ViewRecovery::motion_since(const View& lost, const cv::Mat& 
   const std::optional<Pose> T_now_lost =
       estimate_rigid_motion(matches, {.threshold = threshold, .confidence = kConfidence});
   if (!T_now_lost) return std::nullopt;
-  const auto inliers = std::ranges::count_if(matches, [&](const PointCorrespondence& seen) {
+  const auto inliers = std::ranges::count_if(matches, [&](const PointObservation& seen) {
     return bearing_error(seen, *T_now_lost) <= threshold;
   });
   const double required =

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "core/geometry/pose_from_points.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -77,10 +78,7 @@ UncertainPose relative_pose(const Pose& T_w_a, const Pose& T_w_b, const Matrix12
 }
 
 Eigen::Matrix2d projection_covariance(const UncertainPose& camera, const Eigen::Vector3d& p_c) {
-  const Eigen::Vector2d projected = p_c.hnormalized();
-  Eigen::Matrix<double, 2, 3> J_point;
-  J_point << 1.0, 0.0, -projected.x(), 0.0, 1.0, -projected.y();
-  J_point /= p_c.z();
+  const Eigen::Matrix<double, 2, 3> J_point = bearing_jacobian(p_c.hnormalized(), 1.0 / p_c.z());
   Eigen::Matrix<double, 2, 6> J;
   J << -J_point * camera.T_w_f.R().transpose(), J_point * skew(p_c);
   return J * camera.covariance * J.transpose();

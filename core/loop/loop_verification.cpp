@@ -12,6 +12,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "core/geometry/covariance.h"
+#include "core/geometry/pose_from_points.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -64,9 +65,7 @@ std::vector<FeatureMatch> match_features(std::span<const KeyframeFeature> query,
 namespace {
 
 constexpr int kMinInliers = 4;
-constexpr int kMaxSamples = 300;
-constexpr double kConfidence = 0.999;
-constexpr double kDepthSigmas = 3.0;
+constexpr ConsensusOptions kConsensus{.max_samples = 300, .sample_size = 3, .confidence = 0.999};
 constexpr int kMaxRefinements = 8;
 constexpr double kMinPoint_z = 0.1;   // [m]
 constexpr double kMinArea_m2 = 0.01;  // of the triangle of a sample: smaller ones fix no rotation
@@ -84,7 +83,7 @@ bool is_inlier(const PointPair& pair, const Pose& T_m_q, const RelativePoseOptio
   if ((T_m_q * pair.p_q).z() < kMinPoint_z) return false;
   const Eigen::Vector3d residual = residual_of(pair, T_m_q);
   return residual.head<2>().norm() < options.inlier_threshold &&
-         std::abs(residual.z()) < kDepthSigmas * std::sqrt(2.0) * options.inverse_depth_sigma;
+         std::abs(residual.z()) < kThresholdSigmas * std::sqrt(2.0) * options.inverse_depth_sigma;
 }
 
 std::vector<int> inliers_of(std::span<const PointPair> pairs, const Pose& T_m_q,
@@ -110,32 +109,16 @@ std::optional<Pose> align(std::span<const PointPair> pairs, const std::array<std
   return Pose::from_matrix(Eigen::umeyama(query, match, false));
 }
 
-/// Number of samples after which one without outliers was drawn with the required confidence.
-int required_samples(std::size_t inliers, std::size_t pairs) {
-  const double good = std::pow(static_cast<double>(inliers) / static_cast<double>(pairs), 3);
-  if (good >= 1.0 - 1e-9) return 1;
-  return static_cast<int>(
-      std::min<double>(kMaxSamples, std::ceil(std::log(1.0 - kConfidence) / std::log1p(-good))));
-}
-
 Pose best_sample(std::span<const PointPair> pairs, const RelativePoseOptions& options) {
   std::mt19937 random(options.seed);
-  Pose best;
-  std::size_t most = 0;
-  int required = kMaxSamples;
-  for (int drawn = 0; drawn < required; ++drawn) {
+  const auto hypothesis = [&]() -> std::optional<Pose> {
     const std::array<std::size_t, 3> sample = {random() % pairs.size(), random() % pairs.size(),
                                                random() % pairs.size()};
-    if (sample[0] == sample[1] || sample[0] == sample[2] || sample[1] == sample[2]) continue;
-    const std::optional<Pose> T_m_q = align(pairs, sample);
-    if (!T_m_q) continue;
-    const std::size_t inliers = inliers_of(pairs, *T_m_q, options).size();
-    if (inliers <= most) continue;
-    most = inliers;
-    best = *T_m_q;
-    required = required_samples(most, pairs.size());
-  }
-  return best;
+    if (sample[0] == sample[1] || sample[0] == sample[2] || sample[1] == sample[2]) return std::nullopt;
+    return align(pairs, sample);
+  };
+  const auto inliers = [&](const Pose& T_m_q) { return inliers_of(pairs, T_m_q, options).size(); };
+  return find_consensus(pairs.size(), kConsensus, hypothesis, inliers).pose;
 }
 
 /// Normal equations of the refinement.
@@ -155,9 +138,7 @@ System linearize(std::span<const PointPair> pairs, const std::vector<int>& inlie
     const PointPair& pair = pairs[static_cast<std::size_t>(i)];
     const Eigen::Vector3d X = T_m_q * pair.p_q;
     const double inverse_z = 1.0 / X.z();
-    Eigen::Matrix3d projection;
-    projection << inverse_z, 0.0, -X.x() * inverse_z * inverse_z, 0.0, inverse_z,
-        -X.y() * inverse_z * inverse_z, 0.0, 0.0, -inverse_z * inverse_z;
+    const Eigen::Matrix3d projection = inverse_depth_jacobian(X.head<2>() * inverse_z, inverse_z);
     Eigen::Matrix<double, 3, 6> J;
     J << projection, -projection * T_m_q.R() * skew(pair.p_q);
     J = inverse_sigmas.asDiagonal() * J;

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/backend/factors/gravity_direction.h"
+#include "core/geometry/pose_from_points.h"
 #include "core/geometry/so3.h"
 
 namespace stillpoint {
@@ -128,10 +129,8 @@ bool PointFactor::Evaluate(double const* const* parameters, double* residuals, d
   const Eigen::Vector3d predicted(X_c.x() * inverse_z, X_c.y() * inverse_z, inverse_z);
   Eigen::Map<Eigen::Vector3d>{residuals} = inverse_sigmas_.cwiseProduct(predicted - measured_);
   if (jacobians == nullptr) return true;
-  Eigen::Matrix3d projection;
-  projection << inverse_z, 0.0, -predicted.x() * inverse_z, 0.0, inverse_z, -predicted.y() * inverse_z, 0.0,
-      0.0, -inverse_z * inverse_z;
-  const Eigen::Matrix3d dr_dX_b = inverse_sigmas_.asDiagonal() * projection * T_c_b_.R();
+  const Eigen::Matrix3d dr_dX_b =
+      inverse_sigmas_.asDiagonal() * inverse_depth_jacobian(predicted.head<2>(), inverse_z) * T_c_b_.R();
   if (jacobians[0] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, 3, 7, Eigen::RowMajor>> J(jacobians[0]);
     J << -dr_dX_b * R_b_m, dr_dX_b * skew(X_b), Eigen::Vector3d::Zero();

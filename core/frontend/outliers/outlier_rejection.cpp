@@ -2,111 +2,16 @@
 #include "core/frontend/outliers/outlier_rejection.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <random>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 
-#include "core/geometry/so3.h"
-
 namespace stillpoint {
-namespace {
-
-constexpr std::size_t kSampleSize =
-    4;  // one more than the minimal sample: averages noise and avoids ambiguous solutions
-constexpr int kMaxSamples = 100;
-constexpr int kSampleIterations = 4;  // starting at the identity; sufficient for 30 degrees
-constexpr int kRefinementIterations = 4;
-constexpr double kQuadraticLossScale = 1e3;  // Cauchy scale at which all weights are practically 1
-constexpr double kMinDepth = 1e-3;           // [m]; points closer or behind the camera are ignored
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-/// One Gauss-Newton step with the left perturbation (theta, t): p' = Exp(theta) p + t.
-Pose refine(std::span<const PointCorrespondence> correspondences, const Pose& T_to_from,
-            double cauchy_scale) {
-  Matrix6 H = Matrix6::Zero();
-  Vector6 b = Vector6::Zero();
-  for (const PointCorrespondence& correspondence : correspondences) {
-    const Eigen::Vector3d p = T_to_from * correspondence.point;
-    if (p.z() < kMinDepth) continue;
-    const Eigen::Vector2d residual = p.hnormalized() - correspondence.bearing;
-    Eigen::Matrix<double, 2, 3> projection;
-    projection << 1.0 / p.z(), 0.0, -p.x() / (p.z() * p.z()), 0.0, 1.0 / p.z(), -p.y() / (p.z() * p.z());
-    Eigen::Matrix<double, 2, 6> J;
-    J.leftCols<3>() = -projection * skew(p);
-    J.rightCols<3>() = projection;
-    const double weight = 1.0 / (1.0 + residual.squaredNorm() / (cauchy_scale * cauchy_scale));
-    H += weight * J.transpose() * J;
-    b -= weight * J.transpose() * residual;
-  }
-  const Vector6 step = H.ldlt().solve(b);
-  if (!step.allFinite()) return T_to_from;
-  return Pose{exp_so3(step.head<3>()), step.tail<3>()} * T_to_from;
-}
-
-Pose refine(std::span<const PointCorrespondence> correspondences, Pose T_to_from, double cauchy_scale,
-            int iterations) {
-  for (int i = 0; i < iterations; ++i) T_to_from = refine(correspondences, T_to_from, cauchy_scale);
-  return T_to_from;
-}
-
-std::size_t count_inliers(std::span<const PointCorrespondence> correspondences, const Pose& T_to_from,
-                          double threshold) {
-  const Eigen::Matrix3d R_to_from = T_to_from.R();
-  std::size_t inliers = 0;
-  for (const PointCorrespondence& correspondence : correspondences) {
-    const Eigen::Vector3d p = R_to_from * correspondence.point + T_to_from.p;
-    const bool fits = (p.head<2>() - p.z() * correspondence.bearing).norm() <= threshold * p.z();
-    inliers += fits ? 1 : 0;
-  }
-  return inliers;
-}
-
-/// Number of samples N of which one is free of outliers with probability c: N = log(1 - c) / log(1 - w^4), w
-/// the inlier ratio. Fischler and Bolles 1981.
-double required_samples(double inlier_ratio, double confidence) {
-  const double outlier_free = std::pow(inlier_ratio, static_cast<double>(kSampleSize));
-  return outlier_free < 1.0 ? std::log(1.0 - confidence) / std::log(1.0 - outlier_free) : 0.0;
-}
-
-std::optional<Pose> estimate_by_ransac(std::span<const PointCorrespondence> correspondences,
-                                       const RigidMotionSettings& settings) {
-  const double number = static_cast<double>(correspondences.size());
-  std::minstd_rand random;  // fixed seed: deterministic
-  Pose best;
-  std::size_t most_inliers = 0;
-  double required = kMaxSamples;
-  for (int i = 0; i < kMaxSamples && i < required; ++i) {
-    std::array<PointCorrespondence, kSampleSize> sample;
-    for (PointCorrespondence& one : sample) one = correspondences[random() % correspondences.size()];
-    const Pose pose = refine(sample, Pose{}, kQuadraticLossScale, kSampleIterations);
-    const std::size_t inliers = count_inliers(correspondences, pose, settings.threshold);
-    if (inliers <= most_inliers) continue;
-    best = pose;
-    most_inliers = inliers;
-    required = required_samples(static_cast<double>(inliers) / number, settings.confidence);
-  }
-  if (most_inliers < kSampleSize) return std::nullopt;
-  return best;
-}
-
-}  // namespace
-
-std::optional<Pose> estimate_rigid_motion(std::span<const PointCorrespondence> correspondences,
-                                          const RigidMotionSettings& settings) {
-  if (correspondences.size() < kSampleSize) return std::nullopt;
-  const std::optional<Pose> initial = estimate_by_ransac(correspondences, settings);
-  if (!initial) return std::nullopt;
-  return refine(correspondences, *initial, 0.5 * settings.threshold, kRefinementIterations);
-}
-
 namespace {
 
 constexpr std::size_t kMinMatches = 8;
@@ -130,6 +35,20 @@ double reprojection_error(const Match& match, const Pose& T_to_from) {
 }
 
 }  // namespace
+
+std::optional<Pose> estimate_rigid_motion(std::span<const PointObservation> observations,
+                                          const RigidMotionSettings& settings) {
+  constexpr ConsensusOptions kConsensus{.max_samples = 100, .sample_size = 4};
+  constexpr PoseRefinement kSampleRefinement{.scale = 1e3, .steps = 4};  // sufficient for 30 degrees
+  if (observations.size() < kConsensus.sample_size) return std::nullopt;
+  std::minstd_rand random;  // fixed seed: deterministic
+  PoseSampling sampling{
+      .consensus = kConsensus, .inlier_threshold = settings.threshold, .refinement = kSampleRefinement};
+  sampling.consensus.confidence = settings.confidence;
+  const PoseConsensus consensus = sample_poses(observations, Pose{}, sampling, std::ref(random));
+  if (consensus.inliers < kConsensus.sample_size) return std::nullopt;
+  return refine_pose(consensus.pose, observations, {.scale = 0.5 * settings.threshold, .steps = 4});
+}
 
 bool OutlierRejector::has_enough_inliers(const OutlierRejectionSettings& settings) const {
   const auto inlier_count = std::count(inliers_.begin(), inliers_.end(), std::uint8_t{1});

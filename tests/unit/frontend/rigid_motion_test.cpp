@@ -11,11 +11,11 @@
 namespace stillpoint {
 namespace {
 
-std::vector<PointCorrespondence> observe(const Pose& T_to_from, int count) {
+std::vector<PointObservation> observe(const Pose& T_to_from, int count) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> lateral(-0.6, 0.6);
   std::uniform_real_distribution<double> depth_distribution(1.0, 5.0);
-  std::vector<PointCorrespondence> correspondences;
+  std::vector<PointObservation> correspondences;
   for (int i = 0; i < count; ++i) {
     const double depth = depth_distribution(random);
     const Eigen::Vector3d point(depth * lateral(random), depth * lateral(random), depth);
@@ -26,7 +26,7 @@ std::vector<PointCorrespondence> observe(const Pose& T_to_from, int count) {
 
 TEST(RigidMotion, EstimatesTheMotionWithAThirdOfOutliers) {
   const Pose truth{exp_so3({0.02, -0.03, 0.05}), {0.05, -0.02, 0.08}};
-  std::vector<PointCorrespondence> correspondences = observe(truth, 90);
+  std::vector<PointObservation> correspondences = observe(truth, 90);
   for (std::size_t i = 0; i < 30; ++i) correspondences[3 * i].bearing.x() += 0.05;
   const std::optional<Pose> found = estimate_rigid_motion(correspondences, {});
   ASSERT_TRUE(found.has_value());

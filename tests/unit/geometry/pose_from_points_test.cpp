@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometry/pose_from_points.h"
+
+#include <functional>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+const Pose kTcw{exp_so3({0.1, -0.2, 0.05}), {0.3, -0.1, 0.2}};
+
+/// Points 2 to 5 m in front of the camera, observed without error.
+std::vector<PointObservation> observe(int count) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> lateral(-0.5, 0.5);
+  std::uniform_real_distribution<double> depth(2.0, 5.0);
+  std::vector<PointObservation> observations;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d bearing(lateral(random), lateral(random));
+    observations.push_back(
+        {kTcw.inverse() * Eigen::Vector3d(depth(random) * bearing.homogeneous()), bearing});
+  }
+  return observations;
+}
+
+double distance(const Pose& a, const Pose& b) {
+  return (a.p - b.p).norm() + log_so3(a.q.conjugate() * b.q).norm();
+}
+
+TEST(PoseFromPoints, JacobianIsThatOfCentralDifferences) {
+  const Eigen::Vector3d p(0.4, -0.7, 1.6);
+  const auto projection = [](const Eigen::Vector3d& x) {
+    return Eigen::Vector3d(x.x() / x.z(), x.y() / x.z(), 1.0 / x.z());
+  };
+  Eigen::Matrix3d expected;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d d = 1e-6 * Eigen::Vector3d::Unit(i);
+    expected.col(i) = (projection(p + d) - projection(p - d)) / 2e-6;
+  }
+  // Error of central differences: about (1e-6)^2, and 1e-16 / 1e-6 of rounding.
+  EXPECT_TRUE(inverse_depth_jacobian(p.hnormalized(), 1.0 / p.z()).isApprox(expected, 1e-8));
+  EXPECT_TRUE(bearing_jacobian(p.hnormalized(), 1.0 / p.z()).isApprox(expected.topRows<2>(), 1e-8));
+}
+
+TEST(PoseFromPoints, RefinementConvergesFromFifteenDegrees) {
+  const Pose initial = Pose{exp_so3({0.0, 0.26, 0.0}), {}} * kTcw;
+  EXPECT_LT(distance(refine_pose(initial, observe(40), {.scale = 1.0, .steps = 8}), kTcw), 1e-9);
+}
+
+TEST(PoseFromPoints, RefinementWithoutPointsReturnsTheInitialPose) {
+  EXPECT_LT(distance(refine_pose(kTcw, {}, {}), kTcw), 1e-15);
+}
+
+TEST(PoseFromPoints, CountsObservationsBelowTheThresholdInFrontOfTheCamera) {
+  std::vector<PointObservation> observations = observe(10);
+  observations[0].bearing.x() += 0.009;
+  observations[1].bearing.x() += 0.011;
+  observations[2].p_w = kTcw.inverse() * -(kTcw * observations[2].p_w);  // behind, with the same bearing
+  EXPECT_EQ(count_inliers(kTcw, observations, 0.01), 8u);
+}
+
+TEST(PoseFromPoints, RequiredSamplesFollowFischlerAndBolles) {
+  // log(0.01) / log(1 - 0.5^4) = -4.605 / -0.06454
+  EXPECT_NEAR(required_samples(0.5, {.sample_size = 4, .confidence = 0.99}), 71.36, 0.01);
+  EXPECT_EQ(required_samples(1.0, {.sample_size = 4, .confidence = 0.99}), 0.0);
+}
+
+TEST(PoseFromPoints, ConsensusFindsThePoseAmongHalfOutliers) {
+  std::vector<PointObservation> observations = observe(80);
+  for (std::size_t i = 0; i < observations.size(); i += 2) observations[i].bearing.x() += 0.1;
+  std::mt19937 random(1);
+  // A sample is free of outliers with probability 1/16: 200 contain one, but for 3e-6.
+  const PoseConsensus found =
+      sample_poses(observations, Pose{}, {.consensus = {.max_samples = 200}}, std::ref(random));
+  EXPECT_EQ(found.inliers, 40u);
+  EXPECT_LT(distance(found.pose, kTcw), 1e-3);
+}
+
+TEST(PoseFromPoints, ConsensusStopsWhenEnoughSamplesAreDrawn) {
+  const std::vector<PointObservation> observations = observe(20);
+  std::mt19937 random(1);
+  std::size_t calls = 0;
+  const auto count_calls = [&] {
+    ++calls;
+    return static_cast<std::size_t>(random());
+  };
+  const PoseSampling sampling{.consensus = {.confidence = 0.99}, .refinement = {.steps = 8}};
+  const PoseConsensus found = sample_poses(observations, kTcw, sampling, count_calls);
+  EXPECT_EQ(found.inliers, 20u);
+  EXPECT_EQ(calls, 4u);  // all agree with the first sample
+}
+
+}  // namespace
+}  // namespace stillpoint
