@@ -21,7 +21,6 @@ constexpr double kGapIntervals = 2.5;       ///< an interval longer than this ma
 constexpr double kMaxDepthOffset_s = 0.01;  ///< of the median; beyond, color and depth disagree during motion
 constexpr double kMinTruthCoverage = 0.95;  ///< fraction of the images that ground truth should cover
 constexpr double kMaxTruthDistance_s = 0.1;  ///< an image further in time from any true pose is not covered
-constexpr double kMaxBoxDistance_s = 0.016;  ///< default of detector.max_time_difference_s
 constexpr double kMinMeanAccel = 7.0;        ///< [m/s^2] range of the mean |a| of a hand-held or wheeled IMU;
 constexpr double kMaxMeanAccel = 13.0;       ///< a mean near 1 indicates the unit g, near 1000 the unit mg
 constexpr std::size_t kMaxFindingsShown = 5;  ///< per file
@@ -138,7 +137,7 @@ CheckReport check_detections(const SequenceInfo& info) {
     return report;
   }
   report.notes.push_back(fmt::format("recorded detections for {} timestamps", info.detections.size()));
-  const std::size_t covered = covered_images(info, info.detections, kMaxBoxDistance_s);
+  const std::size_t covered = covered_images(info, info.detections, kMaxDetectionOffset_s);
   if (covered < info.frame_times.size()) {
     report.findings.push_back(
         warning("detections", fmt::format("cover {} of {} images", covered, info.frame_times.size())));

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bench/config/key_effects.h"
 #include "bench/config/settings.h"
 #include "bench/config/toml_source.h"
 #include "bench/model/stored_run.h"
@@ -41,7 +42,8 @@ std::optional<Setting> find_inherits(const std::vector<Setting>& settings) {
 
 /// @param visited paths of the files that inherit this one, directly or indirectly
 ConfigChain load_chain(const TomlSource& source, std::vector<std::string> visited) {
-  const std::vector<Setting> settings = parse_settings(source.text, source.path);
+  std::vector<Setting> settings = parse_settings(source.text, source.path);
+  for (Setting& setting : settings) setting.shipped = source.embedded;
   const std::optional<Setting> inherits = find_inherits(settings);
   visited.push_back(source.path);
   ConfigChain chain;
@@ -75,19 +77,45 @@ std::vector<ConfigChain> variant_chains(const std::string& variant) {
   return chains;
 }
 
-}  // namespace
-
-OdometryConfig load_config(const ConfigRequest& request) {
+/// All settings of a request in the order in which they are applied.
+std::vector<Setting> settings_of(const ConfigRequest& request) {
   std::vector<ConfigChain> chains = variant_chains(request.variant);
   const bool variant_has_base = !chains.empty() && chains.front().is_base();
   if (!variant_has_base) chains.insert(chains.begin(), load_chain(request.base));
+  std::vector<Setting> settings;
+  for (const ConfigChain& chain : chains)
+    settings.insert(settings.end(), chain.settings.begin(), chain.settings.end());
+  for (const std::string& assignment : request.settings) settings.push_back(parse_assignment(assignment));
+  return settings;
+}
 
-  OdometryConfig config;
-  for (const ConfigChain& chain : chains) config = with_settings(config, chain.settings);
-  for (const std::string& assignment : request.settings) {
-    config = with_settings(config, std::vector{parse_assignment(assignment)});
+std::string place_of(const Setting& setting) {
+  return setting.line > 0 ? fmt::format("{}:{}", setting.file, setting.line) : setting.file;
+}
+
+}  // namespace
+
+OdometryConfig load_config(const ConfigRequest& request) {
+  return with_settings(OdometryConfig{}, settings_of(request));
+}
+
+std::vector<std::string> settings_without_effect(const ConfigRequest& request) {
+  const std::vector<Setting> settings = settings_of(request);
+  std::vector<Setting> shipped;
+  std::ranges::copy_if(settings, std::back_inserter(shipped), &Setting::shipped);
+  const OdometryConfig config = with_settings(OdometryConfig{}, settings);
+  const std::vector<ConfigEntry> changed =
+      config_difference(with_settings(OdometryConfig{}, shipped), config);
+  std::vector<std::string> messages;
+  for (const Setting& setting : settings) {
+    if (setting.shipped || std::ranges::find(changed, setting.key, &ConfigEntry::key) == changed.end())
+      continue;
+    const std::string_view requirement = missing_requirement(setting.key, config);
+    if (requirement.empty()) continue;
+    messages.push_back(
+        fmt::format("{}: \"{}\" has no effect; it requires {}", place_of(setting), setting.key, requirement));
   }
-  return config;
+  return messages;
 }
 
 std::string toml_quoted(std::string_view text) {
@@ -142,9 +170,11 @@ struct TypeText {
   std::string operator()(const EnumField& field) const { return quoted_list(field.names); }
 };
 
-std::string range_text(const Bounds& bounds) {
-  const bool bounded = bounds.min > -std::numeric_limits<double>::infinity();
-  return bounded ? fmt::format("{} to {}", bounds.min, bounds.max) : "";
+/// The values that a number accepts, with its unit.
+std::string range_text(const FieldInfo& info) {
+  const bool bounded = info.min > -std::numeric_limits<double>::infinity();
+  const std::string range = bounded ? fmt::format("{} to {}", info.min, info.max) : "";
+  return info.unit.empty() ? range : fmt::format("{} {}", range, info.unit);
 }
 
 }  // namespace
@@ -172,6 +202,23 @@ std::string config_hash(const OdometryConfig& config) {
   return perturbed_hash(hash_text(content_hash(text)), config.pipeline.perturbation_seed);
 }
 
+std::string difference_text(const OdometryConfig& a, const OdometryConfig& b) {
+  OdometryConfig copy_a = a;
+  OdometryConfig copy_b = b;
+  const std::vector<ConfigField> fields_a = fields_of(copy_a);
+  const std::vector<ConfigField> fields_b = fields_of(copy_b);
+  std::string text;
+  for (std::size_t i = 0; i < fields_a.size(); ++i) {
+    const std::string value_a = std::visit(TomlValue{}, fields_a[i].member);
+    const std::string value_b = std::visit(TomlValue{}, fields_b[i].member);
+    if (value_a == value_b) continue;
+    const std::string_view unit = fields_a[i].info.unit;
+    text +=
+        fmt::format("{} = {} -> {}{}{}\n", fields_a[i].key, value_a, value_b, unit.empty() ? "" : " ", unit);
+  }
+  return text;
+}
+
 std::vector<ConfigEntry> config_difference(const OdometryConfig& parent, const OdometryConfig& changed) {
   const std::vector<ConfigEntry> before = config_entries(parent);
   const std::vector<ConfigEntry> after = config_entries(changed);
@@ -183,12 +230,14 @@ std::vector<ConfigEntry> config_difference(const OdometryConfig& parent, const O
 }
 
 std::string config_reference() {
-  std::string page = "# Configuration keys\n\nGenerated by `stillpoint config reference`.\n\n";
-  page += "| key | type | range | default |\n|---|---|---|---|\n";
+  std::string page = "# Configuration keys\n\nGenerated by `stillpoint config reference`. ";
+  page += "Paper: section of the paper that describes it; empty: not in the paper.\n\n";
+  page += "| key | meaning | type | range | default | paper |\n|---|---|---|---|---|---|\n";
   OdometryConfig defaults;
   for (const ConfigField& field : fields_of(defaults)) {
-    page += fmt::format("| `{}` | {} | {} | `{}` |\n", field.key, std::visit(TypeText{}, field.member),
-                        range_text(field.bounds), std::visit(TomlValue{}, field.member));
+    page += fmt::format("| `{}` | {} | {} | {} | `{}` | {} |\n", field.key, field.info.text,
+                        std::visit(TypeText{}, field.member), range_text(field.info),
+                        std::visit(TomlValue{}, field.member), field.info.paper);
   }
   return page;
 }

@@ -25,6 +25,12 @@ struct ConfigRequest {
 /// @throws InputError for unknown names, circular inheritance, two bases, and every fault of a file
 [[nodiscard]] OdometryConfig load_config(const ConfigRequest& request);
 
+/// One message, with its place, for each setting of the user that has no effect in the config of a request
+/// (see bench/config/key_effects.h). Settings that equal those of the shipped configs are not listed, so that
+/// a file may state all keys, e.g. the output of `stillpoint config show`.
+/// @throws InputError as `load_config`
+[[nodiscard]] std::vector<std::string> settings_without_effect(const ConfigRequest& request);
+
 /// A TOML string: the text in double quotes, with backslashes before quotes and backslashes.
 [[nodiscard]] std::string toml_quoted(std::string_view text);
 
@@ -49,7 +55,11 @@ struct ConfigEntry {
 [[nodiscard]] std::vector<ConfigEntry> config_difference(const OdometryConfig& parent,
                                                          const OdometryConfig& changed);
 
-/// Reference page of all keys: a Markdown table of key, type or choices, range and default.
+/// The keys whose values differ, one per line: `KEY = A -> B UNIT`. Empty if all are equal.
+[[nodiscard]] std::string difference_text(const OdometryConfig& a, const OdometryConfig& b);
+
+/// Reference page of all keys: a Markdown table of key, meaning, type or choices, range with unit, default
+/// and section of the paper.
 [[nodiscard]] std::string config_reference();
 
 }  // namespace stillpoint::bench

@@ -130,7 +130,7 @@ T value_as(const Setting& setting, const std::string& type) {
   throw bad_value(setting, "has the wrong type; it must be " + type);
 }
 
-double number_within(double value, const Setting& setting, const Bounds& bounds) {
+double number_within(double value, const Setting& setting, const FieldInfo& bounds) {
   if (value >= bounds.min && value <= bounds.max) return value;  // false for NaN
   throw bad_value(setting, fmt::format("is {}, out of range; it must be between {} and {}", value, bounds.min,
                                        bounds.max));
@@ -139,13 +139,14 @@ double number_within(double value, const Setting& setting, const Bounds& bounds)
 /// Assigns the value of a setting to the member of a field.
 struct Assign {
   const Setting& setting;
-  const Bounds& bounds;
+  const FieldInfo& bounds;
 
   void operator()(bool* member) const { *member = value_as<bool>(setting, "true or false"); }
 
   void operator()(int* member) const {
     const std::int64_t value = value_as<std::int64_t>(setting, "an integer");
-    const Bounds representable{std::max(bounds.min, -2147483648.0), std::min(bounds.max, 2147483647.0)};
+    const FieldInfo representable =
+        field_info(std::max(bounds.min, -2147483648.0), std::min(bounds.max, 2147483647.0));
     *member = static_cast<int>(number_within(static_cast<double>(value), setting, representable));
   }
 
@@ -200,7 +201,7 @@ void assign_settings(std::span<const ConfigField> fields, std::span<const Settin
       return candidate.key == setting.key;
     });
     if (field == fields.end()) throw unknown_key(setting, fields);
-    std::visit(Assign{setting, field->bounds}, field->member);
+    std::visit(Assign{setting, field->info}, field->member);
   }
 }
 

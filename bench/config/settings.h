@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,12 +20,6 @@
 
 namespace stillpoint::bench {
 
-/// Inclusive range of a number.
-struct Bounds {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-};
-
 /// Reference to an enum member.
 struct EnumField {
   void* member;
@@ -38,7 +31,7 @@ struct EnumField {
 /// Reference to one leaf member of a config struct.
 struct ConfigField {
   std::string key;  ///< dotted, e.g. "frontend.grid.rows"
-  Bounds bounds;
+  FieldInfo info;   ///< without a text for the fields of plans, systems and devices
   std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*, std::vector<int>*, EnumField>
       member;
 };
@@ -65,20 +58,25 @@ template <class T>
 concept ConfigSection = std::is_class_v<T> && !std::is_same_v<T, std::string> &&
                         !std::is_same_v<T, std::vector<std::string>> && !std::is_same_v<T, std::vector<int>>;
 
+/// The meaning of a field by the arguments that follow it in a field list: nothing, its bounds, or all of it.
+constexpr FieldInfo field_info() { return {}; }
+constexpr FieldInfo field_info(const FieldInfo& info) { return info; }
+constexpr FieldInfo field_info(double min, double max) { return {.text = {}, .min = min, .max = max}; }
+
 /// All members that are not sections, in the order of the field lists. Valid while `config` exists.
 template <class Config>
 [[nodiscard]] std::vector<ConfigField> fields_of(Config& config, const std::string& prefix = "") {
   std::vector<ConfigField> fields;
   visit_fields(
-      [&](std::string_view name, auto& member, auto... bounds) {
+      [&](std::string_view name, auto& member, const auto&... info) {
         using Member = std::remove_reference_t<decltype(member)>;
         const std::string key = prefix + std::string(name);
         if constexpr (ConfigSection<Member>) {
           for (ConfigField& field : fields_of(member, key + ".")) fields.push_back(std::move(field));
         } else if constexpr (std::is_enum_v<Member>) {
-          fields.push_back({key, {}, enum_field(member)});
+          fields.push_back({key, field_info(info...), enum_field(member)});
         } else {
-          fields.push_back({key, Bounds{static_cast<double>(bounds)...}, &member});
+          fields.push_back({key, field_info(info...), &member});
         }
       },
       config);
@@ -92,8 +90,9 @@ using SettingValue =
 struct Setting {
   std::string key;  ///< dotted, e.g. "frontend.grid.rows"
   SettingValue value;
-  std::string file;  ///< path or option, as shown in messages
-  long line = 0;     ///< from 1; 0 for the command line
+  std::string file;      ///< path or option, as shown in messages
+  long line = 0;         ///< from 1; 0 for the command line
+  bool shipped = false;  ///< by an embedded config, not by the user
 };
 
 /// Parses a TOML text into settings, in the order of its lines.

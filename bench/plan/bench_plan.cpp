@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/config/config_file.h"
+#include "bench/config/key_effects.h"
 #include "bench/config/settings.h"
 #include "bench/config/spelling.h"
 #include "bench/config/toml_source.h"
@@ -145,6 +146,29 @@ void require_configs(const BenchPlan& plan, const std::string& key,
   });
 }
 
+/// Runs that differ in a key without effect are equal, unlike what the table says.
+void require_effect(const BenchPlan& plan, const std::string& key, const std::string& table) {
+  std::vector<std::string> variants = plan.variants;
+  for (const auto* group : {&plan.rendered.variants, &plan.recorded.variants})
+    variants.insert(variants.end(), group->begin(), group->end());
+  std::string_view requirement;
+  for (const std::string& variant : variants) {
+    requirement = missing_requirement(key, load_config({plan.base, variant, plan.config_settings}));
+    if (requirement.empty()) return;
+  }
+  if (variants.empty()) return;
+  throw InputError(place_of(plan, table + "." + key),
+                   fmt::format("\"{}\" has no effect in any variant; it requires {}", key, requirement));
+}
+
+void require_effects(const BenchPlan& plan) {
+  for (const std::string& assignment : plan.config_settings)
+    require_effect(plan, assignment.substr(0, assignment.find('=')), "config");
+  for (const SweepAxis& axis : plan.sweep) {
+    if (!axis.key.starts_with(kSynthPrefix)) require_effect(plan, axis.key, "sweep");
+  }
+}
+
 void require_renderings(const BenchPlan& plan) {
   synth::SynthRequest request;
   for (const SweepAxis& setting : plan.synth_settings) {
@@ -237,6 +261,7 @@ void validate_plan(const BenchPlan& plan) {
   require_configs(plan, "variants", plan.variants);
   require_configs(plan, "rendered.variants", plan.rendered.variants);
   require_configs(plan, "recorded.variants", plan.recorded.variants);
+  require_effects(plan);
   require_renderings(plan);
   require_distinct_lists(plan);
   require_mode(plan);

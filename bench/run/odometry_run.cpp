@@ -90,12 +90,12 @@ bool has_set_at(const std::vector<DetectionSet>& sets, Timestamp t, double toler
 void require_recorded_boxes(const OdometryConfig& config, const datasets::SequenceInfo& info) {
   if (used_detector(config) != DetectorKind::kRecorded) return;
   require_recorded_boxes(config, info.folder);
-  const double tolerance_s = config.detector.max_time_difference_s;
-  const bool any = std::any_of(info.frame_times.begin(), info.frame_times.end(),
-                               [&](Timestamp t) { return has_set_at(info.detections, t, tolerance_s); });
+  const bool any = std::any_of(info.frame_times.begin(), info.frame_times.end(), [&](Timestamp t) {
+    return has_set_at(info.detections, t, kMaxDetectionOffset_s);
+  });
   if (!any) {
     throw_missing(info.folder, fmt::format("none of its {} time stamps is within {} s of a frame",
-                                           info.detections.size(), tolerance_s));
+                                           info.detections.size(), kMaxDetectionOffset_s));
   }
 }
 

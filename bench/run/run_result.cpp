@@ -81,8 +81,8 @@ std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const O
                                    *summary.detector_counters.unrecorded, summary.frames));
   }
   if (summary.imu_health.gaps > 0) {
-    warnings.push_back(
-        fmt::format("imu: {} gap(s) between samples are longer than imu.max_gap_s", summary.imu_health.gaps));
+    warnings.push_back(fmt::format("imu: {} gap(s) between samples are longer than {} s",
+                                   summary.imu_health.gaps, ImuConfig{}.max_gap_s));
   }
   if (summary.imu_health.rejected_samples > 0) {
     warnings.push_back(fmt::format("imu: {} sample(s) rejected: not finite, or not later than the one before",

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Settings of dynamic feature recognition. Paper Sec. III-C to III-E.
 ///
-/// The paper gives none of the values; the defaults are those of the published Dynamic-VINS code. Comments
-/// state where the method differs from the paper.
+/// The paper gives none of the values; the defaults are those of the published Dynamic-VINS code. The field
+/// list explains each key, and states where the method differs from the paper.
 #pragma once
 
 #include <string>
@@ -24,66 +24,122 @@ constexpr auto enum_names(DynamicMask) {
 
 struct DynamicConfig {
   // Mask. Sec. III-C
-  DynamicMask mask = DynamicMask::kDepthThreshold;  ///< Eq. (2), or an alternative to it
-  double epsilon_m = 1.0;     ///< epsilon of Eq. (2), or half extent of the depth band [m]
-  int depth_window_px = 1;    ///< side of the median window for depth samples on the box, and for features
-                              ///< without depth; odd
-  double box_margin_px = 10;  ///< boxes are enlarged by it on every side; not in the paper
-  std::vector<std::string> classes = {"person", "cat", "dog", "bicycle", "car", "bus"};  ///< dynamic classes
-  /// Whether a feature with invalid depth inside a box is dynamic. True follows Sec. III-C: 0 < d_bar. False
-  /// follows the published code: dynamic only if d_bar is infinite.
+  DynamicMask mask = DynamicMask::kDepthThreshold;
+  double epsilon_m = 1.0;
+  int depth_window_px = 1;
+  double box_margin_px = 10;
+  std::vector<std::string> classes = {"person", "cat", "dog", "bicycle", "car", "bus"};
   bool unmeasured_is_dynamic = true;
 
   // Missed detection compensation. Sec. III-D
   bool missed_detection = true;
-  int max_missed_frames = 3;       ///< an object is abandoned after more consecutive missed detections
-  int max_skipped_frames = 10;     ///< same for frames without detector output; not in the paper
-  double growth_px_per_miss = 10;  ///< growth of a predicted box per frame, on every side; 0 in the paper
-  double min_iou = 0.3;            ///< minimum overlap for data association; not in the paper
+  int max_missed_frames = 3;
+  int max_skipped_frames = 10;
+  double growth_px_per_miss = 10;
 
   // Moving consistency check. Sec. III-E
   bool moving_consistency = true;
-  double mcc_threshold_px = 10;  ///< r_k of Eq. (6) above which a feature is dynamic, px of the focal length
-  int mcc_min_observations = 2;  ///< in the window, required to recycle a feature; the paper: "more"
-  int recycle_min_frames = 0;  ///< also recycle after so many consecutive frames with a small r_k, since the
-                               ///< frames of the window may span seconds; 0 = never; not in the paper
-  double recycle_residual_px = 1;  ///< largest r_k of these frames
-  int min_static_frames = 0;  ///< readmit a feature after so many consecutive static frames and discard its
-                              ///< older observations; 0 = never; not in the paper
-  double static_residual_px = 1;   ///< largest reprojection error of these frames, px of the focal length
-  bool gate_before_solve = false;  ///< also check the newest frame at its predicted pose before the solve. In
-                                   ///< the paper, but not in the published code
-  double gate_threshold_px = 10;   ///< residual at the predicted pose above which a feature is dynamic
-  /// Instead of the threshold, the probability that a static feature passes the check at the predicted pose,
-  /// by the covariance of the prediction; 0 = the threshold, as without a covariance. Not in the paper
+  double mcc_threshold_px = 10;
+  int mcc_min_observations = 2;
+  int recycle_min_frames = 0;
+  int min_static_frames = 0;
+  bool gate_before_solve = false;
   double gate_probability = 0;
-  int min_stable_features = 0;  ///< minimum number of features left by the check; not in the paper
+  int min_stable_features = 0;
 };
+/// Keys of the semantic mask. Paper Sec. III-C.
+template <class Visitor, class Config>
+void visit_mask_fields(Visitor&& field, Config& config) {
+  field("mask", config.mask,
+        FieldInfo{
+            .text = "Which features in a box are dynamic: those before a depth threshold, those in a band of "
+                    "depths around the object (not in the paper), all, or none.",
+            .paper = "III-C, Eq. (2)"});
+  field("epsilon_m", config.epsilon_m,
+        FieldInfo{"Epsilon of the depth threshold, or half extent of the depth band.", "m", 0.01, 100.0,
+                  "III-C, Eq. (2)"});
+  field(
+      "depth_window_px", config.depth_window_px,
+      FieldInfo{
+          "Side of the window whose median is the depth of a box sample or of a feature without depth; odd.",
+          "px", 1, 31, "III-C, Eq. (1)"});
+  field("box_margin_px", config.box_margin_px,
+        FieldInfo{"Boxes are enlarged by this on every side; not in the paper.", "px", 0.0, 500.0});
+  field("classes", config.classes, FieldInfo{.text = "Classes of objects that may move.", .paper = "III-C"});
+  field(
+      "unmeasured_is_dynamic", config.unmeasured_is_dynamic,
+      FieldInfo{
+          .text = "Whether a feature without depth in a box is dynamic, as in the paper (0 < d_bar), or only "
+                  "if no depth of the box is known, as in the published code.",
+          .paper = "III-C"});
+}
+
+/// Keys of missed detection compensation. Paper Sec. III-D.
+template <class Visitor, class Config>
+void visit_missed_detection_fields(Visitor&& field, Config& config) {
+  field("missed_detection", config.missed_detection,
+        FieldInfo{.text = "Whether the boxes of objects that the detector misses are predicted.",
+                  .paper = "III-D, Eqs. (3) to (5)"});
+  field("max_missed_frames", config.max_missed_frames,
+        FieldInfo{"An object is abandoned after more consecutive missed detections.", "frames", 0, 1000,
+                  "III-D"});
+  field("max_skipped_frames", config.max_skipped_frames,
+        FieldInfo{
+            "An object is abandoned after more frames without a message of the detector; not in the paper.",
+            "frames", 0, 1000});
+  field("growth_px_per_miss", config.growth_px_per_miss,
+        FieldInfo{"Growth of a predicted box on every side per frame without a detection; 0 in the paper.",
+                  "px", 0.0, 500.0});
+}
+
+/// Keys of the moving consistency check. Paper Sec. III-E.
+template <class Visitor, class Config>
+void visit_consistency_fields(Visitor&& field, Config& config) {
+  field("moving_consistency", config.moving_consistency,
+        FieldInfo{.text = "Whether features that contradict the estimated poses are labeled dynamic.",
+                  .paper = "III-E"});
+  field("mcc_threshold_px", config.mcc_threshold_px,
+        FieldInfo{
+            "A feature whose mean residual r_k in the window is larger is dynamic; px at the focal length.",
+            "px", 0.1, 1000.0, "III-E, Eq. (6)"});
+  field(
+      "mcc_min_observations", config.mcc_min_observations,
+      FieldInfo{
+          "Observations in the window that recycle a dynamic feature with a small r_k; the paper: \"more\".",
+          "frames", 2, 40, "III-E"});
+  field(
+      "recycle_min_frames", config.recycle_min_frames,
+      FieldInfo{
+          "A dynamic feature is also recycled after this many consecutive frames with r_k below 1 px, as the "
+          "frames of the window may span seconds; 0 = never; not in the paper.",
+          "frames", 0, 1000});
+  field("min_static_frames", config.min_static_frames,
+        FieldInfo{
+            "A dynamic feature is readmitted, without its older observations, after this many consecutive "
+            "frames at one place of the world; 0 = never; not in the paper.",
+            "frames", 0, 1000});
+  field(
+      "gate_before_solve", config.gate_before_solve,
+      FieldInfo{
+          .text = "Whether the newest frame is also checked at its predicted pose, before the solve; in the "
+                  "paper, but not in the published code.",
+          .paper = "III-E"});
+  field("gate_probability", config.gate_probability,
+        FieldInfo{"Probability that a static feature passes the check at the predicted pose, by the "
+                  "covariance of the "
+                  "prediction; 0, or without a covariance: a residual of at most 10 px; not in the paper.",
+                  "", 0.0, 0.999999});
+  field("min_stable_features", config.min_stable_features,
+        FieldInfo{"Features that the check at the predicted pose leaves at least; not in the paper.",
+                  "features", 0, 1000});
+}
+
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, DynamicConfig>
 void visit_fields(Visitor&& field, Config& config) {
-  field("mask", config.mask);
-  field("epsilon_m", config.epsilon_m, 0.01, 100.0);
-  field("depth_window_px", config.depth_window_px, 1, 31);
-  field("box_margin_px", config.box_margin_px, 0.0, 500.0);
-  field("classes", config.classes);
-  field("unmeasured_is_dynamic", config.unmeasured_is_dynamic);
-  field("missed_detection", config.missed_detection);
-  field("max_missed_frames", config.max_missed_frames, 0, 1000);
-  field("max_skipped_frames", config.max_skipped_frames, 0, 1000);
-  field("growth_px_per_miss", config.growth_px_per_miss, 0.0, 500.0);
-  field("min_iou", config.min_iou, 0.01, 1.0);
-  field("moving_consistency", config.moving_consistency);
-  field("mcc_threshold_px", config.mcc_threshold_px, 0.1, 1000.0);
-  field("mcc_min_observations", config.mcc_min_observations, 2, 40);
-  field("recycle_min_frames", config.recycle_min_frames, 0, 1000);
-  field("recycle_residual_px", config.recycle_residual_px, 0.01, 1000.0);
-  field("min_static_frames", config.min_static_frames, 0, 1000);
-  field("static_residual_px", config.static_residual_px, 0.01, 1000.0);
-  field("gate_before_solve", config.gate_before_solve);
-  field("gate_threshold_px", config.gate_threshold_px, 0.1, 1000.0);
-  field("gate_probability", config.gate_probability, 0.0, 0.999999);
-  field("min_stable_features", config.min_stable_features, 0, 1000);
+  visit_mask_fields(field, config);
+  visit_missed_detection_fields(field, config);
+  visit_consistency_fields(field, config);
 }
 
 }  // namespace stillpoint

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Settings of the tracker and the feature detectors. Paper Sec. III-A, III-B; defaults are those of the
-/// published Dynamic-VINS code, except for checks that it lacks; its config disables them.
+/// published Dynamic-VINS code, except for checks that it lacks; its config disables them. The field lists
+/// explain the keys.
 #pragma once
 
 #include <type_traits>
@@ -36,89 +37,123 @@ constexpr auto enum_names(OutlierModel) {
 struct GridDetectorConfig {
   int rows = 7;
   int cols = 8;
-  int padding_px = 3;        ///< border added to each cell; FAST needs 3
-  int fast_threshold = 10;   ///< intensity difference [grey levels]
-  bool skip_empty = true;    ///< skip a cell without corners at the next detection
-  bool stop_early = false;   ///< search the cells with the fewest features first; stop when enough are found
-  int extra_candidates = 2;  ///< candidates kept per cell beyond its quota
-  int threads = 1;           ///< size of the thread pool; does not affect the result
+  int fast_threshold = 10;
+  bool stop_early = false;
+  int threads = 1;
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, GridDetectorConfig>
 void visit_fields(Visitor&& field, Config& config) {
-  field("rows", config.rows, 1, 64);
-  field("cols", config.cols, 1, 64);
-  field("padding_px", config.padding_px, 3, 32);
-  field("fast_threshold", config.fast_threshold, 1, 255);
-  field("skip_empty", config.skip_empty);
-  field("stop_early", config.stop_early);
-  field("extra_candidates", config.extra_candidates, 0, 64);
-  field("threads", config.threads, 1, 64);
+  field("rows", config.rows, FieldInfo{"Rows of the grid.", "", 1, 64, "III-B; value: IV-C"});
+  field("cols", config.cols, FieldInfo{"Columns of the grid.", "", 1, 64, "III-B; value: IV-C"});
+  field("fast_threshold", config.fast_threshold,
+        FieldInfo{"Difference of intensity that makes a FAST corner.", "grey levels", 1, 255, "III-B"});
+  field(
+      "stop_early", config.stop_early,
+      FieldInfo{.text = "Whether cells are searched by ascending number of features until enough corners are "
+                        "found, instead of all; not in the paper."});
+  field("threads", config.threads,
+        FieldInfo{"Size of the thread pool; does not affect the result.", "", 1, 64, "III-B"});
 }
 
 struct FrontendConfig {
   int max_features = 130;
-  int min_distance_px = 30;     ///< radius of the circles around stable features
-  int unstable_radius_px = 30;  ///< radius of the circles around unstable (lost) features; 0 = none
-  bool circular_mask = true;    ///< both circles. Paper Sec. III-A
+  int min_distance_px = 30;
+  int unstable_radius_px = 30;
+  bool circular_mask = true;
   FeatureDetectorKind detector = FeatureDetectorKind::kGridFast;
   TrackerPrediction prediction = TrackerPrediction::kRotation;
   TrackerKind tracker = TrackerKind::kOpenCv;
-  int window_px = 21;                  ///< opencv: side of the KLT window
-  int pyramid_levels = 2;              ///< with predicted motion; includes the full resolution
-  int unpredicted_pyramid_levels = 4;  ///< without prediction: disabled, VO, or a gap in the IMU data
-  int max_iterations = 30;             ///< per level
-  double min_correlation = 0.8;        ///< patch: zero-mean normalized cross-correlation with the match
-  bool forward_backward = false;       ///< forward-backward check
-  double forward_backward_px = 0.5;
-  OutlierModel outlier_model =
-      OutlierModel::kEpipolar;       ///< motion model of RANSAC; rigid uses the measured depths
-  double ransac_threshold_px = 1.0;  ///< residual of an inlier, px at the camera's focal length
-  double ransac_confidence = 0.99;
-  double ransac_min_inlier_ratio = 0.5;  ///< models with fewer inliers are discarded: nothing is rejected; 0
-                                         ///< = as published
-  bool reject_static_only = false;  ///< exclude features labeled dynamic from RANSAC and never reject them,
-                                    ///< so that a large dynamic object cannot become the consensus; not in
-                                    ///< the paper
-  double drift_min_correlation = 0.0;  ///< align matches with the first image of their track, where the
-                                       ///< correlation is at least this; 0 = off; not in the paper
-  bool recover_view = false;  ///< continue the tracks of a lost view when it returns; not in the paper
-  int border_px = 1;
-  double depth_max_spread =
-      0.05;               ///< range of the depths in the 3x3 neighborhood over the depth; 0 = no check
-  bool equalize = false;  ///< CLAHE(3, 8x8) before tracking
-  double shi_tomasi_quality = 0.01;
+  int window_px = 21;
+  int pyramid_levels = 2;
+  /// Without prediction: disabled, visual odometry, or a gap in the IMU data. Not a key: maxLevel = 3 of
+  /// VINS.
+  int unpredicted_pyramid_levels = 4;
+  double min_correlation = 0.8;
+  OutlierModel outlier_model = OutlierModel::kEpipolar;
+  double ransac_threshold_px = 1.0;
+  double ransac_min_inlier_ratio = 0.5;
+  bool reject_static_only = false;
+  double drift_min_correlation = 0.0;
+  bool recover_view = false;
+  double depth_max_spread = 0.05;
   GridDetectorConfig grid;
 };
+/// Keys of tracked and detected features. Paper Sec. III-A, III-B.
+template <class Visitor, class Config>
+void visit_feature_fields(Visitor&& field, Config& config) {
+  field("max_features", config.max_features,
+        FieldInfo{"Number of tracked features; missing ones are detected.", "features", 8, 2000,
+                  "III-B; value: IV-C"});
+  field("min_distance_px", config.min_distance_px,
+        FieldInfo{"Radius of the circles around stable features, in which none is detected.", "px", 1, 200,
+                  "III-A"});
+  field("unstable_radius_px", config.unstable_radius_px,
+        FieldInfo{"Radius of the circles around unstable (lost) features; 0 = none.", "px", 0, 200, "III-A"});
+  field("circular_mask", config.circular_mask,
+        FieldInfo{.text = "Whether both kinds of circles are masked for the detection.", .paper = "III-A"});
+  field(
+      "detector", config.detector,
+      FieldInfo{
+          .text = "FAST corners in the cells of a grid, or Shi-Tomasi corners of the whole image (VINS-Mono, "
+                  "VINS-RGBD).",
+          .paper = "III-B"});
+  field("prediction", config.prediction,
+        FieldInfo{.text = "What predicts the position of a feature: nothing, the rotation, or rotation and "
+                          "translation of the IMU.",
+                  .paper = "III-A"});
+  field("tracker", config.tracker,
+        FieldInfo{.text = "KLT of OpenCV, or 8x8 patches that are accepted by their correlation.",
+                  .paper = "III-A"});
+  field("window_px", config.window_px,
+        FieldInfo{"Tracker opencv: side of the KLT window.", "px", 5, 63, "III-A"});
+  field("pyramid_levels", config.pyramid_levels,
+        FieldInfo{"Levels of the pyramid with a predicted motion, with the full resolution; 4 without one.",
+                  "", 1, 8, "III-A"});
+  field(
+      "min_correlation", config.min_correlation,
+      FieldInfo{"Tracker patch: smallest zero-mean normalized cross-correlation of a match.", "", -1.0, 1.0});
+}
+
+/// Keys of the matches: outliers, drift, depth.
+template <class Visitor, class Config>
+void visit_match_fields(Visitor&& field, Config& config) {
+  field(
+      "outlier_model", config.outlier_model,
+      FieldInfo{
+          .text = "Motion model of RANSAC: epipolar geometry, or a rigid motion of the measured depths (not "
+                  "in the paper).",
+          .paper = "III-A"});
+  field("ransac_threshold_px", config.ransac_threshold_px,
+        FieldInfo{"Largest residual of an inlier of RANSAC; px at the focal length.", "px", 0.1, 20.0});
+  field("ransac_min_inlier_ratio", config.ransac_min_inlier_ratio,
+        FieldInfo{"With a smaller fraction of inliers nothing is rejected; 0 = as published.", "", 0.0, 1.0});
+  field(
+      "reject_static_only", config.reject_static_only,
+      FieldInfo{
+          .text = "Whether features labeled dynamic take no part in RANSAC and are never rejected, so that a "
+                  "large dynamic object cannot become the consensus; not in the paper."});
+  field(
+      "drift_min_correlation", config.drift_min_correlation,
+      FieldInfo{
+          "Matches are aligned with the first image of their track, where the correlation is at least this; "
+          "0 = off; not in the paper.",
+          "", 0.0, 1.0});
+  field("recover_view", config.recover_view,
+        FieldInfo{.text = "Whether the tracks of a lost view continue when it returns; not in the paper."});
+  field("depth_max_spread", config.depth_max_spread,
+        FieldInfo{
+            "Largest range of the depths in the 3x3 neighborhood of a feature, relative to its depth; 0 = no "
+            "check, as published.",
+            "", 0.0, 10.0});
+  field("grid", config.grid);
+}
+
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, FrontendConfig>
 void visit_fields(Visitor&& field, Config& config) {
-  field("max_features", config.max_features, 8, 2000);
-  field("min_distance_px", config.min_distance_px, 1, 200);
-  field("unstable_radius_px", config.unstable_radius_px, 0, 200);
-  field("circular_mask", config.circular_mask);
-  field("detector", config.detector);
-  field("prediction", config.prediction);
-  field("tracker", config.tracker);
-  field("window_px", config.window_px, 5, 63);
-  field("pyramid_levels", config.pyramid_levels, 1, 8);
-  field("unpredicted_pyramid_levels", config.unpredicted_pyramid_levels, 1, 8);
-  field("max_iterations", config.max_iterations, 1, 100);
-  field("min_correlation", config.min_correlation, -1.0, 1.0);
-  field("forward_backward", config.forward_backward);
-  field("forward_backward_px", config.forward_backward_px, 0.01, 10.0);
-  field("outlier_model", config.outlier_model);
-  field("ransac_threshold_px", config.ransac_threshold_px, 0.1, 20.0);
-  field("ransac_confidence", config.ransac_confidence, 0.5, 0.99999);
-  field("ransac_min_inlier_ratio", config.ransac_min_inlier_ratio, 0.0, 1.0);
-  field("reject_static_only", config.reject_static_only);
-  field("drift_min_correlation", config.drift_min_correlation, 0.0, 1.0);
-  field("recover_view", config.recover_view);
-  field("border_px", config.border_px, 0, 100);
-  field("depth_max_spread", config.depth_max_spread, 0.0, 10.0);
-  field("equalize", config.equalize);
-  field("shi_tomasi_quality", config.shi_tomasi_quality, 1e-4, 0.5);
-  field("grid", config.grid);
+  visit_feature_fields(field, config);
+  visit_match_fields(field, config);
 }
 
 }  // namespace stillpoint

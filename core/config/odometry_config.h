@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// All settings of the odometry. The defaults are mostly those of Dynamic-VINS; configuration files override
-/// them.
+/// them. The field lists explain the keys.
 #pragma once
 
 #include <type_traits>
@@ -16,7 +16,7 @@
 namespace stillpoint {
 
 struct OdometryConfig {
-  int seed = 1;  ///< of all random number generators in a run
+  int seed = 1;
   ImuConfig imu;
   FrontendConfig frontend;
   DetectorConfig detector;
@@ -33,7 +33,7 @@ struct OdometryConfig {
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, OdometryConfig>
 void visit_fields(Visitor&& field, Config& config) {
-  field("seed", config.seed, 0, 1000000000);
+  field("seed", config.seed, FieldInfo{"Seed of all random number generators of a run.", "", 0, 1000000000});
   field("imu", config.imu);
   field("frontend", config.frontend);
   field("detector", config.detector);

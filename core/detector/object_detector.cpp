@@ -76,7 +76,7 @@ std::unique_ptr<ObjectDetector> make_for_every_frame(const DetectorConfig& confi
     case DetectorKind::kNone:
       return std::make_unique<NoDetector>();
     case DetectorKind::kRecorded:
-      return std::make_unique<RecordedDetector>(input.boxes, config.max_time_difference_s);
+      return std::make_unique<RecordedDetector>(input.boxes, kMaxDetectionOffset_s);
     case DetectorKind::kNetwork:
       return std::make_unique<NetworkDetector>(config, input.dynamic_classes);
     case DetectorKind::kSimulated:

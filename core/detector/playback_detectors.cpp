@@ -108,13 +108,13 @@ Detection false_positive(RandomStream& draw, cv::Size image) {
 
 SimulatedDetector::SimulatedDetector(std::span<const DetectionSet> truth, const DetectorConfig& config,
                                      int seed)
-    : truth_(truth), config_(config.simulated), max_difference_s_(config.max_time_difference_s), seed_(seed) {
+    : truth_(truth), config_(config.simulated), seed_(seed) {
   require_increasing(truth, "true boxes");
 }
 
 /// The last set up to time `t` plus the timestamp tolerance; null if there is none.
 const DetectionSet* SimulatedDetector::newest_at(Timestamp t) const {
-  const Timestamp end = after(t, max_difference_s_);
+  const Timestamp end = after(t, kMaxDetectionOffset_s);
   const auto later = std::upper_bound(truth_.begin(), truth_.end(), end,
                                       [](Timestamp stamp, const DetectionSet& set) { return stamp < set.t; });
   return later == truth_.begin() ? nullptr : &*std::prev(later);

@@ -48,7 +48,6 @@ class SimulatedDetector : public ObjectDetector {
 
   std::span<const DetectionSet> truth_;
   SimulatedDetectorConfig config_;
-  double max_difference_s_;
   int seed_;
   DetectorCounters counters_;
 };

@@ -11,6 +11,13 @@
 namespace stillpoint {
 namespace {
 
+/// Residual at the predicted pose above which a feature is dynamic, without a covariance: the value of
+/// `mcc_threshold_px` in the published code.
+constexpr double kGateThreshold_px = 10.0;
+
+/// Largest r_k of the frames that recycle a feature: the accuracy of tracking, far below `mcc_threshold_px`.
+constexpr double kRecycleResidual_px = 1.0;
+
 bool is_dynamic(const DynamicLabel& label) { return label.label != LabelClass::kStable; }
 
 /// Whether `enforce_min_stable` may relabel it as stable.
@@ -51,7 +58,7 @@ void label_as_moving(DynamicLabel& label, LabelReason reason) {
 
 bool fails_gate(const ConsistencyResidual& residual, const DynamicConfig& config) {
   if (config.gate_probability <= 0.0 || !residual.squared_distance)
-    return residual.mean_px > config.gate_threshold_px;
+    return residual.mean_px > kGateThreshold_px;
   // Quantile of the chi-square distribution with two degrees of freedom.
   return *residual.squared_distance > -2.0 * std::log(1.0 - config.gate_probability);
 }
@@ -106,7 +113,7 @@ const std::vector<DynamicLabel>& FeatureRecognition::check(std::span<const Consi
   for (Feature& feature : features_) ++feature.static_frames;
   for_each_match(features_, residuals, [&](Feature& feature, const ConsistencyResidual& residual) {
     feature.label.residual_px = residual.mean_px;
-    if (residual.mean_px > config_.recycle_residual_px) feature.static_frames = 0;
+    if (residual.mean_px > kRecycleResidual_px) feature.static_frames = 0;
     if (residual.mean_px > config_.mcc_threshold_px) {
       label_as_moving(feature.label, LabelReason::kResidual);
     } else if (residual.pair_count + 1 >= config_.mcc_min_observations) {

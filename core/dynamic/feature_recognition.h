@@ -30,13 +30,13 @@ class FeatureRecognition {
   [[nodiscard]] const std::vector<DynamicLabel>& classify(const TrackedFrame& frame,
                                                           const SemanticMask& mask);
 
-  /// Labels features with a residual above `gate_threshold_px`, or outside the gate of `gate_probability`, as
+  /// Labels features with a residual above 10 px, or outside the gate of `gate_probability`, as
   /// dynamic. Recycles none: the residuals are computed at the predicted pose.
   [[nodiscard]] const std::vector<DynamicLabel>& gate(std::span<const ConsistencyResidual> residuals);
 
   /// Labels features with a residual r_k above `mcc_threshold_px` as dynamic. Recycles dynamic features
   ///   - with r_k at or below the threshold and at least `mcc_min_observations` observations,
-  ///   - with r_k <= `recycle_residual_px` in `recycle_min_frames` consecutive frames; a frame without a
+  ///   - with r_k <= 1 px in `recycle_min_frames` consecutive frames; a frame without a
   ///     residual counts, since a feature without depth does not enter the estimate,
   ///   - listed in `readmitted`.
   /// @param readmitted ids from StaticReadmission, ascending
@@ -50,7 +50,7 @@ class FeatureRecognition {
   struct Feature {
     DynamicLabel label;
     bool inside_mask = false;
-    int static_frames = 0;  ///< consecutive, outside the mask, with r_k <= recycle_residual_px or without r_k
+    int static_frames = 0;  ///< consecutive, outside the mask, with r_k <= 1 px or without r_k
   };
 
   [[nodiscard]] bool is_inside(const TrackedFeature& feature, const DepthView& depth,

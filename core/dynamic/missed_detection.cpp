@@ -7,6 +7,13 @@
 #include "core/types/detection.h"
 
 namespace stillpoint {
+namespace {
+
+/// Smallest overlap that associates a detection with a predicted box; not in the paper. At 0.3 a box of a
+/// person may have moved by half of its width.
+constexpr double kMinIou = 0.3;
+
+}  // namespace
 
 /// Assigns admissible pairs in order of increasing cost. `cost` returns nullopt for an inadmissible pair.
 template <class Cost>
@@ -89,7 +96,7 @@ void MissedDetectionCompensation::assign_detections() {
     predictions_.push_back({object.class_name, object.predicted(), predicted_and_grown(object)});
   }
   const std::vector<std::optional<std::size_t>>& object_of =
-      association_.associate(predictions_, detections_, config_.min_iou);
+      association_.associate(predictions_, detections_, kMinIou);
   for (std::size_t i = 0; i < detections_.size(); ++i) {
     const Detection& detection = detections_[i];
     std::int64_t id = next_id_;

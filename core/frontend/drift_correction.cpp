@@ -36,14 +36,13 @@ Eigen::Matrix2d DriftCorrector::warp(const FirstView& first, const Frame& frame,
 void DriftCorrector::correct(const Frame& frame, const ImagePyramid& pyramid, std::span<Track> tracks,
                              KltResult& matches) const {
   const AlignmentSettings settings{
-      .search = {.max_iterations = config_.max_iterations,
-                 .min_correlation = static_cast<float>(config_.drift_min_correlation)},
+      .search = {.min_correlation = static_cast<float>(config_.drift_min_correlation)},
       .max_shift_px = kMaxShift_px};
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     FirstView& first = tracks[i].first_view;
     const cv::Point2f match = matches.pixels[i];
     const Eigen::Vector2d pixel = to_vector(match);
-    if (matches.found[i] == 0 || first.patch.empty() || !camera_.contains(pixel, config_.border_px)) continue;
+    if (matches.found[i] == 0 || first.patch.empty() || !camera_.contains(pixel, kImageBorder_px)) continue;
     const std::optional<PatchPoint> aligned =
         first.patch.align(pyramid, warp(first, frame, pixel), {match.x, match.y}, settings);
     if (aligned) {

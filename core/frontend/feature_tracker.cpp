@@ -2,7 +2,6 @@
 #include "core/frontend/feature_tracker.h"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,9 +16,6 @@
 
 namespace stillpoint {
 namespace {
-
-constexpr double kClaheClip = 3.0;  // as in VINS-Mono
-const cv::Size kClaheTiles(8, 8);
 
 using DynamicIds = std::span<const std::int64_t>;
 
@@ -54,9 +50,7 @@ struct FeatureTracker::State {
         camera(frontend_camera),
         detector(make_feature_detector(frontend_config)),
         drift_corrector(frontend_config, frontend_camera),
-        view_recovery(frontend_config, frontend_camera) {
-    if (config.equalize) equalizer = cv::createCLAHE(kClaheClip, kClaheTiles);
-  }
+        view_recovery(frontend_config, frontend_camera) {}
 
   void advance(const Frame& frame, const MotionPrior& prior, const TrackingOptions& options);
   void track_features(const Frame& frame, const MotionPrior& prior);
@@ -74,8 +68,6 @@ struct FeatureTracker::State {
   FrontendConfig config;
   Camera camera;
   std::unique_ptr<FeatureDetector> detector;
-  cv::Ptr<cv::CLAHE> equalizer;  // null unless config.equalize
-  cv::Mat equalized;
   ImagePyramid previous;
   ImagePyramid current;
   Timestamp current_t;
@@ -95,7 +87,6 @@ struct FeatureTracker::State {
   std::vector<cv::Point2f> pixels;
   std::vector<cv::Point2f> predicted;
   KltResult forward;
-  KltResult backward;
   std::vector<Match> correspondences;
 
   // Statistics of the current frame.
@@ -108,25 +99,23 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
                                     const TrackingOptions& options) {
   lost = 0;
   detected = 0;
-  if (equalizer) equalizer->apply(frame.gray, equalized);
-  const cv::Mat& gray = equalizer ? equalized : frame.gray;
   {
     const ScopedTimer timer(timings, Module::kFeatureTracking);
     std::swap(previous, current);
-    current = build_pyramid(config, gray, std::move(current));
+    current = build_pyramid(config, frame.gray, std::move(current));
     if (!tracks.empty()) track_features(frame, prior);
     current_t = frame.t;
   }
   if (options.detect) reject_outliers(options.dynamic_ids);
-  if (config.recover_view) recover_view(gray);
+  if (config.recover_view) recover_view(frame.gray);
   if (options.detect) {
     apply_mask();
-    detect_features(gray);
+    detect_features(frame.gray);
   }
   measure_depth(frame);
   if (config.drift_min_correlation > 0.0) DriftCorrector::begin_views(current, tracks);
   if (options.detect) update_references();
-  if (config.recover_view) view_recovery.remember(gray, tracks);
+  if (config.recover_view) view_recovery.remember(frame.gray, tracks);
 }
 
 void FeatureTracker::State::track_features(const Frame& frame, const MotionPrior& prior) {
@@ -145,12 +134,6 @@ void FeatureTracker::State::match_features(TrackerPrediction kind) {
       config,
       {.from = previous, .to = current, .points = pixels, .initial_guesses = predicted, .levels = levels},
       std::move(forward));
-  if (!config.forward_backward) return;
-  backward = track_points(
-      config,
-      {.from = current, .to = previous, .points = forward.pixels, .initial_guesses = pixels, .levels = 1},
-      std::move(backward));
-  forward = forward_backward_check(pixels, std::move(forward), backward, config.forward_backward_px);
 }
 
 void FeatureTracker::State::correct_drift(const Frame& frame, const MotionPrior& prior) {
@@ -163,7 +146,7 @@ void FeatureTracker::State::update_tracks(double interval_s) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const Eigen::Vector2d pixel = to_vector(forward.pixels[i]);
-    const bool inside = pixel.allFinite() && camera.contains(pixel, config.border_px);
+    const bool inside = pixel.allFinite() && camera.contains(pixel, kImageBorder_px);
     if (forward.found[i] != 0 && inside) {
       Track& track = tracks[kept++];
       track = tracks[i];
@@ -174,7 +157,7 @@ void FeatureTracker::State::update_tracks(double interval_s) {
       feature.bearing = bearing;
       feature.pixel = pixel;
       ++feature.age;
-    } else if (camera.contains(to_vector(predicted[i]), config.border_px)) {
+    } else if (camera.contains(to_vector(predicted[i]), kImageBorder_px)) {
       unstable.push_back(predicted[i]);
       ++lost;
     }
@@ -196,7 +179,6 @@ void FeatureTracker::State::reject_outliers(DynamicIds dynamic_ids) {
   const InlierMask& inliers =
       outlier_rejector.find(correspondences, {.model = config.outlier_model,
                                               .threshold_px = config.ransac_threshold_px,
-                                              .confidence = config.ransac_confidence,
                                               .min_inlier_ratio = config.ransac_min_inlier_ratio,
                                               .focal_px = camera.focal_px()});
   auto inlier = inliers.begin();

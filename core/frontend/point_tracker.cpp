@@ -55,12 +55,10 @@ ImagePyramid build_pyramid(const FrontendConfig& config, const cv::Mat& gray, Im
 
 KltResult track_points(const FrontendConfig& config, const TrackingRequest& request, KltResult recycled) {
   if (config.tracker == TrackerKind::kPatch) {
-    return track_points_patch(request,
-                              {.max_iterations = config.max_iterations,
-                               .min_correlation = static_cast<float>(config.min_correlation)},
+    return track_points_patch(request, {.min_correlation = static_cast<float>(config.min_correlation)},
                               PatchTarget::kBest, std::move(recycled));
   }
-  return track_points_klt(request, {.window_px = config.window_px, .max_iterations = config.max_iterations});
+  return track_points_klt(request, {.window_px = config.window_px});
 }
 
 }  // namespace stillpoint

@@ -41,6 +41,9 @@ inline Eigen::Vector2d to_vector(const cv::Point2f& point) {
   return {static_cast<double>(point.x), static_cast<double>(point.y)};
 }
 
+/// Tracks closer to the edge of the image are lost [px]; as in VINS-Mono.
+inline constexpr int kImageBorder_px = 1;
+
 /// @param recycled buffer reused for the result
 inline std::vector<cv::Point2f> pixels_of(std::span<const Track> tracks,
                                           std::vector<cv::Point2f> recycled = {}) {

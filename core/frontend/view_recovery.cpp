@@ -141,7 +141,7 @@ std::vector<Track> ViewRecovery::continue_tracks(const View& lost, const Pose& T
   std::vector<Track> continued;
   for (std::size_t i = 0; i < lost.tracks.size(); ++i) {
     const Eigen::Vector2d pixel = to_vector(forward.pixels[i]);
-    if (forward.found[i] == 0 || !pixel.allFinite() || !camera_.contains(pixel, config_.border_px)) continue;
+    if (forward.found[i] == 0 || !pixel.allFinite() || !camera_.contains(pixel, kImageBorder_px)) continue;
     const Eigen::Vector2d bearing = camera_.unproject(pixel);
     if (!fits(lost.tracks[i], T_now_lost, bearing)) continue;
     Track track = lost.tracks[i];
@@ -183,11 +183,7 @@ void ViewRecovery::process(const cv::Mat& gray, const ImagePyramid& pyramid, std
 }
 
 void ViewRecovery::remember(const cv::Mat& gray, std::span<const Track> tracks) {
-  if (config_.equalize) {
-    gray.copyTo(last_.gray);  // the image is a buffer
-  } else {
-    last_.gray = gray;
-  }
+  last_.gray = gray;
   last_.tracks.assign(tracks.begin(), tracks.end());
 }
 

@@ -24,7 +24,9 @@ constexpr int kPatch_px = 31;
 constexpr int kBorder_px = 20;
 constexpr int kCell_px = 48;  // corners are spread over cells of this size
 constexpr double kMinDepth_m = 0.2;
-constexpr double kMaxDepthSpread = 0.05;  // relative to the depth: larger at the edge of an object
+constexpr double kMaxDepth_m = 8.0;         // beyond, stereo and structured light are off by decimeters
+constexpr double kDynamicRadius_px = 20.0;  // around a dynamic feature, as the circles around tracked ones
+constexpr double kMaxDepthSpread = 0.05;    // relative to the depth: larger at the edge of an object
 
 /// Depth at a pixel [m]; 0 if it is not measured, or if its neighbors belong to another surface.
 double consistent_depth(const DepartedKeyframe& keyframe, const cv::Point2f& pixel) {
@@ -134,10 +136,10 @@ class FeatureBuilder {
 
  private:
   void add(cv::KeyPoint corner, double depth_m, std::int64_t track = -1) {
-    if (depth_m < kMinDepth_m || depth_m > config_.max_depth_m) return;
+    if (depth_m < kMinDepth_m || depth_m > kMaxDepth_m) return;
     const Eigen::Vector2f pixel(corner.pt.x, corner.pt.y);
     if (!camera_.contains(pixel.cast<double>(), kBorder_px)) return;
-    if (config_.exclude_dynamic && is_dynamic(keyframe_, pixel, depth_m, config_.dynamic_radius_px)) return;
+    if (config_.exclude_dynamic && is_dynamic(keyframe_, pixel, depth_m, kDynamicRadius_px)) return;
     const Eigen::Vector2d bearing = camera_.unproject(pixel.cast<double>());
     corner.angle = angle_at(bearing, corner.pt);
     corner.class_id = static_cast<int>(points_.size());

@@ -67,9 +67,9 @@ struct DepartedKeyframe {
 ///
 /// the derivative of the projection of a point that moves along g_c. Unlike the centroid, it has no noise.
 ///
-/// Describes the static features of the odometry, and up to `loop.max_corners` FAST corners on three image
+/// Describes the static features of the odometry, and up to 500 FAST corners on three image
 /// scales, spread over the image. With `loop.exclude_dynamic` none is in a dynamic region or near a dynamic
-/// feature. All have a depth between 0.2 m and `loop.max_depth_m` that is measured by consistent pixels.
+/// feature. All have a depth between 0.2 m and 8 m that is measured by consistent pixels.
 /// @param keyframe gray and depth image of the size of the camera
 [[nodiscard]] std::vector<KeyframeFeature> keyframe_features(const DepartedKeyframe& keyframe,
                                                              const Camera& camera, const LoopConfig& config);

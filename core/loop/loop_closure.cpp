@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include "core/base/error.h"
@@ -22,14 +23,13 @@ constexpr int kComparedKeyframes = 40;
 constexpr std::size_t kMinInterval = 3;
 constexpr std::size_t kIntervalDivisor = 50;
 
+/// Standard deviation of the direction of gravity in a keyframe: an accelerometer bias of 0.05 m/s^2.
+constexpr double kGravitySigma_rad = 0.3 * std::numbers::pi / 180.0;
+
 }  // namespace
 
 LoopClosure::LoopClosure(const LoopConfig& config, const Camera& camera, bool has_imu)
-    : config_(config),
-      camera_(camera),
-      recognition_(config),
-      relocalization_(config, camera),
-      drift_(config) {
+    : config_(config), camera_(camera), recognition_(config), relocalization_(config, camera) {
   if (config.dof != 4 && config.dof != 6) throw InputError("loop.dof", "is neither 4 nor 6; use one of them");
   if (config.dof == 4 && !has_imu)
     throw InputError("loop.dof", "4 requires the direction of gravity from an IMU; use 6");
@@ -118,7 +118,7 @@ Pose LoopClosure::locate(const DepartedKeyframe& frame) {
 void LoopClosure::constrain_by_start() {
   if (!start_) return;
   const Keyframe& keyframe = keyframes_.back();
-  OdometryDrift between(config_);  // the keyframe may be earlier than the frame
+  OdometryDrift between;  // the keyframe may be earlier than the frame
   between.add(std::min(start_->t, keyframe.t), start_->T_w_b);
   between.add(std::max(start_->t, keyframe.t), keyframe.T_w_b);
   const GraphLoop location{
@@ -152,7 +152,7 @@ void LoopClosure::assess(VerifiedLoop verified, int match) {
                        .query = static_cast<int>(keyframes_.size()) - 1,
                        .T_bm_bq = verified.T_bm_bq,
                        .covariance = verified.covariance};
-  if (odometry_distance(loop, T_w_b_, drift_) > config_.gate_chi2) {
+  if (odometry_distance(loop, T_w_b_, drift_) > kMaxSquaredDistance) {
     outcome = LoopOutcome::kOdometry;
     return;
   }
@@ -171,7 +171,7 @@ LoopOutcome LoopClosure::compare_with_others(const GraphLoop& loop) {
   for (ConsistentLoop& other : loops_) {
     if (loop.query - other.loop.query > kComparedKeyframes || other.loop.query == loop.query) continue;
     if (!parts_.is_same_part(loop, other.loop)) continue;
-    if (pairwise_distance(loop, other.loop, T_w_b_, drift_) <= config_.gate_chi2) {
+    if (pairwise_distance(loop, other.loop, T_w_b_, drift_) <= kMaxSquaredDistance) {
       agreeing.push_back(&other);
     } else {
       // A wrong start must not refuse all loops that would correct it.
@@ -244,7 +244,7 @@ void LoopClosure::optimize() {
     if (loop.confirmed) records.push_back(loop.record);
   }
   PoseGraphSolution solution =
-      optimize_pose_graph(build_graph(), {.dof = config_.dof, .gravity_sigma_rad = gravity_sigma_rad()});
+      optimize_pose_graph(build_graph(), {.dof = config_.dof, .gravity_sigma_rad = kGravitySigma_rad});
   for (std::size_t i = 0; i < records.size(); ++i) {
     records_[records[i]].outcome = solution.inliers[i] ? LoopOutcome::kAccepted : LoopOutcome::kPoseGraph;
   }
@@ -261,13 +261,13 @@ std::optional<BundleAdjustmentSummary> LoopClosure::adjust() {
   for (const ConsistentLoop& loop : loops_) {
     if (records_[loop.record].outcome == LoopOutcome::kAccepted) accepted.push_back(loop.loop);
   }
-  const RelativePoseOptions noise{.inlier_threshold = config_.inlier_px / camera_.focal_px(),
-                                  .inverse_depth_sigma = config_.depth_noise_per_m};
+  const RelativePoseOptions noise{.inlier_threshold = kLoopInlier_px / camera_.focal_px(),
+                                  .inverse_depth_sigma = kLoopInverseDepthSigma};
   BundleAdjustmentResult adjusted =
       adjust_bundle(build_graph(), keyframes_, associate_landmarks(keyframes_, T_m_b_, accepted, noise),
                     {.bearing_sigma = noise.inlier_threshold / kThresholdSigmas,
                      .inverse_depth_sigma = noise.inverse_depth_sigma,
-                     .gravity_sigma_rad = gravity_sigma_rad()});
+                     .gravity_sigma_rad = kGravitySigma_rad});
   T_m_b_ = std::move(adjusted.T_m_b);
   return adjusted.summary;
 }

@@ -3,7 +3,6 @@
 /// The odometry itself is not changed: the correction is a transform from its world to the map.
 #pragma once
 
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -70,9 +69,6 @@ class LoopClosure {
   void move_into_map(const Pose& T_m_w);
   void constrain_by_start();
   [[nodiscard]] bool has_inlier_in_map() const;
-  [[nodiscard]] double gravity_sigma_rad() const {
-    return config_.gravity_sigma_deg * std::numbers::pi / 180.0;
-  }
   void append(Keyframe keyframe);
   [[nodiscard]] std::size_t memory_bytes() const {  // of `KeyframeCost`
     return recognition_.memory_bytes() + features_allocated_ * sizeof(KeyframeFeature) +

@@ -11,6 +11,11 @@ namespace stillpoint {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+// Random walk; see the header. Between the drifts of a rendered sequence (a third) and of a recorded one
+// (eight times as much).
+constexpr double kDrift_m_per_sqrt_m = 0.01;
+constexpr double kDrift_deg_per_sqrt_m = 0.1;
+constexpr double kDrift_deg_per_sqrt_s = 0.02;
 constexpr double kMinStepSigma_m = 0.002;
 constexpr double kMinStepSigma_rad = 0.02 * kDegree;
 constexpr double kWindowFactor = 3.0;  // ratio of the errors to their sigma, see reports/measured/loops.md
@@ -67,10 +72,9 @@ Matrix6 OdometryDrift::step(Timestamp t, const Pose& T_w_b,
   const double distance_m = (T_w_b.p - T_w_b_.back().p).norm();
   // A map may contain several runs, each with a clock of its own.
   const double elapsed_s = std::max(0.0, seconds_between(times_.back(), t));
-  const double position = squared(config_.drift_m_per_sqrt_m) * distance_m + squared(kMinStepSigma_m);
-  const double rotation = squared(kDegree * config_.drift_deg_per_sqrt_m) * distance_m +
-                          squared(kDegree * config_.drift_deg_per_sqrt_s) * elapsed_s +
-                          squared(kMinStepSigma_rad);
+  const double position = squared(kDrift_m_per_sqrt_m) * distance_m + squared(kMinStepSigma_m);
+  const double rotation = squared(kDegree * kDrift_deg_per_sqrt_m) * distance_m +
+                          squared(kDegree * kDrift_deg_per_sqrt_s) * elapsed_s + squared(kMinStepSigma_rad);
   const Matrix6 walk = diagonal(position, rotation);
   return motion_covariance ? Matrix6(walk + squared(kWindowFactor) * limited(*motion_covariance)) : walk;
 }

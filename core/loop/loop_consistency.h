@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "core/config/loop_config.h"
 #include "core/loop/keyframe.h"
 #include "core/loop/loop_verification.h"
 
@@ -21,8 +20,8 @@ namespace stillpoint {
 ///   Q = diag(s_p^2 d + e_p^2, s_r^2 d + s_t^2 dt + e_r^2) + f^2 Q_window      (p + rho, q * Exp(theta))
 ///
 /// The first part is a random walk over the distance d [m] and the time dt [s], of errors that the window
-/// does not claim (calibration, depth, moving objects), with s_p = `loop.drift_m_per_sqrt_m`, s_r =
-/// `loop.drift_deg_per_sqrt_m`, s_t = `loop.drift_deg_per_sqrt_s`, e_p = 2 mm, e_r = 0.02 degrees. Q_window
+/// does not claim (calibration, depth, moving objects), with s_p = 1 cm/sqrt(m), s_r =
+/// 0.1 deg/sqrt(m), s_t = 0.02 deg/sqrt(s), e_p = 2 mm, e_r = 0.02 degrees. Q_window
 /// is composed of the covariances of the motion from the oldest frame of the window to the next one, see
 /// `WindowSolver::covariance`; zero where it is not known (without `backend.covariance`, in a loaded map, at
 /// the end of a run), and scaled down to at most 1 cm and 0.3 degrees: where people hide the scene the window
@@ -36,8 +35,6 @@ namespace stillpoint {
 /// difference of two sums (Barfoot and Furgale 2014, Sec. III: uncertainty of compound poses, first order).
 class OdometryDrift {
  public:
-  explicit OdometryDrift(const LoopConfig& config) : config_(config) {}
-
   /// Appends the next keyframe: its pose by the odometry.
   /// @param motion_covariance Q_window of the motion from the keyframe before; absent if it is not known
   void add(Timestamp t, const Pose& T_w_b, const std::optional<Matrix6>& motion_covariance = {});
@@ -57,12 +54,15 @@ class OdometryDrift {
                              const std::optional<Matrix6>& motion_covariance) const;
   void append(Timestamp t, const Pose& T_w_b, const Matrix6& step);
 
-  LoopConfig config_;
   std::vector<Timestamp> times_;
   std::vector<Pose> T_w_b_;
   std::vector<Matrix6> steps_;  ///< Q of the motion to each keyframe; zero for keyframe 0
   std::vector<Matrix6> sums_;   ///< of (v, phi), from keyframe 0
 };
+
+/// Loops farther from the odometry or from another loop are refused (squared Mahalanobis distance): 99.99 %
+/// quantile of the chi-square distribution with 6 degrees of freedom.
+inline constexpr double kMaxSquaredDistance = 27.9;
 
 /// A verified loop between two keyframes of the graph.
 struct GraphLoop {

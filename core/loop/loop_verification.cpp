@@ -200,6 +200,10 @@ constexpr double kMinSigma_m = 0.01;
 constexpr double kMinSigma_rad = 0.2 * kRadians;
 constexpr double kSigmaPerDistance = 0.03;  // of the translation between the cameras
 constexpr double kSigmaPerAngle = 0.02;     // of their rotation
+constexpr double kMinInlierRatio = 0.35;    // of the matches
+// Standard deviation of the inliers along their shorter axis, of the focal length: features in one corner or
+// along a line do not determine the pose.
+constexpr double kMinSpread = 0.08;
 
 std::vector<PointPair> point_pairs(const Keyframe& query, const Keyframe& match) {
   std::vector<PointPair> pairs;
@@ -253,9 +257,9 @@ Matrix6 body_covariance(const Pose& A, const EstimatedRelativePose& T, const Pos
 LoopOutcome assess(const std::vector<PointPair>& pairs, const EstimatedRelativePose& estimate,
                    const LoopConfig& config) {
   const auto inliers = static_cast<double>(estimate.inliers.size());
-  if (inliers < config.min_inliers || inliers < config.min_inlier_ratio * static_cast<double>(pairs.size()))
+  if (inliers < config.min_inliers || inliers < kMinInlierRatio * static_cast<double>(pairs.size()))
     return LoopOutcome::kFewInliers;
-  if (min_spread(pairs, estimate.inliers) < config.min_spread) return LoopOutcome::kSpread;
+  if (min_spread(pairs, estimate.inliers) < kMinSpread) return LoopOutcome::kSpread;
   const bool certain = largest_sigma(estimate.covariance.topLeftCorner<3, 3>()) < kMaxSigma_m &&
                        largest_sigma(estimate.covariance.bottomRightCorner<3, 3>()) < kMaxSigma_rad;
   return certain ? LoopOutcome::kAccepted : LoopOutcome::kUncertain;
@@ -273,8 +277,8 @@ VerifiedLoop verify_loop(const Keyframe& query, const Keyframe& match, const Cam
   record.outcome = LoopOutcome::kFewMatches;
   if (record.matches < config.min_inliers) return loop;
   const std::optional<EstimatedRelativePose> estimate =
-      estimate_relative_pose(pairs, {.inlier_threshold = config.inlier_px / camera.focal_px(),
-                                     .inverse_depth_sigma = config.depth_noise_per_m,
+      estimate_relative_pose(pairs, {.inlier_threshold = kLoopInlier_px / camera.focal_px(),
+                                     .inverse_depth_sigma = kLoopInverseDepthSigma,
                                      .seed = static_cast<std::uint32_t>(query.frame)});
   record.outcome = LoopOutcome::kFewInliers;
   if (!estimate) return loop;

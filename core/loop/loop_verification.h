@@ -16,6 +16,13 @@
 
 namespace stillpoint {
 
+/// Largest reprojection error of an inlier [px]: corners are located to a pixel, on coarse levels of the
+/// pyramid to two.
+inline constexpr double kLoopInlier_px = 3.0;
+
+/// Standard deviation of an inverse depth [1/m], as of structured light and stereo cameras.
+inline constexpr double kLoopInverseDepthSigma = 0.004;
+
 /// Indices of two similar features.
 struct FeatureMatch {
   int query = 0;

@@ -97,6 +97,7 @@ constexpr int kNeighbors = 2;              // keyframes to either side that see 
 constexpr int kMaxStep = 4;                // keyframes between the candidates of successive queries
 constexpr std::size_t kRecentQueries = 2;  // that confirm a candidate
 constexpr std::size_t kMaxMaxima = 8;      // remembered per query
+constexpr std::size_t kMaxCandidates = 2;  // verified per query: each costs a matching of all features
 
 }  // namespace
 
@@ -131,7 +132,7 @@ std::vector<PlaceVotes> PlaceRecognition::recognize(std::span<const Keyframe> ke
   std::vector<PlaceVotes> maxima = similar_places(query);
   std::vector<PlaceVotes> candidates;
   for (const PlaceVotes& place : maxima) {
-    if (static_cast<int>(candidates.size()) == config_.max_candidates) break;
+    if (candidates.size() == kMaxCandidates) break;
     if (is_consistent(place.place)) candidates.push_back(place);
   }
   recent_.push_back(std::move(maxima));

@@ -82,14 +82,14 @@ class PlaceRecognition {
   /// @param keyframes the first ones are those that are places already
   void add_all(std::span<const Keyframe> keyframes);
 
-  /// Places that look like the newest keyframe, the most similar first, at most `loop.max_candidates`. Each
+  /// Places that look like the newest keyframe, the most similar first, at most two. Each
   /// is a maximum of the votes among its neighbors, older than the newest keyframe by `loop.min_gap_s`, and
   /// close to a candidate of one of the two previous queries.
   /// @param keyframes all, by time; the newest is the query. Earlier calls passed the same ones without it.
   [[nodiscard]] std::vector<PlaceVotes> recognize(std::span<const Keyframe> keyframes);
 
   /// Places that look like a single frame, the most similar first, without temporal consistency: maxima of at
-  /// least `loop.min_votes` among the places of the map and the keyframes that `recognize` has indexed.
+  /// least twelve among the places of the map and the keyframes that `recognize` has indexed.
   [[nodiscard]] std::vector<PlaceVotes> similar_places(const Keyframe& query) const;
 
   [[nodiscard]] std::size_t memory_bytes() const { return index_.memory_bytes(); }

@@ -93,7 +93,7 @@ bool Relocalization::is_confirmed(const MapLocation& location, std::span<const K
   int agreeing = 0;
   for (const std::optional<MapLocation>& before : recent_) {
     if (!before) continue;
-    if (distance(*before, location, map) > config_.gate_chi2) return false;
+    if (distance(*before, location, map) > kMaxSquaredDistance) return false;
     ++agreeing;
   }
   return agreeing >= kAgreeingFrames;
@@ -105,7 +105,7 @@ double Relocalization::distance(const MapLocation& a, const MapLocation& b,
                                 std::span<const Keyframe> map) const {
   const std::array<Pose, 4> poses = {map[static_cast<std::size_t>(a.match)].T_w_b,
                                      map[static_cast<std::size_t>(b.match)].T_w_b, a.T_w_b, b.T_w_b};
-  OdometryDrift drift(config_);
+  OdometryDrift drift;
   drift.add(a.t, poses[0]);
   drift.add(a.t, poses[1]);
   drift.add_unrelated(a.t, poses[2]);

@@ -53,8 +53,9 @@ class Odometry {
   [[nodiscard]] bool enters_window(Timestamp t) const;
 
   /// Processes the next frame. Never waits. If samples up to the exposure are missing, the newest sample is
-  /// held for at most `imu.max_gap_s`; if more is missing, a frame that enters the window is located by
-  /// vision alone (`kDegraded`), or `kLost`. Samples that are added later are used for the following frames.
+  /// held for at most 50 ms (`ImuConfig::max_gap_s`); if more is missing, a frame that enters the window is
+  /// located by vision alone (`kDegraded`), or `kLost`. Samples that are added later are used for the
+  /// following frames.
   /// @param frame CV_8UC1 gray of the size of the camera; depth of the same size, CV_16UC1, or empty
   /// @param detections of the frame; ignored if it does not enter the window or if `dynamic.mask` is off
   /// @return valid until the next call; the caller may add timings to it
@@ -68,7 +69,7 @@ class Odometry {
 
   /// State at time `t` on the clock of the frames (IMU time minus `OdometryUpdate::time_offset_s`): `state`
   /// propagated with the samples received so far, including those later than the newest frame. Beyond the
-  /// last sample, that sample is held for at most `imu.max_gap_s`. Without an IMU: constant velocity.
+  /// last sample, that sample is held for at most 50 ms. Without an IMU: constant velocity.
   /// @return nullopt if there is no `state`, if `t` is earlier than it, or if samples up to `t` are missing
   [[nodiscard]] std::optional<NavState> state_at(Timestamp t) const;
 

@@ -32,6 +32,9 @@ struct Detection {
 
 enum class DetectionState { kPresent, kLate, kNone };
 
+/// Largest difference between the time stamps of a frame and its boxes: half the frame interval at 30 Hz.
+inline constexpr double kMaxDetectionOffset_s = 0.016;
+
 /// All boxes of one image. `kNone`: the detector did not process it; `kPresent` with no boxes: processed,
 /// and nothing found.
 struct DetectionSet {

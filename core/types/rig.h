@@ -28,7 +28,7 @@ struct ImuNoise {
 /// Counts of irregularities in the IMU stream; reported with the run.
 struct ImuHealth {
   int rejected_samples = 0;  ///< not finite, out of order or repeated
-  int gaps = 0;              ///< gaps longer than `imu.max_gap_s` in extracted intervals, each counted once
+  int gaps = 0;              ///< gaps longer than 50 ms in extracted intervals, each counted once
 };
 
 /// Calibration.

@@ -21,15 +21,14 @@ TEST_P(HelpOf, ShowsAnExample) {
   EXPECT_EQ(result.err, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryCommand, HelpOf,
-                         testing::Values(std::vector<std::string>{"run"}, std::vector<std::string>{"eval"},
-                                         std::vector<std::string>{"bench"},
-                                         std::vector<std::string>{"config", "show"},
-                                         std::vector<std::string>{"config", "list"},
-                                         std::vector<std::string>{"config", "reference"},
-                                         std::vector<std::string>{"data", "check"},
-                                         std::vector<std::string>{"data", "synth"},
-                                         std::vector<std::string>{"device", "info"}));
+INSTANTIATE_TEST_SUITE_P(
+    EveryCommand, HelpOf,
+    testing::Values(std::vector<std::string>{"run"}, std::vector<std::string>{"eval"},
+                    std::vector<std::string>{"bench"}, std::vector<std::string>{"config", "show"},
+                    std::vector<std::string>{"config", "list"}, std::vector<std::string>{"config", "diff"},
+                    std::vector<std::string>{"config", "reference"},
+                    std::vector<std::string>{"data", "check"}, std::vector<std::string>{"data", "synth"},
+                    std::vector<std::string>{"device", "info"}));
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 
@@ -62,6 +61,29 @@ TEST(ConfigCommand, PrintsTheResolvedValuesOfAVariant) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_NE(result.out.find("\nimu.enabled = false\n"), std::string::npos);
   EXPECT_NE(result.out.find("\nseed = 5\n"), std::string::npos);
+}
+
+TEST(ConfigCommand, WarnsOfASettingWithoutEffect) {
+  const ProgramResult result = run_program({"config", "show", "--set", "loop.min_gap_s=3"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.out.find("\nloop.min_gap_s = 3.0\n"), std::string::npos);
+  EXPECT_NE(result.err.find("\"loop.min_gap_s\" has no effect; it requires loop.enabled = true"),
+            std::string::npos)
+      << result.err;
+  EXPECT_EQ(run_program({"config", "show", "--variant", "vo"}).err, "");
+}
+
+TEST(ConfigCommand, PrintsTheKeysThatDifferBetweenTwoConfigs) {
+  const ProgramResult result = run_program({"config", "diff", "stillpoint", "stillpoint+wo_mcc+datasheet"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out,
+            "imu.noise_scale = 1.0 -> 2.0\n"
+            "dynamic.moving_consistency = true -> false\n");
+  EXPECT_EQ(result.err, "");
+  EXPECT_NE(run_program({"config", "diff", "dynamic_vins", "stillpoint"})
+                .out.find("backend.keyframe_max_interval_s = 10.0 -> 0.5 s\n"),
+            std::string::npos);
+  EXPECT_EQ(run_program({"config", "diff", "vo", "vo"}).out, "");
 }
 
 TEST(ConfigCommand, ListsOverlays) {

@@ -98,7 +98,7 @@ TEST(LoopClosureCommand, ALocatedRunExtendsTheMapIntoANewFile) {
   EXPECT_GT(fs::file_size(both), fs::file_size(first));
   const ProgramResult unlocated =
       run_map("third", {"--map", first.string(), "--save-map", (out.path() / "none.map").string(), "--set",
-                        "loop.min_votes=10000"});
+                        "loop.min_inliers=10000"});
   EXPECT_EQ(unlocated.exit_code, 2);
   EXPECT_NE(unlocated.err.find("was not located in the map"), std::string::npos) << unlocated.err;
   EXPECT_FALSE(fs::exists(out.path() / "none.map"));

@@ -2,6 +2,8 @@
 #include <iostream>
 #include <memory>
 
+#include <spdlog/spdlog.h>
+
 #include "bench/cli/command_line.h"
 #include "bench/config/config_file.h"
 #include "bench/config/toml_source.h"
@@ -11,6 +13,7 @@ namespace {
 
 int show(const ConfigRequest& request) {
   const OdometryConfig config = load_config(request);
+  for (const std::string& message : settings_without_effect(request)) spdlog::warn("{}", message);
   std::cout << "# hash " << config_hash(config) << '\n' << config_text(config);
   return kExitOk;
 }
@@ -18,6 +21,29 @@ int show(const ConfigRequest& request) {
 int list() {
   for (const std::string& name : embedded_names(TomlKind::kConfig)) std::cout << name << '\n';
   return kExitOk;
+}
+
+/// The operands of `config diff`: variants of the default base.
+struct DiffArguments {
+  std::string a, b;
+};
+
+int diff(const DiffArguments& arguments) {
+  const auto load = [](const std::string& variant) {
+    return load_config({.base = "stillpoint", .variant = variant, .settings = {}});
+  };
+  std::cout << difference_text(load(arguments.a), load(arguments.b));
+  return kExitOk;
+}
+
+Command diff_command() {
+  const auto arguments = std::make_shared<DiffArguments>();
+  return {.name = "diff",
+          .summary = "Print the keys that differ between two configs, with both values and the unit",
+          .example = "config diff stillpoint dynamic_vins+vo",
+          .options = {{"A", "Embedded name or TOML file, with overlays joined by +", &arguments->a},
+                      {"B", "The same, of the other config", &arguments->b}},
+          .action = [arguments] { return diff(*arguments); }};
 }
 
 int reference() {
@@ -42,13 +68,16 @@ Command config_command() {
                        .example = "config list",
                        .action = list};
   Command print_reference{.name = "reference",
-                          .summary = "Print a reference of all keys (Markdown)",
+                          .summary =
+                              "Explain all keys: meaning, unit, range, default, section of the paper "
+                              "(Markdown)",
                           .example = "config reference",
                           .action = reference};
   return {.name = "config",
-          .summary = "Show configs and their keys",
+          .summary = "Show, compare and explain configs and their keys",
           .example = "config show",
-          .subcommands = {std::move(show_config), std::move(list_configs), std::move(print_reference)}};
+          .subcommands = {std::move(show_config), std::move(list_configs), diff_command(),
+                          std::move(print_reference)}};
 }
 
 }  // namespace stillpoint::bench

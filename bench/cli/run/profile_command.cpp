@@ -303,7 +303,9 @@ class EnergyWatch {
 constexpr std::int64_t kFramesBetweenSamples = 10;
 
 RunSpec spec_of(const ProfileArguments& arguments) {
-  return {.config = load_config({arguments.base, arguments.variant, arguments.settings}),
+  const ConfigRequest request{arguments.base, arguments.variant, arguments.settings};
+  for (const std::string& message : settings_without_effect(request)) spdlog::warn("{}", message);
+  return {.config = load_config(request),
           .mode = arguments.mode,
           .speed = arguments.speed,
           .max_frames = static_cast<std::size_t>(arguments.max_frames),

@@ -161,8 +161,10 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   const std::shared_ptr<const KeyframeMap> map = load_map(arguments.map);
   std::vector<ConfiguredRun> runs;
   for (const std::string& variant : variants) {
+    const ConfigRequest request{arguments.base, variant, settings};
+    for (const std::string& message : settings_without_effect(request)) spdlog::warn("{}", message);
     runs.push_back({.variant = variant.empty() ? arguments.base : variant,
-                    .spec = {.config = load_config({arguments.base, variant, settings}),
+                    .spec = {.config = load_config(request),
                              .mode = arguments.mode,
                              .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames),

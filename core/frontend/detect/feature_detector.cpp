@@ -15,6 +15,9 @@ namespace {
 constexpr std::uint8_t kFree = 255;
 constexpr std::uint8_t kOccupied = 0;
 
+/// Shi-Tomasi: smallest strength of a corner relative to the strongest one of the image; as in VINS-Mono.
+constexpr double kQuality = 0.01;
+
 }  // namespace
 
 void FeatureMask::clear(cv::Size size) {
@@ -44,7 +47,7 @@ std::unique_ptr<FeatureDetector> make_feature_detector(const FrontendConfig& con
     case FeatureDetectorKind::kGridFast:
       return std::make_unique<GridDetector>(config.grid, config.max_features);
     case FeatureDetectorKind::kShiTomasi:
-      return std::make_unique<ShiTomasiDetector>(config.shi_tomasi_quality);
+      return std::make_unique<ShiTomasiDetector>();
   }
   check_failed("a detector of this kind exists", __FILE__, __LINE__);
 }
@@ -52,7 +55,7 @@ std::unique_ptr<FeatureDetector> make_feature_detector(const FrontendConfig& con
 const std::vector<cv::Point2f>& ShiTomasiDetector::detect(const DetectionRequest& request) {
   corners_.clear();
   if (request.wanted <= 0) return corners_;
-  cv::goodFeaturesToTrack(request.gray, corners_, request.wanted, quality_, request.min_distance_px,
+  cv::goodFeaturesToTrack(request.gray, corners_, request.wanted, kQuality, request.min_distance_px,
                           request.mask.image());
   return corners_;
 }

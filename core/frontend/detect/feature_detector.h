@@ -69,14 +69,10 @@ class FeatureDetector {
 /// VINS-RGBD, the baseline of the paper's Table III.
 class ShiTomasiDetector final : public FeatureDetector {
  public:
-  /// @param quality minimum corner strength relative to the strongest corner of the image, in (0, 1)
-  explicit ShiTomasiDetector(double quality) : quality_(quality) {}
-
   [[nodiscard]] const std::vector<cv::Point2f>& detect(const DetectionRequest& request) override;
   void reset() override {}
 
  private:
-  double quality_;
   std::vector<cv::Point2f> corners_;
 };
 

@@ -17,6 +17,10 @@ int cell_edge(int length, int parts, int index) { return length * index / parts;
 /// Index of the interval that contains a pixel: the inverse of `cell_edge`.
 int cell_index(int length, int parts, int pixel) { return ((pixel + 1) * parts - 1) / length; }
 
+/// Candidates that a cell keeps beyond its quota, in place of those that are too close to one of another
+/// cell.
+constexpr int kExtraCandidates = 2;
+
 }  // namespace
 
 GridDetector::GridDetector(const GridDetectorConfig& config, int max_features)
@@ -41,7 +45,7 @@ const std::vector<cv::Point2f>& GridDetector::detect(const DetectionRequest& req
   count_features(request);
   features_per_cell_ = tracked_per_cell_;
   schedule();
-  for (int fill = 0; fill < quota_ + config_.extra_candidates; ++fill) {
+  for (int fill = 0; fill < quota_ + kExtraCandidates; ++fill) {
     const bool enough = selected_.size() == static_cast<std::size_t>(request.wanted);
     if (enough && config_.stop_early) break;
     search(request, fill);
@@ -75,7 +79,7 @@ void GridDetector::count_features(const DetectionRequest& request) {
 void GridDetector::schedule() {
   scheduled_.clear();
   for (std::size_t cell = 0; cell < cell_count(); ++cell) {
-    const bool skipped = config_.skip_empty && empty_cells_[cell] != 0;
+    const bool skipped = empty_cells_[cell] != 0;
     if (tracked_per_cell_[cell] < quota_ && !skipped) scheduled_.push_back(cell);
     empty_cells_[cell] = 0;
   }
@@ -92,10 +96,9 @@ void GridDetector::search(const DetectionRequest& request, int fill) {
     const std::size_t cell = searched_[first + i];
     const int missing = quota_ - tracked_per_cell_[cell];
     cells_[cell].search(request.gray, request.mask, cell_rect(cell, request.gray.size()),
-                        {.padding_px = config_.padding_px,
-                         .threshold = config_.fast_threshold,
+                        {.threshold = config_.fast_threshold,
                          .min_distance_px = request.min_distance_px,
-                         .limit = static_cast<std::size_t>(missing + config_.extra_candidates)});
+                         .limit = static_cast<std::size_t>(missing + kExtraCandidates)});
   };
   pool_.for_each_index(searched_.size() - first, std::ref(search_cell));  // copying it would allocate
   for (std::size_t i = first; i < searched_.size(); ++i) {

@@ -111,14 +111,4 @@ KltResult track_points_klt(const TrackingRequest& request, const KltSettings& se
   return result;
 }
 
-KltResult forward_backward_check(const std::vector<cv::Point2f>& points, KltResult forward,
-                                 const KltResult& backward, double tolerance_px) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool consistent =
-        backward.found[i] != 0 && cv::norm(backward.pixels[i] - points[i]) <= tolerance_px;
-    if (!consistent) forward.found[i] = 0;
-  }
-  return forward;
-}
-
 }  // namespace stillpoint

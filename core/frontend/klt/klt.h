@@ -60,7 +60,7 @@ struct TrackingRequest {
 
 struct KltSettings {
   int window_px = 21;
-  int max_iterations = 30;
+  int max_iterations = 30;  ///< per level; default of cv::calcOpticalFlowPyrLK
 };
 
 /// Tracking result; the arrays are parallel to the input points.
@@ -71,12 +71,5 @@ struct KltResult {
 
 /// Finds the points by cv::calcOpticalFlowPyrLK.
 [[nodiscard]] KltResult track_points_klt(const TrackingRequest& request, const KltSettings& settings);
-
-/// Forward-backward check: clears `found` of the points that tracking back from the second image to the first
-/// loses or finds more than `tolerance_px` from the original point.
-/// @param forward  tracks of `points` from the first image to the second
-/// @param backward tracks of `forward.pixels` from the second image to the first, started at `points`
-[[nodiscard]] KltResult forward_backward_check(const std::vector<cv::Point2f>& points, KltResult forward,
-                                               const KltResult& back, double tolerance_px);
 
 }  // namespace stillpoint

@@ -41,8 +41,8 @@ using InlierMask = std::vector<std::uint8_t>;
 
 struct OutlierRejectionSettings {
   OutlierModel model = OutlierModel::kEpipolar;
-  double threshold_px = 1.0;      ///< largest residual of an inlier, px at the camera's focal length
-  double confidence = 0.99;       ///< probability that at least one sample is free of outliers
+  double threshold_px = 1.0;  ///< largest residual of an inlier, px at the camera's focal length
+  double confidence = 0.99;   ///< probability that at least one sample is free of outliers; as in VINS-Mono
   double min_inlier_ratio = 0.5;  ///< models with fewer inliers are discarded
   double focal_px = 0.0;          ///< > 0
 };

@@ -25,7 +25,7 @@ struct PatchPoint {
 };
 
 struct PatchSettings {
-  int max_iterations = 30;       ///< per level
+  int max_iterations = 30;       ///< per level, as of cv::calcOpticalFlowPyrLK
   float converged_px = 0.01F;    ///< step that ends the iteration
   float min_eigenvalue = 0.5F;   ///< of the structure tensor per pixel [grey levels^2 / px^2]; texture test
   float min_correlation = 0.8F;  ///< zero-mean normalized cross-correlation required of a match

@@ -8,6 +8,10 @@
 namespace stillpoint {
 namespace {
 
+/// Rotation since the last keyframe that makes a keyframe, with `loop.min_translation_m`: an eighth of a
+/// usual field of view.
+constexpr double kMinRotation_deg = 8.0;
+
 bool has_frame(const Window& window, std::int64_t frame) {
   return std::ranges::any_of(window.frames, [&](const WindowFrame& in) { return in.id == frame; });
 }
@@ -100,8 +104,7 @@ void KeyframeCollector::depart(std::int64_t frame, const Pose& T_w_b, const Wind
 bool KeyframeCollector::has_moved(const Pose& T_w_b) const {
   if (!last_T_w_b_) return true;
   const double angle_deg = T_w_b.q.angularDistance(last_T_w_b_->q) * 180.0 / std::numbers::pi;
-  return (T_w_b.p - last_T_w_b_->p).norm() >= config_.min_translation_m ||
-         angle_deg >= config_.min_rotation_deg;
+  return (T_w_b.p - last_T_w_b_->p).norm() >= config_.min_translation_m || angle_deg >= kMinRotation_deg;
 }
 
 void KeyframeCollector::discard_missing(const Window& window) {

@@ -12,6 +12,10 @@ namespace {
 
 using Kind = ScopedTimer::Kind;
 
+/// Largest reprojection error of a feature that stays at one place, px of the focal length: the accuracy of
+/// tracking.
+constexpr double kStaticResidual_px = 1.0;
+
 std::vector<Box> boxes_of(const std::vector<TrackedBox>& tracked, std::vector<Box> recycled) {
   std::vector<Box> boxes = std::move(recycled);
   boxes.clear();
@@ -39,7 +43,7 @@ OptimizationStage::OptimizationStage(const OdometryConfig& config, const Rig& ri
       estimator_(config.backend, config.imu, rig, config.seed),
       box_tracker_(config.dynamic),
       recognition_(config.dynamic),
-      static_readmission_(config.dynamic.min_static_frames, config.dynamic.static_residual_px) {
+      static_readmission_(config.dynamic.min_static_frames, kStaticResidual_px) {
   if (config.loop.enabled) keyframes_.emplace(config.loop);
 }
 

@@ -125,7 +125,7 @@ TEST(LandmarkTracks, AStaticCameraTriggersNoKeyframe) {
 }
 
 TEST(LandmarkTracks, NewLandmarksTriggerAKeyframeOfAStaticCamera) {
-  const BackendConfig config{.keyframe_min_tracked = 0, .keyframe_min_shared_ratio = 0.5};
+  const BackendConfig config{.keyframe_min_shared_ratio = 0.5, .keyframe_min_tracked = 0};
   Window window = static_camera_window(30);
   const auto hide_from_last_keyframe = [&](int count) {  // not observed in frame 1, the last keyframe
     for (int i = 0; i < count; ++i) {

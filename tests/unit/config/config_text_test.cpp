@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/config/config_file.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "bench/config/settings.h"
@@ -42,11 +44,61 @@ TEST(ConfigText, DifferenceNamesTheChangedKeysOnly) {
   EXPECT_EQ(config_difference(OdometryConfig{}, changed), expected);
 }
 
-TEST(ConfigText, ReferenceShowsTypeRangeAndDefault) {
+TEST(ConfigText, ReferenceShowsMeaningTypeRangeDefaultAndPaper) {
   const std::string page = config_reference();
-  EXPECT_NE(page.find("| `frontend.grid.rows` | integer | 1 to 64 | `7` |"), std::string::npos);
-  EXPECT_NE(page.find("| `frontend.detector` | \"grid_fast\", \"shi_tomasi\" |  | `\"grid_fast\"` |"),
-            std::string::npos);
+  EXPECT_NE(
+      page.find(
+          "| `frontend.grid.rows` | Rows of the grid. | integer | 1 to 64 | `7` | III-B; value: IV-C |"),
+      std::string::npos);
+  EXPECT_NE(page.find(" | \"grid_fast\", \"shi_tomasi\" |  | `\"grid_fast\"` | III-B |"), std::string::npos);
+  EXPECT_NE(page.find(" | number | 9 to 10 m/s^2 | `9.81` |  |"), std::string::npos);
+}
+
+TEST(ConfigText, EveryKeyHasASentenceAndEveryNumberARangeThatContainsItsDefault) {
+  OdometryConfig defaults;
+  for (const ConfigField& field : fields_of(defaults)) {
+    EXPECT_TRUE(field.info.text.ends_with('.')) << field.key;
+    EXPECT_GE(field.info.text.size(), 15u) << field.key;
+    double value = 0.0;
+    if (const auto* number = std::get_if<double*>(&field.member)) {
+      value = **number;
+    } else if (const auto* integer = std::get_if<int*>(&field.member)) {
+      value = **integer;
+    } else {
+      continue;
+    }
+    EXPECT_TRUE(std::isfinite(field.info.min) && std::isfinite(field.info.max)) << field.key;
+    EXPECT_TRUE(field.info.min <= value && value <= field.info.max) << field.key;
+  }
+}
+
+TEST(ConfigText, KeysWithAUnitInTheirNameHaveThisUnit) {
+  const std::vector<std::pair<std::string, std::string>> units = {
+      {"_px", "px"}, {"_s", "s"}, {"_m", "m"}, {"_rad", "rad"}, {"_hz", "Hz"}, {"_frames", "frames"}};
+  OdometryConfig defaults;
+  for (const ConfigField& field : fields_of(defaults)) {
+    for (const auto& [suffix, unit] : units) {
+      if (!field.key.ends_with(suffix)) continue;
+      EXPECT_EQ(field.info.unit, unit) << field.key;
+    }
+  }
+}
+
+TEST(ConfigText, ThereAreAtMost120Keys) {
+  OdometryConfig defaults;
+  EXPECT_LE(fields_of(defaults).size(), 120u);
+}
+
+TEST(ConfigText, DifferenceShowsBothValuesAndTheUnit) {
+  OdometryConfig changed;
+  changed.backend.window_size = 12;
+  changed.backend.cauchy_scale = 0.5;
+  changed.imu.enabled = false;
+  EXPECT_EQ(difference_text(OdometryConfig{}, changed),
+            "imu.enabled = true -> false\n"
+            "backend.window_size = 10 -> 12 frames\n"
+            "backend.cauchy_scale = 1.0 -> 0.5 sigma\n");
+  EXPECT_EQ(difference_text(changed, changed), "");
 }
 
 }  // namespace

@@ -15,7 +15,6 @@ DynamicConfig config() {
   DynamicConfig config;
   config.box_margin_px = 0.0;
   config.mcc_threshold_px = 5.0;
-  config.gate_threshold_px = 8.0;
   config.mcc_min_observations = 3;
   return config;
 }

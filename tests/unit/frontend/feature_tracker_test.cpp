@@ -182,7 +182,7 @@ TEST(FeatureTracker, DetectsNothingNearLostFeatures) {
   other(covered).copyTo(second.gray(covered));
   const auto detections_near_losses = [&](bool circular_mask) {
     FrontendConfig config;
-    config.forward_backward = true;
+    config.tracker = TrackerKind::kPatch;   // it loses features by their correlation
     config.unpredicted_pyramid_levels = 1;  // no distant false matches for RANSAC to reject,
     config.ransac_threshold_px = 20.0;      // so that features are lost by KLT alone,
     config.min_distance_px = 1;             // and not by the minimum distance to older ones

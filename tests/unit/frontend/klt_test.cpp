@@ -41,17 +41,6 @@ TEST(Klt, FindsWholePixelShiftsExactly) {
   }
 }
 
-TEST(Klt, ForwardBackwardCheckKeepsOnlyConsistentMatches) {
-  const Views views = shifted_views(3, 2);
-  KltResult forward = track(views, kPoints);
-  forward.pixels[1] += cv::Point2f(40.0F, 0.0F);  // a wrong match
-  const KltResult backward = track_points_klt(
-      {.from = views.to, .to = views.from, .points = forward.pixels, .initial_guesses = kPoints, .levels = 1},
-      {});
-  const KltResult checked = forward_backward_check(kPoints, forward, backward, 0.5);
-  EXPECT_EQ(checked.found, (std::vector<std::uint8_t>{1, 0, 1}));
-}
-
 TEST(Klt, AcceptsAnEmptyPointList) {
   const Views views = shifted_views(0, 2);
   EXPECT_TRUE(track(views, {}).pixels.empty());

@@ -14,7 +14,7 @@ TEST(ShiTomasiDetector, DetectsTheWantedNumberOnFreePixelsAtMinimumDistance) {
   FeatureMask mask;
   mask.clear(gray.size());
   mask.occupy_circle({160.0F, 120.0F}, 60);
-  ShiTomasiDetector detector(0.01);
+  ShiTomasiDetector detector;
   const std::vector<cv::Point2f> corners =
       detector.detect({.gray = gray, .mask = mask, .tracked = {}, .wanted = 20, .min_distance_px = 15});
   ASSERT_EQ(corners.size(), 20U);
@@ -28,7 +28,7 @@ TEST(ShiTomasiDetector, DetectsNothingWithoutTextureOrRequest) {
   const cv::Mat blank(240, 320, CV_8UC1, cv::Scalar(100));
   FeatureMask mask;
   mask.clear(blank.size());
-  ShiTomasiDetector detector(0.01);
+  ShiTomasiDetector detector;
   EXPECT_TRUE(detector.detect({.gray = blank, .mask = mask, .tracked = {}, .wanted = 20}).empty());
   const cv::Mat gray = random_texture(blank.size(), 1);
   EXPECT_TRUE(detector.detect({.gray = gray, .mask = mask, .tracked = {}, .wanted = 0}).empty());

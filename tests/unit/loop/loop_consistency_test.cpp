@@ -12,7 +12,7 @@ constexpr int kPerLap = 50;
 
 struct Laps {
   std::vector<Pose> T_w_b;
-  OdometryDrift drift{LoopConfig{}};
+  OdometryDrift drift;
   explicit Laps(int count) {
     for (int k = 0; k < count; ++k) {
       T_w_b.push_back(pose_on_circle(k, kPerLap));
@@ -33,8 +33,7 @@ struct Laps {
 TEST(OdometryDrift, TheCovarianceOfTwoStepsIsThatOfTheirComposition) {
   // Straight motion of 2 m along x in two steps: the rotation of the first step moves the end by 1 m times
   // theta.
-  const LoopConfig config;
-  OdometryDrift drift(config);
+  OdometryDrift drift;
   for (int k = 0; k < 3; ++k)
     drift.add(from_seconds(k), {Eigen::Quaterniond::Identity(), {1.0 * k, 0.0, 0.0}});
   const Matrix6 step = drift.step_covariance(1);
@@ -47,7 +46,7 @@ TEST(OdometryDrift, TheCovarianceOfTwoStepsIsThatOfTheirComposition) {
 
 TEST(OdometryDrift, AWindowThatVisionHardlyLocatesClaimsNoMoreThanACentimeter) {
   const auto step_of = [](const Matrix6& claimed) {
-    OdometryDrift drift(LoopConfig{});
+    OdometryDrift drift;
     drift.add(from_seconds(0.0), {});
     drift.add(from_seconds(0.2), {}, claimed);
     return drift.step_covariance(1);
@@ -67,7 +66,7 @@ struct SidewaysDrift {
   PoseGraph graph;
 
   explicit SidewaysDrift(double sigma_m) {
-    OdometryDrift drift(LoopConfig{});
+    OdometryDrift drift;
     for (int k = 0; k <= kSteps; ++k) {
       const int drifting = std::max(0, k - kSteps / 2);
       truth.push_back({Eigen::Quaterniond::Identity(), {0.2 * k, 0.0, 0.0}});

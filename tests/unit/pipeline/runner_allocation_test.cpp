@@ -78,11 +78,11 @@ TEST(PipelinedRunner, TrackingAndOptimizationAreAllocationFreeBesideLoopClosure)
                              optimization.push_back(bench::allocation_count_of("optimization"));
                              corrected += !report.update.T_m_w.p.isZero(0.0);
                            }}};
-  const RunSummary summary =
-      run_pipelined(motion.input(),
-                    config_with({"loop.enabled=true", "loop.min_gap_s=0.3", "loop.min_translation_m=0.05",
-                                 "loop.min_votes=5", "loop.min_inliers=12", "loop.lag_frames=10"}),
-                    control);
+  OdometryConfig config =
+      config_with({"loop.enabled=true", "loop.min_gap_s=0.3", "loop.min_translation_m=0.05",
+                   "loop.min_inliers=12", "loop.lag_frames=10"});
+  config.loop.min_votes = 5;
+  const RunSummary summary = run_pipelined(motion.input(), config, control);
   ASSERT_EQ(tracking.size(), kFrames);
   EXPECT_GT(summary.loops->keyframes.size(), 20u);
   EXPECT_GT(corrected, kFrames / 2);

@@ -43,6 +43,17 @@ TEST(PlanValidation, NamesTheLineOfASweepKeyAndNotAnOption) {
   }
 }
 
+TEST(PlanValidation, RejectsKeysWithoutEffectInAllVariants) {
+  const std::string with_loops = "variants = [\"stillpoint\", \"stillpoint+loop_closure\"]\n";
+  const std::string sweep = "[sweep]\nloop.min_inliers = [30, 50]";
+  const TemporaryFolder folder;
+  EXPECT_NO_THROW(static_cast<void>(load_plan(folder.write("plan.toml", with_loops + sweep).string())));
+  expect_fault("variants = [\"stillpoint\"]\n" + sweep,
+               {"plan.toml:3: \"loop.min_inliers\" has no effect in any variant", "loop.enabled = true"});
+  expect_fault("variants = [\"vo\"]\n[config]\nimu.noise_scale = 2.0",
+               {"plan.toml:3: \"imu.noise_scale\" has no effect", "imu.enabled = true"});
+}
+
 TEST(PlanValidation, RejectsValuesThatAreListedTwice) {
   expect_fault("seeds = [1, 2, 1]", {"plan.toml:1: \"seeds\" contains 1 twice", "repetitions"});
   expect_fault("variants = [\"vo\", \"vo\"]", {"plan.toml:1: \"variants\" contains vo twice"});
