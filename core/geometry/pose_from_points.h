@@ -89,7 +89,7 @@ struct ConsensusOptions {
 [[nodiscard]] double required_samples(double inlier_ratio, const ConsensusOptions& options);
 
 /// RANSAC (Fischler and Bolles 1981): the first of the hypotheses with the most inliers.
-/// @param observations number of all observations
+/// @param observations,options number of all observations; limit and confidence
 /// @param hypothesis   () -> std::optional<Pose>: pose of the next sample, nullopt if that determines none
 /// @param inliers      (pose) -> std::size_t: number of observations that agree with it
 /// @return without inliers if no hypothesis has any
@@ -118,7 +118,7 @@ struct PoseSampling {
 };
 
 /// Consensus over samples, each refined from the same initial pose. Allocation-free.
-/// @param observations at least one
+/// @param observations,sampling at least one; how hypotheses are computed
 /// @param initial predicted T_c_w, accurate to about 20 degrees
 /// @param random source of random numbers, called four times per sample; determines the result
 [[nodiscard]] PoseConsensus sample_poses(std::span<const PointObservation> observations, const Pose& initial,
@@ -139,7 +139,7 @@ struct CameraPose {
 
 /// Pose T_w_c of a camera: the better of a refinement from the prediction and a consensus, refined with the
 /// inlier threshold as the scale of the loss.
-/// @param prediction predicted T_w_c, the initial guess of every hypothesis: should be accurate to about 20
+/// The prediction of T_w_c is the initial guess of every hypothesis: it should be accurate to about 20
 /// degrees
 /// @return nothing if no pose has `min_inliers` inliers
 [[nodiscard]] std::optional<CameraPose> estimate_camera_pose(std::span<const PointObservation> observations,
@@ -147,7 +147,7 @@ struct CameraPose {
                                                              const CameraPoseOptions& options);
 
 /// Three steps from a prediction of T_w_c that is close to the solution, without consensus.
-/// @param inlier_threshold scale of the loss [normalized image plane]
+/// The inlier threshold is the scale of the loss [normalized image plane].
 [[nodiscard]] Pose refine_camera_pose(std::span<const PointObservation> observations, const Pose& prediction,
                                       double inlier_threshold);
 
