@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Limits by which the estimator decides what vision, depth and inertial data are worth (core/backend/health
 /// and core/backend/vision). They are no keys of the configuration: one set serves all sensors that were
-/// tried. Unless another origin is stated, they were found on rendered sequences with injected faults, as the
-/// smallest ones without a false alarm in undisturbed runs, see reports/measured/faults.md.
+/// tried. Unless another origin is stated, they were tuned on rendered sequences with injected faults, see
+/// reports/measured/faults.md.
 #pragma once
 
 #include <array>

@@ -10,7 +10,7 @@
 namespace stillpoint {
 namespace {
 
-std::vector<double> block_of(const Pose& pose) {
+std::vector<double> values_of(const Pose& pose) {
   return {pose.p.x(), pose.p.y(), pose.p.z(), pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w()};
 }
 
@@ -22,18 +22,18 @@ TEST(PoseGraph, TheJacobiansOfARelativePoseAreThoseOfItsResidual) {
   covariance(0, 4) = covariance(4, 0) = 0.3;
   const double weight = 0.6;
   const GraphEdge edge{.T_i_j = {exp_so3({0.5, 0.2, 0.9}), {0.4, 0.1, 0.0}}, .covariance = covariance};
-  EXPECT_LT(jacobian_error(RelativePoseFactor(edge, weight), {block_of(kFirst), block_of(kSecond)}), 1e-8);
+  EXPECT_LT(jacobian_error(RelativePoseFactor(edge, weight), {values_of(kFirst), values_of(kSecond)}), 1e-8);
 }
 
 TEST(PoseGraph, TheJacobiansOfGravityAreThoseOfItsResidual) {
   const Eigen::Vector3d g = Eigen::Vector3d(0.1, -0.2, -1.0).normalized();
   const GravityFactor factor(Eigen::Vector3d(0.2, 0.1, -1.0).normalized(), 0.1);
-  EXPECT_LT(jacobian_error(factor, {block_of(kFirst), {g.x(), g.y(), g.z()}}), 1e-7);
+  EXPECT_LT(jacobian_error(factor, {values_of(kFirst), {g.x(), g.y(), g.z()}}), 1e-7);
 }
 
 TEST(PoseGraph, FourDegreesOfFreedomKeepTheInclination) {
   const HeadingManifold manifold(-Eigen::Vector3d::UnitZ());
-  const std::vector<double> before = block_of(kFirst);
+  const std::vector<double> before = values_of(kFirst);
   std::vector<double> turned = before;
   const double delta[4] = {0.1, 0.2, 0.3, 0.7};
   ASSERT_TRUE(manifold.Plus(before.data(), delta, turned.data()));
