@@ -48,6 +48,7 @@ BackendConfig calibrating_config() {
   config.depth.usage = DepthUsage::kWeighted;
   config.depth.outlier_sigmas = 5.0;
   config.initializer.kind = InitializerKind::kInstant;
+  config.extrinsics_walk_m = config.extrinsics_walk_rad = 0.0;  // the simulated ones are constant
   return config;
 }
 
