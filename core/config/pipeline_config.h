@@ -11,7 +11,7 @@ namespace stillpoint {
 struct PipelineConfig {
   int feedback_lag = 0;
   bool imu_rate = false;
-  int perturbation_seed = 0;  ///< see core/pipeline/stages/input_perturbation.h
+  int perturbation_seed = 0;  ///< see core/pipeline/stages/replication.h
 
   /// Boxes of an older image are discarded as late; modes `realtime` and `device`. Not a key: no config
   /// changes it.

@@ -106,7 +106,7 @@ struct CalibrationAtBound {
   bool depth_scale = false;
 };
 
-/// Hashes of the modules' state after a frame, see core/pipeline/stages/state_hash.h.
+/// Hashes of the modules' state after a frame, see core/pipeline/stages/replication.h.
 struct StateHashes {
   std::uint64_t tracking = 0;      ///< features
   std::uint64_t dynamic = 0;       ///< labels

@@ -51,9 +51,8 @@ std::optional<RelativePose> estimate_relative_pose(const std::vector<BearingPair
 
 namespace {
 
-/// Inlier thresholds: distance to the epipolar line, and reprojection error in PnP.
+/// Inlier threshold of the essential matrix: distance to the epipolar line.
 constexpr double kEpipolarInlier_px = 1.0;
-constexpr double kLocalizationInlier_px = 5.0;
 
 /// The initial structure is far from the minimum and needs more iterations than a tracked window.
 constexpr int kBundleAdjustmentIterations = 50;
