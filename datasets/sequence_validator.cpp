@@ -9,10 +9,8 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "datasets/bags/bag_file.h"
 #include "datasets/read_sequence.h"
 #include "datasets/sequence_plausibility.h"
-#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -232,10 +230,6 @@ CheckReport check_sequence(const std::filesystem::path& folder, const CheckOptio
                  check_ground_truth(info), check_images(content, options)});
   for (const CheckReport& part : parts) report = joined(std::move(report), part);
   return report;
-}
-
-bool ends_completely(const std::filesystem::path& path) {
-  return !eval::is_bag(path) || BagFile(path).is_complete();
 }
 
 std::string report_text(const CheckReport& report) {

@@ -62,10 +62,6 @@ struct CheckOptions {
 [[nodiscard]] CheckReport check_sequence(const std::filesystem::path& folder,
                                          const CheckOptions& options = {});
 
-/// Whether a path is no bag, or a bag of which no file ends early.
-/// @throws InputError if a bag cannot be read at all
-[[nodiscard]] bool ends_completely(const std::filesystem::path& path);
-
 /// The report as human-readable text.
 [[nodiscard]] std::string report_text(const CheckReport& report);
 

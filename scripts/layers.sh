@@ -69,6 +69,7 @@ row datasets/bags $messages $trajectories datasets/io datasets/calibration
 row datasets/formats $messages $trajectories datasets/io datasets/calibration datasets/bags
 row datasets/cache $messages datasets/io datasets/calibration datasets/formats
 row datasets $messages $trajectories datasets/io datasets/calibration datasets/bags datasets/formats datasets/cache
+row datasets/minimal core/base eval/io datasets/bags datasets/formats
 row datasets/synthetic core/base core/geometry
 row datasets/synthetic/materials core/base datasets/synthetic
 row datasets/synthetic/motion $messages $trajectories datasets/io datasets/synthetic
@@ -78,7 +79,7 @@ scene="core/base core/geometry datasets/synthetic datasets/synthetic/materials d
 row datasets/synthetic/scenes $scene
 row datasets/synthetic/actors $scene datasets/io datasets/synthetic/scenes
 row datasets/synthetic/sensors $scene core/types datasets/synthetic/actors
-row datasets/synthetic/sequence $scene core/types $trajectories datasets/io datasets/synthetic/scenes datasets/synthetic/actors \
+row datasets/synthetic/sequence $scene core/types $trajectories datasets/cache datasets/io datasets/synthetic/scenes datasets/synthetic/actors \
   datasets/synthetic/sensors
 row datasets/catalogue core/base
 row datasets/download core/base
@@ -100,13 +101,13 @@ row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model
   bench/profile/meters
 row bench/record $common bench/profile/meters core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/config bench/run \
   bench/profile
-row bench/systems core/base datasets datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
+row bench/systems core/base datasets datasets/cache datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
   bench/run bench/profile bench/record
 row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
 row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/profile/meters bench/record bench/systems bench/plan
-row bench/fetch $common core/detector datasets datasets/io datasets/catalogue datasets/download eval/io bench/model bench/config bench/process bench/record bench/plan
+row bench/fetch $common core/detector datasets datasets/bags datasets/io datasets/catalogue datasets/download eval/io bench/model bench/config bench/process bench/record bench/plan
 row bench/executors core/base eval/io bench/model bench/store bench/store/maintenance bench/process bench/record bench/systems \
   bench/plan bench/plan/execution
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
@@ -135,6 +136,9 @@ row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catal
 row bench/cli/analysis $execution datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/plan \
   bench/plan/execution bench/analysis \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
+
+# The minimal build: its commands, and the functions that it does not have.
+row bench/minimal core/base bench/cli bench/plan bench/run datasets datasets/synthetic/sequence reports/drawing
 
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
 libraries=(

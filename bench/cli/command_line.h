@@ -75,6 +75,9 @@ inline constexpr const char* kTopicsHelp =
 inline constexpr const char* kSysfsRootHelp =
     "Folder with recorded sys, proc, etc and var instead of those of this machine [/]";
 
+/// The subcommands of this build of the program: commands.cpp, or bench/minimal/commands.cpp.
+[[nodiscard]] std::vector<Command> all_commands();
+
 [[nodiscard]] Command run_command();          ///< `stillpoint run`: odometry on one sequence
 [[nodiscard]] Command eval_command();         ///< `stillpoint eval`: score trajectory files
 [[nodiscard]] Command bench_command();        ///< `stillpoint bench`: execute a benchmark plan

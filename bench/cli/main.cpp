@@ -43,12 +43,7 @@ int main(int argc, char** argv) {
   prepare_process();
   int exit_code = kExitOk;
   try {
-    const auto action = parse_command_line(
-        argc, argv,
-        {run_command(), eval_command(), bench_command(), worker_command(), plan_command(), store_command(),
-         stats_command(), compare_command(), profile_command(), report_command(), dashboard_command(),
-         regressions_command(), serve_command(), reproduce_command(), detect_command(), config_command(),
-         data_command(), device_command()});
+    const auto action = parse_command_line(argc, argv, all_commands());
     exit_code = action();
   } catch (...) {
     exit_code = report_exception();

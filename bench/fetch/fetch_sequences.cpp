@@ -13,9 +13,10 @@
 #include "bench/record/output_folder.h"
 #include "bench/record/sequence_checksum.h"
 #include "core/base/error.h"
+#include "datasets/bags/bag_file.h"
 #include "datasets/download/transfer_checks.h"
 #include "datasets/open_sequence.h"
-#include "datasets/sequence_validator.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -24,10 +25,16 @@ namespace fs = std::filesystem;
 using datasets::CatalogueDataset;
 using datasets::CatalogueSequence;
 
+/// Whether a path is no bag, or a bag of which no file ends early.
+/// @throws InputError if a bag cannot be read at all
+bool ends_completely(const fs::path& path) {
+  return !eval::is_bag(path) || datasets::BagFile(path).is_complete();
+}
+
 /// Opens the sequence, and the index of a bag. @return its format
 /// @throws InputError if it cannot be read, and for a bag that ends early
 std::string validated(const InstalledSequence& place, const fs::path& path) {
-  if (!datasets::ends_completely(path)) {
+  if (!ends_completely(path)) {
     throw InputError(
         datasets::catalogue_name(place.dataset, place.sequence),
         path.filename().string() +

@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
-#include "datasets/synthetic/sequence/render_sequence.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -22,11 +21,11 @@ constexpr const char* kLimitFile = "limit.txt";
 
 }  // namespace
 
-fs::path frame_cache_folder() { return synth::cache_folder() / "frames"; }
+fs::path frame_cache_folder() { return datasets::cache_folder() / "frames"; }
 
 fs::path checksum_folder() {
   try {
-    return synth::cache_folder() / "checksums";
+    return datasets::cache_folder() / "checksums";
   } catch (const InputError&) {  // without a home folder; the checksum is computed in every run
     return {};
   }

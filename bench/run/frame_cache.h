@@ -14,7 +14,7 @@
 
 namespace stillpoint::bench {
 
-/// Folder `frames` in the cache folder, see `synth::cache_folder`.
+/// Folder `frames` in the cache folder, see `datasets::cache_folder`.
 /// @throws InputError if no variable determines a folder
 [[nodiscard]] std::filesystem::path frame_cache_folder();
 

@@ -15,6 +15,7 @@
 #include "bench/run/run_result.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
+#include "datasets/cache/cache_space.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sequence_export.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
@@ -38,7 +39,7 @@ std::string replaced(std::string text, const std::string& placeholder, const std
 fs::path exported(const RunRequest& request, ExportLayout layout) {
   if (layout == ExportLayout::kAsIs) return request.sequence;
   const std::string format = layout == ExportLayout::kTum ? "tum" : "euroc";
-  fs::path folder = synth::cache_folder() / "exports" / (request.identity.sequence_id + "-" + format) /
+  fs::path folder = datasets::cache_folder() / "exports" / (request.identity.sequence_id + "-" + format) /
                     request.sequence.filename();
   if (fs::is_directory(folder)) return folder;
   const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(request.sequence);

@@ -209,6 +209,10 @@ eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string
   return loaded;
 }
 
+eval::LoadedTrajectory read_bag_trajectory(const BagTopic& source) {
+  return read_bag_trajectory(BagFile(source.bag), source.topic);
+}
+
 namespace {
 
 constexpr std::string_view kCameraInfo = "sensor_msgs/CameraInfo";

@@ -33,6 +33,9 @@ struct BagTopic {
 /// @throws InputError if there is no such topic, it has no poses, or the frames are not connected
 [[nodiscard]] eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string& topic);
 
+/// The same, of a bag that is opened for it. @throws InputError also as `BagFile`
+[[nodiscard]] eval::LoadedTrajectory read_bag_trajectory(const BagTopic& source);
+
 /// The transforms of /tf_static, the last one of each pair of frames.
 [[nodiscard]] std::vector<NamedTransform> read_static_transforms(const BagFile& bag);
 

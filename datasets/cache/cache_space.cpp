@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <functional>
 #include <numeric>
 #include <optional>
@@ -23,6 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kKilobyte = 1000;
+
+fs::path variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? fs::path{} : fs::path(value);
+}
 
 std::uint64_t size_or_zero(const fs::path& file) {
   std::error_code error;  // the file may have been removed by another process
@@ -79,6 +85,14 @@ std::uint64_t available_bytes(const fs::path& folder) {
 std::uint64_t excess(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : 0; }
 
 }  // namespace
+
+fs::path cache_folder() {
+  if (const fs::path own = variable("STILLPOINT_CACHE"); !own.empty()) return own;
+  if (const fs::path users = variable("XDG_CACHE_HOME"); !users.empty()) return users / "stillpoint";
+  if (const fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "stillpoint";
+  throw InputError("STILLPOINT_CACHE",
+                   "is not set, and neither is HOME; set it to the folder for rendered sequences");
+}
 
 std::vector<CacheEntry> list_cache(const fs::path& folder) {
   std::vector<CacheEntry> entries = frame_files(folder);

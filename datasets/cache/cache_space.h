@@ -14,6 +14,11 @@
 
 namespace stillpoint::datasets {
 
+/// Folder of everything that is kept between runs: $STILLPOINT_CACHE, else $XDG_CACHE_HOME/stillpoint, else
+/// ~/.cache/stillpoint.
+/// @throws InputError if none of the three variables (the last: HOME) is set
+[[nodiscard]] std::filesystem::path cache_folder();
+
 /// A complete file of the cache.
 struct CacheEntry {
   std::filesystem::path file;

@@ -78,8 +78,7 @@ eval::LoadedTrajectory load(const EvalArguments& arguments, const std::string& p
   if (!arguments.format.empty())
     source.format = enum_of<eval::TrajectoryFormat>("--format", arguments.format);
   const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path);
-  eval::LoadedTrajectory loaded = bag ? datasets::read_bag_trajectory(datasets::BagFile(bag->bag), bag->topic)
-                                      : eval::read_trajectory(source);
+  eval::LoadedTrajectory loaded = bag ? datasets::read_bag_trajectory(*bag) : eval::read_trajectory(source);
   for (const std::string& repair : eval::repair_texts(loaded.repairs)) spdlog::warn("{}: {}", path, repair);
   return loaded;
 }

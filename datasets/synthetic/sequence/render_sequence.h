@@ -76,10 +76,6 @@ struct RenderControl {
 bool render_sequence(const SynthRequest& request, const std::filesystem::path& folder,
                      const RenderControl& control = {});
 
-/// $STILLPOINT_CACHE, else $XDG_CACHE_HOME/stillpoint, else ~/.cache/stillpoint.
-/// @throws InputError if none of the three variables (the last: HOME) is set
-[[nodiscard]] std::filesystem::path cache_folder();
-
 /// Folder of the sequence; rendered first if it is not in the cache. Safe to call from several processes.
 /// @return an empty path if stopped by `control`
 /// @throws InputError as `render_sequence`, and if the cache cannot be written

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `data check` and `data faults`, which the minimal build has as well.
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/console.h"
+#include "datasets/faults/sensor_fault.h"
+#include "datasets/open_sequence.h"
+#include "datasets/sequence_validator.h"
+#include "reports/tables/text_format.h"
+
+namespace stillpoint::bench {
+namespace {
+
+struct CheckArguments {
+  std::string folder;
+  std::string format;
+  std::string rig_file;
+  std::vector<std::string> topics;
+};
+
+int check(const CheckArguments& arguments) {
+  std::optional<ProgressLine> line;
+  const datasets::CheckOptions options{
+      .open = {.format = arguments.format, .rig_file = arguments.rig_file, .topics = arguments.topics},
+      .progress = [&line](std::size_t done, std::size_t total) {
+        if (!line) line.emplace("decoding", total, "frames");
+        line->update(done);
+      }};
+  const datasets::CheckReport report = datasets::check_sequence(arguments.folder, options);
+  line.reset();
+  std::cout << datasets::report_text(report);
+  return report.exit_code();
+}
+
+}  // namespace
+
+Command check_command() {
+  const auto arguments = std::make_shared<CheckArguments>();
+  return {
+      .name = "check",
+      .summary =
+          "Validate a sequence folder or bag: contents and defects; exit code 0 = no defects, 1 = defects, 2 "
+          "= "
+          "unreadable",
+      .example = "data check my_sequence",
+      .options = {{"DIR", "Sequence folder or bag", &arguments->folder},
+                  {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
+                   &arguments->format},
+                  {"--topics", kTopicsHelp, &arguments->topics},
+                  {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig_file}},
+      .action = [arguments] { return check(*arguments); }};
+}
+
+namespace {
+
+int list_faults() {
+  report::TableRows rows = {{"kind", "effect", "amount", "default", "range"}};
+  for (const datasets::FaultDescriptor& fault : datasets::fault_descriptors()) {
+    const bool has_amount = !fault.amount.empty();
+    rows.push_back({std::string(fault.name), std::string(fault.summary), std::string(fault.amount),
+                    has_amount ? fmt::format("{}", fault.typical) : "",
+                    has_amount ? fmt::format("{} to {}", fault.min, fault.max) : ""});
+  }
+  std::cout << report::format_table(rows, report::TableStyle::kMarkdown);
+  return kExitOk;
+}
+
+}  // namespace
+
+Command faults_command() {
+  return {.name = "faults",
+          .summary = "List the sensor faults that `run --fault` injects",
+          .example = "data faults",
+          .action = list_faults};
+}
+
+}  // namespace stillpoint::bench
