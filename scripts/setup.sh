@@ -8,19 +8,26 @@
 #   scripts/setup.sh --oracles also the ROS 1 bag library of Debian, which tests compare the own reader with
 #   scripts/setup.sh --cluster also Slurm, sshd, GNU parallel and rsync, for the tests of `bench --executor`; the packages
 #                            start their services under systemd, which the tests do not use
+#   scripts/setup.sh --minimal only what the preset "minimal" needs, e.g. on a board; with --list its names
 #   scripts/setup.sh --list  only prints the names of the packages that building, testing and running need
 #   scripts/setup.sh --all   all of these, as CI does: no test is skipped for want of a package
 set -euo pipefail
 
-packages=(
-  g++ cmake ninja-build git make pkg-config ccache
+minimal=(
+  g++ cmake ninja-build git pkg-config
   libeigen3-dev libceres-dev libsuitesparse-dev
   libopencv-dev
   libhwy-dev
-  libopenimageio-dev openimageio-tools libdeflate-dev libturbojpeg0-dev libblosc-dev libbz2-dev liblz4-dev
-  libembree-dev libtbb-dev
+  libopenimageio-dev libdeflate-dev libturbojpeg0-dev libblosc-dev
   libfmt-dev libspdlog-dev libcli11-dev
-  nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev libsqlite3-dev libzstd-dev libmicrohttpd-dev libcairo2-dev
+  nlohmann-json3-dev libyaml-cpp-dev libtomlplusplus-dev
+)
+packages=(
+  "${minimal[@]}"
+  make ccache
+  openimageio-tools libbz2-dev liblz4-dev
+  libembree-dev libtbb-dev
+  libsqlite3-dev libzstd-dev libmicrohttpd-dev libcairo2-dev
   libcurl4-openssl-dev libarchive-dev libssl-dev
   libgtest-dev libbenchmark-dev
   universal-ctags
@@ -31,6 +38,10 @@ pages=(chromium texlive-latex-recommended)
 docs=(doxygen graphviz)
 oracles=(python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-tf2-msgs)
 cluster=(munge slurm-wlm openssh-server parallel rsync zstd)
+if [[ "${1:-}" == --minimal ]]; then
+  packages=("${minimal[@]}")
+  shift
+fi
 case "${1:-}" in
   "") ;;
   --list) printf '%s\n' "${packages[@]}"; exit 0 ;;
@@ -40,7 +51,7 @@ case "${1:-}" in
   --oracles) packages+=("${oracles[@]}") ;;
   --cluster) packages+=("${cluster[@]}") ;;
   --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}" "${oracles[@]}" "${cluster[@]}") ;;
-  *) echo "setup: error: unknown option \"$1\"; the options are --dev, --pages, --docs, --oracles, --cluster, --list and --all" >&2; exit 2 ;;
+  *) echo "setup: error: unknown option \"$1\"; the options are --minimal, --dev, --pages, --docs, --oracles, --cluster, --list and --all" >&2; exit 2 ;;
 esac
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }

@@ -46,6 +46,14 @@ run_setup || fail "a full machine is refused"
 run_setup --dev || fail "--dev is refused"
 [[ "$(asked)" == *"clang-tidy" ]] || fail "--dev does not install clang-tidy"
 
+stage libembree-dev libceres-dev
+run_setup --minimal || fail "--minimal is refused"
+[[ "$(asked)" == *"install --no-install-recommends libceres-dev" ]] || fail "--minimal installs more: $(asked)"
+run_setup --minimal --list || fail "--minimal --list is refused"
+if grep -qE 'embree|tbb|sqlite|curl|archive|cairo|microhttpd|gtest' "$scratch/output"; then
+  fail "--minimal lists what it does not need"
+fi
+
 stage nothing
 if run_setup --devel; then fail "an unknown option is taken"; fi
 finish
