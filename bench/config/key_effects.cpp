@@ -88,7 +88,6 @@ constexpr std::array kConditions = {
     KeyCondition{"backend.prior", kImu, uses_imu},
     KeyCondition{"backend.bias_steps", kImu, uses_imu},
     KeyCondition{"backend.max_dead_reckoning_s", kImu, uses_imu},
-    KeyCondition{"backend.zero_velocity.", kImu, uses_imu},
     KeyCondition{"backend.estimate_", kImu, uses_imu},
     KeyCondition{"backend.time_offset_", kImu, uses_imu},
     KeyCondition{"backend.time_offset_sigma_s", kTimeOffset, estimates_time_offset},

@@ -214,7 +214,6 @@ bool Estimator::refine() {
   }
   if (start_.initialize(window_.states(), window_.solver())) monitor_.world_changed();
   window_.prepare_solve();
-  update_.counters.at_rest = window_.states().frames.back().at_rest = monitor_.detects_rest(imu_, window());
   const Eigen::Vector3d gravity_before = window().gravity_w;
   if (window_.has_metric_scale()) solve();
   return accept_or_reset(gravity_before);

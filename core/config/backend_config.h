@@ -155,22 +155,6 @@ void visit_fields(Visitor&& field, Config& config) {
       FieldInfo{"Kind monocular: largest relative standard deviation of an accepted scale.", "", 1e-3, 10.0});
 }
 
-/// Zero-velocity factor for frames at rest; see core/backend/health/standstill.h. Not in the paper.
-struct ZeroVelocityConfig {
-  bool enabled = false;
-
-  // Not keys: no config changes them.
-  double statistic = 12.0;        ///< largest statistic of inertial samples at rest; its mean is 6 at rest
-  double static_px = 1.0;         ///< largest motion of a static feature over 0.2 s or more
-  double min_static_ratio = 0.1;  ///< of the features; the others may belong to moving objects
-  double sigma_m_per_s = 0.002;   ///< standard deviation of the velocity at rest
-};
-template <class Visitor, class Config>
-requires std::is_same_v<std::remove_const_t<Config>, ZeroVelocityConfig>
-void visit_fields(Visitor&& field, Config& config) {
-  field("enabled", config.enabled, FieldInfo{.text = "Whether frames at rest have a zero-velocity factor."});
-}
-
 /// Upper limit of `window_size`.
 inline constexpr int kMaxWindowSize = 40;
 
@@ -203,7 +187,6 @@ struct BackendConfig {
   double extrinsics_bound_rad = 3.14;
   double calibration_agreement_probability = 0.0;
   double max_dead_reckoning_s = 6.0;
-  ZeroVelocityConfig zero_velocity;
   DepthConfig depth;
   InitializerConfig initializer;
 
@@ -328,7 +311,6 @@ template <class Visitor, class Config>
 void visit_loss_fields(Visitor&& field, Config& config) {
   field("max_dead_reckoning_s", config.max_dead_reckoning_s,
         FieldInfo{"After a longer time without vision the pose is lost.", "s", 0.0, 1000.0});
-  field("zero_velocity", config.zero_velocity);
   field("depth", config.depth);
   field("initializer", config.initializer);
 }

@@ -87,7 +87,6 @@ struct OdometryCounters {
   int dynamic_features = 0;  ///< excluded as dynamic
   int solver_iterations = 0;
   bool keyframe = false;
-  bool at_rest = false;  ///< the velocity is constrained to zero, see `backend.zero_velocity`
   bool reset = false;    ///< a failure was detected in this frame; the estimator reinitializes
 };
 

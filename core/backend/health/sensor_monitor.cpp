@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/backend/health/standstill.h"
 #include "core/backend/vision/vision_assessment.h"
 #include "core/config/monitor_config.h"
 #include "core/geometry/covariance.h"
@@ -155,11 +154,6 @@ void SensorMonitor::distrust_recent_samples(Window& window) {
     frame.imu_is_reliable = false;
     frame.from_previous->set_noise(unreliable_noise(rig_.imu_noise));
   }
-}
-
-bool SensorMonitor::detects_rest(ImuBuffer& imu, const Window& window) const {
-  return backend_.zero_velocity.enabled && is_at_rest(window, imu, backend_.zero_velocity,
-                                                      {rig_.imu_noise, imu_.gravity, rig_.camera.focal_px()});
 }
 
 StatusReason SensorMonitor::failure_of(const Window& window, const NavState& before, int unusable_solves) {

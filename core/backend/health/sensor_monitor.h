@@ -78,9 +78,6 @@ class SensorMonitor {
   /// by is enlarged, so that the solver follows it.
   void check_biases(ImuBuffer& imu, Window& window);
 
-  /// Whether the newest frame is at rest, if `zero_velocity` is enabled.
-  [[nodiscard]] bool detects_rest(ImuBuffer& imu, const Window& window) const;
-
   /// Adds the uncertainty while sensors contradict each other. @param t stamp of the newest frame
   void add_contradiction(Timestamp t, StateCovariance& covariance) const {
     biases_.contradiction().add_to(covariance, t);

@@ -94,14 +94,6 @@ void ResidualBuilder::add_imu(int frame) {
       {std::make_unique<ImuFactor>(*imu, window_.imu_ends(frame), first), nullptr, std::move(states), -1});
 }
 
-void ResidualBuilder::add_zero_velocity(int frame) {
-  if (!window_.inertial || !window_.frames[static_cast<std::size_t>(frame)].at_rest) return;
-  residuals_.push_back({std::make_unique<ZeroVelocityFactor>(config_.zero_velocity.sigma_m_per_s),
-                        nullptr,
-                        {{BlockKind::kSpeedBias, frame}},
-                        -1});
-}
-
 void ResidualBuilder::add_prior() {
   if (!window_.prior.empty()) residuals_.push_back(prior_residual(window_.prior));
 }

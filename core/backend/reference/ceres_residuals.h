@@ -40,8 +40,6 @@ class ResidualBuilder {
   void add_landmark(int index);
   /// IMU factor between frame - 1 and frame, if there is one.
   void add_imu(int frame);
-  /// Zero-velocity factor of a frame, if it is at rest.
-  void add_zero_velocity(int frame);
   /// Marginalization prior.
   void add_prior();
   /// Prior on the calibration from the calibrated values.

@@ -28,7 +28,6 @@ ResidualBuilder build_residuals(const Window& window, const BackendConfig& confi
   builder.add_prior();
   builder.add_calibration();
   for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
-  for (int frame = 0; frame <= window.newest(); ++frame) builder.add_zero_velocity(frame);
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     if (is_usable(window.landmarks[i])) builder.add_landmark(static_cast<int>(i));
   }
@@ -144,7 +143,6 @@ NormalEquations linearize_oldest(const Window& window, const BackendConfig& conf
   ResidualBuilder builder(window, config, focal_px);
   builder.add_prior();
   if (window.newest() >= 1) builder.add_imu(1);
-  builder.add_zero_velocity(0);
   equations.add(builder.residuals(), blocks, false);
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     const Landmark& landmark = window.landmarks[i];

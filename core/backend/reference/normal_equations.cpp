@@ -83,7 +83,6 @@ NormalEquations linearize_all(const Window& window, const BackendConfig& config,
   builder.add_prior();
   builder.add_calibration();
   for (int frame = 1; frame <= window.newest(); ++frame) builder.add_imu(frame);
-  for (int frame = 0; frame <= window.newest(); ++frame) builder.add_zero_velocity(frame);
   equations.add(builder.residuals(), blocks, false);
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     if (!is_usable(window.landmarks[i])) continue;

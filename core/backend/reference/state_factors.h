@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The residuals of the states, without landmarks, as Ceres cost functions: prior, IMU, zero velocity.
+/// The residuals of the states, without landmarks, as Ceres cost functions: prior and IMU.
 #pragma once
 
 #include <algorithm>
@@ -61,27 +61,6 @@ class ImuFactor final : public ceres::SizedCostFunction<15, 7, 9, 7, 9, 3, 1> {
   const Preintegration& imu_;
   Ends ends_;
   FirstEstimates first_;
-};
-
-/// Residual of a state at rest. ceres::NormalPrior would do, but owns Eigen matrices: with AVX, Eigen
-/// allocates them differently here than in the library of Ceres, which is built for the baseline.
-///
-/// r = v / sigma of a block (v, gyroscope bias, accelerometer bias), v in [m/s].
-class ZeroVelocityFactor final : public ceres::SizedCostFunction<3, 9> {
- public:
-  /// @param sigma_m_per_s > 0
-  explicit ZeroVelocityFactor(double sigma_m_per_s) : weight_(1.0 / sigma_m_per_s) {}
-
-  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    for (int i = 0; i < 3; ++i) residuals[i] = weight_ * parameters[0][i];
-    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    std::fill_n(jacobians[0], 27, 0.0);
-    for (int i = 0; i < 3; ++i) jacobians[0][9 * i + i] = weight_;
-    return true;
-  }
-
- private:
-  double weight_;
 };
 
 }  // namespace stillpoint

@@ -53,19 +53,14 @@ double SchurSolver::linearize(const Window& window, const BackendConfig& config)
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) cost += add_imu_term(window, frame, at, system_);
   }
-  for (int frame = 0; frame <= window.newest(); ++frame) {
-    if (has_zero_velocity_term(window, frame))
-      cost += add_zero_velocity_term(frame, config, blocks_, system_);
-  }
   cost += visual_.add_to(system_, at);
   scale_squared_.states = system_.H.diagonal().cwiseMax(kMinCurvature);
   scale_squared_.landmarks = visual_.information().cwiseMax(kMinCurvature);
   return cost;
 }
 
-double SchurSolver::cost_at(const Window& window, const BackendConfig& config,
-                            const ParameterBlocks& blocks) {
-  double cost = prior_.cost(blocks) + calibration_.cost(blocks) + zero_velocity_cost(window, config, blocks);
+double SchurSolver::cost_at(const Window& window, const ParameterBlocks& blocks) {
+  double cost = prior_.cost(blocks) + calibration_.cost(blocks);
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) cost += imu_cost(window, frame, blocks);
   }
@@ -177,7 +172,7 @@ SolveReport SchurSolver::iterate(const Window& window, const BackendConfig& conf
     const double predicted = predicted_decrease(step_);
     if (!(predicted > 0.0)) break;  // at the minimum, up to rounding errors
     apply_step();
-    const double decrease = cost - cost_at(window, config, candidate_);
+    const double decrease = cost - cost_at(window, candidate_);
     const bool converged = std::abs(decrease) <= config.function_tolerance * cost;
     const double quality = decrease / predicted;
     const double length = scaled_norm(step_);
@@ -279,7 +274,6 @@ LinearPrior SchurSolver::marginalize_oldest(const Window& window, const BackendC
   prior_.add_to(system_, blocks_);
   const Linearization at = linearize_at(blocks_, window, config, point_);
   if (window.newest() >= 1 && has_imu_term(window, 1)) add_imu_term(window, 1, at, system_);
-  if (has_zero_velocity_term(window, 0)) add_zero_velocity_term(0, config, blocks_, system_);
   visual_.add_to(system_, at);
   newton_.states = -system_.g;
   visual_.eliminate(0.0, system_.H, newton_.states);

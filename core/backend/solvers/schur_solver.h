@@ -59,8 +59,7 @@ class SchurSolver final : public WindowSolver {
 
   void read(const Window& window, const BackendConfig& config, double focal_px, VariableGlobals variable);
   [[nodiscard]] double linearize(const Window& window, const BackendConfig& config);
-  [[nodiscard]] double cost_at(const Window& window, const BackendConfig& config,
-                               const ParameterBlocks& blocks);
+  [[nodiscard]] double cost_at(const Window& window, const ParameterBlocks& blocks);
   [[nodiscard]] bool compute_newton_step();
   void compute_dogleg_step(double radius);
   [[nodiscard]] double scaled_norm(const Direction& direction) const;

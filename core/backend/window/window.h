@@ -53,7 +53,6 @@ struct WindowFrame {
   double time_offset_s = 0.0;                         ///< estimated offset when the frame was added
   Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();   ///< angular rate at the exposure, bias included [rad/s]
   Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();  ///< same: specific force [m/s^2]
-  bool at_rest = false;                               ///< the velocity was zero, by `is_at_rest`
   std::optional<Preintegration> from_previous;        ///< absent in the first frame and without an IMU
   bool imu_is_reliable = true;  ///< false: `from_previous` has the noise of missing or wrong samples
 };

@@ -17,22 +17,15 @@ struct Case {
   const char* name;
   SimulatedWindowOptions options;
   double readout_offset_s = 0.0;  // of a rolling shutter, top to bottom
-  bool at_rest = false;
 
   [[nodiscard]] Window window() const {
     Window result = simulated_window(options);
     for (Landmark& landmark : result.landmarks) {
       for (Observation& o : landmark.observations) o.readout_offset_s = readout_offset_s * o.bearing.y();
     }
-    for (WindowFrame& frame : result.frames) frame.at_rest = at_rest;
     return result;
   }
 };
-
-Case at_rest(Case result) {
-  result.at_rest = true;
-  return result;
-}
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
@@ -54,7 +47,6 @@ const std::vector<Case> kCases = {
     make_case(
         "RollingShutter", [](SimulatedWindowOptions&) {}, 0.02),
     make_case("WithGravity", [](SimulatedWindowOptions& o) { o.config.gravity = GravityModel::kEstimated; }),
-    at_rest(make_case("AtRest", [](SimulatedWindowOptions&) {})),
     make_case("WithGravityAndExtrinsics",
               [](SimulatedWindowOptions& o) {
                 o.config.gravity = GravityModel::kEstimated;
@@ -118,9 +110,6 @@ ReducedSystem reduced_system(const Window& window, const BackendConfig& config,
   calibration.add_to(system, blocks);
   for (int frame = 1; frame <= window.newest(); ++frame) {
     if (has_imu_term(window, frame)) add_imu_term(window, frame, at, system);
-  }
-  for (int frame = 0; frame <= window.newest(); ++frame) {
-    if (has_zero_velocity_term(window, frame)) add_zero_velocity_term(frame, config, blocks, system);
   }
   visual.add_to(system, at);
   Eigen::VectorXd rhs = -system.g;
