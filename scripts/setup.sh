@@ -8,7 +8,7 @@
 #   scripts/setup.sh --oracles also the ROS 1 bag library of Debian, which tests compare the own reader with
 #   scripts/setup.sh --cluster also Slurm, sshd, GNU parallel and rsync, for the tests of `bench --executor`; the packages
 #                            start their services under systemd, which the tests do not use
-#   scripts/setup.sh --minimal only what the preset "minimal" needs, e.g. on a board; with --list its names
+#   scripts/setup.sh --minimal only what the preset "minimal" needs, e.g. on a device; with --list its names
 #   scripts/setup.sh --list  only prints the names of the packages that building, testing and running need
 #   scripts/setup.sh --all   all of these, as CI does: no test is skipped for want of a package
 set -euo pipefail
