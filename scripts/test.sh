@@ -12,6 +12,11 @@ step "release build"
 configure release
 build release all
 
+step "minimal build"
+configure minimal
+build minimal stillpoint
+ctest --preset minimal --quiet --output-log build/logs/ctest-minimal.log || show_failure ctest-minimal
+
 step "asan and ubsan build of the fast tests"
 configure asan
 build asan fast_tests
