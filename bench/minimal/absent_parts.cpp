@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the commands of the minimal build (STILLPOINT_MINIMAL) could call, but which it does not have: the
-// renderer and the registry of sequences, and PDF files.
+// renderer and the registry of sequences, PDF files, and the files of pages.
+#include "bench/config/toml_source.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
@@ -22,6 +23,8 @@ std::unique_ptr<datasets::SensorStream> bench::find_sequence(const std::string& 
                                                              const synth::RenderControl&) {
   return datasets::open_sequence(name, options);
 }
+
+std::span<const bench::EmbeddedFile> bench::web_files() { return {}; }
 
 std::string report::pdf_text(const Drawing&) {
   throw InputError("PDF", "this build writes none (STILLPOINT_MINIMAL); write .svg, or use a full build");
