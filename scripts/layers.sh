@@ -138,7 +138,7 @@ row bench/cli/analysis $execution datasets/bags eval/io eval/metrics eval/trajec
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 
 # The minimal build: its commands, and the functions that it does not have.
-row bench/minimal core/base bench/cli bench/plan bench/run datasets datasets/synthetic/sequence reports/drawing
+row bench/minimal core/base bench/config bench/cli bench/plan bench/run datasets datasets/synthetic/sequence reports/drawing
 
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
 libraries=(
