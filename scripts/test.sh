@@ -14,7 +14,7 @@ build release all
 
 step "minimal build"
 configure minimal
-build minimal stillpoint
+build minimal all
 ctest --preset minimal --quiet --output-log build/logs/ctest-minimal.log || show_failure ctest-minimal
 
 step "asan and ubsan build of the fast tests"
