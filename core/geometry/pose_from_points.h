@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Camera pose from points of known position and the bearings under which the camera observes them (PnP),
 /// some of them wrong: consensus over small samples, then robust refinement. The pose is T_c_w, world to
-/// camera; the world may be another camera. Used for the newest frame of the window, for the motion between
-/// two frames, and in part (projection and consensus) for loops, where both cameras measure depths.
+/// camera; the world may be another camera. Used for the newest frame of the window; the motion between two
+/// frames and loops share the consensus, loops also the projection.
 #pragma once
 
 #include <cstddef>
