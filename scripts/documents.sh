@@ -15,7 +15,8 @@ complain() {
   faults=$((faults + 1))
 }
 exists() { [[ -e "$1" || -e "$1.h" || -e "$1.cpp" ]]; }
-documents() { git ls-files -c -o --exclude-standard -- '*.md' 2>/dev/null || find . -name '*.md' | sed 's|^\./||'; }
+# All that git does not ignore; outside of a checkout, or in an ignored folder, all.
+documents() { git ls-files -c -o --exclude-standard -- '*.md' 2>/dev/null | grep . || find . -name '*.md' | sed 's|^\./||'; }
 
 map=core/README.md
 rows="$(sed -n '/<!-- paper map -->/,/<!-- end of paper map -->/p' "$map" 2>/dev/null | grep '^|' | tail -n +3 || true)"
