@@ -190,7 +190,7 @@ TEST(FeatureRecognition, GateUsesItsOwnThresholdAndRecyclesNothing) {
   static_cast<void>(recognition.classify(frame_with({feature(1, kOutside, 2.0), feature(2, kOutside, 2.0)}),
                                          SemanticMask()));
   const auto labels = recognition.gate(std::vector<ConsistencyResidual>{
-      {.id = 1, .mean_px = 0.0, .pair_count = 9}, {.id = 2, .mean_px = 8.1, .pair_count = 1}});
+      {.id = 1, .mean_px = 0.0, .pair_count = 9}, {.id = 2, .mean_px = 10.1, .pair_count = 1}});
   expect_label(labels.at(0), LabelClass::kDynamicObject, LabelReason::kHistory);
   expect_label(labels.at(1), LabelClass::kDynamicMotion, LabelReason::kPredictionResidual);
 }
