@@ -66,6 +66,7 @@ SlidingWindow::SlidingWindow(const BackendConfig& config, const Rig& rig, int se
 
 void SlidingWindow::restart(Window fresh) {
   window_ = std::move(fresh);
+  pixel_noise_ = {};
   unusable_solves_ = 0;
 }
 

@@ -54,7 +54,7 @@ class SlidingWindow {
     return window_.inertial && !window_.frames.empty() && window_.frames.back().imu_is_reliable;
   }
 
-  /// Replaces all states.
+  /// Replaces all states; the noise of the features is the nominal one again.
   void restart(Window fresh);
 
   /// Integrates the data up to `next`. Missing samples of an inertial window are replaced by those of a

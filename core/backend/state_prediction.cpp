@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/backend/state_prediction.h"
 
+#include "core/backend/factors/gravity_direction.h"
 #include "core/backend/vision/camera_pose.h"
 #include "core/config/monitor_config.h"
 #include "core/geometry/so3.h"
@@ -58,7 +59,12 @@ UncertainPose predicted_pose(const NavState& state, const StateCovariance& claim
   Q.block<3, 3>(ImuErrorIndex::kVelocity, ImuErrorIndex::kVelocity) = state.T_w_b.R();
   const Matrix15 J = Q * imu.jacobian() * Q.transpose();
   const Matrix15 covariance = J * claimed.state * J.transpose() + Q * imu.covariance() * Q.transpose();
-  return {.T_w_f = imu.predict(state, gravity_w).T_w_b, .covariance = covariance.topLeftCorner<6, 6>()};
+  UncertainPose predicted{.T_w_f = imu.predict(state, gravity_w).T_w_b,
+                          .covariance = covariance.topLeftCorner<6, 6>()};
+  const Eigen::Matrix<double, 3, 2> by_gravity =
+      0.5 * imu.duration_s() * imu.duration_s() * gravity_jacobian(gravity_w);
+  predicted.covariance.topLeftCorner<3, 3>() += by_gravity * claimed.gravity * by_gravity.transpose();
+  return predicted;
 }
 
 void drop_old_samples(const MotionState& motion, ImuBuffer& imu) {

@@ -36,7 +36,13 @@ struct MotionState {
 [[nodiscard]] UncertainPose predicted_motion(const NavState& state, const StateCovariance& claimed,
                                              const Preintegration& imu, const Eigen::Vector3d& gravity_w);
 
-/// Pose after inertial data alone, with the covariance of the state propagated as in Preintegration.
+/// Pose after inertial data alone, with the covariance of the state propagated as in Preintegration, and that
+/// of the direction of gravity P_g added: with the basis B(g) of gravity_direction.h, after the time T,
+///
+///   dp = J_g d,    J_g = -1/2 T^2 [g]x B(g),    P <- P + J_g P_g J_g^T.
+///
+/// The correlation of gravity with attitude and accelerometer bias is no part of StateCovariance and left
+/// out.
 /// @param claimed of `state`, inertial
 /// @param imu     from `state` on
 [[nodiscard]] UncertainPose predicted_pose(const NavState& state, const StateCovariance& claimed,

@@ -147,11 +147,12 @@ void FeatureTracker::State::update_tracks(double interval_s) {
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const Eigen::Vector2d pixel = to_vector(forward.pixels[i]);
     const bool inside = pixel.allFinite() && camera.contains(pixel, kImageBorder_px);
-    if (forward.found[i] != 0 && inside) {
+    const Eigen::Vector2d bearing =
+        camera.unproject(pixel);  // not finite where the distortion has no inverse
+    if (forward.found[i] != 0 && inside && bearing.allFinite()) {
       Track& track = tracks[kept++];
       track = tracks[i];
       TrackedFeature& feature = track.feature;
-      const Eigen::Vector2d bearing = camera.unproject(pixel);
       feature.velocity.setZero();
       if (interval_s > 0.0) feature.velocity = (bearing - feature.bearing) / interval_s;
       feature.bearing = bearing;
@@ -233,6 +234,7 @@ void FeatureTracker::State::detect_features(const cv::Mat& gray) {
                         .wanted = config.max_features - static_cast<int>(tracks.size()),
                         .min_distance_px = config.circular_mask ? config.min_distance_px : 0});
   for (const cv::Point2f& corner : corners) {
+    if (!camera.unproject(to_vector(corner)).allFinite()) continue;
     Track track;
     track.feature.id = next_id++;
     track.feature.pixel = to_vector(corner);

@@ -117,8 +117,7 @@ void Preintegration::append(const Preintegration& later) {
                         .accel_noise = std::max(noise_.accel_noise, later.noise_.accel_noise),
                         .gyro_walk = std::max(noise_.gyro_walk, later.noise_.gyro_walk),
                         .accel_walk = std::max(noise_.accel_walk, later.noise_.accel_walk)};
-  if (larger.gyro_noise > noise_.gyro_noise || larger.accel_noise > noise_.accel_noise) set_noise(larger);
-  noise_ = larger;
+  if (!(larger == noise_)) set_noise(larger);
   integrate(later.samples_);
 }
 

@@ -23,6 +23,8 @@ struct ImuNoise {
   double accel_noise = 1.6e-2;  ///< [m/s^2/sqrt(Hz)]
   double gyro_walk = 2e-5;      ///< [rad/s^2/sqrt(Hz)]
   double accel_walk = 2e-4;     ///< [m/s^3/sqrt(Hz)]
+
+  bool operator==(const ImuNoise&) const = default;
 };
 
 /// Counts of irregularities in the IMU stream; reported with the run.

@@ -15,7 +15,8 @@ namespace {
 
 /// Whether an optimized state is not finite, has an implausible bias, or moved too far in one frame.
 bool has_failed(const NavState& before, const NavState& now) {
-  const bool finite = now.T_w_b.p.allFinite() && now.T_w_b.q.coeffs().allFinite() && now.v_w.allFinite();
+  const bool finite = now.T_w_b.p.allFinite() && now.T_w_b.q.coeffs().allFinite() && now.v_w.allFinite() &&
+                      now.gyro_bias.allFinite() && now.accel_bias.allFinite();
   return !finite || now.accel_bias.norm() > kMonitor.failure.max_accel_bias ||
          now.gyro_bias.norm() > kMonitor.failure.max_gyro_bias ||
          (now.T_w_b.p - before.T_w_b.p).norm() > kMonitor.failure.max_jump_m;

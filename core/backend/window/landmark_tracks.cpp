@@ -84,6 +84,7 @@ void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConf
   const int newest = window.newest();
   auto landmark = window.landmarks.begin();
   for (const TrackedFeature& feature : frame.features) {
+    if (!feature.bearing.allFinite()) continue;
     while (landmark != window.landmarks.end() && landmark->id < feature.id) ++landmark;
     const bool known =
         landmark != window.landmarks.end() && landmark->id == feature.id && landmark->last() == newest - 1;

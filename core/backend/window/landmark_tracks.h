@@ -9,7 +9,7 @@
 namespace stillpoint {
 
 /// Adds the tracked features of the newest frame as observations; unknown ids become new landmarks.
-/// @param frame features sorted by id
+/// @param frame features sorted by id; those whose bearing is not finite are ignored
 void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConfig& config, Window& window);
 
 /// Whether the second-newest frame becomes a keyframe, that is, stays in the window. It does if its

@@ -21,7 +21,8 @@ double ReprojectionErrorMonitor::median_px(const Window& window, double focal_px
     const Eigen::Vector3d p_w = window.position(landmark);
     for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
       const Eigen::Vector3d p_c = T_c_w_[static_cast<std::size_t>(frame)] * p_w;
-      squared_.push_back((p_c.hnormalized() - landmark.observation_in(frame).bearing).squaredNorm());
+      const double squared = (p_c.hnormalized() - landmark.observation_in(frame).bearing).squaredNorm();
+      if (std::isfinite(squared)) squared_.push_back(squared);
     }
   }
   if (squared_.size() < kMinObservations) return 0.0;
@@ -31,7 +32,7 @@ double ReprojectionErrorMonitor::median_px(const Window& window, double focal_px
 }
 
 void PixelNoise::observe(double error_px, const BackendConfig& config) {
-  if (error_px <= 0.0 || config.reprojection_error_px <= 0.0) return;
+  if (!std::isfinite(error_px) || error_px <= 0.0 || config.reprojection_error_px <= 0.0) return;
   const double ratio = error_px / config.reprojection_error_px;
   const double factor =
       std::clamp(ratio * ratio, config.min_pixel_noise_factor, config.max_pixel_noise_factor);

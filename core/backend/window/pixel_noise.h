@@ -14,7 +14,7 @@ namespace stillpoint {
 class ReprojectionErrorMonitor {
  public:
   /// Median reprojection error of usable landmarks in frames after their host [px]; 0 with fewer than 20
-  /// observations.
+  /// observations whose error is finite.
   [[nodiscard]] double median_px(const Window& window, double focal_px);
 
  private:
@@ -32,7 +32,8 @@ class ReprojectionErrorMonitor {
 /// variance suggests; hence the square of the ratio.
 class PixelNoise {
  public:
-  /// Updates the factor after a solve. @param error_px median reprojection error; 0 = unknown, ignored
+  /// Updates the factor after a solve. @param error_px median reprojection error; 0 or not finite = unknown,
+  /// ignored
   void observe(double error_px, const BackendConfig& config);
 
   /// The newest features are not where they were predicted: something is not as it was when their errors were

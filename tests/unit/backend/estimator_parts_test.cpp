@@ -2,6 +2,8 @@
 // The parts of the estimator alone: SlidingWindow, WindowStart and SensorMonitor.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/backend/health/sensor_monitor.h"
 #include "core/backend/sliding_window.h"
 #include "core/backend/start/initial_prior.h"
@@ -132,6 +134,9 @@ TEST_F(SensorMonitorTest, GivesUpAnImplausibleStateOrAfterThreeFailedSolves) {
   const NavState before = window.frames.back().state;
   EXPECT_EQ(SensorMonitor::failure_of(window, before, 2), StatusReason::kNone);
   EXPECT_EQ(SensorMonitor::failure_of(window, before, 3), StatusReason::kSolveFailed);
+  window.frames.back().state.gyro_bias.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(SensorMonitor::failure_of(window, before, 0), StatusReason::kDiverged);
+  window.frames.back().state.gyro_bias.x() = 0.0;
   window.frames.back().state.T_w_b.p.x() += 5.1;
   EXPECT_EQ(SensorMonitor::failure_of(window, before, 0), StatusReason::kDiverged);
 }

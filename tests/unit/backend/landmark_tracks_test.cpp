@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/support/simulated/window_world.h"
 
 namespace stillpoint {
@@ -48,6 +50,14 @@ TEST(LandmarkTracks, KeepOnlyTheNewestObservationAfterARestart) {
   ASSERT_EQ(landmark.observations.size(), 1u);
   EXPECT_EQ(landmark.observations[0].bearing, newest);
   EXPECT_EQ(landmark.inverse_depth, 0.0);
+}
+
+TEST(LandmarkTracks, IgnoreABearingThatIsNotFinite) {
+  Window window = visual_window(4, 1);
+  TrackedFrame frame;
+  frame.features = {{.id = 7, .bearing = {std::numeric_limits<double>::quiet_NaN(), 0.2}}};
+  add_observations(frame, Rig{.camera = {.height = 480}}, DepthConfig{}, window);
+  EXPECT_EQ(window.landmarks.size(), 1u);
 }
 
 TEST(LandmarkTracks, BeginAnewWhenTheyAreRecognizedAfterALoss) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/support/simulated/window_world.h"
 
 namespace stillpoint {
@@ -36,6 +38,18 @@ TEST(MedianReprojectionError, EqualsACommonErrorOfAllObservations) {
 
 TEST(MedianReprojectionError, IsZeroWithTooFewObservations) {
   EXPECT_EQ(ReprojectionErrorMonitor().median_px(visual_window(2, 19), kFocal_px), 0.0);
+}
+
+TEST(MedianReprojectionError, IsThatOfTheFiniteErrors) {
+  Window window = visual_window(4, 60);
+  for (std::size_t k = 0; k < 60; k += 2)
+    window.landmarks[k].observations[1].bearing.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NEAR(ReprojectionErrorMonitor().median_px(window, kFocal_px), 0.0, 1e-9);
+}
+
+TEST(PixelNoise, IgnoresAnErrorThatIsNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NEAR(sigma_after({nan, 0.4}, adaptive_config()), 1.5, 1e-9);
 }
 
 TEST(PixelNoise, StaysNominalUpToTheNominalReprojectionErrorByDefault) {

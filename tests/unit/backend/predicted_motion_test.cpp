@@ -2,6 +2,7 @@
 // Covariance of the motion that inertial data predicts.
 #include <gtest/gtest.h>
 
+#include "core/backend/factors/gravity_direction.h"
 #include "core/backend/state_prediction.h"
 #include "core/geometry/so3.h"
 
@@ -52,6 +53,20 @@ TEST(PredictedMotion, HasTheCovarianceOfTheStateAndOfTheSamples) {
     claimed.state(i, i) = kError * kError;
     const Matrix6 by_state = predicted_motion(state, claimed, imu, kGravity).covariance - exact.covariance;
     EXPECT_TRUE(by_state.isApprox(error * error.transpose(), 1e-2)) << i;
+  }
+}
+
+TEST(PredictedPose, HasTheCovarianceOfGravity) {
+  const Preintegration imu = tenth_of_a_second({0.001, 0.01, 1e-5, 1e-4});
+  const NavState state = moving_state();
+  const UncertainPose exact = predicted_pose(state, {}, imu, kGravity);
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Vector2d d = 1e-4 * Eigen::Vector2d::Unit(i);
+    const Eigen::Vector3d moved = imu.predict(state, rotate_gravity(kGravity, d)).T_w_b.p - exact.T_w_f.p;
+    StateCovariance claimed;
+    claimed.gravity(i, i) = 1e-8;
+    const Matrix6 by_gravity = predicted_pose(state, claimed, imu, kGravity).covariance - exact.covariance;
+    EXPECT_TRUE((by_gravity.topLeftCorner<3, 3>().isApprox(moved * moved.transpose(), 1e-2))) << i;
   }
 }
 

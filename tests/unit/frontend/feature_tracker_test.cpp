@@ -71,6 +71,14 @@ std::vector<TrackedFrame> track_four_frames(const FrontendConfig& config) {
   return results;
 }
 
+TEST(FeatureTracker, DropsFeaturesWhoseUndistortionIsNotFinite) {
+  Camera camera = test_camera();
+  camera.distortion[0] = std::numeric_limits<double>::quiet_NaN();
+  FeatureTracker tracker(FrontendConfig{}, camera);
+  const TrackedFrame frame = tracker.track(test_plane().frame_at(Pose{}, 0), {}, kDetect);
+  EXPECT_TRUE(frame.features.empty());
+}
+
 TEST(FeatureTracker, FirstFrameReturnsNewFeaturesWithoutVelocity) {
   FeatureTracker tracker({}, test_camera());
   const TrackedFrame result = tracker.track(test_plane().frame_at(Pose{}, 0), {}, kDetect);

@@ -167,5 +167,22 @@ TEST(Preintegration, ASingleSampleGivesNoMotion) {
   EXPECT_EQ(imu.jacobian(), Matrix15::Identity());
 }
 
+TEST(Preintegration, HasTheLargerRandomWalkOfBothIntervalsAfterAnAppend) {
+  const ImuNoise small{.gyro_walk = 1e-5, .accel_walk = 1e-4}, large{.gyro_walk = 1e-2, .accel_walk = 1e-1};
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  const auto samples = [](int first, int last) {
+    std::vector<ImuSample> found;
+    for (int i = first; i <= last; ++i)
+      found.push_back({after(Timestamp{}, 0.005 * i), {0.1, 0.5, -0.2}, {0.3, 0.2, 9.9}});
+    return found;
+  };
+  Preintegration earlier(small, zero, zero), later(large, zero, zero), both(large, zero, zero);
+  earlier.integrate(samples(0, 10));
+  later.integrate(samples(10, 20));
+  both.integrate(samples(0, 20));
+  earlier.append(later);
+  EXPECT_TRUE(earlier.covariance().isApprox(both.covariance(), 1e-12));
+}
+
 }  // namespace
 }  // namespace stillpoint
