@@ -139,6 +139,10 @@ TEST_F(SensorMonitorTest, GivesUpAnImplausibleStateOrAfterThreeFailedSolves) {
   window.frames.back().state.gyro_bias.x() = 0.0;
   window.frames.back().state.T_w_b.p.x() += 5.1;
   EXPECT_EQ(SensorMonitor::failure_of(window, before, 0), StatusReason::kDiverged);
+  window.frames.back().state.T_w_b.p.x() -= 5.1;
+  window.prior = initial_prior(window, short_window());
+  window.prior.residual(0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(SensorMonitor::failure_of(window, before, 0), StatusReason::kDiverged);
 }
 
 TEST_F(SensorMonitorTest, TracksOnceTheWindowIsInertialAndVisionLocatesIt) {

@@ -48,7 +48,7 @@ TEST(PoseFromPoints, JacobianIsThatOfCentralDifferences) {
 }
 
 TEST(PoseFromPoints, RefinementConvergesFromFifteenDegrees) {
-  const Pose initial = Pose{exp_so3({0.0, 0.26, 0.0}), {}} * kTcw;
+  const Pose initial = Pose{exp_so3({0.0, 0.26, 0.0}), Eigen::Vector3d::Zero()} * kTcw;
   EXPECT_LT(distance(refine_pose(initial, observe(40), {.scale = 1.0, .steps = 8}), kTcw), 1e-9);
 }
 
