@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Metrics of claimed errors, and of runs with injected sensor faults; definitions in eval/metrics/consistency.h.
+/// Metrics of claimed errors, and of runs with injected sensor faults; definitions in
+/// eval/metrics/consistency.h.
 #pragma once
 
 #include "bench/model/metrics.h"

@@ -236,8 +236,10 @@ std::string result_json(const RunResult& result) {
   json["frames_planned"] = result.run.frames_planned;
   json.update(metric_members(measurements_of(result)));
   json["skipped_frames"] = skipped_json(summary.skipped);
-  json["imu_health"] = {{"rejected_samples", summary.imu_health.rejected_samples},
-                        {"gaps", summary.imu_health.gaps}};
+  json["imu_health"] = {
+      {"rejected_samples", summary.imu_health.rejected_samples},
+      {"gaps", summary.imu_health.gaps},
+      {"noise_factors", {{"gyro", result.run.imu_noise.gyro}, {"accel", result.run.imu_noise.accel}}}};
   json["detector"] = detector_json(summary);
   json["dynamic_features"] = result.run.dynamic_features;
   json["dynamic_labels"] = labels_json(result.run);

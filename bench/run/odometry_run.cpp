@@ -247,6 +247,7 @@ class RunRecorder {
     if (update.covariance && !update.covariance->gravity.isZero(0.0))
       run_.level_covariance = update.covariance->gravity;
     record_calibration(update);
+    run_.imu_noise = update.imu_noise;
     run_.claims.push_back(claim_of(update, t));
     if (!is_located(update.status)) return;
     run_.innovations.push_back(update.nis);

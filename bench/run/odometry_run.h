@@ -24,6 +24,7 @@
 #include "core/config/odometry_config.h"
 #include "core/pipeline/imu_rate_poses.h"
 #include "core/pipeline/runners/runner.h"
+#include "core/types/rig.h"
 #include "core/types/trajectory.h"
 #include "datasets/sensor_stream.h"
 #include "eval/metrics/consistency.h"
@@ -135,6 +136,7 @@ struct OdometryRun {
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();  ///< of the last update
   std::optional<Eigen::Matrix2d> level_covariance;  ///< of that rotation: `StateCovariance::gravity` [rad^2]
   EstimatedCalibration calibration;
+  ImuNoiseFactors imu_noise;          ///< estimate at the end; 1 unless `imu.adapt_noise`
   std::optional<DeviceScore> device;  ///< of the machine, if the caller measured it
   std::size_t frames_planned = 0;
   std::chrono::nanoseconds recording{};  ///< time spent on recording this

@@ -356,6 +356,7 @@ void Estimator::report(const NavState& state) {
   update_.time_offset_s = window.time_offset_s;
   update_.depth_scale = window.depth_scale;
   update_.agrees_with_rig = window.agrees_with_rig;
+  update_.imu_noise = monitor_.imu_noise_factors();
   if (window.gravity_covariance) update_.q_level_w = level_rotation(window.gravity_w);
 }
 

@@ -191,8 +191,8 @@ struct BackendConfig {
   InitializerConfig initializer;
 
   // Not keys: no config changes them.
-  double extrinsics_walk_m = 0.0001;  ///< random walk in the consistent prior [m/sqrt(s)]: else what the
-                                      ///< first seconds told stays, linearized at a wrong calibration
+  double extrinsics_walk_m = 0.0001;    ///< random walk in the consistent prior [m/sqrt(s)]: else what the
+                                        ///< first seconds told stays, linearized at a wrong calibration
   double extrinsics_walk_rad = 0.0001;  ///< same for the rotation [rad/sqrt(s)]
   double max_relocalization_s = 1.0;  ///< after a loss, a new world begins when known landmarks are not found
                                       ///< for this long in a view

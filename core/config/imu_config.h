@@ -12,6 +12,7 @@ struct ImuConfig {
   bool enabled = true;
   double gravity = 9.81;
   double noise_scale = 1.0;
+  bool adapt_noise = false;
   double gyro_noise = 0.0;
   double accel_noise = 0.0;
   double gyro_walk = 0.0;
@@ -30,6 +31,9 @@ void visit_fields(Visitor&& field, Config& config) {
   field("noise_scale", config.noise_scale,
         FieldInfo{"Factor on all noise densities: the noise of a moving sensor exceeds its data sheet.", "",
                   0.01, 1000.0});
+  field("adapt_noise", config.adapt_noise,
+        FieldInfo{.text = "Whether the noise of gyroscope and accelerometer is estimated while running, from "
+                          "the stated densities upwards."});
   field("gyro_noise", config.gyro_noise,
         FieldInfo{"Density of the white noise of the gyroscope; 0 = that of the sequence or rig.toml.",
                   "rad/s/sqrt(Hz)", 0.0, 1.0});

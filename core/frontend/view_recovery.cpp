@@ -113,9 +113,8 @@ std::optional<Pose> ViewRecovery::motion_since(const View& lost, const cv::Mat& 
   const std::optional<Pose> T_now_lost =
       estimate_rigid_motion(matches, {.threshold = threshold, .confidence = kConfidence});
   if (!T_now_lost) return std::nullopt;
-  const auto inliers = std::ranges::count_if(matches, [&](const PointObservation& seen) {
-    return bearing_error(seen, *T_now_lost) <= threshold;
-  });
+  const auto inliers = std::ranges::count_if(
+      matches, [&](const PointObservation& seen) { return bearing_error(seen, *T_now_lost) <= threshold; });
   const double required =
       std::max(static_cast<double>(kMinFound), kMinInlierRatio * static_cast<double>(matches.size()));
   return static_cast<double>(inliers) >= required ? T_now_lost : std::nullopt;

@@ -87,7 +87,7 @@ struct OdometryCounters {
   int dynamic_features = 0;  ///< excluded as dynamic
   int solver_iterations = 0;
   bool keyframe = false;
-  bool reset = false;    ///< a failure was detected in this frame; the estimator reinitializes
+  bool reset = false;  ///< a failure was detected in this frame; the estimator reinitializes
 };
 
 /// Normalized innovation squared of a frame at its predicted pose, 1 in the mean for true covariances; see
@@ -131,6 +131,7 @@ struct OdometryUpdate {
   double depth_scale = 1.0;    ///< ratio of measured to true depth; current estimate
   CalibrationAtBound at_bound;
   AgreesWithRig agrees_with_rig;
+  ImuNoiseFactors imu_noise;  ///< current estimate
   /// Rotates the world such that gravity points along -z, by the current estimate of gravity; the identity if
   /// gravity is not estimated (`backend.gravity`) or not yet known.
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();

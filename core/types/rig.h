@@ -27,6 +27,12 @@ struct ImuNoise {
   bool operator==(const ImuNoise&) const = default;
 };
 
+/// Ratio of the noise densities with which inertial data is used to the stated ones.
+struct ImuNoiseFactors {
+  double gyro = 1.0;
+  double accel = 1.0;
+};
+
 /// Counts of irregularities in the IMU stream; reported with the run.
 struct ImuHealth {
   int rejected_samples = 0;  ///< not finite, out of order or repeated

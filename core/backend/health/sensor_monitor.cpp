@@ -48,6 +48,7 @@ SensorMonitor::SensorMonitor(const BackendConfig& backend, const ImuConfig& imu,
       imu_(imu),
       rig_(rig),
       tracking_(monitor_options(backend, imu, rig, seed)),
+      noise_(rig.imu_noise),
       step_(rig.camera.focal_px()),
       biases_(rig.camera.focal_px()),
       depth_(backend.depth.max_scale_error) {}
@@ -80,13 +81,14 @@ bool SensorMonitor::has_unexpected_features(const Expectation& expected, const W
   return innovations_.reprojection > kMonitor.innovation.unexpected;
 }
 
-/// @param T_w_c        by vision alone, from `known_points_`
-/// @param inlier_scale of that pose [normalized image plane]
-void SensorMonitor::record_inertial_nis(const Expectation& expected, const Pose& T_w_c, double inlier_scale) {
+void SensorMonitor::compare_with_prediction(const Expectation& expected, const Pose& T_w_c, Timestamp t) {
   if (!expected.camera) return;
+  const double inlier_scale = kMonitor.vision.pose_inlier_px / rig_.camera.focal_px();
   const std::optional<UncertainPose> visual =
       with_covariance(known_points_, T_w_c, expected.residual_sigma, inlier_scale);
-  if (visual) innovations_.inertial = inertial_nis(*expected.camera, *visual);
+  if (!visual) return;
+  innovations_.inertial = inertial_nis(*expected.camera, *visual);
+  if (imu_.adapt_noise) noise_.observe(*expected.camera, *visual, seconds_between(expected.before.t, t));
 }
 
 void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& imu, Window& window) {
@@ -106,7 +108,7 @@ void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& 
     if (!vision.is_located(false)) inertial_.interrupt(newest.state.t);
     return;
   }
-  record_inertial_nis(expected, T_w_c, kMonitor.vision.pose_inlier_px / focal_px);
+  compare_with_prediction(expected, T_w_c, newest.state.t);
   const bool was_consistent = inertial_.is_consistent();
   const VisualPose pose{.t = after(newest.state.t, newest.time_offset_s),
                         .T_w_b = product(T_w_c, window.T_b_c.inverse()),
@@ -139,7 +141,7 @@ void SensorMonitor::enlarge_bias_walk(const MeasuredBiases& measured, Window& wi
       continue;
     }
     const double root_s = std::sqrt(frame.from_previous->duration_s());
-    ImuNoise noise = rig_.imu_noise;
+    ImuNoise noise = noise_.densities();
     noise.gyro_walk = std::max(noise.gyro_walk, (measured.gyro - newest.gyro_bias).norm() / root_s);
     noise.accel_walk = std::max(noise.accel_walk, (measured.accel - newest.accel_bias).norm() / root_s);
     frame.from_previous->set_noise(noise);

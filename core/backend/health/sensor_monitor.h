@@ -10,6 +10,7 @@
 #include "core/backend/health/depth_monitor.h"
 #include "core/backend/health/inertial_checks.h"
 #include "core/backend/health/inertial_interval.h"
+#include "core/backend/health/inertial_noise.h"
 #include "core/backend/health/tracking_monitor.h"
 #include "core/backend/window/window.h"
 #include "core/config/backend_config.h"
@@ -50,10 +51,10 @@ class SensorMonitor {
   /// @return whether they are reliable
   [[nodiscard]] bool inspect(std::span<const ImuSample> samples, Timestamp end);
 
-  /// Noise with which samples enter the window: so large for unreliable ones that vision determines the
-  /// motion.
+  /// Noise, see InertialNoise, with which samples enter the window: so large for unreliable ones that vision
+  /// determines the motion.
   [[nodiscard]] ImuNoise imu_noise(bool is_reliable) const {
-    return is_reliable ? rig_.imu_noise : unreliable_noise(rig_.imu_noise);
+    return is_reliable ? noise_.densities() : unreliable_noise(rig_.imu_noise);
   }
 
   /// Removes wrong depths of the newest frame, see DepthMonitor.
@@ -108,11 +109,13 @@ class SensorMonitor {
   /// Number of the current world frame.
   [[nodiscard]] int segment() const { return tracking_.segment(); }
   [[nodiscard]] bool trusts_imu() const { return inertial_.is_consistent(); }
+  [[nodiscard]] const ImuNoiseFactors& imu_noise_factors() const { return noise_.factors(); }
   [[nodiscard]] const Innovations& innovations() const { return innovations_; }
 
  private:
   void assess_newest(const Window& window);
-  void record_inertial_nis(const Expectation& expected, const Pose& T_w_c, double inlier_scale);
+  /// Innovation of the pose T_w_c by vision alone, from `known_points_`, of the frame at `t`.
+  void compare_with_prediction(const Expectation& expected, const Pose& T_w_c, Timestamp t);
   void distrust_recent_samples(Window& window);
   void enlarge_bias_walk(const MeasuredBiases& measured, Window& window) const;
 
@@ -121,6 +124,7 @@ class SensorMonitor {
   Rig rig_;
   TrackingMonitor tracking_;
   SampleInspector inspector_;
+  InertialNoise noise_;
   InertialCheck inertial_;
   StepCheck step_;
   BiasMonitor biases_;

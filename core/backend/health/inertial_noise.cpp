@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/backend/health/inertial_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kMedianOfChiSquare3 = 2.366;
+constexpr double kMaxFactor = 32.0;
+constexpr double kRise = 2.0;  // [1/s]
+constexpr double kFall = 1.0;  // [1/s]
+
+void adapt(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance, double dt_s,
+           double& factor) {
+  const double distance = innovation.dot(covariance.ldlt().solve(innovation));
+  if (!std::isfinite(distance)) return;
+  const double step = distance > kMedianOfChiSquare3 ? kRise : -kFall;
+  factor = std::clamp(factor * std::exp(step * dt_s), 1.0, kMaxFactor);
+}
+
+}  // namespace
+
+void InertialNoise::observe(const UncertainPose& predicted, const UncertainPose& visual, double dt_s) {
+  const Matrix6 S = predicted.covariance + visual.covariance;
+  const Pose& a = predicted.T_w_f;
+  const Pose& b = visual.T_w_f;
+  adapt(b.p - a.p, S.topLeftCorner<3, 3>(), dt_s, factors_.accel);
+  adapt(log_so3(a.q.conjugate() * b.q), S.bottomRightCorner<3, 3>(), dt_s, factors_.gyro);
+}
+
+ImuNoise InertialNoise::densities() const {
+  return {.gyro_noise = factors_.gyro * stated_.gyro_noise,
+          .accel_noise = factors_.accel * stated_.accel_noise,
+          .gyro_walk = factors_.gyro * stated_.gyro_walk,
+          .accel_walk = factors_.accel * stated_.accel_walk};
+}
+
+}  // namespace stillpoint
