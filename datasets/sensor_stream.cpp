@@ -13,14 +13,19 @@
 namespace stillpoint::datasets {
 namespace {
 
-class LateStream final : public SensorStream {
+/// The frames first, first + step, first + 2 step, ... of a stream.
+class PartialStream final : public SensorStream {
  public:
-  /// @param first index of the first frame that is played
-  LateStream(std::unique_ptr<SensorStream> stream, Timestamp start, std::size_t first)
-      : stream_(std::move(stream)), info_(stream_->info()), first_(first) {
+  PartialStream(std::unique_ptr<SensorStream> stream, std::size_t first, std::size_t step)
+      : stream_(std::move(stream)), info_(stream_->info()), first_(first), step_(step) {
+    info_.frame_times.clear();
+    const std::vector<Timestamp>& times = stream_->info().frame_times;
+    for (std::size_t i = first; i < times.size(); i += step) info_.frame_times.push_back(times[i]);
+  }
+
+  /// Removes IMU samples, boxes and true poses.
+  void remove_before(Timestamp start) {
     const auto is_early = [&](const auto& item) { return item.t < start; };
-    info_.frame_times.erase(info_.frame_times.begin(),
-                            info_.frame_times.begin() + static_cast<std::ptrdiff_t>(first));
     std::erase_if(info_.imu, is_early);
     std::erase_if(info_.ground_truth.trajectory.poses, is_early);
     std::erase_if(info_.detections, is_early);
@@ -31,7 +36,7 @@ class LateStream final : public SensorStream {
   void note(std::string text) { info_.notes.push_back(std::move(text)); }
 
   [[nodiscard]] Frame load_frame(std::size_t index) const override {
-    Frame frame = stream_->load_frame(first_ + index);
+    Frame frame = stream_->load_frame(first_ + index * step_);
     frame.id = static_cast<std::int64_t>(index);
     return frame;
   }
@@ -39,13 +44,13 @@ class LateStream final : public SensorStream {
   [[nodiscard]] bool frames_are_cached() const override { return stream_->frames_are_cached(); }
 
   [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t index) const override {
-    return stream_->load_labels(first_ + index);
+    return stream_->load_labels(first_ + index * step_);
   }
 
  private:
   std::unique_ptr<SensorStream> stream_;
   SequenceInfo info_;
-  std::size_t first_;
+  std::size_t first_, step_;
 };
 
 }  // namespace
@@ -62,10 +67,20 @@ std::unique_ptr<SensorStream> start_at(std::unique_ptr<SensorStream> stream, dou
                                  start_s, stream->info().name, seconds_between(times.front(), times.back())));
   }
   const auto skipped = static_cast<std::size_t>(first - times.begin());
-  auto late = std::make_unique<LateStream>(std::move(stream), start, skipped);
+  auto late = std::make_unique<PartialStream>(std::move(stream), skipped, 1);
+  late->remove_before(start);
   late->note(fmt::format("begins {:g} s after the first frame of the sequence, without its {} first frames",
                          start_s, skipped));
   return late;
+}
+
+std::unique_ptr<SensorStream> every_nth_frame(std::unique_ptr<SensorStream> stream, int step) {
+  if (step < 1) throw InputError("--every", fmt::format("must be 1 or more, not {}", step));
+  if (step == 1) return stream;
+  const std::size_t all = stream->info().frame_times.size();
+  auto part = std::make_unique<PartialStream>(std::move(stream), 0, static_cast<std::size_t>(step));
+  part->note(fmt::format("1 of {} frames is played: {} of {}", step, part->info().frame_times.size(), all));
+  return part;
 }
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Format-independent access to a recorded or rendered sequence: metadata at once, images on demand. A stream
-/// can be played from a later time on, or forwards and backwards alternately.
+/// can be played from a later time on, at a lower frame rate, or forwards and backwards alternately.
 #pragma once
 
 #include <cstddef>
@@ -39,6 +39,13 @@ class SensorStream {
 /// @param start_s >= 0 [s]; 0 or a stream without frames: the stream as it is
 /// @throws InputError if no frame is left
 [[nodiscard]] std::unique_ptr<SensorStream> start_at(std::unique_ptr<SensorStream> stream, double start_s);
+
+/// Plays the first frame and every `step`-th after it, as a camera of a lower frame rate would record them.
+/// The frames are numbered from 0. IMU samples, boxes and true poses stay.
+/// @param stream without injected faults
+/// @param step 1: the stream as it is
+/// @throws InputError if step < 1
+[[nodiscard]] std::unique_ptr<SensorStream> every_nth_frame(std::unique_ptr<SensorStream> stream, int step);
 
 /// Plays a sequence forwards and backwards alternately: an arbitrarily long sequence with continuous motion.
 /// Frames, boxes and ground-truth poses continue without a jump in pose or time; the frame at a turning point

@@ -22,6 +22,7 @@ struct NumberOption {
 const NumberOption kOptions[] = {
     {{"run", "seq"}, "--speed", "nan"},
     {{"run", "seq"}, "--passes", "0"},
+    {{"run", "seq"}, "--every", "0"},
     {{"run", "seq"}, "--images", "-1"},
     {{"run", "seq"}, "--max-frames", "-1"},
     {{"profile", "seq"}, "--speed", "inf"},

@@ -119,6 +119,18 @@ TEST(RunCommand, ALateStartLeavesOutTheFramesBeforeIt) {
   EXPECT_NE(past.err.find("--start: 3 s is past the end of office"), std::string::npos) << past.err;
 }
 
+TEST(RunCommand, PlaysEveryNthFrameFromTheStartOn) {
+  const TemporaryFolder out;
+  const ProgramResult run = run_program(
+      run_of(rendered_sequence(), out.path(), {"--start", "1", "--every", "3", "--max-frames", "15"}));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  // Of 60 frames from 1 s on 20 are played, of these the first 15.
+  const nlohmann::json scores = json_of(out.path() / "result.json");
+  EXPECT_EQ(scores["frames"], 15);
+  EXPECT_LT(scores["ate_rmse_m"], 0.05);
+  EXPECT_NE(scores["notes"].dump().find("1 of 3 frames is played: 20 of 60"), std::string::npos);
+}
+
 TEST(RunCommand, DumpsAllLabels) {
   const TemporaryFolder out;
   ASSERT_EQ(run_program(run_of(rendered_sequence(), out.path(), {"--dump", "labels", "--max-frames", "20"}))

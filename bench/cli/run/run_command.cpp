@@ -102,17 +102,18 @@ std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& na
 
 /// How a sequence is played.
 struct Playback {
-  double start_s = 0.0;  ///< see datasets/sensor_stream.h
-  int passes = 1;        ///< see datasets/sensor_stream.h
+  double start_s = 0.0;  ///< see datasets/sensor_stream.h, as the next two
+  int every = 1, passes = 1;
   std::vector<datasets::SensorFault> faults;
 };
 
-/// The stream from the start on, in passes, with faults relative to the start.
+/// The stream from the start on, every n-th frame of it, in passes, with faults relative to the start.
 /// @param stream with at least one frame
-/// @throws InputError as `start_at`, `ping_pong_playback` and `with_faults`
+/// @throws InputError as `start_at`, `every_nth_frame`, `ping_pong_playback` and `with_faults`
 std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
                                                const Playback& playback) {
   stream = datasets::start_at(std::move(stream), playback.start_s);
+  stream = datasets::every_nth_frame(std::move(stream), playback.every);
   if (playback.passes > 1) stream = datasets::ping_pong_playback(std::move(stream), playback.passes);
   return datasets::with_faults(std::move(stream), playback.faults);
 }
@@ -130,7 +131,7 @@ struct RunArguments {
   std::string sequence, base = "stillpoint", mode = "sequential";
   std::vector<std::string> variants, settings, faults, topics, dumps;
   std::string out, format, rig, heartbeat, sequence_id, video, sysfs_root = "/";
-  int max_frames = 0, passes = 1, images = 0;
+  int max_frames = 0, every = 1, passes = 1, images = 0;
   bool deterministic_counts = false, no_frame_cache = false, imu_rate = false;
   double speed = 1.0, start_s = 0.0;
   MapOptions map;
@@ -290,9 +291,10 @@ int exit_code(Outcome outcome) {
 /// Opens the sequence; renders it first if necessary. @return null if interrupted
 std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
                                              const std::vector<ConfiguredRun>& runs) {
-  // Instruction counts must not depend on earlier runs, the cache begins at frame 0, passes use all frames.
-  const bool cached =
-      !arguments.no_frame_cache && !arguments.deterministic_counts && arguments.start_s == 0.0;
+  // Instruction counts must not depend on earlier runs, the cache contains consecutive frames from frame 0
+  // on, passes use all frames.
+  const bool cached = !arguments.no_frame_cache && !arguments.deterministic_counts &&
+                      arguments.start_s == 0.0 && arguments.every == 1;
   const int frames = arguments.passes == 1 ? arguments.max_frames : 0;
   auto stream =
       open_with_progress(resolve_sequence(arguments.sequence),
@@ -302,7 +304,8 @@ std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
                           .defer_color = std::ranges::none_of(runs, needs_color, &ConfiguredRun::spec),
                           .frame_cache = logged_frame_cache(cached, frames)});
   if (!stream) return nullptr;
-  return played(std::move(stream), {arguments.start_s, arguments.passes, runs.front().faults});
+  return played(std::move(stream),
+                {arguments.start_s, arguments.every, arguments.passes, runs.front().faults});
 }
 
 RunControl control_of(RunWatch& watch, RunDumps& dumps) {
@@ -391,7 +394,11 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
       {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
       {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
       {"--start", "Time after the first frame at which the run begins [0 s]", &arguments->start_s, {0, 1e9}},
-      {"--max-frames", "Maximum number of frames; 0 = all", &arguments->max_frames, {0, 1e9}},
+      {"--every",
+       "Play the first frame from --start on and every N-th after it, with all IMU samples [1]",
+       &arguments->every,
+       {1, 1e6}},
+      {"--max-frames", "Maximum number of played frames; 0 = all", &arguments->max_frames, {0, 1e9}},
       {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
       {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
       {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",

@@ -79,5 +79,42 @@ TEST(PlaybackStart, AStartPastTheEndIsAnError) {
   }
 }
 
+TEST(LowerFrameRate, PlaysTheFirstFrameAndEveryNth) {
+  const auto stream = every_nth_frame(std::make_unique<FourFrames>(), 3);
+  ASSERT_EQ(stream->info().frame_times, (std::vector{from_seconds(10.0), from_seconds(13.0)}));
+  const Frame frame = stream->load_frame(1);
+  EXPECT_EQ(frame.id, 1);
+  EXPECT_EQ(frame.t, from_seconds(13.0));
+  EXPECT_FALSE(stream->load_labels(0).has_value());
+  EXPECT_TRUE(stream->load_labels(1).has_value());  // of frame 3
+  ASSERT_EQ(stream->info().notes.size(), 1U);
+  EXPECT_EQ(stream->info().notes.front(), "1 of 3 frames is played: 2 of 4");
+}
+
+TEST(LowerFrameRate, KeepsAllSamplesPosesAndBoxes) {
+  const auto stream = every_nth_frame(std::make_unique<FourFrames>(), 3);
+  const SequenceInfo& info = stream->info();
+  EXPECT_EQ(info.imu.size(), 9U);
+  EXPECT_EQ(info.ground_truth.trajectory.poses.size(), 9U);
+  EXPECT_EQ(info.detections.size(), 9U);
+  EXPECT_EQ(info.true_boxes.size(), 9U);
+}
+
+TEST(LowerFrameRate, CountsFromTheStart) {
+  const auto stream = every_nth_frame(start_at(std::make_unique<FourFrames>(), 1.0), 2);
+  ASSERT_EQ(stream->info().frame_times, (std::vector{from_seconds(11.0), from_seconds(13.0)}));
+  EXPECT_EQ(stream->load_frame(1).t, from_seconds(13.0));
+}
+
+TEST(LowerFrameRate, OneLeavesTheStreamAsItIs) {
+  const auto stream = every_nth_frame(std::make_unique<FourFrames>(), 1);
+  EXPECT_EQ(stream->info().frame_times.size(), 4U);
+  EXPECT_TRUE(stream->info().notes.empty());
+}
+
+TEST(LowerFrameRate, LessThanOneIsAnError) {
+  EXPECT_THROW(static_cast<void>(every_nth_frame(std::make_unique<FourFrames>(), 0)), InputError);
+}
+
 }  // namespace
 }  // namespace stillpoint::datasets
