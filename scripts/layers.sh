@@ -83,7 +83,7 @@ row datasets/synthetic/sequence $scene core/types $trajectories datasets/cache d
   datasets/synthetic/sensors
 row datasets/catalogue core/base
 row datasets/download core/base
-row datasets/faults core/base core/types datasets datasets/io datasets/synthetic datasets/synthetic/materials
+row datasets/faults core/base core/geometry core/types datasets datasets/io datasets/synthetic datasets/synthetic/materials
 datasets="datasets datasets/io datasets/calibration datasets/formats datasets/synthetic/sequence"
 
 row core/examples $core $eval $datasets

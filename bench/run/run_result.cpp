@@ -99,12 +99,15 @@ std::vector<std::string> warnings_of(const datasets::SequenceInfo& info, const O
   return warnings;
 }
 
-/// The times at which any fault is active, by their begin.
+/// The times at which any fault is active, by their begin. Imperfections that last for the whole sequence
+/// belong to it where there are other faults.
 std::vector<eval::TimeSpan> fault_spans(std::span<const datasets::SensorFault> faults,
                                         std::span<const Timestamp> frame_times) {
   std::vector<eval::TimeSpan> spans;
   if (frame_times.empty()) return spans;
+  const bool all_permanent = std::ranges::all_of(faults, &datasets::SensorFault::is_permanent);
   for (const datasets::SensorFault& fault : faults) {
+    if (fault.is_permanent() && !all_permanent) continue;
     for (const datasets::FaultInterval& interval :
          datasets::fault_intervals(fault, frame_times.front(), frame_times.back())) {
       spans.push_back({interval.begin, interval.end});

@@ -15,6 +15,8 @@
 #include "core/types/frame.h"
 #include "core/types/rig.h"
 #include "datasets/faults/image_faults.h"
+#include "datasets/faults/inertial_faults.h"
+#include "datasets/faults/rig_faults.h"
 #include "datasets/synthetic/counter_random.h"
 
 namespace stillpoint::datasets {
@@ -93,95 +95,6 @@ DetectionSet detections_with_fault(DetectionSet set, const SensorFault& fault, T
   return set;
 }
 
-constexpr std::int64_t kMinStep_ns = 1000;
-
-Eigen::Vector3d random_direction(synth::RandomSequence random) {
-  const double z = random.normal(), y = random.normal(), x = random.normal();
-  return Eigen::Vector3d(x, y, z).normalized();
-}
-
-Eigen::Vector3d clipped(const Eigen::Vector3d& value, double limit) {
-  return value.cwiseMax(-limit).cwiseMin(limit);
-}
-
-/// One active sample with the fault.
-ImuSample changed(ImuSample sample, const SensorFault& fault, std::size_t index) {
-  switch (fault.kind) {
-    case FaultKind::kGyroSaturated:
-      sample.gyro_b = clipped(sample.gyro_b, fault.amount);
-      break;
-    case FaultKind::kAccelSaturated:
-      sample.accel_b = clipped(sample.accel_b, fault.amount);
-      break;
-    case FaultKind::kGyroBias:
-      sample.gyro_b.array() += fault.amount;
-      break;
-    case FaultKind::kAccelBias:
-      sample.accel_b.array() += fault.amount;
-      break;
-    case FaultKind::kShock:
-      sample.accel_b += fault.amount * random_direction(fault.random());
-      break;
-    case FaultKind::kImuJitter:
-      sample.t = after(sample.t, fault.amount * fault.random(index).normal());
-      break;
-    case FaultKind::kTimeOffset:
-    case FaultKind::kClockJump:
-      sample.t = after(sample.t, fault.amount);
-      break;
-    default:
-      STILLPOINT_CHECK(false);
-  }
-  return sample;
-}
-
-/// The first sample of each period of the lower rate.
-std::vector<ImuSample> thinned(const std::vector<ImuSample>& samples, const SensorFault& fault,
-                               Timestamp start) {
-  constexpr double kRounding = 1e-6;  // of times that are multiples of the period
-  std::vector<ImuSample> kept;
-  double last_period = -1.0;
-  for (const ImuSample& sample : samples) {
-    const double elapsed_s = seconds_between(start, sample.t);
-    const double period = std::floor((elapsed_s - fault.onset_s(elapsed_s)) * fault.amount + kRounding);
-    const bool is_active = fault.is_active(elapsed_s);
-    if (!is_active || period != last_period) kept.push_back(sample);
-    last_period = is_active ? period : -1.0;
-  }
-  return kept;
-}
-
-/// Samples as the sensor would have delivered them with a fault of target `kImu`. Within the active interval:
-///
-///   imu_gap, imu_rate    samples are removed
-///   gyro_saturated, accel_saturated    w <- clamp(w, -a, a),  f <- clamp(f, -a, a)  per axis
-///   gyro_bias, accel_bias              w <- w + a (1, 1, 1),  f <- f + a (1, 1, 1)
-///   shock                              f <- f + a u,  u: random unit vector, the same for each interval
-///   imu_jitter, time_offset            t <- t + n, n ~ N(0, a^2);  t <- t + a
-///
-/// clock_jump shifts the stamps of all samples from its start on. a: amount. Samples whose shifted stamps
-/// would not increase keep their order and are moved to 1 us after their predecessor.
-/// @param samples in increasing order of time
-/// @param start time of the first frame
-std::vector<ImuSample> samples_with_fault(std::vector<ImuSample> samples, const SensorFault& fault,
-                                          Timestamp start) {
-  const auto is_active = [&](const ImuSample& sample) {
-    const double elapsed_s = seconds_between(start, sample.t);
-    return fault.kind == FaultKind::kClockJump ? elapsed_s >= fault.start_s : fault.is_active(elapsed_s);
-  };
-  if (fault.kind == FaultKind::kImuGap) {
-    std::erase_if(samples, is_active);
-    return samples;
-  }
-  if (fault.kind == FaultKind::kImuRate) return thinned(samples, fault, start);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (is_active(samples[i])) samples[i] = changed(samples[i], fault, i + 1);
-  }
-  for (std::size_t i = 1; i < samples.size(); ++i)
-    samples[i].t.ns = std::max(samples[i].t.ns, samples[i - 1].t.ns + kMinStep_ns);
-  return samples;
-}
-
 bool is_dropped(const SensorFault& fault, double elapsed_s, std::size_t index) {
   if (fault.kind != FaultKind::kDropped || !fault.is_active(elapsed_s)) return false;
   return fault.random(index).chance(fault.amount);
@@ -192,6 +105,36 @@ Frame with_color(Frame frame) {
   frame.color = color_image(frame);
   frame.decode_color = nullptr;
   return frame;
+}
+
+/// Applies change(frame) to the gray image and depth now, and to a deferred color image when it is decoded.
+/// @param change treats gray and color images alike
+template <class Change>
+Frame with_deferred_color(Frame frame, const Change& change) {
+  if (frame.color.empty() && frame.decode_color) {
+    frame.decode_color = [decode = frame.decode_color, change] {
+      Frame color;
+      color.gray = decode();
+      return change(std::move(color)).gray;
+    };
+  }
+  return change(std::move(frame));
+}
+
+/// Displacement of the image center while a camera turns with the angular rate w_c: with the point p_c on the
+/// optical axis, dp_c/dt = -w_c x p_c, hence du/dt = -fx w_y, dv/dt = fy w_x.
+Eigen::Vector2d displacement_px(const Camera& camera, const Eigen::Vector3d& rate_c, double duration_s) {
+  return duration_s * Eigen::Vector2d(-camera.fx * rate_c.y(), camera.fy * rate_c.x());
+}
+
+/// Mean angular rate within an interval, or that of the next sample; zero after the last one.
+Eigen::Vector3d mean_rate(std::span<const ImuSample> samples, const FaultInterval& interval) {
+  auto sample = std::ranges::lower_bound(samples, interval.begin, {}, &ImuSample::t);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (; sample != samples.end() && (count == 0 || sample->t <= interval.end); ++sample, ++count)
+    sum += sample->gyro_b;
+  return sum / std::max(count, 1);
 }
 
 class FaultyStream final : public SensorStream {
@@ -205,7 +148,9 @@ class FaultyStream final : public SensorStream {
       if (fault.kind == FaultKind::kOccluder)
         occluders_.emplace(&fault, Occluder(image, fault.amount, fault.seed));
       const FaultTarget target = descriptor_of(fault.kind).target;
-      if (target == FaultTarget::kImu) info_.imu = samples_with_fault(std::move(info_.imu), fault, start_);
+      if (target == FaultTarget::kCalibration) info_.rig = rig_with_fault(info_.rig, fault);
+      if (target == FaultTarget::kImu)
+        info_.imu = samples_with_fault(std::move(info_.imu), fault, start_, stream_->info().rig.imu_noise);
       if (target == FaultTarget::kDetections) add_detection_fault(fault, image);
       if (target == FaultTarget::kArrival)
         info_.arrivals = arrivals_with_fault(std::move(info_.arrivals), fault, info_.frame_times);
@@ -230,9 +175,7 @@ class FaultyStream final : public SensorStream {
   }
 
   [[nodiscard]] bool frames_are_cached() const override {
-    const auto uses_color = [](const SensorFault& fault) {
-      return descriptor_of(fault.kind).target == FaultTarget::kImages;
-    };
+    const auto uses_color = [](const SensorFault& fault) { return fault.kind == FaultKind::kOccluder; };
     return stream_->frames_are_cached() && std::none_of(faults_.begin(), faults_.end(), uses_color);
   }
 
@@ -285,10 +228,27 @@ class FaultyStream final : public SensorStream {
         return frame;
       case FaultKind::kOccluder:
         return occluders_.at(&fault).in_front_of(with_color(std::move(frame)), source);
+      case FaultKind::kExposureBlur: {
+        const Eigen::Vector2d line_px = motion_px(frame.t, fault.amount);
+        return with_deferred_color(std::move(frame),
+                                   [=](Frame sharp) { return blurred_along(std::move(sharp), line_px); });
+      }
       default:
-        if (descriptor_of(fault.kind).target == FaultTarget::kImages) frame = with_color(std::move(frame));
-        return frame_with_fault(std::move(frame), fault, source);
+        if (descriptor_of(fault.kind).target == FaultTarget::kDepth)
+          return frame_with_fault(std::move(frame), fault, source);
+        return with_deferred_color(std::move(frame), [fault, source](Frame original) {
+          return frame_with_fault(std::move(original), fault, source);
+        });
     }
+  }
+
+  /// Motion of the image during an exposure whose middle is at `t`, by the true calibration.
+  [[nodiscard]] Eigen::Vector2d motion_px(Timestamp t, double exposure_s) const {
+    const Rig& rig = stream_->info().rig;
+    const Timestamp middle = after(t, rig.time_offset_s);
+    const Eigen::Vector3d rate_b = mean_rate(stream_->info().imu, {.begin = after(middle, -0.5 * exposure_s),
+                                                                   .end = after(middle, 0.5 * exposure_s)});
+    return displacement_px(rig.camera, rig.T_b_c.q.conjugate() * rate_b, exposure_s);
   }
 
   /// Index of the last frame before the current interval of the fault; 0 if there is none.
@@ -314,7 +274,9 @@ void require_target(const SensorFault& fault, const SequenceInfo& info) {
   const auto reject = [&](const char* problem) {
     throw InputError(fmt::format("fault \"{}\"", descriptor.name), info.folder.string() + problem);
   };
-  if (descriptor.target == FaultTarget::kImu && info.imu.empty()) reject(" has no inertial data");
+  const bool needs_imu = descriptor.target == FaultTarget::kImu || fault.kind == FaultKind::kExposureBlur ||
+                         fault.kind == FaultKind::kRotationError || fault.kind == FaultKind::kLeverError;
+  if (needs_imu && info.imu.empty()) reject(" has no inertial data");
 }
 
 }  // namespace
@@ -331,6 +293,7 @@ std::vector<FaultInterval> fault_intervals(const SensorFault& fault, Timestamp f
 std::unique_ptr<SensorStream> with_faults(std::unique_ptr<SensorStream> stream,
                                           std::vector<SensorFault> faults) {
   if (faults.empty()) return stream;
+  faults = expanded_rigs(faults);
   for (const SensorFault& fault : faults) require_target(fault, stream->info());
   return std::make_unique<FaultyStream>(std::move(stream), std::move(faults));
 }

@@ -20,6 +20,20 @@ using enum FaultKind;
 using enum FaultTarget;
 
 constexpr FaultDescriptor kDescriptors[] = {
+    {kRig, "rig", kCalibration, "all imperfections of a consumer rig at once, drawn by the seed",
+     "ratio of the magnitudes", 1.0, 0.0, 10.0, true},
+    {kFocalError, "focal_error", kCalibration, "the stated focal length is wrong", "error [%]", 1.0, -50.0,
+     50.0, true},
+    {kCenterError, "center_error", kCalibration, "the stated principal point is wrong, in a random direction",
+     "distance [px]", 3.0, 0.0, 1000.0, true},
+    {kDistortionError, "distortion_error", kCalibration, "the stated k1 is smaller than that of the lens",
+     "difference", 0.02, -1.0, 1.0, true},
+    {kRotationError, "rotation_error", kCalibration,
+     "the stated camera pose on the body is rotated about a random axis", "angle [deg]", 1.0, -180.0, 180.0,
+     true},
+    {kLeverError, "lever_error", kCalibration,
+     "the stated camera position on the body is wrong, in a random direction", "distance [m]", 0.01, 0.0,
+     10.0, true},
     {kBlank, "blank", kImages, "all pixels have one gray level", "gray level", 0.0, 0.0, 255.0},
     {kFrozen, "frozen", kImages, "the pixels of the last frame before the fault, with new stamps", ""},
     {kDropped, "dropped", kImages, "frames are missing", "fraction of frames", 1.0, 0.0, 1.0},
@@ -33,11 +47,24 @@ constexpr FaultDescriptor kDescriptors[] = {
      1.0},
     {kOccluder, "occluder", kImages, "a person directly in front of the camera, not in the boxes",
      "fraction of the image", 0.8, 0.0, 1.0},
+    {kExposureSteps, "exposure_steps", kImages, "the exposure changes every 20 frames",
+     "largest change [stops]", 0.5, 0.0, 5.0, true},
+    {kVignetting, "vignetting", kImages, "brightness decreases towards the corners",
+     "fraction of light lost in the corners", 0.3, 0.0, 1.0, true},
+    {kExposureBlur, "exposure_blur", kImages, "pixels are averaged along the motion by the angular rate",
+     "exposure time [s]", 0.02, 0.0, 0.2, true},
+    {kJpeg, "jpeg", kImages, "images are compressed with loss", "quality", 80.0, 1.0, 100.0, true},
     {kDepthMissing, "depth_missing", kDepth, "no pixel has depth", ""},
     {kDepthScaled, "depth_scaled", kDepth, "depth is multiplied", "factor", 0.85, 0.1, 10.0},
     {kDepthHoles, "depth_holes", kDepth, "blocks of 16x16 pixels have no depth", "fraction of blocks", 0.5,
      0.0, 1.0},
     {kDepthPrevious, "depth_previous", kDepth, "the depth of the previous frame", ""},
+    {kDepthBias, "depth_bias", kDepth, "depth has an error that grows with its square", "error / z^2 [1/m]",
+     0.003, -0.1, 0.1, true},
+    {kDepthShift, "depth_shift", kDepth, "depth is displaced in a random direction", "distance [px]", 2.0,
+     0.0, 100.0, true},
+    {kDepthNoise, "depth_noise", kDepth, "depth has noise that is correlated over 8 pixels",
+     "standard deviation / z^2 [1/m]", 0.003, 0.0, 0.1, true},
     {kImuGap, "imu_gap", kImu, "samples are missing", ""},
     {kImuRate, "imu_rate", kImu, "only some samples arrive", "rate [Hz]", 30.0, 1.0, 10000.0},
     {kGyroSaturated, "gyro_saturated", kImu, "angular rates are clipped", "limit [rad/s]", 0.5, 0.0, 100.0},
@@ -53,6 +80,19 @@ constexpr FaultDescriptor kDescriptors[] = {
     {kTimeOffset, "time_offset", kImu, "stamps are shifted", "shift [s]", 0.02, -1.0, 1.0},
     {kClockJump, "clock_jump", kImu, "stamps are shifted from the start of the fault on", "shift [s]", 0.1,
      0.0, 10.0},
+    {kGyroScale, "gyro_scale", kImu, "angular rates are scaled, per axis with a random sign", "error [%]",
+     0.5, 0.0, 50.0, true},
+    {kAccelScale, "accel_scale", kImu, "specific forces are scaled, per axis with a random sign", "error [%]",
+     1.0, 0.0, 50.0, true},
+    {kImuMisalignment, "imu_misalignment", kImu, "the axes of both sensors are not orthogonal",
+     "angle between axes [deg]", 0.3, 0.0, 20.0, true},
+    {kGSensitivity, "g_sensitivity", kImu, "the gyro bias depends on the specific force",
+     "sensitivity [(deg/s)/g]", 0.1, 0.0, 10.0, true},
+    {kImuVibration, "imu_vibration", kImu, "sinusoids of one frequency between 40 and 120 Hz are added",
+     "amplitude [m/s^2]", 0.2, 0.0, 100.0, true},
+    {kImuNoise, "imu_noise", kImu, "white noise exceeds the stated densities",
+     "ratio to the stated densities", 3.0, 1.0, 100.0, true},
+    {kClockDrift, "clock_drift", kImu, "stamps drift", "drift [ppm]", 20.0, -1e5, 1e5, true},
     {kDetectorSilent, "detector_silent", kDetections, "frames are not processed by the detector", ""},
     {kDetectorLate, "detector_late", kDetections, "boxes arrive too late to be used", ""},
     {kDetectorHallucinating, "detector_hallucinating", kDetections, "boxes of persons where there are none",
@@ -90,11 +130,19 @@ double number_in(std::string_view value, double min, double max, const std::stri
   return number;
 }
 
-constexpr double kMaxTime_s = 1e6;
+constexpr double kMaxTime_s = kWholeSequence_s;
+
+/// Errors of the stated calibration have no schedule.
+bool has_schedule(const FaultDescriptor& descriptor) { return descriptor.target != kCalibration; }
 
 /// Sets the field named by `key`.
 void assign(std::string_view key, std::string_view value, SensorFault& fault, const std::string& place) {
   const FaultDescriptor& descriptor = descriptor_of(fault.kind);
+  const bool is_time = key == "start" || key == "duration" || key == "every";
+  if (is_time && !has_schedule(descriptor)) {
+    throw InputError(place,
+                     fmt::format("\"{}\" lasts for the whole sequence; remove \"{}\"", descriptor.name, key));
+  }
   if (key == "start") {
     fault.start_s = number_in(value, 0.0, kMaxTime_s, place);
   } else if (key == "duration") {
@@ -142,7 +190,10 @@ const FaultDescriptor& descriptor_of(FaultKind kind) {
   return descriptor;
 }
 
+bool SensorFault::is_permanent() const { return start_s == 0.0 && duration_s >= kWholeSequence_s; }
+
 bool SensorFault::is_active(double elapsed_s) const {
+  if (start_s == 0.0 && every_s <= 0.0) return elapsed_s < duration_s;
   return elapsed_s >= start_s && elapsed_s - onset_s(elapsed_s) < duration_s;
 }
 
@@ -159,6 +210,7 @@ SensorFault parse_fault(std::string_view text) {
   const std::size_t colon = text.find(':');
   const FaultDescriptor& descriptor = descriptor_named(text.substr(0, colon), place);
   SensorFault fault{.kind = descriptor.kind, .amount = descriptor.typical};
+  if (descriptor.imperfection) fault.start_s = 0.0, fault.duration_s = kWholeSequence_s;
   if (colon != std::string_view::npos) assign_all(text.substr(colon + 1), fault, place);
   if (fault.every_s > 0.0 && fault.every_s <= fault.duration_s) {
     throw InputError(place, "the period \"every\" must exceed the duration");
@@ -168,6 +220,8 @@ SensorFault parse_fault(std::string_view text) {
 
 std::string fault_text(const SensorFault& fault) {
   const FaultDescriptor& descriptor = descriptor_of(fault.kind);
+  if (!has_schedule(descriptor))
+    return fmt::format("{}:amount={},seed={}", descriptor.name, fault.amount, fault.seed);
   std::string text = fmt::format("{}:start={},duration={}", descriptor.name, fault.start_s, fault.duration_s);
   if (fault.every_s > 0.0) text += fmt::format(",every={}", fault.every_s);
   if (!descriptor.amount.empty()) text += fmt::format(",amount={}", fault.amount);

@@ -60,8 +60,10 @@ std::vector<Assessed> with_truth(const Trajectory& gt, std::span<const ClaimedPo
 
 /// Sets errors and labels. @return false if the alignment is not determined
 bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin) {
+  const bool always_faulty = fault_begin && !frames.empty() && frames.front().pose->t >= *fault_begin;
   const auto is_reference = [&](const Assessed& frame) {
-    return frame.located() && frame.first_world() && (!fault_begin || frame.pose->t < *fault_begin);
+    const bool aligned = !fault_begin || always_faulty || frame.pose->t < *fault_begin;
+    return frame.located() && frame.first_world() && aligned;
   };
   std::vector<MatchedPose> reference;
   for (const Assessed& frame : frames) {
@@ -76,7 +78,7 @@ bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin)
     const AteErrors errors = ate_errors(match, S);
     frame.error_m = errors.translation_m.front();
     frame.error_rad = errors.rotation_deg.front() * M_PI / 180.0;
-    if (!is_reference(frame)) continue;
+    if (always_faulty || !is_reference(frame)) continue;
     drift_m = std::max(drift_m, frame.error_m);
     drift_rad = std::max(drift_rad, frame.error_rad);
   }

@@ -6,7 +6,8 @@
 /// For frame k: E_k the reported pose in the world frame of its segment, G_k the true one, s_k and r_k the
 /// claimed standard deviations of position and rotation. S aligns the located poses before the first fault
 /// (all of them without a fault) rigidly. With the position errors e_k and rotation errors theta_k after S,
-/// and their largest values e_0, theta_0 before the fault, the excess is max(0, e_k - e_0), likewise for the
+/// and their largest values e_0, theta_0 before the fault (if it begins with the first frame: S aligns all
+/// located poses of the first segment, e_0 = theta_0 = 0), the excess is max(0, e_k - e_0), likewise for the
 /// rotation. A pose is wrong if its excess is beyond both 5 cm and 3 s_k, or beyond both 2 degrees and 3 r_k.
 /// A pose of a later segment is in another world: it is neither wrong nor right.
 ///
@@ -66,7 +67,7 @@ struct Honesty {
 /// @param gt true poses of the same body frame
 /// @param claims one per frame, in order of time
 /// @param faults in order of time; may be empty
-/// @return nullopt if fewer than ten located frames before the first fault have a true pose
+/// @return nullopt if fewer than ten of the located frames that S aligns have a true pose
 [[nodiscard]] std::optional<Honesty> honesty(const Trajectory& gt, std::span<const ClaimedPose> claims,
                                              std::span<const TimeSpan> faults);
 

@@ -33,6 +33,7 @@ constexpr double kStampToleranceS = 1e-3;  // some files round their stamps
 /// As in the tables: TUM's association and rigid alignment over all pairs.
 constexpr const char* kProtocol = "compat:tum";
 
+/// Faults that are active for a part of the sequence.
 /// @param manifest of the run, JSON; empty or without faults: no bands
 /// @param first, last timestamps of the frames
 /// @throws InputError for faults of an unknown kind
@@ -41,8 +42,9 @@ std::vector<FaultBand> fault_bands(const std::string& manifest, Timestamp first,
   const nlohmann::json json = nlohmann::json::parse(manifest, nullptr, false);
   if (!json.is_object()) return bands;
   for (const std::string& text : json.value("faults", std::vector<std::string>())) {
-    for (const datasets::FaultInterval& interval :
-         datasets::fault_intervals(datasets::parse_fault(text), first, last)) {
+    const datasets::SensorFault fault = datasets::parse_fault(text);
+    if (fault.is_permanent()) continue;
+    for (const datasets::FaultInterval& interval : datasets::fault_intervals(fault, first, last)) {
       bands.push_back({seconds_between(first, interval.begin), seconds_between(first, interval.end), text});
     }
   }

@@ -33,6 +33,7 @@
 #include "core/base/error.h"
 #include "core/config/odometry_config.h"
 #include "datasets/faults/faulty_stream.h"
+#include "datasets/faults/rig_faults.h"
 #include "datasets/faults/sensor_fault.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sensor_stream.h"
@@ -147,7 +148,7 @@ struct ConfiguredRun {
 std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
   std::vector<datasets::SensorFault> faults;
   for (const std::string& text : arguments.faults) faults.push_back(datasets::parse_fault(text));
-  return faults;
+  return datasets::expanded_rigs(faults);
 }
 
 /// Loads all configs and faults before the first run starts, so that errors are reported early.

@@ -59,6 +59,16 @@ TEST_F(HonestyTest, CountsGoodPosesThatAreCalledLost) {
   EXPECT_DOUBLE_EQ(scored().missed_availability, 0.04);
 }
 
+TEST_F(HonestyTest, AnImperfectionFromTheFirstFrameOnIsScoredWithoutAReference) {
+  // Half of the frames are displaced by 0.4 m: after the alignment of all, each is wrong by about 0.2 m.
+  displace(0, kFrames / 2, 0.4);
+  const std::vector<TimeSpan> always{{gt_.poses.front().t, after(gt_.poses.back().t, 1.0)}};
+  const std::optional<Honesty> result = honesty(gt_, claims_, always);
+  ASSERT_TRUE(result);
+  EXPECT_GT(result->false_confidence, 0.9);
+  EXPECT_EQ(honesty(gt_, claims_, {})->false_confidence, 0.0);
+}
+
 TEST_F(HonestyTest, APoseOfALaterSegmentIsNoRecovery) {
   claim(kFault, kFault + 10, PoseClaim::kLost);
   displace(kFault, kFrames, 3.0);

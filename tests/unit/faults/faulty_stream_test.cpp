@@ -18,8 +18,8 @@ class NumberedStream final : public SensorStream {
  public:
   NumberedStream() {
     info_.folder = "numbered";
-    info_.rig.camera.width = kWidth;
-    info_.rig.camera.height = kHeight;
+    info_.rig.camera = {.width = kWidth, .height = kHeight, .fx = 50.0, .fy = 50.0, .cx = 31.5, .cy = 23.5};
+    info_.rig.has_imu = true;
     for (int i = 0; i < 50; ++i) {
       info_.frame_times.push_back(from_seconds(100.0 + 0.1 * i));
       info_.detections.push_back(
@@ -74,7 +74,10 @@ TEST(FaultyStream, DoesNotWriteIntoImagesOfTheSource) {
   const cv::Mat depth = original.depth.clone();
   class OneFrame final : public SensorStream {
    public:
-    explicit OneFrame(Frame frame) : frame_(std::move(frame)) { info_.frame_times = {frame_.t}; }
+    explicit OneFrame(Frame frame) : frame_(std::move(frame)) {
+      info_.frame_times = {frame_.t};
+      info_.imu = {{.t = frame_.t}};
+    }
     [[nodiscard]] const SequenceInfo& info() const override { return info_; }
     [[nodiscard]] Frame load_frame(std::size_t) const override { return frame_; }
     [[nodiscard]] std::optional<MotionLabels> load_labels(std::size_t) const override { return std::nullopt; }
@@ -216,7 +219,9 @@ TEST(FaultyStream, ChangesTheArrivalOfFrames) {
 
 TEST(FaultyStream, IsAFunctionOfItsFaults) {
   for (const FaultDescriptor& descriptor : fault_descriptors()) {
-    const auto text = std::string(descriptor.name) + ":start=1,duration=2,seed=5";
+    const bool has_schedule = descriptor.target != FaultTarget::kCalibration;
+    const auto text =
+        std::string(descriptor.name) + (has_schedule ? ":start=1,duration=2,seed=5" : ":seed=5");
     const auto one = stream_with(text);
     const auto other = stream_with(text);
     const std::size_t index = one->info().frame_times.size() / 2;

@@ -34,9 +34,10 @@ TEST(SensorFault, ParsesItsOwnText) {
 }
 
 TEST(SensorFault, RejectsWhatItDoesNotKnow) {
-  for (const char* text : {"", "blnk", "blank:start", "blank:begin=1", "blank:start=x", "blank:start=nan",
-                           "blank:start=-1", "blank:start=inf", "blank:amount=256", "imu_gap:amount=1",
-                           "blank:duration=2,every=2", "occluder:amount=1.1"}) {
+  for (const char* text :
+       {"", "blnk", "blank:start", "blank:begin=1", "blank:start=x", "blank:start=nan", "blank:start=-1",
+        "blank:start=inf", "blank:amount=256", "imu_gap:amount=1", "blank:duration=2,every=2",
+        "occluder:amount=1.1", "focal_error:start=1", "rig:duration=2", "rig:amount=11", "jpeg:amount=0"}) {
     EXPECT_THROW(static_cast<void>(parse_fault(text)), InputError) << text;
   }
 }
@@ -52,6 +53,15 @@ TEST(SensorFault, IsActiveWithinItsIntervals) {
   EXPECT_TRUE(periodic.is_active(6.5));
   EXPECT_FALSE(periodic.is_active(7.5));
   EXPECT_EQ(periodic.onset_s(6.5), 6.0);
+}
+
+TEST(SensorFault, ImperfectionsLastForTheWholeSequence) {
+  for (const FaultDescriptor& descriptor : fault_descriptors()) {
+    const SensorFault fault = parse_fault(descriptor.name);
+    EXPECT_EQ(fault.is_permanent(), descriptor.imperfection) << descriptor.name;
+    EXPECT_EQ(fault.is_active(-0.1), descriptor.imperfection) << descriptor.name;
+  }
+  EXPECT_FALSE(parse_fault("imu_noise:start=2,duration=1").is_permanent());
 }
 
 }  // namespace
