@@ -49,6 +49,7 @@ constexpr std::string_view kLoops = "loop.enabled = true";
 constexpr std::array kConditions = {
     KeyCondition{"imu.gravity", kImu, uses_imu},
     KeyCondition{"imu.noise_scale", kImu, uses_imu},
+    KeyCondition{"imu.adapt_noise", kImu, uses_imu},
     KeyCondition{"imu.gyro_", kImu, uses_imu},
     KeyCondition{"imu.accel_", kImu, uses_imu},
     KeyCondition{"frontend.min_distance_px", "frontend.circular_mask = true", has_masks},

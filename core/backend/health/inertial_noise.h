@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Noise of the inertial sensors, estimated while running. A data sheet states that of a sensor at rest; the
 /// errors of a moving one, by vibration, scale and misalignment of its axes and the delay of its filter, are
-/// several times larger (real_sensors: factors 2 to 16 at EuRoC, which VINS-Mono and OKVIS set by hand).
+/// several times larger: VINS-Mono uses 24 and 40 times the densities of the data sheet for EuRoC, OKVIS 7
+/// and 4 times.
 #pragma once
 
 #include "core/geometry/covariance.h"
@@ -15,13 +16,17 @@ namespace stillpoint {
 /// the covariance S, the sum of both. Its rotation tells about the gyroscope, its position about the
 /// accelerometer; of each,
 ///
-///   d = v^T S^-1 v  (three dimensions),    log f <- log f + r dt sgn(d - m),    1 <= f <= 32,
+///   d = v^T S^-1 v  (three dimensions),    log f <- log f + r dt,    1 <= f <= 32,
+///   r = r_rise if d > m, else -r_fall,
 ///
-/// with the median m = 2.366 of the chi-square distribution with three degrees of freedom. So f settles
-/// where half of the innovations are below their median (stochastic approximation of a quantile, Robbins and
-/// Monro 1951), and a single event, however large, moves it by no more than any other frame. The factor rises
-/// faster than it falls, r_up > r_down: noise that is too small makes the estimate worse than vision alone,
-/// noise that is too large costs little.
+/// with the median m of the chi-square distribution with three degrees of freedom. So f settles where d is
+/// above m in r_fall / (r_rise + r_fall) of the frames (stochastic approximation of a quantile, Robbins and
+/// Monro 1951), and a single event, however large, moves it by no more than any other frame. It follows by a
+/// factor of seven per second at most. It rises faster than it falls: noise that is too small makes the
+/// estimate worse than vision alone, noise that is too large costs little.
+///
+/// An innovation that vision claims too small is attributed to the inertial sensors, too: f is the noise that
+/// is consistent with vision, and an upper bound of that of the sensor.
 class InertialNoise {
  public:
   /// @param stated densities, of a data sheet or a calibration
@@ -29,7 +34,7 @@ class InertialNoise {
 
   /// @param predicted pose by inertial data
   /// @param visual    pose of the same frame by vision alone
-  /// @param dt_s      since the frame before, > 0
+  /// @param dt_s      since the frame before, > 0; more than 0.1 s counts as 0.1 s
   void observe(const UncertainPose& predicted, const UncertainPose& visual, double dt_s);
 
   /// The stated densities times the factors.

@@ -98,7 +98,8 @@ TEST(ConfigOverlays, DynamicVinsVoHasThePublishedTumSettings) {
                      {"backend.depth.max_m", "10.0"}}));
 }
 
-const Entries kKeysOfStillpoint = {{"frontend.min_distance_px", "20"},
+const Entries kKeysOfStillpoint = {{"imu.adapt_noise", "true"},
+                                   {"frontend.min_distance_px", "20"},
                                    {"frontend.unstable_radius_px", "20"},
                                    {"frontend.prediction", "\"full\""},
                                    {"frontend.tracker", "\"patch\""},
