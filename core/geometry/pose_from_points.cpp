@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/geometry/pose_from_points.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -14,7 +15,10 @@ namespace {
 
 constexpr double kMinDepth = 0.05;  // [m]
 constexpr int kRefineSteps = 8;
-constexpr int kStepsFromPrediction = 3;
+constexpr int kStepsFromPrediction = 4;
+constexpr std::size_t kMaxScaleErrors = 256;  // of a median
+constexpr double kScaleMedians = 1.5;         // 1.8 standard deviations of a coordinate
+constexpr double kMinScale = 0.05;            // of the inlier threshold
 constexpr PoseRefinement kSampleRefinement{.scale = 1.0, .steps = 5};
 
 template <class Observations>
@@ -105,11 +109,34 @@ std::optional<CameraPose> estimate_camera_pose(std::span<const PointObservation>
   return CameraPose{best.inverse(), inliers};
 }
 
+namespace {
+
+/// Scale of the loss by the errors that most observations have, see `refine_camera_pose`.
+double loss_scale(const Pose& T_c_w, std::span<const PointObservation> observations,
+                  double inlier_threshold) {
+  std::array<double, kMaxScaleErrors> errors;
+  std::size_t count = 0;
+  const std::size_t stride = 1 + observations.size() / kMaxScaleErrors;
+  for (std::size_t i = 0; i < observations.size(); i += stride) {
+    const Eigen::Vector3d p_c = T_c_w * observations[i].p_w;
+    if (p_c.z() < kMinDepth) continue;
+    errors[count++] = (p_c.hnormalized() - observations[i].bearing).norm();
+  }
+  if (count == 0) return inlier_threshold;
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(errors.begin(), middle, errors.begin() + static_cast<std::ptrdiff_t>(count));
+  return std::clamp(kScaleMedians * *middle, kMinScale * inlier_threshold, inlier_threshold);
+}
+
+}  // namespace
+
 Pose refine_camera_pose(std::span<const PointObservation> observations, const Pose& prediction,
                         double inlier_threshold) {
-  return refine(prediction.inverse(), observations,
-                {.scale = inlier_threshold, .steps = kStepsFromPrediction})
-      .inverse();
+  Pose T_c_w = prediction.inverse();
+  for (int i = 0; i < kStepsFromPrediction; ++i) {
+    T_c_w = step(T_c_w, observations, loss_scale(T_c_w, observations, inlier_threshold));
+  }
+  return T_c_w.inverse();
 }
 
 }  // namespace stillpoint

@@ -146,8 +146,15 @@ struct CameraPose {
                                                              const Pose& prediction,
                                                              const CameraPoseOptions& options);
 
-/// Three steps from a prediction of T_w_c that is close to the solution, without consensus.
-/// The inlier threshold is the scale of the loss [normalized image plane].
+/// Four steps from a prediction of T_w_c that is close to the solution, without consensus. The scale c of the
+/// loss follows from the errors at each step,
+///
+///   c = min(1.5 median_i |r_i|, threshold),    but at least 0.05 threshold.
+///
+/// With the threshold itself (3 px), one point on a person 0.45 m before the camera, with an error of 9 px,
+/// outweighs 36 points 2 m away with 0.2 px: the loss that it saves, c^2 log(1 + 81 / c^2), is larger than
+/// that of a pose which is 8 mm off. Allocation-free; the median is that of at most 256 points.
+/// @param inlier_threshold largest scale of the loss [normalized image plane]
 [[nodiscard]] Pose refine_camera_pose(std::span<const PointObservation> observations, const Pose& prediction,
                                       double inlier_threshold);
 

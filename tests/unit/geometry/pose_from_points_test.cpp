@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/geometry/pose_from_points.h"
 
+#include <cmath>
 #include <functional>
 #include <random>
 #include <vector>
@@ -93,6 +94,54 @@ TEST(PoseFromPoints, ConsensusStopsWhenEnoughSamplesAreDrawn) {
   const PoseConsensus found = sample_poses(observations, kTcw, sampling, count_calls);
   EXPECT_EQ(found.inliers, 20u);
   EXPECT_EQ(calls, 4u);  // all agree with the first sample
+}
+
+/// A camera whose view is covered but for a tenth at either side, with 36 points behind, 2 m away and
+/// observed with an error of 0.2 px at 600 px, and unless its error is 0, one point of the person 0.45 m
+/// before it, with the error of a track that the inertial prediction led to another place of the clothes.
+std::vector<PointObservation> observe_beside_a_person(std::uint32_t seed, double mover_px) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> column(0.56, 0.7), row(-0.4, 0.4), angle(0.0, 6.283);
+  std::normal_distribution<double> error(0.0, 0.2 / 600.0);
+  const auto observe_at = [&](double x, double depth, const Eigen::Vector2d& difference) {
+    const Eigen::Vector2d bearing(x, row(random));
+    return PointObservation{kTcw.inverse() * Eigen::Vector3d(depth * bearing.homogeneous()),
+                            bearing + difference};
+  };
+  std::vector<PointObservation> observations;
+  for (int i = 0; i < 36; ++i) {
+    const double x = (i % 2 == 0 ? 1.0 : -1.0) * column(random);
+    const double error_x = error(random);
+    observations.push_back(observe_at(x, 2.0, {error_x, error(random)}));
+  }
+  if (mover_px == 0.0) return observations;
+  const double direction = angle(random);
+  observations.push_back(
+      observe_at(0.2, 0.45, mover_px / 600.0 * Eigen::Vector2d(std::cos(direction), std::sin(direction))));
+  return observations;
+}
+
+/// Sum of the squared errors of the position over 20 seeds.
+double squared_position_errors(double mover_px) {
+  double sum = 0.0;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const Pose found =
+        refine_camera_pose(observe_beside_a_person(seed, mover_px), kTcw.inverse(), 3.0 / 600.0);
+    sum += (found.p - kTcw.inverse().p).squaredNorm();
+  }
+  return sum;
+}
+
+TEST(PoseFromPoints, OneNearPointOfAMoverDoesNotOutweighManyDistantOnes) {
+  // One error in 37 costs little. With a loss as wide as the inlier threshold, the pose follows the near
+  // point by 8 mm, against an error of 1.3 mm without it: a ratio of 38.
+  EXPECT_LT(squared_position_errors(9.0), 2.0 * squared_position_errors(0.0));
+}
+
+TEST(PoseFromPoints, RefinementFromAWrongPredictionConverges) {
+  // 20 px, as after a tenth of a second with a gyroscope that errs by 20 deg/s.
+  const Pose wrong = (Pose{exp_so3({0.0, 20.0 / 600.0, 0.0}), Eigen::Vector3d::Zero()} * kTcw).inverse();
+  EXPECT_LT(distance(refine_camera_pose(observe(60), wrong, 3.0 / 600.0).inverse(), kTcw), 1e-4);
 }
 
 }  // namespace
