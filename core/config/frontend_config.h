@@ -140,7 +140,10 @@ void visit_match_fields(Visitor&& field, Config& config) {
           "0 = off; not in the paper.",
           "", 0.0, 1.0});
   field("recover_view", config.recover_view,
-        FieldInfo{.text = "Whether the tracks of a lost view continue when it returns; not in the paper."});
+        FieldInfo{
+            .text =
+                "Whether matched descriptors predict large motions between frames, and the tracks of a lost "
+                "view continue when it returns; not in the paper."});
   field("depth_max_spread", config.depth_max_spread,
         FieldInfo{
             "Largest range of the depths in the 3x3 neighborhood of a feature, relative to its depth; 0 = no "

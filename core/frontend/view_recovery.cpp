@@ -98,26 +98,44 @@ void replace(std::span<const Track> lost, std::span<const Track> found, std::vec
 
 }  // namespace
 
-/// Motion of the camera T_now_lost, if the image shows the lost view.
-std::optional<Pose> ViewRecovery::motion_since(const View& lost, const cv::Mat& gray) const {
+/// The tracks of a view.
+ViewRecovery::Points ViewRecovery::tracked_points(const View& view) {
+  Points points{.pixels = pixels_of(view.tracks), .depths = {}};
+  for (const Track& track : view.tracks) points.depths.push_back(track.known_depth);
+  return points;
+}
+
+/// Motion of the camera T_now_view, if the image shows the points of the view.
+std::optional<Pose> ViewRecovery::motion_since(const View& view, const Points& points,
+                                               const cv::Mat& gray) const {
   const std::vector<cv::Point2f> corners = corners_of(gray);
   std::vector<PointObservation> matches;
-  for (const auto& [before, now] :
-       match(describe(lost.gray, pixels_of(lost.tracks)), describe(gray, corners))) {
-    const Track& track = lost.tracks[before];
-    if (track.known_depth <= 0.0) continue;
-    matches.push_back(correspondence(track, camera_.unproject(to_vector(corners[now]))));
+  for (const auto& [before, now] : match(describe(view.gray, points.pixels), describe(gray, corners))) {
+    const double depth = points.depths[before];
+    if (depth <= 0.0) continue;
+    matches.push_back({depth * camera_.unproject(to_vector(points.pixels[before])).homogeneous(),
+                       camera_.unproject(to_vector(corners[now]))});
   }
   if (matches.size() < kMinFound) return std::nullopt;
   const double threshold = kMatched_px / camera_.focal_px();
-  const std::optional<Pose> T_now_lost =
+  const std::optional<Pose> T_now_view =
       estimate_rigid_motion(matches, {.threshold = threshold, .confidence = kConfidence});
-  if (!T_now_lost) return std::nullopt;
+  if (!T_now_view) return std::nullopt;
   const auto inliers = std::ranges::count_if(
-      matches, [&](const PointObservation& seen) { return bearing_error(seen, *T_now_lost) <= threshold; });
+      matches, [&](const PointObservation& seen) { return bearing_error(seen, *T_now_view) <= threshold; });
   const double required =
       std::max(static_cast<double>(kMinFound), kMinInlierRatio * static_cast<double>(matches.size()));
-  return static_cast<double>(inliers) >= required ? T_now_lost : std::nullopt;
+  return static_cast<double>(inliers) >= required ? T_now_view : std::nullopt;
+}
+
+std::optional<Pose> ViewRecovery::motion_since_last(const cv::Mat& gray) const {
+  Points points = tracked_points(last_);
+  for (const cv::Point2f& corner : corners_of(last_.gray)) {
+    points.pixels.push_back(corner);
+    points.depths.push_back(
+        sample_depth(last_.depth, last_.depth_units_per_m, to_vector(corner), config_.depth_max_spread));
+  }
+  return motion_since(last_, points, gray);
 }
 
 bool ViewRecovery::fits(const Track& before, const Pose& T_now_lost, const Eigen::Vector2d& bearing) const {
@@ -170,7 +188,7 @@ void ViewRecovery::process(const cv::Mat& gray, const ImagePyramid& pyramid, std
   }
   if (!lost_) return;
   attempts_ += tracks.size() >= kMinFound ? 1 : 0;
-  if (const std::optional<Pose> T_now_lost = motion_since(*lost_, gray)) {
+  if (const std::optional<Pose> T_now_lost = motion_since(*lost_, tracked_points(*lost_), gray)) {
     const std::vector<Track> found = continue_tracks(*lost_, *T_now_lost, pyramid);
     if (!found.empty()) {
       replace(lost_->tracks, found, tracks);
@@ -181,8 +199,10 @@ void ViewRecovery::process(const cv::Mat& gray, const ImagePyramid& pyramid, std
   if (attempts_ >= kMaxAttempts) lost_.reset();
 }
 
-void ViewRecovery::remember(const cv::Mat& gray, std::span<const Track> tracks) {
-  last_.gray = gray;
+void ViewRecovery::remember(const Frame& frame, std::span<const Track> tracks) {
+  last_.gray = frame.gray;
+  last_.depth = frame.depth;
+  last_.depth_units_per_m = frame.depth_units_per_m;
   last_.tracks.assign(tracks.begin(), tracks.end());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Continues the tracks that were lost with the view, e.g. in blank images, when the view returns.
+/// Continues tracks across large motions, and tracks that were lost with the view, e.g. in blank images.
 #pragma once
 
 #include <optional>
@@ -13,38 +13,57 @@
 #include "core/frontend/track.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/pose.h"
+#include "core/types/frame.h"
 
 namespace stillpoint {
 
-/// When less than half of an established view continues, its image and tracks are kept. Until the view
-/// returns, each image is compared with them in two steps:
-///   1. Features of the lost view and corners of the image are matched by upright ORB descriptors (nearest
-///      neighbors in both directions, at most 64 of 256 bits apart, and at most 0.8 times the distance of the
-///      second nearest). The depths of the lost view give the motion of the camera (`estimate_rigid_motion`).
-///   2. The point tracker searches all features of known depth where that motion predicts them. Those that
-///      are found within 3 px continue; those of objects that moved meanwhile, or mistaken for others, do
-///      not.
+/// Two cases, both by matched descriptors: upright ORB (nearest neighbors in both
+/// directions, at most 64 of 256 bits apart, and at most 0.8 times the distance of the second nearest), and
+/// the motion of the camera by the depths of the earlier image (`estimate_rigid_motion`).
+///
+/// Large motion: when most tracks of the last image are not found again, or their motion is not consistent,
+/// `motion_since_last` predicts where the point tracker finds them. Corners are compared in addition to the
+/// tracks.
+///
+/// A lost view: when less than half of an established view continues nevertheless, its image and tracks are
+/// kept. Until the view returns, each image is compared with them. The point tracker searches all features of
+/// known depth where the motion since then predicts them. Those that are found within 3 px continue; those of
+/// objects that moved meanwhile, or mistaken for others, do not.
 class ViewRecovery {
  public:
   ViewRecovery(const FrontendConfig& config, const Camera& camera) : config_(config), camera_(camera) {}
+
+  /// Tracks of the last image.
+  [[nodiscard]] std::span<const Track> last_tracks() const { return last_.tracks; }
+
+  /// Motion T_now_last of the camera since the last image; nullopt if too few matches agree with one.
+  [[nodiscard]] std::optional<Pose> motion_since_last(const cv::Mat& gray) const;
 
   /// @param gray    the new image, and its pyramid
   /// @param tracks  those of the last image that continue in it, sorted by id; if a lost view returns, its
   /// tracks are replaced by those that are found
   void process(const cv::Mat& gray, const ImagePyramid& pyramid, std::vector<Track>& tracks);
 
-  /// Keeps an image with all of its tracks, until the next one.
-  void remember(const cv::Mat& gray, std::span<const Track> tracks);
+  /// Keeps a frame with all of its tracks, until the next one.
+  void remember(const Frame& frame, std::span<const Track> tracks);
 
   void reset();
 
  private:
   struct View {
-    cv::Mat gray;
+    cv::Mat gray, depth;
+    double depth_units_per_m = 1000.0;
     std::vector<Track> tracks;
   };
   [[nodiscard]] bool loses_view(std::size_t continued) const;
-  [[nodiscard]] std::optional<Pose> motion_since(const View& lost, const cv::Mat& gray) const;
+  /// Points of a view, with their depths [m]; 0 = not known.
+  struct Points {
+    std::vector<cv::Point2f> pixels;
+    std::vector<double> depths;
+  };
+  [[nodiscard]] static Points tracked_points(const View& view);
+  [[nodiscard]] std::optional<Pose> motion_since(const View& view, const Points& points,
+                                                 const cv::Mat& gray) const;
   [[nodiscard]] std::vector<Track> continue_tracks(const View& lost, const Pose& T_now_lost,
                                                    const ImagePyramid& pyramid) const;
   [[nodiscard]] bool fits(const Track& before, const Pose& T_now_lost, const Eigen::Vector2d& bearing) const;

@@ -145,10 +145,10 @@ bool OutlierRejector::fit_rigid(std::span<const Match> matches, const OutlierRej
 const InlierMask& OutlierRejector::find(std::span<const Match> matches,
                                         const OutlierRejectionSettings& settings) {
   motion_.reset();
-  const bool has_model = matches.size() >= kMinMatches &&
-                         ((settings.model == OutlierModel::kRigid && fit_rigid(matches, settings)) ||
-                          fit_epipolar(matches, settings));
-  if (!has_model) inliers_.assign(matches.size(), 1);
+  has_model_ = matches.size() >= kMinMatches &&
+               ((settings.model == OutlierModel::kRigid && fit_rigid(matches, settings)) ||
+                fit_epipolar(matches, settings));
+  if (!has_model_) inliers_.assign(matches.size(), 1);
   return inliers_;
 }
 

@@ -57,6 +57,9 @@ class OutlierRejector {
   /// T_to_from of the last call, if it found a rigid motion.
   [[nodiscard]] const std::optional<Pose>& motion() const { return motion_; }
 
+  /// Whether the last call found a motion with enough inliers, of either model.
+  [[nodiscard]] bool has_model() const { return has_model_; }
+
  private:
   [[nodiscard]] bool fit_epipolar(std::span<const Match> matches, const OutlierRejectionSettings& settings);
   [[nodiscard]] bool fit_rigid(std::span<const Match> matches, const OutlierRejectionSettings& settings);
@@ -65,6 +68,7 @@ class OutlierRejector {
   std::vector<PointObservation> correspondences_;
   InlierMask inliers_;
   std::optional<Pose> motion_;
+  bool has_model_ = false;
 };
 
 /// Inliers of the dominant motion, by RANSAC (Fischler and Bolles 1981). Deterministic.

@@ -100,5 +100,71 @@ TEST_F(ViewLoss, ResetForgetsTheView) {
   EXPECT_EQ(continued(see(Pose{})), 0);
 }
 
+/// Two views of a plane in turn, 50 to 90 px and up to 6 degrees apart: a camera of low rate in the hand. The
+/// keys are those of stillpoint.toml.
+class LargeMotion {
+ public:
+  explicit LargeMotion(std::uint64_t seed) : plane_(test_camera(), kDistance_m, seed) {
+    cv::RNG random(seed);
+    const double direction = random.uniform(0.0, 2.0 * CV_PI), length_m = random.uniform(0.2, 0.36);
+    other_ = {exp_so3({0.0, 0.0, random.uniform(-0.1, 0.1)}),
+              {length_m * std::cos(direction), length_m * std::sin(direction), 0.0}};
+  }
+  static FrontendConfig config() {
+    FrontendConfig config;
+    config.tracker = TrackerKind::kPatch;
+    config.min_correlation = 0.6;
+    config.drift_min_correlation = 0.9;
+    config.outlier_model = OutlierModel::kRigid;
+    config.ransac_threshold_px = 2.0;
+    config.min_distance_px = 20;
+    config.reject_static_only = true;
+    config.recover_view = true;
+    return config;
+  }
+  /// Of the features of each frame that are inside the next view: the smallest fraction that is found there.
+  [[nodiscard]] double smallest_continued_ratio() const {
+    FeatureTracker tracker(config(), test_camera());
+    TrackedFrame before = tracker.track(plane_.frame_at(Pose{}, 0), {}, {});
+    double smallest = 1.0;
+    for (int id = 1; id < 8; ++id) {
+      const Pose T_now_before = id % 2 == 1 ? other_ : other_.inverse();
+      TrackedFrame now = tracker.track(plane_.frame_at(id % 2 == 1 ? other_ : Pose{}, id), {}, {});
+      smallest = std::min(smallest, continued_ratio(before, now, T_now_before));
+      before = std::move(now);
+    }
+    return smallest;
+  }
+
+ private:
+  [[nodiscard]] static double continued_ratio(const TrackedFrame& before, const TrackedFrame& now,
+                                              const Pose& T_now_before) {
+    std::map<std::int64_t, Eigen::Vector2d> found;
+    for (const TrackedFeature& feature : now.features) found[feature.id] = feature.pixel;
+    int visible = 0, correct = 0;
+    for (const TrackedFeature& feature : before.features) {
+      const Eigen::Vector3d p = kDistance_m * feature.bearing.homogeneous();
+      const Eigen::Vector2d pixel = test_camera().project(T_now_before * p);
+      if (!test_camera().contains(pixel, 10)) continue;
+      ++visible;
+      const auto feature_now = found.find(feature.id);
+      correct += feature_now != found.end() && (feature_now->second - pixel).norm() < 1.0 ? 1 : 0;
+    }
+    return static_cast<double>(correct) / visible;
+  }
+
+  TexturedPlane plane_;
+  Pose other_;
+};
+
+/// Without the prediction by descriptors, at most 17 % of them continue, with none of the seeds 90 %.
+TEST(LargeMotionOfTheCamera, TracksContinueInEveryFrame) {
+  int kept = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    kept += LargeMotion(seed).smallest_continued_ratio() >= 0.9 ? 1 : 0;
+  }
+  EXPECT_GE(kept, 19);
+}
+
 }  // namespace
 }  // namespace stillpoint
