@@ -58,6 +58,16 @@ std::vector<Assessed> with_truth(const Trajectory& gt, std::span<const ClaimedPo
   return frames;
 }
 
+/// Mean of the rotations R_g R_e^T: normalized sum of quaternions with the sign of the first one.
+Eigen::Quaterniond mean_rotation(std::span<const MatchedPose> poses) {
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (const MatchedPose& pose : poses) {
+    const Eigen::Vector4d q = (pose.gt.q * pose.est.q.conjugate()).coeffs();
+    sum += sum.dot(q) < 0.0 ? Eigen::Vector4d(-q) : q;
+  }
+  return Eigen::Quaterniond(Eigen::Vector4d(sum.normalized()));
+}
+
 /// Sets errors and labels. @return false if the alignment is not determined
 bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin) {
   const bool always_faulty = fault_begin && !frames.empty() && frames.front().pose->t >= *fault_begin;
@@ -72,12 +82,14 @@ bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin)
   }
   if (reference.size() < kMinAligned) return false;
   const Similarity S = align(reference, Alignment::kSe3).S_w_v;
+  const Eigen::Quaterniond rotation = mean_rotation(reference);
   double drift_m = 0.0, drift_rad = 0.0;
   for (Assessed& frame : frames) {
     const std::vector<MatchedPose> match{{.t = frame.pose->t, .gt = frame.truth, .est = frame.pose->T_w_c}};
     const AteErrors errors = ate_errors(match, S);
     frame.error_m = errors.translation_m.front();
-    frame.error_rad = errors.rotation_deg.front() * M_PI / 180.0;
+    frame.error_rad = always_faulty ? frame.truth.q.angularDistance(rotation * frame.pose->T_w_c.q)
+                                    : errors.rotation_deg.front() * M_PI / 180.0;
     if (always_faulty || !is_reference(frame)) continue;
     drift_m = std::max(drift_m, frame.error_m);
     drift_rad = std::max(drift_rad, frame.error_rad);

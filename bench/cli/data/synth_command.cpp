@@ -15,8 +15,9 @@ namespace stillpoint::bench {
 namespace {
 
 constexpr const char* kPresets =
-    "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; track; flight"
-    " (both recorded motion); with returns to places: {office,corridor,market}_laps, twin_aisles, "
+    "walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with _empty; fr3, "
+    "fr3_{walking_{xyz,static,rpy,halfsphere},sitting_static}; track; flight"
+    " (all recorded motion); with returns to places: {office,corridor,market}_laps, twin_aisles, "
     "changed_room, "
     "each also with _short; home_tour";
 constexpr double kPresetValue = -1.0;  // option not given: use the value of the preset
@@ -50,7 +51,7 @@ synth::SynthRequest request_of(const SynthArguments& arguments) {
   request.labels = arguments.labels;
   if (!arguments.trajectory.empty()) request.trajectory_file = arguments.trajectory;
   request.imu_file = arguments.imu;
-  request.times_file = arguments.times;
+  if (!arguments.times.empty()) request.times_file = arguments.times;
   request.track_sequence = arguments.track_sequence;
   request.imu.time_offset_s = 1e-3 * arguments.time_offset_ms;
   override_with(request.seed, arguments.seed);
@@ -137,7 +138,9 @@ std::vector<Option> options_of(SynthArguments& arguments) {
       {"--unknown", "Number of moving carts and chairs without detections", &arguments.unknown, {0, 100}},
       {"--layout", "Output layout: " + enum_list<synth::SequenceLayout>(), &arguments.layout},
       {"--labels", "Also write instance masks", &arguments.labels},
-      {"--trajectory", "Preset flight: IMU poses (TUM text); home_tour, track: gt_SCENE_1.txt of OpenLORIS",
+      {"--trajectory",
+       "Preset flight: IMU poses (TUM text); fr3: camera poses; home_tour, track: gt_SCENE_1.txt of "
+       "OpenLORIS",
        &arguments.trajectory},
       {"--imu", "Preset flight: IMU samples (EuRoC CSV)", &arguments.imu},
       {"--track-sequence",
@@ -147,7 +150,7 @@ std::vector<Option> options_of(SynthArguments& arguments) {
       {"--times", "Recorded frame times, one per line [s]; a third field is the time of the depth image",
        &arguments.times},
       {"--start",
-       "Preset flight, track or home_tour: offset of the first frame [s]",
+       "Preset flight, fr3, track or home_tour: offset of the first frame [s]",
        &arguments.start,
        {0, 1e6}}};
   std::ranges::move(sensor_options_of(arguments), std::back_inserter(options));

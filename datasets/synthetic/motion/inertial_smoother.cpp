@@ -199,7 +199,7 @@ Eigen::Vector3d mean_gyro_error(const Problem& problem, const PathSpline& path) 
   for (const ImuSample& sample : problem.imu) {
     sum += sample.gyro_b - path.at(seconds_between(problem.epoch, sample.t)).rate_b;
   }
-  return sum / static_cast<double>(problem.imu.size());
+  return sum / std::max(static_cast<double>(problem.imu.size()), 1.0);
 }
 
 /// Least squares for bias and tilt in  p'' = R (a - bias) + g + tilt.
@@ -235,7 +235,7 @@ SmoothedMotion with_residuals(const Problem& problem, PathSpline path, const Eig
     acceleration += (acceleration_of(sample, motion.T_w_b.q, accel) - motion.acceleration_w).squaredNorm();
   }
   const auto poses = static_cast<double>(problem.poses.size()),
-             samples = static_cast<double>(problem.imu.size());
+             samples = std::max(static_cast<double>(problem.imu.size()), 1.0);
   result.position_residual_m = std::sqrt(position / poses);
   result.rotation_residual = std::sqrt(rotation / poses);
   result.gyro_residual = std::sqrt(gyro / samples);
@@ -253,7 +253,8 @@ SmoothedMotion smooth_motion(const MotionSamples& samples, const SmootherConfig&
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   AccelError accel;
   PathSpline path(knots.start_s, knots.interval_s, zero_positions, fit_attitudes(problem, gyro_bias));
-  for (int i = 0; i < config.iterations; ++i) {
+  const int iterations = samples.imu.empty() ? 1 : config.iterations;
+  for (int i = 0; i < iterations; ++i) {
     gyro_bias = mean_gyro_error(problem, path);
     std::vector<Eigen::Vector4d> attitudes = fit_attitudes(problem, gyro_bias);
     const PathSpline rotation_path(knots.start_s, knots.interval_s, zero_positions, attitudes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Smooth path from noisy motion-capture poses and the IMU samples recorded with them.
+/// Smooth path from noisy motion-capture poses and the IMU samples recorded with them, if there are any.
 ///
 /// Motion capture is accurate at low frequencies, but has per-sample noise and gaps; the IMU is accurate at
 /// high frequencies, but drifts. A quintic B-spline is fitted to both by linear least squares, whose normal
@@ -70,6 +70,7 @@ struct MotionSamples {
   double to_s = 0.0;
 };
 
+/// Without IMU samples, the knot interval alone determines the smoothness.
 [[nodiscard]] SmoothedMotion smooth_motion(const MotionSamples& samples, const SmootherConfig& config = {});
 
 }  // namespace stillpoint::synth

@@ -74,6 +74,14 @@ PathSpline PathSpline::shifted(const Eigen::Vector3d& shift_w) const {
   return path;
 }
 
+PathSpline PathSpline::transformed(const Pose& T_v_w) const {
+  PathSpline path = *this;
+  for (Eigen::Vector3d& position : path.positions_) position = T_v_w.q * position + T_v_w.p;
+  for (Eigen::Vector4d& attitude : path.attitudes_)
+    attitude = (T_v_w.q * Eigen::Quaterniond(attitude)).coeffs();
+  return path;
+}
+
 BodyMotion PathSpline::at(double t_s) const {
   const double last_span = static_cast<double>(positions_.size()) - 6.0;
   const double knots = std::clamp((t_s - first_s()) / interval_s_, 0.0, last_span + 1.0);

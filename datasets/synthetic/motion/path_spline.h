@@ -55,6 +55,8 @@ class PathSpline {
   [[nodiscard]] BodyMotion at(double t_s) const;
   /// The path translated by `shift_w`.
   [[nodiscard]] PathSpline shifted(const Eigen::Vector3d& shift_w) const;
+  /// The path in another world frame v.
+  [[nodiscard]] PathSpline transformed(const Pose& T_v_w) const;
 
   [[nodiscard]] Pose pose_at(double t_s) const { return at(t_s).T_w_b; }
 

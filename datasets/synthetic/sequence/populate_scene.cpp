@@ -39,7 +39,7 @@ std::vector<Actor> populate_scene(const SynthRequest& request, Scene& scene, con
                      "the scene has " + std::to_string(scene.seats.size()) + " free chairs; use --seated");
   }
   Builder builder(scene.world);
-  const bool office = request.preset.starts_with("walking");
+  const bool office = request.preset.starts_with("walking") || is_hand_recording(request);
   const double clearance_m = office                    ? kHandheldClearance_m
                              : is_loop_preset(request) ? kFastRobotClearance_m
                                                        : kRobotClearance_m;

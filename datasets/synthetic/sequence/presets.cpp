@@ -19,6 +19,18 @@ const std::string kEmptySuffix = "_empty";
 const std::string kShortSuffix = "_short";
 const std::string kHomeTour = "home_tour";
 const std::string kTrack = "track";
+const std::string kFr3 = "fr3";
+
+/// A sequence of TUM RGB-D, and the people in it.
+struct Fr3Preset {
+  std::string name;
+  int walkers, seated, unknown_movers;
+};
+const std::vector<Fr3Preset> kFr3Presets{{"fr3_walking_xyz", 2, 1, 1},
+                                         {"fr3_walking_static", 2, 1, 1},
+                                         {"fr3_walking_rpy", 2, 1, 1},
+                                         {"fr3_walking_halfsphere", 2, 1, 1},
+                                         {"fr3_sitting_static", 0, 2, 0}};
 
 /// A preset that returns to places, and its variation with the suffix `_short`. Durations follow from the
 /// lengths of the routes; `loop_presets_test` verifies them.
@@ -58,7 +70,36 @@ void use_loop_preset(SynthRequest& request) {
   if (request.preset != kHomeTour) return;
   request.frames_per_s = 15.0;  // 0.3 m/s on average
   request.start_s = 1.0;
-  request.trajectory_file = home_ground_truth_file();
+  request.trajectory_file = recording_file("openloris/groundtruth/gt_home_1.txt");
+}
+
+/// Frames from the first one on that the trajectory covers.
+void use_hand_recording(SynthRequest& request) {
+  request.start_s = kRecordingMargin_s;
+  for (const Fr3Preset& preset : kFr3Presets) {
+    if (request.preset != preset.name) continue;
+    request.trajectory_file = recording_file("tum_fr3_groundtruth/" + preset.name + "_groundtruth.txt");
+    request.times_file = recording_file("tum_fr3_times/" + preset.name + ".txt");
+    request.walkers = preset.walkers;
+    request.seated = preset.seated;
+    request.unknown_movers = preset.unknown_movers;
+  }
+}
+
+void check_hand_recording(const SynthRequest& request) {
+  if (!is_hand_recording(request)) return;
+  if (request.trajectory_file.empty()) {
+    throw InputError("preset \"fr3\"",
+                     "needs the ground truth of a sequence of TUM RGB-D; pass --trajectory FILE");
+  }
+  for (const std::filesystem::path& file : {request.trajectory_file, request.times_file}) {
+    if (file.empty() || std::filesystem::exists(file)) continue;
+    throw InputError(
+        "preset \"" + request.preset + "\"",
+        "needs " + file.string() +
+            ", which does not exist; set STILLPOINT_DATA to the folder of tum_fr3_groundtruth and "
+            "tum_fr3_times, or pass --trajectory FILE --times FILE");
+  }
 }
 
 void check_files(const SynthRequest& request) {
@@ -79,6 +120,7 @@ void check_files(const SynthRequest& request) {
         "needs a ground truth of OpenLORIS and the number of a sequence in it; pass --trajectory "
         "FILE --track-sequence N");
   }
+  check_hand_recording(request);
   if (request.preset == "flight" && !request.times_file.empty()) {
     throw InputError("preset \"flight\"", "has the times of its recording; remove --times");
   }
@@ -92,6 +134,8 @@ bool is_preset(const SynthRequest& request, const std::string& name) {
   return request.preset == name || request.preset == name + kShortSuffix;
 }
 
+bool is_hand_recording(const SynthRequest& request) { return request.preset.starts_with(kFr3); }
+
 bool is_loop_preset(const SynthRequest& request) {
   return std::any_of(kLoopPresets.begin(), kLoopPresets.end(),
                      [&](const LoopPreset& preset) { return is_preset(request, preset.name); });
@@ -102,6 +146,8 @@ std::vector<std::string> preset_names() {
   for (const std::string& preset : kBasePresets) names.push_back(preset + kEmptySuffix);
   names.push_back("flight");
   names.push_back(kTrack);
+  names.push_back(kFr3);
+  for (const Fr3Preset& preset : kFr3Presets) names.push_back(preset.name);
   for (const LoopPreset& preset : kLoopPresets) {
     names.push_back(preset.name);
     if (preset.short_seconds > 0.0) names.push_back(preset.name + kShortSuffix);
@@ -119,7 +165,8 @@ SynthRequest preset_request(const std::string& name) {
   SynthRequest request;
   request.preset = name;
   use_loop_preset(request);
-  if (is_loop_preset(request)) return request;
+  if (is_hand_recording(request)) use_hand_recording(request);
+  if (is_loop_preset(request) || is_hand_recording(request)) return request;
   if (name.starts_with("market") || name.starts_with("corridor")) use_robot_camera(request);
   if (name == kTrack) use_robot_camera(request);
   if (name == "flight") request.seconds = 25.0;
@@ -212,7 +259,7 @@ std::string contents(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in)
     throw InputError(file.string(),
-                     "cannot be read; correct the path, or set STILLPOINT_DATA (preset home_tour)");
+                     "cannot be read; correct the path, or set STILLPOINT_DATA (presets home_tour, fr3_*)");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -57,9 +57,10 @@ struct SynthRequest {
   DepthSensor depth;
   ImuSensor imu;
   DetectorModel detector;
-  double start_s = 5.0;  ///< preset `flight`: offset from the first time that both files cover
-  /// Preset `flight`: poses T_w_b of the IMU (TUM text); `home_tour`: ground truth of OpenLORIS home;
-  /// `track`: ground truth of any scene of OpenLORIS.
+  double start_s = 5.0;  ///< preset `flight`: offset from the first time that both files cover; `fr3`: from
+                         ///< the first pose
+  /// Preset `flight`: poses T_w_b of the IMU (TUM text); `fr3`: poses of the camera, likewise; `home_tour`:
+  /// ground truth of OpenLORIS home; `track`: ground truth of any scene of OpenLORIS.
   std::filesystem::path trajectory_file;
   std::filesystem::path imu_file;  ///< preset `flight`: IMU samples (EuRoC CSV)
   int track_sequence = 0;          ///< preset `track`: number of the sequence in `trajectory_file`, from 1
@@ -143,10 +144,12 @@ void visit_fields(Visitor&& field, Config& request) {
 
 /// Names of all presets: walking_{xyz,static,rpy,halfsphere}, market, corridor, each also with the suffix
 /// `_empty` (static scene); `flight` (recorded trajectory and IMU samples, static scene); `track` (recorded
-/// trajectory of a robot, static scene); and those that return to places, for loop closure:
-/// {office,corridor,market}_laps, twin_aisles, changed_room, each also with the suffix `_short`, and
-/// `home_tour` (recorded trajectory of a robot). These have small images, because they are long: 1 GB at
-/// most.
+/// trajectory of a robot, static scene); `fr3` (recorded trajectory of a hand-held camera, IMU samples of a
+/// spline of it), fr3_walking_{xyz,static,rpy,halfsphere} and fr3_sitting_static, which have the trajectory
+/// and the frame times of that sequence of TUM RGB-D (tum_fr3_groundtruth and tum_fr3_times of the data); and
+/// those that return to places, for loop closure: {office,corridor,market}_laps, twin_aisles, changed_room,
+/// each also with the suffix `_short`, and `home_tour` (recorded trajectory of a robot). These have small
+/// images, because they are long: 1 GB at most.
 [[nodiscard]] std::vector<std::string> preset_names();
 
 /// Whether the preset, or the one with the suffix `_short`, is `name`.
@@ -154,6 +157,9 @@ void visit_fields(Visitor&& field, Config& request) {
 
 /// Whether the preset returns to places.
 [[nodiscard]] bool is_loop_preset(const SynthRequest& request);
+
+/// Whether the preset is `fr3`, or one of its sequences.
+[[nodiscard]] bool is_hand_recording(const SynthRequest& request);
 
 /// Whether the preset has the suffix `_short`.
 [[nodiscard]] bool is_short(const SynthRequest& request);

@@ -31,7 +31,7 @@ Timestamp time_of(const std::string& field, const std::string& place) {
 
 }  // namespace
 
-FrameTimes load_recorded_times(const std::filesystem::path& file, double seconds) {
+FrameTimes load_recorded_times(const std::filesystem::path& file, double seconds, Timestamp from) {
   std::ifstream input(file);
   FrameTimes times;
   std::string line;
@@ -41,6 +41,7 @@ FrameTimes load_recorded_times(const std::filesystem::path& file, double seconds
     if (!(fields >> color) || color.starts_with('#')) continue;
     const std::string place = file.string() + ":" + std::to_string(number);
     const Timestamp t = time_of(color, place);
+    if (t < from) continue;
     if (!times.color.empty() && seconds_between(times.color.front(), t) >= seconds) break;
     if (!times.color.empty() && t <= times.color.back())
       throw InputError(place, "the time does not increase; sort the file");
@@ -122,10 +123,10 @@ void append(std::vector<PlanarPose>& track, const Trajectory& sequence, double f
 
 }  // namespace
 
-std::filesystem::path home_ground_truth_file() {
+std::filesystem::path recording_file(const std::filesystem::path& relative) {
   const char* set = std::getenv("STILLPOINT_DATA");
   const std::filesystem::path data = set != nullptr ? set : "../shared/data";
-  return data / "openloris" / "groundtruth" / "gt_home_1.txt";
+  return data / relative;
 }
 
 RobotTrack load_home_track(const std::filesystem::path& file) {
@@ -215,6 +216,55 @@ Pose virtual_camera_T_b_c(const Eigen::Vector3d& up_b) {
       "--imu", fmt::format("the mean specific force points along ({:.2f}, {:.2f}, {:.2f}); expected an IMU "
                            "whose x or z axis points up",
                            up.x(), up.y(), up.z()));
+}
+
+namespace {
+
+/// Poses of the body between two times.
+std::vector<StampedPose> body_poses(const Trajectory& camera, const Pose& T_b_c, Timestamp from,
+                                    Timestamp to) {
+  std::vector<StampedPose> poses = between(camera.poses, from, to);
+  for (StampedPose& pose : poses) pose.T_w_f = pose.T_w_f * T_b_c.inverse();
+  return poses;
+}
+
+/// Sets the mean position and direction of the camera.
+void describe_view(const Trajectory& camera, HandRecording& recording) {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  for (const StampedPose& pose : camera.poses) {
+    recording.mean_eye_w += pose.T_w_f.p / static_cast<double>(camera.poses.size());
+    axis += pose.T_w_f.q * Eigen::Vector3d::UnitZ();
+  }
+  recording.mean_yaw = std::atan2(axis.y(), axis.x());
+}
+
+}  // namespace
+
+HandRecording load_hand_recording(const SynthRequest& request, const PathRequest& path,
+                                  double first_frame_s) {
+  constexpr SmootherConfig kPosesOnly{.knot_interval_s = 0.05};
+  FaultLog faults;
+  const Trajectory truth = eval::read_tum_ground_truth(request.trajectory_file, "camera", faults).trajectory;
+  const Timestamp earliest = after(truth.poses.front().t, std::max(request.start_s, kRecordingMargin_s));
+  const Timestamp first =
+      request.times_file.empty()
+          ? earliest
+          : load_recorded_times(request.times_file, request.seconds, earliest).color.front();
+  const Timestamp epoch = after(first, -first_frame_s);
+  const double from_s = path.from_s - kRecordingMargin_s / 2.0, to_s = path.to_s + kRecordingMargin_s / 2.0;
+  if (truth.poses.back().t < after(epoch, to_s)) {
+    throw InputError(
+        request.trajectory_file.string(),
+        fmt::format(
+            "ends {:.1f} s after the first frame, but {:.1f} s are required; reduce --seconds or --start",
+            seconds_between(first, truth.poses.back().t), request.seconds));
+  }
+  const std::vector<StampedPose> poses =
+      body_poses(truth, path.T_b_c, after(epoch, from_s), after(epoch, to_s));
+  HandRecording recording{smooth_motion({poses, {}, epoch, from_s, to_s}, kPosesOnly).path};
+  recording.epoch = epoch;
+  describe_view(truth, recording);
+  return recording;
 }
 
 RecordedMotion load_recorded_motion(const SynthRequest& request) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// What a rendered sequence takes from recordings: the frame times with the frames that were lost, the motion
-/// of the OpenLORIS robots (ground truth of the data set, Shi et al. 2020), and a motion with its original
-/// IMU samples, smoothed to render along.
+/// of the OpenLORIS robots (ground truth of the data set, Shi et al. 2020), that of the hand-held camera of
+/// TUM RGB-D (Sturm et al. 2012), and a motion with its original IMU samples, smoothed to render along.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "core/base/timestamp.h"
@@ -26,13 +29,32 @@ struct FrameTimes {
 /// have that of the depth image in its third field, as written by the association script of TUM RGB-D; the
 /// other fields are names of files. Lines that begin with # are skipped.
 /// @param file the recording @param seconds duration from the first frame on
+/// @param from frames before this time are skipped
 /// @return in whole microseconds
 /// @throws InputError with file:line if a time cannot be read or does not increase, and if there is no frame
-[[nodiscard]] FrameTimes load_recorded_times(const std::filesystem::path& file, double seconds);
+[[nodiscard]] FrameTimes load_recorded_times(const std::filesystem::path& file, double seconds,
+                                             Timestamp from = {std::numeric_limits<std::int64_t>::min()});
 
-/// Default location of the ground truth of the scene "home":
-/// $STILLPOINT_DATA/openloris/groundtruth/gt_home_1.txt, else below ../shared/data. It may not exist.
-[[nodiscard]] std::filesystem::path home_ground_truth_file();
+/// Default location of a recording: below $STILLPOINT_DATA, else below ../shared/data. It may not exist.
+[[nodiscard]] std::filesystem::path recording_file(const std::filesystem::path& relative);
+
+/// Motion of a hand-held camera.
+struct HandRecording {
+  PathSpline body_path;  ///< in the frame of the motion capture system, gravity along -z
+  Eigen::Vector3d mean_eye_w = Eigen::Vector3d::Zero();  ///< camera position, over the whole recording
+  double mean_yaw = 0.0;                                 ///< of the optical axis, likewise [rad]
+  Timestamp epoch;                                       ///< timestamp of path time 0
+};
+
+/// Loads and smooths the ground truth of a sequence of TUM RGB-D, poses T_w_c of the color camera at 100 Hz.
+/// The first frame is the first one at least `start_s` and 0.5 s after the first pose; it is at path time
+/// `first_frame_s`. Knots are 50 ms apart: motion above 10 Hz, where the noise of motion capture exceeds hand
+/// tremor, is removed.
+/// @param request with its trajectory, and frame times if there are recorded ones
+/// @param path    pose of the camera in the body frame; interval of the result
+/// @throws InputError if a file cannot be read or does not cover the interval
+[[nodiscard]] HandRecording load_hand_recording(const SynthRequest& request, const PathRequest& path,
+                                                double first_frame_s);
 
 /// Sequences 2, 5 and the last three quarters of 1, each of which begins about where the one before it ends:
 /// one tour of 241 s that visits all rooms twice. They are joined by cubic curves along both headings.

@@ -111,7 +111,22 @@ MovingBody track_motion(const SynthRequest& request, const PathRequest& path) {
   return {std::move(scene), std::move(spline), after(recorded.first, request.start_s)};
 }
 
+/// The recorded motion in the office: its mean camera position is that of simulated hand-held cameras, and
+/// its mean direction points to their target.
+MovingBody hand_recording_motion(const SynthRequest& request, const PathRequest& path) {
+  HandRecording recording = load_hand_recording(request, path, kFirstFrame_s);
+  Scene scene = scene_of(request);
+  const Viewpoint& view = scene.viewpoint;
+  const Eigen::Vector3d direction = view.target_w - view.eye_w;
+  const double turn = std::atan2(direction.y(), direction.x()) - recording.mean_yaw;
+  Pose T_w_m;  // m: frame of the motion capture system
+  T_w_m.q = Eigen::Quaterniond(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+  T_w_m.p = view.eye_w - T_w_m.q * recording.mean_eye_w;
+  return {std::move(scene), recording.body_path.transformed(T_w_m), recording.epoch};
+}
+
 MovingBody motion_of(const SynthRequest& request, const PathRequest& path) {
+  if (is_hand_recording(request)) return hand_recording_motion(request, path);
   if (request.preset == "home_tour") return home_motion(request, path);
   if (request.preset == "track") return track_motion(request, path);
   return simulated_motion(request, path);
@@ -134,7 +149,7 @@ SceneSetup simulated_setup(const SynthRequest& request) {
   const PathRequest path_request{rig.T_b_c, request.seed, 0.0, last_s};
   auto [scene, path, motion_epoch] = motion_of(request, path_request);
   const Timestamp epoch =
-      request.times_file.empty()
+      request.times_file.empty() || is_hand_recording(request)
           ? motion_epoch
           : after(load_recorded_times(request.times_file, request.seconds).color.front(), -kFirstFrame_s);
   ImuRecord imu = simulate_imu(path, request.imu, {epoch, 0.0, last_s, request.seed});
@@ -175,7 +190,8 @@ SceneSetup make_scene_setup(const SynthRequest& request) {
 }
 
 FrameTimes frame_times(const SynthRequest& request, const SceneSetup& setup) {
-  if (!request.times_file.empty()) return load_recorded_times(request.times_file, request.seconds);
+  const Timestamp first = whole_microseconds(setup.epoch, setup.first_frame_s);
+  if (!request.times_file.empty()) return load_recorded_times(request.times_file, request.seconds, first);
   RandomSequence random(random_key(request.seed, RandomStream::kDroppedFrames));
   // A run has (1 + kMaxDropRun) / 2 frames on average.
   const double start_chance =

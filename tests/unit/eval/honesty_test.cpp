@@ -69,6 +69,15 @@ TEST_F(HonestyTest, AnImperfectionFromTheFirstFrameOnIsScoredWithoutAReference) 
   EXPECT_EQ(honesty(gt_, claims_, {})->false_confidence, 0.0);
 }
 
+TEST_F(HonestyTest, ARotatedWorldIsNotWrongWithAnImperfectionFromTheFirstFrameOn) {
+  // The positions say that the world is turned by 0.1 rad, the attitudes that it is not: errors of the
+  // alignment.
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()));
+  for (ClaimedPose& claim : claims_) claim.T_w_c.p = turn * claim.T_w_c.p;
+  const std::vector<TimeSpan> always{{gt_.poses.front().t, after(gt_.poses.back().t, 1.0)}};
+  EXPECT_EQ(honesty(gt_, claims_, always)->false_confidence, 0.0);
+}
+
 TEST_F(HonestyTest, APoseOfALaterSegmentIsNoRecovery) {
   claim(kFault, kFault + 10, PoseClaim::kLost);
   displace(kFault, kFrames, 3.0);
