@@ -111,6 +111,31 @@ TEST_F(StatsCommand, FindsTheRunsOfAFaultPlanFileByItsName) {
   EXPECT_NE(result.out.find("survive, 0.005 m, 0.0 %"), std::string::npos) << result.out;
 }
 
+TEST_F(StatsCommand, ImperfectionsAreGeometricMeansOverSequences) {
+  bench::StoreWriter writer(file_);
+  bench::StoredPlan plan{.name = "rigs", .title = "", .text = "variants = [\"vo\"]\n", .run_keys = {}};
+  const auto add = [&](const std::string& sequence, double ate_m) {
+    const bench::RunIdentity identity{.variant = "vo", .sequence = sequence};
+    static_cast<void>(writer.acquire(identity));
+    writer.finish(identity,
+                  {.metrics = {{"ate_rmse_m", "", "m", ate_m}, {"false_confidence", "", "", 0.03}}});
+    plan.run_keys.push_back(bench::run_key(identity));
+  };
+  add("a", 0.01);
+  add("a + rig:seed=1", 0.02);
+  add("b", 0.04);
+  add("b + rig:seed=1", 0.16);
+  const bench::RunIdentity lost{.variant = "vo", .sequence = "b + rig:seed=2"};
+  static_cast<void>(writer.acquire(lost));
+  writer.finish(lost, {.outcome = bench::Outcome::kLost});
+  plan.run_keys.push_back(bench::run_key(lost));
+  writer.record_plan(plan);
+  const std::string table = stats({"imperfections", "--plan", "rigs", "--csv"}).out;
+  // sqrt(0.02 * 0.16) = 0.056569, sqrt(2 * 4) = 2.8284
+  EXPECT_NE(table.find("rig:seed=1,vo,2,0,0.056569,2.8284,0.16,3.00 %"), std::string::npos) << table;
+  EXPECT_NE(table.find("(all),vo,3,1,0.056569,2.8284,0.16,3.00 %"), std::string::npos) << table;
+}
+
 TEST_F(StatsCommand, RejectsAMetricThatNoRunHas) {
   fill(1);
   for (const char* command : {"summary", "ablation", "sweep"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stillpoint stats`: ablation, repeat, faults, summary and sweep.
+// `stillpoint stats`: ablation, repeat, faults, imperfections, summary and sweep.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/analysis/run_statistics.h"
+#include "bench/cli/analysis/fault_means.h"
 #include "bench/cli/analysis/stats_table.h"
 #include "bench/cli/command_line.h"
 #include "bench/model/metrics.h"
@@ -534,6 +535,11 @@ Command stats_command() {
                                  "false confidence",
                       .example = "stats faults --plan faults"},
                      arguments, stats_faults),
+          subcommand({.name = "imperfections",
+                      .summary = "Geometric means of the ATE over sequences with injected faults, lost runs "
+                                 "and false confidence",
+                      .example = "stats imperfections --plan imperfections"},
+                     arguments, stats_imperfections),
           subcommand({.name = "repeat",
                       .summary = "Check that repetitions, or runs of two machines, are bit-equal",
                       .example = "stats repeat --store build/bench/store.sqlite",

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/analysis/fault_means.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "bench/model/metrics.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr std::string_view kFaultSeparator = " + ";  // between sequence and fault in the name of a run
+
+std::string fault_of(const StoredRun& run) {
+  const std::size_t end = run.identity.sequence.find(kFaultSeparator);
+  return end == std::string::npos ? "" : run.identity.sequence.substr(end + kFaultSeparator.size());
+}
+
+/// ATE of the run with the same sequence, seed, repetition and variant, but without a fault.
+std::optional<double> undisturbed_ate(const RunGroup& group, const StoredRun& run) {
+  const std::string sequence = run.identity.sequence.substr(0, run.identity.sequence.find(kFaultSeparator));
+  const auto found = std::ranges::find_if(group.runs, [&](const StoredRun& other) {
+    return other.identity.sequence == sequence && other.identity.variant == run.identity.variant &&
+           other.identity.seed == run.identity.seed && other.identity.repetition == run.identity.repetition;
+  });
+  return found == group.runs.end() ? std::nullopt : metric_value(*found, metric_id::kAte);
+}
+
+class Mean {
+ public:
+  void add(double value) { sum_ += value, ++count_; }
+  [[nodiscard]] std::optional<double> value() const {
+    return count_ > 0 ? std::optional(sum_ / count_) : std::nullopt;
+  }
+
+ private:
+  double sum_ = 0.0;
+  int count_ = 0;
+};
+
+/// Runs of one variant with one fault, or with all.
+struct FaultMeans {
+  int runs = 0, lost = 0;
+  Mean log_ate, log_ratio, false_confidence;
+  double worst_ate_m = 0.0;
+
+  void add(const RunGroup& group, const StoredRun& run) {
+    ++runs;
+    if (const auto wrong = metric_value(run, metric_id::kFalseConfidence)) false_confidence.add(*wrong);
+    const std::optional<double> ate_m = metric_value(run, metric_id::kAte);
+    if (run.outcome != Outcome::kOk || !ate_m) {
+      ++lost;
+      return;
+    }
+    log_ate.add(std::log(*ate_m));
+    worst_ate_m = std::max(worst_ate_m, *ate_m);
+    if (const auto undisturbed_m = undisturbed_ate(group, run))
+      log_ratio.add(std::log(*ate_m / *undisturbed_m));
+  }
+
+  [[nodiscard]] std::vector<std::string> cells(const std::string& fault, const std::string& variant) const {
+    const auto exp_cell = [](const std::optional<double>& log) {
+      return log ? number_cell(std::exp(*log)) : "n/a";
+    };
+    const std::optional<double> wrong = false_confidence.value();
+    return {fault,
+            variant,
+            fmt::format("{}", runs),
+            fmt::format("{}", lost),
+            exp_cell(log_ate.value()),
+            exp_cell(log_ratio.value()),
+            lost < runs ? number_cell(worst_ate_m) : "n/a",
+            wrong ? fmt::format("{:.2f} %", 100.0 * *wrong) : "n/a"};
+  }
+};
+
+/// In the order of the first run of each fault, the undisturbed runs first.
+report::TableRows rows_of(const RunGroup& group) {
+  std::vector<std::string> faults;
+  std::map<std::pair<std::string, std::string>, FaultMeans> means;  // by fault and variant
+  for (const StoredRun& run : group.runs) {
+    const std::string fault = fault_of(run);
+    if (std::ranges::find(faults, fault) == faults.end()) faults.push_back(fault);
+    means[{fault, run.identity.variant}].add(group, run);
+    if (!fault.empty()) means[{"(all)", run.identity.variant}].add(group, run);
+  }
+  if (faults.empty() || (faults.size() == 1 && faults.front().empty())) return {};
+  std::ranges::stable_partition(faults, [](const std::string& fault) { return fault.empty(); });
+  faults.emplace_back("(all)");
+  report::TableRows rows;
+  for (const std::string& fault : faults) {
+    for (const auto& [key, mean] : means) {
+      if (key.first == fault) rows.push_back(mean.cells(fault.empty() ? "(none)" : fault, key.second));
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+int stats_imperfections(const StatsArguments& arguments) {
+  StatsArguments chosen = arguments;
+  if (chosen.plan.empty()) chosen.plan = "imperfections";
+  const Store store(chosen.store);
+  const RunSelection selection = chosen_runs(store, chosen);
+  std::vector<GroupRows> groups;
+  for (const RunGroup& group : selection.groups) {
+    GroupRows rows{.group = &group, .rows = rows_of(group)};
+    if (!rows.rows.empty()) groups.push_back(std::move(rows));
+  }
+  if (groups.empty())
+    throw InputError(chosen.store, "contains no run with a fault; add \"faults\" to the plan");
+  print_groups(
+      {"fault", "variant", "runs", "lost", "ATE m", "ratio", "worst ATE m", "false confidence"}, groups,
+      with_left_out({"ATE: geometric mean over successful runs; ratio: geometric mean of the ATE relative "
+                     "to the same sequence without a fault."},
+                    selection),
+      chosen);
+  return kExitOk;
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// `stillpoint stats imperfections`: means over sequences of runs with injected faults.
+#pragma once
+
+#include "bench/cli/analysis/stats_table.h"
+
+namespace stillpoint::bench {
+
+/// Prints one row for each fault and variant, and one over all faults. With the ATE e_i of the successful
+/// runs i and u_i of the undisturbed run with the same sequence and seed:
+///
+///   ATE    exp(mean(log e_i))        ratio    exp(mean(log(e_i / u_i)))
+///
+/// and the largest e_i, the number of runs without a trajectory, and the mean of the false confidence, which
+/// is scored with faults only.
+/// @throws InputError if no run has a fault
+int stats_imperfections(const StatsArguments& arguments);
+
+}  // namespace stillpoint::bench
