@@ -14,6 +14,7 @@
 namespace stillpoint::bench {
 namespace {
 
+constexpr double kMinCoverage = 0.5;                 // the ATE of fewer frames is not comparable
 constexpr std::string_view kFaultSeparator = " + ";  // between sequence and fault in the name of a run
 
 std::string fault_of(const StoredRun& run) {
@@ -53,7 +54,8 @@ struct FaultMeans {
     ++runs;
     if (const auto wrong = metric_value(run, metric_id::kFalseConfidence)) false_confidence.add(*wrong);
     const std::optional<double> ate_m = metric_value(run, metric_id::kAte);
-    if (run.outcome != Outcome::kOk || !ate_m) {
+    const double coverage = metric_value(run, metric_id::kCoverage).value_or(1.0);
+    if (run.outcome != Outcome::kOk || !ate_m || coverage < kMinCoverage) {
       ++lost;
       return;
     }
@@ -117,9 +119,10 @@ int stats_imperfections(const StatsArguments& arguments) {
     throw InputError(chosen.store, "contains no run with a fault; add \"faults\" to the plan");
   print_groups(
       {"fault", "variant", "runs", "lost", "ATE m", "ratio", "worst ATE m", "false confidence"}, groups,
-      with_left_out({"ATE: geometric mean over successful runs; ratio: geometric mean of the ATE relative "
-                     "to the same sequence without a fault."},
-                    selection),
+      with_left_out(
+          {"ATE: geometric mean over the runs that are not lost; ratio: geometric mean of the ATE relative "
+           "to the same sequence without a fault."},
+          selection),
       chosen);
   return kExitOk;
 }

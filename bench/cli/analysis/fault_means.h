@@ -11,8 +11,8 @@ namespace stillpoint::bench {
 ///
 ///   ATE    exp(mean(log e_i))        ratio    exp(mean(log(e_i / u_i)))
 ///
-/// and the largest e_i, the number of runs without a trajectory, and the mean of the false confidence, which
-/// is scored with faults only.
+/// and the largest e_i, the number of lost runs (no pose for half of the frames or more), and the mean of the
+/// false confidence, which is scored with faults only.
 /// @throws InputError if no run has a fault
 int stats_imperfections(const StatsArguments& arguments);
 
