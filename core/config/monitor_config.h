@@ -49,9 +49,10 @@ struct InertialCheckLimits {
 
 /// See StepCheck. Errors, and changes of the data by which they are looked for.
 struct StepCheckLimits {
-  double accel = 1.5;   ///< [m/s^2]
-  double gyro = 0.05;   ///< [rad/s]
-  double sigmas = 2.0;  ///< added to the errors
+  double accel = 1.5;         ///< [m/s^2]
+  double gyro = 0.05;         ///< [rad/s]
+  double accel_sigmas = 2.8;  ///< added to the errors, in standard deviations
+  double gyro_sigmas = 2.0;   ///< same
 };
 
 /// Error of the bias of one sensor: e > base + sigmas * sigma.
@@ -81,17 +82,17 @@ struct BiasCheckLimits {
   int certain_features = 40;        ///< agreeing ones with which vision is certain
   double certain_ratio = 0.33;      ///< same, of the tracked features
   BiasLimit gyro_agreement{.base = 0.003, .sigmas = 1.0};   ///< [rad/s]
-  BiasLimit accel_agreement{.base = 0.15, .sigmas = 1.0};   ///< [m/s^2]
+  BiasLimit accel_agreement{.base = 0.15, .sigmas = 1.4};   ///< [m/s^2]
   BiasLimit gyro_difference{.base = 0.006, .sigmas = 8.0};  ///< [rad/s]
-  BiasLimit accel_difference{.base = 0.05, .sigmas = 4.0};  ///< [m/s^2]
+  BiasLimit accel_difference{.base = 0.05, .sigmas = 5.6};  ///< [m/s^2]
   std::array<BiasStepRule, 3> gyro_rules{
       {{.limit = {.base = 0.05, .sigmas = 16.0}, .errors = 1, .certain = true, .explained = true},
        {.limit = {.base = 0.006, .sigmas = 8.0}, .errors = 2, .certain = true, .explained = false},
        {.limit = {.base = 0.0015, .sigmas = 2.0}, .errors = 6, .certain = true, .explained = false}}};
   std::array<BiasStepRule, 3> accel_rules{
-      {{.limit = {.base = 0.2, .sigmas = 4.0}, .errors = 1, .certain = true, .explained = true},
-       {.limit = {.base = 0.2, .sigmas = 3.0}, .errors = 2, .certain = false, .explained = true},
-       {.limit = {.base = 0.05, .sigmas = 1.5}, .errors = 3, .certain = false, .explained = false}}};
+      {{.limit = {.base = 0.2, .sigmas = 5.6}, .errors = 1, .certain = true, .explained = true},
+       {.limit = {.base = 0.2, .sigmas = 4.2}, .errors = 2, .certain = false, .explained = true},
+       {.limit = {.base = 0.05, .sigmas = 2.1}, .errors = 3, .certain = false, .explained = false}}};
   double step_delay_s = 0.6;              ///< age of a step when it is recognized, at most
   double max_difference_s = 1.0;          ///< errors that last longer are not those of a bias
   double min_agreement_s = 0.7;           ///< until the data is used again

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/config/monitor_config.h"
+#include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
 #include "core/imu/propagation.h"
 
@@ -25,6 +26,35 @@ std::optional<NavState> preintegrated(Timestamp begin, Timestamp end, const NavS
   return propagate(start, samples, Eigen::Vector3d::Zero());
 }
 
+/// See `inertial_error`.
+struct PreintegratedIntervals {
+  Eigen::Vector3d f1, f2;
+  Eigen::Quaterniond dq;  ///< dR1 dR2
+  double T1, T2;
+};
+
+struct ErrorCovariance {
+  Eigen::Matrix3d accel;
+  Eigen::Matrix3d gyro;
+};
+
+/// Of a and w by the errors of the poses.
+ErrorCovariance error_covariance(const VisualPoses& poses, const PreintegratedIntervals& imu) {
+  using Jacobian = Eigen::Matrix<double, 3, 18>;
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  const double T = imu.T1 + imu.T2;
+  Jacobian accel = Jacobian::Zero(), gyro = Jacobian::Zero();
+  accel.middleCols<3>(0) = -I / imu.T1;
+  accel.middleCols<3>(3) = -poses.A.T_w_b.R() * skew(imu.f1);
+  accel.middleCols<3>(6) = (1.0 / imu.T1 + 1.0 / imu.T2) * I;
+  accel.middleCols<3>(9) = -poses.B.T_w_b.R() * skew(imu.f2);
+  accel.middleCols<3>(12) = -I / imu.T2;
+  accel *= 2.0 / T;
+  gyro.middleCols<3>(3) = imu.dq.conjugate().toRotationMatrix() / T;
+  gyro.middleCols<3>(15) = -I / T;
+  return {accel * poses.covariance * accel.transpose(), gyro * poses.covariance * gyro.transpose()};
+}
+
 }  // namespace
 
 // Inlined, g++ 12 moves the vectors by an instruction that valgrind 3.19 cannot decode, and no instructions
@@ -39,9 +69,31 @@ double InertialError::severity() const {
       gyro_b.norm() / (kMonitor.inertial_error.gyro + kMonitor.inertial_error.sigmas * gyro_sigma));
 }
 
+VisualPoses independent_poses(const VisualPose& A, const VisualPose& B, const VisualPose& C) {
+  VisualPoses poses{A, B, C, VisualPoses::Covariance::Zero()};
+  poses.covariance.block<6, 6>(0, 0) = A.covariance;
+  poses.covariance.block<6, 6>(6, 6) = B.covariance;
+  poses.covariance.block<6, 6>(12, 12) = C.covariance;
+  return poses;
+}
+
+VisualPoses chained_poses(const VisualPose& A, const VisualPose& B, const VisualPose& C) {
+  const Eigen::Matrix3d R_A = A.T_w_b.R(), R_B = B.T_w_b.R();
+  const Pose T_B_C = B.T_w_b.inverse() * C.T_w_b;
+  Eigen::Matrix<double, 18, 6> J1 = Eigen::Matrix<double, 18, 6>::Zero(), J2 = J1;
+  J1.block<3, 3>(6, 0) = R_A;
+  J1.block<3, 3>(9, 3).setIdentity();
+  J1.block<3, 3>(12, 0) = R_A;
+  J1.block<3, 3>(12, 3) = -R_B * skew(T_B_C.p);
+  J1.block<3, 3>(15, 3) = T_B_C.R().transpose();
+  J2.block<3, 3>(12, 0) = R_B;
+  J2.block<3, 3>(15, 3).setIdentity();
+  return {A, B, C, J1 * B.covariance * J1.transpose() + J2 * C.covariance * J2.transpose()};
+}
+
 std::optional<InertialError> inertial_error(const VisualPoses& poses, const NavState& state,
                                             const Eigen::Vector3d& gravity_w, ImuBuffer& imu) {
-  const auto& [A, B, C] = poses;
+  const VisualPose &A = poses.A, &B = poses.B, &C = poses.C;
   const std::optional<NavState> ab = preintegrated(A.t, B.t, state, imu);
   const std::optional<NavState> bc = preintegrated(B.t, C.t, state, imu);
   if (!ab || !bc) return std::nullopt;
@@ -54,13 +106,13 @@ std::optional<InertialError> inertial_error(const VisualPoses& poses, const NavS
   const Eigen::Vector3d v_2 =
       (C.T_w_b.p - B.T_w_b.p) / T2 - 0.5 * T2 * gravity_w - B.T_w_b.q * Eigen::Vector3d(dp2 / T2);
   const double T = T1 + T2;
-  const double sigma_m = std::max({A.sigma_m, B.sigma_m, C.sigma_m});
-  const double sigma_rad = std::max(A.sigma_rad, C.sigma_rad);
+  const ErrorCovariance covariance =
+      error_covariance(poses, {.f1 = dv1 - dp1 / T1, .f2 = dp2 / T2, .dq = dq1 * dq2, .T1 = T1, .T2 = T2});
   return InertialError{
       .accel_w = (v_1 - v_2) * 2.0 / T,
       .gyro_b = log_so3(C.T_w_b.q.conjugate() * (A.T_w_b.q * dq1 * dq2)) / T,
-      .accel_sigma = 2.0 * sigma_m * std::sqrt(2.0 / (T1 * T1) + 2.0 / (T2 * T2)) / T,
-      .gyro_sigma = sigma_rad * std::sqrt(2.0) / T,
+      .accel_sigma = largest_sigma(covariance.accel),
+      .gyro_sigma = largest_sigma(covariance.gyro),
       .accel_change_w = B.T_w_b.q * Eigen::Vector3d(dv2 / T2) - A.T_w_b.q * Eigen::Vector3d(dv1 / T1),
       .gyro_change_b = log_so3(dq2) / T2 - log_so3(dq1) / T1};
 }
@@ -80,7 +132,7 @@ std::optional<InertialError> InertialCheck::error_at(const VisualPose& pose, con
   const VisualPose& B = poses_[*middle];
   const std::optional<std::size_t> first = pose_before(B.t);
   if (!first) return std::nullopt;
-  return inertial_error({.A = poses_[*first], .B = B, .C = pose}, state, gravity_w, imu);
+  return inertial_error(independent_poses(poses_[*first], B, pose), state, gravity_w, imu);
 }
 
 bool InertialCheck::update(const VisualPose& pose, const NavState& state, const Eigen::Vector3d& gravity_w,
@@ -159,7 +211,7 @@ std::optional<ViewError> error_between(const Views& chosen, FeatureViews& views,
   const std::optional<VisualPose> C = views.pose_after(*B, chosen.middle, chosen.last, window.T_b_c);
   if (!C) return std::nullopt;
   const std::optional<InertialError> error =
-      inertial_error({.A = A, .B = *B, .C = *C}, window.frames.back().state, window.gravity_w, imu);
+      inertial_error(chained_poses(A, *B, *C), window.frames.back().state, window.gravity_w, imu);
   if (!error) return std::nullopt;
   return ViewError{*B, *C, *error};
 }
@@ -187,8 +239,9 @@ bool StepCheck::is_wrong(const Window& window, ImuBuffer& imu) {
   const std::optional<ViewError> found = error_between(*chosen, views_, window, imu);
   if (!found) return false;
   const InertialError& error = found->error;
-  const bool accel = error.accel_w.norm() > kMonitor.step.accel + kMonitor.step.sigmas * error.accel_sigma;
-  const bool gyro = error.gyro_b.norm() > kMonitor.step.gyro + kMonitor.step.sigmas * error.gyro_sigma;
+  const bool accel =
+      error.accel_w.norm() > kMonitor.step.accel + kMonitor.step.accel_sigmas * error.accel_sigma;
+  const bool gyro = error.gyro_b.norm() > kMonitor.step.gyro + kMonitor.step.gyro_sigmas * error.gyro_sigma;
   return (accel && error.accel_is_explained()) || (gyro && error.gyro_is_explained());
 }
 

@@ -17,8 +17,8 @@ namespace stillpoint {
 struct InertialError {
   Eigen::Vector3d accel_w;   ///< a: constant error of the accelerometer that explains the difference [m/s^2]
   Eigen::Vector3d gyro_b;    ///< w: same for the gyroscope, in the last body frame [rad/s]
-  double accel_sigma = 0.0;  ///< of |a|, due to the visual poses
-  double gyro_sigma = 0.0;   ///< of |w|, likewise
+  double accel_sigma = 0.0;  ///< of a along its least certain direction, due to the visual poses
+  double gyro_sigma = 0.0;   ///< of w, likewise
   Eigen::Vector3d accel_change_w;  ///< mean specific force of the second interval less that of the first
   Eigen::Vector3d gyro_change_b;   ///< same for the angular rate
 
@@ -41,10 +41,23 @@ struct InertialError {
 
 /// Three poses in temporal order.
 struct VisualPoses {
+  using Covariance = Eigen::Matrix<double, 18, 18>;
+
   const VisualPose& A;
   const VisualPose& B;
   const VisualPose& C;
+  Covariance covariance;  ///< of (dp_A, dtheta_A, dp_B, dtheta_B, dp_C, dtheta_C), see UncertainPose
 };
+
+/// Poses with independent errors: each was found by known positions of its features.
+[[nodiscard]] VisualPoses independent_poses(const VisualPose& A, const VisualPose& B, const VisualPose& C);
+
+/// Poses of which A is exact, and B and C were computed from the pose before with independent errors (rho,
+/// phi) of the motion:
+///
+///   dp_B = R_A rho_1,                                   dtheta_B = phi_1,
+///   dp_C = R_A rho_1 - R_B [p_BC]x phi_1 + R_B rho_2,   dtheta_C = R_BC^T phi_1 + phi_2.
+[[nodiscard]] VisualPoses chained_poses(const VisualPose& A, const VisualPose& B, const VisualPose& C);
 
 /// Compares the preintegrated motion between three visual poses A, B, C with these poses; independent of the
 /// estimated velocity. With the intervals T1, T2, gravity g, and the preintegrated dp1, dv1 (A to B) and dp2
@@ -54,7 +67,13 @@ struct VisualPoses {
 ///   v_2 = (p_C - p_B) / T2 - 1/2 g T2 - R_B dp2 / T2
 ///
 /// A constant error a of the accelerometer gives v_1 - v_2 = a (T1 + T2) / 2; an error w of the gyroscope
-/// turns R_C by w (T1 + T2).
+/// turns R_C by w (T1 + T2). With T = T1 + T2, f1 = dv1 - dp1 / T1 and f2 = dp2 / T2, errors of the poses
+/// give
+///
+///   a: 2/T (-dp_A / T1 - R_A [f1]x dtheta_A + (1/T1 + 1/T2) dp_B - R_B [f2]x dtheta_B - dp_C / T2)
+///   w: 1/T ((dR1 dR2)^T dtheta_A - dtheta_C),
+///
+/// where f1 and f2 are about -g T1 / 2 and -g T2 / 2: an error of the attitude turns gravity.
 /// @param state biases
 /// @return nullopt if samples are missing
 [[nodiscard]] std::optional<InertialError> inertial_error(const VisualPoses& poses, const NavState& state,
@@ -102,8 +121,8 @@ class InertialCheck {
 };
 
 /// Recognizes wrong data before it is used to label moving features. The data of about 0.13 s is wrong if it
-/// errs by 1.5 m/s^2 or 0.05 rad/s, each plus two standard deviations, and its change explains the error, see
-/// `InertialError`.
+/// errs by 1.5 m/s^2 plus 2.8 standard deviations or 0.05 rad/s plus two of them, and its change explains the
+/// error, see `InertialError`.
 class StepCheck {
  public:
   /// @param focal_px of the camera, > 0
@@ -141,17 +160,17 @@ struct MeasuredBiases {
 /// the body frame:
 ///
 ///   intervals   gyroscope [rad/s], vision is certain   accelerometer [m/s^2]
-///       1       |e| > 0.05 + 16 s, explained           |e| > 0.2 + 4 s, explained, vision is certain
-///       2       |e| > 0.006 + 8 s                      |e| > 0.2 + 3 s, one is explained
-///       3                                              |e| > 0.05 + 1.5 s
+///       1       |e| > 0.05 + 16 s, explained           |e| > 0.2 + 5.6 s, explained, vision is certain
+///       2       |e| > 0.006 + 8 s                      |e| > 0.2 + 4.2 s, one is explained
+///       3                                              |e| > 0.05 + 2.1 s
 ///       6       |e| > 0.0015 + 2 s
 ///
 /// An explained error is one by which the data changed, see InertialError. An image that jumps gives two
 /// errors of one direction, and then two of the opposite one. Each pose is determined by 20 features, an
 /// eighth of all that are tracked; vision is certain with 40, a third of all, else people who cover the image
 /// look like a step. Features that were labeled static at the earlier pose are used: a step of the
-/// accelerometer makes them appear to move, and they lose their label. Errors below 0.003 rad/s and 0.15
-/// m/s^2, plus one s, are agreement if vision is certain.
+/// accelerometer makes them appear to move, and they lose their label. Errors below 0.003 rad/s + s
+/// and 0.15 m/s^2 + 1.4 s are agreement if vision is certain.
 class BiasCheck {
  public:
   /// kDoubtful: they differ, but vision is not certain, so that it may be wrong itself

@@ -110,10 +110,10 @@ void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& 
   }
   compare_with_prediction(expected, T_w_c, newest.state.t);
   const bool was_consistent = inertial_.is_consistent();
+  const Pose T_c_b = window.T_b_c.inverse();
   const VisualPose pose{.t = after(newest.state.t, newest.time_offset_s),
-                        .T_w_b = product(T_w_c, window.T_b_c.inverse()),
-                        .sigma_m = vision.sigma_m,
-                        .sigma_rad = vision.sigma_rad};
+                        .T_w_b = product(T_w_c, T_c_b),
+                        .covariance = in_frame({T_w_c, vision.covariance}, T_c_b).covariance};
   if (inertial_.update(pose, expected.before, window.gravity_w, imu) || !was_consistent) return;
   evidence_.imu_defect = StatusReason::kImuInconsistent;
   distrust_recent_samples(window);

@@ -73,10 +73,12 @@ std::optional<VisualPose> FeatureViews::pose_after(const VisualPose& before, std
       vision.inliers < options_.min_static_ratio * static_cast<double>(views_[to].points.size())) {
     return std::nullopt;
   }
+  const UncertainPose T_bc = in_frame({found, vision.covariance}, T_b_c.inverse());
+  Matrix6 turn = Matrix6::Identity();
+  turn.topLeftCorner<3, 3>() = T_b_c.R();
   return VisualPose{.t = views_[to].t,
                     .T_w_b = before.T_w_b * (T_b_c * found * T_b_c.inverse()),
-                    .sigma_m = vision.sigma_m,
-                    .sigma_rad = vision.sigma_rad,
+                    .covariance = turn * T_bc.covariance * turn.transpose(),
                     .features = vision.inliers};
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/backend/vision/camera_pose.h"
 #include "core/backend/window/window.h"
+#include "core/geometry/covariance.h"
 
 namespace stillpoint {
 
@@ -15,8 +16,9 @@ namespace stillpoint {
 struct VisualPose {
   Timestamp t;  ///< on the IMU clock
   Pose T_w_b;
-  double sigma_m = 0.0;
-  double sigma_rad = 0.0;
+  /// See `UncertainPose`: of T_w_b, or if the pose was computed from an earlier one, of the motion T_b0_b
+  /// since.
+  Matrix6 covariance = Matrix6::Zero();
   int features = 0;  ///< that agree with it
 };
 
@@ -58,7 +60,7 @@ class FeatureViews {
   [[nodiscard]] std::size_t size() const { return views_.size(); }
   [[nodiscard]] const FeatureView& operator[](std::size_t i) const { return views_[i]; }
 
-  /// The pose of the view `to` from the pose of an earlier view.
+  /// The pose of the view `to` from the pose of an earlier view, with the covariance of the motion.
   /// @return nullopt if less than seven tenths of the features agree, or do not determine it
   [[nodiscard]] std::optional<VisualPose> pose_after(const VisualPose& before, std::size_t from,
                                                      std::size_t to, const Pose& T_b_c);

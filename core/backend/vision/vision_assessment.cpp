@@ -13,19 +13,20 @@
 namespace stillpoint {
 namespace {
 
-using Matrix6 = UncertainPose::Matrix6;
-
 /// Information H of the inliers about T_c_w, perturbed on the left.
 struct BearingInformation {
   int inliers = 0;
   Matrix6 H = Matrix6::Zero();
   double squared_error = 0.0;  ///< sum over the inliers, in units of the variance of a bearing
 
-  /// Absent if the inliers leave a direction undetermined.
-  [[nodiscard]] std::optional<Matrix6> covariance() const {
+  /// Of the camera pose T_w_c; absent if the inliers leave a direction undetermined. T_c_w = (Exp(phi), rho)
+  /// T_c_w' moves the camera by -R_w_c rho and turns it by -phi in its own frame.
+  [[nodiscard]] std::optional<Matrix6> covariance(const Pose& T_w_c) const {
     const Eigen::FullPivLU<Matrix6> factor(H);
     if (inliers < 3 || !factor.isInvertible()) return std::nullopt;
-    return factor.inverse();
+    Matrix6 J = Matrix6::Identity();
+    J.topLeftCorner<3, 3>() = T_w_c.R();
+    return J * factor.inverse() * J.transpose();
   }
 };
 
@@ -70,8 +71,9 @@ VisionAssessment assess_vision(const std::vector<PointObservation>& points, cons
                                double bearing_sigma) {
   const BearingInformation information = bearing_information(points, T_w_c, bearing_sigma);
   VisionAssessment assessment{.features = static_cast<int>(points.size()), .inliers = information.inliers};
-  const std::optional<Matrix6> covariance = information.covariance();
+  const std::optional<Matrix6> covariance = information.covariance(T_w_c);
   if (!covariance) return assessment;
+  assessment.covariance = *covariance;
   assessment.sigma_m = largest_sigma(covariance->topLeftCorner<3, 3>());
   assessment.sigma_rad = largest_sigma(covariance->bottomRightCorner<3, 3>());
   return assessment;
@@ -81,14 +83,11 @@ std::optional<UncertainPose> with_covariance(const std::vector<PointObservation>
                                              double bearing_sigma, double threshold) {
   const double sigma = threshold / kMonitor.vision.inlier_sigmas;
   const BearingInformation information = bearing_information(points, T_w_c, sigma);
-  const std::optional<Matrix6> covariance = information.covariance();
+  const std::optional<Matrix6> covariance = information.covariance(T_w_c);
   if (!covariance || information.inliers <= 3) return std::nullopt;
   const double variance = std::max(std::pow(bearing_sigma / sigma, 2),
                                    information.squared_error / (2.0 * information.inliers - 6.0));
-  // T_c_w = (Exp(phi), rho) T_c_w' moves the camera by -R_w_c rho and turns it by -phi in its own frame.
-  Matrix6 J = Matrix6::Identity();
-  J.topLeftCorner<3, 3>() = T_w_c.R();
-  return UncertainPose{T_w_c, variance * J * *covariance * J.transpose()};
+  return UncertainPose{T_w_c, variance * *covariance};
 }
 
 bool VisionAssessment::may_contradict_imu(int tracked) const {

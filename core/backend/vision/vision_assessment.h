@@ -23,6 +23,8 @@ struct VisionAssessment {
   int inliers = 0;         ///< of those, with a small reprojection error
   double sigma_m = 1e3;    ///< standard deviation of the position along its least certain direction
   double sigma_rad = 1e3;  ///< same for the rotation
+  /// Of the camera pose, see `UncertainPose`; zero if the inliers leave a direction undetermined.
+  Matrix6 covariance = Matrix6::Zero();
 
   /// At least eight inliers, and three tenths of all, or one tenth if inertial data agree with the pose,
   /// because the others may belong to moving objects: otherwise the pose is not that of the camera.

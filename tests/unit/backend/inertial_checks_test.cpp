@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <random>
+#include <vector>
 
+#include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
+#include "core/imu/propagation.h"
 
 namespace stillpoint {
 namespace {
@@ -27,14 +32,20 @@ ImuBuffer samples_of(double accel, double begin_s) {
   return imu;
 }
 
+Matrix6 covariance_of(double sigma_m, double sigma_rad) {
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
+      Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
+  return covariance;
+}
+
 /// Pose of a body that accelerates along x from `begin_s` on, with an error of vision of 0.1 mrad.
 VisualPose pose_of(double t, double accel, double begin_s) {
   const double moving_s = std::max(t - begin_s, 0.0);
   return {.t = at(t),
           .T_w_b = Pose{exp_so3({0.0, 0.0, 1e-4 * std::sin(40.0 * t)}),
                         {0.5 * accel * moving_s * moving_s, 0.0, 0.0}},
-          .sigma_m = 0.002,
-          .sigma_rad = 0.001};
+          .covariance = covariance_of(0.002, 0.001)};
 }
 
 /// Whether the data is consistent in all frames of 2 s, if it and vision measure these accelerations from 1 s
@@ -51,7 +62,7 @@ bool stays_consistent(double measured, double seen) {
 TEST(InertialError, IsTheAccelerationThatVisionDoesNotSee) {
   ImuBuffer imu = samples_of(1.0, 0.0);
   const VisualPose A = pose_of(0.5, 0.0, 0.0), B = pose_of(0.6, 0.0, 0.0), C = pose_of(0.7, 0.0, 0.0);
-  const auto error = inertial_error({.A = A, .B = B, .C = C}, {}, kGravity_w, imu);
+  const auto error = inertial_error(independent_poses(A, B, C), {}, kGravity_w, imu);
   ASSERT_TRUE(error);
   EXPECT_LT((error->accel_w - Eigen::Vector3d(1.0, 0.0, 0.0)).norm(), 1e-3);
   EXPECT_LT(error->gyro_b.norm(), 2e-3);
@@ -61,7 +72,115 @@ TEST(InertialError, IsTheAccelerationThatVisionDoesNotSee) {
 TEST(InertialError, IsAbsentWithoutSamples) {
   ImuBuffer imu(0.05);
   const VisualPose A = pose_of(0.5, 0.0, 0.0), B = pose_of(0.6, 0.0, 0.0), C = pose_of(0.7, 0.0, 0.0);
-  EXPECT_FALSE(inertial_error({.A = A, .B = B, .C = C}, {}, kGravity_w, imu));
+  EXPECT_FALSE(inertial_error(independent_poses(A, B, C), {}, kGravity_w, imu));
+}
+
+/// A body that turns about x and accelerates, with the preintegrated samples of `imu`, at 0, 0.1 and 0.25 s.
+struct TurningBody {
+  ImuBuffer imu{0.05};
+  std::array<Pose, 3> T_w_b;
+};
+
+TurningBody turning_body() {
+  TurningBody body;
+  NavState state{
+      .t = at(0.0), .T_w_b = {exp_so3({0.3, -0.2, 0.5}), {1.0, 2.0, 0.5}}, .v_w = {0.8, -0.3, 0.1}};
+  std::vector<ImuSample> samples;
+  for (int i = 0; i <= 60; ++i) {
+    samples.push_back({.t = at(i / kRate_hz), .gyro_b = {1.2, 0.3, -0.4}, .accel_b = {1.0, -3.0, 10.5}});
+    body.imu.add(samples.back());
+  }
+  const auto pose_after = [&](std::size_t count) {
+    return propagate(state, std::vector(samples.begin(), samples.begin() + static_cast<long>(count)),
+                     kGravity_w)
+        .T_w_b;
+  };
+  body.T_w_b = {state.T_w_b, pose_after(21), pose_after(51)};
+  return body;
+}
+
+/// Position and rotation of a camera that looks along x are hard to tell apart: their errors are correlated.
+Matrix6 correlated_covariance() {
+  Matrix6 root = Matrix6::Zero();
+  root.diagonal() << 0.001, 0.002, 0.0015, 0.0008, 0.0005, 0.001;
+  root(4, 2) = 0.0004;
+  root(5, 1) = -0.0007;
+  return root * root.transpose();
+}
+
+/// The pose with a random error of the covariance.
+Pose disturbed(const Pose& pose, const Matrix6& covariance, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Eigen::Matrix<double, 6, 1> e;
+  for (int i = 0; i < 6; ++i) e[i] = normal(random);
+  e = (covariance.llt().matrixL() * e).eval();
+  return {(pose.q * exp_so3(e.tail<3>())).normalized(), pose.p + e.head<3>()};
+}
+
+/// Ratios of the claimed standard deviations to those of the errors of `draws` runs.
+struct ClaimRatio {
+  double accel = 0.0;
+  double gyro = 0.0;
+};
+
+template <class Draw>
+ClaimRatio claim_ratio(int draws, const Draw& draw) {
+  Eigen::Matrix3d accel = Eigen::Matrix3d::Zero(), gyro = accel;
+  double accel_claim = 0.0, gyro_claim = 0.0;
+  for (int i = 0; i < draws; ++i) {
+    const InertialError error = draw();
+    accel += error.accel_w * error.accel_w.transpose() / draws;
+    gyro += error.gyro_b * error.gyro_b.transpose() / draws;
+    accel_claim += error.accel_sigma / draws;
+    gyro_claim += error.gyro_sigma / draws;
+  }
+  return {accel_claim / largest_sigma(accel), gyro_claim / largest_sigma(gyro)};
+}
+
+// The standard deviation of 2000 draws has an error of 1 / sqrt(4000), 1.6 %; the largest of three is larger
+// by chance, by less than 2 %: 8 % is three standard deviations of both.
+constexpr int kDraws = 2000;
+constexpr double kTolerance = 0.08;
+
+TEST(InertialError, HasTheCovarianceOfIndependentPoses) {
+  TurningBody body = turning_body();
+  std::mt19937 random(1);
+  const Matrix6 P = correlated_covariance();
+  const ClaimRatio ratio = claim_ratio(kDraws, [&] {
+    const VisualPose A{.t = at(0.0), .T_w_b = disturbed(body.T_w_b[0], P, random), .covariance = P};
+    const VisualPose B{.t = at(0.1), .T_w_b = disturbed(body.T_w_b[1], P, random), .covariance = P};
+    const VisualPose C{.t = at(0.25), .T_w_b = disturbed(body.T_w_b[2], P, random), .covariance = P};
+    return *inertial_error(independent_poses(A, B, C), {}, kGravity_w, body.imu);
+  });
+  EXPECT_NEAR(ratio.accel, 1.0, kTolerance);
+  EXPECT_NEAR(ratio.gyro, 1.0, kTolerance);
+}
+
+TEST(InertialError, HasTheCovarianceOfChainedPoses) {
+  TurningBody body = turning_body();
+  std::mt19937 random(2);
+  const Matrix6 P = correlated_covariance();
+  const VisualPose A{.t = at(0.0), .T_w_b = body.T_w_b[0]};
+  const Pose T_A_B = body.T_w_b[0].inverse() * body.T_w_b[1];
+  const Pose T_B_C = body.T_w_b[1].inverse() * body.T_w_b[2];
+  const ClaimRatio ratio = claim_ratio(kDraws, [&] {
+    const VisualPose B{.t = at(0.1), .T_w_b = A.T_w_b * disturbed(T_A_B, P, random), .covariance = P};
+    const VisualPose C{.t = at(0.25), .T_w_b = B.T_w_b * disturbed(T_B_C, P, random), .covariance = P};
+    return *inertial_error(chained_poses(A, B, C), {}, kGravity_w, body.imu);
+  });
+  EXPECT_NEAR(ratio.accel, 1.0, kTolerance);
+  EXPECT_NEAR(ratio.gyro, 1.0, kTolerance);
+}
+
+TEST(InertialError, ContainsTheDirectionOfGravityInAnUncertainBody) {
+  // At rest with T1 = T2 = T / 2, f1 = f2 = -g T / 4: the horizontal error by the roll angles of A and B is
+  // 2 / T * g T / 4 * (theta_A + theta_B), with a standard deviation of g / sqrt(2) times that of an angle.
+  ImuBuffer imu = samples_of(0.0, 0.0);
+  VisualPose A = pose_of(0.5, 0.0, 0.0), B = pose_of(0.6, 0.0, 0.0), C = pose_of(0.7, 0.0, 0.0);
+  for (VisualPose* pose : {&A, &B, &C}) pose->covariance = covariance_of(0.0, 0.002);
+  const auto error = inertial_error(independent_poses(A, B, C), {}, kGravity_w, imu);
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(error->accel_sigma, 9.81 / std::sqrt(2.0) * 0.002, 1e-4);
 }
 
 TEST(InertialCheck, AcceptsAMotionThatBothMeasure) { EXPECT_TRUE(stays_consistent(5.0, 5.0)); }
