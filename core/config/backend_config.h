@@ -195,7 +195,7 @@ struct BackendConfig {
                                         ///< first seconds told stays, linearized at a wrong calibration
   double extrinsics_walk_rad = 0.0001;  ///< same for the rotation [rad/sqrt(s)]
   double max_relocalization_s = 1.0;  ///< after a loss, a new world begins when known landmarks are not found
-                                      ///< for this long in a view
+                                      ///< for this long in a view, and in ten frames
   int keyframe_min_tracked =
       20;  ///< fewer static features shared with the last keyframe trigger one; VINS-Mono
   double feature_sigma_px = 1.5;  ///< standard deviation of a feature position, for decisions: triangulation,

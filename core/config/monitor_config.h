@@ -136,7 +136,9 @@ struct TrackingLimits {
   double gate_rate_m = 2.0;  ///< same, per second since vision was lost
   double gate_rad = 0.5;
   double gate_rate_rad = 1.5;
-  int visible_features = 20;       ///< in a frame from which a new segment can begin
+  int visible_features = 20;  ///< in a frame from which a new segment can begin
+  int min_relocalization_frames =
+      10;  ///< such frames after a loss, at least: a camera of 4 Hz has four per second
   double max_repetition_s = 0.12;  ///< without a new image, for constant velocity: three frames at 30 Hz
   int min_first_features = 8;      ///< with a measured depth, from which a window can start
 };

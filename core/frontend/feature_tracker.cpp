@@ -122,7 +122,7 @@ void FeatureTracker::State::advance(const Frame& frame, const MotionPrior& prior
     const ScopedTimer timer(timings, Module::kFeatureTracking);
     if (options.detect && breaks_down(options.dynamic_ids))
       track_again(frame, interval_s, options.dynamic_ids);
-    view_recovery.process(frame.gray, current, tracks);
+    view_recovery.process(frame.gray, current, options.dynamic_ids, tracks);
   }
   if (options.detect) {
     apply_mask();
@@ -235,7 +235,7 @@ bool FeatureTracker::State::breaks_down(DynamicIds dynamic_ids) const {
 /// Tracks the features of the last image again, predicted by the motion of matched descriptors, and keeps the
 /// result with more of them.
 void FeatureTracker::State::track_again(const Frame& frame, double interval_s, DynamicIds dynamic_ids) {
-  const std::optional<Pose> motion = view_recovery.motion_since_last(frame.gray);
+  const std::optional<Pose> motion = view_recovery.motion_since_last(frame.gray, dynamic_ids);
   if (!motion) return;
   const bool had_model = outlier_rejector.has_model();
   const std::span<const Track> last = view_recovery.last_tracks();

@@ -19,6 +19,9 @@ constexpr int kMinAge = 5;             ///< of these tracks, in images
 constexpr int kMaxAttempts = 60;       ///< images with new tracks; then the camera sees another view
 constexpr std::size_t kMinFound = 12;  ///< matches, inliers of the motion, and continued tracks
 constexpr double kMinInlierRatio = 0.4;
+/// Smallest ratio of a lost view's tracks that are found, of those that the motion moves into the image.
+/// Right motions find 0.3 and more of them, wrong ones about 0.1 (people who walk ahead of the camera).
+constexpr double kMinFoundRatio = 0.2;
 constexpr double kMatched_px = 4.0;  ///< largest reprojection error of a match
 constexpr double kTracked_px = 3.0;  ///< of a track
 constexpr double kConfidence = 0.999;
@@ -98,17 +101,35 @@ void replace(std::span<const Track> lost, std::span<const Track> found, std::vec
 
 }  // namespace
 
-/// The tracks of a view.
-ViewRecovery::Points ViewRecovery::tracked_points(const View& view) {
-  Points points{.pixels = pixels_of(view.tracks), .depths = {}};
-  for (const Track& track : view.tracks) points.depths.push_back(track.known_depth);
+/// The static tracks of a view, and its corners whose nearest track is one of them.
+ViewRecovery::Points ViewRecovery::points_of(const View& view, DynamicIds dynamic_ids) const {
+  const auto is_dynamic = [&](const Track& track) {
+    return std::ranges::binary_search(dynamic_ids, track.feature.id);
+  };
+  Points points;
+  for (const Track& track : view.tracks) {
+    if (is_dynamic(track)) continue;
+    points.pixels.push_back(to_point(track.feature.pixel));
+    points.depths.push_back(track.known_depth);
+  }
+  for (const cv::Point2f& corner : corners_of(view.gray)) {
+    const Eigen::Vector2d pixel = to_vector(corner);
+    const auto nearest = std::ranges::min_element(
+        view.tracks, {}, [&](const Track& track) { return (track.feature.pixel - pixel).squaredNorm(); });
+    if (nearest != view.tracks.end() && is_dynamic(*nearest)) continue;
+    points.pixels.push_back(corner);
+    points.depths.push_back(
+        sample_depth(view.depth, view.depth_units_per_m, pixel, config_.depth_max_spread));
+  }
   return points;
 }
 
 /// Motion of the camera T_now_view, if the image shows the points of the view.
-std::optional<Pose> ViewRecovery::motion_since(const View& view, const Points& points,
+std::optional<Pose> ViewRecovery::motion_since(const View& view, DynamicIds dynamic_ids,
                                                const cv::Mat& gray) const {
   const std::vector<cv::Point2f> corners = corners_of(gray);
+  if (corners.size() < kMinFound) return std::nullopt;
+  const Points points = points_of(view, dynamic_ids);
   std::vector<PointObservation> matches;
   for (const auto& [before, now] : match(describe(view.gray, points.pixels), describe(gray, corners))) {
     const double depth = points.depths[before];
@@ -128,14 +149,8 @@ std::optional<Pose> ViewRecovery::motion_since(const View& view, const Points& p
   return static_cast<double>(inliers) >= required ? T_now_view : std::nullopt;
 }
 
-std::optional<Pose> ViewRecovery::motion_since_last(const cv::Mat& gray) const {
-  Points points = tracked_points(last_);
-  for (const cv::Point2f& corner : corners_of(last_.gray)) {
-    points.pixels.push_back(corner);
-    points.depths.push_back(
-        sample_depth(last_.depth, last_.depth_units_per_m, to_vector(corner), config_.depth_max_spread));
-  }
-  return motion_since(last_, points, gray);
+std::optional<Pose> ViewRecovery::motion_since_last(const cv::Mat& gray, DynamicIds dynamic_ids) const {
+  return motion_since(last_, dynamic_ids, gray);
 }
 
 bool ViewRecovery::fits(const Track& before, const Pose& T_now_lost, const Eigen::Vector2d& bearing) const {
@@ -156,8 +171,11 @@ std::vector<Track> ViewRecovery::continue_tracks(const View& lost, const Pose& T
                                                    .initial_guesses = predicted,
                                                    .levels = config_.pyramid_levels});
   std::vector<Track> continued;
+  int visible = 0;
   for (std::size_t i = 0; i < lost.tracks.size(); ++i) {
     const Eigen::Vector2d pixel = to_vector(forward.pixels[i]);
+    const bool is_visible = camera_.contains(to_vector(predicted[i]), kImageBorder_px);
+    visible += is_visible && lost.tracks[i].known_depth > 0.0 ? 1 : 0;
     if (forward.found[i] == 0 || !pixel.allFinite() || !camera_.contains(pixel, kImageBorder_px)) continue;
     const Eigen::Vector2d bearing = camera_.unproject(pixel);
     if (!fits(lost.tracks[i], T_now_lost, bearing)) continue;
@@ -170,7 +188,8 @@ std::vector<Track> ViewRecovery::continue_tracks(const View& lost, const Pose& T
     track.first_view.patch.clear();  // its rotation is not known
     continued.push_back(track);
   }
-  if (continued.size() < kMinFound) continued.clear();
+  if (static_cast<double>(continued.size()) < std::max<double>(kMinFound, kMinFoundRatio * visible))
+    continued.clear();
   return continued;
 }
 
@@ -181,14 +200,16 @@ bool ViewRecovery::loses_view(std::size_t continued) const {
   return established >= kMinView && 2 * continued < last_.tracks.size();
 }
 
-void ViewRecovery::process(const cv::Mat& gray, const ImagePyramid& pyramid, std::vector<Track>& tracks) {
+void ViewRecovery::process(const cv::Mat& gray, const ImagePyramid& pyramid, DynamicIds dynamic_ids,
+                           std::vector<Track>& tracks) {
   if (loses_view(tracks.size())) {
     lost_ = std::move(last_);
+    lost_dynamic_ids_.assign(dynamic_ids.begin(), dynamic_ids.end());
     attempts_ = 0;
   }
   if (!lost_) return;
   attempts_ += tracks.size() >= kMinFound ? 1 : 0;
-  if (const std::optional<Pose> T_now_lost = motion_since(*lost_, tracked_points(*lost_), gray)) {
+  if (const std::optional<Pose> T_now_lost = motion_since(*lost_, lost_dynamic_ids_, gray)) {
     const std::vector<Track> found = continue_tracks(*lost_, *T_now_lost, pyramid);
     if (!found.empty()) {
       replace(lost_->tracks, found, tracks);

@@ -17,32 +17,37 @@
 
 namespace stillpoint {
 
-/// Two cases, both by matched descriptors: upright ORB (nearest neighbors in both
-/// directions, at most 64 of 256 bits apart, and at most 0.8 times the distance of the second nearest), and
-/// the motion of the camera by the depths of the earlier image (`estimate_rigid_motion`).
+/// Two cases, both by upright ORB descriptors of the static tracks and other corners of an earlier image, and
+/// of the corners of the new one. Matches are nearest neighbors in both directions, at most 64 of 256 bits
+/// apart, and at most 0.8 times the distance of the second nearest. With the depths of the earlier image they
+/// give the motion of the camera (`estimate_rigid_motion`). Corners whose nearest track is dynamic are left
+/// out.
 ///
 /// Large motion: when most tracks of the last image are not found again, or their motion is not consistent,
-/// `motion_since_last` predicts where the point tracker finds them. Corners are compared in addition to the
-/// tracks.
+/// `motion_since_last` predicts where the point tracker finds them.
 ///
 /// A lost view: when less than half of an established view continues nevertheless, its image and tracks are
 /// kept. Until the view returns, each image is compared with them. The point tracker searches all features of
-/// known depth where the motion since then predicts them. Those that are found within 3 px continue; those of
-/// objects that moved meanwhile, or mistaken for others, do not.
+/// known depth where the motion since then predicts them. Those that are found within 3 px continue, if they
+/// are a fifth of those in view; those of objects that moved meanwhile, or mistaken for others, do not.
 class ViewRecovery {
  public:
+  using DynamicIds = std::span<const std::int64_t>;
+
   ViewRecovery(const FrontendConfig& config, const Camera& camera) : config_(config), camera_(camera) {}
 
   /// Tracks of the last image.
   [[nodiscard]] std::span<const Track> last_tracks() const { return last_.tracks; }
 
   /// Motion T_now_last of the camera since the last image; nullopt if too few matches agree with one.
-  [[nodiscard]] std::optional<Pose> motion_since_last(const cv::Mat& gray) const;
+  /// @param dynamic_ids of tracks that are no part of the static scene, sorted
+  [[nodiscard]] std::optional<Pose> motion_since_last(const cv::Mat& gray, DynamicIds dynamic_ids) const;
 
   /// @param gray    the new image, and its pyramid
   /// @param tracks  those of the last image that continue in it, sorted by id; if a lost view returns, its
   /// tracks are replaced by those that are found
-  void process(const cv::Mat& gray, const ImagePyramid& pyramid, std::vector<Track>& tracks);
+  void process(const cv::Mat& gray, const ImagePyramid& pyramid, DynamicIds dynamic_ids,
+               std::vector<Track>& tracks);
 
   /// Keeps a frame with all of its tracks, until the next one.
   void remember(const Frame& frame, std::span<const Track> tracks);
@@ -61,8 +66,8 @@ class ViewRecovery {
     std::vector<cv::Point2f> pixels;
     std::vector<double> depths;
   };
-  [[nodiscard]] static Points tracked_points(const View& view);
-  [[nodiscard]] std::optional<Pose> motion_since(const View& view, const Points& points,
+  [[nodiscard]] Points points_of(const View& view, DynamicIds dynamic_ids) const;
+  [[nodiscard]] std::optional<Pose> motion_since(const View& view, DynamicIds dynamic_ids,
                                                  const cv::Mat& gray) const;
   [[nodiscard]] std::vector<Track> continue_tracks(const View& lost, const Pose& T_now_lost,
                                                    const ImagePyramid& pyramid) const;
@@ -72,7 +77,8 @@ class ViewRecovery {
   Camera camera_;
   View last_;                 ///< the last image
   std::optional<View> lost_;  ///< the last image before the loss
-  int attempts_ = 0;          ///< to recognize the lost view
+  std::vector<std::int64_t> lost_dynamic_ids_;
+  int attempts_ = 0;  ///< to recognize the lost view
 };
 
 }  // namespace stillpoint

@@ -126,15 +126,19 @@ TrackingMonitor::Decision TrackingMonitor::decide(const FrameEvidence& evidence)
 bool TrackingMonitor::patience_is_over(const FrameEvidence& evidence) {
   if (status_ != kLost) {
     visible_since_.reset();
-  } else if (!visible_since_ && evidence.features >= kMonitor.tracking.visible_features) {
-    visible_since_ = evidence.t;
+    visible_frames_ = 0;
+  } else if (evidence.features >= kMonitor.tracking.visible_features) {
+    if (!visible_since_) visible_since_ = evidence.t;
+    ++visible_frames_;
   }
-  return visible_since_ && seconds_between(*visible_since_, evidence.t) > options_.max_relocalization_s;
+  return visible_since_ && visible_frames_ >= kMonitor.tracking.min_relocalization_frames &&
+         seconds_between(*visible_since_, evidence.t) > options_.max_relocalization_s;
 }
 
 void TrackingMonitor::begin_segment() {
   map_.clear();
   visible_since_.reset();
+  visible_frames_ = 0;
   awaits_map_ = false;
   ++segment_;
   status_ = kInitializing;

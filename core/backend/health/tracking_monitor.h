@@ -123,6 +123,7 @@ class TrackingMonitor {
   Timestamp located_at_;
   double located_sigma_m_ = 0.0;            ///< at that time
   std::optional<Timestamp> visible_since_;  ///< lost, but with enough features
+  int visible_frames_ = 0;                  ///< same, number of frames
   int segment_ = 0;
   bool awaits_map_ = false;
   bool relocated_ = false;  ///< in this frame
