@@ -62,6 +62,7 @@ struct RunCounts {
   std::size_t frames = 0;  ///< processed
   std::size_t poses = 0;
   int resets = 0;
+  std::size_t segments = 0;                            ///< world frames with located poses
   std::optional<std::int64_t> frames_without_boxes{};  ///< nullopt unless the run used recorded boxes
   double wall_s = 0.0;
   std::optional<double> claimed_three_sigma_m{};  ///< see eval/metrics/consistency.h

@@ -70,13 +70,13 @@ Json metric_members(const Measurements& measurements) {
   return json;
 }
 
-std::string score_text(const ScoredTrajectory& scored) {
-  const Measurements measurements{.scored = scored};
+std::string score_text(const Measurements& measurements) {
   std::string text;
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
     const std::optional<double> value = metric->value(measurements);
-    text += fmt::format("{:<13} {}\n", metric->label,
-                        value ? fmt::format("{:.6f} {}", *value, metric->unit) : "n/a");
+    text += fmt::format(
+        "{:<13} {}\n", metric->label,
+        value ? fmt::format("{:.{}f} {}", *value, metric->decimals == 0 ? 0 : 6, metric->unit) : "n/a");
   }
   return text;
 }

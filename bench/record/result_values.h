@@ -23,7 +23,7 @@ namespace stillpoint::bench {
 [[nodiscard]] nlohmann::ordered_json metric_members(const Measurements& measurements);
 
 /// The metrics of the trajectory as plain text, one line each, with unit; "n/a" without data.
-[[nodiscard]] std::string score_text(const ScoredTrajectory& scored);
+[[nodiscard]] std::string score_text(const Measurements& measurements);
 
 /// Metrics with unit and protocol; null values are skipped.
 /// @param result with the members of `metric_members`; members of other versions that are not in the list of

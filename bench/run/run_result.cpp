@@ -2,6 +2,7 @@
 #include "bench/run/run_result.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -129,6 +130,14 @@ std::optional<double> mean_nis(std::span<const Innovations> frames,
   return count > 0 ? std::optional<double>(sum / count) : std::nullopt;
 }
 
+std::size_t count_segments(std::span<const eval::ClaimedPose> claims) {
+  std::set<int> segments;
+  for (const eval::ClaimedPose& claim : claims) {
+    if (claim.claim == eval::PoseClaim::kLocated) segments.insert(claim.segment);
+  }
+  return segments.size();
+}
+
 }  // namespace
 
 Measurements measurements_of(const RunResult& result) {
@@ -138,6 +147,7 @@ Measurements measurements_of(const RunResult& result) {
           .counts = RunCounts{.frames = run.summary.frames,
                               .poses = run.trajectory.poses.size(),
                               .resets = run.summary.resets,
+                              .segments = count_segments(run.claims),
                               .frames_without_boxes = run.summary.detector_counters.unrecorded,
                               .wall_s = run.wall_s,
                               .claimed_three_sigma_m = eval::claimed_three_sigma_m(run.claims),

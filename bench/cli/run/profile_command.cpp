@@ -112,7 +112,7 @@ void print(const SimulatedRun& run) {
       timing.frames, timing.dropped, timing.late_detections, timing.median_ms, timing.p95_ms, timing.max_ms,
       timing.beyond_budget, budget_ms);
   std::cout << result.sequence << ": " << status_name(result.outcome) << '\n'
-            << score_text(*measurements_of(result).scored);
+            << score_text(measurements_of(result));
 }
 
 /// Simulates the device and prints the result. @return exit code

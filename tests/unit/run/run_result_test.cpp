@@ -135,6 +135,17 @@ TEST(RunResult, WithoutRecordedBoxesDoesNotCountFramesWithoutThem) {
   EXPECT_TRUE(json["warnings"].empty());
 }
 
+TEST(RunResult, CountsTheSegmentsWithLocatedPoses) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  for (const int segment : {0, 0, 1, 2}) {
+    run.claims.push_back(
+        {.claim = segment == 1 ? eval::PoseClaim::kNone : eval::PoseClaim::kLocated, .segment = segment});
+  }
+  const auto json = nlohmann::ordered_json::parse(result_json(score_run(info, std::move(run))));
+  EXPECT_EQ(json["segments"], 2);
+}
+
 TEST(RunResult, IsConvertedFromJsonToMetricsAndCosts) {
   const datasets::SequenceInfo info = straight_sequence();
   OdometryRun run = perfect_run(info, kFrames);
