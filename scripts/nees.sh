@@ -10,4 +10,4 @@ build=build/release
 if [[ -d "$1" ]]; then build=$1; shift; fi
 ninja -C "$build" nees_program >&2
 "$build/tests/nees_program" backend.covariance=true imu.noise_scale=1 backend.pixel_sigma_px=0.707 \
-  backend.cauchy_scale=3 backend.reprojection_error_px=0 "$@"
+  backend.cauchy_scale=3 "$@"

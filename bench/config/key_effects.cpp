@@ -23,7 +23,6 @@ bool has_masks(Config config) { return config.frontend.circular_mask; }
 bool has_grid(Config config) { return config.frontend.detector == FeatureDetectorKind::kGridFast; }
 bool tracks_patches(Config config) { return config.frontend.tracker == TrackerKind::kPatch; }
 bool tracks_by_opencv(Config config) { return config.frontend.tracker == TrackerKind::kOpenCv; }
-bool scales_noise(Config config) { return config.backend.reprojection_error_px > 0.0; }
 bool is_consistent(Config config) { return config.backend.prior == PriorModel::kConsistent; }
 bool estimates_extrinsics(Config config) { return config.backend.estimate_extrinsics; }
 bool estimates_time_offset(Config config) { return config.backend.estimate_time_offset; }
@@ -83,8 +82,6 @@ constexpr std::array kConditions = {
     KeyCondition{"dynamic.gate_", kConsistency, checks_consistency},
     KeyCondition{"dynamic.gate_probability", "dynamic.gate_before_solve = true", gates},
     KeyCondition{"dynamic.gate_probability", "backend.covariance = true", has_covariance},
-    KeyCondition{"backend.min_pixel_noise_factor", "backend.reprojection_error_px > 0", scales_noise},
-    KeyCondition{"backend.max_pixel_noise_factor", "backend.reprojection_error_px > 0", scales_noise},
     KeyCondition{"backend.gravity", kImu, uses_imu},
     KeyCondition{"backend.prior", kImu, uses_imu},
     KeyCondition{"backend.bias_steps", kImu, uses_imu},

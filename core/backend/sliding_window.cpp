@@ -62,11 +62,12 @@ SlidingWindow::SlidingWindow(const BackendConfig& config, const Rig& rig, int se
       rig_(rig),
       seed_(static_cast<std::uint32_t>(seed)),
       solver_(make_window_solver(config.solver)),
-      window_(std::move(fresh)) {}
+      window_(std::move(fresh)),
+      pixel_noise_(config.pixel_sigma_px, config.pixel_noise_scale) {}
 
 void SlidingWindow::restart(Window fresh) {
   window_ = std::move(fresh);
-  pixel_noise_ = {};
+  pixel_noise_ = {config_.pixel_sigma_px, config_.pixel_noise_scale};
   unusable_solves_ = 0;
 }
 
@@ -130,8 +131,8 @@ SlidingWindow::Solution SlidingWindow::solve(const Calibration& calibration) {
   if (!window_.inertial) restore_gauge(oldest, config_, window_);
   if (config_.covariance && solution.report.usable) solution.covariance = covariance(keyframe_ && is_full());
   if (solution.covariance) oldest_motion_ = solution.covariance->oldest_motion;
-  if (config_.reprojection_error_px > 0.0)
-    pixel_noise_.observe(error_monitor_.median_px(window_, focal_px), config_);
+  if (pixel_noise_.is_constant()) return solution;
+  if (const auto variance = error_monitor_.measure(window_, focal_px)) pixel_noise_.observe(*variance);
   return solution;
 }
 
@@ -161,8 +162,6 @@ void SlidingWindow::slide() {
   if (window_.prior.empty()) window_.prior = initial_prior(window_, config_);
 }
 
-double SlidingWindow::residual_sigma() const {
-  return pixel_noise_.applied_to(config_).pixel_sigma_px / rig_.camera.focal_px();
-}
+double SlidingWindow::residual_sigma() const { return pixel_noise_.sigma_px() / rig_.camera.focal_px(); }
 
 }  // namespace stillpoint

@@ -165,9 +165,7 @@ struct BackendConfig {
   double keyframe_min_shared_ratio = 0.5;
   double keyframe_max_interval_s = 5.0;
   double pixel_sigma_px = 1.5;
-  double reprojection_error_px = 0.0;
-  double min_pixel_noise_factor = 1.0;
-  double max_pixel_noise_factor = 4.0;
+  double pixel_noise_scale = 0.0;
   double cauchy_scale = 1.0;
   WindowSolverKind solver = WindowSolverKind::kCeres;
   int max_iterations = 8;
@@ -234,15 +232,10 @@ void visit_noise_fields(Visitor&& field, Config& config) {
         FieldInfo{"Standard deviation of a reprojection residual; px at the focal length.", "px", 0.05, 20.0,
                   "II"});
   field(
-      "reprojection_error_px", config.reprojection_error_px,
-      FieldInfo{
-          "Median of the reprojection errors at which pixel_sigma_px holds; it is scaled by their ratio. 0 = "
-          "off.",
-          "px", 0.0, 20.0});
-  field("min_pixel_noise_factor", config.min_pixel_noise_factor,
-        FieldInfo{"Smallest factor on pixel_sigma_px.", "", 0.01, 1.0});
-  field("max_pixel_noise_factor", config.max_pixel_noise_factor,
-        FieldInfo{"Largest factor on pixel_sigma_px.", "", 1.0, 1000.0});
+      "pixel_noise_scale", config.pixel_noise_scale,
+      FieldInfo{"Factor on the pixel noise that the reprojection errors show, which replaces pixel_sigma_px "
+                "while running; 0 = off.",
+                "", 0.0, 100.0});
   field("cauchy_scale", config.cauchy_scale,
         FieldInfo{"Scale of the Cauchy loss of a reprojection residual.", "sigma", 0.01, 100.0});
   field(

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Adaptive pixel noise from the reprojection errors of the window.
+/// Pixel noise, estimated from the reprojection errors of the window.
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "core/backend/window/window.h"
@@ -10,41 +11,60 @@
 
 namespace stillpoint {
 
+/// Parts of the variance of a reprojection error r, the difference of the bearings in a frame and in the host
+/// frame, of one component:
+///
+///   white       w = median |r_j - r_j-1|^2 / (2 log 2),    over successive frames j of a track
+///   correlated  m = median |r_j|^2 / (2 log 2) - w,        at least 0
+///
+/// 2 log 2 is the median of the chi-square distribution with two degrees of freedom. White noise u of each
+/// bearing gives m = 0: the error of the host frame is common to the r_j, that of frame j to two of their
+/// differences. m is model error (distortion, blur, rolling shutter, patches that change with the view),
+/// which is correlated along a track.
+struct ReprojectionVariance {
+  double white_px2 = 0.0;
+  double correlated_px2 = 0.0;
+};
+
 /// Stateless except for its buffers.
 class ReprojectionErrorMonitor {
  public:
-  /// Median reprojection error of usable landmarks in frames after their host [px]; 0 with fewer than 20
-  /// observations whose error is finite.
-  [[nodiscard]] double median_px(const Window& window, double focal_px);
+  /// Of usable landmarks in frames after their host; nothing with fewer than 20 finite errors or differences.
+  [[nodiscard]] std::optional<ReprojectionVariance> measure(const Window& window, double focal_px);
 
  private:
   std::vector<Pose> T_c_w_;      ///< of each frame
-  std::vector<double> squared_;  ///< error of each observation [normalized image plane]
+  std::vector<double> squared_;  ///< |r|^2 of each observation [normalized image plane]
+  std::vector<double> changes_;  ///< |r_j - r_j-1|^2 likewise
 };
 
-/// Low-pass filtered factor f on `pixel_sigma_px`: with e the median reprojection error and e0 its nominal
-/// value `reprojection_error_px`,
+/// Low-pass filtered standard deviation s of a reprojection error. The observations of a track together tell
+/// about its model error no more than one does: to count all of them, their variance is K times as large,
 ///
-///   f <- f + 0.1 (clamp((e / e0)^2, f_min, f_max) - f),   f_min, f_max = `min_`, `max_pixel_noise_factor`.
+///   s <- s + 0.1 (c sqrt(w + K m) - s),    K = 6,    0.09 px <= c sqrt(w + K m) <= 9 px,
 ///
-/// Most of a larger error is model error (distortion, blur, rolling shutter, compression, patches that change
-/// with the view). It is correlated along a track, so the observations carry less information than their
-/// variance suggests; hence the square of the ratio.
+/// with c = `BackendConfig::pixel_noise_scale`.
 class PixelNoise {
  public:
-  /// Updates the factor after a solve. @param error_px median reprojection error; 0 or not finite = unknown,
-  /// ignored
-  void observe(double error_px, const BackendConfig& config);
+  /// @param nominal_px s before the first observation
+  /// @param scale      c; 0 = s is constant
+  PixelNoise(double nominal_px, double scale)
+      : nominal_px_(nominal_px), scale_(scale), sigma_px_(nominal_px) {}
+
+  /// Updates s after a solve.
+  void observe(const ReprojectionVariance& variance);
 
   /// The newest features are not where they were predicted: something is not as it was when their errors were
-  /// small, so the factor is at least 1 again.
-  void expect_errors() { factor_ = std::max(factor_, 1.0); }
+  /// small, so s is at least the nominal one again.
+  void expect_errors() { sigma_px_ = std::max(sigma_px_, nominal_px_); }
 
-  /// The configuration with `pixel_sigma_px` multiplied by the factor.
+  [[nodiscard]] bool is_constant() const { return scale_ == 0.0; }
+  [[nodiscard]] double sigma_px() const { return sigma_px_; }
+  /// The configuration with s as `pixel_sigma_px`.
   [[nodiscard]] BackendConfig applied_to(BackendConfig config) const;
 
  private:
-  double factor_ = 1.0;
+  double nominal_px_, scale_, sigma_px_;
 };
 
 }  // namespace stillpoint

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <random>
 
 #include "tests/support/simulated/window_world.h"
 
@@ -12,80 +14,78 @@ namespace {
 
 constexpr double kFocal_px = 500.0;
 
-BackendConfig adaptive_config() {
-  BackendConfig config;
-  config.pixel_sigma_px = 1.5;
-  config.reprojection_error_px = 0.5;
-  return config;
+/// After many windows with this variance.
+double settled_sigma_px(const ReprojectionVariance& variance, double scale) {
+  PixelNoise noise(0.25, scale);
+  for (int i = 0; i < 200; ++i) noise.observe(variance);
+  return noise.sigma_px();
 }
 
-double sigma_after(const std::vector<double>& errors_px, const BackendConfig& config) {
-  PixelNoise noise;
-  for (const double error_px : errors_px) noise.observe(error_px, config);
-  return noise.applied_to(config).pixel_sigma_px;
-}
-
-TEST(MedianReprojectionError, EqualsACommonErrorOfAllObservations) {
-  Window window = visual_window(4, 30);
-  EXPECT_NEAR(ReprojectionErrorMonitor().median_px(window, kFocal_px), 0.0, 1e-9);
+/// A long track of many landmarks, whose bearings have white noise.
+Window noisy_window(double sigma_px) {
+  Window window = visual_window(8, 400);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0.0, sigma_px / kFocal_px);
   for (Landmark& landmark : window.landmarks) {
-    for (std::size_t i = 1; i < landmark.observations.size(); ++i) {
-      landmark.observations[i].bearing += Eigen::Vector2d(3.0, 4.0) / kFocal_px;  // 5 px
-    }
+    const Eigen::Vector2d of_host(normal(random), normal(random));
+    for (std::size_t i = 1; i < landmark.observations.size(); ++i)
+      landmark.observations[i].bearing += Eigen::Vector2d(normal(random), normal(random)) - of_host;
   }
-  EXPECT_NEAR(ReprojectionErrorMonitor().median_px(window, kFocal_px), 5.0, 1e-9);
+  return window;
 }
 
-TEST(MedianReprojectionError, IsZeroWithTooFewObservations) {
-  EXPECT_EQ(ReprojectionErrorMonitor().median_px(visual_window(2, 19), kFocal_px), 0.0);
+TEST(ReprojectionVariance, OfWhiteNoiseIsThatOfTheDifferenceOfTwoBearings) {
+  const auto variance = ReprojectionErrorMonitor().measure(noisy_window(0.5), kFocal_px);
+  ASSERT_TRUE(variance);
+  EXPECT_NEAR(variance->white_px2, 2.0 * 0.5 * 0.5, 0.04);
+  EXPECT_NEAR(variance->correlated_px2, 0.0, 0.04);
 }
 
-TEST(MedianReprojectionError, IsThatOfTheFiniteErrors) {
+TEST(ReprojectionVariance, OfAConstantErrorIsCorrelated) {
+  Window window = visual_window(4, 30);
+  for (Landmark& landmark : window.landmarks) {
+    for (std::size_t i = 1; i < landmark.observations.size(); ++i)
+      landmark.observations[i].bearing += Eigen::Vector2d(3.0, 4.0) / kFocal_px;
+  }
+  const auto variance = ReprojectionErrorMonitor().measure(window, kFocal_px);
+  ASSERT_TRUE(variance);
+  EXPECT_NEAR(variance->white_px2, 0.0, 1e-9);
+  EXPECT_NEAR(variance->correlated_px2, 25.0 / (2.0 * std::log(2.0)), 1e-6);
+}
+
+TEST(ReprojectionVariance, IsUnknownWithTooFewObservations) {
+  EXPECT_FALSE(ReprojectionErrorMonitor().measure(visual_window(2, 19), kFocal_px));
+  EXPECT_FALSE(ReprojectionErrorMonitor().measure(visual_window(2, 40), kFocal_px)) << "no differences";
+}
+
+TEST(ReprojectionVariance, IgnoresErrorsThatAreNotFinite) {
   Window window = visual_window(4, 60);
   for (std::size_t k = 0; k < 60; k += 2)
     window.landmarks[k].observations[1].bearing.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NEAR(ReprojectionErrorMonitor().median_px(window, kFocal_px), 0.0, 1e-9);
+  const auto variance = ReprojectionErrorMonitor().measure(window, kFocal_px);
+  ASSERT_TRUE(variance);
+  EXPECT_NEAR(variance->white_px2 + variance->correlated_px2, 0.0, 1e-9);
 }
 
-TEST(PixelNoise, IgnoresAnErrorThatIsNotFinite) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NEAR(sigma_after({nan, 0.4}, adaptive_config()), 1.5, 1e-9);
+TEST(PixelNoise, IsTheNominalOneAtTheStart) { EXPECT_EQ(PixelNoise(0.25, 1.0).sigma_px(), 0.25); }
+
+TEST(PixelNoise, CountsModelErrorSixTimes) {
+  EXPECT_NEAR(settled_sigma_px({.white_px2 = 0.5}, 1.0), std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(settled_sigma_px({.white_px2 = 0.5, .correlated_px2 = 0.2}, 1.0), std::sqrt(1.7), 1e-6);
+  EXPECT_NEAR(settled_sigma_px({.white_px2 = 0.5}, 4.0), 4.0 * std::sqrt(0.5), 1e-6);
 }
 
-TEST(PixelNoise, StaysNominalUpToTheNominalReprojectionErrorByDefault) {
-  EXPECT_DOUBLE_EQ(sigma_after(std::vector<double>(50, 0.4), adaptive_config()), 1.5);
+TEST(PixelNoise, IsBounded) {
+  EXPECT_NEAR(settled_sigma_px({.white_px2 = 1e-6}, 1.0), 0.09, 1e-6);
+  EXPECT_NEAR(settled_sigma_px({.white_px2 = 1e4}, 1.0), 9.0, 1e-6);
 }
 
-TEST(PixelNoise, DecreasesWithTheSquareOfTheErrorDownToItsBound) {
-  BackendConfig config = adaptive_config();
-  config.min_pixel_noise_factor = 0.5;
-  EXPECT_NEAR(sigma_after(std::vector<double>(100, 0.4), config), 1.5 * 0.64, 1e-3);
-  EXPECT_NEAR(sigma_after(std::vector<double>(100, 0.1), config), 1.5 * 0.5, 1e-3);
-}
-
-TEST(PixelNoise, IsNominalAgainIfErrorsAreExpected) {
-  BackendConfig config = adaptive_config();
-  config.min_pixel_noise_factor = 0.5;
-  PixelNoise noise;
-  for (int i = 0; i < 100; ++i) noise.observe(0.1, config);
+TEST(PixelNoise, IsAtLeastTheNominalOneIfErrorsAreExpected) {
+  PixelNoise noise(0.25, 1.0);
+  for (int i = 0; i < 100; ++i) noise.observe({.white_px2 = 0.01});
+  EXPECT_LT(noise.sigma_px(), 0.11);
   noise.expect_errors();
-  EXPECT_DOUBLE_EQ(noise.applied_to(config).pixel_sigma_px, 1.5);
-  for (int i = 0; i < 100; ++i) noise.observe(0.75, config);
-  noise.expect_errors();
-  EXPECT_NEAR(noise.applied_to(config).pixel_sigma_px, 1.5 * 2.25, 1e-3);
-}
-
-TEST(PixelNoise, GrowsWithTheSquareOfTheErrorUpToABound) {
-  // (0.75 / 0.5)^2 = 2.25, up to 0.9^100; the upper bound is 4
-  EXPECT_NEAR(sigma_after(std::vector<double>(100, 0.75), adaptive_config()), 1.5 * 2.25, 1e-3);
-  EXPECT_NEAR(sigma_after(std::vector<double>(100, 50.0), adaptive_config()), 1.5 * 4.0, 1e-3);
-}
-
-TEST(PixelNoise, IsUnchangedIfTheErrorIsUnknownOrTheOptionIsOff) {
-  EXPECT_DOUBLE_EQ(sigma_after({0.0, 0.0}, adaptive_config()), 1.5);
-  BackendConfig off = adaptive_config();
-  off.reprojection_error_px = 0.0;
-  EXPECT_DOUBLE_EQ(sigma_after({5.0, 5.0}, off), 1.5);
+  EXPECT_EQ(noise.sigma_px(), 0.25);
 }
 
 }  // namespace

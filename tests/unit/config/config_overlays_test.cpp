@@ -81,9 +81,7 @@ TEST(ConfigOverlays, VoDisablesTheImuAndRequiresMoreSharedFeatures) {
   EXPECT_EQ(changes("stillpoint", "vo"), (Entries{{"imu.enabled", "false"},
                                                   {"backend.keyframe_min_shared_ratio", "0.7"},
                                                   {"backend.pixel_sigma_px", "0.5"},
-                                                  {"backend.reprojection_error_px", "0.26"},
-                                                  {"backend.min_pixel_noise_factor", "1.0"},
-                                                  {"backend.max_pixel_noise_factor", "18.0"},
+                                                  {"backend.pixel_noise_scale", "4.0"},
                                                   {"backend.cauchy_scale", "0.5"}}));
 }
 
@@ -131,9 +129,7 @@ const Entries kKeysOfStillpoint = {{"imu.adapt_noise", "true"},
                                    {"backend.keyframe_min_shared_ratio", "0.5"},
                                    {"backend.keyframe_max_interval_s", "0.5"},
                                    {"backend.pixel_sigma_px", "0.25"},
-                                   {"backend.reprojection_error_px", "0.18"},
-                                   {"backend.min_pixel_noise_factor", "0.35"},
-                                   {"backend.max_pixel_noise_factor", "8.0"},
+                                   {"backend.pixel_noise_scale", "1.0"},
                                    {"backend.solver", "\"schur\""},
                                    {"backend.max_iterations", "4"},
                                    {"backend.gravity", "\"estimated\""},
