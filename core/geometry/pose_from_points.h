@@ -154,6 +154,8 @@ struct CameraPose {
 /// With the threshold itself (3 px), one point on a person 0.45 m before the camera, with an error of 9 px,
 /// outweighs 36 points 2 m away with 0.2 px: the loss that it saves, c^2 log(1 + 81 / c^2), is larger than
 /// that of a pose which is 8 mm off. Allocation-free; the median is that of at most 256 points.
+/// @param observations of points of known position
+/// @param prediction T_w_c
 /// @param inlier_threshold largest scale of the loss [normalized image plane]
 [[nodiscard]] Pose refine_camera_pose(std::span<const PointObservation> observations, const Pose& prediction,
                                       double inlier_threshold);
