@@ -21,7 +21,7 @@ namespace stillpoint {
 ///
 /// so that f settles where d is above m in r_fall / (r_rise + r_fall) of the frames (stochastic approximation
 /// of a quantile, Robbins and Monro 1951), and a single event, however large, moves it by no more than any
-/// other frame. It follows by a factor of seven per second at most. It rises faster than it falls: noise that
+/// other frame. It follows by a factor of e per second at most. It rises faster than it falls: noise that
 /// is too small makes the estimate worse than vision alone, noise that is too large costs little.
 ///
 /// m = 0.6 is what exact sensors show, a quarter of the median of the chi-square distribution with three
