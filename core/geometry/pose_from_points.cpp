@@ -48,6 +48,23 @@ Pose refine(Pose T_c_w, const Observations& observations, const PoseRefinement& 
   return T_c_w;
 }
 
+/// Scale of the loss by the errors that most observations have, see `refine_camera_pose`.
+double loss_scale(const Pose& T_c_w, std::span<const PointObservation> observations,
+                  double inlier_threshold) {
+  std::array<double, kMaxScaleErrors> errors;
+  std::size_t count = 0;
+  const std::size_t stride = 1 + observations.size() / kMaxScaleErrors;
+  for (std::size_t i = 0; i < observations.size(); i += stride) {
+    const Eigen::Vector3d p_c = T_c_w * observations[i].p_w;
+    if (p_c.z() < kMinDepth) continue;
+    errors[count++] = (p_c.hnormalized() - observations[i].bearing).norm();
+  }
+  if (count == 0) return inlier_threshold;
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(errors.begin(), middle, errors.begin() + static_cast<std::ptrdiff_t>(count));
+  return std::clamp(kScaleMedians * *middle, kMinScale * inlier_threshold, inlier_threshold);
+}
+
 }  // namespace
 
 Pose refine_pose(const Pose& T_c_w, std::span<const PointObservation> observations,
@@ -108,27 +125,6 @@ std::optional<CameraPose> estimate_camera_pose(std::span<const PointObservation>
   if (inliers < options.min_inliers || !best.p.allFinite()) return std::nullopt;
   return CameraPose{best.inverse(), inliers};
 }
-
-namespace {
-
-/// Scale of the loss by the errors that most observations have, see `refine_camera_pose`.
-double loss_scale(const Pose& T_c_w, std::span<const PointObservation> observations,
-                  double inlier_threshold) {
-  std::array<double, kMaxScaleErrors> errors;
-  std::size_t count = 0;
-  const std::size_t stride = 1 + observations.size() / kMaxScaleErrors;
-  for (std::size_t i = 0; i < observations.size(); i += stride) {
-    const Eigen::Vector3d p_c = T_c_w * observations[i].p_w;
-    if (p_c.z() < kMinDepth) continue;
-    errors[count++] = (p_c.hnormalized() - observations[i].bearing).norm();
-  }
-  if (count == 0) return inlier_threshold;
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(errors.begin(), middle, errors.begin() + static_cast<std::ptrdiff_t>(count));
-  return std::clamp(kScaleMedians * *middle, kMinScale * inlier_threshold, inlier_threshold);
-}
-
-}  // namespace
 
 Pose refine_camera_pose(std::span<const PointObservation> observations, const Pose& prediction,
                         double inlier_threshold) {

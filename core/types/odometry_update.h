@@ -90,8 +90,9 @@ struct OdometryCounters {
   bool reset = false;  ///< a failure was detected in this frame; the estimator reinitializes
 };
 
-/// Normalized innovation squared of a frame at its predicted pose, 1 in the mean for true covariances; see
-/// core/backend/vision/vision_assessment.h. Absent without a covariance or reliable inertial data.
+/// Normalized innovation squared of a frame at its predicted pose, see
+/// core/backend/vision/vision_assessment.h: 1 in the mean for true covariances (inertial: 0.2 to 0.3, see
+/// InertialNoise). Absent without a covariance or reliable inertial data.
 struct Innovations {
   std::optional<double> reprojection;
   std::optional<double> inertial;  ///< also absent at rest, or if vision does not determine the pose
