@@ -15,6 +15,17 @@ namespace {
 
 bool is_busy(const StoredRun& run) { return metric_value(run, metric_id::kQuiet) == 0.0; }
 
+/// Whether a pair has the same values of all compared metrics of accuracy; true also if a run failed.
+bool has_equal_accuracy(const RunPair& pair) {
+  if (!both_succeeded(pair)) return true;
+  return std::ranges::all_of(pair.base->metrics, [&](const Metric& metric) {
+    const MetricDescriptor* gated = gated_metric(metric.name);
+    const bool is_accuracy = gated != nullptr && gated->gate->family == MetricFamily::kAccuracy;
+    const std::optional<double> head = metric_value(*pair.head, metric.name);
+    return !is_accuracy || !head || *head == metric.value;
+  });
+}
+
 std::string failure_text(const StoredRun& run, const char* side) {
   std::string text = fmt::format("{} on {}, {}: {}", run.identity.variant, run.identity.sequence, side,
                                  outcome_name(run.outcome));
@@ -127,10 +138,13 @@ bool is_significant(const MetricChange& change) {
 bool Comparison::has_result() const { return bit_equal > 0 || !changes.empty(); }
 
 ChangeClass Comparison::result() const {
-  if (newly_failed > 0) return ChangeClass::kWorse;
+  if (failures == ChangeClass::kWorse) return failures;
   if (pairs > 0 && base_failed == pairs && head_failed == pairs) return ChangeClass::kError;
-  if (!has_result()) return ChangeClass::kInconclusive;
-  ChangeClass worst = newly_succeeded > 0 ? ChangeClass::kBetter : ChangeClass::kSame;
+  ChangeClass worst = failures;
+  for (const MissingResult& result : missing) {
+    if (!missing_allowed && pairs > 0) worst = std::max(worst, result.result);
+  }
+  if (!has_result()) return std::max(worst, ChangeClass::kInconclusive);
   for (const MetricChange& change : changes) {
     if (change.decides) worst = std::max(worst, change.result);
   }
@@ -153,7 +167,11 @@ std::string count_sentence(const Comparison& comparison) {
 Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head) {
   const PairedRuns runs = paired_runs(base, head);
   Comparison comparison = counted_outcomes(runs);
-  const bool accuracy_is_equal = comparison.compared > 0 && comparison.bit_equal == comparison.compared;
+  comparison.failures = failure_class(runs);
+  comparison.missing = missing_results(runs);
+  const bool trajectories_are_equal = comparison.compared > 0 && comparison.bit_equal == comparison.compared;
+  const bool accuracy_is_equal =
+      trajectories_are_equal && std::ranges::all_of(runs.pairs, has_equal_accuracy);
   const std::vector<MetricSeries> costs = cost_series(runs);
   std::vector<MetricSeries> accuracy;
   if (!accuracy_is_equal) accuracy = accuracy_series(runs);
@@ -168,8 +186,13 @@ Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredR
   comparison.changes.insert(comparison.changes.end(), cost_changes.begin(), cost_changes.end());
   for (std::string& note : notes_on_zeros(all, comparison.changes))
     comparison.notes.push_back(std::move(note));
-  if (accuracy_is_equal)
+  if (accuracy_is_equal) {
     comparison.notes.emplace_back("all trajectories are bit-equal: accuracy was not tested");
+  } else if (trajectories_are_equal) {
+    comparison.notes.emplace_back(
+        "all trajectories are bit-equal, but their errors are not: the ground truth or the evaluation "
+        "differs");
+  }
   for (std::string& note : notes_on_pairs(comparison)) comparison.notes.push_back(std::move(note));
   return comparison;
 }

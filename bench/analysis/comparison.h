@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/analysis/metric_change.h"
+#include "bench/analysis/missing_results.h"
 #include "bench/model/stored_run.h"
 
 namespace stillpoint::bench {
@@ -22,6 +23,9 @@ struct Comparison {
   std::size_t only_in_base = 0;     ///< runs without counterpart
   std::size_t only_in_head = 0;
   std::string first_failure;  ///< "vo on walking_xyz, base: crashed, terminated by signal 11"; empty without
+  ChangeClass failures = ChangeClass::kSame;  ///< whether runs fail more often at head, see `failure_class`
+  std::vector<MissingResult> missing;         ///< what base has and head lacks
+  bool missing_allowed = false;               ///< then it is listed, but no finding
   TestFamily family;
   std::vector<MetricChange> changes;
   std::vector<MetricChange> control;  ///< base compared with itself; empty if not run
@@ -29,8 +33,8 @@ struct Comparison {
 
   /// Whether there is a pair of succeeded runs with a metric in common, or with equal trajectories.
   [[nodiscard]] bool has_result() const;
-  /// kWorse if any run newly failed; kError if all runs of all pairs failed; kInconclusive without a result;
-  /// else the worst class over all metrics that decide.
+  /// kWorse if runs fail more often at head; kError if all runs of all pairs failed; kInconclusive without a
+  /// result; else the worst class over all metrics that decide, and over what is missing at head.
   [[nodiscard]] ChangeClass result() const;
 };
 

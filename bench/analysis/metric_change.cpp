@@ -10,21 +10,13 @@
 
 #include <fmt/format.h>
 
+#include "bench/analysis/missing_results.h"
 #include "core/base/module_timings.h"
 #include "eval/metrics/statistics.h"
 #include "eval/statistics/change_points.h"
 
 namespace stillpoint::bench {
 namespace {
-
-std::string variant_of(const RunIdentity& identity) {
-  if (identity.axis.empty() || identity.axis == kPerturbationKey) return identity.variant;
-  return fmt::format("{} {} = {}", identity.variant, identity.axis, identity.axis_value);
-}
-
-std::string subject_of(const RunIdentity& identity) {
-  return variant_of(identity) + " on " + identity.sequence;
-}
 
 /// Data, seed and config of a run.
 using Input = std::pair<std::string, std::string>;
@@ -84,8 +76,8 @@ struct PairedSubject {
 MetricSeries series_of(const Metric& stored, const PairedSubject& runs) {
   const RunIdentity& identity = runs.pairs.front().base->identity;
   MetricSeries series{.metric = stored.name,
-                      .subject = subject_of(identity),
-                      .variant = variant_of(identity),
+                      .subject = subject_label(identity),
+                      .variant = variant_label(identity),
                       .unit = stored.unit,
                       .descriptor = gated_metric(stored.name),
                       .inputs = runs.inputs.size()};
@@ -102,17 +94,30 @@ bool is_gated(const Metric& metric, MetricFamily family) {
   return descriptor != nullptr && descriptor->gate->family == family;
 }
 
+/// Metrics of accuracy that any run of base has, each name once.
+std::vector<Metric> accuracy_metrics(const PairedSubject& runs) {
+  std::map<std::string, Metric> metrics;
+  for (const RunPair& pair : runs.pairs) {
+    for (const Metric& metric : pair.base->metrics) {
+      if (is_gated(metric, MetricFamily::kAccuracy)) metrics.emplace(metric.name, metric);
+    }
+  }
+  std::vector<Metric> list;
+  for (const auto& [name, metric] : metrics) list.push_back(metric);
+  return list;
+}
+
 /// Series of costs by metric and subject.
 class CostTable {
  public:
   void add(const RunIdentity& identity, const MetricDescriptor& metric, const std::string& name,
            const eval::Pair& pair) {
     const bool is_exact = metric.gate->repeatable;
-    const std::string subject = is_exact ? subject_of(identity) : variant_of(identity);
+    const std::string subject = is_exact ? subject_label(identity) : variant_label(identity);
     MetricSeries& series = table_[{name, subject}];
     series.metric = name;
     series.subject = subject;
-    series.variant = variant_of(identity);
+    series.variant = variant_label(identity);
     series.unit = std::string(metric.unit);
     series.descriptor = &metric;
     series.test = is_exact ? ChangeTest::kExact : ChangeTest::kPairs;
@@ -150,12 +155,11 @@ std::vector<double> sorted(std::vector<double> values) {
 std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
   std::map<std::string, PairedSubject> subjects;
   for (const RunPair& pair : runs.pairs) {
-    if (both_succeeded(pair)) subjects[subject_of(pair.base->identity)].add(pair);
+    if (both_succeeded(pair)) subjects[subject_label(pair.base->identity)].add(pair);
   }
   std::vector<MetricSeries> list;
   for (const auto& [subject, members] : subjects) {
-    for (const Metric& metric : members.pairs.front().base->metrics) {
-      if (!is_gated(metric, MetricFamily::kAccuracy)) continue;
+    for (const Metric& metric : accuracy_metrics(members)) {
       MetricSeries series = series_of(metric, members);
       if (series.pairs.empty()) continue;
       if (series.inputs == 1) {
@@ -356,6 +360,8 @@ std::string change_class_name(ChangeClass change_class) {
       return "better";
     case ChangeClass::kInconclusive:
       return "inconclusive";
+    case ChangeClass::kMissing:
+      return "missing in HEAD";
     case ChangeClass::kWorse:
       return "worse";
     case ChangeClass::kError:

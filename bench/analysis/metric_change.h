@@ -100,9 +100,9 @@ struct TestFamily {
 [[nodiscard]] std::size_t pairs_for(const MetricSeries& series, double level);
 
 /// From the best to the worst result of a comparison.
-enum class ChangeClass { kSame, kBetter, kInconclusive, kWorse, kError };
+enum class ChangeClass { kSame, kBetter, kInconclusive, kMissing, kWorse, kError };
 
-/// "same", "better", "inconclusive", "worse" or "error".
+/// "same", "better", "inconclusive", "missing in HEAD", "worse" or "error".
 [[nodiscard]] std::string change_class_name(ChangeClass change_class);
 
 /// Change of one metric on one subject.

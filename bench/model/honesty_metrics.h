@@ -99,7 +99,7 @@ inline constexpr MetricDescriptor kHonestyMetrics[] = {
      .direction = MetricDirection::kSmallerIsBetter,
      .decimals = 3,
      .source = MetricSource::kHonesty,
-     .gate = MetricGate{MetricFamily::kAccuracy, 0.05, 0.1},
+     .gate = MetricGate{.margin = 0.05, .floor = 0.1, .absent_is_good = true},
      .value = honesty_value<&eval::Honesty::time_to_detect_s>},
     {.id = metric_id::kTimeToRecover,
      .label = "time to recover",

@@ -155,9 +155,10 @@ enum class MetricFamily {
 /// Smallest relevant change in a comparison of two builds.
 struct MetricGate {
   MetricFamily family = MetricFamily::kAccuracy;
-  double margin = 0.0;     ///< relative
-  double floor = 0.0;      ///< absolute, in the unit of the metric
-  bool repeatable = true;  ///< the same program gives the same value in each run
+  double margin = 0.0;          ///< relative
+  double floor = 0.0;           ///< absolute, in the unit of the metric
+  bool repeatable = true;       ///< the same program gives the same value in each run
+  bool absent_is_good = false;  ///< no value: there was nothing to measure; else it is a loss
 };
 
 struct MetricProtocol {

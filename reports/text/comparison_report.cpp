@@ -102,7 +102,7 @@ struct TestCase {
 /// The JUnit element of a result; empty for a passed test.
 std::string element_of(bench::ChangeClass result) {
   if (result == bench::ChangeClass::kError) return "error";
-  if (result == bench::ChangeClass::kWorse) return "failure";
+  if (result == bench::ChangeClass::kWorse || result == bench::ChangeClass::kMissing) return "failure";
   return result == bench::ChangeClass::kInconclusive ? "skipped" : "";
 }
 
@@ -115,13 +115,58 @@ std::string test_case(const TestCase& test) {
          fmt::format(">\n    <{} message=\"{}\"/>\n  </testcase>\n", element, escape_html(test.message));
 }
 
+bench::ChangeClass missing_class(const bench::Comparison& comparison) {
+  bench::ChangeClass worst = bench::ChangeClass::kSame;
+  for (const bench::MissingResult& missing : comparison.missing) {
+    if (!comparison.missing_allowed) worst = std::max(worst, missing.result);
+  }
+  return worst;
+}
+
+std::string missing_sentence(const bench::Comparison& comparison) {
+  std::string text;
+  for (const bench::MissingResult& missing : comparison.missing)
+    text +=
+        fmt::format("{}{} of {}", text.empty() ? "missing in HEAD: " : ", ", missing.what, missing.subject);
+  return text;
+}
+
+/// What base has and head lacks; empty if nothing is missing.
+std::string missing_table(const bench::Comparison& comparison) {
+  if (comparison.missing.empty()) return "";
+  TableRows rows = {{"missing in HEAD", "of", "runs of base", "runs of head", "result"}};
+  for (const bench::MissingResult& missing : comparison.missing) {
+    rows.push_back({missing.what, missing.subject, fmt::format("{}", missing.base),
+                    fmt::format("{}", missing.head),
+                    comparison.missing_allowed ? "allowed" : change_class_name(missing.result)});
+  }
+  const char* remedy = comparison.missing_allowed
+                           ? ""
+                           : "A renamed or removed result is accepted with `--allow-missing`; infinite and "
+                             "absent values are no values.\n\n";
+  return format_table(rows, TableStyle::kMarkdown) + "\n" + remedy;
+}
+
+Json missing_json(const bench::Comparison& comparison) {
+  Json list = Json::array();
+  for (const bench::MissingResult& missing : comparison.missing) {
+    list.push_back({{"what", missing.what},
+                    {"subject", missing.subject},
+                    {"base", missing.base},
+                    {"head", missing.head},
+                    {"result", change_class_name(missing.result)}});
+  }
+  return list;
+}
+
 /// Whether runs were compared, and whether any failed.
 std::vector<TestCase> tests_of_runs(const bench::Comparison& comparison) {
   using enum bench::ChangeClass;
   const bool both_failed = comparison.base_failed > comparison.newly_succeeded;
   const std::string counts = count_sentence(comparison);
   return {{"runs", "runs are compared", comparison.has_result() ? kSame : kError, counts},
-          {"runs", "no newly failed runs", comparison.newly_failed > 0 ? kWorse : kSame, counts},
+          {"runs", "runs do not fail more often", comparison.failures, counts},
+          {"runs", "nothing is missing in HEAD", missing_class(comparison), missing_sentence(comparison)},
           {"runs", "no runs that fail on both sides", both_failed ? kInconclusive : kSame,
            counts + "; the first failure: " + comparison.first_failure}};
 }
@@ -148,6 +193,7 @@ std::string comparison_markdown(const ComparisonTitle& title, const bench::Compa
   std::string text = fmt::format("# {} compared with {}: {}\n\n", title.head, title.base,
                                  change_class_name(comparison.result()));
   text += count_sentence(comparison) + ".\n\n";
+  text += missing_table(comparison);
   if (!comparison.first_failure.empty()) text += "First failure: " + comparison.first_failure + ".\n\n";
   if (!comparison.has_result()) text += "Nothing was compared: no pair has a metric on both sides.\n";
   if (!comparison.changes.empty()) {
@@ -177,6 +223,8 @@ std::string comparison_json(const ComparisonTitle& title, const bench::Compariso
   json["only_in_base"] = comparison.only_in_base;
   json["only_in_head"] = comparison.only_in_head;
   json["first_failure"] = comparison.first_failure.empty() ? Json(nullptr) : Json(comparison.first_failure);
+  json["missing"] = missing_json(comparison);
+  json["missing_allowed"] = comparison.missing_allowed;
   json["tests"] = comparison.family.tests;
   json["level"] = comparison.family.level;
   json["changes"] = changes_json(comparison.changes);

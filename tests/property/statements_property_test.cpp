@@ -101,8 +101,11 @@ TEST(Statements, OfComparisonsHaveTheRightCountsAndClasses) {
     ASSERT_EQ(comparison.pairs, base.size()) << seed;
     ASSERT_EQ(comparison.compared, compared) << seed;
     ASSERT_EQ(comparison.newly_failed, newly_failed) << seed;
-    if (newly_failed > 0) {
+    ASSERT_TRUE(comparison.missing.empty()) << seed;  // nothing is removed
+    const bool fails_more_often = comparison.failures == ChangeClass::kWorse;
+    if (fails_more_often) {
       ASSERT_EQ(comparison.result(), ChangeClass::kWorse) << seed;
+      ASSERT_GT(newly_failed, 0U) << seed;
     }
     bool is_any_false = false;
     for (const MetricChange& change : comparison.changes) {

@@ -34,6 +34,7 @@ struct CompareArguments {
   std::string plan = "quick";
   int pairs = 0;  ///< 0: as many as the plan needs
   std::string out;
+  bool allow_missing = false;
 };
 
 /// Tests for the SQLite file header.
@@ -142,7 +143,7 @@ bool are_programs(const std::string& base, const std::string& head) {
 }
 
 int exit_code(ChangeClass result) {
-  if (result == ChangeClass::kWorse) return kExitFindings;
+  if (result == ChangeClass::kWorse || result == ChangeClass::kMissing) return kExitFindings;
   return result == ChangeClass::kInconclusive ? kExitInconclusive : kExitOk;
 }
 
@@ -152,8 +153,9 @@ int compare(const CompareArguments& arguments) {
     require_safe_folder(arguments.out, {.names = files, .marks = {files}}, {arguments.base, arguments.head});
   }
   install_interrupt_handlers();
-  const Comparison comparison =
+  Comparison comparison =
       are_programs(arguments.base, arguments.head) ? compare_programs(arguments) : compare_stored(arguments);
+  comparison.missing_allowed = arguments.allow_missing;
   const report::ComparisonTitle title{arguments.base, arguments.head};
   const std::string markdown = report::comparison_markdown(title, comparison);
   std::cout << markdown;
@@ -176,7 +178,9 @@ Command compare_command() {
   const auto arguments = std::make_shared<CompareArguments>();
   return {
       .name = "compare",
-      .summary = "Compare two versions; exit code 0 = same or better, 1 = worse, 2 = error, 3 = inconclusive",
+      .summary =
+          "Compare two versions; exit code 0 = same or better, 1 = worse or missing, 2 = error, 3 = "
+          "inconclusive",
       .example = "compare build/base/stillpoint build/release/stillpoint --plan quick --out build/compare",
       .options =
           {{"BASE",
@@ -192,6 +196,9 @@ Command compare_command() {
             "tests of the plan need; 8 for the rendered sequences of quick]",
             &arguments->pairs,
             {1, 1000}},
+           {"--allow-missing",
+            "What base has and HEAD lacks (a sequence, variant, metric or module) is listed, but no finding",
+            &arguments->allow_missing},
            {"--out", "Output folder of compare.md, compare.json and compare.xml (JUnit)", &arguments->out}},
       .action = [arguments] { return compare(*arguments); }};
 }

@@ -53,8 +53,23 @@ TEST(ComparisonReport, PrintsIntervalAndPValueOrTheNumberOfPairs) {
 
 TEST(ComparisonReport, JunitReportsWorseAsFailureAndInconclusiveAsSkipped) {
   const std::string text = comparison_junit({"old", "new"}, comparison());
-  EXPECT_NE(text.find("tests=\"5\" failures=\"1\" errors=\"0\" skipped=\"1\""), std::string::npos) << text;
+  EXPECT_NE(text.find("tests=\"6\" failures=\"1\" errors=\"0\" skipped=\"1\""), std::string::npos) << text;
   EXPECT_NE(text.find("classname=\"a&lt;b\""), std::string::npos) << text;
+}
+
+TEST(ComparisonReport, ListsWhatIsMissingFirst) {
+  bench::Comparison lacking = comparison();
+  lacking.changes.clear();
+  lacking.missing = {{.what = "metric ate_rmse_m", .subject = "vo on a", .base = 20, .head = 7}};
+  const std::string text = comparison_markdown({"old", "new"}, lacking);
+  EXPECT_TRUE(text.starts_with("# new compared with old: missing in HEAD\n")) << text;
+  EXPECT_NE(text.find("| metric ate_rmse_m | vo on a |"), std::string::npos) << text;
+  EXPECT_NE(text.find("--allow-missing"), std::string::npos) << text;
+  EXPECT_NE(comparison_junit({"old", "new"}, lacking).find("<failure message=\"missing in HEAD: metric ate"),
+            std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(comparison_json({"old", "new"}, lacking))["missing"][0]["head"], 7);
+  lacking.missing_allowed = true;
+  EXPECT_TRUE(comparison_markdown({"old", "new"}, lacking).starts_with("# new compared with old: same\n"));
 }
 
 TEST(ComparisonReport, JunitIsAnErrorIfNothingWasCompared) {
