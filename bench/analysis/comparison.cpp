@@ -86,16 +86,6 @@ std::vector<MetricSeries> with_pooled(std::vector<MetricSeries> accuracy, const 
   return accuracy;
 }
 
-/// One sentence on the metrics without a relative change.
-std::vector<std::string> notes_on_zeros(const std::vector<MetricSeries>& all,
-                                        const std::vector<MetricChange>& changes) {
-  if (all.size() == changes.size()) return {};
-  return {
-      fmt::format("{} metrics are 0 or not finite in all runs of base: they have no relative change and were "
-                  "not compared",
-                  all.size() - changes.size())};
-}
-
 /// One sentence for each number of pairs that is too small for the inconclusive changes.
 std::vector<std::string> notes_on_pairs(const Comparison& comparison) {
   std::map<std::tuple<ChangeTest, std::size_t, double, std::size_t>, std::size_t> counts;
@@ -184,8 +174,6 @@ Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredR
   comparison.changes = changes_of(accuracy, comparison.family);
   const std::vector<MetricChange> cost_changes = changes_of(costs, comparison.family);
   comparison.changes.insert(comparison.changes.end(), cost_changes.begin(), cost_changes.end());
-  for (std::string& note : notes_on_zeros(all, comparison.changes))
-    comparison.notes.push_back(std::move(note));
   if (accuracy_is_equal) {
     comparison.notes.emplace_back("all trajectories are bit-equal: accuracy was not tested");
   } else if (trajectories_are_equal) {
@@ -213,8 +201,9 @@ Comparison with_control(Comparison comparison, std::vector<MetricChange> control
           !is_significant(change))
         continue;
       change.result = ChangeClass::kInconclusive;
-      comparison.notes.push_back(fmt::format("{} of {} changed by {:+.1f} % between runs of base alone",
-                                             change.metric, change.subject, 100.0 * other.change.median));
+      comparison.notes.push_back(fmt::format("{} of {} changed by {} between runs of base alone",
+                                             change.metric, change.subject,
+                                             amount_text(other, other.change.median)));
     }
   }
   comparison.control = std::move(control);

@@ -89,6 +89,11 @@ MetricSeries series_of(const Metric& stored, const PairedSubject& runs) {
   return series;
 }
 
+/// Whether base has a 0, from which there is no relative change.
+bool has_zero_base(const MetricSeries& series) {
+  return std::ranges::any_of(series.pairs, [](const eval::Pair& pair) { return pair.base == 0.0; });
+}
+
 bool is_gated(const Metric& metric, MetricFamily family) {
   const MetricDescriptor* descriptor = gated_metric(metric.name);
   return descriptor != nullptr && descriptor->gate->family == family;
@@ -162,7 +167,9 @@ std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
     for (const Metric& metric : accuracy_metrics(members)) {
       MetricSeries series = series_of(metric, members);
       if (series.pairs.empty()) continue;
-      if (series.inputs == 1) {
+      // The rank test of two samples counts ties against a difference: of little power for rates that are
+      // mostly 0.
+      if (series.inputs == 1 && !has_zero_base(series)) {
         series.test = ChangeTest::kReplicates;
         series.base = members.side(&RunPair::base, runs.only_in_base).values(metric.name);
         series.head = members.side(&RunPair::head, runs.only_in_head).values(metric.name);
@@ -293,17 +300,53 @@ std::size_t pairs_for(const MetricSeries& series, double level) {
 
 namespace {
 
+std::optional<eval::RelativeChange> tested_shift(const MetricSeries& series, double confidence) {
+  const std::optional<eval::PairedDifference> test = eval::paired_difference(series.pairs, confidence);
+  if (!test) return std::nullopt;
+  return eval::RelativeChange{
+      .count = test->count, .median = test->median, .p_value = test->p_value, .interval = test->interval};
+}
+
+/// Means of base and head.
+std::pair<double, double> means_of(const MetricSeries& series) {
+  std::pair<double, double> means;
+  for (const eval::Pair& pair : series.pairs) {
+    means.first += pair.base / static_cast<double>(series.pairs.size());
+    means.second += pair.changed / static_cast<double>(series.pairs.size());
+  }
+  return means;
+}
+
+/// The difference in the unit of the metric. If most runs have the same value, e.g. 0, the
+/// shift is 0, and the difference is that of the means, without an interval.
+std::optional<eval::RelativeChange> tested_difference(const MetricSeries& series, double confidence) {
+  std::optional<eval::RelativeChange> change = tested_shift(series, confidence);
+  if (!change || change->median != 0.0) return change;
+  const auto [base, head] = means_of(series);
+  if (base == head) return change;
+  change->median = head - base;
+  change->interval.reset();
+  return change;
+}
+
 std::optional<eval::RelativeChange> tested_change(const MetricSeries& series, double confidence) {
-  if (series.test == ChangeTest::kReplicates) return eval::level_change(series.base, series.head, confidence);
-  std::optional<eval::RelativeChange> change = eval::relative_change(series.pairs, confidence);
+  std::optional<eval::RelativeChange> change;
+  if (has_zero_base(series)) {
+    change = tested_difference(series, confidence);
+  } else if (series.test == ChangeTest::kReplicates) {
+    change = eval::level_change(series.base, series.head, confidence);
+  } else {
+    change = eval::relative_change(series.pairs, confidence);
+  }
   if (change && series.test == ChangeTest::kExact) change->interval.reset();
   return change;
 }
 
-double largest_change(const std::vector<eval::Pair>& pairs) {
+double largest_change(const std::vector<eval::Pair>& pairs, bool is_absolute) {
   double largest = 0.0;
   for (const eval::Pair& pair : pairs) {
-    if (pair.base != 0.0) largest = std::max(largest, std::abs(pair.changed / pair.base - 1.0));
+    const double difference = std::abs(pair.changed - pair.base);
+    largest = std::max(largest, is_absolute ? difference : difference / std::abs(pair.base));
   }
   return largest;
 }
@@ -320,9 +363,20 @@ std::pair<double, double> medians_of(const MetricSeries& series) {
   return {*eval::percentile(base, 0.5), *eval::percentile(head, 0.5)};
 }
 
+/// The margin in the unit of `change`.
+double margin_of(const MetricChange& change, const MetricGate& gate) {
+  return change.is_absolute ? std::max(gate.floor, gate.margin * std::abs(change.base_median)) : gate.margin;
+}
+
+/// Whether the change is smaller than what matters at all.
+bool is_below_floor(const MetricChange& change, const MetricGate& gate) {
+  const double amount = change.is_absolute ? change.change.median : change.head_median - change.base_median;
+  return std::abs(amount) < gate.floor;
+}
+
 bool is_relevant(const MetricChange& change, const MetricGate& gate) {
-  return std::abs(change.head_median - change.base_median) >= gate.floor &&
-         std::abs(change.change.median) >= gate.margin;
+  return !is_below_floor(change, gate) && change.change.median != 0.0 &&
+         std::abs(change.change.median) >= margin_of(change, gate);
 }
 
 std::optional<MetricChange> change_of(const MetricSeries& series, const TestFamily& family) {
@@ -335,10 +389,11 @@ std::optional<MetricChange> change_of(const MetricSeries& series, const TestFami
                       .base_median = base,
                       .head_median = head,
                       .change = *tested,
+                      .is_absolute = has_zero_base(series),
                       .test = series.test,
                       .level = series.decides ? family.level : 0.0};
   if (series.decides) change.adjusted_interval = tested_change(series, 1.0 - family.level)->interval;
-  change.largest = largest_change(series.pairs);
+  change.largest = largest_change(series.pairs, change.is_absolute);
   change.changed = is_relevant(change, *series.descriptor->gate);
   change.decides = series.decides;
   if (is_tested(series)) {
@@ -370,20 +425,26 @@ std::string change_class_name(ChangeClass change_class) {
   return "";
 }
 
+std::string amount_text(const MetricChange& change, double amount) {
+  if (!change.is_absolute) return fmt::format("{:+.1f} %", 100.0 * amount);
+  return fmt::format("{:+.4g}{}{}", amount, change.unit.empty() ? "" : " ", change.unit);
+}
+
 ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric) {
   const MetricGate& gate = *metric.gate;
-  if (std::abs(change.head_median - change.base_median) < gate.floor) return ChangeClass::kSame;
+  if (is_below_floor(change, gate)) return ChangeClass::kSame;
   const double sign =
       metric.direction == MetricDirection::kLargerIsBetter ? -1.0 : 1.0;  // so that positive is worse
-  const bool relevant = std::abs(change.change.median) >= gate.margin && change.change.median != 0.0;
+  const double margin = margin_of(change, gate);
+  const bool relevant = is_relevant(change, gate);
   const ChangeClass direction =
       sign * change.change.median > 0.0 ? ChangeClass::kWorse : ChangeClass::kBetter;
   if (change.test == ChangeTest::kExact) return relevant ? direction : ChangeClass::kSame;
   if (relevant && change.change.p_value <= change.level) return direction;
-  const double limit = gate.family == MetricFamily::kAccuracy ? gate.margin : 0.0;
+  const double limit = gate.family == MetricFamily::kAccuracy ? margin : 0.0;
   const std::optional<eval::Interval>& interval = change.change.interval;
   const bool is_same =
-      interval ? interval->low >= -gate.margin && interval->high <= gate.margin : change.largest <= limit;
+      interval ? interval->low >= -margin && interval->high <= margin : change.largest <= limit;
   return is_same ? ChangeClass::kSame : ChangeClass::kInconclusive;
 }
 

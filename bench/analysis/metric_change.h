@@ -113,18 +113,23 @@ struct MetricChange {
   double base_median = 0.0;
   double head_median = 0.0;
   eval::RelativeChange
-      change;  ///< number of pairs, estimate, p-value, 95 % interval if there are enough pairs
+      change;                ///< number of pairs, estimate, p-value, 95 % interval if there are enough pairs
+  bool is_absolute = false;  ///< `change` and all intervals are differences in the unit of the metric
   ChangeTest test = ChangeTest::kPairs;
   double level = kSignificance;  ///< largest p-value that is significant, see `TestFamily`
   /// Confidence interval at 1 - `level`; nullopt if there are too few pairs for it.
   std::optional<eval::Interval> adjusted_interval{};
-  double largest = 0.0;     ///< largest absolute relative change of a pair
+  double largest = 0.0;     ///< largest absolute change of a pair, relative unless `is_absolute`
   bool changed = false;     ///< by at least margin and floor of the metric, significant or not
   double smallest_p = 1.0;  ///< that the number of pairs can reach
   std::size_t needed = 0;   ///< pairs per input that a class requires; 0 if there are enough
   bool decides = true;      ///< false: too few pairs on this sequence, another change pools all sequences
   ChangeClass result = ChangeClass::kSame;
 };
+
+/// "+5.0 %", or "+0.6 s" of an absolute change.
+/// @param amount the estimate of a change, or an end of its interval
+[[nodiscard]] std::string amount_text(const MetricChange& change, double amount);
 
 /// Classifies a change. With the estimate m of the relative change (positive = worse), its p-value, its 95 %
 /// interval [l, u], and the margin and floor of the metric:
@@ -136,13 +141,17 @@ struct MetricChange {
 ///                  none by more than the margin (accuracy, which has no noise apart from rounding)
 ///   kInconclusive  otherwise
 ///
+/// If a value of base is 0 there is no relative change: m, l and u are differences in the unit of the metric,
+/// and the margin is max(floor, margin |median of base|). If most runs are equal, m is the difference of the
+/// means.
+///
 /// Instructions (`ChangeTest::kExact`) are compared with the margin only: the count of a program is the same
 /// in each run, so one pair is sufficient.
 /// @param metric with a gate
 [[nodiscard]] ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric);
 
-/// The changes of the series, sorted by metric and subject. Series without a relative change, because base is
-/// 0, are omitted.
+/// The changes of the series, sorted by metric and subject. Series without a finite value on both sides are
+/// omitted.
 /// @param family level of significance; series that do not decide are never better or worse
 [[nodiscard]] std::vector<MetricChange> changes_of(const std::vector<MetricSeries>& list,
                                                    const TestFamily& family);

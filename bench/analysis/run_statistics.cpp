@@ -99,7 +99,9 @@ AblationRow row_of(const std::string& variant, const std::string& sequence, cons
     row.newly_failed += before && !after ? 1 : 0;
   }
   row.difference = eval::paired_difference(pairs);
-  row.change = eval::relative_change(pairs);
+  const bool changes_from_zero = std::ranges::any_of(
+      pairs, [](const eval::Pair& pair) { return pair.base == 0.0 && pair.changed != 0.0; });
+  if (!changes_from_zero) row.change = eval::relative_change(pairs);
   return row;
 }
 

@@ -44,7 +44,7 @@ struct AblationRow {
   std::string sequence;          ///< empty = all sequences
   std::size_t newly_failed = 0;  ///< pairs in which only the variant did not succeed
   std::optional<eval::PairedDifference> difference;
-  std::optional<eval::RelativeChange> change;
+  std::optional<eval::RelativeChange> change;  ///< nullopt also if a value of 0 changes: only a difference
 };
 
 /// @param runs that may be pooled, e.g. of one `RunGroup`

@@ -87,9 +87,18 @@ const char* direction_class(double change) {
   return change > 0.0 ? "worse" : "better";
 }
 
+/// The cell of a change from 0: a difference, not a ratio.
+std::string difference_cell(const eval::PairedDifference& difference, const std::string& lost) {
+  return fmt::format(
+      "<td class=\"{}{}\" style=\"--depth:60%\">{:+.4g}<span class=\"interval\">n = {}, from 0</span>{}</td>",
+      direction_class(difference.median), eval::is_significant(difference) ? "" : " insignificant",
+      difference.median, difference.count, lost);
+}
+
 /// Hatched unless the change is significant.
 std::string cell_html(const bench::AblationRow& row) {
   std::string lost = row.newly_failed == 0 ? "" : fmt::format("<br>{} lost", row.newly_failed);
+  if (!row.change && row.difference) return difference_cell(*row.difference, lost);
   if (!row.change) return "<td class=\"empty\">-" + lost + "</td>";
   const eval::RelativeChange& change = *row.change;
   return fmt::format("<td class=\"{}{}\" style=\"--depth:{}%\">{}<span class=\"interval\">{}</span>{}</td>",
@@ -124,7 +133,7 @@ std::string heat_map_html(const PlanAblation& ablation, const bench::MetricDescr
   const std::vector<bench::AblationRow> rows =
       bench::ablation(ablation.runs, ablation.base, std::string(metric.id));
   const bool has_pairs = std::any_of(rows.begin(), rows.end(), [](const bench::AblationRow& row) {
-    return row.change.has_value() || row.newly_failed > 0;
+    return row.difference.has_value() || row.newly_failed > 0;
   });
   if (!has_pairs) return "";
   std::vector<std::string> columns =

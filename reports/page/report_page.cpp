@@ -85,8 +85,10 @@ BestLabel best_on(std::span<const bench::StoredRun> runs, const std::vector<std:
 }
 
 std::string change_text(const bench::MetricChange& change) {
-  return fmt::format("{} of {} by {} ({})", change.metric, change.subject, percent_text(change.change.median),
-                     interval_text(change.change));
+  const std::string interval =
+      change.is_absolute ? fmt::format("n = {}", change.change.count) : interval_text(change.change);
+  return fmt::format("{} of {} by {} ({})", change.metric, change.subject,
+                     amount_text(change, change.change.median), interval);
 }
 
 /// Metrics that improved or regressed since an earlier build.

@@ -13,13 +13,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string percent(double ratio) { return fmt::format("{:+.1f} %", 100.0 * ratio); }
-
 std::string change_interval_text(const bench::MetricChange& change) {
   if (change.test == bench::ChangeTest::kExact) return "exact";
   const std::optional<eval::Interval>& interval = change.change.interval;
   if (!interval) return fmt::format("- (n = {})", change.change.count);
-  return percent(interval->low) + " to " + percent(interval->high);
+  return amount_text(change, interval->low) + " to " + amount_text(change, interval->high);
 }
 
 const char* test_name(bench::ChangeTest test) {
@@ -55,7 +53,7 @@ std::vector<std::string> cells_of(const bench::MetricChange& change) {
           fmt::format("{}", change.change.count),
           fmt::format("{:.4g} {}", change.base_median, change.unit),
           fmt::format("{:.4g} {}", change.head_median, change.unit),
-          percent(change.change.median),
+          amount_text(change, change.change.median),
           change_interval_text(change),
           p_text(change),
           result_text(change)};
@@ -76,6 +74,7 @@ Json change_json(const bench::MetricChange& change) {
           {"base_median", change.base_median},
           {"head_median", change.head_median},
           {"change", change.change.median},
+          {"change_is", change.is_absolute ? "difference" : "ratio"},
           {"changed", change.changed},
           {"test", test_name(change.test)},
           {"p", is_exact ? Json(nullptr) : Json(change.change.p_value)},
@@ -174,10 +173,10 @@ std::vector<TestCase> tests_of_runs(const bench::Comparison& comparison) {
 std::vector<TestCase> tests_of(const bench::Comparison& comparison) {
   std::vector<TestCase> tests = tests_of_runs(comparison);
   for (const bench::MetricChange& change : comparison.changes) {
-    tests.push_back(
-        {change.metric, change.subject, change.result,
-         fmt::format("{:.4g} to {:.4g} {}: {}, n = {}, p = {}", change.base_median, change.head_median,
-                     change.unit, percent(change.change.median), change.change.count, p_text(change))});
+    tests.push_back({change.metric, change.subject, change.result,
+                     fmt::format("{:.4g} to {:.4g} {}: {}, n = {}, p = {}", change.base_median,
+                                 change.head_median, change.unit, amount_text(change, change.change.median),
+                                 change.change.count, p_text(change))});
   }
   return tests;
 }

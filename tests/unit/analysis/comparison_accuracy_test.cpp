@@ -163,6 +163,57 @@ TEST(ComparisonAccuracy, PerturbedRunsOfBaseAloneExtendTheReference) {
   EXPECT_NE(compare_runs(sides.base, sides.head).result(), ChangeClass::kWorse);
 }
 
+/// `count` pairs whose false confidence changes, and equal errors; with `zeros` runs of base of which it is
+/// 0.
+Sides confidences(int count, int zeros, double head) {
+  Sides sides = replicates(count, 1.0);
+  for (std::size_t i = 0; i < sides.base.size(); ++i) {
+    const double base = static_cast<int>(i) < zeros ? 0.0 : 1e-4;
+    sides.base[i].metrics = {{"false_confidence", "", "", base}};
+    sides.head[i].metrics = {{"false_confidence", "", "", head}};
+  }
+  return sides;
+}
+
+TEST(ComparisonAccuracy, AChangeFromZeroIsADifference) {
+  for (const int zeros : {8, 5, 1}) {
+    const Sides sides = confidences(8, zeros, 0.6);
+    const Comparison comparison = compare_runs(sides.base, sides.head);
+    ASSERT_EQ(comparison.changes.size(), 1u);
+    EXPECT_TRUE(comparison.changes.front().is_absolute);
+    EXPECT_NEAR(comparison.changes.front().change.median, 0.6, 1e-3);
+    EXPECT_EQ(comparison.result(), ChangeClass::kWorse) << zeros;
+  }
+}
+
+TEST(ComparisonAccuracy, AChangeFromZeroOfOneRunOrBelowTheFloorIsNotWorse) {
+  const Sides one = confidences(1, 1, 0.6);
+  EXPECT_EQ(compare_runs(one.base, one.head).result(), ChangeClass::kInconclusive);
+  const Sides small = confidences(8, 8, 0.004);  // the floor is 0.005
+  EXPECT_EQ(compare_runs(small.base, small.head).result(), ChangeClass::kSame);
+  const Sides none = confidences(8, 8, 0.0);
+  EXPECT_EQ(compare_runs(none.base, none.head).result(), ChangeClass::kSame);
+}
+
+TEST(ComparisonAccuracy, AChangeFromZeroInTheMinorityOfTheRunsIsNotHiddenByTheMedian) {
+  Sides sides = confidences(20, 20, 0.0);
+  for (std::size_t i = 0; i < 9; ++i) sides.head[i].metrics.front().value = 0.6;
+  const Comparison comparison = compare_runs(sides.base, sides.head);
+  EXPECT_NEAR(comparison.changes.front().change.median, 0.3, 1e-12);  // pseudomedian
+  EXPECT_EQ(comparison.result(), ChangeClass::kWorse);
+}
+
+TEST(ComparisonAccuracy, AModuleThatNeededNoTimeIsComparedByTheDifference) {
+  Sides sides = replicates(12, 1.0);
+  for (std::size_t i = 0; i < 12; ++i) {
+    sides.base[i].metrics.clear();
+    sides.head[i].metrics.clear();
+    sides.base[i].costs = {{.module = "object_detection", .per = "call", .mean_ms = 0.0}};
+    sides.head[i].costs = {{.module = "object_detection", .per = "call", .mean_ms = 5.0 + 0.01 * double(i)}};
+  }
+  EXPECT_EQ(compare_runs(sides.base, sides.head).result(), ChangeClass::kWorse);
+}
+
 TEST(ComparisonAccuracy, ComparesABaselineWithoutTrajectories) {
   Sides sides{{compared_run("a", 0.01, 1)}, {compared_run("a", 0.01, 1, "head")}};
   for (StoredRun* run : {&sides.base.front(), &sides.head.front()}) {

@@ -93,6 +93,17 @@ TEST(Ablation, CountsPairsInWhichOnlyTheVariantFailed) {
   EXPECT_FALSE(rows[0].difference.has_value());
 }
 
+TEST(Ablation, AChangeFromZeroHasADifferenceButNoRatio) {
+  std::vector<StoredRun> runs;
+  for (int seed = 1; seed <= 6; ++seed) {
+    runs.push_back(run_of("full", "a", seed, 0.0));
+    runs.push_back(run_of("wo", "a", seed, seed == 1 ? 0.0 : 0.6));
+  }
+  const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+  EXPECT_EQ(rows[0].difference->median, 0.6);
+  EXPECT_FALSE(rows[0].change.has_value());
+}
+
 TEST(Ablation, ListsTheExistingVariantsInTheError) {
   const std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0)};
   expect_input_error([&] { static_cast<void>(ablation(runs, "ful", "ate_rmse_m")); }, {"\"ful\"", "full"});
