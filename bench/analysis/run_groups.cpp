@@ -29,14 +29,6 @@ std::string text_at(const Json& json, const char* part, const char* name) {
   return value != found->end() && value->is_string() ? value->get<std::string>() : "";
 }
 
-std::string host_class(const Json& manifest) {
-  const std::string cpu = text_at(manifest, "host", "cpu");
-  if (cpu.empty()) return kUnknownHost;
-  const auto count = manifest.at("host").find("logical_cpus");
-  if (count == manifest.at("host").end() || !count->is_number_unsigned()) return cpu;
-  return fmt::format("{}, {} processors", cpu, count->get<unsigned>());
-}
-
 /// Hash of the config in a manifest without the keys that end with "seed"; empty if it has none.
 std::string config_class(const Json& manifest) {
   const auto config = manifest.find("config");
@@ -50,14 +42,14 @@ std::string config_class(const Json& manifest) {
   return hash_text(content_hash(values.dump()));
 }
 
-RunOrigin origin_of(const Json& manifest, const std::string& build) {
+RunOrigin origin_of(const Json& manifest, const StoredRun& run) {
   const std::string git_commit = text_at(manifest, "build", "git_commit");
   const std::string changes = text_at(manifest, "build", "git_changes");
   const bool is_known = !git_commit.empty() && git_commit != "unknown";
   // Programs run by the gate are identified by content hash; the history uses their commit.
-  return {.commit = is_known ? git_commit + (changes.empty() ? "" : "+" + changes) : build,
-          .time = text_at(manifest, "build", "git_time"),
-          .host = host_class(manifest),
+  return {.commit = is_known ? git_commit + (changes.empty() ? "" : "+" + changes) : run.identity.build,
+          .time = run.committed,
+          .host = run.machine.empty() ? kUnknownHost : run.machine,
           .config = config_class(manifest)};
 }
 
@@ -69,7 +61,7 @@ std::vector<RunOrigin> run_origins(const Store& store, std::span<const StoredRun
   for (const StoredRun& run : runs) {
     const Json manifest = Json::parse(store.manifest(run), nullptr, false);
     const std::string host = origins.empty() ? kUnknownHost : origins.back().host;
-    origins.push_back(manifest.is_object() ? origin_of(manifest, run.identity.build)
+    origins.push_back(manifest.is_object() ? origin_of(manifest, run)
                                            : RunOrigin{.commit = run.identity.build, .host = host});
     if (!origins.back().config.empty())
       configs[std::string(unperturbed_hash(run.identity.config_hash))] = origins.back().config;
@@ -100,19 +92,32 @@ std::vector<OriginRun> with_origins(const Store& store, std::span<const StoredRu
   return result;
 }
 
-/// Builds of Stillpoint, the newest first.
+/// Builds of Stillpoint, the newest first: by commit time, or the first run without one, then by the first
+/// run.
 std::vector<std::string> builds_of(std::span<const StoredRun> runs) {
-  std::map<std::string, std::int64_t> first_run;
+  struct BuildTime {
+    std::string committed;
+    std::string first_run;
+    std::int64_t id = 0;
+  };
+  std::map<std::string, BuildTime> times;
   for (const StoredRun& run : runs) {
     if (run.identity.system != kOwnSystem) continue;
-    const auto [entry, is_new] = first_run.insert({run.identity.build, run.id});
-    if (!is_new) entry->second = std::min(entry->second, run.id);
+    const auto [entry, is_new] = times.insert({run.identity.build, {run.committed, run.started, run.id}});
+    BuildTime& time = entry->second;
+    if (time.committed.empty()) time.committed = run.committed;
+    if (!is_new)
+      std::tie(time.first_run, time.id) =
+          std::min(std::tuple(time.first_run, time.id), std::tuple(run.started, run.id));
   }
-  std::vector<std::pair<std::int64_t, std::string>> order;
-  for (const auto& [build, id] : first_run) order.emplace_back(id, build);
+  std::vector<std::tuple<std::string, std::string, std::int64_t, std::string>> order;
+  for (const auto& [build, time] : times) {
+    order.emplace_back(time.committed.empty() ? time.first_run : time.committed, time.first_run, time.id,
+                       build);
+  }
   std::sort(order.rbegin(), order.rend());
   std::vector<std::string> builds;
-  for (const auto& [id, build] : order) builds.push_back(build);
+  for (const auto& entry : order) builds.push_back(std::get<3>(entry));
   return builds;
 }
 
@@ -149,13 +154,17 @@ ConfigScope scope_of(const OriginRun& entry) {
           identity.variant, identity.axis,     identity.axis_value};
 }
 
-using NewestConfigs = std::map<ConfigScope, std::pair<std::int64_t, std::string>>;  // newest run, its config
+/// Start and id of a run: later runs compare larger.
+using RunOrder = std::pair<std::string, std::int64_t>;
+
+using NewestConfigs = std::map<ConfigScope, std::pair<RunOrder, std::string>>;  // newest run, its config
 
 NewestConfigs newest_configs(const std::vector<OriginRun>& runs) {
   NewestConfigs newest;
   for (const OriginRun& entry : runs) {
     auto& config = newest[scope_of(entry)];
-    if (!entry.origin.config.empty()) config = std::max(config, std::pair(entry.run.id, entry.origin.config));
+    if (entry.origin.config.empty()) continue;
+    config = std::max(config, {RunOrder(entry.run.started, entry.run.id), entry.origin.config});
   }
   return newest;
 }

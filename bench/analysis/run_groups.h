@@ -53,7 +53,8 @@ struct RunSelection {
 /// @throws InputError if the store does not contain the plan; the message lists those that it contains
 [[nodiscard]] std::vector<StoredRun> runs_of_plan(const Store& store, const std::string& plan);
 
-/// The build whose first run is the latest; empty without runs of Stillpoint.
+/// The build with the latest commit time, or the latest first run where manifests lack it; empty without runs
+/// of Stillpoint.
 [[nodiscard]] std::string newest_build(std::span<const StoredRun> runs);
 
 /// Divides runs into groups. If a variant was executed with several configs in one group, only its newest

@@ -114,6 +114,9 @@ struct RunOutcome {
   /// (annotated JPEG of frame 42), "result" (JSON), "log".
   std::map<std::string, std::string> attachments;
   std::string manifest;  ///< JSON; empty when the run did not write one
+  std::string
+      started{};        ///< UTC, ISO 8601, of a run that another store recorded; empty: when it was acquired
+  std::string ended{};  ///< same; empty: now
 };
 
 /// A completed run, as read from a store.
@@ -126,6 +129,8 @@ struct StoredRun {
   std::string started;  ///< UTC, ISO 8601
   std::string ended;
   std::string manifest_hash;  ///< empty without a manifest
+  std::string committed{};    ///< UTC commit time of the build; empty if not in the manifest
+  std::string machine{};      ///< CPU model and count: "Intel(R) N100, 4 processors"; empty if unknown
   std::vector<Metric> metrics;
   std::vector<ModuleCost> costs;
   std::map<std::string, std::string> blobs;  ///< kind of attachment -> name of its file

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/store/store.h"
 
+#include <tuple>
 #include <unordered_map>
 
 #include "bench/model/run_csv.h"
@@ -15,7 +16,27 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSelected =
     "WHERE state = 'ended' AND ?1 IN ('', system) AND ?2 IN ('', variant) AND ?3 IN ('', sequence) "
-    "AND build >= ?4 AND substr(build, 1, length(?4)) = ?4 AND ?5 IN ('', kind) ORDER BY id";
+    "AND build >= ?4 AND substr(build, 1, length(?4)) = ?4 AND ?5 IN ('', kind) ORDER BY started, id";
+
+/// Commit time and machine of the runs, from their manifests.
+std::vector<StoredRun> with_origins(const Database& database, std::vector<StoredRun> runs) {
+  std::unordered_map<std::string, std::pair<std::string, std::string>> origins;
+  Statement rows = database.prepare(
+      "SELECT hash, json_extract(json, '$.build.git_time'), json_extract(json, '$.host.cpu'), "
+      "json_extract(json, '$.host.logical_cpus') FROM manifest WHERE json_valid(json)");
+  while (rows.step()) {
+    const std::string cpu = rows.text(2);
+    const std::int64_t count = rows.integer(3);
+    const std::string machine =
+        cpu.empty() || count <= 0 ? cpu : cpu + ", " + std::to_string(count) + " processors";
+    origins[rows.text(0)] = {rows.text(1), machine};
+  }
+  for (StoredRun& run : runs) {
+    const auto found = origins.find(run.manifest_hash);
+    if (found != origins.end()) std::tie(run.committed, run.machine) = found->second;
+  }
+  return runs;
+}
 
 /// The runs with their rows of the tables that reference them; reads each table in one pass.
 std::vector<StoredRun> with_details(const Database& database, std::vector<StoredRun> runs) {
@@ -67,7 +88,7 @@ std::vector<StoredRun> Store::runs(const RunFilter& filter) const {
   Statement rows = database_.prepare(std::string("SELECT ") + kRunColumns + " FROM run " + kSelected);
   rows.bind(filter.system).bind(filter.variant).bind(filter.sequence).bind(filter.build).bind(filter.kind);
   while (rows.step()) runs.push_back(run_of(rows));
-  runs = with_details(database_, std::move(runs));
+  runs = with_origins(database_, with_details(database_, std::move(runs)));
   database_.execute("COMMIT");
   return runs;
 }

@@ -53,7 +53,7 @@ class Store {
   /// @throws InputError if there is none, it is damaged, or was written by a newer version
   explicit Store(const std::filesystem::path& file);
 
-  /// Completed runs, in the order of their start.
+  /// Completed runs, in the order of their start; those that were merged into the store keep their times.
   [[nodiscard]] std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
 
   /// The completed runs of a plan, in its order.

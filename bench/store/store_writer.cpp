@@ -165,8 +165,12 @@ void StoreWriter::finish(const RunIdentity& identity, const RunOutcome& outcome)
   STILLPOINT_CHECK(row.step());
   const std::int64_t id = row.integer(0);
   write_details(id, outcome);
-  database_.prepare("UPDATE run SET state = 'ended', ended = ?, outcome = ?, detail = ? WHERE id = ?")
-      .bind(utc_now())
+  database_
+      .prepare(
+          "UPDATE run SET state = 'ended', started = coalesce(nullif(?, ''), started), ended = ?, "
+          "outcome = ?, detail = ? WHERE id = ?")
+      .bind(outcome.started)
+      .bind(outcome.ended.empty() ? utc_now() : outcome.ended)
       .bind(outcome_name(outcome.outcome))
       .bind(outcome.detail)
       .bind(id)

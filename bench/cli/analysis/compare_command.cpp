@@ -10,6 +10,7 @@
 
 #include "bench/analysis/comparison.h"
 #include "bench/analysis/metric_change.h"
+#include "bench/analysis/run_groups.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
 #include "bench/model/stored_run.h"
@@ -56,8 +57,7 @@ bool is_export(const std::string& file) { return file.ends_with(".json"); }
 
 /// Runs of a build; of the most recent build if `build` is empty.
 std::vector<StoredRun> runs_of_build(const Store& store, std::string build, const std::string& location) {
-  const std::vector<StoredRun> all = store.runs();
-  if (build.empty() && !all.empty()) build = all.back().identity.build;
+  if (build.empty()) build = newest_build(store.runs());
   std::vector<StoredRun> runs = store.runs({.build = build});
   if (runs.empty())
     throw InputError(location, "the store has no run of this build; see `stillpoint store list`");
@@ -68,7 +68,7 @@ std::vector<StoredRun> runs_of_build(const Store& store, std::string build, cons
 std::vector<StoredRun> stored_runs(const std::string& location, const std::string& default_store) {
   if (is_export(location)) {
     std::vector<StoredRun> runs = exported_runs(eval::read_text_file(location), location);
-    const std::string build = runs.empty() ? "" : runs.back().identity.build;
+    const std::string build = newest_build(runs);
     std::erase_if(runs, [&](const StoredRun& run) { return run.identity.build != build; });
     return runs;
   }

@@ -72,7 +72,9 @@ RunOutcome outcome_from(const Store& store, const StoredRun& run) {
                      .metrics = run.metrics,
                      .costs = run.costs,
                      .attachments = {},
-                     .manifest = store.manifest(run)};
+                     .manifest = store.manifest(run),
+                     .started = run.started,
+                     .ended = run.ended};
   for (const auto& [kind, blob] : run.blobs) outcome.attachments[kind] = store.attachment(run, kind);
   return outcome;
 }

@@ -308,6 +308,8 @@ RunOutcome Salvage::outcome_of_run(const StoredRun& run) {
   outcome.costs = costs_of(run);
   outcome.attachments = blobs_of(run);
   outcome.manifest = manifest_of(run);
+  outcome.started = run.started;
+  outcome.ended = run.ended;
   if (report_.losses.size() > losses)
     outcome.detail += (outcome.detail.empty() ? "" : "; ") + std::string("salvaged, not complete");
   return outcome;

@@ -89,7 +89,9 @@ Json run_json(const Store& store, const StoredRun& run, ExportExtent extent) {
                {"outcome", outcome_name(run.outcome)},
                {"detail", run.detail},
                {"started", run.started},
-               {"ended", run.ended}};
+               {"ended", run.ended},
+               {"committed", run.committed},
+               {"machine", run.machine}};
   json["metrics"] = Json::array();
   for (const Metric& metric : run.metrics) json["metrics"].push_back(metric_json(metric));
   json["costs"] = Json::array();
@@ -127,6 +129,8 @@ RunOutcome outcome_of_json(const Json& json) {
   for (const auto& [kind, content] : json.at("attachments").items())
     outcome.attachments[current_kind(kind)] = content;
   outcome.manifest = json.at("manifest");
+  outcome.started = json.at("started");
+  outcome.ended = json.at("ended");
   return outcome;
 }
 
@@ -198,6 +202,8 @@ std::vector<StoredRun> exported_runs(const std::string& text, const std::string&
                       .detail = outcome.detail,
                       .started = run.at("started"),
                       .ended = run.at("ended"),
+                      .committed = run.value("committed", ""),
+                      .machine = run.value("machine", ""),
                       .metrics = outcome.metrics,
                       .costs = outcome.costs});
     }

@@ -52,6 +52,20 @@ RunIdentity identity_of(const std::string& build, std::int64_t seed = 1, const s
           .seed = seed};
 }
 
+TEST(RunGroups, TheNewestBuildIsThatOfTheLatestCommitThenOfTheLatestStart) {
+  const auto run = [](const char* build, const char* committed, const char* started, std::int64_t id) {
+    return StoredRun{.id = id, .identity = identity_of(build), .started = started, .committed = committed};
+  };
+  // The older build was measured later, and merged into the store last.
+  EXPECT_EQ(newest_build(std::vector{run("new", "2026-02-01", "2026-02-02", 1),
+                                     run("old", "2026-01-01", "2026-03-01", 2)}),
+            "new");
+  EXPECT_EQ(newest_build(std::vector{run("new", "", "2026-02-02", 1), run("old", "", "2026-02-01", 2)}),
+            "new");
+  EXPECT_EQ(newest_build(std::vector{run("old", "", "2026-02-02", 1), run("new", "", "2026-02-02", 2)}),
+            "new");
+}
+
 TEST(RunGroups, HaveTheNewestBuildUnlessAnotherOneIsNamed) {
   FilledStore filled;
   filled.add(identity_of("build-a", 1));

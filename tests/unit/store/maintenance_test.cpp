@@ -73,6 +73,35 @@ TEST(StoreMaintenance, MergeAddsMissingRuns) {
   expect_input_error([&] { merge_stores(into, into); }, {"is the same store"});
 }
 
+TEST(StoreMaintenance, MergeImportAndExportKeepTheTimesOfRuns) {
+  const TemporaryFolder folder;
+  const fs::path from = folder.path() / "from.sqlite";
+  {
+    StoreWriter writer(from);
+    static_cast<void>(writer.acquire(identity_of("old")));
+    writer.finish(
+        identity_of("old"),
+        {.manifest =
+             R"({"build": {"git_time": "2019-01-01T00:00:00Z"}, "host": {"cpu": "A", "logical_cpus": 2}})",
+         .started = "2020-01-01T00:00:00Z",
+         .ended = "2020-01-01T00:00:09Z"});
+  }
+  const fs::path merged = store_of(folder, "merged.sqlite", {"new"});
+  merge_stores(from, merged);
+  const fs::path imported = store_of(folder, "imported.sqlite", {"new"});
+  import_store(export_store(from), "runs.json", imported);
+  for (const fs::path& file : {from, merged, imported}) {
+    const StoredRun run = Store(file).runs().front();  // the oldest, although it was added last
+    EXPECT_EQ(run.started, "2020-01-01T00:00:00Z") << file;
+    EXPECT_EQ(run.ended, "2020-01-01T00:00:09Z") << file;
+    EXPECT_EQ(run.committed, "2019-01-01T00:00:00Z") << file;
+    EXPECT_EQ(run.machine, "A, 2 processors") << file;
+  }
+  const StoredRun numbers = exported_runs(export_store(from, ExportExtent::kNumbers), "n.json").front();
+  EXPECT_EQ(numbers.committed, "2019-01-01T00:00:00Z");
+  EXPECT_EQ(numbers.machine, "A, 2 processors");
+}
+
 TEST(StoreMaintenance, AnInfiniteMetricIsAnErrorAndSurvivesExportAndImport) {
   const TemporaryFolder folder;
   const fs::path from = folder.path() / "from.sqlite";
