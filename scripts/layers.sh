@@ -55,7 +55,7 @@ row eval/io $messages
 row eval/trajectory $messages eval/io
 row eval/metrics $messages eval/trajectory
 row eval/statistics $messages eval/metrics
-row eval/compare $messages eval/trajectory eval/metrics
+row eval/compare $messages eval/io eval/trajectory eval/metrics
 row eval/openloris $messages eval/io eval/trajectory eval/metrics
 row eval/protocols $messages eval/trajectory eval/metrics eval/openloris
 row eval $messages eval/trajectory eval/metrics

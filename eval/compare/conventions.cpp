@@ -77,6 +77,7 @@ constexpr std::size_t kMinMatches = 10;
 /// Errors before or after the correction of a suspected violation.
 struct Errors {
   double ate_m = 0.0;
+  double ate_deg = 0.0;
   double rpe_deg_per_s = 0.0;  ///< strict R.RPE; 0 without pairs
 };
 
@@ -84,7 +85,9 @@ std::optional<Errors> errors_of(const Trajectory& gt, const Trajectory& est) {
   const std::vector<MatchedPose> matches = strict_matches(gt, est);
   if (matches.size() < kMinMatches) return std::nullopt;
   Errors errors;
-  errors.ate_m = statistics(ate_errors(matches, align(matches, Alignment::kSe3).S_w_v).translation_m)->rmse;
+  const AteErrors ate = ate_errors(matches, align(matches, Alignment::kSe3).S_w_v);
+  errors.ate_m = statistics(ate.translation_m)->rmse;
+  errors.ate_deg = statistics(ate.rotation_deg)->rmse;
   if (const StrictRpeResult rpe = strict_rpe(matches, 1.0); rpe.errors) {
     errors.rpe_deg_per_s = rpe.errors->rotation_deg.rmse;
   }
@@ -97,6 +100,39 @@ Trajectory transformed(const Trajectory& est, const Function& function) {
   for (StampedPose& pose : result.poses) pose.T_w_f = function(pose.T_w_f);
   return result;
 }
+
+constexpr double kMinOrderRpe = 0.5;    // [deg/s]; slower rotation does not tell the order of quaternions
+constexpr double kBothOrderGain = 1.5;  // of the R.RPE, if the ATE in degrees falls by kMinImprovement, too
+
+}  // namespace
+
+std::optional<OrderFinding> find_quaternion_order(const LoadedTrajectory& gt, const LoadedTrajectory& est,
+                                                  double offset_s) {
+  Trajectory shifted = est.trajectory;
+  for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, offset_s);
+  const std::optional<Errors> current = errors_of(gt.trajectory, shifted);
+  if (!current || current->rpe_deg_per_s < kMinOrderRpe) return std::nullopt;
+  std::optional<OrderFinding> best;
+  for (const auto& [other_gt, other_est] : {std::pair(false, true), {true, false}, {true, true}}) {
+    if (other_gt && gt.order_source == OrderSource::kNone) continue;
+    if (other_est && est.order_source == OrderSource::kNone) continue;
+    const std::optional<Errors> errors =
+        errors_of(other_gt ? with_other_order(gt.trajectory, gt.order) : gt.trajectory,
+                  other_est ? with_other_order(shifted, est.order) : shifted);
+    if (!errors) continue;
+    // Reading both in the other order exchanges a rotation of the world for one of the body: it also removes
+    // the R.RPE of a body frame that differs. Then the rotation error after alignment remains.
+    const bool both = other_gt && other_est;
+    const double gain = both ? kBothOrderGain : kMinImprovement;
+    if (gain * errors->rpe_deg_per_s >= current->rpe_deg_per_s) continue;
+    if (both && kMinImprovement * errors->ate_deg >= current->ate_deg) continue;
+    if (best && best->corrected_rpe_deg_per_s <= errors->rpe_deg_per_s) continue;
+    best = OrderFinding{other_gt, other_est, current->rpe_deg_per_s, errors->rpe_deg_per_s};
+  }
+  return best;
+}
+
+namespace {
 
 template <class... Values>
 std::string format_message(const char* format, Values... values) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/types/trajectory.h"
+#include "eval/io/trajectory_file.h"
 
 namespace stillpoint::eval {
 
@@ -28,6 +29,23 @@ struct TimeOffset {
 /// @return nullopt if fewer than ten poses match at offset 0
 [[nodiscard]] std::optional<TimeOffset> find_time_offset(const Trajectory& gt, const Trajectory& est,
                                                          const TimeOffsetOptions& options = {});
+
+/// Files whose quaternions are consistent with those of the other file if they are read in the other order.
+struct OrderFinding {
+  bool gt = false;
+  bool est = false;
+  double rpe_deg_per_s = 0.0;            ///< strict R.RPE as read
+  double corrected_rpe_deg_per_s = 0.0;  ///< with the named files in the other order
+};
+
+/// Compares the R.RPE of the files as read with that of the estimate, the ground truth, or both in the other
+/// order of quaternions. Two files with the same wrong order agree approximately, so both are tried, too.
+/// @param offset_s added to the stamps of the estimate
+/// @return nullopt if no other reading reduces the R.RPE to less than a third, or the R.RPE is less than
+/// 0.5 deg/s, or fewer than ten poses match
+[[nodiscard]] std::optional<OrderFinding> find_quaternion_order(const LoadedTrajectory& gt,
+                                                                const LoadedTrajectory& est,
+                                                                double offset_s = 0.0);
 
 enum class Convention {
   kStampUnit,         ///< milli-, micro- or nanoseconds read as seconds, or another epoch

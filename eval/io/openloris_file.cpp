@@ -78,7 +78,8 @@ class OpenlorisParser {
                       "; expected \"t tx ty tz qx qy qz qw\"");
     }
     const Timestamp t = row.time(0, TimeUnit::kSeconds);
-    const std::optional<Pose> pose = parse_pose(row, {.first = row.fields.size() - kPoseColumns});
+    const std::optional<Pose> pose =
+        parse_pose(row, consecutive_columns(row.fields.size() - kPoseColumns, QuaternionOrder::kXyzw));
     if (pose && repeated_ == RepeatedPoses::kDrop && repeats(row.fields.last(kPoseColumns))) {
       ++file_.repeated_poses;
     } else {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <system_error>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -142,8 +143,11 @@ std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
   field = without_plus(field);
   std::int64_t ns = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), ns);
-  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  return Timestamp{ns};
+  if (error != std::errc()) return std::nullopt;
+  const std::string_view decimals(end, static_cast<std::size_t>(field.data() + field.size() - end));
+  const bool is_integer = decimals.empty() || (decimals.front() == '.' &&
+                                               decimals.find_first_not_of('0', 1) == std::string_view::npos);
+  return is_integer ? std::optional(Timestamp{ns}) : std::nullopt;
 }
 
 std::string format_stamp(Timestamp t) {
@@ -160,7 +164,49 @@ std::string format_stamp(Timestamp t) {
 
 namespace {
 
-constexpr std::string_view kSeparators = " \t,\r";
+constexpr std::string_view kBlanks = " \t\r";
+constexpr std::string_view kSeparators = " \t\r,;";
+
+bool is_delimiter(char letter) { return letter == ',' || letter == ';'; }
+
+bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
+
+/// The fields of a line, appended to `fields`. A delimiter at the end of the line begins no field.
+std::vector<std::string_view> split_fields(std::string_view line, std::vector<std::string_view> fields) {
+  std::size_t begin = line.find_first_not_of(kBlanks);
+  while (begin != std::string_view::npos) {
+    const std::size_t end = line.find_first_of(kSeparators, begin);
+    fields.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kBlanks, end);
+    if (begin != std::string_view::npos && is_delimiter(line[begin]))
+      begin = line.find_first_not_of(kBlanks, begin + 1);
+  }
+  return fields;
+}
+
+/// "3,14": digits on both sides of the only comma, and no decimal point.
+bool has_decimal_comma(std::string_view word) {
+  const std::size_t comma = word.find(',');
+  if (comma == std::string_view::npos || comma == 0 || comma + 1 == word.size()) return false;
+  return is_digit(word[comma - 1]) && is_digit(word[comma + 1]) &&
+         word.find_first_of(",.", comma + 1) == std::string_view::npos &&
+         word.find('.') == std::string_view::npos;
+}
+
+/// Whether two or more values, separated by blanks or semicolons, have decimal commas, and none a decimal
+/// point.
+bool has_decimal_commas(std::string_view line) {
+  if (line.find(',') == std::string_view::npos || line.find('.') != std::string_view::npos) return false;
+  constexpr std::string_view kBetween = " \t\r;";
+  int found = 0;
+  std::size_t begin = line.find_first_not_of(kBetween);
+  while (begin != std::string_view::npos) {
+    const std::size_t end = line.find_first_of(kBetween, begin);
+    found += has_decimal_comma(line.substr(begin, end - begin)) ? 1 : 0;
+    begin = line.find_first_not_of(kBetween, end);
+  }
+  return found >= 2;
+}
 
 std::string quoted(std::string_view field) {
   constexpr std::size_t kMaxLength = 40;
@@ -170,7 +216,9 @@ std::string quoted(std::string_view field) {
 }  // namespace
 
 std::string_view TextRow::text(std::size_t field) const {
-  if (field < fields.size()) return fields[field];
+  if (field < fields.size() && !fields[field].empty()) return fields[field];
+  if (field < fields.size())
+    throw error("field " + std::to_string(field + 1) + " is empty; fill it, or remove the row");
   throw error("has " + std::to_string(fields.size()) + " field(s), expected at least " +
               std::to_string(field + 1));
 }
@@ -189,6 +237,8 @@ double TextRow::finite_number(std::size_t field) const {
 }
 
 Timestamp TextRow::time(std::size_t field, TimeUnit unit) const {
+  if (has_decimal_commas(content))
+    throw error("has decimal commas; write numbers with a decimal point, e.g. with `tr , .`");
   const std::string_view found = text(field);
   const std::optional<Timestamp> t =
       unit == TimeUnit::kSeconds ? parse_stamp(found) : parse_nanoseconds(found);
@@ -216,14 +266,10 @@ InputError TextRow::error(const std::string& problem) const { return {std::strin
 
 std::optional<TextRow> RowReader::next() {
   while (const std::optional<std::string_view> line = lines_.next()) {
-    fields_.clear();
-    std::size_t begin = line->find_first_not_of(kSeparators);
+    const std::size_t begin = line->find_first_not_of(kSeparators);
     if (begin == std::string_view::npos || (*line)[begin] == '#') continue;
-    while (begin != std::string_view::npos) {
-      const std::size_t end = line->find_first_of(kSeparators, begin);
-      fields_.push_back(line->substr(begin, end - begin));
-      begin = line->find_first_not_of(kSeparators, end);
-    }
+    fields_.clear();
+    fields_ = split_fields(*line, std::move(fields_));
     return TextRow{.file = file_, .line = lines_.line_number(), .content = *line, .fields = fields_};
   }
   return std::nullopt;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Text files: whole files, lines, exact numbers and time stamps, and tables with one record per line, whose
-/// fields are separated by spaces, tabs or commas; `#` starts a comment line. Errors name file and line.
+/// fields are separated by spaces, tabs, commas or semicolons; `#` starts a comment line. Two commas without
+/// a value between them enclose an empty field. Errors name file and line.
 #pragma once
 
 #include <filesystem>
@@ -46,7 +47,7 @@ class LineReader {
 /// @return nullopt if the field is not a finite number or the nanoseconds do not fit in 64 bits (292 years)
 [[nodiscard]] std::optional<Timestamp> parse_stamp(std::string_view field);
 
-/// Parses an integer number of nanoseconds.
+/// Parses an integer number of nanoseconds, also with decimals that are 0 ("1403636579763555584.000000").
 [[nodiscard]] std::optional<Timestamp> parse_nanoseconds(std::string_view field);
 
 /// Seconds with exactly 9 decimals: the inverse of `parse_stamp`.
@@ -55,7 +56,7 @@ class LineReader {
 enum class TimeUnit { kSeconds, kNanoseconds };
 
 /// One record; valid until its reader advances. The accessors throw an InputError with file and line if the
-/// field is missing or invalid.
+/// field is missing, empty or invalid.
 struct TextRow {
   std::string_view file;  ///< name, for messages
   long line = 0;          ///< counted from 1

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "eval/io/column_header.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/nmea_file.h"
 #include "eval/io/openloris_file.h"
@@ -39,18 +40,33 @@ std::vector<std::string> repair_texts(const RowRepairs& repairs) {
   return texts;
 }
 
-std::optional<Pose> parse_pose(const TextRow& row, const PoseFields& fields) {
-  const bool may_skip = fields.check == PoseCheck::kEstimate;
+PoseColumns consecutive_columns(std::size_t first, QuaternionOrder order) {
+  PoseColumns columns{};
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = first + i;
+  if (order == QuaternionOrder::kWxyz) std::rotate(columns.begin() + 3, columns.begin() + 4, columns.end());
+  return columns;
+}
+
+Trajectory with_other_order(const Trajectory& trajectory, QuaternionOrder read) {
+  Trajectory reordered = trajectory;
+  for (StampedPose& pose : reordered.poses) {
+    const Eigen::Quaterniond q = pose.T_w_f.q;
+    pose.T_w_f.q = read == QuaternionOrder::kXyzw ? Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w())
+                                                  : Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y());
+  }
+  return reordered;
+}
+
+std::optional<Pose> parse_pose(const TextRow& row, const PoseColumns& columns, PoseCheck check) {
+  const bool may_skip = check == PoseCheck::kEstimate;
   std::array<double, 7> v{};
   bool finite = true;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    v[i] = may_skip ? row.number(fields.first + i) : row.finite_number(fields.first + i);
+    v[i] = may_skip ? row.number(columns[i]) : row.finite_number(columns[i]);
     finite = finite && std::isfinite(v[i]);
   }
   if (!finite) return std::nullopt;
-  const Eigen::Quaterniond q = fields.order == QuaternionOrder::kXyzw
-                                   ? Eigen::Quaterniond(v[6], v[3], v[4], v[5])
-                                   : Eigen::Quaterniond(v[3], v[4], v[5], v[6]);
+  const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
   const double norm = q.norm();
   if (may_skip && norm == 0.0) return std::nullopt;
   if (std::abs(norm - 1.0) > (may_skip ? kNormTolerance : kGroundTruthTolerance)) {
@@ -102,6 +118,14 @@ void TrajectoryBuilder::require_poses(const std::string& file) const {
 
 namespace {
 
+constexpr std::size_t kMinNanosecondDigits = 16;  // 10^15 ns are 11 days; 10^15 s would be 30 million years
+
+/// Whether a stamp is too large for seconds.
+bool is_nanoseconds(std::string_view stamp) {
+  const std::size_t digits = std::min(stamp.find_first_not_of("0123456789"), stamp.size());
+  return digits >= kMinNanosecondDigits && parse_nanoseconds(stamp);
+}
+
 /// A format with one pose per row: the stamp, then the pose.
 struct RowFormat {
   TimeUnit unit;
@@ -110,6 +134,7 @@ struct RowFormat {
 };
 constexpr RowFormat kTum{TimeUnit::kSeconds, QuaternionOrder::kXyzw, "t tx ty tz qx qy qz qw"};
 constexpr RowFormat kEuroc{TimeUnit::kNanoseconds, QuaternionOrder::kWxyz, "ns,px,py,pz,qw,qx,qy,qz"};
+constexpr RowFormat kOrbSlam3{TimeUnit::kNanoseconds, QuaternionOrder::kXyzw, "ns tx ty tz qx qy qz qw"};
 
 /// A text and the name of its file.
 struct NamedText {
@@ -117,19 +142,65 @@ struct NamedText {
   const std::string& name;
 };
 
+/// Where the values of a row are.
+struct RowLayout {
+  std::size_t time = 0;
+  PoseColumns pose{};
+  TimeUnit unit = TimeUnit::kSeconds;
+  long header_line = 0;  ///< of a header that is no comment; 0 without one
+  bool is_named = false;
+};
+
+/// The unit of the stamps of a file with a header.
+TimeUnit named_unit(const NamedText& source, const TableHeader& header, TimeUnit of_format) {
+  if (const std::optional<TimeUnit> stated = time_unit(header, source.name)) return *stated;
+  RowReader rows(source.text, source.name);
+  while (const std::optional<TextRow> row = rows.next()) {
+    if (row->line > header.line)
+      return is_nanoseconds(row->text(*time_column(header))) ? TimeUnit::kNanoseconds : of_format;
+  }
+  return of_format;
+}
+
+/// By the header, else by the format.
+/// @throws InputError if a header that is no comment does not name the columns of a pose
+RowLayout layout_of(const NamedText& source, const RowFormat& format) {
+  const TableHeader header = find_header(source.text);
+  const std::optional<std::size_t> time = time_column(header);
+  const std::vector<std::size_t> p = columns_of(header, Quantity::kPosition);
+  const std::vector<std::size_t> q = columns_of(header, Quantity::kQuaternion);
+  RowLayout layout{.pose = consecutive_columns(1, format.order), .unit = format.unit};
+  if (time && !p.empty() && !q.empty() && fits_rows(header, source.text)) {
+    layout = {.time = *time, .unit = named_unit(source, header, format.unit), .is_named = true};
+    std::copy(q.begin(), q.end(), std::copy(p.begin(), p.end(), layout.pose.begin()));
+  } else if (!header.columns.empty() && !header.is_comment) {
+    throw InputError(source.name, header.line,
+                     std::string("the header does not name the columns of a stamp and a pose once each; "
+                                 "expected names such as \"") +
+                         kTum.columns + "\", or no header");
+  }
+  if (!header.is_comment) layout.header_line = header.line;
+  return layout;
+}
+
 LoadedTrajectory parse_rows(const NamedText& source, const RowFormat& format, PoseCheck check,
                             FaultLog& faults) {
+  const RowLayout layout = layout_of(source, format);
   TrajectoryBuilder builder;
   for_each_row(source.text, source.name, faults, [&](const TextRow& row) {
-    if (row.fields.size() < 8) {
+    if (row.line == layout.header_line) return;
+    if (row.fields.size() < 8 && !layout.is_named) {
       throw row.error("a pose needs 8 numbers, found " + std::to_string(row.fields.size()) + "; expected \"" +
                       format.columns + "\"");
     }
-    const Timestamp t = row.time(0, format.unit);
-    builder.add(row, t, parse_pose(row, {.first = 1, .order = format.order, .check = check}));
+    const Timestamp t = row.time(layout.time, layout.unit);
+    builder.add(row, t, parse_pose(row, layout.pose, check));
   });
   faults.guard([&] { builder.require_poses(source.name); });
-  return builder.release();
+  LoadedTrajectory loaded = builder.release();
+  loaded.order = layout.is_named ? QuaternionOrder::kXyzw : format.order;
+  loaded.order_source = layout.is_named ? OrderSource::kNamed : OrderSource::kFormat;
+  return loaded;
 }
 
 /// A ground-truth file.
@@ -226,8 +297,6 @@ bool is_bag(const fs::path& path) {
 
 namespace {
 
-constexpr std::size_t kMinNanosecondDigits = 16;  // 10^15 ns are 11 days; 10^15 s would be 30 million years
-
 LoadedTrajectory one_sequence(OpenlorisFile file, const TrajectorySource& source) {
   auto selected = file.sequences.begin();
   if (source.sequence != 0) {
@@ -244,20 +313,39 @@ LoadedTrajectory one_sequence(OpenlorisFile file, const TrajectorySource& source
 
 }  // namespace
 
-TrajectoryFormat detect_format(std::string_view text) {
+TrajectoryFormat detect_format(std::string_view text, const std::string& name) {
   if (is_nmea(text)) return TrajectoryFormat::kNmea;
+  const TableHeader header = find_header(text);
+  const std::size_t time = time_column(header).value_or(0);
+  const bool has_names = !columns_of(header, Quantity::kPosition).empty();
+  if (has_names && time_unit(header, name) == TimeUnit::kNanoseconds) return TrajectoryFormat::kEuroc;
   RowReader rows(text, "");
   while (const std::optional<TextRow> row = rows.next()) {
+    if (!header.is_comment && row->line == header.line) continue;
     if (row->content.find(':') != std::string_view::npos) return TrajectoryFormat::kOpenloris;
-    if (row->fields.size() == 12) return TrajectoryFormat::kKitti;
-    const std::string_view first = row->fields.front();
-    const bool is_integer =
-        std::all_of(first.begin(), first.end(), [](char c) { return c >= '0' && c <= '9'; });
-    return is_integer && first.size() >= kMinNanosecondDigits ? TrajectoryFormat::kEuroc
-                                                              : TrajectoryFormat::kTum;
+    if (row->fields.size() > time && is_nanoseconds(row->fields[time])) return TrajectoryFormat::kEuroc;
+    if (row->fields.size() == 12 && !has_names) return TrajectoryFormat::kKitti;
+    return TrajectoryFormat::kTum;
   }
   return TrajectoryFormat::kTum;
 }
+
+namespace {
+
+/// Rows with stamps in nanoseconds that were recognized by these. Without names of the columns, the separator
+/// tells which program wrote them.
+LoadedTrajectory parse_detected_nanoseconds(std::string_view text, const std::string& name) {
+  RowReader rows(text, name);
+  const std::optional<TextRow> first = rows.next();
+  const bool has_commas = first && first->content.find(',') != std::string_view::npos;
+  FaultLog strict;
+  LoadedTrajectory loaded =
+      parse_rows({text, name}, has_commas ? kEuroc : kOrbSlam3, PoseCheck::kEstimate, strict);
+  if (loaded.order_source == OrderSource::kFormat) loaded.order_source = OrderSource::kAssumed;
+  return loaded;
+}
+
+}  // namespace
 
 LoadedTrajectory read_trajectory(const TrajectorySource& source) {
   if (is_bag(source.path))
@@ -270,9 +358,9 @@ LoadedTrajectory read_trajectory(const TrajectorySource& source) {
   }
   const std::string text = read_text_file(source.path);
   const std::string name = source.path.string();
-  switch (source.format.value_or(detect_format(text))) {
+  switch (source.format.value_or(detect_format(text, name))) {
     case TrajectoryFormat::kEuroc:
-      return parse_euroc(text, name);
+      return source.format ? parse_euroc(text, name) : parse_detected_nanoseconds(text, name);
     case TrajectoryFormat::kOpenloris:
       return one_sequence(parse_openloris(text, name), source);
     case TrajectoryFormat::kKitti:

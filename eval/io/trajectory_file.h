@@ -2,12 +2,14 @@
 /// Reads trajectories of all supported formats, and writes those with one pose per row (s or ns, m):
 ///   TUM RGB-D benchmark   `t[s] tx ty tz qx qy qz qw`
 ///   EuRoC MAV CSV         `t[ns], px, py, pz, qw, qx, qy, qz`
-/// Lines that begin with '#' and further columns (velocity, biases) are ignored; fields are separated by
-/// spaces, tabs or commas; quaternions are normalized. The readers of the other formats use `parse_pose` and
-/// `TrajectoryBuilder`, too. Bags of ROS 1 and ROS 2 are only recognized here; `stillpoint eval` reads their
-/// poses as BAG:/TOPIC.
+/// A header line that names the columns overrides their order and the unit of the stamps, see
+/// column_header.h. Other lines that begin with '#' and further columns (velocity, biases) are ignored;
+/// fields are separated by spaces, tabs, commas or semicolons; quaternions are normalized. The readers of the
+/// other formats use `parse_pose` and `TrajectoryBuilder`, too. Bags of ROS 1 and ROS 2 are only recognized
+/// here; `stillpoint eval` reads their poses as BAG:/TOPIC.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -37,11 +39,26 @@ inline constexpr double kMaxDisorder_s = 1.0;
 /// One sentence for each kind of repair, without a full stop; empty if there are none.
 [[nodiscard]] std::vector<std::string> repair_texts(const RowRepairs& repairs);
 
+enum class QuaternionOrder { kXyzw, kWxyz };
+
+/// How certain the order of the columns of the quaternions is.
+enum class OrderSource {
+  kNone,     ///< the file has no such columns (matrices, bags)
+  kNamed,    ///< by the names in the header
+  kFormat,   ///< by the definition of the format
+  kAssumed,  ///< nothing in the file tells
+};
+
 /// Contents of a trajectory file.
 struct LoadedTrajectory {
   Trajectory trajectory;
   RowRepairs repairs;
+  QuaternionOrder order = QuaternionOrder::kXyzw;  ///< in which the file was read
+  OrderSource order_source = OrderSource::kNone;
 };
+
+/// The trajectory as if its quaternions had been read in the other order.
+[[nodiscard]] Trajectory with_other_order(const Trajectory& trajectory, QuaternionOrder read);
 
 /// Whether the path is a bag by its name: a file .bag, .mcap or .db3, or a folder with metadata.yaml and one
 /// of these files, as `ros2 bag` writes it.
@@ -65,14 +82,19 @@ struct TrajectorySource {
 };
 
 /// Reads a trajectory. Format detection: a folder is 7-Scenes; a file that begins with a sentence is NMEA; a
-/// file with a "key: value" line is OpenLORIS; rows of 12 numbers are KITTI; rows whose first field is an
-/// integer of 16 digits or more are EuRoC; other rows are TUM.
+/// file with a "key: value" line is OpenLORIS; a header that names stamps in nanoseconds, or a stamp with 16
+/// digits or more, is EuRoC; rows of 12 numbers without a header are KITTI; other rows are TUM. Rows with
+/// nanoseconds and without a header are written with qw first and commas by EuRoC tools, and with qx first
+/// and blanks by ORB-SLAM3: the order follows from the separator, and is marked as assumed.
 /// @throws InputError for unreadable or malformed input, KITTI without times, or several sequences without a
 /// sequence number
 [[nodiscard]] LoadedTrajectory read_trajectory(const TrajectorySource& source);
 
 /// The format of a text by the rules of `read_trajectory`.
-[[nodiscard]] TrajectoryFormat detect_format(std::string_view text);
+/// @param text contents of the file
+/// @param name of the file, for messages
+/// @throws InputError if the header names a unit of stamps that no format has
+[[nodiscard]] TrajectoryFormat detect_format(std::string_view text, const std::string& name = "");
 
 /// Reads an estimated trajectory. Rows without a pose and rows that repeat a stamp are skipped, rows that are
 /// slightly out of order are sorted; all are counted.
@@ -110,27 +132,25 @@ void write_tum(const Trajectory& trajectory, const std::filesystem::path& file);
 /// The trajectory in the EuRoC format with 9 decimals, without velocities and biases.
 [[nodiscard]] std::string format_euroc(const Trajectory& trajectory);
 
-enum class QuaternionOrder { kXyzw, kWxyz };
-
 /// Which rows are accepted.
 enum class PoseCheck {
   kEstimate,     ///< the norm of the quaternion is within 0.1 of 1; a row without a pose is skipped
   kGroundTruth,  ///< the norm of the quaternion is within 0.01 of 1; every row must be a pose
 };
 
-/// Layout of the seven numbers of a pose: position, then quaternion.
-struct PoseFields {
-  std::size_t first = 1;  ///< index of tx
-  QuaternionOrder order = QuaternionOrder::kXyzw;
-  PoseCheck check = PoseCheck::kEstimate;
-};
+/// Columns of tx ty tz qx qy qz qw.
+using PoseColumns = std::array<std::size_t, 7>;
+
+/// Seven columns from `first` on: position, then quaternion.
+[[nodiscard]] PoseColumns consecutive_columns(std::size_t first, QuaternionOrder order);
 
 /// Parses a pose and normalizes its quaternion.
 /// @return nullopt if the row has no pose (a value that is not finite, or a zero quaternion) and may be
 /// skipped
 /// @throws InputError if a field is not a number, the quaternion is not a rotation, or a coordinate exceeds
 /// 1e9 m
-[[nodiscard]] std::optional<Pose> parse_pose(const TextRow& row, const PoseFields& fields);
+[[nodiscard]] std::optional<Pose> parse_pose(const TextRow& row, const PoseColumns& columns,
+                                             PoseCheck check = PoseCheck::kEstimate);
 
 /// Collects the poses of a file in order of time.
 class TrajectoryBuilder {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -56,6 +58,58 @@ TEST(EvalCommand, WritesAPlotAndTheErrorsOfAllPoses) {
   long lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
   EXPECT_EQ(lines, 1 + 401);  // the header and all poses
+}
+
+/// The rows of a path with other columns: nanoseconds, and a separator.
+std::string nanosecond_rows(const Trajectory& path, char separator, bool w_first) {
+  std::string text;
+  char row[320];
+  for (const auto& [t, pose] : path.poses) {
+    const Eigen::Vector4d q = w_first ? Eigen::Vector4d(pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z())
+                                      : Eigen::Vector4d(pose.q.coeffs());
+    std::snprintf(row, sizeof row, "%lld %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
+                  static_cast<long long>(t.ns + 1403636579763555584), pose.p.x(), pose.p.y(), pose.p.z(),
+                  q[0], q[1], q[2], q[3]);
+    text += row;
+  }
+  std::replace(text.begin(), text.end(), ' ', separator);
+  return text;
+}
+
+TEST(EvalCommand, ReadsQuaternionsInTheOrderThatIsConsistent) {
+  const TemporaryFolder folder;
+  const Trajectory gt = test::smooth_path(2001, 0.01);
+  const Trajectory est = test::smooth_path(401, 0.05);
+  for (const char separator : {' ', ','}) {
+    for (const bool gt_w_first : {false, true}) {
+      for (const bool est_w_first : {false, true}) {
+        const auto a = folder.write("a.txt", nanosecond_rows(gt, separator, gt_w_first)).string();
+        const auto b = folder.write("b.txt", nanosecond_rows(est, ' ', est_w_first)).string();
+        const ProgramResult result = run_program({"eval", a, b, "--protocol", "strict:se3", "--json"});
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        const auto json = nlohmann::json::parse(result.out);
+        EXPECT_LT(json.at("evaluations").at(0).at("ate_deg").at("rmse"), 0.1) << gt_w_first << est_w_first;
+        EXPECT_NE(result.err.find("in the order q"), std::string::npos) << result.err;
+      }
+    }
+  }
+}
+
+TEST(EvalCommand, RefusesAnOrderOfQuaternionsThatContradictsTheFormat) {
+  const PathFiles files;
+  for (const std::string header : {"", "# t tx ty tz qx qy qz qw\n"}) {
+    const std::string swapped =
+        eval::format_tum(eval::with_other_order(test::smooth_path(401, 0.05), eval::QuaternionOrder::kWxyz));
+    const std::string rows = header + swapped.substr(swapped.find('\n') + 1);
+    const auto wrong = files.folder.write("wrong.txt", rows).string();
+    const ProgramResult result = run_program({"eval", files.gt, wrong});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.err.find("wrong.txt"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("# t tx ty tz qw qx qy qz"), std::string::npos) << result.err;
+    const auto named =
+        files.folder.write("named.txt", "# t tx ty tz qw qx qy qz\n" + rows.substr(header.size()));
+    EXPECT_EQ(run_program({"eval", files.gt, named.string()}).exit_code, 0);
+  }
 }
 
 TEST(EvalCommand, RejectsAnUnknownProtocol) {

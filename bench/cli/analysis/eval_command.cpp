@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -72,15 +73,72 @@ eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   return options;
 }
 
+/// A file of poses, and its path as the user wrote it.
+struct PoseFile {
+  std::string path;
+  eval::LoadedTrajectory loaded;
+};
+
 /// Reads a trajectory; its skipped and sorted rows are logged.
-eval::LoadedTrajectory load(const EvalArguments& arguments, const std::string& path) {
+PoseFile load(const EvalArguments& arguments, const std::string& path) {
   eval::TrajectorySource source{.path = path, .times = arguments.times, .sequence = arguments.sequence};
   if (!arguments.format.empty())
     source.format = enum_of<eval::TrajectoryFormat>("--format", arguments.format);
   const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path);
   eval::LoadedTrajectory loaded = bag ? datasets::read_bag_trajectory(*bag) : eval::read_trajectory(source);
   for (const std::string& repair : eval::repair_texts(loaded.repairs)) spdlog::warn("{}: {}", path, repair);
-  return loaded;
+  return {path, std::move(loaded)};
+}
+
+const char* order_text(eval::QuaternionOrder order) {
+  return order == eval::QuaternionOrder::kXyzw ? "qx qy qz qw" : "qw qx qy qz";
+}
+
+eval::QuaternionOrder other(eval::QuaternionOrder order) {
+  return order == eval::QuaternionOrder::kXyzw ? eval::QuaternionOrder::kWxyz : eval::QuaternionOrder::kXyzw;
+}
+
+/// The file read in the other order of quaternions.
+/// @throws InputError if its header or format states the order in which it was read
+PoseFile in_other_order(PoseFile file, const eval::OrderFinding& finding) {
+  const eval::QuaternionOrder found = other(file.loaded.order);
+  const std::string reason = fmt::format(
+      "the quaternions are consistent with those of the other file in the order {}: R.RPE {:.3f} "
+      "instead of {:.3f} deg/s",
+      order_text(found), finding.corrected_rpe_deg_per_s, finding.rpe_deg_per_s);
+  if (file.loaded.order_source != eval::OrderSource::kAssumed) {
+    throw InputError(
+        file.path,
+        fmt::format("{}, but {} states {}; reorder the columns, or name them in a first "
+                    "line such as \"# t tx ty tz {}\"",
+                    reason,
+                    file.loaded.order_source == eval::OrderSource::kNamed ? "the header" : "the format",
+                    order_text(file.loaded.order), order_text(found)));
+  }
+  spdlog::warn("{}: {}; read so", file.path, reason);
+  file.loaded.trajectory = eval::with_other_order(file.loaded.trajectory, file.loaded.order);
+  file.loaded.order = found;
+  file.loaded.order_source = eval::OrderSource::kFormat;
+  return file;
+}
+
+/// The files, ground truth first, with their quaternions in the order in which they are consistent.
+/// @throws InputError if that contradicts the format or the header of one, or another estimate
+std::vector<PoseFile> with_consistent_orders(std::vector<PoseFile> files, double offset_s) {
+  PoseFile& truth = files.front();
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const auto finding = eval::find_quaternion_order(truth.loaded, files[i].loaded, offset_s);
+    if (!finding) continue;
+    if (finding->gt && i > 1) truth.loaded.order_source = eval::OrderSource::kFormat;  // the first one agrees
+    if (finding->gt) truth = in_other_order(std::move(truth), *finding);
+    if (finding->est) files[i] = in_other_order(std::move(files[i]), *finding);
+  }
+  for (const PoseFile& file : files) {
+    if (file.loaded.order_source != eval::OrderSource::kAssumed) continue;
+    spdlog::warn("{}: no header names the columns; the quaternions were read in the order {}", file.path,
+                 order_text(file.loaded.order));
+  }
+  return files;
 }
 
 /// @throws InputError if no protocol found two poses to compare
@@ -124,13 +182,15 @@ std::optional<Eigen::Quaterniond> leveling_rotation(const EvalArguments& argumen
   return std::filesystem::exists(result) ? read_leveling_rotation(result) : std::nullopt;
 }
 
-std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, const Trajectory& gt) {
+/// @param files ground truth and estimates
+std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments,
+                                               std::span<const PoseFile> files) {
+  const Trajectory& gt = files.front().loaded.trajectory;
   eval::ProtocolOptions options = protocol_options(arguments);
   std::vector<report::EvaluatedRun> runs;
-  for (const std::string& path : arguments.estimates) {
-    eval::LoadedTrajectory loaded = load(arguments, path);
+  for (const auto& [path, loaded] : files.subspan(1)) {
     report::EvaluatedRun run{.name = display_name(path, arguments.estimates),
-                             .est = std::move(loaded.trajectory),
+                             .est = loaded.trajectory,
                              .repairs = loaded.repairs,
                              .evaluations = {}};
     eval::require_overlap(gt, run.est, arguments.offset_s, path);
@@ -238,9 +298,12 @@ int evaluate_files(const EvalArguments& arguments) {
   if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules);
   if (!arguments.map.empty()) report::require_drawing_file(arguments.map, rules);
   if (!arguments.per_pose.empty()) require_safe_output(arguments.per_pose, rules);
-  const eval::LoadedTrajectory truth = load(arguments, arguments.ground_truth);
+  std::vector<PoseFile> files{load(arguments, arguments.ground_truth)};
+  for (const std::string& path : arguments.estimates) files.push_back(load(arguments, path));
+  files = with_consistent_orders(std::move(files), arguments.offset_s);
+  const eval::LoadedTrajectory& truth = files.front().loaded;
   const Trajectory& gt = truth.trajectory;
-  const std::vector<report::EvaluatedRun> runs = evaluate_all(arguments, gt);
+  const std::vector<report::EvaluatedRun> runs = evaluate_all(arguments, files);
   if (arguments.json) {
     std::cout << document(arguments, truth, runs).dump(2) << '\n';
   } else {

@@ -60,6 +60,53 @@ TEST(ImuFile, FaultyRowErrorsNameTheLine) {
   expect_input_error(read("2.5,0,0,0,0,0,9\n"), {"imu.csv:1", "integer number of nanoseconds"});
 }
 
+TEST(ImuFile, AnEmptyFieldIsAnErrorAndDoesNotMoveTheOthers) {
+  const TemporaryFolder folder;
+  FaultLog faults(FaultLog::Mode::kCollect);
+  const auto samples = read_imu_file(
+      folder.write("imu.csv",
+                   "#timestamp [ns],wx,wy,wz,ax,ay,az,temperature\n1,1,2,3,4,5,6,31\n2,1,2,,4,5,6,31\n"
+                   "3,1,2,3,4,5,6,\n4,,,,,,,\n"),
+      eval::TimeUnit::kNanoseconds, faults);
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_EQ(samples[1].t, Timestamp{3});
+  ASSERT_EQ(faults.messages().size(), 2U);
+  EXPECT_NE(faults.messages()[0].find("imu.csv:3: field 4 is empty"), std::string::npos);
+}
+
+TEST(ImuFile, ReadsTheColumnsThatTheHeaderNames) {
+  const TemporaryFolder folder;
+  for (const std::string text :
+       {"#timestamp [ns],a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2],w_RS_S_x [rad s^-1],w_RS_S_y "
+        "[rad "
+        "s^-1],w_RS_S_z [rad s^-1]\n5,4,5,6,1,2,3\n",
+        "temperature,time_ns,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z\n31,5,1,2,3,4,5,6\n",
+        "t (ns),angular_velocity.x,angular_velocity.y,angular_velocity.z,linear_acceleration.x,"
+        "linear_acceleration.y,linear_acceleration.z,mag.x,mag.y,mag.z\n5,1,2,3,4,5,6,7,8,9\n"}) {
+    FaultLog strict;
+    const auto samples = read_imu_file(folder.write("imu.csv", text), eval::TimeUnit::kNanoseconds, strict);
+    ASSERT_EQ(samples.size(), 1U) << text;
+    EXPECT_EQ(samples[0].t, Timestamp{5});
+    EXPECT_EQ(samples[0].gyro_b, Eigen::Vector3d(1, 2, 3)) << text;
+    EXPECT_EQ(samples[0].accel_b, Eigen::Vector3d(4, 5, 6)) << text;
+  }
+}
+
+TEST(ImuFile, AHeaderWithOtherUnitsOrColumnsIsAnError) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& header) {
+    return [&folder, header] {
+      FaultLog strict;
+      const auto file = folder.write("imu.csv", header + "\n5,1,2,3,4,5,6\n");
+      static_cast<void>(read_imu_file(file, eval::TimeUnit::kNanoseconds, strict));
+    };
+  };
+  expect_input_error(read("#t,wx [deg/s],wy,wz,ax,ay,az"), {"imu.csv:1", "deg/s", "rad/s"});
+  expect_input_error(read("#t,wx,wy,wz,ax [g],ay [g],az [g]"), {"imu.csv:1", "unit g", "m/s^2"});
+  expect_input_error(read("time,a,b,c,d,e,f"), {"imu.csv:1", "the header does not name"});
+  expect_input_error(read("t (us),wx,wy,wz,ax,ay,az"), {"imu.csv:1", "us"});
+}
+
 TEST(ImuFile, ACollectingLogSkipsFaultyRowsOnly) {
   const TemporaryFolder folder;
   FaultLog faults(FaultLog::Mode::kCollect);

@@ -39,6 +39,48 @@ TEST(Conventions, DetectASwappedQuaternionOrder) {
   EXPECT_EQ(violations(kGt, est), std::vector{Convention::kQuaternionOrder});
 }
 
+TEST(QuaternionOrder, IsFoundWhicheverFileIsInAnotherOrder) {
+  const auto file = [](const Trajectory& trajectory, bool wrong) {
+    return LoadedTrajectory{
+        .trajectory = wrong ? with_other_order(trajectory, QuaternionOrder::kWxyz) : trajectory,
+        .repairs = {},
+        .order = QuaternionOrder::kXyzw,
+        .order_source = OrderSource::kFormat};
+  };
+  Trajectory noisy = kEst;  // 0.2 deg in turns, in a world of its own
+  const Pose T_v_w{exp_so3({0.5, -1.0, 2.0}), {10, 20, 30}};
+  for (std::size_t i = 0; i < noisy.poses.size(); ++i) {
+    const double angle = 0.0035 * std::sin(static_cast<double>(i));
+    noisy.poses[i].T_w_f = T_v_w * noisy.poses[i].T_w_f;
+    noisy.poses[i].T_w_f.q = noisy.poses[i].T_w_f.q * exp_so3({angle, -angle, angle});
+  }
+  EXPECT_FALSE(find_quaternion_order(file(kGt, false), file(noisy, false)));
+  for (const auto& [gt, est] : {std::pair(true, false), {false, true}, {true, true}}) {
+    const auto found = find_quaternion_order(file(kGt, gt), file(noisy, est));
+    ASSERT_TRUE(found) << gt << est;
+    EXPECT_EQ(found->gt, gt);
+    EXPECT_EQ(found->est, est);
+    EXPECT_LT(found->corrected_rpe_deg_per_s, 1.0);
+  }
+}
+
+TEST(QuaternionOrder, IsNotConfusedWithAnotherBodyFrame) {
+  for (const Eigen::Vector3d& rotation :
+       {Eigen::Vector3d(0.0, 1.57, 0.0), Eigen::Vector3d(1.2, -1.2, 1.2), Eigen::Vector3d(0.0, 0.0, 3.1)}) {
+    const LoadedTrajectory gt{.trajectory = kGt, .repairs = {}, .order_source = OrderSource::kFormat};
+    const LoadedTrajectory est{
+        .trajectory = move_to_frame(kEst, Pose{exp_so3(rotation), {0.02, 0.01, 0}}, "c"),
+        .repairs = {},
+        .order_source = OrderSource::kFormat};
+    EXPECT_FALSE(find_quaternion_order(gt, est)) << rotation.transpose();
+  }
+}
+
+TEST(QuaternionOrder, IsNotAskedOfFilesWithoutColumnsOfQuaternions) {
+  const LoadedTrajectory bag{.trajectory = with_other_order(kGt, QuaternionOrder::kWxyz), .repairs = {}};
+  EXPECT_FALSE(find_quaternion_order(bag, bag));
+}
+
 TEST(Conventions, DetectInvertedPoses) {
   Trajectory est = kEst;
   for (StampedPose& pose : est.poses) pose.T_w_f = pose.T_w_f.inverse();

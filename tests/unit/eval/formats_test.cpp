@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
 #include "eval/io/matrix_files.h"
 #include "eval/io/openloris_file.h"
 #include "eval/io/trajectory_file.h"
@@ -67,6 +72,84 @@ TEST(Formats, AreDetectedFromTheContent) {
   EXPECT_EQ(detect_format(format_euroc(kPath)), TrajectoryFormat::kEuroc);
   EXPECT_EQ(detect_format(format_kitti(kPath).poses), TrajectoryFormat::kKitti);
   EXPECT_EQ(detect_format("scene: home\nseq: 1\n"), TrajectoryFormat::kOpenloris);
+}
+
+/// The columns of `kPath` under the names of a header; "-" becomes a further column.
+std::string named_columns(const std::string& header, const std::vector<std::string>& columns,
+                          bool nanoseconds) {
+  std::string text = header + "\n";
+  for (const auto& [t, pose] : kPath.poses) {
+    const std::map<std::string, double> values{{"x", pose.p.x()},  {"y", pose.p.y()},  {"z", pose.p.z()},
+                                               {"qx", pose.q.x()}, {"qy", pose.q.y()}, {"qz", pose.q.z()},
+                                               {"qw", pose.q.w()}, {"-", 7.5}};
+    for (const std::string& column : columns) {
+      const std::string stamp = nanoseconds ? std::to_string(t.ns) : format_stamp(t);
+      char number[32];
+      if (column != "t") std::snprintf(number, sizeof number, "%.9f", values.at(column));
+      text += (column == "t" ? stamp : number) + std::string(&column == &columns.back() ? "\n" : ",");
+    }
+  }
+  return text;
+}
+
+TEST(Formats, ColumnsAreReadByTheNamesInTheHeader) {
+  const TemporaryFolder folder;
+  struct Case {
+    std::string header;
+    std::vector<std::string> columns;
+    bool nanoseconds;
+  };
+  const std::vector<std::string> wxyz{"t", "x", "y", "z", "qw", "qx", "qy", "qz"};
+  const std::vector<std::string> xyzw{"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
+  for (const auto& [header, columns, nanoseconds] : std::vector<Case>{
+           {"#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []",
+            wxyz, true},
+           {"timestamp, p_WS_W_x, p_WS_W_y, p_WS_W_z, q_WS_x, q_WS_y, q_WS_z, q_WS_w", xyzw, false},
+           {"ts (ns),tx (m),ty (m),tz (m),qx,qy,qz,qw", xyzw, true},
+           {"#timestamp,x,y,z,qw,qx,qy,qz,vx", {"t", "x", "y", "z", "qw", "qx", "qy", "qz", "-"}, false},
+           {"# timestamp tx ty tz qw qx qy qz", wxyz, false},
+           {"# written by a tool at noon\n# time[s] x[m] y[m] z[m] qw qx qy qz", wxyz, false},
+           {",time_ns,qw,qx,qy,qz,tx,ty,tz", {"-", "t", "qw", "qx", "qy", "qz", "x", "y", "z"}, true},
+           {"%time,field.header.seq,field.pose.position.x,field.pose.position.y,field.pose.position.z,"
+            "field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,"
+            "field.pose.orientation.w",
+            {"t", "-", "x", "y", "z", "qx", "qy", "qz", "qw"},
+            false},
+           {"t,x,y,z,vx,vy,vz,qw,qx,qy,qz,bgx",
+            {"t", "x", "y", "z", "-", "-", "-", "qw", "qx", "qy", "qz", "-"},
+            false}}) {
+    const auto file = folder.write("named.csv", named_columns(header, columns, nanoseconds));
+    SCOPED_TRACE(header);
+    const LoadedTrajectory loaded = read_trajectory({.path = file});
+    expect_same(loaded.trajectory, kPath);
+    EXPECT_EQ(loaded.order_source, OrderSource::kNamed);
+  }
+}
+
+TEST(Formats, AHeaderThatNamesNoPoseIsAnError) {
+  const TemporaryFolder folder;
+  for (const std::string header :
+       {"time,a,b,c,d,e,f,g", "t,x,y,z,roll,pitch,yaw,w", "t,x,x,z,qx,qy,qz,qw", "x,y,z,qx,qy,qz,qw,speed",
+        "header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw", "t (ms),x,y,z,qx,qy,qz,qw"}) {
+    const auto file = folder.write("named.csv", header + "\n1,0,0,0,0,0,0,1,0\n2,0,0,0,0,0,0,1,0\n");
+    SCOPED_TRACE(header);
+    expect_input_error([&] { static_cast<void>(read_trajectory({.path = file})); }, {"named.csv:1"});
+  }
+}
+
+TEST(Formats, NanosecondsWithoutAHeaderHaveAnAssumedOrder) {
+  const TemporaryFolder folder;
+  const std::string row = "1403636579763555584.000000 1 2 3 0 0 0 1\n";
+  const LoadedTrajectory blanks = read_trajectory({.path = folder.write("orb_slam3.txt", row)});
+  EXPECT_EQ(blanks.trajectory.poses.front().t, Timestamp{1403636579763555584});
+  EXPECT_EQ(blanks.trajectory.poses.front().T_w_f.q.w(), 1.0);
+  EXPECT_EQ(blanks.order_source, OrderSource::kAssumed);
+  const LoadedTrajectory commas =
+      read_trajectory({.path = folder.write("a.csv", "1403636579763555584,1,2,3,1,0,0,0\n")});
+  EXPECT_EQ(commas.trajectory.poses.front().T_w_f.q.w(), 1.0);
+  EXPECT_EQ(commas.order_source, OrderSource::kAssumed);
+  expect_same(with_other_order(with_other_order(kPath, QuaternionOrder::kWxyz), QuaternionOrder::kXyzw),
+              kPath);
 }
 
 TEST(Openloris, DropsRepeatedPosesUnlessTheyAreRequested) {

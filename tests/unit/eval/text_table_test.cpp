@@ -31,6 +31,40 @@ TEST(RowReader, SkipsCommentsAndBlankLinesButCountsThem) {
   EXPECT_FALSE(rows.next().has_value());
 }
 
+TEST(RowReader, KeepsAnEmptyFieldInItsPlace) {
+  for (const std::string line : {"1,,3,", "1;;3;", "1 , , 3", "1,\t,3\r"}) {
+    with_row(line + "\n", [](const TextRow& row) {
+      ASSERT_EQ(row.fields.size(), 3U) << row.content;
+      EXPECT_EQ(row.number(2), 3.0);
+      expect_input_error([&] { static_cast<void>(row.number(1)); }, {"a.txt:1", "field 2 is empty"});
+      expect_input_error([&] { static_cast<void>(row.time(1, TimeUnit::kSeconds)); }, {"field 2 is empty"});
+    });
+  }
+  with_row(",2,3\n", [](const TextRow& row) {
+    ASSERT_EQ(row.fields.size(), 3U);
+    EXPECT_EQ(row.number(1), 2.0);
+  });
+}
+
+TEST(TextRow, NamesDecimalCommas) {
+  for (const std::string line : {"1,5 0,1 0,2 3", "1,5;0,1;0,2;3", "1403636579763555584;0,1;-0,2"}) {
+    with_row(line + "\n", [](const TextRow& row) {
+      expect_input_error([&] { static_cast<void>(row.time(0, TimeUnit::kSeconds)); },
+                         {"a.txt:1", "decimal commas"});
+    });
+  }
+  with_row("1,5,0,1\n", [](const TextRow& row) {  // integers
+    EXPECT_EQ(row.time(0, TimeUnit::kSeconds), Timestamp{1'000'000'000});
+  });
+}
+
+TEST(TextRow, NanosecondsMayHaveDecimalsThatAreZero) {
+  with_row("1403636579763555584.000000 10.5\n", [](const TextRow& row) {
+    EXPECT_EQ(row.time(0, TimeUnit::kNanoseconds), Timestamp{1403636579763555584});
+    expect_input_error([&] { static_cast<void>(row.time(1, TimeUnit::kNanoseconds)); }, {"is the file in"});
+  });
+}
+
 TEST(TextRow, ErrorsNameFileAndLine) {
   with_row("1 x\n", [](const TextRow& row) {
     expect_input_error([&] { static_cast<void>(row.number(1)); }, {"a.txt:1", "\"x\" is not a number"});

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "eval/io/column_header.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "core/base/error.h"
+
+namespace stillpoint::eval {
+namespace {
+
+constexpr std::string_view kAxes = "xyzw";
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+template <std::size_t kCount>
+bool is_one_of(std::string_view text, const std::array<std::string_view, kCount>& candidates) {
+  return std::find(candidates.begin(), candidates.end(), text) != candidates.end();
+}
+
+/// The words of a header line: between commas or semicolons if there are any, else between blanks that are
+/// not in brackets; a word in brackets belongs to the one in front of it.
+std::vector<std::string> words_of(std::string_view line) {
+  const bool delimited = line.find_first_of(",;") != std::string_view::npos;
+  std::vector<std::string> words{""};
+  int depth = 0;
+  for (const char letter : line) {
+    const bool is_blank = letter == ' ' || letter == '\t' || letter == '\r';
+    depth += letter == '[' || letter == '(' ? 1 : 0;
+    depth -= letter == ']' || letter == ')' ? 1 : 0;
+    const bool ends_word = delimited ? letter == ',' || letter == ';' : is_blank && depth == 0;
+    if (ends_word) {
+      if (delimited || !words.back().empty()) words.emplace_back();
+    } else if (letter != '"' && letter != '\r') {
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    }
+  }
+  if (words.back().find_first_not_of(" \t") == std::string::npos) words.pop_back();
+  return words;
+}
+
+std::string trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return "";
+  return std::string(text.substr(begin, text.find_last_not_of(" \t") - begin + 1));
+}
+
+std::vector<TableHeader::Column> columns_of_line(std::string_view line) {
+  std::vector<TableHeader::Column> columns;
+  for (const std::string& word : words_of(line)) {
+    const std::size_t bracket = word.find_first_of("[(");
+    const std::string name = trimmed(std::string_view(word).substr(0, bracket));
+    std::string unit;
+    if (bracket != std::string::npos) {
+      const std::size_t end = std::min(word.find_first_of("])", bracket), word.size());
+      unit = trimmed(std::string_view(word).substr(bracket + 1, end - bracket - 1));
+    }
+    if (name.empty() && !unit.empty() && !columns.empty() && columns.back().unit.empty()) {
+      columns.back().unit = unit;
+    } else {
+      columns.push_back({name, unit});
+    }
+  }
+  return columns;
+}
+
+/// Whether a line without "#" in front of it has words only.
+bool has_no_number(const std::vector<TableHeader::Column>& columns) {
+  return std::none_of(columns.begin(), columns.end(), [](const TableHeader::Column& column) {
+    return !column.name.empty() && (parse_number(column.name) || contains(column.name, ":"));
+  });
+}
+
+bool is_time(std::string_view name) {
+  constexpr std::array<std::string_view, 10> kNames{"t",    "ts",      "t_s", "t_ns", "sec",
+                                                    "secs", "seconds", "ns",  "nsec", "nanoseconds"};
+  return is_one_of(name, kNames) || contains(name, "stamp") || name.starts_with("time") ||
+         name.ends_with("time");
+}
+
+/// The axis that the name of a column ends with, and the rest of the name.
+struct AxisName {
+  std::size_t axis = 0;
+  std::string_view rest;
+};
+
+std::optional<AxisName> axis_name(std::string_view name) {
+  if (name.empty()) return std::nullopt;
+  const std::size_t axis = kAxes.find(name.back());
+  if (axis == std::string_view::npos) return std::nullopt;
+  name.remove_suffix(1);
+  while (!name.empty() && contains("_.-/ ", name.substr(name.size() - 1))) name.remove_suffix(1);
+  return AxisName{axis, name};
+}
+
+bool is_quantity(std::string_view rest, Quantity quantity) {
+  constexpr std::array<std::string_view, 7> kPosition{"", "t", "p", "pos", "trans", "loc", "location"};
+  constexpr std::array<std::string_view, 7> kRate{"w", "g", "omega", "gyr", "gyro", "angvel", "rotrate"};
+  const bool is_rate = is_one_of(rest, kRate) || rest.starts_with("w_") || rest.starts_with("g_") ||
+                       rest.starts_with("gyr") || rest.starts_with("omega") ||
+                       contains(rest, "angular_vel") || contains(rest, "rotation_rate");
+  switch (quantity) {
+    case Quantity::kPosition:
+      return is_one_of(rest, kPosition) || rest.starts_with("p_") || rest.starts_with("t_") ||
+             rest.starts_with("pos_") || contains(rest, "position") || contains(rest, "translation");
+    case Quantity::kQuaternion:
+      return !is_rate && (rest == "q" || rest == "r" || rest == "rot" || rest.starts_with("q_") ||
+                          rest.starts_with("quat") || contains(rest, "orientation") ||
+                          contains(rest, "quaternion") || contains(rest, "rotation"));
+    case Quantity::kAngularVelocity:
+      return is_rate;
+    case Quantity::kAcceleration:
+      return rest == "a" || rest.starts_with("a_") || rest.starts_with("acc") ||
+             contains(rest, "linear_acc") || contains(rest, "acceleration");
+  }
+  return false;
+}
+
+bool names_samples(const TableHeader& header) {
+  return time_column(header) && (!columns_of(header, Quantity::kPosition).empty() ||
+                                 !columns_of(header, Quantity::kAngularVelocity).empty());
+}
+
+}  // namespace
+
+TableHeader find_header(std::string_view text) {
+  TableHeader header;
+  LineReader lines(text);
+  while (const std::optional<std::string_view> line = lines.next()) {
+    const std::size_t begin = line->find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) continue;
+    const char first = (*line)[begin];
+    const bool is_comment = first == '#';
+    const bool has_mark = is_comment || first == '%';
+    TableHeader read{lines.line_number(), is_comment,
+                     columns_of_line(line->substr(begin + (has_mark ? 1 : 0)))};
+    if (is_comment) {
+      if (names_samples(read)) header = std::move(read);
+      continue;
+    }
+    if (read.columns.size() >= 2 && has_no_number(read.columns)) header = std::move(read);
+    break;
+  }
+  return header;
+}
+
+std::optional<std::size_t> time_column(const TableHeader& header) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < header.columns.size(); ++i) {
+    const std::string& name = header.columns[i].name;
+    const bool is_fraction = name.ends_with("nsec") || name.ends_with("nsecs") || name.ends_with("nanosec");
+    if (found && is_fraction) return std::nullopt;  // seconds and nanoseconds in two columns
+    if (!found && is_time(name)) found = i;
+  }
+  return found;
+}
+
+std::optional<TimeUnit> time_unit(const TableHeader& header, std::string_view file) {
+  const std::optional<std::size_t> column = time_column(header);
+  if (!column) return std::nullopt;
+  const auto& [name, unit] = header.columns[*column];
+  if (unit.starts_with("ns") || unit.starts_with("nano") || name == "ns" || name == "nsec" ||
+      name.starts_with("nano") || name.ends_with("_ns") || name.ends_with("_nsec"))
+    return TimeUnit::kNanoseconds;
+  if (unit == "s" || unit.starts_with("sec")) return TimeUnit::kSeconds;
+  if (unit.starts_with("us") || unit.starts_with("mic") || unit.starts_with("ms") ||
+      unit.starts_with("mil") || name.ends_with("_us") || name.ends_with("_ms")) {
+    throw InputError(std::string(file), header.line,
+                     "the stamps are in " + (unit.empty() ? name : unit) + "; convert them to s or ns");
+  }
+  return std::nullopt;
+}
+
+std::vector<std::size_t> columns_of(const TableHeader& header, Quantity quantity) {
+  const std::size_t count = quantity == Quantity::kQuaternion ? 4 : 3;
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> found(count, kNone);
+  for (std::size_t i = 0; i < header.columns.size(); ++i) {
+    const std::optional<AxisName> name = axis_name(header.columns[i].name);
+    if (!name || name->axis >= count || !is_quantity(name->rest, quantity)) continue;
+    if (found[name->axis] != kNone) return {};
+    found[name->axis] = i;
+  }
+  if (std::find(found.begin(), found.end(), kNone) != found.end()) return {};
+  return found;
+}
+
+std::string unit_of(const TableHeader& header, Quantity quantity) {
+  const std::vector<std::size_t> columns = columns_of(header, quantity);
+  return columns.empty() ? "" : header.columns[columns.front()].unit;
+}
+
+bool fits_rows(const TableHeader& header, std::string_view text) {
+  RowReader rows(text, "");
+  while (const std::optional<TextRow> row = rows.next()) {
+    if (row->line > header.line)
+      return row->fields.size() == header.columns.size() || time_column(header) == std::size_t{0};
+  }
+  return false;
+}
+
+}  // namespace stillpoint::eval
