@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -58,36 +59,79 @@ Comparison counted_outcomes(const PairedRuns& runs) {
   return comparison;
 }
 
-std::vector<double> smallest_p_values(const std::vector<MetricSeries>& list) {
-  std::vector<double> values;
+TestFamily family_of(const std::vector<MetricSeries>& list) {
+  std::vector<TestedSeries> tests;
   for (const MetricSeries& series : list) {
-    if (series.decides && is_tested(series)) values.push_back(smallest_p_of(series));
+    if (series.decides && is_tested(series)) tests.push_back({p_value_of(series), smallest_p_of(series)});
   }
-  return values;
+  return test_family(std::move(tests));
 }
 
-/// Adds a pooled series for each metric and variant that has too few pairs on a sequence.
-std::vector<MetricSeries> with_pooled(std::vector<MetricSeries> accuracy, const TestFamily& family) {
+/// Adds a pooled series for each metric and group of which a member has too few pairs to be significant on
+/// its own; members that never can are reported only.
+/// @param group of a series, e.g. its variant
+std::vector<MetricSeries> with_pooled(std::vector<MetricSeries> list,
+                                      std::string (*group)(const MetricSeries&)) {
+  const std::size_t tests = family_of(list).tests;
+  const double first_level = kSignificance / static_cast<double>(std::max<std::size_t>(tests, 1));
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;
-  for (std::size_t i = 0; i < accuracy.size(); ++i)
-    groups[{accuracy[i].metric, accuracy[i].variant}].push_back(i);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].decides) groups[{list[i].metric, group(list[i])}].push_back(i);
+  }
   for (const auto& [name, members] : groups) {
     if (members.size() < 2) continue;
     std::vector<const MetricSeries*> parts;
     bool too_few = false;
     for (const std::size_t i : members) {
-      parts.push_back(&accuracy[i]);
-      if (!is_tested(accuracy[i]) || smallest_p_of(accuracy[i]) <= family.level) continue;
-      accuracy[i].decides = false;
-      too_few = true;
+      parts.push_back(&list[i]);
+      too_few = too_few || (is_tested(list[i]) && smallest_p_of(list[i]) > first_level);
     }
-    if (too_few) accuracy.push_back(pooled(parts));
+    if (!too_few) continue;
+    MetricSeries pool = pooled(parts);
+    for (const std::size_t i : members)
+      list[i].decides = !is_tested(list[i]) || smallest_p_of(list[i]) <= kSignificance;
+    list.push_back(std::move(pool));
   }
-  return accuracy;
+  return list;
+}
+
+/// Whether the pairs of a metric over all sequences of a variant are still too few: pooled over the variants.
+std::vector<MetricSeries> with_all_pools(std::vector<MetricSeries> accuracy) {
+  accuracy = with_pooled(std::move(accuracy), [](const MetricSeries& series) { return series.variant; });
+  const bool can_reject = std::ranges::any_of(accuracy, [](const MetricSeries& series) {
+    return series.decides && is_tested(series) && smallest_p_of(series) <= kSignificance;
+  });
+  if (can_reject) return accuracy;
+  return with_pooled(std::move(accuracy), [](const MetricSeries&) { return std::string(); });
+}
+
+/// Whether a cost changed that the runs were not made to measure.
+bool is_reported_cost(const MetricChange& change) {
+  const MetricDescriptor* gated = gated_metric(change.metric);  // null: a module
+  const bool is_cost = gated == nullptr || gated->gate->family == MetricFamily::kCost;
+  return is_cost && change.changed && !change.decides;
+}
+
+/// One sentence if runs with different seeds or repetitions are copies of each other.
+std::vector<std::string> notes_on_copies(const PairedRuns& runs) {
+  std::map<std::string, std::set<std::string>> results;
+  std::size_t count = 0;
+  std::size_t copies = 0;
+  for (const RunPair& pair : runs.pairs) {
+    if (!both_succeeded(pair)) continue;
+    ++count;
+    copies += results[subject_label(pair.head->identity)].insert(fingerprint(*pair.head)).second ? 0 : 1;
+  }
+  if (copies == 0) return {};
+  return {
+      fmt::format("{} of {} runs of head have the result of another seed or repetition to the bit: copies, "
+                  "which count once; "
+                  "vary {} to obtain replicates of a deterministic run",
+                  copies, count, kPerturbationKey)};
 }
 
 /// One sentence for each number of pairs that is too small for the inconclusive changes.
-std::vector<std::string> notes_on_pairs(const Comparison& comparison) {
+std::vector<std::string> notes_on_pairs(const Comparison& comparison, CompareSource source) {
   std::map<std::tuple<ChangeTest, std::size_t, double, std::size_t>, std::size_t> counts;
   for (const MetricChange& change : comparison.changes) {
     if (change.needed > 0 && change.result == ChangeClass::kInconclusive)
@@ -99,9 +143,12 @@ std::vector<std::string> notes_on_pairs(const Comparison& comparison) {
     const char* noun = test == ChangeTest::kReplicates ? "replicate" : "pair";
     notes.push_back(fmt::format(
         "{} {}{} cannot go below p = {:.2g}, but {} tests at once require p <= {:.2g}: {} change{} remain{} "
-        "inconclusive; run with --pairs {}, or store {} seeds or perturbations of each sequence",
+        "inconclusive; {}",
         count, noun, count == 1 ? "" : "s", smallest_p, comparison.family.tests, comparison.family.level,
-        metrics, metrics == 1 ? "" : "s", metrics == 1 ? "s" : "", needed, needed));
+        metrics, metrics == 1 ? "" : "s", metrics == 1 ? "s" : "",
+        source == CompareSource::kPrograms
+            ? fmt::format("run with --pairs {}", needed)
+            : fmt::format("store {} seeds or perturbations of each sequence", needed)));
   }
   return notes;
 }
@@ -134,7 +181,7 @@ ChangeClass Comparison::result() const {
   for (const MissingResult& result : missing) {
     if (!missing_allowed && pairs > 0) worst = std::max(worst, result.result);
   }
-  if (!has_result()) return std::max(worst, ChangeClass::kInconclusive);
+  if (!has_result() || !unlike.empty()) worst = std::max(worst, ChangeClass::kInconclusive);
   for (const MetricChange& change : changes) {
     if (change.decides) worst = std::max(worst, change.result);
   }
@@ -154,26 +201,21 @@ std::string count_sentence(const Comparison& comparison) {
   return text;
 }
 
-Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head) {
+Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head,
+                        CompareSource source) {
   const PairedRuns runs = paired_runs(base, head);
   Comparison comparison = counted_outcomes(runs);
   comparison.failures = failure_class(runs);
   comparison.missing = missing_results(runs);
+  comparison.unlike = unlike_results(runs);
   const bool trajectories_are_equal = comparison.compared > 0 && comparison.bit_equal == comparison.compared;
   const bool accuracy_is_equal =
       trajectories_are_equal && std::ranges::all_of(runs.pairs, has_equal_accuracy);
-  const std::vector<MetricSeries> costs = cost_series(runs);
-  std::vector<MetricSeries> accuracy;
-  if (!accuracy_is_equal) accuracy = accuracy_series(runs);
-  std::vector<MetricSeries> all = accuracy;
-  all.insert(all.end(), costs.begin(), costs.end());
-  accuracy = with_pooled(std::move(accuracy), test_family(smallest_p_values(all)));
-  all = accuracy;
-  all.insert(all.end(), costs.begin(), costs.end());
-  comparison.family = test_family(smallest_p_values(all));
-  comparison.changes = changes_of(accuracy, comparison.family);
-  const std::vector<MetricChange> cost_changes = changes_of(costs, comparison.family);
-  comparison.changes.insert(comparison.changes.end(), cost_changes.begin(), cost_changes.end());
+  std::vector<MetricSeries> all;
+  if (!accuracy_is_equal) all = with_all_pools(accuracy_series(runs));
+  for (MetricSeries& series : cost_series(runs)) all.push_back(std::move(series));
+  comparison.family = family_of(all);
+  comparison.changes = changes_of(all, comparison.family);
   if (accuracy_is_equal) {
     comparison.notes.emplace_back("all trajectories are bit-equal: accuracy was not tested");
   } else if (trajectories_are_equal) {
@@ -181,7 +223,12 @@ Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredR
         "all trajectories are bit-equal, but their errors are not: the ground truth or the evaluation "
         "differs");
   }
-  for (std::string& note : notes_on_pairs(comparison)) comparison.notes.push_back(std::move(note));
+  if (std::ranges::any_of(comparison.changes, is_reported_cost))
+    comparison.notes.emplace_back(
+        "times and memory of runs that share the machine are reported only; measure them with kind = "
+        "\"timing\"");
+  for (std::string& note : notes_on_copies(runs)) comparison.notes.push_back(std::move(note));
+  for (std::string& note : notes_on_pairs(comparison, source)) comparison.notes.push_back(std::move(note));
   return comparison;
 }
 

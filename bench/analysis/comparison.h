@@ -8,9 +8,12 @@
 
 #include "bench/analysis/metric_change.h"
 #include "bench/analysis/missing_results.h"
+#include "bench/analysis/unlike_results.h"
 #include "bench/model/stored_run.h"
 
 namespace stillpoint::bench {
+
+enum class CompareSource { kStores, kPrograms };
 
 struct Comparison {
   std::size_t pairs = 0;            ///< runs present in both base and head
@@ -25,6 +28,7 @@ struct Comparison {
   std::string first_failure;  ///< "vo on walking_xyz, base: crashed, terminated by signal 11"; empty without
   ChangeClass failures = ChangeClass::kSame;  ///< whether runs fail more often at head, see `failure_class`
   std::vector<MissingResult> missing;         ///< what base has and head lacks
+  std::vector<UnlikeResult> unlike;           ///< what both have, but not measured alike: not compared
   bool missing_allowed = false;               ///< then it is listed, but no finding
   TestFamily family;
   std::vector<MetricChange> changes;
@@ -34,7 +38,8 @@ struct Comparison {
   /// Whether there is a pair of succeeded runs with a metric in common, or with equal trajectories.
   [[nodiscard]] bool has_result() const;
   /// kWorse if runs fail more often at head; kError if all runs of all pairs failed; kInconclusive without a
-  /// result; else the worst class over all metrics that decide, and over what is missing at head.
+  /// result, or if something was not measured alike and nothing is worse; else the worst class over all
+  /// metrics that decide, and over what is missing at head.
   [[nodiscard]] ChangeClass result() const;
 };
 
@@ -54,7 +59,9 @@ struct Comparison {
 ///
 /// Times and memory are tested per variant over all sequences. Accuracy is not tested if all trajectories are
 /// bit-equal.
-[[nodiscard]] Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head);
+/// @param source where the runs come from, for advice that applies to it
+[[nodiscard]] Comparison compare_runs(std::span<const StoredRun> base, std::span<const StoredRun> head,
+                                      CompareSource source = CompareSource::kStores);
 
 /// Control: base compared with itself, repetition 2k with 2k - 1, which have different perturbations. Not
 /// corrected for the number of tests, so that it detects small disturbances of the machine.

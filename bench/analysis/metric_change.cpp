@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "bench/analysis/missing_results.h"
+#include "bench/analysis/unlike_results.h"
 #include "core/base/module_timings.h"
 #include "eval/metrics/statistics.h"
 #include "eval/statistics/change_points.h"
@@ -28,14 +29,22 @@ Input input_of(const RunIdentity& identity) {
 /// Runs of one side, each fingerprint once.
 class DistinctRuns {
  public:
-  void add(const StoredRun& run) {
-    if (fingerprints_.insert(fingerprint(run)).second) runs_.push_back(&run);
+  /// @return whether it is new
+  bool add(const StoredRun& run) {
+    if (!fingerprints_.insert(fingerprint(run)).second) return false;
+    runs_.push_back(&run);
+    return true;
   }
-  [[nodiscard]] std::vector<double> values(std::string_view metric) const {
+  [[nodiscard]] bool contains(const StoredRun& run) const { return fingerprints_.contains(fingerprint(run)); }
+  /// @param like a metric of equal name, protocol and unit
+  [[nodiscard]] std::vector<double> values(const Metric& like) const {
     std::vector<double> values;
     for (const StoredRun* run : runs_) {
-      const std::optional<double> value = metric_value(*run, metric);
-      if (value && std::isfinite(*value)) values.push_back(*value);
+      for (const Metric& metric : run->metrics) {
+        if (metric.name == like.name && metric.protocol == like.protocol && metric.unit == like.unit &&
+            std::isfinite(metric.value))
+          values.push_back(metric.value);
+      }
     }
     return values;
   }
@@ -47,22 +56,28 @@ class DistinctRuns {
 
 /// The paired runs of one variant on one sequence.
 struct PairedSubject {
-  std::vector<RunPair> pairs;  ///< with different fingerprints on at least one side
-  std::set<Input> inputs;
-  std::set<std::tuple<Input, std::string, std::string>> fingerprints;
+  std::vector<RunPair> pairs;  ///< without those that repeat a result of base or of head
+  std::vector<RunPair> all;
+  std::set<Input> inputs;  ///< of `pairs`
+  DistinctRuns base;
+  DistinctRuns head;
 
+  /// Runs with equal results are copies, whatever their seeds: a seed that a recorded sequence does not use,
+  /// or a repetition of a deterministic program.
   void add(const RunPair& pair) {
-    const Input input = input_of(pair.base->identity);
-    inputs.insert(input);
-    if (fingerprints.insert({input, fingerprint(*pair.base), fingerprint(*pair.head)}).second)
-      pairs.push_back(pair);
+    all.push_back(pair);
+    if (base.contains(*pair.base) || head.contains(*pair.head)) return;
+    base.add(*pair.base);
+    head.add(*pair.head);
+    inputs.insert(input_of(pair.base->identity));
+    pairs.push_back(pair);
   }
 
   /// The runs of one side, and its perturbed runs without counterpart.
   [[nodiscard]] DistinctRuns side(const StoredRun* RunPair::*member,
                                   const std::vector<const StoredRun*>& others) const {
     DistinctRuns runs;
-    for (const RunPair& pair : pairs) runs.add(*(pair.*member));
+    for (const RunPair& pair : all) runs.add(*(pair.*member));
     const Input input = input_of((pairs.front().*member)->identity);
     for (const StoredRun* run : others) {
       const RunIdentity& identity = run->identity;
@@ -82,9 +97,8 @@ MetricSeries series_of(const Metric& stored, const PairedSubject& runs) {
                       .descriptor = gated_metric(stored.name),
                       .inputs = runs.inputs.size()};
   for (const RunPair& pair : runs.pairs) {
-    const std::optional<double> base = metric_value(*pair.base, stored.name);
-    const std::optional<double> head = metric_value(*pair.head, stored.name);
-    if (base && head && std::isfinite(*base) && std::isfinite(*head)) series.pairs.push_back({*base, *head});
+    if (const std::optional<eval::Pair> values = comparable_values(pair, stored.name))
+      series.pairs.push_back(*values);
   }
   return series;
 }
@@ -104,7 +118,8 @@ std::vector<Metric> accuracy_metrics(const PairedSubject& runs) {
   std::map<std::string, Metric> metrics;
   for (const RunPair& pair : runs.pairs) {
     for (const Metric& metric : pair.base->metrics) {
-      if (is_gated(metric, MetricFamily::kAccuracy)) metrics.emplace(metric.name, metric);
+      if (is_gated(metric, MetricFamily::kAccuracy) && comparable_values(pair, metric.name))
+        metrics.emplace(metric.name, metric);
     }
   }
   std::vector<Metric> list;
@@ -115,39 +130,61 @@ std::vector<Metric> accuracy_metrics(const PairedSubject& runs) {
 /// Series of costs by metric and subject.
 class CostTable {
  public:
-  void add(const RunIdentity& identity, const MetricDescriptor& metric, const std::string& name,
-           const eval::Pair& pair) {
+  /// @param decides whether the cost is measured by these runs, not only reported
+  void add(const RunIdentity& identity, const Metric& stored, const eval::Pair& pair, bool decides) {
+    const MetricDescriptor* known = gated_metric(stored.name);
+    const MetricDescriptor& metric = known != nullptr ? *known : *gated_metric(metric_id::kModuleTime);
     const bool is_exact = metric.gate->repeatable;
     const std::string subject = is_exact ? subject_label(identity) : variant_label(identity);
-    MetricSeries& series = table_[{name, subject}];
-    series.metric = name;
+    const Key key{stored.name, subject, decides || is_exact};
+    MetricSeries& series = table_[key];
+    series.metric = stored.name;
     series.subject = subject;
     series.variant = variant_label(identity);
-    series.unit = std::string(metric.unit);
+    series.unit = stored.unit;
     series.descriptor = &metric;
     series.test = is_exact ? ChangeTest::kExact : ChangeTest::kPairs;
+    series.decides = decides || is_exact;
     if (std::isfinite(pair.base) && std::isfinite(pair.changed)) series.pairs.push_back(pair);
-    inputs_[{name, subject}].insert(input_of(identity));
-    series.inputs = inputs_[{name, subject}].size();
+    inputs_[key].insert(input_of(identity));
+    series.inputs = inputs_[key].size();
   }
 
+  /// Runs that were not made to measure a cost are left out if others were.
   [[nodiscard]] std::vector<MetricSeries> all() const {
     std::vector<MetricSeries> list;
-    for (const auto& [key, series] : table_) list.push_back(series);
+    for (const auto& [key, series] : table_) {
+      const auto& [metric, subject, decides] = key;
+      if (decides || !table_.contains({metric, subject, true})) list.push_back(series);
+    }
     return list;
   }
 
  private:
-  using Key = std::pair<std::string, std::string>;
+  using Key = std::tuple<std::string, std::string, bool>;
   std::map<Key, MetricSeries> table_;
   std::map<Key, std::set<Input>> inputs_;
 };
+
+/// Variants whose times were measured on one machine, base and head in turn.
+std::set<std::string> variants_with_times(const PairedRuns& runs) {
+  std::map<std::string, std::vector<RunPair>> timed;
+  for (const RunPair& pair : runs.pairs) {
+    if (both_succeeded(pair) && measures_costs(pair.base->identity))
+      timed[variant_label(pair.base->identity)].push_back(pair);
+  }
+  std::set<std::string> variants;
+  for (const auto& [variant, pairs] : timed) {
+    if (is_interleaved(pairs) && std::ranges::all_of(pairs, on_same_machine)) variants.insert(variant);
+  }
+  return variants;
+}
 
 /// Pairs that the signed-rank test does not omit.
 std::size_t different_pairs(const MetricSeries& series) {
   return static_cast<std::size_t>(
       std::count_if(series.pairs.begin(), series.pairs.end(),
-                    [](const eval::Pair& pair) { return pair.base != 0.0 && pair.base != pair.changed; }));
+                    [](const eval::Pair& pair) { return pair.base != pair.changed; }));
 }
 
 std::vector<double> sorted(std::vector<double> values) {
@@ -171,8 +208,8 @@ std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
       // mostly 0.
       if (series.inputs == 1 && !has_zero_base(series)) {
         series.test = ChangeTest::kReplicates;
-        series.base = members.side(&RunPair::base, runs.only_in_base).values(metric.name);
-        series.head = members.side(&RunPair::head, runs.only_in_head).values(metric.name);
+        series.base = members.side(&RunPair::base, runs.only_in_base).values(metric);
+        series.head = members.side(&RunPair::head, runs.only_in_head).values(metric);
       }
       list.push_back(std::move(series));
     }
@@ -182,19 +219,22 @@ std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
 
 std::vector<MetricSeries> cost_series(const PairedRuns& runs) {
   CostTable table;
+  const std::set<std::string> with_times = variants_with_times(runs);
   for (const RunPair& pair : runs.pairs) {
     if (!both_succeeded(pair)) continue;
     const RunIdentity& identity = pair.base->identity;
-    for (const Metric& base : pair.base->metrics) {
-      const std::optional<double> head = metric_value(*pair.head, base.name);
-      if (head && is_gated(base, MetricFamily::kCost))
-        table.add(identity, *gated_metric(base.name), base.name, {base.value, *head});
+    const bool decides = measures_costs(identity);
+    const bool times_decide = decides && with_times.contains(variant_label(identity));
+    for (const Metric& metric : pair.base->metrics) {
+      const std::optional<eval::Pair> values = comparable_values(pair, metric.name);
+      if (values && is_gated(metric, MetricFamily::kCost))
+        table.add(identity, metric, *values, is_time(*gated_metric(metric.name)) ? times_decide : decides);
     }
     for (const ModuleCost& base : pair.base->costs) {
       for (const ModuleCost& head : pair.head->costs) {
-        if (base.module == head.module)
-          table.add(identity, *gated_metric(metric_id::kModuleTime), base.module,
-                    {base.mean_ms, head.mean_ms});
+        if (base.module == head.module && base.per == head.per)
+          table.add(identity, {.name = base.module, .unit = "ms"}, {base.mean_ms, head.mean_ms},
+                    times_decide);
       }
     }
   }
@@ -203,7 +243,9 @@ std::vector<MetricSeries> cost_series(const PairedRuns& runs) {
 
 MetricSeries pooled(const std::vector<const MetricSeries*>& parts) {
   MetricSeries series = *parts.front();
-  series.subject = series.variant + " on all sequences";
+  const bool is_one_variant =
+      std::ranges::all_of(parts, [&](const MetricSeries* part) { return part->variant == series.variant; });
+  series.subject = is_one_variant ? series.variant + " on all sequences" : "all variants on all sequences";
   series.test = ChangeTest::kPairs;
   series.decides = true;
   series.inputs = 0;
@@ -237,13 +279,17 @@ using Inputs = std::set<std::string>;
 
 }  // namespace
 
-TestFamily test_family(std::span<const double> smallest_p) {
-  const auto below = [&](double level) {
-    return static_cast<std::size_t>(
-        std::count_if(smallest_p.begin(), smallest_p.end(), [&](double p) { return p <= level; }));
-  };
-  TestFamily family{.tests = smallest_p.size()};
-  for (std::size_t k = 1; below(family.level) > k;) family.level = kSignificance / static_cast<double>(++k);
+TestFamily test_family(std::vector<TestedSeries> tests) {
+  std::erase_if(tests, [](const TestedSeries& test) { return test.smallest_p > kSignificance; });
+  std::ranges::sort(tests, {}, &TestedSeries::p_value);
+  TestFamily family{.tests = tests.size()};
+  if (tests.empty()) return family;
+  const double first_level = kSignificance / static_cast<double>(tests.size());
+  family.level = first_level;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const double level = first_level * static_cast<double>(i + 1);
+    if (tests[i].p_value <= level) family.level = level;
+  }
   return family;
 }
 
@@ -379,6 +425,15 @@ bool is_relevant(const MetricChange& change, const MetricGate& gate) {
          std::abs(change.change.median) >= margin_of(change, gate);
 }
 
+}  // namespace
+
+double p_value_of(const MetricSeries& series) {
+  const std::optional<eval::RelativeChange> change = tested_change(series, 1.0 - kSignificance);
+  return change ? change->p_value : 1.0;
+}
+
+namespace {
+
 std::optional<MetricChange> change_of(const MetricSeries& series, const TestFamily& family) {
   const std::optional<eval::RelativeChange> tested = tested_change(series, 1.0 - kSignificance);
   if (!tested) return std::nullopt;
@@ -398,8 +453,9 @@ std::optional<MetricChange> change_of(const MetricSeries& series, const TestFami
   change.decides = series.decides;
   if (is_tested(series)) {
     change.smallest_p = smallest_p_of(series);
-    if (change.smallest_p > change.level)
-      change.needed = pairs_for(series, kSignificance / static_cast<double>(family.tests));
+    const double level = kSignificance / static_cast<double>(std::max<std::size_t>(1, family.tests));
+    const std::size_t needed = pairs_for(series, level);
+    if (change.smallest_p > change.level && needed * series.inputs > tested->count) change.needed = needed;
   }
   change.result = classify(change, *series.descriptor);
   return change;

@@ -3,22 +3,24 @@
 /// valid for them, the level of significance, corrected for the number of tests in one comparison, and size,
 /// significance and class of each change.
 ///
-/// A comparison tests m metrics at once: five of accuracy for each variant and sequence, and fourteen of cost
-/// for each variant, 150 in all for the plan `quick`. The probability that any metric of an unchanged program
-/// is called better or worse shall be at most a = 0.05. Bonferroni's level a / m achieves this for any
-/// dependence between the metrics, but spends a part of the error on tests that cannot reject at all: with n
-/// pairs an exact test has no p-value below some p* > 0, and none at all where base and head are equal.
-/// Tarone (Biometrics 46, 1990) leaves these out:
+/// A comparison tests many metrics at once: five of accuracy for each variant and sequence, and fourteen of
+/// cost for each variant of a timing plan, 150 in all for the plan `quick`. Costs of runs that were not made
+/// to measure them (`measures_costs`) are reported, but not tested. The level is that of the false discovery
+/// rate (Benjamini and Hochberg, J. R. Statist. Soc. B 57, 1995) at a = 0.05, over the m tests that can
+/// reject at all: with n pairs an exact test has no p-value below some p* > 0, and those with p* > a are left
+/// out (as in Gilbert, Appl. Statist. 54, 2005; p* depends on the number of pairs and ties only):
 ///
-///   K = min{k >= 1: #{j: p*_j <= a / k} <= k},  metric j is significant if p_j <= a / K
+///   k = max{i: p_(i) <= i a / m},  metric j is significant if p_j <= max(k, 1) a / m
 ///
-/// At most K tests can reject at this level, each with probability <= a / K, so the sum is <= a. K is fixed
-/// before the signs of the differences are known, because p*_j depends on the number of pairs and ties only.
+/// p_(i): i-th smallest. If nothing changed, the probability of any false statement is at most a (for tests
+/// that are independent or positively dependent, as metrics of one run are); if metrics changed, at most a
+/// fraction a of the statements is expected to be false. A change shows in several metrics, which support
+/// each other: three of 15 metrics need p <= 0.01, where Bonferroni's level is 0.0033, which 8 pairs never
+/// reach.
 ///
 /// Smallest p-values: 2^(1-n) for n pairs (signed-rank test), 2 m! n! / (m + n)! for m and n replicates (rank
 /// test of two samples). Replicates on one input need fewer runs: for 150 tests 8 per side, where pairs would
-/// have to be 13; pairs are better where inputs or the state of the machine differ. Step-down procedures
-/// (Holm) have the same first step, and save no pairs.
+/// have to be 13; pairs are better where inputs or the state of the machine differ.
 #pragma once
 
 #include <cstddef>
@@ -53,17 +55,19 @@ struct MetricSeries {
   std::vector<eval::Pair> pairs;  ///< one per pair of runs
   std::vector<double> base;       ///< `kReplicates`: one value per replicate
   std::vector<double> head;
-  bool decides = true;  ///< false: the result of the comparison is that of `pooled` instead
+  bool decides = true;  ///< false: reported only; of accuracy, the result is that of `pooled` instead
 };
 
-/// Accuracy per variant and sequence, from runs that succeeded. Runs with equal fingerprints count once. With
-/// one input, replicates of only one side are used as well.
+/// Accuracy per variant and sequence, from runs that succeeded. Runs with equal fingerprints count once, also
+/// with different seeds. With one input, replicates of only one side are used as well.
 [[nodiscard]] std::vector<MetricSeries> accuracy_series(const PairedRuns& runs);
 
-/// Times and memory per variant, over all its sequences; instructions per variant and sequence.
+/// Times and memory per variant, over all its sequences; instructions per variant and sequence. Those of runs
+/// that were not made to measure them do not decide, nor do times that are unlike
+/// (bench/analysis/unlike_results.h).
 [[nodiscard]] std::vector<MetricSeries> cost_series(const PairedRuns& runs);
 
-/// The pairs of several series of one metric and variant as one series of the variant.
+/// The pairs of several series of one metric as one series, of one variant or of several.
 [[nodiscard]] MetricSeries pooled(const std::vector<const MetricSeries*>& parts);
 
 /// Whether the series is tested: base and head differ, and not exactly known.
@@ -75,11 +79,16 @@ inline constexpr double kSignificance = 0.05;
 /// The tests of one comparison.
 struct TestFamily {
   std::size_t tests = 0;         ///< m
-  double level = kSignificance;  ///< largest p-value of a significant change, a / K
+  double level = kSignificance;  ///< largest p-value of a significant change
 };
 
-/// @param smallest_p p*_j of each metric that differs between base and head
-[[nodiscard]] TestFamily test_family(std::span<const double> smallest_p);
+/// A test of a comparison.
+struct TestedSeries {
+  double p_value = 1.0;
+  double smallest_p = 1.0;  ///< p*, which its number of pairs can reach
+};
+
+[[nodiscard]] TestFamily test_family(std::vector<TestedSeries> tests);
 
 /// Smallest two-sided p-value of the rank test of two samples; 1 if one is empty.
 [[nodiscard]] double smallest_rank_sum_p(std::size_t first, std::size_t second);
@@ -92,6 +101,9 @@ struct TestFamily {
 /// @param runs the runs of one program, without repetitions
 /// @return 1 for runs that count instructions, which need no test
 [[nodiscard]] std::size_t pairs_for_plan(std::span<const RunIdentity> runs);
+
+/// p-value of the change of a series.
+[[nodiscard]] double p_value_of(const MetricSeries& series);
 
 /// Smallest p-value that a tested series can reach with its number of pairs.
 [[nodiscard]] double smallest_p_of(const MetricSeries& series);
@@ -123,7 +135,7 @@ struct MetricChange {
   bool changed = false;     ///< by at least margin and floor of the metric, significant or not
   double smallest_p = 1.0;  ///< that the number of pairs can reach
   std::size_t needed = 0;   ///< pairs per input that a class requires; 0 if there are enough
-  bool decides = true;      ///< false: too few pairs on this sequence, another change pools all sequences
+  bool decides = true;      ///< false: reported only, or too few pairs: another change pools all sequences
   ChangeClass result = ChangeClass::kSame;
 };
 

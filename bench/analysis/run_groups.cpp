@@ -128,16 +128,18 @@ std::string listed(std::vector<std::string> names) {
 }
 
 /// The build that a name or a prefix refers to.
-std::string chosen_build(const std::vector<std::string>& builds, const std::string& name) {
+std::string chosen_build(const std::vector<std::string>& builds, const std::string& name,
+                         const std::string& place) {
   std::vector<std::string> found;
   for (const std::string& build : builds) {
     if (build == name) return build;
-    if (build.starts_with(name)) found.push_back(build);
+    const bool is_changed = build.find('+') != std::string::npos && name.find('+') == std::string::npos;
+    if (build.starts_with(name) && !is_changed) found.push_back(build);
   }
   if (found.size() == 1) return found.front();
   const std::string problem = found.empty() ? "there is no run of build" : "several builds begin with";
-  throw InputError("--build", fmt::format("{} \"{}\"; existing builds, the newest first: {}", problem, name,
-                                          listed(found.empty() ? builds : found)));
+  throw InputError(place, fmt::format("{} \"{}\"; existing builds, the newest first: {}", problem, name,
+                                      listed(found.empty() ? builds : found)));
 }
 
 std::string mode_text(const RunIdentity& identity) {
@@ -229,10 +231,14 @@ std::string newest_build(std::span<const StoredRun> runs) {
   return builds.empty() ? "" : builds.front();
 }
 
+std::string build_named(std::span<const StoredRun> runs, const std::string& name, const std::string& place) {
+  return chosen_build(builds_of(runs), name, place);
+}
+
 RunSelection select_runs(const Store& store, std::span<const StoredRun> runs, const std::string& build) {
   const std::vector<std::string> builds = builds_of(runs);
   const bool is_named = !build.empty() && build != kAllBuilds;
-  const std::string chosen = is_named ? chosen_build(builds, build) : newest_build(runs);
+  const std::string chosen = is_named ? chosen_build(builds, build, "--build") : newest_build(runs);
   const std::vector<OriginRun> all = with_origins(store, runs);
   const NewestConfigs newest = newest_configs(all);
   std::map<std::string, std::size_t> other_builds;

@@ -57,6 +57,13 @@ struct RunSelection {
 /// of Stillpoint.
 [[nodiscard]] std::string newest_build(std::span<const StoredRun> runs);
 
+/// The build with a name or unique prefix. A build with uncommitted changes ("abc123+ff00") is another one
+/// than its commit: a name without "+" is no prefix of it.
+/// @param place of the name, for messages
+/// @throws InputError if there is none, or more than one; the message lists the builds
+[[nodiscard]] std::string build_named(std::span<const StoredRun> runs, const std::string& name,
+                                      const std::string& place);
+
 /// Divides runs into groups. If a variant was executed with several configs in one group, only its newest
 /// config is kept. Runs of external systems, whose builds are their own, are kept with the newest build and
 /// with all.

@@ -42,6 +42,7 @@ std::string p_text(const bench::MetricChange& change) {
 
 /// A change that is larger than the margin, but not significant, is said to be one.
 std::string result_text(const bench::MetricChange& change) {
+  if (!change.decides) return change.changed ? "changed, reported only" : "reported only";
   const std::string name = change_class_name(change.result);
   const bool is_unproven = change.changed && change.result == bench::ChangeClass::kInconclusive;
   return is_unproven ? "changed, " + name : name;
@@ -146,6 +147,33 @@ std::string missing_table(const bench::Comparison& comparison) {
   return format_table(rows, TableStyle::kMarkdown) + "\n" + remedy;
 }
 
+/// What was not measured alike, and is not compared; empty if there is nothing.
+std::string unlike_table(const bench::Comparison& comparison) {
+  if (comparison.unlike.empty()) return "";
+  TableRows rows = {{"not compared: unlike", "of", "base", "head"}};
+  for (const bench::UnlikeResult& unlike : comparison.unlike)
+    rows.push_back({unlike.what, unlike.subject, unlike.base, unlike.head});
+  return format_table(rows, TableStyle::kMarkdown) + "\n";
+}
+
+std::string unlike_sentence(const bench::Comparison& comparison) {
+  std::string text;
+  for (const bench::UnlikeResult& unlike : comparison.unlike) {
+    text += fmt::format("{}{} of {}: {} and {}", text.empty() ? "not compared: " : "; ", unlike.what,
+                        unlike.subject, unlike.base, unlike.head);
+  }
+  return text;
+}
+
+Json unlike_json(const bench::Comparison& comparison) {
+  Json list = Json::array();
+  for (const bench::UnlikeResult& unlike : comparison.unlike) {
+    list.push_back(
+        {{"what", unlike.what}, {"subject", unlike.subject}, {"base", unlike.base}, {"head", unlike.head}});
+  }
+  return list;
+}
+
 Json missing_json(const bench::Comparison& comparison) {
   Json list = Json::array();
   for (const bench::MissingResult& missing : comparison.missing) {
@@ -166,6 +194,8 @@ std::vector<TestCase> tests_of_runs(const bench::Comparison& comparison) {
   return {{"runs", "runs are compared", comparison.has_result() ? kSame : kError, counts},
           {"runs", "runs do not fail more often", comparison.failures, counts},
           {"runs", "nothing is missing in HEAD", missing_class(comparison), missing_sentence(comparison)},
+          {"runs", "everything is measured alike", comparison.unlike.empty() ? kSame : kInconclusive,
+           unlike_sentence(comparison)},
           {"runs", "no runs that fail on both sides", both_failed ? kInconclusive : kSame,
            counts + "; the first failure: " + comparison.first_failure}};
 }
@@ -192,13 +222,14 @@ std::string comparison_markdown(const ComparisonTitle& title, const bench::Compa
   std::string text = fmt::format("# {} compared with {}: {}\n\n", title.head, title.base,
                                  change_class_name(comparison.result()));
   text += count_sentence(comparison) + ".\n\n";
-  text += missing_table(comparison);
+  text += missing_table(comparison) + unlike_table(comparison);
   if (!comparison.first_failure.empty()) text += "First failure: " + comparison.first_failure + ".\n\n";
   if (!comparison.has_result()) text += "Nothing was compared: no pair has a metric on both sides.\n";
   if (!comparison.changes.empty()) {
     text += change_table(comparison.changes);
     text += fmt::format(
-        "\n{} metrics differ and are tested; a change is significant if p <= {:.2g} (5 % in all).\n",
+        "\n{} metrics differ and are tested; a change is significant if p <= {:.2g} (false discovery rate 5 "
+        "%).\n",
         comparison.family.tests, comparison.family.level);
   }
   for (const std::string& note : comparison.notes) text += "\nNote: " + note + ".\n";
@@ -223,6 +254,7 @@ std::string comparison_json(const ComparisonTitle& title, const bench::Compariso
   json["only_in_head"] = comparison.only_in_head;
   json["first_failure"] = comparison.first_failure.empty() ? Json(nullptr) : Json(comparison.first_failure);
   json["missing"] = missing_json(comparison);
+  json["unlike"] = unlike_json(comparison);
   json["missing_allowed"] = comparison.missing_allowed;
   json["tests"] = comparison.family.tests;
   json["level"] = comparison.family.level;

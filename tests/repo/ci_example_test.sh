@@ -54,7 +54,8 @@ for code in 1 2; do
   [[ "$(run_script gate.sh HEAD gate)" == $code ]] || fail "gate.sh does not return exit code $code of compare"
 done
 set_exit_code compare 3
-[[ "$(run_script gate.sh HEAD gate)" == 0 ]] || fail "an inconclusive comparison fails gate.sh"
+[[ "$(run_script gate.sh HEAD gate)" == 3 ]] || fail "an inconclusive comparison does not fail gate.sh"
+[[ "$(run_script gate.sh HEAD gate --allow-inconclusive)" == 0 ]] || fail "gate.sh ignores --allow-inconclusive"
 echo '<testcase><error message="0 pairs of runs"/></testcase>' >gate/compare.xml
 [[ "$(run_script gate.sh HEAD gate)" == 2 ]] || fail "a comparison of nothing does not fail gate.sh"
 [[ "$(git worktree list | wc -l)" == 1 ]] || fail "gate.sh does not remove its work tree"

@@ -32,8 +32,8 @@ struct CompareArguments {
   std::string base;
   std::string head;
   std::string store = "build/bench/store.sqlite";
-  std::string plan = "quick";
-  int pairs = 0;  ///< 0: as many as the plan needs
+  std::string plan;  ///< empty: "quick"
+  int pairs = 0;     ///< 0: as many as the plan needs
   std::string out;
   bool allow_missing = false;
 };
@@ -55,12 +55,13 @@ bool is_program(const std::string& file) {
 /// Tests the file name extension of exported stores.
 bool is_export(const std::string& file) { return file.ends_with(".json"); }
 
-/// Runs of a build; of the most recent build if `build` is empty.
-std::vector<StoredRun> runs_of_build(const Store& store, std::string build, const std::string& location) {
-  if (build.empty()) build = newest_build(store.runs());
-  std::vector<StoredRun> runs = store.runs({.build = build});
-  if (runs.empty())
-    throw InputError(location, "the store has no run of this build; see `stillpoint store list`");
+/// Runs of a build; of the newest build if `build` is empty. A build with uncommitted changes is another one
+/// than its commit: "abc123" is no prefix of "abc123+ff00".
+std::vector<StoredRun> runs_of_build(std::vector<StoredRun> runs, const std::string& build,
+                                     const std::string& location) {
+  const std::string chosen = build.empty() ? newest_build(runs) : build_named(runs, build, location);
+  std::erase_if(runs, [&](const StoredRun& run) { return run.identity.build != chosen; });
+  if (runs.empty()) throw InputError(location, "has no run of stillpoint; see `stillpoint store list`");
   return runs;
 }
 
@@ -68,21 +69,19 @@ std::vector<StoredRun> runs_of_build(const Store& store, std::string build, cons
 std::vector<StoredRun> stored_runs(const std::string& location, const std::string& default_store) {
   if (is_export(location)) {
     std::vector<StoredRun> runs = exported_runs(eval::read_text_file(location), location);
-    const std::string build = newest_build(runs);
-    std::erase_if(runs, [&](const StoredRun& run) { return run.identity.build != build; });
-    return runs;
+    return runs.empty() ? runs : runs_of_build(std::move(runs), "", location);
   }
-  if (is_store(location)) return runs_of_build(Store(location), "", location);
+  if (is_store(location)) return runs_of_build(Store(location).runs(), "", location);
   const std::size_t at = location.rfind('@');
   if (at != std::string::npos) {
-    return runs_of_build(Store(location.substr(0, at)), location.substr(at + 1), location);
+    return runs_of_build(Store(location.substr(0, at)).runs(), location.substr(at + 1), location);
   }
   std::error_code ignored;
   if (fs::exists(location, ignored) || !fs::exists(default_store, ignored)) {
     throw InputError(location, "is neither a store nor an exported store (.json) nor a commit in the store " +
                                    default_store);
   }
-  return runs_of_build(Store(default_store), location, location);
+  return runs_of_build(Store(default_store).runs(), location, location);
 }
 
 /// The runs of a build that belong to a plan; the store may contain those of other comparisons.
@@ -104,7 +103,7 @@ int default_pairs(const PlanMatrix& runs) {
 Comparison compare_programs(const CompareArguments& arguments) {
   ProgramPair programs{fs::canonical(arguments.base), fs::canonical(arguments.head)};
   programs.perturbed = accept_perturbation(programs);
-  PlanMatrix runs = single_runs(load_plan(arguments.plan));
+  PlanMatrix runs = single_runs(load_plan(arguments.plan.empty() ? "quick" : arguments.plan));
   const int pairs = arguments.pairs > 0 ? arguments.pairs : default_pairs(runs);
   const PlanMatrix matrix = paired_plan(std::move(runs), programs, pairs);
   spdlog::info("{} pairs of each of {} runs", pairs,
@@ -119,7 +118,8 @@ Comparison compare_programs(const CompareArguments& arguments) {
   const Store store(arguments.store);
   const std::vector<StoredRun> base = planned_runs(store, matrix, programs.base_build());
   const std::vector<StoredRun> head = planned_runs(store, matrix, programs.head_build());
-  Comparison comparison = with_control(compare_runs(base, head), control_changes(base));
+  Comparison comparison =
+      with_control(compare_runs(base, head, CompareSource::kPrograms), control_changes(base));
   if (!programs.perturbed)
     comparison.notes.push_back(
         fmt::format("a program does not accept {}: repetitions of a deterministic program are one replicate",
@@ -128,6 +128,10 @@ Comparison compare_programs(const CompareArguments& arguments) {
 }
 
 Comparison compare_stored(const CompareArguments& arguments) {
+  if (arguments.pairs > 0 || !arguments.plan.empty()) {
+    throw InputError(arguments.pairs > 0 ? "--pairs" : "--plan",
+                     "applies to two programs; of stores, all runs that both contain are compared");
+  }
   const std::vector<StoredRun> base = stored_runs(arguments.base, arguments.store);
   const std::vector<StoredRun> head = stored_runs(arguments.head, arguments.store);
   return compare_runs(base, head);

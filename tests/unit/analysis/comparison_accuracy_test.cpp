@@ -58,7 +58,9 @@ TEST(ComparisonAccuracy, AChangeOfOneReplicateIsNotWorseHoweverLarge) {
   // One test: 4 replicates per side reach 2 / 70 = 0.029.
   EXPECT_EQ(change.needed, 4u);
   EXPECT_TRUE(has_note(comparison, "1 replicate cannot go below p = 1, ")) << comparison.notes.front();
-  EXPECT_TRUE(has_note(comparison, "run with --pairs 4")) << comparison.notes.front();
+  EXPECT_TRUE(has_note(comparison, "store 4 seeds or perturbations")) << comparison.notes.front();
+  const Comparison executed = compare_runs(sides.base, sides.head, CompareSource::kPrograms);
+  EXPECT_TRUE(has_note(executed, "run with --pairs 4")) << executed.notes.front();
   EXPECT_EQ(comparison.result(), ChangeClass::kInconclusive);
 }
 
@@ -208,6 +210,7 @@ TEST(ComparisonAccuracy, AModuleThatNeededNoTimeIsComparedByTheDifference) {
   for (std::size_t i = 0; i < 12; ++i) {
     sides.base[i].metrics.clear();
     sides.head[i].metrics.clear();
+    sides.base[i].identity.kind = sides.head[i].identity.kind = "timing";
     sides.base[i].costs = {{.module = "object_detection", .per = "call", .mean_ms = 0.0}};
     sides.head[i].costs = {{.module = "object_detection", .per = "call", .mean_ms = 5.0 + 0.01 * double(i)}};
   }

@@ -30,6 +30,7 @@ Sides unchanged(std::mt19937_64& random, int pairs, bool pooled) {
         for (std::vector<StoredRun>* side : {&sides.base, &sides.head}) {
           StoredRun run = compared_run(sequence, std::exp(spread(random)), i % replicates + 1);
           run.identity.variant = variant;
+          run.identity.kind = "timing";
           run.identity.seed = i % seeds;
           run.blobs["trajectory"] += std::to_string(random());
           run.metrics.push_back({"rpe_trans_rmse_m_per_s", "", "m/s", std::exp(spread(random))});

@@ -9,17 +9,25 @@
 namespace stillpoint::bench {
 namespace {
 
-TEST(TestFamily, IsBonferroniIfAllTestsCanReject) {
-  const std::vector<double> smallest_p(10, 1e-6);
-  EXPECT_EQ(test_family(smallest_p).tests, 10u);
-  EXPECT_DOUBLE_EQ(test_family(smallest_p).level, 0.005);
+TEST(TestFamily, HasBonferronisLevelIfNoChangeIsSignificant) {
+  const std::vector<TestedSeries> tests(10, {.p_value = 0.06, .smallest_p = 1e-6});
+  EXPECT_EQ(test_family(tests).tests, 10u);
+  EXPECT_DOUBLE_EQ(test_family(tests).level, 0.005);
+}
+
+TEST(TestFamily, HasALargerLevelIfSeveralChangesSupportEachOther) {
+  // p_(3) = 0.0078 <= 3 * 0.05 / 15 = 0.01; one or two of them would need 0.0033 or 0.0067.
+  std::vector<TestedSeries> tests(15, {.p_value = 0.5, .smallest_p = 0.0078});
+  tests[2].p_value = tests[7].p_value = 0.0078;
+  EXPECT_DOUBLE_EQ(test_family(tests).level, 0.05 / 15.0);
+  tests[9].p_value = 0.0078;
+  EXPECT_DOUBLE_EQ(test_family(tests).level, 0.01);
 }
 
 TEST(TestFamily, LeavesOutTestsThatCannotReject) {
-  // k = 2: two tests are <= 0.025; the others never reject.
-  const std::vector<double> smallest_p = {1e-6, 0.02, 0.0625, 0.0625, 1.0, 1.0};
-  EXPECT_EQ(test_family(smallest_p).tests, 6u);
-  EXPECT_DOUBLE_EQ(test_family(smallest_p).level, 0.025);
+  const std::vector<TestedSeries> tests = {{1e-6, 1e-6}, {0.5, 0.02}, {0.0625, 0.0625}, {1.0, 1.0}};
+  EXPECT_EQ(test_family(tests).tests, 2u);
+  EXPECT_DOUBLE_EQ(test_family(tests).level, 0.025);
   EXPECT_DOUBLE_EQ(test_family({}).level, 0.05);
 }
 

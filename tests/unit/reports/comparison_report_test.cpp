@@ -53,7 +53,7 @@ TEST(ComparisonReport, PrintsIntervalAndPValueOrTheNumberOfPairs) {
 
 TEST(ComparisonReport, JunitReportsWorseAsFailureAndInconclusiveAsSkipped) {
   const std::string text = comparison_junit({"old", "new"}, comparison());
-  EXPECT_NE(text.find("tests=\"6\" failures=\"1\" errors=\"0\" skipped=\"1\""), std::string::npos) << text;
+  EXPECT_NE(text.find("tests=\"7\" failures=\"1\" errors=\"0\" skipped=\"1\""), std::string::npos) << text;
   EXPECT_NE(text.find("classname=\"a&lt;b\""), std::string::npos) << text;
 }
 
