@@ -22,6 +22,9 @@ struct VisionLimits {
   double weak_rad = 0.05;                  ///< same
   double min_agreeing_ratio = 0.7;         ///< of the features, for a pose that may contradict inertial data
   double min_known_ratio = 0.25;           ///< same: features of known position among the tracked ones
+  double min_witness_age_s = 0.2;          ///< of points that decide between such a pose and the prediction
+  double witness_inlier_px = 1.0;          ///< see `support`
+  double max_witness_loss = 3.0;           ///< of support, from the prediction to such a pose
 };
 
 /// Errors of inertial data between three visual poses, see InertialError.

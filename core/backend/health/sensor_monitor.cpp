@@ -91,6 +91,13 @@ void SensorMonitor::compare_with_prediction(const Expectation& expected, const P
   if (imu_.adapt_noise) noise_.observe(*expected.camera, *visual, seconds_between(expected.before.t, t));
 }
 
+bool SensorMonitor::is_refuted(const Window& window, const Pose& predicted, const Pose& T_w_c) {
+  old_points_ = old_points(window, backend_.depth, std::move(old_points_));
+  const double threshold = kMonitor.vision.witness_inlier_px / rig_.camera.focal_px();
+  return support(old_points_, predicted, threshold) >
+         support(old_points_, T_w_c, threshold) + kMonitor.vision.max_witness_loss;
+}
+
 void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& imu, Window& window) {
   if (!window.inertial || !window.frames.back().from_previous) return;
   const WindowFrame& newest = window.frames.back();
@@ -100,14 +107,15 @@ void SensorMonitor::check_inertial_data(const Expectation& expected, ImuBuffer& 
   }
   known_points_ = known_points(window, backend_.depth, std::move(known_points_));
   const double focal_px = rig_.camera.focal_px();
-  const Pose T_w_c = refine_camera_pose(known_points_, product(newest.state.T_w_b, window.T_b_c),
-                                        kMonitor.vision.pose_inlier_px / focal_px);
+  const Pose predicted = product(newest.state.T_w_b, window.T_b_c);
+  const Pose T_w_c = refine_camera_pose(known_points_, predicted, kMonitor.vision.pose_inlier_px / focal_px);
   const VisionAssessment vision = assess_vision(
       known_points_, T_w_c, kMonitor.vision.pose_inlier_px / kMonitor.vision.inlier_sigmas / focal_px);
   if (!vision.may_contradict_imu(evidence_.features)) {
     if (!vision.is_located(false)) inertial_.interrupt(newest.state.t);
     return;
   }
+  if (is_refuted(window, predicted, T_w_c)) return;
   compare_with_prediction(expected, T_w_c, newest.state.t);
   const bool was_consistent = inertial_.is_consistent();
   const Pose T_c_b = window.T_b_c.inverse();

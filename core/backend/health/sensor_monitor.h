@@ -72,7 +72,8 @@ class SensorMonitor {
 
   /// Compares inertial data with the pose by vision alone (InertialCheck). Wrong data of the last frames is
   /// marked. Inertial data of a body at rest is not compared: disturbances do not look like rest, but a
-  /// person who covers most of the image looks like a motion of the camera.
+  /// person who covers most of the image looks like a motion of the camera. Neither is a pose used that old
+  /// points contradict.
   void check_inertial_data(const Expectation& expected, ImuBuffer& imu, Window& window);
 
   /// Follows the biases (BiasMonitor). After a step, their random walk in the samples that it was recognized
@@ -116,6 +117,9 @@ class SensorMonitor {
   void assess_newest(const Window& window);
   /// Innovation of the pose T_w_c by vision alone, from `known_points_`, of the frame at `t`.
   void compare_with_prediction(const Expectation& expected, const Pose& T_w_c, Timestamp t);
+  /// Whether old points contradict the pose T_w_c by vision alone: they agree better with the predicted one.
+  /// The newer ones, by which it was found, are on a person who came before the camera.
+  [[nodiscard]] bool is_refuted(const Window& window, const Pose& predicted, const Pose& T_w_c);
   void distrust_recent_samples(Window& window);
   void enlarge_bias_walk(const MeasuredBiases& measured, Window& window) const;
 
@@ -133,6 +137,7 @@ class SensorMonitor {
   Innovations innovations_;  ///< same
   // Members only to reuse the memory.
   std::vector<PointObservation> known_points_;
+  std::vector<PointObservation> old_points_;
   std::vector<double> distances_;
 };
 

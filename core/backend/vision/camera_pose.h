@@ -22,4 +22,9 @@ inline constexpr double kLocalizationInlier_px = 5.0;
 [[nodiscard]] std::vector<PointObservation> known_points(const Window& window, const DepthConfig& depth,
                                                          std::vector<PointObservation> recycled);
 
+/// Same, static or dynamic, of points that have been observed for 0.2 s: those of a person who just came
+/// before the camera are newer.
+[[nodiscard]] std::vector<PointObservation> old_points(const Window& window, const DepthConfig& depth,
+                                                       std::vector<PointObservation> recycled);
+
 }  // namespace stillpoint

@@ -90,6 +90,17 @@ std::optional<UncertainPose> with_covariance(const std::vector<PointObservation>
   return UncertainPose{T_w_c, variance * *covariance};
 }
 
+double support(const std::vector<PointObservation>& points, const Pose& T_w_c, double threshold) {
+  const Pose T_c_w = T_w_c.inverse();
+  double sum = 0.0;
+  for (const PointObservation& point : points) {
+    const Eigen::Vector3d p_c = T_c_w * point.p_w;
+    if (p_c.z() < kMonitor.vision.min_depth_m) continue;
+    sum += std::max(0.0, 1.0 - ((p_c.hnormalized() - point.bearing) / threshold).squaredNorm());
+  }
+  return sum;
+}
+
 bool VisionAssessment::may_contradict_imu(int tracked) const {
   return !has_few_features() && !has_weak_geometry() &&
          inliers >= kMonitor.vision.min_agreeing_ratio * features &&

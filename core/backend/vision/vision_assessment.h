@@ -50,6 +50,12 @@ struct VisionAssessment {
                                                            const Pose& T_w_c, double bearing_sigma,
                                                            double threshold);
 
+/// How many points agree with a pose: with the errors e of their bearings,
+///
+///   sum over the points of max(0, 1 - (e / threshold)^2).
+[[nodiscard]] double support(const std::vector<PointObservation>& points, const Pose& T_w_c,
+                             double threshold);
+
 /// @param bearing_sigma standard deviation s of a bearing; inliers are within five times of it
 [[nodiscard]] VisionAssessment assess_vision(const std::vector<PointObservation>& points, const Pose& T_w_c,
                                              double bearing_sigma);

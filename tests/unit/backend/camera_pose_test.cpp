@@ -5,6 +5,7 @@
 
 #include "core/geometry/so3.h"
 #include "tests/support/random.h"
+#include "tests/support/simulated/window_world.h"
 
 namespace stillpoint {
 namespace {
@@ -36,6 +37,20 @@ TEST(CameraPose, ReturnsNothingWithTooFewObservations) {
   std::vector<PointObservation> few = observations_with_outliers();
   few.resize(7);
   EXPECT_FALSE(estimate_camera_pose(few, Pose{}, {}));
+}
+
+/// In a window of 0.4 s. A person who just came before the camera has newer points; an inertial sensor that
+/// becomes wrong makes the old ones appear to move.
+TEST(CameraPose, OldPointsWereObservedForAFifthOfASecondWhateverTheirLabel) {
+  Window window = visual_window(5, 40);
+  for (Landmark& landmark : window.landmarks) {
+    landmark.dynamic = landmark.id < 20;
+    if (landmark.id % 4 != 0) continue;
+    landmark.host = 3;  // 0.1 s before the newest frame
+    landmark.observations.erase(landmark.observations.begin(), landmark.observations.begin() + 3);
+  }
+  EXPECT_EQ(known_points(window, {}, {}).size(), 20u);
+  EXPECT_EQ(old_points(window, {}, {}).size(), 30u);
 }
 
 }  // namespace
