@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/score.h"
 
+#include "eval/trajectory/orientations.h"
+
 namespace stillpoint::eval {
 namespace {
 
@@ -18,9 +20,11 @@ Score score(const Trajectory& gt, const Trajectory& est, const ScoreOptions& opt
   const AssociationOptions association{.max_difference_s = options.max_difference_s,
                                        .offset_s = options.offset_s};
   result.ate = ate(gt, est, association);
-  result.rpe = rpe(gt, est, {.delta = options.rpe_delta_s, .offset_s = options.offset_s});
   result.rpe_delta_s = options.rpe_delta_s;
-  result.correct_rate = correct_rate(gt, est, options.correct, options.offset_s);
+  if (missing_orientations(gt, est).empty()) {
+    result.rpe = rpe(gt, est, {.delta = options.rpe_delta_s, .offset_s = options.offset_s});
+    result.correct_rate = correct_rate(gt, est, options.correct, options.offset_s);
+  }
   result.coverage = coverage(est, options.expected_times, options.coverage_tolerance_s);
   if (const std::optional<Timestamp> start = start_of(gt, options)) {
     result.first_pose_s = first_pose_seconds(est, *start);

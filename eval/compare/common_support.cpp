@@ -51,13 +51,13 @@ bool ranks_before(const ComparedRun& a, const ComparedRun& b) {
 
 /// `run` with its errors over the common spans.
 ComparedRun with_common_errors(ComparedRun run, std::span<const MatchedPose> matches,
-                               std::span<const TimeSpan> common, Alignment alignment) {
+                               std::span<const TimeSpan> common, const CompareOptions& options) {
   const std::vector<MatchedPose> shared = matches_within(matches, common);
   run.common_pairs = shared.size();
-  run.common_ate_rmse_m = ate_rmse(shared, alignment);
-  if (const StrictRpeResult rpe = strict_rpe(shared, 1.0); rpe.errors) {
-    run.common_rpe_m = rpe.errors->translation_m.rmse;
-    run.common_rpe_deg = rpe.errors->rotation_deg.rmse;
+  run.common_ate_rmse_m = ate_rmse(shared, options.alignment);
+  if (const StrictRpeResult rpe = strict_rpe(shared, options.rpe_delta_s); rpe.errors) {
+    run.common_rpe_m = rpe.errors->translation_m.rmse / options.rpe_delta_s;
+    run.common_rpe_deg = rpe.errors->rotation_deg.rmse / options.rpe_delta_s;
   }
   return run;
 }
@@ -85,7 +85,7 @@ Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs, co
   for (const TimeSpan& span : common) comparison.common_s += seconds_between(span.begin, span.end);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     ComparedRun& run = comparison.ranking[i];
-    if (!run.failed) run = with_common_errors(run, matches[i], common, options.alignment);
+    if (!run.failed) run = with_common_errors(run, matches[i], common, options);
   }
   std::stable_sort(comparison.ranking.begin(), comparison.ranking.end(), ranks_before);
   return comparison;

@@ -19,6 +19,7 @@ struct NamedRun {
 struct CompareOptions {
   Alignment alignment = Alignment::kSe3;
   double max_hold_s = 1.0;    ///< validity of a pose, see ate.h
+  double rpe_delta_s = 1.0;   ///< interval of the relative errors
   double min_coverage = 0.5;  ///< runs with a smaller time coverage count as failed
 };
 
@@ -29,7 +30,7 @@ struct ComparedRun {
   double coverage = 0.0;  ///< fraction of the ground truth's duration
   std::optional<double> own_ate_rmse_m;
   std::optional<double> common_ate_rmse_m;
-  std::optional<double> common_rpe_m;  ///< RMSE of the strict RPE with delta 1 s
+  std::optional<double> common_rpe_m;  ///< RMSE of the strict RPE over `rpe_delta_s`, per second
   std::optional<double> common_rpe_deg;
   std::size_t common_pairs = 0;
 };

@@ -5,68 +5,16 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 #include <optional>
 
 #include "core/geometry/so3.h"
+#include "eval/compare/time_offset.h"
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
+#include "eval/trajectory/orientations.h"
 
 namespace stillpoint::eval {
-namespace {
-
-constexpr std::size_t kMinOffsetMatches = 10;
-constexpr double kGoldenSection = 0.6180339887498949;
-constexpr std::size_t kSearchPoses = 2000;  // limits the run time; sufficient for a constant offset
-
-Trajectory subsampled(const Trajectory& est) {
-  const std::size_t step = est.poses.size() / kSearchPoses + 1;
-  Trajectory result{.frame = est.frame, .poses = {}};
-  for (std::size_t i = 0; i < est.poses.size(); i += step) result.poses.push_back(est.poses[i]);
-  return result;
-}
-
-/// Infinite with too few matches, which rejects offsets that move the estimate beyond the ground truth.
-double ate_at(const Trajectory& gt, const Trajectory& est, double offset_s, std::size_t min_matches) {
-  const std::vector<MatchedPose> matches = strict_matches(gt, est, offset_s);
-  if (matches.size() < min_matches) return std::numeric_limits<double>::infinity();
-  return statistics(ate_errors(matches, align(matches, Alignment::kSe3).S_w_v).translation_m)->rmse;
-}
-
-}  // namespace
-
-std::optional<TimeOffset> find_time_offset(const Trajectory& gt, const Trajectory& est,
-                                           const TimeOffsetOptions& options) {
-  const Trajectory sampled = subsampled(est);
-  const std::size_t matches_at_zero = strict_matches(gt, sampled).size();
-  if (matches_at_zero < kMinOffsetMatches) return std::nullopt;
-  const std::size_t min_matches = std::max(kMinOffsetMatches, matches_at_zero / 2);
-  const auto error = [&](double offset_s) { return ate_at(gt, sampled, offset_s, min_matches); };
-  TimeOffset best{0.0, error(0.0), error(0.0)};
-  const int steps = static_cast<int>(std::ceil(options.max_offset_s / options.coarse_step_s));
-  for (int i = -steps; i <= steps; ++i) {
-    const double offset_s = i * options.coarse_step_s;
-    const double ate_rmse_m = error(offset_s);
-    if (ate_rmse_m < best.ate_rmse_m) best = {offset_s, ate_rmse_m, best.ate_rmse_at_zero_m};
-  }
-  double low = best.offset_s - options.coarse_step_s;
-  double high = best.offset_s + options.coarse_step_s;
-  while (high - low > options.precision_s) {
-    const double a = high - kGoldenSection * (high - low);
-    const double b = low + kGoldenSection * (high - low);
-    if (error(a) < error(b)) {
-      high = b;
-    } else {
-      low = a;
-    }
-  }
-  const double refined_s = 0.5 * (low + high);
-  const double refined = error(refined_s);
-  if (refined < best.ate_rmse_m) best = {refined_s, refined, best.ate_rmse_at_zero_m};
-  return best;
-}
-
 namespace {
 
 constexpr double kMinImprovement = 3.0;  // minimum factor by which correcting a violation reduces the error
@@ -85,7 +33,8 @@ std::optional<Errors> errors_of(const Trajectory& gt, const Trajectory& est) {
   const std::vector<MatchedPose> matches = strict_matches(gt, est);
   if (matches.size() < kMinMatches) return std::nullopt;
   Errors errors;
-  const AteErrors ate = ate_errors(matches, align(matches, Alignment::kSe3).S_w_v);
+  const Similarity S_w_v = align(matches, Alignment::kSe3).S_w_v;
+  const AteErrors ate = ate_errors(matches, complete_rotation(matches, S_w_v).S_w_v);
   errors.ate_m = statistics(ate.translation_m)->rmse;
   errors.ate_deg = statistics(ate.rotation_deg)->rmse;
   if (const StrictRpeResult rpe = strict_rpe(matches, 1.0); rpe.errors) {
@@ -171,10 +120,51 @@ std::optional<ConventionFinding> stamp_unit(const Trajectory& gt, const Trajecto
   return std::nullopt;
 }
 
+double position_rmse(std::span<const MatchedPose> matches, Alignment kind) {
+  return statistics(ate_errors(matches, align(matches, kind).S_w_v).translation_m)->rmse;
+}
+
+std::optional<ConventionFinding> wrong_scale(const Trajectory& gt, const Trajectory& est) {
+  constexpr double kMinDeviation = 0.1;  // of the scale from 1
+  const std::vector<MatchedPose> matches = strict_matches(gt, est);
+  if (matches.size() < kMinMatches) return std::nullopt;
+  const double rigid_m = position_rmse(matches, Alignment::kSe3);
+  const double scaled_m = position_rmse(matches, Alignment::kSim3);
+  const double scale = align(matches, Alignment::kSim3).S_w_v.scale;
+  if (rigid_m < kMinAte || scaled_m * kMinImprovement > rigid_m || scale <= 0.0 ||
+      std::abs(std::log(scale)) < kMinDeviation) {
+    return std::nullopt;
+  }
+  return ConventionFinding{
+      Convention::kScale,
+      format_message(
+          "the estimate is %.4g times as large as the ground truth: scaling it reduces the ATE from %.4f "
+          "to %.4f m; check the factor of the depth images, or use --align sim3 for a system without "
+          "scale",
+          1.0 / scale, rigid_m, scaled_m)};
+}
+
+std::optional<ConventionFinding> mirrored(const Trajectory& gt, const Trajectory& est) {
+  std::vector<MatchedPose> matches = strict_matches(gt, est);
+  if (matches.size() < kMinMatches) return std::nullopt;
+  const double read_m = position_rmse(matches, Alignment::kSe3);
+  const double scaled_m = position_rmse(matches, Alignment::kSim3);
+  for (MatchedPose& match : matches) match.est.p.z() *= -1.0;
+  const double mirrored_m = position_rmse(matches, Alignment::kSim3);
+  if (read_m < kMinAte || mirrored_m * kMinImprovement > std::min(read_m, scaled_m)) return std::nullopt;
+  return ConventionFinding{
+      Convention::kMirrored,
+      format_message(
+          "the estimate is mirrored: with one axis reversed, the ATE is %.4f instead of %.4f m; its "
+          "coordinate system seems to be left-handed",
+          mirrored_m, read_m)};
+}
+
 std::optional<ConventionFinding> time_offset(const Trajectory& gt, const Trajectory& est) {
   constexpr double kMinOffset = 0.005;  // [s]
   const std::optional<TimeOffset> found = find_time_offset(gt, est);
-  if (!found || std::abs(found->offset_s) < kMinOffset || found->ate_rmse_at_zero_m < kMinAte ||
+  if (!found || !found->undetermined.empty() || std::abs(found->offset_s) < kMinOffset ||
+      found->ate_rmse_at_zero_m < kMinAte ||
       found->ate_rmse_m * kMinImprovement > found->ate_rmse_at_zero_m) {
     return std::nullopt;
   }
@@ -224,8 +214,9 @@ std::optional<ConventionFinding> body_frame(const Trajectory& gt, const Trajecto
   constexpr double kMaxSpread = 0.2;  // relative to the mean rotation error
   const std::vector<MatchedPose> matches = strict_matches(gt, est);
   if (matches.size() < kMinMatches) return std::nullopt;
-  const AlignmentResult fit = align(matches, Alignment::kSe3);
+  AlignmentResult fit = align(matches, Alignment::kSe3);
   if (!fit.determined) return std::nullopt;
+  fit.S_w_v = complete_rotation(matches, fit.S_w_v).S_w_v;
   Eigen::Quaterniond mean = (fit.S_w_v * matches.front().est).q.conjugate() * matches.front().gt.q;
   const auto rotation_error = [&](const MatchedPose& match) {
     return (fit.S_w_v * match.est).q.conjugate() * match.gt.q;
@@ -256,6 +247,16 @@ std::optional<ConventionFinding> swapped_arguments(const Trajectory& gt, const T
   const auto rate_hz = [](const Trajectory& path) {
     return static_cast<double>(path.poses.size() - 1) / std::max(span_s(path), 1e-9);
   };
+  constexpr double kCameraRate = 5.0;  // [Hz]; GNSS receivers are slower
+  const bool surrounds = est.poses.front().t < gt.poses.front().t && est.poses.back().t > gt.poses.back().t;
+  if (surrounds && rate_hz(gt) >= kCameraRate && rate_hz(est) > 3.0 * rate_hz(gt)) {
+    return ConventionFinding{
+        Convention::kSwappedArguments,
+        format_message(
+            "the estimate starts before the ground truth, ends after it, and has %.1f poses/s instead of "
+            "%.1f; check the order of the files: GT EST",
+            rate_hz(est), rate_hz(gt))};
+  }
   if (!starts_at_identity(gt) || starts_at_identity(est) || rate_hz(est) < 1.5 * rate_hz(gt)) {
     return std::nullopt;
   }
@@ -276,7 +277,9 @@ std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt, 
     if (finding) findings.push_back(std::move(*finding));
   };
   add(stamp_unit(gt, est));
-  add(time_offset(gt, est));
+  add(wrong_scale(gt, est));
+  add(mirrored(gt, est));
+  if (findings.empty()) add(time_offset(gt, est));
   if (const std::optional<Errors> current = errors_of(gt, est)) {
     add(quaternion_order(gt, est, *current));
     add(inverted_poses(gt, est, *current));

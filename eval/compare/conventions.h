@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Detects violations of conventions (units, constant time offset, frames, quaternion order) that explain
-/// implausible errors of an estimate.
+/// Detects violations of conventions (units, scale, constant time offset, frames, quaternion order) that
+/// explain implausible errors of an estimate.
 #pragma once
 
 #include <optional>
@@ -11,24 +11,6 @@
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::eval {
-
-struct TimeOffsetOptions {
-  double max_offset_s = 1.0;
-  double coarse_step_s = 0.02;
-  double precision_s = 1e-5;
-};
-
-struct TimeOffset {
-  double offset_s = 0.0;            ///< to be added to the estimate's stamps
-  double ate_rmse_m = 0.0;          ///< at this offset, after SE(3) alignment
-  double ate_rmse_at_zero_m = 0.0;  ///< at offset 0
-};
-
-/// The offset with the smallest ATE after SE(3) alignment: grid search, then golden-section search around the
-/// best grid point. No protocol applies it automatically, because it would also hide the estimator's latency.
-/// @return nullopt if fewer than ten poses match at offset 0
-[[nodiscard]] std::optional<TimeOffset> find_time_offset(const Trajectory& gt, const Trajectory& est,
-                                                         const TimeOffsetOptions& options = {});
 
 /// Files whose quaternions are consistent with those of the other file if they are read in the other order.
 struct OrderFinding {
@@ -49,6 +31,8 @@ struct OrderFinding {
 
 enum class Convention {
   kStampUnit,         ///< milli-, micro- or nanoseconds read as seconds, or another epoch
+  kScale,             ///< another unit of length, scale of depth, or no scale
+  kMirrored,          ///< a left-handed coordinate system
   kTimeOffset,        ///< constant time offset
   kQuaternionOrder,   ///< qw qx qy qz instead of qx qy qz qw
   kInvertedPoses,     ///< T_f_w instead of T_w_f

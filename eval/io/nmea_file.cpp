@@ -120,7 +120,9 @@ NmeaContent parse_sentences(std::string_view text) {
     const std::vector<std::string_view> fields = split(checked_sentence(line));
     const bool is_known = fields.front().size() == 5;
     if (is_known && fields.front().ends_with("RMC")) {
-      if (!content.first_day && fields.size() > 9) content.first_day = date_days(fields[9]);
+      const bool is_valid =
+          fields.size() > 9 && fields[2] == "A";  // V: not valid, the date may be that of the firmware
+      if (!content.first_day && is_valid) content.first_day = date_days(fields[9]);
     } else if (is_known && fields.front().ends_with("GGA")) {
       const std::optional<Fix> fix = parse_gga(fields);
       if (fix) content.fixes.push_back(*fix);
@@ -158,16 +160,26 @@ Eigen::Vector3d east_north_up(const GeodeticPosition& position, const GeodeticPo
 }
 
 bool is_nmea(std::string_view text) {
-  if (text.size() < 7 || text.front() != '$' || text[6] != ',') return false;
-  return std::all_of(text.begin() + 1, text.begin() + 6,
-                     [](unsigned char c) { return std::isupper(c) != 0; });
+  constexpr std::size_t kMaxLines = 20;  // a log may start within a sentence, or with lines of the logger
+  LineReader lines(text);
+  for (std::size_t i = 0; i < kMaxLines; ++i) {
+    const std::optional<std::string_view> line = lines.next();
+    if (!line) return false;
+    const bool is_sentence = line->size() >= 7 && line->front() == '$' && (*line)[6] == ',' &&
+                             std::all_of(line->begin() + 1, line->begin() + 6, [](unsigned char c) {
+                               return std::isupper(c) != 0 || std::isdigit(c) != 0;
+                             });
+    if (is_sentence) return true;
+  }
+  return false;
 }
 
 LoadedTrajectory parse_nmea(std::string_view text, const std::string& name) {
   const NmeaContent content = parse_sentences(text);
   if (content.fixes.empty()) throw InputError(name, "has no GGA sentence with a position");
   if (!content.first_day)
-    throw InputError(name, "has no RMC sentence with a date; record RMC as well as GGA sentences");
+    throw InputError(name,
+                     "has no valid RMC sentence (status A) with a date; record RMC as well as GGA sentences");
   LoadedTrajectory loaded;
   loaded.trajectory.frame = kGnssFrame;
   loaded.repairs.skipped = content.skipped;

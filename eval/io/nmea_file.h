@@ -28,15 +28,16 @@ struct GeodeticPosition {
 ///   p_enu = R(origin) (ecef(position) - ecef(origin)), rows of R: east, north, up.
 [[nodiscard]] Eigen::Vector3d east_north_up(const GeodeticPosition& position, const GeodeticPosition& origin);
 
-/// Reads GGA (position, height above the geoid and separation of the geoid) and RMC (date) of any talker.
-/// Other sentences, positions without a fix, and sentences with a wrong checksum are skipped and counted.
-/// Stamps are UTC seconds since 1970 without leap seconds.
+/// Reads GGA (position, height above the geoid and separation of the geoid) and valid RMC (date) of any
+/// talker. Other sentences, positions without a fix, and sentences with a wrong checksum are skipped and
+/// counted. Stamps are UTC seconds since 1970 without leap seconds.
 /// @param text sentences, one per line
 /// @param name of the text in messages
 /// @throws InputError if there is no position, or no date
 [[nodiscard]] LoadedTrajectory parse_nmea(std::string_view text, const std::string& name);
 
-/// Whether the text begins with a NMEA sentence: "$" and five capital letters.
+/// Whether one of the first 20 lines begins with "$" and five capital letters or digits, as a NMEA sentence.
+/// A log may start within a sentence.
 [[nodiscard]] bool is_nmea(std::string_view text);
 
 }  // namespace stillpoint::eval

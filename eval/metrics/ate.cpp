@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "eval/trajectory/orientations.h"
 
 namespace stillpoint::eval {
 
@@ -30,7 +31,8 @@ std::optional<AteResult> ate(const Trajectory& gt, const Trajectory& est, const 
   const std::vector<MatchedPose> matches = matched_poses(gt, est, associate_tum(gt, est, options));
   if (matches.size() < 2) return std::nullopt;
   const AlignmentResult alignment = align(matches, Alignment::kSe3);
-  const AteErrors errors = ate_errors(matches, alignment.S_w_v);
+  AteErrors errors = ate_errors(matches, alignment.S_w_v);
+  errors.rotation_deg = ate_errors(matches, complete_rotation(matches, alignment.S_w_v).S_w_v).rotation_deg;
   return AteResult{.translation_m = *statistics(errors.translation_m),
                    .rotation_deg = *statistics(errors.rotation_deg),
                    .alignment = alignment,
@@ -112,7 +114,8 @@ std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
       matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
   if (matches.empty()) return 0.0;
   for (MatchedPose& match : matches) match.t = after(match.t, offset_s);
-  const AteErrors errors = ate_errors(matches, align(matches, Alignment::kSe3).S_w_v);
+  const Similarity S_w_v = align(matches, Alignment::kSe3).S_w_v;
+  const AteErrors errors = ate_errors(matches, complete_rotation(matches, S_w_v).S_w_v);
   const double correct = correct_seconds(matches, errors, gt.poses.back().t, options);
   return correct / seconds_between(gt.poses.front().t, gt.poses.back().t);
 }

@@ -199,7 +199,7 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
     translation_m.push_back(error.p.norm());
     rotation_deg.push_back(rotation_angle(error.q) * 180.0 / std::numbers::pi);
   }
-  if (translation_m.empty()) return std::nullopt;
+  if (translation_m.size() == result.self_pairs) return std::nullopt;
   result.translation_m = *statistics(translation_m);
   result.rotation_deg = *statistics(rotation_deg);
   return result;

@@ -113,7 +113,7 @@ struct RpeResult {
 /// unit. As in the tool there is no limit on |t_j - (t_i + delta)|, and a pair is dropped if j is the last
 /// pose. Alignment does not affect the result. Uses all pairs; the tool samples 10000 of them at random if
 /// there are more.
-/// @return nullopt if no pair is left
+/// @return nullopt if no pair of two poses is left
 [[nodiscard]] std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est,
                                            const RpeOptions& options = {});
 

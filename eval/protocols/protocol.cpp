@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/protocols/protocol.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "eval/openloris/benchmark.h"
+#include "eval/trajectory/orientations.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -21,11 +23,23 @@ struct RpeEvaluation {
 };
 
 /// An evaluation with the alignment, the ATE and the errors per pose; the other fields are empty.
-Evaluation ate_evaluation(std::span<const MatchedPose> matches, const AlignmentResult& alignment) {
+/// @param fitted whether the rotation was fitted to the positions
+Evaluation ate_evaluation(std::span<const MatchedPose> matches, const AlignmentResult& alignment,
+                          bool fitted) {
   Evaluation evaluation;
   evaluation.pairs = matches.size();
   evaluation.alignment = alignment;
-  const AteErrors errors = ate_errors(matches, alignment.S_w_v);
+  AteErrors errors = ate_errors(matches, alignment.S_w_v);
+  const CompletedAlignment completed = complete_rotation(matches, alignment.S_w_v);
+  if (fitted && completed.source != RotationSource::kPositions) {
+    errors.rotation_deg = ate_errors(matches, completed.S_w_v).rotation_deg;
+    evaluation.notes.emplace_back(
+        completed.source == RotationSource::kLine
+            ? "the path is a straight line: for the errors in degrees, the rotation about it is that of the "
+              "orientations"
+            : "the positions stand still: for the errors in degrees, the alignment is that of the "
+              "orientations");
+  }
   evaluation.ate_m = statistics(errors.translation_m);
   evaluation.ate_deg = statistics(errors.rotation_deg);
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -40,6 +54,13 @@ Evaluation with_rpe(Evaluation evaluation, const RpeEvaluation& rpe) {
   evaluation.rpe_deg = rpe.rotation_deg;
   evaluation.notes.insert(evaluation.notes.end(), rpe.notes.begin(), rpe.notes.end());
   return evaluation;
+}
+
+bool is_fitted(Alignment alignment) { return alignment == Alignment::kSe3 || alignment == Alignment::kSim3; }
+
+/// The alignment of a tool, SE(3) unless the options override it, over the matches.
+bool is_fitted(const ProtocolOptions& options) {
+  return is_fitted(options.alignment.value_or(Alignment::kSe3));
 }
 
 constexpr double kEvoMaxDifference = 0.01;  // [s], evo's t_max_diff
@@ -81,7 +102,7 @@ RpeEvaluation tum_rpe(const EvaluationInput& input) {
   const std::optional<RpeResult> relative =
       rpe(input.gt, input.est,
           {.delta = options.rpe_delta, .unit = options.rpe_unit, .offset_s = options.offset_s});
-  if (!relative) return {};
+  if (!relative) return {{}, {}, {"no RPE pair of two poses: they are further apart than delta"}};
   RpeEvaluation result{relative->translation_m, relative->rotation_deg, {}};
   if (relative->self_pairs > 0) {
     result.notes.push_back(std::to_string(relative->self_pairs) + " of " +
@@ -102,7 +123,8 @@ Evaluation evaluate_compat_tum(const EvaluationInput& input) {
       input.gt, input.est, associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
   if (matches.size() >= 2) {
     evaluation = ate_evaluation(
-        matches, align(matches, options.alignment.value_or(Alignment::kSe3), options.align_first_n));
+        matches, align(matches, options.alignment.value_or(Alignment::kSe3), options.align_first_n),
+        is_fitted(options));
   }
   return with_rpe(std::move(evaluation), tum_rpe(input));
 }
@@ -114,7 +136,7 @@ Evaluation evaluate_compat_evo(const EvaluationInput& input) {
   if (matches.empty()) return {};
   const AlignmentResult alignment = align_or_throw(matches, options.alignment.value_or(Alignment::kSe3),
                                                    options.align_first_n, "compat:evo");
-  return with_rpe(ate_evaluation(matches, alignment), evo_rpe(matches, options));
+  return with_rpe(ate_evaluation(matches, alignment, is_fitted(options)), evo_rpe(matches, options));
 }
 
 Evaluation evaluate_compat_rpg(const EvaluationInput& input) {
@@ -124,7 +146,7 @@ Evaluation evaluate_compat_rpg(const EvaluationInput& input) {
   if (matches.empty()) return {};
   const AlignmentResult alignment = align_or_throw(matches, options.alignment.value_or(Alignment::kSe3),
                                                    options.align_first_n, "compat:rpg");
-  Evaluation evaluation = ate_evaluation(matches, alignment);
+  Evaluation evaluation = ate_evaluation(matches, alignment, is_fitted(options));
   for (MatchedPose& match : matches) match.est = alignment.S_w_v * match.est;
   evaluation.segments = segment_errors(
       matches, {.lengths_m = options.segment_lengths_m, .tolerance = kRpgTolerance, .shift_starts = true});
@@ -144,7 +166,7 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
       input.gt, input.est, associate_interpolated(input.gt, input.est, metric.max_gap_s, options.offset_s));
   const AlignmentResult alignment =
       align(matches, options.alignment.value_or(Alignment::kSe3), options.align_first_n);
-  Evaluation evaluation = ate_evaluation(matches, alignment);
+  Evaluation evaluation = ate_evaluation(matches, alignment, is_fitted(options));
   Trajectory shifted = input.est;
   for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, options.offset_s);
   const OpenlorisSequenceScore score = score_openloris_sequence(input.gt, shifted, alignment.S_w_v, metric);
@@ -155,6 +177,42 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
 
 constexpr double kSegmentTolerance = 0.02;  // relative to the length of the segment, or to delta in meters
 constexpr double kMaxHold = 1.0;            // [s], validity of a pose
+constexpr double kStrictMaxGap = 0.11;      // [s], to each neighbor in the ground truth
+
+/// Median interval of the ground truth [s]; 0 for fewer than two poses.
+double gt_interval_s(const Trajectory& trajectory) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < trajectory.poses.size(); ++i)
+    intervals.push_back(seconds_between(trajectory.poses[i - 1].t, trajectory.poses[i].t));
+  return percentile(intervals, 0.5).value_or(0.0);
+}
+
+/// What was not compared, and over which intervals the ground truth is interpolated.
+std::vector<std::string> association_notes(const EvaluationInput& input, std::size_t matches) {
+  std::vector<std::string> notes;
+  char text[240];
+  const double interval_s = gt_interval_s(input.gt);
+  const double max_gap_s = input.options.max_difference_s.value_or(kStrictMaxGap);
+  if (matches < input.est.poses.size()) {
+    std::snprintf(text, sizeof text, "%zu of %zu poses dropped: no ground truth close enough",
+                  input.est.poses.size() - matches, input.est.poses.size());
+    notes.emplace_back(text);
+    if (interval_s >= max_gap_s) {
+      std::snprintf(
+          text, sizeof text,
+          "the ground truth has one pose per %.3g s; --max-difference %.3g interpolates between them",
+          interval_s, 1.1 * interval_s);
+      notes.emplace_back(text);
+    }
+  }
+  if (max_gap_s > kStrictMaxGap && interval_s > kStrictMaxGap && matches > 0) {
+    std::snprintf(text, sizeof text,
+                  "the ground truth is interpolated over %.3g s: its path between the poses is not known",
+                  interval_s);
+    notes.emplace_back(text);
+  }
+  return notes;
+}
 
 RpeEvaluation strict_rpe_evaluation(std::span<const MatchedPose> matches, const ProtocolOptions& options) {
   if (options.rpe_unit == RpeUnit::kFrames) {
@@ -205,11 +263,13 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   const ProtocolOptions& options = input.options;
   Trajectory est = input.est;
   for (StampedPose& pose : est.poses) pose.t = after(pose.t, options.offset_s);
-  std::vector<MatchedPose> matches = strict_matches(input.gt, est);
+  const Alignment kind = options.alignment.value_or(alignment);
+  std::vector<MatchedPose> matches = matched_poses(
+      input.gt, est, associate_interpolated(input.gt, est, options.max_difference_s.value_or(kStrictMaxGap)));
   Evaluation evaluation;
   if (!matches.empty()) {
-    evaluation = ate_evaluation(matches, align_or_throw(matches, options.alignment.value_or(alignment),
-                                                        options.align_first_n, "strict protocol"));
+    evaluation = ate_evaluation(
+        matches, align_or_throw(matches, kind, options.align_first_n, "strict protocol"), is_fitted(kind));
   }
   if (!input.gt.poses.empty()) {
     const TimeSpan whole{input.gt.poses.front().t, input.gt.poses.back().t};
@@ -217,11 +277,8 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
     evaluation.coverage = time_coverage(evaluation.lost, whole);
     evaluation.first_pose_s = first_pose_seconds(est, whole.begin);
   }
-  if (matches.size() < est.poses.size()) {
-    evaluation.notes.push_back(std::to_string(est.poses.size() - matches.size()) + " of " +
-                               std::to_string(est.poses.size()) +
-                               " poses dropped: no ground truth close enough");
-  }
+  const std::vector<std::string> association = association_notes(input, matches.size());
+  evaluation.notes.insert(evaluation.notes.end(), association.begin(), association.end());
   evaluation.correct_rate = correct_rate(input.gt, est, options.correct);
   if (matches.empty()) return evaluation;
   const Similarity S_w_v = evaluation.alignment.S_w_v;
@@ -263,8 +320,9 @@ constexpr std::string_view kOpenlorisText =
     "divided by the duration of the ground truth. As evaluate.py of the OpenLORIS-Scene tools, whose "
     "error thresholds are infinite by default and which have no RPE.";
 constexpr std::string_view kStrictText =
-    "Ground truth interpolated at each estimated pose, both neighbors less than 0.11 s away, exact "
-    "stamps. Alignment over all matches, an error if they do not determine it. RPE from every match to "
+    "Ground truth interpolated at each estimated pose, both neighbors less than 0.11 s (--max-difference) "
+    "away, "
+    "exact stamps. Alignment over all matches, an error if they do not determine it. RPE from every match to "
     "the one closest to delta later; pairs that miss delta by more than half a frame interval or a tenth "
     "of delta are dropped and counted. Coverage: fraction of the ground truth's duration with a valid "
     "pose; a pose is valid for at most 1 s. Errors are only comparable together with the coverage.";
@@ -326,11 +384,41 @@ Evaluation evaluate_leveled(const Protocol& protocol, const EvaluationInput& inp
 
 std::span<const Protocol> protocols() { return kProtocols; }
 
+namespace {
+
+/// `evaluation` without the metrics that mean nothing, and with notes about doubtful ones.
+Evaluation with_doubts(Evaluation evaluation, const EvaluationInput& input) {
+  constexpr std::size_t kFewPairs = 10;
+  const auto note = [&](const std::string& text) { evaluation.notes.push_back(text); };
+  if (const std::string missing = missing_orientations(input.gt, input.est); !missing.empty()) {
+    note(missing);
+    evaluation.ate_deg = evaluation.rpe_m = evaluation.rpe_deg = std::nullopt;
+    evaluation.segments.clear();
+    evaluation.drift_percent = evaluation.correct_rate = std::nullopt;
+  }
+  if (evaluation.pairs > 0 && evaluation.pairs < kFewPairs)
+    note("only " + std::to_string(evaluation.pairs) + " poses were compared");
+  if (evaluation.rpe_m && evaluation.rpe_m->count < kFewPairs)
+    note("the RPE is that of only " + std::to_string(evaluation.rpe_m->count) + " pairs");
+  const std::size_t comparable = std::min(input.gt.poses.size(), input.est.poses.size());
+  if (evaluation.pairs > 0 && 2 * evaluation.pairs < comparable)
+    note("only " + std::to_string(evaluation.pairs) + " of " + std::to_string(input.est.poses.size()) +
+         " poses were compared, with " + std::to_string(input.gt.poses.size()) + " of the ground truth");
+  if (evaluation.alignment.S_w_v.scale != 1.0) {
+    char text[80];
+    std::snprintf(text, sizeof text, "the estimate was scaled by %.5g", evaluation.alignment.S_w_v.scale);
+    note(text);
+  }
+  return evaluation;
+}
+
+}  // namespace
+
 Evaluation evaluate(std::string_view protocol, const EvaluationInput& input) {
   std::string known;
   for (const Protocol& candidate : kProtocols) {
     if (candidate.name == protocol) {
-      Evaluation evaluation = evaluate_leveled(candidate, input);
+      Evaluation evaluation = with_doubts(evaluate_leveled(candidate, input), input);
       evaluation.protocol = candidate.name;
       evaluation.version = candidate.version;
       evaluation.text = std::string(candidate.text) + overrides_text(input.options);

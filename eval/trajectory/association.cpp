@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <queue>
 
 #include "core/base/error.h"
@@ -212,6 +213,42 @@ std::string span_text(Timestamp first, Timestamp last) {
   return format_stamp(first) + " to " + format_stamp(last) + " s";
 }
 
+/// A known cause of stamps that do not overlap, with the offset that corrects it.
+std::string likely_cause(double gt_s, double est_s) {
+  struct Unit {
+    double ratio;
+    const char* name;
+  };
+  constexpr Unit kUnits[] = {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}};
+  for (const auto& [ratio, name] : kUnits) {
+    if (gt_s > 0.0 && std::abs(est_s / gt_s / ratio - 1.0) < 0.1)
+      return std::string("the stamps of the estimate seem to be in ") + name + " instead of seconds";
+    if (est_s > 0.0 && std::abs(gt_s / est_s / ratio - 1.0) < 0.1)
+      return std::string("the stamps of the ground truth seem to be in ") + name + " instead of seconds";
+  }
+  constexpr double kGpsEpoch = 315964800.0;  // 1980-01-06 in Unix time [s]
+  constexpr double kMinUnixTime = 1e8;
+  const double difference_s = gt_s - est_s;
+  char text[160];
+  if (std::abs(std::abs(difference_s) - kGpsEpoch) < 86400.0) {
+    std::snprintf(text, sizeof text,
+                  "one seems to count from the GPS epoch: try --offset %.0f, less leap seconds",
+                  difference_s > 0.0 ? kGpsEpoch : -kGpsEpoch);
+    return text;
+  }
+  if ((std::abs(gt_s) > kMinUnixTime) != (std::abs(est_s) > kMinUnixTime)) {
+    std::snprintf(text, sizeof text,
+                  "one seems to count from its start, the other from 1970: try --offset %.3f", difference_s);
+    return text;
+  }
+  const double hours = std::round(difference_s / 3600.0);
+  if (hours != 0.0 && std::abs(hours) <= 14.0 && std::abs(difference_s - 3600.0 * hours) < 300.0) {
+    std::snprintf(text, sizeof text, "one seems to be in local time: try --offset %.0f", 3600.0 * hours);
+    return text;
+  }
+  return "are both of the same recording, and their stamps of the same clock (--offset)?";
+}
+
 }  // namespace
 
 void require_overlap(const Trajectory& gt, const Trajectory& est, double offset_s, const std::string& place) {
@@ -221,9 +258,8 @@ void require_overlap(const Trajectory& gt, const Trajectory& est, double offset_
   const Timestamp est_last = after(est.poses.back().t, offset_s);
   if (est_first <= gt_last && gt_first <= est_last) return;
   throw InputError(place, "covers " + span_text(est_first, est_last) + ", the ground truth " +
-                              span_text(gt_first, gt_last) +
-                              ": no overlap in time; are both of the same recording, and their stamps of the "
-                              "same clock (--offset)?");
+                              span_text(gt_first, gt_last) + ": no overlap in time; " +
+                              likely_cause(to_seconds(gt_first), to_seconds(est_first)));
 }
 
 }  // namespace stillpoint::eval

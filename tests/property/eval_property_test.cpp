@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "eval/compare/conventions.h"
+#include "eval/compare/time_offset.h"
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
 #include "tests/support/simulated/smooth_path.h"

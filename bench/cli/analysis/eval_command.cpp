@@ -19,6 +19,7 @@
 #include "core/base/error.h"
 #include "datasets/bags/bag_geometry.h"
 #include "eval/compare/conventions.h"
+#include "eval/compare/time_offset.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/openloris/benchmark.h"
 #include "eval/protocols/protocol.h"
@@ -46,7 +47,7 @@ struct EvalArguments {
   std::string rpe_unit = "s";
   double offset_s = 0.0;
   double max_difference_s = 0.0;
-  std::string format;
+  std::vector<std::string> formats;
   std::string times;
   int sequence = 0;
   std::string level;
@@ -79,11 +80,26 @@ struct PoseFile {
   eval::LoadedTrajectory loaded;
 };
 
+enum class FileRole { kTruth, kEstimate };
+
+/// The format of --format for the files of a role: "nmea" for all, "gt=nmea" and "est=tum" for one.
+std::optional<eval::TrajectoryFormat> format_of(const EvalArguments& arguments, FileRole role) {
+  std::optional<eval::TrajectoryFormat> format;
+  for (const std::string& text : arguments.formats) {
+    const std::size_t equals = text.find('=');
+    const std::string which = equals == std::string::npos ? "" : text.substr(0, equals);
+    if (!which.empty() && which != "gt" && which != "est")
+      throw InputError("--format " + text, "expected FORMAT, gt=FORMAT or est=FORMAT");
+    const auto value = enum_of<eval::TrajectoryFormat>("--format", text.substr(equals + 1));
+    if (which.empty() || (which == "gt") == (role == FileRole::kTruth)) format = value;
+  }
+  return format;
+}
+
 /// Reads a trajectory; its skipped and sorted rows are logged.
-PoseFile load(const EvalArguments& arguments, const std::string& path) {
+PoseFile load(const EvalArguments& arguments, const std::string& path, FileRole role) {
   eval::TrajectorySource source{.path = path, .times = arguments.times, .sequence = arguments.sequence};
-  if (!arguments.format.empty())
-    source.format = enum_of<eval::TrajectoryFormat>("--format", arguments.format);
+  source.format = format_of(arguments, role);
   const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path);
   eval::LoadedTrajectory loaded = bag ? datasets::read_bag_trajectory(*bag) : eval::read_trajectory(source);
   for (const std::string& repair : eval::repair_texts(loaded.repairs)) spdlog::warn("{}: {}", path, repair);
@@ -142,13 +158,18 @@ std::vector<PoseFile> with_consistent_orders(std::vector<PoseFile> files, double
 }
 
 /// @throws InputError if no protocol found two poses to compare
-void require_matches(const report::EvaluatedRun& run) {
+void require_matches(const Trajectory& gt, const report::EvaluatedRun& run) {
   for (const eval::Evaluation& evaluation : run.evaluations) {
     if (evaluation.pairs > 0) return;
   }
-  throw InputError(run.name, "fewer than two poses have a ground-truth pose close enough in time (" +
-                                 run.evaluations.front().protocol +
-                                 "); correct its stamps with --offset, or use a larger --max-difference");
+  const double interval_s = seconds_between(gt.poses.front().t, gt.poses.back().t) /
+                            static_cast<double>(std::max<std::size_t>(gt.poses.size(), 2) - 1);
+  throw InputError(
+      run.name,
+      fmt::format("none of {} poses has a ground-truth pose close enough in time ({}); the ground truth "
+                  "has one pose per {:.3g} s: --protocol strict:se3 --max-difference {:.3g} interpolates "
+                  "between them; or correct the stamps with --offset",
+                  run.est.poses.size(), run.evaluations.front().protocol, interval_s, 1.1 * interval_s));
 }
 
 /// The file name, or the complete path if several files have the same name.
@@ -193,13 +214,13 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments,
                              .est = loaded.trajectory,
                              .repairs = loaded.repairs,
                              .evaluations = {}};
-    eval::require_overlap(gt, run.est, arguments.offset_s, path);
+    if (!arguments.find_offset) eval::require_overlap(gt, run.est, arguments.offset_s, path);
     options.q_level_w = leveling_rotation(arguments, path);
     const eval::EvaluationInput input{gt, run.est, options};
     for (const std::string& protocol : arguments.protocols)
       run.evaluations.push_back(eval::evaluate(protocol, input));
     if (arguments.protocols.empty()) run.evaluations = evaluate_by_default(input, run.name);
-    if (!arguments.find_offset) require_matches(run);
+    if (!arguments.find_offset) require_matches(gt, run);
     runs.push_back(std::move(run));
   }
   return runs;
@@ -212,10 +233,18 @@ std::vector<std::string> warnings_about(const Trajectory& gt, const report::Eval
   return warnings;
 }
 
-eval::Comparison compare(const Trajectory& gt, const std::vector<report::EvaluatedRun>& runs) {
+/// With the offset, the alignment and the RPE interval of the options.
+eval::Comparison compare(const EvalArguments& arguments, const Trajectory& gt,
+                         const std::vector<report::EvaluatedRun>& runs) {
   std::vector<eval::NamedRun> named;
-  for (const report::EvaluatedRun& run : runs) named.push_back({run.name, run.est});
-  return eval::compare_runs(gt, named);
+  for (const report::EvaluatedRun& run : runs) {
+    named.push_back({run.name, run.est});
+    for (StampedPose& pose : named.back().est.poses) pose.t = after(pose.t, arguments.offset_s);
+  }
+  eval::CompareOptions options;
+  options.alignment = protocol_options(arguments).alignment.value_or(options.alignment);
+  if (arguments.rpe_unit == "s") options.rpe_delta_s = arguments.rpe_delta;
+  return eval::compare_runs(gt, named, options);
 }
 
 Json rows_json(const eval::RowRepairs& rows) {
@@ -228,7 +257,8 @@ Json document(const EvalArguments& arguments, const eval::LoadedTrajectory& trut
   const Trajectory& gt = truth.trajectory;
   Json list = Json::array();
   for (const report::EvaluatedRun& run : runs) {
-    const eval::ScoreOptions options{.offset_s = arguments.offset_s, .expected_times = {}};
+    eval::ScoreOptions options{.offset_s = arguments.offset_s, .expected_times = {}};
+    if (arguments.rpe_unit == "s") options.rpe_delta_s = arguments.rpe_delta;
     const eval::Score score = eval::score(gt, run.est, options);
     Json json = metric_members({.scored = ScoredTrajectory{.gt = gt, .est = run.est, .score = score}});
     json["estimate"] = run.name;
@@ -239,7 +269,7 @@ Json document(const EvalArguments& arguments, const eval::LoadedTrajectory& trut
     list.push_back(std::move(json));
   }
   if (list.size() == 1) return list.front();
-  return {{"runs", list}, {"comparison", report::comparison_json(compare(gt, runs))}};
+  return {{"runs", list}, {"comparison", report::comparison_json(compare(arguments, gt, runs))}};
 }
 
 void print_tables(const EvalArguments& arguments, const Trajectory& gt,
@@ -249,10 +279,14 @@ void print_tables(const EvalArguments& arguments, const Trajectory& gt,
                                                         : report::TableStyle::kText;
   std::cout << report::evaluation_table(runs, style);
   if (runs.size() > 1 && style != report::TableStyle::kCsv) {
-    const eval::Comparison comparison = compare(gt, runs);
-    std::cout << fmt::format("\nComparison over {:.2f} s for which all successful runs have poses:\n",
-                             comparison.common_s)
-              << report::comparison_table(comparison, style);
+    const eval::Comparison comparison = compare(arguments, gt, runs);
+    std::cout
+        << fmt::format(
+               "\nComparison over {:.2f} s for which all successful runs have poses (alignment {}, relative "
+               "errors over {:g} s):\n",
+               comparison.common_s, arguments.alignment.empty() ? "se3" : arguments.alignment,
+               arguments.rpe_unit == "s" ? arguments.rpe_delta : 1.0)
+        << report::comparison_table(comparison, style);
   }
   if (arguments.explain) std::cout << '\n' << report::explanation_text(runs);
   for (const report::EvaluatedRun& run : runs) {
@@ -284,7 +318,9 @@ OutputRules output_rules(const EvalArguments& arguments) {
 void print_offsets(const Trajectory& gt, const std::vector<report::EvaluatedRun>& runs) {
   for (const report::EvaluatedRun& run : runs) {
     const std::optional<eval::TimeOffset> found = eval::find_time_offset(gt, run.est);
-    if (!found) throw InputError(run.name, "too few matching poses to estimate a time offset");
+    if (!found) throw InputError(run.name, "too few poses to estimate a time offset");
+    if (!found->undetermined.empty())
+      throw InputError(run.name, "time offset not determined: " + found->undetermined);
     std::cout << fmt::format("{}: offset {:+.5f} s (ATE {:.6f} m; {:.6f} m without offset)\n", run.name,
                              found->offset_s, found->ate_rmse_m, found->ate_rmse_at_zero_m);
   }
@@ -298,8 +334,9 @@ int evaluate_files(const EvalArguments& arguments) {
   if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules);
   if (!arguments.map.empty()) report::require_drawing_file(arguments.map, rules);
   if (!arguments.per_pose.empty()) require_safe_output(arguments.per_pose, rules);
-  std::vector<PoseFile> files{load(arguments, arguments.ground_truth)};
-  for (const std::string& path : arguments.estimates) files.push_back(load(arguments, path));
+  std::vector<PoseFile> files{load(arguments, arguments.ground_truth, FileRole::kTruth)};
+  for (const std::string& path : arguments.estimates)
+    files.push_back(load(arguments, path, FileRole::kEstimate));
   files = with_consistent_orders(std::move(files), arguments.offset_s);
   const eval::LoadedTrajectory& truth = files.front().loaded;
   const Trajectory& gt = truth.trajectory;
@@ -345,7 +382,10 @@ std::vector<Option> options_of(EvalArguments& a) {
        "Override the maximum time difference of matched poses of the protocol [s]",
        &a.max_difference_s,
        {1e-9, 1e6}},
-      {"--format", "Trajectory format: " + enum_list<eval::TrajectoryFormat>() + " [detected]", &a.format},
+      {"--format",
+       "Trajectory format: " + enum_list<eval::TrajectoryFormat>() +
+           "; of one file: gt=FORMAT, est=FORMAT [detected]",
+       &a.formats},
       {"--times", "File of time stamps of a KITTI trajectory", &a.times},
       {"--seq", "Sequence number in an OpenLORIS file", &a.sequence, {0, 1e9}},
       {"--explain", "Print a description of each protocol", &a.explain},

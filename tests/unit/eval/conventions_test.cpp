@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "eval/compare/time_offset.h"
 #include "eval/trajectory/alignment.h"
 #include "tests/support/simulated/smooth_path.h"
 
@@ -119,6 +123,73 @@ TEST(Conventions, DetectSwappedArguments) {
   for (StampedPose& pose : est.poses) pose.T_w_f = T_v_w * pose.T_w_f;
   EXPECT_EQ(violations(est, kGt), std::vector{Convention::kSwappedArguments});
   EXPECT_TRUE(violations(kGt, est).empty());
+}
+
+TEST(Conventions, DetectAnEstimateThatSurroundsAndOutpacesTheGroundTruth) {
+  EXPECT_EQ(violations(test::smooth_path(180, 0.1, 1.0), kGt), std::vector{Convention::kSwappedArguments});
+}
+
+TEST(Conventions, DetectAScaleAndDoNotCallItAnOffset) {
+  for (const double scale : {0.2, 5.0}) {
+    Trajectory est = kEst;
+    for (StampedPose& pose : est.poses) pose.T_w_f.p *= scale;
+    EXPECT_EQ(violations(kGt, est), std::vector{Convention::kScale}) << scale;
+  }
+}
+
+TEST(Conventions, DetectAMirroredEstimate) {
+  Trajectory est = kEst;
+  for (StampedPose& pose : est.poses) pose.T_w_f.p.y() *= -1.0;
+  const std::vector<Convention> found = violations(kGt, est);
+  EXPECT_NE(std::find(found.begin(), found.end(), Convention::kMirrored), found.end());
+}
+
+TEST(TimeOffset, IsFoundFarAway) {
+  for (const double shift : {-1500000000.0, -18.0, -3.4, 0.0, 0.5, 7.9, 37.0}) {
+    Trajectory est = test::smooth_path(1200, 1.0 / 30.0, 3.0);
+    for (StampedPose& pose : est.poses) pose.t = after(pose.t, -shift);
+    const auto found = find_time_offset(test::smooth_path(5000, 0.01), est);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->undetermined, "") << shift;
+    EXPECT_NEAR(found->offset_s, shift, 1e-3);
+  }
+}
+
+TEST(TimeOffset, OfAScaledEstimateIsThatOfItsStamps) {
+  Trajectory est = kEst;
+  for (StampedPose& pose : est.poses) {
+    pose.T_w_f.p *= 0.2;
+    pose.t = after(pose.t, -0.31);
+  }
+  EXPECT_NEAR(find_time_offset(kGt, est)->offset_s, 0.31, 1e-3);
+}
+
+TEST(TimeOffset, IsNotDeterminedByMotionThatDoesNotTellIt) {
+  const auto path = [](double rate) {
+    Trajectory line;
+    for (int i = 0; i < 400; ++i) {
+      const double t = 0.05 * i;
+      line.poses.push_back({from_seconds(t), Pose{Eigen::Quaterniond::Identity(), {rate * t, 0, 0}}});
+    }
+    return line;
+  };
+  EXPECT_NE(find_time_offset(path(0.5), path(0.5))->undetermined, "");  // constant speed
+  EXPECT_NE(find_time_offset(path(0.0), path(0.0))->undetermined, "");  // standing
+  Trajectory other;                                                     // another motion
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.05 * i;
+    other.poses.push_back({from_seconds(t), Pose{exp_so3({0.0, 0.0, std::sin(5.3 * t * t * 0.1)}),
+                                                 {std::sin(3.1 * t), std::sin(1.9 * t * t * 0.2), 0}}});
+  }
+  EXPECT_NE(find_time_offset(kGt, other)->undetermined, "");
+  Trajectory circle;  // three equal rounds with a varying speed
+  for (int i = 0; i < 600; ++i) {
+    const double t = 0.05 * i;
+    const double angle = 2.0 * M_PI * t / 10.0 + 0.5 * std::sin(2.0 * M_PI * t / 10.0);
+    circle.poses.push_back(
+        {from_seconds(t), Pose{exp_so3({0, 0, angle}), {std::cos(angle), 1.5 * std::sin(angle), 0}}});
+  }
+  EXPECT_NE(find_time_offset(circle, circle)->undetermined, "");
 }
 
 }  // namespace

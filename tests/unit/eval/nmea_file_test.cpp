@@ -65,6 +65,19 @@ TEST(NmeaFile, RejectsTextsWithoutPositionOrDate) {
   expect_input_error([] { static_cast<void>(parse_nmea(kFirst, "f")); }, {"f", "RMC"});
 }
 
+TEST(NmeaFile, TakesNoDateFromAnInvalidSentence) {
+  const std::string invalid = "$GPRMC,123518,V,,,,,,,060180,,\n";  // before the first fix
+  const LoadedTrajectory loaded = parse_nmea(invalid + kDate + kFirst, "f");
+  EXPECT_EQ(loaded.trajectory.poses[0].t.ns, 764426119'000'000'000);
+  expect_input_error([&] { static_cast<void>(parse_nmea(invalid + kFirst, "f")); }, {"f", "status A"});
+}
+
+TEST(NmeaFile, IsDetectedIfTheLogStartsWithinASentence) {
+  EXPECT_EQ(detect_format("225,N,08835.9985,W,1,08,0.9,545.4,M,46.9,M,,*79\r\n" + kFirst + kDate),
+            TrajectoryFormat::kNmea);
+  EXPECT_EQ(detect_format("*47\n\n" + kFirst), TrajectoryFormat::kNmea);
+}
+
 TEST(NmeaFile, IsDetected) {
   EXPECT_EQ(detect_format(kDate), TrajectoryFormat::kNmea);
   EXPECT_EQ(detect_format("1 0 0 0 0 0 0 1\n"), TrajectoryFormat::kTum);

@@ -24,5 +24,21 @@ TEST(RequireOverlap, NamesBothSpansOtherwise) {
                       "no overlap in time", "--offset"});
 }
 
+TEST(RequireOverlap, NamesKnownCauses) {
+  struct Case {
+    double gt_s;
+    double est_s;
+    const char* cause;
+  };
+  for (const auto& [gt_s, est_s, cause] : {Case{1.4e9, 0.0, "try --offset 1400000000.000"},
+                                           {1.4e9, 1.4e9 - 315964818.0, "GPS epoch"},
+                                           {1.4e9, 1.4e9 + 7200.0, "local time: try --offset -7200"},
+                                           {1.4e6, 1.4e9, "milliseconds"},
+                                           {100.0, 300.0, "same clock"}}) {
+    expect_input_error(
+        [&] { require_overlap(from_to(gt_s, gt_s + 10), from_to(est_s, est_s + 10), 0.0, "e"); }, {cause});
+  }
+}
+
 }  // namespace
 }  // namespace stillpoint::eval
