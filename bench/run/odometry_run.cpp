@@ -269,7 +269,8 @@ class RunRecorder {
     calibration.depth_scale_at_bound += update.at_bound.depth_scale;
     if (!update.covariance) return;
     calibration.time_offset_sigma_s = std::sqrt(update.covariance->time_offset);
-    calibration.depth_scale_sigma = std::sqrt(update.covariance->depth_scale);
+    calibration.depth_scale_sigma =
+        std::sqrt(update.covariance->depth_scale) * update.depth_scale * update.depth_scale;
     calibration.extrinsics_sigma_m = largest_sigma(update.covariance->extrinsics.topLeftCorner<3, 3>());
     calibration.extrinsics_sigma_rad = largest_sigma(update.covariance->extrinsics.bottomRightCorner<3, 3>());
   }

@@ -241,7 +241,7 @@ void Estimator::solve() {
   if (!solution.covariance) return;
   update_.covariance = solution.covariance->newest;
   monitor_.add_contradiction(window().frames.back().state.t, *update_.covariance);
-  calibration_.compare_with_rig(solution.covariance->rig, window_.states().agrees_with_rig);
+  calibration_.compare_with_rig(solution.covariance->rig, update_.covariance->depth_scale, window_.states());
 }
 
 /// The biases were part of a divergence, and are forgotten with it.
@@ -299,16 +299,13 @@ void Estimator::slide() {
   window_.slide();
 }
 
-/// Makes calibration that the data contradicts variable. With a wrong rotation or depth scale, the states of
-/// the window are far from the true ones, and its prior is linearized at the wrong point: it starts anew, for
-/// which vision is needed.
+/// With a wrong rotation, the states of the window are far from the true ones, and its prior is linearized at
+/// the wrong point: it starts anew, for which vision is needed.
 void Estimator::free_calibration(Timestamp now) {
   if (monitor_.status() == OdometryStatus::kDeadReckoning) return;
   if (calibration_.awaits_alignment()) {
     const std::optional<RotationAlignment> alignment = start_.align_rotations(window(), now, imu_);
     if (alignment && calibration_.align(*alignment)) restart_with_calibration(alignment->gyro_bias);
-  } else if (calibration_.has_other_depth_scale() && window().agrees_with_rig.depth_scale) {
-    restart_with_calibration(newest_.gyro_bias);
   }
 }
 

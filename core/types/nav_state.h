@@ -36,7 +36,7 @@ struct StateCovariance {
   /// Of T_b_c, in the same tangent space as the pose; zero if constant.
   Matrix6 extrinsics = Matrix6::Zero();
   double time_offset = 0.0;  ///< variance [s^2]; zero if constant
-  double depth_scale = 0.0;  ///< variance; zero if constant
+  double depth_scale = 0.0;  ///< variance of its inverse; zero if constant
   bool inertial = false;     ///< velocity and biases are estimated
 
   [[nodiscard]] Matrix6 pose() const { return state.topLeftCorner<6, 6>(); }

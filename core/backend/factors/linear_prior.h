@@ -13,7 +13,8 @@
 
 namespace stillpoint {
 
-/// The first two belong to a frame, the others to the window (global states).
+/// The first two belong to a frame, the others to the window (global states). The value of kDepthScale is the
+/// inverse depth scale, see reprojection_rows.h.
 enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity, kDepthScale };
 
 /// Number of doubles in a parameter block, and of its tangent space.

@@ -4,17 +4,19 @@
 ///
 /// Two rows of bearing error and, with a measured depth, one of inverse depth. Qin et al. 2018, Eq. (25), on
 /// the normalized image plane instead of the unit sphere. With the bearings u_i, u_j and their velocities, td
-/// the time offset, e_k the row readout offset minus the time offset at which state k is defined, s the depth
-/// scale (ratio of measured to true depth), and lambda the inverse depth in the host:
+/// the time offset, e_k the row readout offset minus the time offset at which state k is defined, k the
+/// inverse depth scale (ratio of true to measured depth), and lambda the inverse depth in the host:
 ///
 ///   u_k(td) = u_k - (td + e_k) du_k/dt,  k = i, j         (shifted to the time of the state)
 ///   P       = T_c_b T_bj_w T_w_bi T_b_c [u_i(td); 1; lambda]
 ///   r_u     = (P_xy / P_z - u_j(td)) / sigma_u
-///   r_d     = rho((lambda / (s P_z) - lambda_j) / sigma_d),   rho(d) = d / sqrt(1 + (d/c)^2)
+///   r_d     = rho((k lambda / P_z - lambda_j) / sigma_d),   rho(d) = d / sqrt(1 + (d/c)^2)
 ///
 /// P is homogeneous: lambda times the point in camera j.
-/// lambda_j is the inverse depth measured in j; lambda / P_z is the true one. The scale divides the
-/// prediction: a factor on the measurement would scale its noise, and the cost would decrease with it. The
+/// lambda_j is the inverse depth measured in j; lambda / P_z is the true one. The scale is a
+/// factor on the prediction: one on the measurement would scale its noise, and the cost would decrease with
+/// it. It is the inverse scale because a path is k times as long as measured, which remains true in a prior
+/// that is linearized at another k. The
 /// bounded rho (Geman & McClure 1985) keeps a depth measured across an object's edge from outweighing the
 /// bearing.
 ///
@@ -52,7 +54,7 @@ struct BoundedError {
 struct MeasuredPoint {
   Eigen::Vector2d bearing = Eigen::Vector2d::Zero();  ///< at the time of the state, normalized image plane
   double inverse_depth = 0.0;                         ///< measured [1/m]
-  double depth_scale = 1.0;                           ///< ratio of measured to true depth
+  double inverse_depth_scale = 1.0;                   ///< ratio of true to measured depth
   bool has_depth = false;                             ///< whether the depth row is evaluated
 };
 
@@ -61,7 +63,7 @@ struct ReprojectionRows {
   Eigen::Vector3d residual;
   Eigen::Matrix3d J_point;      ///< with respect to the scaled point P in camera j
   double J_depth_lambda = 0.0;  ///< depth row: partial derivative by lambda at constant P
-  double J_depth_scale = 0.0;   ///< depth row: derivative by the depth scale
+  double J_depth_scale = 0.0;   ///< depth row: derivative by the inverse depth scale
 };
 
 /// Lower clamp of P_z, the ratio of the depths in j and in the host: smaller values, including points behind
@@ -85,7 +87,7 @@ inline constexpr double kMinDepthRatio = 0.01;
       0.0, weight * inverse_z, weight * projected.y() * dlog_dz,              //
       0.0, 0.0, 0.0;
   if (observation.has_depth) {
-    const double scaled_inverse_z = inverse_z / observation.depth_scale;
+    const double scaled_inverse_z = inverse_z * observation.inverse_depth_scale;
     const double inverse_depth = lambda * scaled_inverse_z;
     const BoundedError depth =
         bounded_error((inverse_depth - observation.inverse_depth) / noise.inverse_depth, noise.depth_outlier);
@@ -93,7 +95,7 @@ inline constexpr double kMinDepthRatio = 0.01;
     rows.residual[2] = depth.value;
     rows.J_point(2, 2) = slope * inverse_depth * dlog_dz;
     rows.J_depth_lambda = slope * scaled_inverse_z;
-    rows.J_depth_scale = -slope * inverse_depth / observation.depth_scale;
+    rows.J_depth_scale = slope * lambda * inverse_z;
   }
   return rows;
 }

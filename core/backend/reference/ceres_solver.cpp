@@ -74,7 +74,7 @@ class WindowProblem {
     add_state(blocks_.extrinsics(), 7, &manifold_);
     add_state(blocks_.time_offset(), 1, nullptr);
     add_state(blocks_.gravity(), 3, &gravity_manifold_);
-    add_state(blocks_.depth_scale(), 1, nullptr);
+    add_state(blocks_.inverse_depth_scale(), 1, nullptr);
   }
 
   void add_state(double* block, int size, ceres::Manifold* manifold) {
@@ -98,7 +98,7 @@ class WindowProblem {
     if (!variable.extrinsics) problem_.SetParameterBlockConstant(blocks_.extrinsics());
     if (!variable.time_offset) problem_.SetParameterBlockConstant(blocks_.time_offset());
     if (!variable.gravity) problem_.SetParameterBlockConstant(blocks_.gravity());
-    if (!variable.depth_scale) problem_.SetParameterBlockConstant(blocks_.depth_scale());
+    if (!variable.depth_scale) problem_.SetParameterBlockConstant(blocks_.inverse_depth_scale());
   }
 
   PoseManifold manifold_;

@@ -100,12 +100,12 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   const Eigen::Vector2d bearing_i = m.bearing_i - (time_offset + m.exposure_i_s) * m.velocity_i;
   const Eigen::Vector2d bearing_j = m.bearing_j - (time_offset + m.exposure_j_s) * m.velocity_j;
   constexpr std::size_t kLambda = Rows == 3 ? 5 : 4;
-  const double depth_scale = Rows == 3 ? x[4][0] : 1.0;
+  const double inverse_depth_scale = Rows == 3 ? x[4][0] : 1.0;
   const TransferredPoint t(x, x[kLambda][0], bearing_i);
   const ReprojectionRows rows = reprojection_rows(t.p_cj, t.lambda,
                                                   {.bearing = bearing_j,
                                                    .inverse_depth = m.inverse_depth_j,
-                                                   .depth_scale = depth_scale,
+                                                   .inverse_depth_scale = inverse_depth_scale,
                                                    .has_depth = Rows == 3},
                                                   noise_);
   Eigen::Map<Eigen::Matrix<double, Rows, 1>>{residuals} = rows.residual.template head<Rows>();
@@ -137,15 +137,15 @@ template class ReprojectionFactor<2>;
 template class ReprojectionFactor<3>;
 
 bool HostDepthFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
-  const double scale = x[0][0];
+  const double inverse_scale = x[0][0];
   const double lambda = x[1][0];
   const BoundedError depth =
-      bounded_error((lambda / scale - measured_) / noise_.inverse_depth, noise_.depth_outlier);
+      bounded_error((lambda * inverse_scale - measured_) / noise_.inverse_depth, noise_.depth_outlier);
   residuals[0] = depth.value;
   if (jacobians == nullptr) return true;
-  const double slope = depth.slope / (noise_.inverse_depth * scale);
-  if (jacobians[0] != nullptr) jacobians[0][0] = -slope * lambda / scale;
-  if (jacobians[1] != nullptr) jacobians[1][0] = slope;
+  const double slope = depth.slope / noise_.inverse_depth;
+  if (jacobians[0] != nullptr) jacobians[0][0] = slope * lambda;
+  if (jacobians[1] != nullptr) jacobians[1][0] = slope * inverse_scale;
   return true;
 }
 

@@ -26,7 +26,7 @@ struct ReprojectionMeasurement {
 /// The residual of reprojection_rows.h: two rows of bearing error and, with `Rows == 3`, one of inverse
 /// depth.
 ///
-/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, with `Rows == 3` s, lambda. The derivative
+/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, with `Rows == 3` k, lambda. The derivative
 /// of the relative pose of the cameras is evaluated with the first estimates in place of the poses, where
 /// given; the residual is not.
 template <int Rows>
@@ -53,8 +53,8 @@ class ReprojectionFactor final
 extern template class ReprojectionFactor<2>;
 extern template class ReprojectionFactor<3>;
 
-/// Depth measured in the host: r = rho((lambda / s - lambda_i) / sigma_d), with rho as above. Parameter
-/// blocks: s, lambda.
+/// Depth measured in the host: r = rho((k lambda - lambda_i) / sigma_d), with rho as above. Parameter
+/// blocks: k, lambda.
 class HostDepthFactor final : public ceres::SizedCostFunction<1, 1, 1> {
  public:
   HostDepthFactor(double measured_inverse_depth, const ReprojectionNoise& noise)

@@ -150,7 +150,7 @@ void SchurSolver::apply_step() {
   const int time_offset = layout_.column({BlockKind::kTimeOffset});
   if (time_offset >= 0) *candidate_.time_offset() += step_.states[time_offset];
   const int depth_scale = layout_.column({BlockKind::kDepthScale});
-  if (depth_scale >= 0) *candidate_.depth_scale() += step_.states[depth_scale];
+  if (depth_scale >= 0) *candidate_.inverse_depth_scale() += step_.states[depth_scale];
   const int gravity = layout_.column({BlockKind::kGravity});
   if (gravity >= 0) {
     Eigen::Map<Eigen::Vector3d> g(candidate_.gravity());

@@ -79,16 +79,16 @@ VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
 MeasuredPoint VisualTerms::measured_point_at(const TimedObservation& observation) const {
   return {.bearing = at_state(observation.bearing, time_offset_),
           .inverse_depth = observation.inverse_depth,
-          .depth_scale = depth_scale_,
+          .inverse_depth_scale = inverse_depth_scale_,
           .has_depth = observation.has_depth};
 }
 
 /// Host depth residual and its derivative; zero without a depth in the host.
 BoundedError VisualTerms::host_depth(const VisualLandmark& landmark, double lambda) const {
   if (!landmark.has_depth) return {0.0, 0.0};
-  const BoundedError depth =
-      bounded_error((lambda / depth_scale_ - landmark.measured) / noise_.inverse_depth, noise_.depth_outlier);
-  return {depth.value, depth.slope / noise_.inverse_depth / depth_scale_};
+  const BoundedError depth = bounded_error(
+      (lambda * inverse_depth_scale_ - landmark.measured) / noise_.inverse_depth, noise_.depth_outlier);
+  return {depth.value, depth.slope / noise_.inverse_depth * inverse_depth_scale_};
 }
 
 double VisualTerms::cost(const ParameterBlocks& blocks) {
@@ -215,7 +215,7 @@ void VisualTerms::add_scale_terms(const VisualLandmark& landmark, int frame, con
 /// H_ss, g_s and H_ls of the depth in the host. @param depth of `host_depth`
 void VisualTerms::add_host_scale_terms(const VisualLandmark& landmark, double lambda,
                                        const BoundedError& depth, const ReducedLayout& layout) {
-  const double J_scale = -depth.slope * lambda / depth_scale_;
+  const double J_scale = depth.slope * lambda / inverse_depth_scale_;
   const double weighted = landmark.information * J_scale;
   scale_information_ += weighted * J_scale;
   host_scale_gradient_ += weighted * depth.value;
@@ -243,7 +243,7 @@ CameraOnBody VisualTerms::place_cameras(const ParameterBlocks& blocks) {
 /// Computes the relative poses of all frame pairs that share landmarks at the current states.
 void VisualTerms::update_relative_poses(const ParameterBlocks& blocks) {
   time_offset_ = *blocks.time_offset();
-  depth_scale_ = *blocks.depth_scale();
+  inverse_depth_scale_ = *blocks.inverse_depth_scale();
   const CameraOnBody camera = place_cameras(blocks);
   for (std::size_t host = 0; host < cameras_.size(); ++host) {
     for (std::size_t frame = host + 1; frame < cameras_.size(); ++frame) {

@@ -31,8 +31,8 @@ enum class LandmarkSelection { kAll, kHostedByOldest };
 /// plus the host depth residual in H_ll and g_l, so its elimination is a rank-one update,
 /// S -= H_pl H_ll^-1 H_pl^T.
 ///
-/// If the depth scale s is variable, it has the sum a_ij = sum w J_s [J_y r] per pair, mapped likewise to
-/// H_ps and g_s, and H_ss = sum w J_s^2; both only from depth rows.
+/// If the inverse depth scale k is variable, it has the sum a_ij = sum w J_k [J_y r] per pair, mapped
+/// likewise to H_pk and g_k, and H_kk = sum w J_k^2; both only from depth rows.
 class VisualTerms {
  public:
   /// Reads the observations of a window; allocates only if it is larger than all windows before.
@@ -125,7 +125,7 @@ class VisualTerms {
   bool marginalizes_ = false;   // only a fraction of the information, see marginalized_fraction
   double cauchy_squared_ = 1.0;
   double time_offset_ = 0.0;
-  double depth_scale_ = 1.0;
+  double inverse_depth_scale_ = 1.0;
   ReprojectionNoise noise_;
   ObservationModel observation_model_;
   std::vector<VisualLandmark> landmarks_;

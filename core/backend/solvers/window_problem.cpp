@@ -85,7 +85,7 @@ void ParameterBlocks::assign(const Window& window) {
   }
   pack_pose(window.T_b_c, extrinsics());
   *time_offset() = window.time_offset_s;
-  *depth_scale() = window.depth_scale;
+  *inverse_depth_scale() = 1.0 / window.depth_scale;
   Eigen::Map<Eigen::Vector3d>{gravity()} = window.gravity_w;
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     *inverse_depth(i) = window.landmarks[i].inverse_depth;
@@ -132,7 +132,7 @@ void unpack(const ParameterBlocks& blocks, Window& window) {
   }
   window.T_b_c = unpack_pose(blocks.extrinsics());
   window.time_offset_s = *blocks.time_offset();
-  window.depth_scale = *blocks.depth_scale();
+  window.depth_scale = 1.0 / *blocks.inverse_depth_scale();
   window.gravity_w = Eigen::Vector3d(blocks.gravity());
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     window.landmarks[i].inverse_depth = *blocks.inverse_depth(i);

@@ -58,8 +58,8 @@ struct BlockRef {
 };
 
 /// Copies of the window's states in the solver's layout: T_w_b of each frame as (p, q xyzw), then each
-/// frame's v, gyro bias and accel bias, then T_b_c, the time offset, gravity, the depth scale, and the
-/// inverse depth of each landmark, usable or not.
+/// frame's v, gyro bias and accel bias, then T_b_c, the time offset, gravity, the inverse depth scale, and
+/// the inverse depth of each landmark, usable or not.
 ///
 /// A single array: Ceres orders blocks by address, so with separate arrays the elimination order, and thereby
 /// the rounding of the result, would depend on the allocator.
@@ -76,7 +76,7 @@ class ParameterBlocks {
   [[nodiscard]] double* extrinsics() { return &values_[16 * frames_]; }
   [[nodiscard]] double* time_offset() { return &values_[16 * frames_ + 7]; }
   [[nodiscard]] double* gravity() { return &values_[16 * frames_ + 8]; }
-  [[nodiscard]] double* depth_scale() { return &values_[16 * frames_ + 11]; }
+  [[nodiscard]] double* inverse_depth_scale() { return &values_[16 * frames_ + 11]; }
   [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 12 + landmark]; }
   [[nodiscard]] double* at(BlockRef block) { return &values_[offset(block)]; }
 
@@ -87,7 +87,7 @@ class ParameterBlocks {
   [[nodiscard]] const double* extrinsics() const { return &values_[16 * frames_]; }
   [[nodiscard]] const double* time_offset() const { return &values_[16 * frames_ + 7]; }
   [[nodiscard]] const double* gravity() const { return &values_[16 * frames_ + 8]; }
-  [[nodiscard]] const double* depth_scale() const { return &values_[16 * frames_ + 11]; }
+  [[nodiscard]] const double* inverse_depth_scale() const { return &values_[16 * frames_ + 11]; }
   [[nodiscard]] const double* inverse_depth(std::size_t landmark) const {
     return &values_[16 * frames_ + 12 + landmark];
   }

@@ -82,7 +82,6 @@ RigContradiction rig_contradiction(const AgreesWithRig& constant, std::span<cons
     }
     if (block.kind == BlockKind::kDepthScale && constant.depth_scale) {
       result.depth_scale_step = step[column];
-      result.depth_scale_sigma = std::sqrt(covariance(column, column));
       result.depth_scale = step[column] * step[column] / covariance(column, column);
     }
     column += local_size(block.kind);

@@ -35,8 +35,7 @@ struct SolveReport {
 struct RigContradiction {
   double extrinsics = 0.0;
   double depth_scale = 0.0;
-  double depth_scale_step = 0.0;   ///< d
-  double depth_scale_sigma = 0.0;  ///< square root of C
+  double depth_scale_step = 0.0;  ///< d, of the inverse depth scale
 };
 
 struct WindowCovariance {

@@ -12,7 +12,15 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kAlignedDegreesOfFreedom = 4;     // rotation and time offset
+constexpr int kAlignedDegreesOfFreedom = 4;  // rotation and time offset
+/// An accelerometer of another scale looks like depth of another scale: data sheets of consumer sensors state
+/// 0.5 to 1 %. The data of another scale factor is doubted until the inertial noise is about known
+/// (InertialNoise): recorded inertial data (V1_03, from 20 and 60 s) contradicted a true scale by up to 5.6
+/// standard deviations in its first second, and by less than 2 later.
+constexpr double kAccelScale = 0.006;
+constexpr double kNoiseKnown_s = 1.5;
+/// Squared difference, in variances, below which a scale that differed is again that of the rig.
+constexpr double kLikeRig = 4.0;
 constexpr double kAveragingHalfWidth_s = 0.02;  // as far as samples are available after the newest exposure
 
 /// Limits `value` to [center - bound, center + bound]. @return whether it was outside
@@ -44,10 +52,8 @@ Window Calibration::calibrated_window() const {
   window.T_b_c = rig_.T_b_c;
   window.time_offset_s = rig_.time_offset_s;
   window.time_offset_model = config_.time_offset_model;
-  const bool starts_with_rig = uses_imu_ && config_.calibration_agreement_probability > 0.0;
-  window.agrees_with_rig = {
-      .extrinsics = starts_with_rig && config_.estimate_extrinsics,
-      .depth_scale = starts_with_rig && config_.depth.estimate_scale && !depth_scale_found_};
+  window.agrees_with_rig = {.extrinsics = starts_with_rig() && config_.estimate_extrinsics,
+                            .depth_scale = compares_depth_scale() && !depth_scale_found_};
   if (depth_scale_found_) window.depth_scale = depth_scale_found_->value;
   if (!is_aligned_otherwise()) return window;
   window.T_b_c.q = rotation_alignment_->q_b_c;
@@ -85,20 +91,26 @@ bool Calibration::is_aligned_otherwise() const {
          !agrees_with_rig(rotation_alignment_->rig_contradiction, kAlignedDegreesOfFreedom);
 }
 
-/// The step is one of Gauss-Newton from the rig: its error of second order is about its square.
-Calibration::DepthScaleEstimate Calibration::found_depth_scale(const RigContradiction& contradiction) {
-  const double step = contradiction.depth_scale_step;
-  return {.value = 1.0 + step, .sigma = std::hypot(contradiction.depth_scale_sigma, step * step)};
+double Calibration::depth_scale_contradiction(double difference, double variance, Timestamp now) {
+  if (!compared_since_) compared_since_ = now;
+  const double early = kNoiseKnown_s / std::max(seconds_between(*compared_since_, now), 1e-3);
+  return difference * difference / (variance * (1.0 + early * early) + kAccelScale * kAccelScale);
 }
 
-void Calibration::compare_with_rig(const RigContradiction& contradiction, AgreesWithRig& agrees) {
-  if (agrees.depth_scale) {
+void Calibration::compare_with_rig(const RigContradiction& score, double depth_scale_variance,
+                                   Window& window) {
+  AgreesWithRig& agrees = window.agrees_with_rig;
+  if (compares_depth_scale() && depth_scale_variance > 0.0) {
+    const double difference = agrees.depth_scale ? score.depth_scale_step : 1.0 / window.depth_scale - 1.0;
+    const double contradiction =
+        depth_scale_contradiction(difference, depth_scale_variance, window.frames.back().state.t);
+    agrees.depth_scale = agrees.depth_scale ? agrees_with_rig(contradiction, 1) : contradiction < kLikeRig;
+    if (agrees.depth_scale) window.depth_scale = 1.0;
     depth_scale_found_.reset();
-    if (!agrees_with_rig(contradiction.depth_scale, local_size(BlockKind::kDepthScale)))
-      depth_scale_found_ = found_depth_scale(contradiction);
+    if (!agrees.depth_scale) depth_scale_found_ = {window.depth_scale, std::sqrt(depth_scale_variance)};
   }
   if (!awaits_alignment())
-    agrees.extrinsics &= agrees_with_rig(contradiction.extrinsics, local_size(BlockKind::kExtrinsics));
+    agrees.extrinsics &= agrees_with_rig(score.extrinsics, local_size(BlockKind::kExtrinsics));
 }
 
 CalibrationAtBound Calibration::limit(Window& window) const {

@@ -16,8 +16,8 @@ namespace stillpoint {
 /// The calibration that a window starts with, and whether it is that of the rig. Estimated extrinsics and
 /// depth scale have the values of the rig until the data contradicts those with
 /// `calibration_agreement_probability`. Then a window starts with what was found so far: rotation and time
-/// offset by a RotationAlignment, the depth scale by the score test (RigContradiction). The lever arm is
-/// estimated by the window itself.
+/// offset by a RotationAlignment, the depth scale by the window before. The lever arm is estimated by the
+/// window itself.
 class Calibration {
  public:
   Calibration(const BackendConfig& config, bool uses_imu, const Rig& rig);
@@ -38,23 +38,34 @@ class Calibration {
 
   /// Compares the rig with the residuals of the last solve. Until rotations are aligned, it is not known
   /// which value is wrong.
-  /// @param agrees of the window; calibration that contradicts the rig becomes variable
-  void compare_with_rig(const RigContradiction& contradiction, AgreesWithRig& agrees);
-
-  /// Whether the last comparison found another depth scale than that of the rig.
-  [[nodiscard]] bool has_other_depth_scale() const { return depth_scale_found_.has_value(); }
+  ///
+  /// The inverse depth scale k differs from 1 by d, the step of the score test while it is constant. With its
+  /// variance C, s_a the scale error of the accelerometer, and t the time since the first comparison,
+  ///
+  ///   d^2 / (C (1 + (t_n / t)^2) + s_a^2)
+  ///
+  /// is compared with the quantile of one degree of freedom; the term with t_n = 1.5 s doubts the inertial
+  /// noise of the start. Below 4 the scale is that of the rig again: the prior of the window holds for any.
+  /// @param depth_scale_variance C; zero if unknown
+  /// @param window calibration that contradicts the rig becomes variable in it
+  void compare_with_rig(const RigContradiction& score, double depth_scale_variance, Window& window);
 
   /// `limit_calibration` about the rig.
   CalibrationAtBound limit(Window& window) const;
 
  private:
-  /// Ratio of measured to true depth.
   struct DepthScaleEstimate {
-    double value = 1.0;
-    double sigma = 0.0;  ///< standard deviation
+    double value = 1.0;  ///< ratio of measured to true depth
+    double sigma = 0.0;  ///< standard deviation of its inverse
   };
 
-  [[nodiscard]] static DepthScaleEstimate found_depth_scale(const RigContradiction& contradiction);
+  [[nodiscard]] bool starts_with_rig() const {
+    return uses_imu_ && config_.calibration_agreement_probability > 0.0;
+  }
+  [[nodiscard]] bool compares_depth_scale() const {
+    return starts_with_rig() && config_.depth.estimate_scale;
+  }
+  [[nodiscard]] double depth_scale_contradiction(double difference, double variance, Timestamp now);
   [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
   /// Whether there is an alignment that contradicts the rig.
   [[nodiscard]] bool is_aligned_otherwise() const;
@@ -63,6 +74,7 @@ class Calibration {
   bool uses_imu_;
   Rig rig_;
   std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
+  std::optional<Timestamp> compared_since_;              ///< depth scales
   std::optional<DepthScaleEstimate> depth_scale_found_;  ///< contradicts the rig
 };
 

@@ -117,7 +117,7 @@ TEST_P(TimeOffset, ConvergesToOneMillisecond) {
 }
 
 class DepthScale : public testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(CalibrationConvergence, DepthScale, testing::Values(0.85, 1.0, 1.15),
+INSTANTIATE_TEST_SUITE_P(CalibrationConvergence, DepthScale, testing::Values(0.78, 0.85, 1.0, 1.15),
                          [](const auto& tested) { return "Case" + std::to_string(tested.index); });
 
 TEST_P(DepthScale, ConvergesToOnePercent) {
@@ -219,8 +219,9 @@ FrameErrors largest_frame_errors(const BackendConfig& config, const SimulatedMot
   return largest;
 }
 
-/// The errors are those of the wrong calibration: a world that is leveled anew would turn by more.
-TEST(CalibrationConvergence, ThePosesContinueWhenTheWindowStartsWithAnotherDepthScale) {
+/// A world that is leveled anew would turn by more. The position is corrected once by what the wrong scale
+/// has added to the path.
+TEST(CalibrationConvergence, ThePosesContinueWithAnotherDepthScale) {
   BackendConfig config = comparing_config();
   config.depth.max_scale_error = 0.04;
   config.initializer.align_rotations = true;
@@ -229,7 +230,7 @@ TEST(CalibrationConvergence, ThePosesContinueWhenTheWindowStartsWithAnotherDepth
   EXPECT_FALSE(errors.last.agrees_with_rig.any());
   EXPECT_NEAR(errors.last.depth_scale, 0.85, 0.0085);
   EXPECT_LT(errors.rotation_rad, 0.15 * M_PI / 180.0);
-  EXPECT_LT(errors.translation_m, 0.01);
+  EXPECT_LT(errors.translation_m, 0.1);
 }
 
 /// Without a comparison with the rig the window always starts anew with the aligned rotation. With the prior

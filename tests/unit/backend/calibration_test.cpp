@@ -62,12 +62,13 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   rig.T_b_c.p.x() = 0.1;
   rig.time_offset_s = 0.02;
   Calibration calibration(estimating_config(), true, rig);
-  AgreesWithRig agrees = calibration.calibrated_window().agrees_with_rig;
+  Window compared = calibration.calibrated_window();
+  const AgreesWithRig& agrees = compared.agrees_with_rig;
   EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
   // 16.8 is the 0.99 quantile of six degrees of freedom.
-  calibration.compare_with_rig({.extrinsics = 16.8, .depth_scale = 0.0}, agrees);
+  calibration.compare_with_rig({.extrinsics = 16.8}, 0.0, compared);
   EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
-  calibration.compare_with_rig({.extrinsics = 30.0, .depth_scale = 0.0}, agrees);
+  calibration.compare_with_rig({.extrinsics = 30.0}, 0.0, compared);
   EXPECT_FALSE(agrees.extrinsics);
   const Window window = calibration.calibrated_window();
   EXPECT_EQ(window.T_b_c.p, rig.T_b_c.p);
@@ -75,15 +76,56 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   EXPECT_EQ(window.depth_scale, 1.0);
 }
 
+/// A calibration and a window that are compared after `seconds` for the second time.
+struct Compared {
+  Calibration calibration{estimating_config(), true, {}};
+  Window window = calibration.calibrated_window();
+
+  void compare(double step, double sigma, double seconds) {
+    window.frames.resize(1);
+    window.frames.back().state.t = after(Timestamp{}, seconds);
+    calibration.compare_with_rig({.depth_scale_step = step}, sigma * sigma, window);
+  }
+};
+
 TEST(Calibration, StartsWithTheDepthScaleThatWasFound) {
-  Calibration calibration(estimating_config(), true, {});
-  AgreesWithRig agrees = calibration.calibrated_window().agrees_with_rig;
-  calibration.compare_with_rig({.depth_scale = 25.0, .depth_scale_step = 0.1, .depth_scale_sigma = 0.02},
-                               agrees);
-  ASSERT_TRUE(calibration.has_other_depth_scale());
-  const Window window = calibration.calibrated_window();
-  EXPECT_DOUBLE_EQ(window.depth_scale, 1.1);
+  Compared compared;
+  compared.compare(0.0, 0.1, 0.0);
+  compared.compare(0.1, 0.01, 5.0);
+  ASSERT_FALSE(compared.window.agrees_with_rig.depth_scale);
+  compared.window.depth_scale = 0.9;
+  compared.compare(0.0, 0.01, 5.1);
+  const Window window = compared.calibration.calibrated_window();
+  EXPECT_DOUBLE_EQ(window.depth_scale, 0.9);
   EXPECT_FALSE(window.agrees_with_rig.depth_scale);
+}
+
+TEST(Calibration, DoubtsTheDepthScaleOfTheFirstSecond) {
+  Compared early, late;
+  early.compare(0.0, 0.1, 0.0);
+  late.compare(0.0, 0.1, 0.0);
+  early.compare(0.05, 0.01, 0.5);
+  late.compare(0.05, 0.01, 5.0);
+  EXPECT_TRUE(early.window.agrees_with_rig.depth_scale);
+  EXPECT_FALSE(late.window.agrees_with_rig.depth_scale);
+}
+
+TEST(Calibration, ADepthScaleWithinTheErrorOfAnAccelerometerIsThatOfTheRig) {
+  Compared compared;
+  compared.compare(0.0, 0.1, 0.0);
+  compared.compare(0.015, 0.001, 20.0);
+  EXPECT_TRUE(compared.window.agrees_with_rig.depth_scale);
+}
+
+TEST(Calibration, ADepthScaleThatComesCloseToTheRigIsThatOfTheRigAgain) {
+  Compared compared;
+  compared.compare(0.0, 0.1, 0.0);
+  compared.compare(0.1, 0.01, 5.0);
+  ASSERT_FALSE(compared.window.agrees_with_rig.depth_scale);
+  compared.window.depth_scale = 0.99;
+  compared.compare(0.0, 0.006, 8.0);
+  EXPECT_TRUE(compared.window.agrees_with_rig.depth_scale);
+  EXPECT_EQ(compared.window.depth_scale, 1.0);
 }
 
 TEST(Calibration, StartsWithAnAlignmentThatContradictsTheRig) {
