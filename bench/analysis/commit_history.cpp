@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -64,6 +65,7 @@ class HistoryBuilder {
         collected.plans.insert(found->second.begin(), found->second.end());
     };
     const bool is_ok = run.outcome == Outcome::kOk;
+    succeeded_[subject][origin.commit] += is_ok ? 1 : 0;
     value(std::string(metric_id::kFailedRuns), "", gated_metric(metric_id::kFailedRuns), is_ok ? 0.0 : 1.0);
     if (!is_ok) return;
     for (const Metric& metric : run.metrics)
@@ -76,7 +78,10 @@ class HistoryBuilder {
     CommitHistory history{.commits = ordered_commits(), .series = {}};
     std::map<std::string, std::size_t> index;
     for (std::size_t i = 0; i < history.commits.size(); ++i) index[history.commits[i].name] = i;
-    for (const auto& [key, collected] : series_) history.series.push_back(series_of(key, collected, index));
+    for (const auto& [key, collected] : series_) {
+      HistorySeries series = series_of(key, with_missing(key, collected), index);
+      if (!series.commits.empty()) history.series.push_back(std::move(series));
+    }
     return history;
   }
 
@@ -104,6 +109,22 @@ class HistoryBuilder {
     return commits;
   }
 
+  /// Successful runs without a finite value count as worse than any number. The median is then infinite if
+  /// they are the majority: the commit has no value.
+  [[nodiscard]] SeriesValues with_missing(const Key& key, SeriesValues collected) const {
+    const auto& [subject, metric] = key;
+    const MetricDescriptor* gated = collected.gated;
+    if (gated == nullptr || gated->gate->absent_is_good || metric == metric_id::kFailedRuns) return collected;
+    const double worst = gated->direction == MetricDirection::kLargerIsBetter
+                             ? -std::numeric_limits<double>::infinity()
+                             : std::numeric_limits<double>::infinity();
+    const std::map<std::string, std::size_t>& counts = succeeded_.at(subject);
+    for (auto& [commit, values] : collected.values) values.resize(counts.at(commit), worst);
+    std::erase_if(collected.values,
+                  [](const auto& entry) { return !std::isfinite(*eval::percentile(entry.second, 0.5)); });
+    return collected;
+  }
+
   static HistorySeries series_of(const Key& key, const SeriesValues& collected,
                                  const std::map<std::string, std::size_t>& index) {
     HistorySeries series{.subject = key.first,
@@ -126,6 +147,7 @@ class HistoryBuilder {
 
   std::map<std::string, std::set<std::string>> plans_;
   std::map<Key, SeriesValues> series_;
+  std::map<HistorySubject, std::map<std::string, std::size_t>> succeeded_;  // runs by commit
   std::map<std::string, CommitTime> times_;
 };
 

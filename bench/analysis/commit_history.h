@@ -35,7 +35,8 @@ struct HistorySubject {
   auto operator<=>(const HistorySubject&) const = default;
 };
 
-/// One metric over commits: for each commit the median over its successful runs, including repetitions.
+/// One metric over commits: for each commit the median over its successful runs, including repetitions. Runs
+/// without a finite value of a compared metric count as worse than any number.
 struct HistorySeries {
   HistorySubject subject;
   std::vector<std::string> plans;  ///< current plans that contain it, for runs of any commit

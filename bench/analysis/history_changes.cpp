@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/analysis/missing_history.h"
 #include "eval/metrics/statistics.h"
 #include "eval/statistics/change_points.h"
 
@@ -134,24 +135,84 @@ std::optional<LevelShift> new_failures(const HistorySeries& series, std::size_t 
   return std::nullopt;
 }
 
+/// Median of the absolute relative changes between consecutive values; 0 for a deterministic metric.
+double typical_change(std::span<const double> values) {
+  std::vector<double> changes;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double scale = std::max(std::abs(values[i - 1]), std::abs(values[i]));
+    changes.push_back(scale > 0.0 ? std::abs(values[i] - values[i - 1]) / scale : 0.0);
+  }
+  return changes.empty() ? 1.0 : *eval::percentile(changes, 0.5);
+}
+
+/// Change points of a metric without noise: each relevant step, at a distance from others and from the ends.
+std::vector<eval::ChangePoint> exact_steps(std::span<const double> values, const MetricDescriptor& gated,
+                                           std::size_t min_segment) {
+  std::vector<eval::ChangePoint> steps;
+  std::size_t begin = 0;  // of the current level
+  for (std::size_t i = 2; i + min_segment <= values.size(); ++i) {
+    if (i < begin + 2 || !is_relevant(values[i - 1], values[i], &gated)) continue;
+    const double level = median_of(values.subspan(begin, i - begin));
+    const bool is_kept = std::ranges::all_of(values.subspan(i, min_segment), [&](double value) {
+      return (value > level) == (values[i] > level) && is_relevant(level, value, &gated);
+    });
+    if (!is_kept) continue;
+    steps.push_back({.index = i, .p_value = 0.0});
+    begin = i;
+  }
+  return steps;
+}
+
+/// Whether a metric has no noise, so that each relevant step counts.
+bool is_exact(const AnalyzedSeries& analyzed) {
+  constexpr double kMaxNoise = 0.1;  // of the margin
+  const MetricDescriptor* gated = analyzed.series.gated;
+  return gated != nullptr && gated->gate->repeatable &&
+         typical_change(analyzed.values) <= kMaxNoise * gated->gate->margin;
+}
+
+/// Shifts at exact steps; their levels need no test.
+std::vector<LevelShift> exact_shifts(const AnalyzedSeries& analyzed, std::size_t index) {
+  const double newest = median_of(analyzed.segment(analyzed.changes.size()));
+  std::vector<LevelShift> shifts;
+  for (std::size_t i = 0; i < analyzed.changes.size(); ++i) {
+    LevelShift shift{.series = index,
+                     .before = analyzed.commit(analyzed.changes[i] - 1),
+                     .after = analyzed.commit(analyzed.changes[i]),
+                     .level_before = median_of(analyzed.segment(i)),
+                     .level_after = median_of(analyzed.segment(i + 1)),
+                     .change = eval::level_change(analyzed.segment(i), analyzed.segment(i + 1))};
+    shift.state = state_of(shift, analyzed.series.gated, newest);
+    shifts.push_back(std::move(shift));
+  }
+  return shifts;
+}
+
 /// Number of measured commits of a series before a commit.
 std::ptrdiff_t position_in(const HistorySeries& series, std::size_t commit) {
   return std::lower_bound(series.commits.begin(), series.commits.end(), commit) - series.commits.begin();
 }
 
+/// The commit of an acceptance that applies to a series; nullopt if it does not.
+std::optional<std::size_t> accepted_commit(const Acceptance& acceptance, const CommitHistory& history,
+                                           const HistorySeries& series) {
+  if (acceptance.metric != series.metric) return std::nullopt;
+  if (!acceptance.variant.empty() && acceptance.variant != series.subject.variant) return std::nullopt;
+  if (!acceptance.sequence.empty() && acceptance.sequence != series.subject.sequence) return std::nullopt;
+  const auto found = std::ranges::find(history.commits, acceptance.commit, &Commit::name);
+  if (found == history.commits.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - history.commits.begin());
+}
+
 /// Whether an acceptance applies to a shift. The detected position of a shift may vary by less than a minimum
-/// segment as commits are added.
+/// segment as commits are added; that of a missing result does not.
 bool covers(const Acceptance& acceptance, const CommitHistory& history, const LevelShift& shift,
             std::size_t min_segment) {
   const HistorySeries& series = history.series[shift.series];
-  if (acceptance.metric != series.metric) return false;
-  if (!acceptance.variant.empty() && acceptance.variant != series.subject.variant) return false;
-  if (!acceptance.sequence.empty() && acceptance.sequence != series.subject.sequence) return false;
-  const auto found = std::find_if(history.commits.begin(), history.commits.end(),
-                                  [&](const Commit& commit) { return commit.name == acceptance.commit; });
-  if (found == history.commits.end()) return false;
-  const auto commit = static_cast<std::size_t>(found - history.commits.begin());
-  const std::ptrdiff_t distance = position_in(series, commit) - position_in(series, shift.after);
+  const std::optional<std::size_t> commit = accepted_commit(acceptance, history, series);
+  if (!commit) return false;
+  if (!shift.missing.empty()) return *commit == shift.after;
+  const std::ptrdiff_t distance = position_in(series, *commit) - position_in(series, shift.after);
   return std::abs(distance) < static_cast<std::ptrdiff_t>(min_segment);
 }
 
@@ -168,6 +229,25 @@ std::vector<LevelShift> with_acceptances(std::vector<LevelShift> shifts, const C
     shift.reason = found->reason;
   }
   return shifts;
+}
+
+/// Marks the drifts of which an acceptance covers all but an irrelevant rest since its commit.
+std::vector<MetricDrift> with_acceptances(std::vector<MetricDrift> drifts, const CommitHistory& history,
+                                          std::span<const Acceptance> acceptances) {
+  for (MetricDrift& drift : drifts) {
+    const HistorySeries& series = history.series[drift.series];
+    const auto length =
+        static_cast<double>(position_in(series, drift.last) - position_in(series, drift.first));
+    for (const Acceptance& acceptance : acceptances) {
+      const std::optional<std::size_t> commit = accepted_commit(acceptance, history, series);
+      if (!commit || *commit < drift.first) continue;
+      const auto covered =
+          static_cast<double>(position_in(series, *commit) - position_in(series, drift.first));
+      const double value = drift.start + (drift.end - drift.start) * std::min(1.0, covered / length);
+      drift.is_accepted = drift.is_accepted || !is_relevant(value, drift.end, series.gated);
+    }
+  }
+  return drifts;
 }
 
 /// Quick rejection: a series whose range is below the margin has no relevant change.
@@ -196,7 +276,7 @@ std::string state_name(ChangeState state) {
 
 HistoryChanges history_changes(const CommitHistory& history, std::span<const Acceptance> acceptances,
                                const eval::ChangePointOptions& options) {
-  HistoryChanges changes;
+  HistoryChanges changes{.shifts = missing_shifts(history), .drifts = {}};
   for (std::size_t i = 0; i < history.series.size(); ++i) {
     const HistorySeries& series = history.series[i];
     if (series.metric == metric_id::kFailedRuns) {
@@ -208,12 +288,17 @@ HistoryChanges history_changes(const CommitHistory& history, std::span<const Acc
     AnalyzedSeries analyzed{
         .series = series, .offset = offset, .values = std::span(series.values).subspan(offset)};
     if (!may_have_changed(analyzed.values, series.gated)) continue;
-    const std::vector<eval::ChangePoint> points = eval::change_points(analyzed.values, options);
+    const bool is_without_noise = is_exact(analyzed);
+    const std::vector<eval::ChangePoint> points =
+        is_without_noise ? exact_steps(analyzed.values, *series.gated, options.min_segment)
+                         : eval::change_points(analyzed.values, options);
     for (const eval::ChangePoint& point : points) analyzed.changes.push_back(point.index);
-    for (LevelShift& shift : shifts_of(analyzed, i, points)) changes.shifts.push_back(std::move(shift));
+    for (LevelShift& shift : is_without_noise ? exact_shifts(analyzed, i) : shifts_of(analyzed, i, points))
+      changes.shifts.push_back(std::move(shift));
     if (const std::optional<MetricDrift> drift = drift_of(analyzed, i)) changes.drifts.push_back(*drift);
   }
   changes.shifts = with_acceptances(std::move(changes.shifts), history, acceptances, options.min_segment);
+  changes.drifts = with_acceptances(std::move(changes.drifts), history, acceptances);
   return changes;
 }
 

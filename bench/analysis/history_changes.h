@@ -36,6 +36,8 @@ struct LevelShift {
   double p_value = 0.0;
   ChangeState state = ChangeState::kNeutral;
   std::string reason;  ///< of the acceptance
+  std::string
+      missing{};  ///< why there is no new level: "no value", "other data" or "not measured"; else empty
 };
 
 /// Gradual change of a metric: small at each commit, significant over many. Detected by a linear trend.
@@ -48,6 +50,9 @@ struct MetricDrift {
   double change = 0.0;    ///< (end - start) / |start|
   double p_value = 1.0;
   bool worse = false;
+  bool is_accepted = false;  ///< an acceptance covers all of it that is relevant
+
+  [[nodiscard]] bool is_open() const { return worse && !is_accepted; }
 };
 
 struct HistoryChanges {
@@ -67,8 +72,18 @@ inline constexpr std::size_t kMaxAnalyzedCommits = 300;
 /// trend that both levels share is removed (`eval::step_beside_trend`). A slow change is therefore listed as
 /// a drift, also if it consists of many steps below the margin; at most 6 of 180 simulated ones still count
 /// as a level shift (`drift_validation_test`). A drift is a linear trend with p
-/// <= 0.005 that exceeds the same limits and fits better than the level shifts. The fraction of failed runs
-/// needs no test: it is a regression if it is larger at the newest commit than at an earlier one.
+/// <= 0.005 that exceeds the same limits and fits better than the level shifts; for the worse, it is a
+/// finding as a regression is. The fraction of failed runs needs no test: it is a regression if it is larger
+/// at the newest commit than at an earlier one.
+///
+/// Metrics without noise need no forty commits: if a deterministic metric (`MetricGate::repeatable`)
+/// typically changes by less than a tenth of its margin from commit to commit, each change beyond margin and
+/// floor is a level shift that two commits before and three after it confirm.
+///
+/// What vanishes is an open regression: a metric that the newest successful runs of a subject lack; a subject
+/// that continues with other data of the same name; and a subject that the newest commit of its machine, mode
+/// and kind lacks, although it has more than half of those that were measured with the subject before. The
+/// last two are listed for the headline metric of the subject.
 [[nodiscard]] HistoryChanges history_changes(const CommitHistory& history,
                                              std::span<const Acceptance> acceptances,
                                              const eval::ChangePointOptions& options = {});

@@ -33,19 +33,23 @@ struct LossCount {
 
 using Names = std::set<std::string>;
 
-bool must_exist(const Metric& metric) {
-  const MetricDescriptor* descriptor = find_metric(without_protocol(metric.name));
+}  // namespace
+
+bool must_exist(const std::string& name) {
+  const MetricDescriptor* descriptor = find_metric(without_protocol(name));
   if (descriptor == nullptr) return true;
   const bool is_of_machine =
       descriptor->source == MetricSource::kMachine || descriptor->source == MetricSource::kDevice;
   return !is_of_machine && !(descriptor->gate && descriptor->gate->absent_is_good);
 }
 
+namespace {
+
 /// Metrics with a finite value, and timed modules.
 Names names_of(const StoredRun& run) {
   Names names;
   for (const Metric& metric : run.metrics) {
-    if (must_exist(metric) && std::isfinite(metric.value)) names.insert("metric " + metric.name);
+    if (must_exist(metric.name) && std::isfinite(metric.value)) names.insert("metric " + metric.name);
   }
   for (const ModuleCost& cost : run.costs) {
     if (std::isfinite(cost.mean_ms)) names.insert("module " + cost.module);

@@ -37,6 +37,9 @@ struct MissingResult {
   ChangeClass result = ChangeClass::kMissing;
 };
 
+/// Whether a stored metric or module must have a value if an earlier run has one.
+[[nodiscard]] bool must_exist(const std::string& name);
+
 /// Variants and sequences without any run of head first, then metrics and modules of pairs that succeeded on
 /// both sides. Metrics of the machine (`MetricSource::kMachine`, `kDevice`), and those whose absence is good
 /// (`MetricGate::absent_is_good`) are not listed.

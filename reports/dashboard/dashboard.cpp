@@ -170,9 +170,9 @@ std::string summary_html(const bench::CommitHistory& history, const bench::Histo
   std::set<std::string> hosts;
   for (const bench::HistorySeries& series : history.series) hosts.insert(series.subject.host);
   const std::size_t open = grouped_shifts(history, changes, bench::ChangeState::kOpen).size();
-  const auto drifting =
-      static_cast<std::size_t>(std::count_if(changes.drifts.begin(), changes.drifts.end(),
-                                             [](const bench::MetricDrift& drift) { return drift.worse; }));
+  const auto drifting = static_cast<std::size_t>(
+      std::count_if(changes.drifts.begin(), changes.drifts.end(),
+                    [](const bench::MetricDrift& drift) { return drift.is_open(); }));
   std::string text =
       "<li>" + (open == 0 ? "No open regressions" : counted(open, "open regression")) +
       (drifting == 0 ? "" : "; " + counted(drifting, "metric") + " drifting for the worse over commits") +
@@ -180,6 +180,7 @@ std::string summary_html(const bench::CommitHistory& history, const bench::Histo
   text += fmt::format("<li>{} from {} to {}, {}, {}.</li>", counted(history.commits.size(), "commit"),
                       escape_html(history.commits.front().time), escape_html(history.commits.back().time),
                       fmt::format("{} series", history.series.size()), counted(hosts.size(), "machine type"));
+  text += "<li>" + escape_html(tested_sentence(history)) + "</li>";
   return "<ul class=\"summary\">" + text + "</ul>";
 }
 

@@ -58,6 +58,7 @@ std::string subject_label(const bench::HistorySubject& subject) {
 }
 
 std::string change_label(const bench::LevelShift& shift) {
+  if (!shift.missing.empty()) return shift.missing;
   return shift.change ? percent_text(shift.change->median) : "new";
 }
 
@@ -66,6 +67,7 @@ std::string interval_label(const bench::LevelShift& shift) {
 }
 
 std::string value_label(double value, const std::string& unit) {
+  if (std::isnan(value)) return "missing";
   return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", clean_line(unit));
 }
 
@@ -142,7 +144,7 @@ Json shift_json(const bench::LevelShift& shift) {
                {"before", shift.before},
                {"after", shift.after},
                {"from", rounded(shift.level_before)},
-               {"to", rounded(shift.level_after)},
+               {"to", rounded(shift.missing.empty() ? shift.level_after : shift.level_before)},
                {"change", change_label(shift)},
                {"interval", interval_label(shift)},
                {"state", bench::state_name(shift.state)}};
@@ -246,6 +248,7 @@ Json regression_json(const bench::CommitHistory& history, const bench::LevelShif
   json["interval"] = interval ? Json({interval->low, interval->high}) : Json(nullptr);
   json["n"] = shift.change ? Json(shift.change->count) : Json(nullptr);
   json["p_value"] = shift.p_value;
+  json["missing"] = shift.missing.empty() ? Json(nullptr) : Json(shift.missing);
   return json;
 }
 
@@ -273,7 +276,7 @@ std::string group_row(const bench::CommitHistory& history, const ShiftGroup& gro
 std::string drifts_markdown(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   std::string rows;
   for (const bench::MetricDrift& drift : changes.drifts) {
-    if (!drift.worse) continue;
+    if (!drift.is_open()) continue;
     const bench::HistorySeries& series = history.series[drift.series];
     rows += fmt::format("| {} | {}..{} | {} | {:+.1f} % |\n", escape_markdown(series.metric),
                         escape_markdown(commit_label(history.commits[drift.first].name)),
@@ -281,7 +284,7 @@ std::string drifts_markdown(const bench::CommitHistory& history, const bench::Hi
                         escape_markdown(subject_label(series.subject)), 100.0 * drift.change);
   }
   if (rows.empty()) return "";
-  return "\nDrift over commits (not counted as regressions):\n\n| metric | commits | on | total change "
+  return "\nDrift for the worse, beyond the margin in sum:\n\n| metric | commits | on | total change "
          "|\n|---|---|---|---:|\n" +
          rows;
 }
@@ -312,9 +315,37 @@ std::vector<ShiftGroup> grouped_shifts(const bench::CommitHistory& history,
   return groups;
 }
 
+bool has_findings(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
+  return !grouped_shifts(history, changes, bench::ChangeState::kOpen).empty() ||
+         std::ranges::any_of(changes.drifts, &bench::MetricDrift::is_open);
+}
+
+std::string tested_sentence(const bench::CommitHistory& history) {
+  constexpr std::size_t kTestable =
+      40;  // commits from which on a step of a noisy metric is found after three
+  std::size_t tested = 0;
+  std::size_t is_short = 0;
+  for (const bench::HistorySeries& series : history.series) {
+    if (series.gated == nullptr || series.metric == bench::metric_id::kFailedRuns) continue;
+    ++tested;
+    is_short += series.values.size() < kTestable ? 1 : 0;
+  }
+  std::string text =
+      fmt::format("Tested: {} series of compared metrics over {} commits", tested, history.commits.size());
+  if (is_short > 0) {
+    text += fmt::format(
+        "; {} of them have fewer than {} commits: they show failures, missing results, and steps of metrics "
+        "without "
+        "noise that three commits confirm, but few steps of noisy ones",
+        is_short, kTestable);
+  }
+  return text + ".";
+}
+
 std::string regressions_markdown(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
   const std::vector<ShiftGroup> groups = grouped_shifts(history, changes, bench::ChangeState::kOpen);
-  std::string text = "No open regressions.\n";
+  std::string text =
+      has_findings(history, changes) ? "No step is an open regression.\n" : "No open regressions.\n";
   if (!groups.empty()) {
     text =
         "| metric | between commits | series | largest change on | before, after | change | n, 95 % interval "
@@ -322,7 +353,8 @@ std::string regressions_markdown(const bench::CommitHistory& history, const benc
         "|---|---|---:|---|---|---:|---|\n";
     for (const ShiftGroup& group : groups) text += group_row(history, group);
   }
-  return text + drifts_markdown(history, changes);
+  const std::string tested = groups.empty() ? "\n" + tested_sentence(history) + "\n" : "";
+  return text + drifts_markdown(history, changes) + tested;
 }
 
 std::string regressions_json(const bench::CommitHistory& history, const bench::HistoryChanges& changes) {
@@ -332,7 +364,7 @@ std::string regressions_json(const bench::CommitHistory& history, const bench::H
       json["open"].push_back(regression_json(history, *shift));
   }
   for (const bench::MetricDrift& drift : changes.drifts) {
-    if (drift.worse) json["drifting"].push_back(drift_json(history, drift));
+    if (drift.is_open()) json["drifting"].push_back(drift_json(history, drift));
   }
   return json.dump(2) + "\n";
 }

@@ -50,7 +50,15 @@ struct ShiftGroup {
                                                      const bench::HistoryChanges& changes,
                                                      bench::ChangeState state);
 
-/// A table of open regressions, followed by metrics that drift for the worse.
+/// Whether there is an open regression or an open drift for the worse.
+[[nodiscard]] bool has_findings(const bench::CommitHistory& history, const bench::HistoryChanges& changes);
+
+/// What the history can show: number of series and commits, and of series that are too short for noisy
+/// metrics.
+[[nodiscard]] std::string tested_sentence(const bench::CommitHistory& history);
+
+/// A table of open regressions, followed by metrics that drift for the worse; without one, what the history
+/// can show.
 [[nodiscard]] std::string regressions_markdown(const bench::CommitHistory& history,
                                                const bench::HistoryChanges& changes);
 

@@ -98,7 +98,7 @@ int regressions(const DashboardArguments& arguments) {
   const auto [history, changes] = report::analyze_history(Store(arguments.store));
   std::cout << (arguments.format == "json" ? report::regressions_json(history, changes)
                                            : report::regressions_markdown(history, changes));
-  return report::grouped_shifts(history, changes, ChangeState::kOpen).empty() ? kExitOk : kExitFindings;
+  return report::has_findings(history, changes) ? kExitFindings : kExitOk;
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ Command dashboard_command() {
 Command regressions_command() {
   const auto arguments = std::make_shared<DashboardArguments>();
   return {.name = "regressions",
-          .summary = "List open regressions; exit code 0 = none, 1 = some, 2 = error",
+          .summary = "List open regressions and drifts; exit code 0 = none, 1 = some, 2 = error",
           .example = "regressions build/bench/store.sqlite --format json",
           .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
                       {"--format", "Output format: markdown or json [markdown]", &arguments->format}},

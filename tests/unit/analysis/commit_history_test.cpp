@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "bench/analysis/history_changes.h"
 #include "bench/store/store_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
@@ -19,6 +22,7 @@ struct Entry {
   std::string manifest;
   RunIdentity identity = {};
   Outcome outcome = Outcome::kOk;
+  std::vector<Metric> others = {};
 };
 
 std::string manifest_of(const std::string& cpu, const std::string& commit = "",
@@ -37,8 +41,10 @@ fs::path store_of(const TemporaryFolder& folder, const std::vector<Entry>& entri
     identity.sequence = "office";
     if (identity.variant.empty()) identity.variant = "vo";
     static_cast<void>(writer.acquire(identity));
+    std::vector<Metric> metrics = entry.others;
+    metrics.push_back({"ate_rmse_m", "r", "m", entry.ate});
     writer.finish(identity, {.outcome = entry.outcome,
-                             .metrics = {{"ate_rmse_m", "r", "m", entry.ate}},
+                             .metrics = metrics,
                              .costs = {{"window_solve", "call", 3, 1.5, 1.0, 2.0, 3.0}},
                              .manifest = entry.manifest});
     plan.run_keys = {run_key(identity)};
@@ -136,6 +142,58 @@ TEST(CommitHistory, IgnoresExternalSystems) {
   const TemporaryFolder folder;
   const Store store(store_of(folder, {{"1.0", 0.1, "", {.system = "orb"}}}));
   EXPECT_TRUE(commit_history(store).commits.empty());
+}
+
+/// "metric: why", of the open shifts.
+std::vector<std::string> missing_in(const Store& store) {
+  const CommitHistory history = commit_history(store);
+  std::vector<std::string> found;
+  for (const LevelShift& shift : history_changes(history, {}).shifts) {
+    EXPECT_EQ(shift.state, ChangeState::kOpen);
+    found.push_back(history.series[shift.series].metric + ": " + shift.missing);
+  }
+  return found;
+}
+using Found = std::vector<std::string>;
+
+TEST(MissingHistory, AMetricThatTheNewestRunsLackIsOpen) {
+  const TemporaryFolder folder;
+  const std::vector<Metric> recovered = {{"time_to_recover_s", "", "s", 0.5},
+                                         {"time_to_detect_s", "", "s", 0.2}};
+  const Store store(store_of(
+      folder, {{"a", 0.1, manifest_of("A"), {}, Outcome::kOk, recovered}, {"b", 0.1, manifest_of("A")}}));
+  EXPECT_EQ(missing_in(store), (Found{"time_to_recover_s: no value"}));  // nothing to detect is good
+}
+
+TEST(MissingHistory, AnErrorThatIsInfiniteInMostRunsHasNoValue) {
+  const TemporaryFolder folder;
+  const double infinite = std::numeric_limits<double>::infinity();
+  const Store store(store_of(folder, {{"a", 0.1, manifest_of("A")},
+                                      {"b", infinite, manifest_of("A")},
+                                      {"b", infinite, manifest_of("A"), {.repetition = 2}},
+                                      {"b", 0.1, manifest_of("A"), {.repetition = 3}}}));
+  EXPECT_EQ(missing_in(store), (Found{"ate_rmse_m: no value"}));
+}
+
+TEST(MissingHistory, OtherDataUnderOneNameAreSaidOnce) {
+  const TemporaryFolder folder;
+  const Store store(store_of(folder, {{"a", 0.1, manifest_of("A"), {.sequence_id = "8 s"}},
+                                      {"b", 0.9, manifest_of("A"), {.sequence_id = "20 s"}}}));
+  EXPECT_EQ(missing_in(store), (Found{"ate_rmse_m: other data"}));
+}
+
+TEST(MissingHistory, AVariantThatTheNewestCommitLacksIsOpen) {
+  const TemporaryFolder folder;
+  const Store store(store_of(folder, {{"a", 0.1, manifest_of("A")},
+                                      {"a", 0.1, manifest_of("A"), {.variant = "vio"}},
+                                      {"b", 0.1, manifest_of("A")}}));
+  EXPECT_EQ(missing_in(store), (Found{"ate_rmse_m: not measured"}));
+}
+
+TEST(MissingHistory, AnotherMachineIsNoEndOfTheFirst) {
+  const TemporaryFolder folder;
+  const Store store(store_of(folder, {{"a", 0.1, manifest_of("A")}, {"b", 0.1, manifest_of("B")}}));
+  EXPECT_EQ(missing_in(store), Found{});
 }
 
 TEST(FindCommit, AcceptsAUniquePrefix) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/unit/analysis/synthetic_history.h"
 
 namespace stillpoint::bench {
@@ -105,6 +107,30 @@ TEST(HistoryChanges, ManySmallStepsAreADrift) {
   EXPECT_NEAR(changes.drifts.front().start, 4.0, 0.04);  // 1 % noise
   EXPECT_NEAR(changes.drifts.front().change, 59 * 0.002, 0.02);
   EXPECT_TRUE(history_changes(cost_history({4.0, 4.4}), {}).drifts.empty());  // a step is not a drift
+}
+
+TEST(HistoryChanges, AStepOfADeterministicMetricNeedsSixCommits) {
+  const auto states = [](const std::vector<double>& values) {
+    return states_of(history_changes(history_of("ate_rmse_m", {values}), {}));
+  };
+  EXPECT_EQ(states({0.010, 0.010, 0.010, 0.0163, 0.0163, 0.0163}), States{ChangeState::kOpen});
+  EXPECT_EQ(states({0.010, 0.010, 0.010, 0.0163, 0.0163}), States{});  // not confirmed yet
+  EXPECT_EQ(states({0.010, 0.010, 0.010, 0.0163, 0.0163, 0.0163, 0.010, 0.010, 0.010}),
+            (States{ChangeState::kResolved, ChangeState::kImproved}));
+  EXPECT_EQ(states({0.010, 0.010, 0.010, 0.0102, 0.0102, 0.0102}), States{});    // 2 %, margin 5 %
+  EXPECT_EQ(states({0.010, 0.0104, 0.0098, 0.0163, 0.0158, 0.0161}), States{});  // noise
+}
+
+TEST(HistoryChanges, ADriftIsOpenUntilItIsAccepted) {
+  std::vector<double> values;
+  for (int i = 0; i < 100; ++i) values.push_back(0.01 * std::pow(1.0039, i));  // +47.6 %
+  const CommitHistory history = history_of("ate_rmse_m", {values});
+  ASSERT_EQ(history_changes(history, {}).drifts.size(), 1u);
+  EXPECT_TRUE(history_changes(history, {}).drifts.front().is_open());
+  Acceptance acceptance{.commit = "c99", .metric = "ate_rmse_m", .reason = "more robust"};
+  EXPECT_FALSE(history_changes(history, std::vector{acceptance}).drifts.front().is_open());
+  acceptance.commit = "c10";  // most of it came later
+  EXPECT_TRUE(history_changes(history, std::vector{acceptance}).drifts.front().is_open());
 }
 
 TEST(HistoryChanges, AreDeterministic) {
