@@ -120,7 +120,9 @@ std::vector<std::string> notes_on_copies(const PairedRuns& runs) {
   for (const RunPair& pair : runs.pairs) {
     if (!both_succeeded(pair)) continue;
     ++count;
-    copies += results[subject_label(pair.head->identity)].insert(fingerprint(*pair.head)).second ? 0 : 1;
+    const std::string result = fingerprint(*pair.head);
+    const bool is_new = results[subject_label(pair.head->identity)].insert(result).second;
+    copies += is_new || result.empty() ? 0 : 1;
   }
   if (copies == 0) return {};
   return {

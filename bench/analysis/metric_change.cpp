@@ -31,11 +31,15 @@ class DistinctRuns {
  public:
   /// @return whether it is new
   bool add(const StoredRun& run) {
-    if (!fingerprints_.insert(fingerprint(run)).second) return false;
+    const std::string result = fingerprint(run);
+    if (!fingerprints_.insert(result).second && !result.empty()) return false;
     runs_.push_back(&run);
     return true;
   }
-  [[nodiscard]] bool contains(const StoredRun& run) const { return fingerprints_.contains(fingerprint(run)); }
+  [[nodiscard]] bool contains(const StoredRun& run) const {
+    const std::string result = fingerprint(run);
+    return !result.empty() && fingerprints_.contains(result);
+  }
   /// @param like a metric of equal name, protocol and unit
   [[nodiscard]] std::vector<double> values(const Metric& like) const {
     std::vector<double> values;

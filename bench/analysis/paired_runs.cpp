@@ -84,12 +84,14 @@ std::string fingerprint(const StoredRun& run) {
   const auto trajectory = run.blobs.find("trajectory");
   if (trajectory != run.blobs.end()) return trajectory->second;
   std::string text;
+  bool is_specific = false;  // different runs may have the same rates
   for (const Metric& metric : run.metrics) {
     const MetricDescriptor* descriptor = gated_metric(metric.name);
-    if (descriptor != nullptr && descriptor->gate->family == MetricFamily::kAccuracy)
-      text += fmt::format("{}={} ", metric.name, metric.value);
+    if (descriptor == nullptr || descriptor->gate->family != MetricFamily::kAccuracy) continue;
+    text += fmt::format("{}={} ", metric.name, metric.value);
+    is_specific = is_specific || (metric.name == metric_id::kAte && metric.value != 0.0);
   }
-  return text;
+  return is_specific ? text : "";
 }
 
 }  // namespace stillpoint::bench

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/model/metrics.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
 
@@ -171,9 +172,46 @@ NewestConfigs newest_configs(const std::vector<OriginRun>& runs) {
   return newest;
 }
 
+/// What a sequence consists of, and of which a group has one version: sequence, seed, sweep axis, its value.
+using DataScope = std::tuple<std::string, std::int64_t, std::string, double>;
+
+DataScope data_scope_of(const RunIdentity& identity) {
+  return {identity.sequence, identity.seed, identity.axis, identity.axis_value};
+}
+
+/// Removes the runs on older data under the name of newer data: another checksum for the same seed, or, as
+/// the data of each seed differ, another number of frames.
+/// @return the removed runs by sequence
+std::map<std::string, std::size_t> remove_older_data(std::vector<StoredRun>& runs) {
+  std::map<DataScope, std::pair<RunOrder, std::string>> newest;
+  std::map<std::pair<std::string, double>, std::pair<RunOrder, double>>
+      frames;  // by sequence, value of a sweep
+  for (const StoredRun& run : runs) {
+    const RunOrder order(run.started, run.id);
+    auto& data = newest[data_scope_of(run.identity)];
+    data = std::max(data, {order, run.identity.sequence_id});
+    const std::optional<double> count = metric_value(run, metric_id::kFrames);
+    auto& of_sequence = frames[{run.identity.sequence, run.identity.axis_value}];
+    if (count && run.outcome == Outcome::kOk) of_sequence = std::max(of_sequence, {order, *count});
+  }
+  std::map<std::string, std::size_t> removed;
+  std::erase_if(runs, [&](const StoredRun& run) {
+    const RunIdentity& identity = run.identity;
+    const double expected = frames.at({identity.sequence, identity.axis_value}).second;
+    const double count = metric_value(run, metric_id::kFrames).value_or(expected);
+    const bool is_older = newest.at(data_scope_of(identity)).second != identity.sequence_id ||
+                          (run.outcome == Outcome::kOk && count != expected);
+    removed[identity.sequence] += is_older ? 1 : 0;
+    return is_older;
+  });
+  std::erase_if(removed, [](const auto& entry) { return entry.second == 0; });
+  return removed;
+}
+
 /// Sentences about runs of other builds and of older configs, by name and number of runs.
 std::vector<std::string> sentences_of(const std::map<std::string, std::size_t>& builds,
-                                      const std::map<std::string, std::size_t>& variants) {
+                                      const std::map<std::string, std::size_t>& variants,
+                                      const std::map<std::string, std::size_t>& data) {
   const auto list = [](const std::map<std::string, std::size_t>& counts) {
     std::vector<std::string> names;
     for (const auto& [name, count] : counts)
@@ -185,6 +223,9 @@ std::vector<std::string> sentences_of(const std::map<std::string, std::size_t>& 
     sentences.push_back("Left out, other builds: " + list(builds) + "; select one with --build, or all.");
   if (!variants.empty())
     sentences.push_back("Left out, older configs of the same variant: " + list(variants) +
+                        "; select the runs of one plan with --plan.");
+  if (!data.empty())
+    sentences.push_back("Left out, older data under the name of newer data: " + list(data) +
                         "; select the runs of one plan with --plan.");
   return sentences;
 }
@@ -255,7 +296,11 @@ RunSelection select_runs(const Store& store, std::span<const StoredRun> runs, co
       group_of(selection.groups, entry).runs.push_back(entry.run);
     }
   }
-  selection.left_out = sentences_of(other_builds, older_configs);
+  std::map<std::string, std::size_t> older_data;
+  for (RunGroup& group : selection.groups) {
+    for (const auto& [sequence, count] : remove_older_data(group.runs)) older_data[sequence] += count;
+  }
+  selection.left_out = sentences_of(other_builds, older_configs, older_data);
   return selection;
 }
 

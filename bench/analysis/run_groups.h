@@ -65,8 +65,8 @@ struct RunSelection {
                                       const std::string& place);
 
 /// Divides runs into groups. If a variant was executed with several configs in one group, only its newest
-/// config is kept. Runs of external systems, whose builds are their own, are kept with the newest build and
-/// with all.
+/// config is kept, and of each sequence only the newest data. Runs of external systems, whose builds are
+/// their own, are kept with the newest build and with all.
 /// @param runs  of `store`
 /// @param build a build or a unique prefix of one, "all", or empty for the newest one
 /// @throws InputError if there is no such build, or if the prefix is ambiguous; the message lists the builds

@@ -35,17 +35,25 @@ std::optional<double> value_of(const StoredRun& run, const std::string& metric) 
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+/// Whether equal trajectories imply equal values.
+bool is_deterministic(const std::string& metric) {
+  const MetricDescriptor* known = find_metric(without_protocol(metric));
+  if (known == nullptr) return false;
+  if (known->gate) return known->gate->repeatable;
+  return known->source == MetricSource::kTrajectory || known->source == MetricSource::kHonesty ||
+         known->source == MetricSource::kProtocol;
+}
+
 /// Values of the runs that are replicates: a deterministic metric counts once for runs with the same result.
 std::vector<double> replicates(std::span<const StoredRun* const> runs, const std::string& metric) {
-  const MetricDescriptor* gated = gated_metric(without_protocol(metric));
-  const bool is_deterministic = gated != nullptr && gated->gate->repeatable;
-  std::set<std::pair<std::string, std::string>> results;
+  const bool counts_once = is_deterministic(metric);
+  std::set<std::string> results;
   std::vector<double> values;
   for (const StoredRun* run : runs) {
     const std::optional<double> value = value_of(*run, metric);
     if (!value) continue;
-    const bool is_new = results.insert({input_key(run->identity), fingerprint(*run)}).second;
-    if (is_new || !is_deterministic) values.push_back(*value);
+    const std::string result = fingerprint(*run);
+    if (results.insert(result).second || result.empty() || !counts_once) values.push_back(*value);
   }
   return values;
 }
@@ -65,8 +73,9 @@ using Subject =
 
 /// Results of one variant on one subject.
 struct SubjectRuns {
-  std::size_t failed = 0;
+  std::size_t succeeded = 0;
   std::vector<double> values;
+  std::set<std::string> results;  ///< fingerprints
 };
 using SubjectTable = std::map<Subject, SubjectRuns>;
 
@@ -77,31 +86,91 @@ SubjectTable subjects_of(std::span<const StoredRun> runs, const std::string& var
     const RunIdentity& identity = run.identity;
     if (identity.variant != variant) continue;
     SubjectRuns& subject = table[{identity.sequence, identity.seed, identity.axis, identity.axis_value}];
+    subject.succeeded += run.outcome == Outcome::kOk ? 1 : 0;
     if (const std::optional<double> value = value_of(run, metric)) {
       subject.values.push_back(*value);
-    } else {
-      ++subject.failed;
+      subject.results.insert(fingerprint(run));
     }
   }
   return table;
 }
 
-AblationRow row_of(const std::string& variant, const std::string& sequence, const SubjectTable& base,
-                   const SubjectTable& changed) {
-  AblationRow row{.variant = variant, .sequence = sequence};
-  std::vector<eval::Pair> pairs;
-  for (const auto& [subject, runs] : base) {
-    const auto found = changed.find(subject);
-    if (found == changed.end() || (!sequence.empty() && std::get<0>(subject) != sequence)) continue;
-    const std::optional<double> before = eval::percentile(runs.values, 0.5);
-    const std::optional<double> after = eval::percentile(found->second.values, 0.5);
-    if (before && after) pairs.push_back({*before, *after});
-    row.newly_failed += before && !after ? 1 : 0;
+/// Pairs of one sequence.
+class SequencePairs {
+ public:
+  /// @param counts_once whether equal results count once
+  void add(const SubjectRuns& base, const SubjectRuns& changed, bool counts_once) {
+    const std::optional<double> before = eval::percentile(base.values, 0.5);
+    const std::optional<double> after = eval::percentile(changed.values, 0.5);
+    newly_failed += base.succeeded > 0 && changed.succeeded == 0 ? 1 : 0;
+    newly_without_value += before && !after && changed.succeeded > 0 ? 1 : 0;
+    if (!before || !after) return;
+    const bool is_new = base_results_.insert(base.results).second || base.results.contains("");
+    const bool is_new_change =
+        changed_results_.insert(changed.results).second || changed.results.contains("");
+    if (counts_once && !(is_new && is_new_change)) {
+      ++copies;
+    } else {
+      pairs.push_back({*before, *after});
+    }
   }
-  row.difference = eval::paired_difference(pairs);
-  const bool changes_from_zero = std::ranges::any_of(
-      pairs, [](const eval::Pair& pair) { return pair.base == 0.0 && pair.changed != 0.0; });
-  if (!changes_from_zero) row.change = eval::relative_change(pairs);
+
+  std::vector<eval::Pair> pairs{};
+  std::size_t newly_failed = 0;
+  std::size_t newly_without_value = 0;
+  std::size_t copies = 0;
+
+ private:
+  std::set<std::set<std::string>> base_results_;
+  std::set<std::set<std::string>> changed_results_;
+};
+
+bool changes_from_zero(const std::vector<eval::Pair>& pairs) {
+  return std::ranges::any_of(pairs,
+                             [](const eval::Pair& pair) { return pair.base == 0.0 && pair.changed != 0.0; });
+}
+
+/// The differences and ratios of one or several sequences, as in `AblationRow`.
+void add_estimates(AblationRow& row, const std::vector<std::vector<eval::Pair>>& sequences) {
+  std::vector<eval::Pair> differences;
+  std::vector<eval::Pair> ratios;
+  bool has_ratios = true;
+  for (const std::vector<eval::Pair>& pairs : sequences) {
+    if (sequences.size() == 1) {
+      differences = ratios = pairs;
+    } else {
+      std::vector<double> of_sequence;
+      for (const eval::Pair& pair : pairs) of_sequence.push_back(pair.changed - pair.base);
+      differences.push_back({0.0, *eval::percentile(of_sequence, 0.5)});
+      // With few values per sequence, the pseudomedian is the estimate of the row of the sequence, too.
+      const std::optional<eval::RelativeChange> change = eval::relative_change(pairs);
+      if (change) ratios.push_back({1.0, 1.0 + change->median});
+    }
+    has_ratios = has_ratios && !changes_from_zero(pairs);
+  }
+  row.difference = eval::paired_difference(differences);
+  if (has_ratios) row.change = eval::relative_change(ratios);
+}
+
+/// @param names variant and sequence of the row
+AblationRow row_of(const AblationRow& names, const SubjectTable& base, const SubjectTable& changed,
+                   bool counts_once) {
+  AblationRow row = names;
+  std::map<std::string, SequencePairs> sequences;
+  for (const auto& [subject, runs] : base) {
+    const std::string& sequence = std::get<0>(subject);
+    const auto found = changed.find(subject);
+    if (found != changed.end() && (names.sequence.empty() || sequence == names.sequence))
+      sequences[sequence].add(runs, found->second, counts_once);
+  }
+  std::vector<std::vector<eval::Pair>> pairs;
+  for (const auto& [sequence, of_sequence] : sequences) {
+    row.newly_failed += of_sequence.newly_failed;
+    row.newly_without_value += of_sequence.newly_without_value;
+    row.copies += of_sequence.copies;
+    if (!of_sequence.pairs.empty()) pairs.push_back(of_sequence.pairs);
+  }
+  add_estimates(row, pairs);
   return row;
 }
 
@@ -144,7 +213,13 @@ std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::s
     row.failed += run.outcome == Outcome::kOk ? 0 : 1;
     members[entry->second].push_back(&run);
   }
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].spread = metric_spread(members[i], metric);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].spread = metric_spread(members[i], metric);
+    const auto with_value = static_cast<std::size_t>(std::ranges::count_if(
+        members[i], [&](const StoredRun* run) { return value_of(*run, metric).has_value(); }));
+    rows[i].without_value = rows[i].runs - rows[i].failed - with_value;
+    rows[i].copies = with_value - (rows[i].spread ? rows[i].spread->count : 0);
+  }
   return rows;
 }
 
@@ -160,9 +235,10 @@ std::vector<AblationRow> ablation(std::span<const StoredRun> runs, const std::st
   for (const std::string& variant : variants) {
     if (variant == base) continue;
     const SubjectTable table = subjects_of(runs, variant, metric);
-    rows.push_back(row_of(variant, "", base_table, table));
+    const bool counts_once = is_deterministic(metric);
+    rows.push_back(row_of({.variant = variant, .sequence = ""}, base_table, table, counts_once));
     for (const std::string& sequence : names_in_order(runs, &RunIdentity::sequence)) {
-      rows.push_back(row_of(variant, sequence, base_table, table));
+      rows.push_back(row_of({.variant = variant, .sequence = sequence}, base_table, table, counts_once));
     }
   }
   return rows;
@@ -214,7 +290,7 @@ std::vector<RepetitionRow> repetition_report(const Store& store, std::span<const
   for (const StoredRun& run : runs) {
     RunIdentity any = run.identity;
     any.repetition = 0;
-    if (run.outcome == Outcome::kOk) groups[run_key(any)].push_back(&run);
+    groups[run_key(any)].push_back(&run);
   }
   std::vector<RepetitionRow> rows;
   for (const auto& [key, repeated] : groups) {
@@ -224,13 +300,20 @@ std::vector<RepetitionRow> repetition_report(const Store& store, std::span<const
         .label = fmt::format("{} {} seed {}", identity.sequence, identity.variant, identity.seed),
         .repetitions = repeated.size()};
     std::set<std::string> trajectories;
+    const StoredRun* first = nullptr;
     for (const StoredRun* run : repeated) {
-      if (const auto blob = run->blobs.find("trajectory"); blob != run->blobs.end())
-        trajectories.insert(blob->second);
-      if (run == repeated.front() || !row.first_difference.empty()) continue;
+      if (run->outcome != Outcome::kOk) {
+        ++row.failed;
+        continue;
+      }
+      const auto blob = run->blobs.find("trajectory");
+      trajectories.insert(blob == run->blobs.end() ? "" : blob->second);
+      if (first == nullptr) first = run;
+      if (run == first || !row.first_difference.empty()) continue;
       row.first_difference =
-          first_difference(store.attachment(*repeated.front(), "frames"), store.attachment(*run, "frames"));
+          first_difference(store.attachment(*first, "frames"), store.attachment(*run, "frames"));
     }
+    if (trajectories == std::set<std::string>{""}) trajectories.clear();  // none was recorded
     row.distinct_trajectories = trajectories.size();
     rows.push_back(row);
   }
@@ -262,6 +345,10 @@ ExecutionDifference difference(const Store& store, const StoredRun& run, const S
   const RunIdentity& identity = run.identity;
   ExecutionDifference row{
       .label = fmt::format("{} {} seed {}", identity.sequence, identity.variant, identity.seed)};
+  if (run.outcome != Outcome::kOk || counterpart.outcome != Outcome::kOk) {
+    row.failure = outcome_name(run.outcome) + ", other " + outcome_name(counterpart.outcome);
+    return row;
+  }
   const std::string frames = store.attachment(run, "frames");
   row.stages = stage_differences(frames, other.attachment(counterpart, "frames"));
   row.frames = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, std::ranges::count(frames, '\n') - 1));
@@ -278,13 +365,13 @@ std::vector<ExecutionDifference> execution_differences(const Store& store, std::
                                                        const Store& other) {
   std::map<std::string, StoredRun> counterparts;
   for (StoredRun& run : other.runs()) {
-    if (run.outcome == Outcome::kOk) counterparts.emplace(key_on_any_cores(run), std::move(run));
+    std::string key = key_on_any_cores(run);
+    counterparts.emplace(std::move(key), std::move(run));
   }
   std::vector<ExecutionDifference> rows;
   for (const StoredRun& run : runs) {
     const auto found = counterparts.find(key_on_any_cores(run));
-    if (run.outcome == Outcome::kOk && found != counterparts.end())
-      rows.push_back(difference(store, run, other, found->second));
+    if (found != counterparts.end()) rows.push_back(difference(store, run, other, found->second));
   }
   return rows;
 }

@@ -21,12 +21,14 @@ struct RunSpread {
   double axis_value = 0.0;
   std::size_t runs = 0;
   std::size_t failed = 0;              ///< runs that did not succeed
+  std::size_t without_value = 0;       ///< succeeded runs without a finite value
+  std::size_t copies = 0;              ///< succeeded runs whose result another one has to the bit
   std::optional<eval::Spread> spread;  ///< over replicates of successful runs; `worst`
                                        ///< respects the direction of the metric
 };
 
-/// For a deterministic metric, runs of one input with equal trajectories count as one replicate. Runs
-/// without a finite value have no part in the spread.
+/// For a deterministic metric, runs with equal trajectories count as one replicate, whatever their seeds: a
+/// recorded sequence does not depend on them. Runs without a finite value have no part in the spread.
 /// @param runs   that may be pooled, e.g. of one `RunGroup`
 /// @param metric metric name, e.g. "ate_rmse_m"
 /// @return in the order of first appearance
@@ -38,11 +40,18 @@ struct RunSpread {
                                                         const std::string& metric);
 
 /// Difference between a variant and a base variant, paired by sequence, seed and point of a sweep.
-/// Repetitions are reduced to their median.
+/// Repetitions are reduced to their median, and pairs of a deterministic metric whose results are copies of
+/// another pair count once.
+///
+/// Over several sequences, each sequence is reduced to the median of its pairs first, and the sequences are
+/// the replicates: pairs of one sequence share its effect, so that an interval over all pairs would exclude 0
+/// in up to half of the cases without an effect. `count` is then the number of sequences.
 struct AblationRow {
   std::string variant;
-  std::string sequence;          ///< empty = all sequences
-  std::size_t newly_failed = 0;  ///< pairs in which only the variant did not succeed
+  std::string sequence;                 ///< empty = all sequences
+  std::size_t newly_failed = 0;         ///< pairs in which only the variant did not succeed
+  std::size_t newly_without_value = 0;  ///< pairs in which it succeeded, but only base has a value
+  std::size_t copies = 0;               ///< pairs that are left out as copies
   std::optional<eval::PairedDifference> difference;
   std::optional<eval::RelativeChange> change;  ///< nullopt also if a value of 0 changes: only a difference
 };
@@ -58,8 +67,15 @@ struct AblationRow {
 struct RepetitionRow {
   std::string label;  ///< sequence, variant, seed
   std::size_t repetitions = 0;
-  std::size_t distinct_trajectories = 0;
+  std::size_t failed = 0;  ///< repetitions that did not succeed
+  std::size_t distinct_trajectories =
+      0;                         ///< of those that succeeded; one without a trajectory is another one
   std::string first_difference;  ///< "frame 17, optimization"; empty if none, or if not recorded
+
+  /// Whether all repetitions succeeded with one trajectory.
+  [[nodiscard]] bool is_repeatable() const {
+    return failed == 0 && distinct_trajectories == 1 && first_difference.empty();
+  }
 };
 
 /// One row for each run with at least two repetitions.
@@ -82,6 +98,7 @@ struct StageDifference {
 /// Differences between two executions of the same run.
 struct ExecutionDifference {
   std::string label;                    ///< sequence, variant, seed
+  std::string failure;                  ///< "crashed, other ok" if one did not succeed, which is all then
   std::size_t frames = 0;               ///< that both executed
   std::vector<StageDifference> stages;  ///< in the order of execution; empty if not recorded
   bool equal_trajectories = false;      ///< as stored, with nine decimals
@@ -91,7 +108,7 @@ struct ExecutionDifference {
   std::optional<double> other_ate_m;
 };
 
-/// One row for each successful run that both stores contain: the same sequence, config, seed and source code.
+/// One row for each run that both stores contain: the same sequence, config, seed and source code.
 /// The poses of both are compared as they are, without alignment: both start at the same pose.
 /// @param runs of `store`
 [[nodiscard]] std::vector<ExecutionDifference> execution_differences(const Store& store,

@@ -48,7 +48,7 @@ void expect_summary(const StoredCase& stored) {
 /// The row "(all)" of the ablation: number of pairs, sign, and certainty.
 /// @return whether the interval excludes 0
 bool expect_ablation(const StoredCase& stored) {
-  const std::size_t count = paired_seeds(stored.newest, stored.planted.base);
+  const std::size_t count = paired_values(stored.newest, stored.planted.base);
   for (const auto& row : stats_rows("ablation", stored.file)) {
     EXPECT_EQ(row.at("build"), stored.planted.builds.back());
     EXPECT_EQ(row.at("base"), stored.planted.base);
@@ -81,7 +81,7 @@ std::string heat_cell(const std::string& page) {
 }
 
 void expect_page(const StoredCase& stored, const std::string& page, bool is_certain) {
-  const std::size_t count = paired_seeds(stored.newest, stored.planted.base);
+  const std::size_t count = paired_values(stored.newest, stored.planted.base);
   const std::string cell = heat_cell(page);
   if (count == 0) return;
   EXPECT_NE(page.find("relative to " + stored.planted.base + ", base of plan p"), std::string::npos);
@@ -203,7 +203,7 @@ TEST(Outputs, StateWhatWasPlanted) {
   }
   EXPECT_LE(differences.made, differences.limit(0.05));
   EXPECT_LE(classes.made, classes.limit(0.05));
-  EXPECT_GT(certain, 10);
+  EXPECT_GT(certain, 2);  // (all) needs six sequences, or one with six pairs
 }
 
 TEST(Outputs, AreMadeWithAMarkedGapIfAFileIsMissing) {

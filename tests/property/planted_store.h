@@ -53,16 +53,19 @@ inline std::size_t succeeded(const std::vector<StoredRun>& runs, const std::stri
   }));
 }
 
-/// Pairs of both variants: sequences and seeds with a successful run of each.
-inline std::size_t paired_seeds(const std::vector<StoredRun>& runs, const std::string& base) {
+/// Number of values of the row of an ablation over all sequences: pairs of both variants, i.e. seeds with a
+/// successful run of each, or sequences with such a pair if there are several.
+inline std::size_t paired_values(const std::vector<StoredRun>& runs, const std::string& base) {
   std::map<std::pair<std::string, std::int64_t>, std::pair<bool, bool>> found;
   for (const StoredRun& run : runs) {
     auto& [has_base, has_other] = found[{run.identity.sequence, run.identity.seed}];
     if (run.outcome == Outcome::kOk) (run.identity.variant == base ? has_base : has_other) = true;
   }
-  return static_cast<std::size_t>(std::count_if(found.begin(), found.end(), [](const auto& entry) {
-    return entry.second.first && entry.second.second;
-  }));
+  std::map<std::string, std::size_t> pairs;
+  for (const auto& [subject, has] : found) {
+    if (has.first && has.second) ++pairs[subject.first];
+  }
+  return pairs.size() == 1 ? pairs.begin()->second : pairs.size();
 }
 
 /// Creates the runs of one store. The error of a run is

@@ -54,7 +54,7 @@ TEST(Statements, OfAblationsHaveTheRightCountSignAndCertainty) {
     const std::vector<AblationRow> rows = ablation(runs, store.base, kMetric);
     const AblationRow& all = rows.front();
     ASSERT_EQ(all.variant, kChangedVariant);
-    const std::size_t count = paired_seeds(runs, store.base);
+    const std::size_t count = paired_values(runs, store.base);
     ASSERT_EQ(all.change.has_value(), count > 0) << seed;
     if (count == 0) continue;
     ASSERT_EQ(all.change->count, count) << seed;

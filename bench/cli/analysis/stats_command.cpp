@@ -71,6 +71,20 @@ std::vector<Ablation> ablations_of_plans(const RunGroup& group, const std::vecto
   return ablations;
 }
 
+/// @param what "runs" or "pairs"
+std::string copies_note(std::size_t copies, const char* what) {
+  return fmt::format(
+      "{} {} have the result of another seed or repetition to the bit: copies, which count once. Vary {} to "
+      "obtain "
+      "replicates of a deterministic run.",
+      copies, what, kPerturbationKey);
+}
+
+std::string without_value_note(std::size_t count, const char* what) {
+  return fmt::format("No finite value of the metric in {} {}; they are neither failed nor counted in n.",
+                     count, what);
+}
+
 std::string change_text(const eval::RelativeChange& change) {
   const std::string interval =
       change.interval
@@ -98,6 +112,8 @@ std::vector<std::string> cells_of(const AblationRow& row, const std::string& bas
 struct AblationTable {
   report::TableRows rows;
   std::set<std::size_t> counts;
+  std::size_t copies = 0;
+  std::size_t without_value = 0;
 };
 
 AblationTable table_of(const std::vector<Ablation>& ablations, const std::string& metric) {
@@ -108,6 +124,8 @@ AblationTable table_of(const std::vector<Ablation>& ablations, const std::string
         const auto& variants = group.variants;
         if (std::find(variants.begin(), variants.end(), row.variant) == variants.end()) continue;
         table.rows.push_back(cells_of(row, group.base));
+        table.copies += row.sequence.empty() ? row.copies : 0;
+        table.without_value += row.sequence.empty() ? row.newly_without_value : 0;
         table.counts.insert(row.difference ? row.difference->count : 0);
       }
     }
@@ -140,6 +158,8 @@ int stats_ablation(const StatsArguments& arguments) {
   require_metric(selection, arguments.metric);
   std::vector<GroupRows> groups;
   std::set<std::size_t> counts;
+  std::size_t copies = 0;
+  std::size_t without_value = 0;
   const std::vector<BasedPlan> plans =
       arguments.base.empty() ? plans_with_base(store, arguments) : std::vector<BasedPlan>{};
   for (const RunGroup& group : selection.groups) {
@@ -147,16 +167,21 @@ int stats_ablation(const StatsArguments& arguments) {
         arguments.base.empty() ? ablations_of_plans(group, plans) : ablation_of_base(group, arguments.base),
         arguments.metric);
     counts.merge(table.counts);
+    copies += table.copies;
+    without_value += table.without_value;
     if (!table.rows.empty()) groups.push_back({.group = &group, .rows = std::move(table.rows)});
   }
   if (groups.empty()) reject_base(selection, arguments);
   std::vector<std::string> notes = {
       fmt::format(
-          "{}; paired by sequence and seed, repetitions reduced to their median; n: pairs; difference and "
-          "change: Hodges-Lehmann estimates; effect: matched-pairs rank-biserial correlation, 1 = all "
+          "{}; paired by sequence and seed, repetitions reduced to their median; n: pairs, of (all) with "
+          "several sequences: sequences; difference and change: Hodges-Lehmann estimates; effect: "
+          "matched-pairs rank-biserial correlation, 1 = all "
           "pairs increased.",
           arguments.metric),
       interval_note("exact Wilcoxon signed-rank test", counts)};
+  if (copies > 0) notes.push_back(copies_note(copies, "pairs"));
+  if (without_value > 0) notes.push_back(without_value_note(without_value, "pairs: only the base has one"));
   notes.insert(notes.end(), selection.left_out.begin(), selection.left_out.end());
   print_groups(
       {"base", "variant", "sequence", "n", "newly failed", "difference", "95 % interval", "effect", "change"},
@@ -170,10 +195,9 @@ int compare_repetitions(const Store& store, const RunSelection& selection, const
   for (const RunGroup& group : selection.groups) {
     GroupRows rows{.group = &group, .rows = {}};
     for (const RepetitionRow& row : repetition_report(store, group.runs)) {
-      const bool is_equal = row.distinct_trajectories == 1 && row.first_difference.empty();
-      all_equal = all_equal && is_equal;
+      all_equal = all_equal && row.is_repeatable();
       const std::string unknown = row.distinct_trajectories == 1 ? "none" : "not recorded";
-      rows.rows.push_back({row.label, fmt::format("{}", row.repetitions),
+      rows.rows.push_back({row.label, fmt::format("{}", row.repetitions), fmt::format("{}", row.failed),
                            fmt::format("{}", row.distinct_trajectories),
                            row.first_difference.empty() ? unknown : row.first_difference});
     }
@@ -181,17 +205,20 @@ int compare_repetitions(const Store& store, const RunSelection& selection, const
   }
   if (groups.empty())
     throw InputError(arguments.store, "contains no repeated run; set `repetitions = 2` in a plan");
-  print_groups({"run", "repetitions", "trajectories", "first difference"}, groups,
-               with_left_out({all_equal ? "All repetitions are bit-equal: a single run is sufficient."
-                                        : "Some repetitions differ: evaluate the spread over repetitions."},
-                             selection),
-               arguments);
+  print_groups(
+      {"run", "repetitions", "failed", "trajectories", "first difference"}, groups,
+      with_left_out({all_equal ? "All repetitions are bit-equal: a single run is sufficient."
+                               : "Some repetitions differ or failed: evaluate failures and the spread "
+                                 "over repetitions."},
+                    selection),
+      arguments);
   return all_equal ? kExitOk : kExitFindings;
 }
 
 std::string ate_cell(const std::optional<double>& ate) { return ate ? number_cell(*ate) : "n/a"; }
 
 std::vector<std::string> difference_cells(const ExecutionDifference& row) {
+  if (!row.failure.empty()) return {row.label, "n/a", row.failure, "n/a", "n/a", "n/a", "n/a"};
   std::string stages;
   for (const StageDifference& stage : row.stages) {
     stages += fmt::format("{}{} {}", stages.empty() ? "" : ", ", stage.stage,
@@ -220,7 +247,7 @@ int compare_stores(const Store& store, const RunSelection& selection, const Stat
     if (!rows.rows.empty()) groups.push_back(std::move(rows));
   }
   if (groups.empty()) {
-    throw InputError(arguments.other, "contains no successful run that " + arguments.store +
+    throw InputError(arguments.other, "contains no run that " + arguments.store +
                                           " contains, too: execute the same plan by the same build on both");
   }
   print_groups({"run", "frames", "first frame that differs", "largest distance", "largest angle", "ATE m",
@@ -415,13 +442,13 @@ std::vector<std::string> summary_cells(const RunSpread& row) {
                                     fmt::format("{}", row.runs),
                                     fmt::format("{}", row.failed),
                                     fmt::format("{}", count)};
-  if (!row.spread) {
+  if (row.spread) {
+    cells.insert(cells.end(),
+                 {number_cell(row.spread->median), interval_cell(row.spread->median_interval, count),
+                  interval_cell(row.spread->quartiles, count), number_cell(row.spread->worst)});
+  } else {
     cells.insert(cells.end(), 4, "n/a");
-    return cells;
   }
-  cells.insert(cells.end(),
-               {number_cell(row.spread->median), interval_cell(row.spread->median_interval, count),
-                interval_cell(row.spread->quartiles, count), number_cell(row.spread->worst)});
   return cells;
 }
 
@@ -429,6 +456,8 @@ std::vector<std::string> summary_cells(const RunSpread& row) {
 struct SpreadRows {
   std::vector<GroupRows> groups;
   std::set<std::size_t> counts;
+  std::size_t copies = 0;
+  std::size_t without_value = 0;
 };
 
 /// One row for each spread that satisfies `keep`; a group without a row is left out.
@@ -441,6 +470,8 @@ SpreadRows spread_rows(const RunSelection& selection, const std::string& metric,
     for (const RunSpread& row : run_spreads(group.runs, metric)) {
       if (!keep(row)) continue;
       result.counts.insert(count_of(row));
+      result.copies += row.copies;
+      result.without_value += row.without_value;
       rows.rows.push_back(cells(row));
     }
     if (!rows.rows.empty()) result.groups.push_back(std::move(rows));
@@ -453,13 +484,13 @@ int summary(const StatsArguments& arguments) {
   const RunSelection selection = chosen_runs(store, arguments);
   const SpreadRows rows = spread_rows(
       selection, arguments.metric, [](const RunSpread&) { return true; }, summary_cells);
+  std::vector<std::string> notes = {arguments.metric + "; n: different results with a value.",
+                                    interval_note(kMedianTest, rows.counts)};
+  if (rows.copies > 0) notes.push_back(copies_note(rows.copies, "runs"));
+  if (rows.without_value > 0) notes.push_back(without_value_note(rows.without_value, "succeeded runs"));
   print_groups(
       {"sequence", "variant", "sweep", "runs", "failed", "n", "median", "median 95 %", "quartiles", "worst"},
-      rows.groups,
-      with_left_out(
-          {arguments.metric + "; n: replicates with a value.", interval_note(kMedianTest, rows.counts)},
-          selection),
-      arguments);
+      rows.groups, with_left_out(std::move(notes), selection), arguments);
   return kExitOk;
 }
 

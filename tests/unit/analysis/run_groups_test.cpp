@@ -122,6 +122,30 @@ TEST(RunGroups, KeepTheNewestConfigOfAVariantWithAllItsSeeds) {
   EXPECT_NE(selection.left_out[0].find("vo (1 run)"), std::string::npos) << selection.left_out[0];
 }
 
+TEST(RunGroups, KeepTheNewestDataOfASequence) {
+  FilledStore filled;
+  RunIdentity first = identity_of("b", 1);
+  first.sequence_id = "8 s";
+  RunIdentity second = first;
+  second.sequence_id = "20 s";
+  filled.add(first);
+  filled.add(second);
+  const RunSelection selection = filled.select();
+  ASSERT_EQ(selection.groups.front().runs.size(), 1u);
+  EXPECT_EQ(selection.groups.front().runs.front().identity.sequence_id, "20 s");
+  ASSERT_EQ(selection.left_out.size(), 1u);
+  EXPECT_NE(selection.left_out[0].find("older data"), std::string::npos) << selection.left_out[0];
+}
+
+TEST(RunGroups, ABuildWithChangesIsNotNamedByItsCommit) {
+  FilledStore filled;
+  filled.add(identity_of("abc123+ff00"));
+  expect_input_error([&] { static_cast<void>(filled.select("abc123")); }, {"abc123+ff00", "--build"});
+  EXPECT_EQ(filled.select("abc123+").groups.size(), 1u);
+  filled.add(identity_of("abc123"));
+  EXPECT_EQ(filled.select("abc123").groups[0].build, "abc123");
+}
+
 TEST(RunGroups, KeepFailedRunsWithoutAManifestWithTheirMachineAndConfig) {
   FilledStore filled;
   filled.add(identity_of("b", 1, "old1"), "A", 4);

@@ -44,6 +44,7 @@ TEST(RunSpreads, CountEqualRepetitionsOfADeterministicMetricOnce) {
     runs.back().identity.repetition = repetition;
     runs.back().metrics.push_back({"process_cpu_s", "", "s", 10.0});
   }
+  for (StoredRun& run : runs) run.metrics.front().value = 1.037;
   EXPECT_EQ(run_spreads(runs, "ate_rmse_m")[0].spread->count, 1u);
   EXPECT_EQ(run_spreads(runs, "process_cpu_s")[0].spread->count, 6u);  // a cost is measured in each run
   runs.back().metrics[0].value = 1.5;                                  // not deterministic
@@ -72,15 +73,16 @@ TEST(RunSpreads, OmitValuesThatAreNotFinite) {
 }
 
 TEST(Ablation, PairsBySequenceAndSeed) {
-  // Differences of "wo" to "full": a1 +1, a2 +2, b1 +9; over all, the means of two are 1, 1.5, 2, 5, 5.5, 9,
-  // and their median 3.5; on a it is 1.5.
+  // Differences of "wo" to "full": a1 +1, a2 +2, b1 +9; on a the median is 1.5. Over the sequences, 1.5 and
+  // 9, the means of two are 1.5, 5.25, 9.
   const std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("full", "a", 2, 2.0),
                                        run_of("full", "b", 1, 1.0), run_of("wo", "b", 1, 10.0),
                                        run_of("wo", "a", 2, 4.0),   run_of("wo", "a", 1, 2.0)};
   const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].sequence, "");
-  EXPECT_EQ(rows[0].difference->median, 3.5);
+  EXPECT_EQ(rows[0].difference->median, 5.25);
+  EXPECT_EQ(rows[0].difference->count, 2u);
   EXPECT_EQ(rows[0].difference->effect, 1.0);
   EXPECT_EQ(rows[1].sequence, "a");
   EXPECT_EQ(rows[1].difference->median, 1.5);
@@ -99,9 +101,55 @@ TEST(Ablation, AChangeFromZeroHasADifferenceButNoRatio) {
     runs.push_back(run_of("full", "a", seed, 0.0));
     runs.push_back(run_of("wo", "a", seed, seed == 1 ? 0.0 : 0.6));
   }
+  for (StoredRun& run : runs)
+    run.blobs["trajectory"] = run.identity.variant + std::to_string(run.identity.seed);
   const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
   EXPECT_EQ(rows[0].difference->median, 0.6);
   EXPECT_FALSE(rows[0].change.has_value());
+}
+
+TEST(Ablation, SequencesAreTheReplicatesOfTheRowOverAll) {
+  // Eight seeds on each of three sequences: no interval over all of them, and one from six sequences on.
+  for (const int sequences : {3, 6}) {
+    std::vector<StoredRun> runs;
+    for (int sequence = 0; sequence < sequences; ++sequence) {
+      for (int seed = 1; seed <= 8; ++seed) {
+        runs.push_back(run_of("full", "s" + std::to_string(sequence), seed, 1.0 + 0.01 * seed));
+        runs.push_back(run_of("wo", "s" + std::to_string(sequence), seed, 2.0 + 0.01 * seed));
+      }
+    }
+    const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+    EXPECT_EQ(rows[0].change->count, static_cast<std::size_t>(sequences));
+    EXPECT_EQ(rows[0].change->interval.has_value(), sequences >= 6);
+    EXPECT_EQ(rows[1].change->count, 8u);
+    EXPECT_TRUE(rows[1].change->interval.has_value());
+  }
+}
+
+TEST(Ablation, CopiesOfARecordedSequenceCountOnce) {
+  std::vector<StoredRun> runs;
+  for (int seed = 1; seed <= 8; ++seed) {
+    for (const char* variant : {"full", "wo"}) {
+      runs.push_back(run_of(variant, "a", seed, variant[0] == 'f' ? 1.0 : 2.127));
+      runs.back().blobs["trajectory"] = variant;
+    }
+  }
+  const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+  EXPECT_EQ(rows[0].change->count, 1u);
+  EXPECT_FALSE(rows[0].change->interval.has_value());
+  EXPECT_EQ(rows[0].copies, 7u);
+  const std::vector<RunSpread> spreads = run_spreads(runs, "ate_rmse_m");
+  EXPECT_EQ(spreads[0].spread->count, 1u);
+  EXPECT_EQ(spreads[0].copies, 7u);
+}
+
+TEST(Ablation, ARunWithoutAValueDidNotFail) {
+  std::vector<StoredRun> runs = {run_of("full", "a", 1, 1.0), run_of("wo", "a", 1, 2.0)};
+  runs.back().metrics.clear();
+  const std::vector<AblationRow> rows = ablation(runs, "full", "ate_rmse_m");
+  EXPECT_EQ(rows[0].newly_failed, 0u);
+  EXPECT_EQ(rows[0].newly_without_value, 1u);
+  EXPECT_EQ(run_spreads(runs, "ate_rmse_m")[1].without_value, 1u);
 }
 
 TEST(Ablation, ListsTheExistingVariantsInTheError) {
@@ -115,6 +163,26 @@ TEST(FirstDifference, IsTheFirstModuleOfTheFirstDifferingFrame) {
   EXPECT_EQ(first_difference(one, one), "");
   EXPECT_EQ(first_difference(one, head + "0,a,b,c\n1,d,x,y\n"), "frame 1, dynamic");
   EXPECT_EQ(first_difference(one, head + "0,a,b,c\n"), "the number of frames");
+}
+
+TEST(RepetitionReport, AFailureIsNotRepeatable) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "store.sqlite";
+  StoreWriter writer(file);
+  for (const std::int64_t repetition : {1, 2, 3}) {
+    const RunIdentity identity{.variant = "vo", .sequence = "a", .repetition = repetition};
+    static_cast<void>(writer.acquire(identity));
+    RunOutcome outcome{.attachments = {{"trajectory", "same"}}};
+    if (repetition == 2) outcome = {.outcome = Outcome::kCrashed, .attachments = {}};
+    writer.finish(identity, outcome);
+  }
+  const Store store(file);
+  const std::vector<RepetitionRow> rows = repetition_report(store, store.runs());
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].repetitions, 3u);
+  EXPECT_EQ(rows[0].failed, 1u);
+  EXPECT_EQ(rows[0].distinct_trajectories, 1u);
+  EXPECT_FALSE(rows[0].is_repeatable());
 }
 
 TEST(RepetitionReport, ReportsTheFirstDifferenceBetweenRepetitions) {
