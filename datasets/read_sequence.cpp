@@ -2,6 +2,8 @@
 #include "datasets/read_sequence.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -10,6 +12,7 @@
 #include "datasets/formats/formats.h"
 #include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
+#include "datasets/sequence_plausibility.h"
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
@@ -32,7 +35,16 @@ std::filesystem::path normalized_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored) &&
       !(eval::is_bag(folder) && std::filesystem::exists(folder, ignored))) {
-    throw InputError(folder.string(), "no such folder or bag");
+    if (!std::filesystem::is_regular_file(folder, ignored))
+      throw InputError(folder.string(), "no such folder or bag");
+    const std::string extension = folder.extension().string();
+    if (extension == ".zstd" || extension == ".zst")
+      throw InputError(folder.string(), "is compressed as a whole; decompress it with `zstd -d`");
+    if (extension == ".gz" || extension == ".bz2" || extension == ".xz" || extension == ".zip" ||
+        extension == ".tar" || extension == ".tgz" || extension == ".7z")
+      throw InputError(folder.string(), "is an archive; extract it, and name its folder or bag");
+    throw InputError(folder.string(),
+                     "is a file, but no bag (.bag, .mcap or .db3); name the folder of the sequence");
   }
   const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
   return absolute.has_filename() ? absolute : absolute.parent_path();
@@ -111,10 +123,23 @@ void require_size(const std::filesystem::path& file, const cv::Mat& image, const
                                       std::to_string(camera.height) + "; " + remedy);
 }
 
+/// Meters in units of the rig; what is no distance, or too far for 16 bits, is 0.
+cv::Mat in_depth_units(const cv::Mat& meters, double units_per_m) {
+  cv::Mat depth(meters.size(), CV_16UC1);
+  std::transform(meters.begin<float>(), meters.end<float>(), depth.begin<std::uint16_t>(),
+                 [units_per_m](float value) -> std::uint16_t {
+                   const double units = std::round(static_cast<double>(value) * units_per_m);
+                   const bool valid = units >= 1.0 && units <= std::numeric_limits<std::uint16_t>::max();
+                   return valid ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
+                 });
+  return depth;
+}
+
 cv::Mat load_depth(const SequenceContent& content, std::size_t index) {
   const std::filesystem::path& file = content.frame_files[index].depth;
   cv::Mat depth = content.images ? content.images->depth(index) : read_depth(file);
   const Rig& rig = content.info.rig;
+  if (depth.type() == CV_32FC1) depth = in_depth_units(depth, rig.depth_units_per_m);
   require_size(file, depth, content.depth_camera ? content.depth_camera->camera : rig.camera,
                "if it is the image of another camera, write width, height, fx, fy, cx, cy and T_c_d of that "
                "camera into [depth] in rig.toml, and it is registered");
@@ -154,6 +179,8 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   check_rig(content);
   if (&format == &kBagFormat) content = with_metric_accelerations(std::move(content));
   check_overlap(content.info, faults);
+  for (const std::string& finding : imu_unit_findings(content.info))
+    content.info.warnings.push_back("imu: " + finding);
   return content;
 }
 

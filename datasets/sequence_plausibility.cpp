@@ -111,7 +111,80 @@ double percentile(std::vector<float> values, double fraction) {
   return *at;
 }
 
+constexpr double kMinMeanAccel = 7.0;   ///< [m/s^2] range of the mean |a| of a hand-held or wheeled IMU;
+constexpr double kMaxMeanAccel = 13.0;  ///< a mean near 1 indicates the unit g, near 1000 the unit mg
+constexpr double kRateInterval_s = 0.1;
+constexpr double kMinRate = 0.02;          ///< [rad/s], RMS of the true rate that tells the unit
+constexpr double kMaxMedianRate = 5.0;     ///< [rad/s]
+constexpr double kMinDegreesRatio = 25.0;  ///< of the rates; 57.3 with degrees, less with noise
+constexpr double kMaxDegreesRatio = 130.0;
+
+/// The pose of the camera by the ground truth; nullopt without a pose on both sides at most 0.1 s away.
+std::optional<Pose> true_pose(const SequenceInfo& info, Timestamp t) {
+  constexpr double kMaxGap_s = 0.1;
+  const std::vector<StampedPose>& poses = info.ground_truth.trajectory.poses;
+  const auto next = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
+  if (next == poses.end() || (next == poses.begin() && next->t != t)) return std::nullopt;
+  const Pose T_f_c = info.ground_truth.T_c_f.inverse();
+  if (next->t == t) return next->T_w_f * T_f_c;
+  const auto last = std::prev(next);
+  const double interval_s = seconds_between(last->t, next->t);
+  if (interval_s > kMaxGap_s) return std::nullopt;
+  return interpolate(last->T_w_f, next->T_w_f, seconds_between(last->t, t) / interval_s) * T_f_c;
+}
+
+/// Ratio of the rates of the gyroscope and the ground truth: sum |w| |w_true| / sum |w_true|^2 over
+/// intervals; nullopt without ground truth or rotation.
+std::optional<double> rate_ratio(const SequenceInfo& info) {
+  double product = 0.0, squares = 0.0, count = 0.0;
+  std::size_t begin = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 1; i < info.imu.size(); ++i) {
+    sum += info.imu[i].gyro_b;
+    const double duration_s = seconds_between(info.imu[begin].t, info.imu[i].t);
+    if (duration_s < kRateInterval_s) continue;
+    const auto from = true_pose(info, info.imu[begin].t);
+    const auto to = true_pose(info, info.imu[i].t);
+    if (from && to && duration_s < 2.0 * kRateInterval_s) {
+      const double true_rate = from->q.angularDistance(to->q) / duration_s;
+      product += sum.norm() / static_cast<double>(i - begin) * true_rate;
+      squares += true_rate * true_rate;
+      count += 1.0;
+    }
+    begin = i;
+    sum.setZero();
+  }
+  if (count < 5.0 || squares < count * kMinRate * kMinRate) return std::nullopt;
+  return product / squares;
+}
+
 }  // namespace
+
+std::vector<std::string> imu_unit_findings(const SequenceInfo& info) {
+  std::vector<std::string> findings;
+  if (info.imu.empty()) return findings;
+  double sum = 0.0;
+  std::vector<float> rates;
+  for (const ImuSample& sample : info.imu) {
+    sum += sample.accel_b.norm();
+    rates.push_back(static_cast<float>(sample.gyro_b.norm()));
+  }
+  const double mean = sum / static_cast<double>(info.imu.size());
+  if (mean < kMinMeanAccel || mean > kMaxMeanAccel) {
+    findings.push_back(
+        fmt::format("the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2?", mean));
+  }
+  const std::optional<double> ratio = rate_ratio(info);
+  if (ratio && *ratio > kMinDegreesRatio && *ratio < kMaxDegreesRatio) {
+    findings.push_back(fmt::format(
+        "the angular rates are {:.1f} times those of the ground truth; are they in deg/s instead of rad/s?",
+        *ratio));
+  } else if (const double middle = percentile(rates, 0.5); middle > kMaxMedianRate) {
+    findings.push_back(fmt::format(
+        "half of the angular rates exceed {:.1f} rad/s; are they in deg/s instead of rad/s?", middle));
+  }
+  return findings;
+}
 
 std::optional<std::string> gravity_finding(const SequenceInfo& info) {
   if (info.imu.empty()) return std::nullopt;
@@ -133,6 +206,7 @@ void ImagePlausibility::add(const Frame& frame) {
       if (raw != 0) depths_m_.push_back(static_cast<float>(raw / frame.depth_units_per_m));
     }
   }
+  compare_depth(frame);
   if (info_.imu.empty()) return;
   std::vector<double> profile = column_profile(frame.gray);
   if (last_profile_.size() == profile.size() && last_t_ < frame.t) {
@@ -156,6 +230,93 @@ std::optional<std::string> ImagePlausibility::depth_unit_finding() const {
       "[depth] scale = {:g} in a rig.toml, they are from {:.2f} to {:.2f} m",
       near_m, far_m, info_.rig.depth_units_per_m, factor * info_.rig.depth_units_per_m, near_m / factor,
       far_m / factor);
+}
+
+namespace {
+
+constexpr std::array<double, 3> kDepthScales{0.2, 1.0, 5.0};
+constexpr double kMinParallax = 0.01;  ///< of the median depth; less motion does not tell the scale
+constexpr double kMaxParallax = 2.5;
+constexpr std::size_t kMinPoints = 100;
+constexpr int kMinScalePairs = 3;
+
+/// Gray value between pixels; nullopt outside of the image.
+std::optional<double> gray_at(const cv::Mat& gray, const Eigen::Vector2d& pixel) {
+  const int x = static_cast<int>(std::floor(pixel.x()));
+  const int y = static_cast<int>(std::floor(pixel.y()));
+  if (x < 0 || y < 0 || x + 1 >= gray.cols || y + 1 >= gray.rows) return std::nullopt;
+  const double a = pixel.x() - x, b = pixel.y() - y;
+  const auto at = [&](int row, int column) {
+    return static_cast<double>(gray.at<std::uint8_t>(row, column));
+  };
+  return (1.0 - b) * ((1.0 - a) * at(y, x) + a * at(y, x + 1)) +
+         b * ((1.0 - a) * at(y + 1, x) + a * at(y + 1, x + 1));
+}
+
+}  // namespace
+
+void ImagePlausibility::compare_depth(const Frame& frame) {
+  const std::optional<Pose> T_w_c = true_pose(info_, frame.t);
+  if (!T_w_c || frame.depth.empty() || frame.gray.empty()) return;
+  const Camera& camera = info_.rig.camera;
+  if (reference_) {
+    const Pose T_now_ref = T_w_c->inverse() * reference_->T_w_c;
+    const double parallax = T_now_ref.p.norm() / reference_->median_m;
+    if (parallax < kMinParallax) return;
+    std::array<double, 3> errors{};
+    std::size_t common = 0;
+    for (std::size_t i = 0; i < reference_->points_c.size(); ++i) {
+      std::array<double, 3> differences{};
+      bool visible = true;
+      for (std::size_t k = 0; visible && k < kDepthScales.size(); ++k) {
+        const Eigen::Vector3d p = T_now_ref * Eigen::Vector3d(kDepthScales[k] * reference_->points_c[i]);
+        const std::optional<double> gray =
+            p.z() > 0.0 ? gray_at(frame.gray, camera.project(p)) : std::nullopt;
+        visible = gray.has_value();
+        if (visible) differences[k] = std::min(std::abs(*gray - reference_->gray[i]), 30.0);
+      }
+      if (!visible) continue;
+      ++common;
+      for (std::size_t k = 0; k < errors.size(); ++k) errors[k] += differences[k];
+    }
+    const auto best = std::ranges::min_element(errors);
+    std::array<double, 3> sorted = errors;
+    std::ranges::sort(sorted);
+    constexpr double kClear = 0.8;  // of the second smallest difference
+    if (common >= kMinPoints && parallax < kMaxParallax && sorted[0] < kClear * sorted[1])
+      ++best_scale_[static_cast<std::size_t>(best - errors.begin())];
+  }
+  DepthFrame next{.T_w_c = *T_w_c};
+  std::vector<float> depths;
+  constexpr int kStep_px = 8;
+  for (int row = 0; row < frame.depth.rows; row += kStep_px) {
+    for (int column = 0; column < frame.depth.cols; column += kStep_px) {
+      const std::uint16_t raw = frame.depth.at<std::uint16_t>(row, column);
+      if (raw == 0) continue;
+      const double depth_m = raw / frame.depth_units_per_m;
+      const Eigen::Vector2d bearing = camera.unproject({column, row});
+      next.points_c.emplace_back(depth_m * bearing.x(), depth_m * bearing.y(), depth_m);
+      next.gray.push_back(frame.gray.at<std::uint8_t>(row, column));
+      depths.push_back(static_cast<float>(depth_m));
+    }
+  }
+  if (depths.size() < kMinPoints) return;
+  next.median_m = percentile(depths, 0.5);
+  reference_ = std::move(next);
+}
+
+std::optional<std::string> ImagePlausibility::depth_scale_finding() const {
+  const int all = best_scale_[0] + best_scale_[1] + best_scale_[2];
+  for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {
+    if (best_scale_[k] < kMinScalePairs || 3 * best_scale_[k] < 2 * all) continue;
+    return fmt::format(
+        "the images follow the motion of the ground truth with {:g} times the depth ({} of {} pairs of "
+        "frames); with "
+        "{:g} units per meter, [depth] scale = {:g} in a rig.toml would be right",
+        kDepthScales[k], best_scale_[k], all, info_.rig.depth_units_per_m,
+        info_.rig.depth_units_per_m / kDepthScales[k]);
+  }
+  return std::nullopt;
 }
 
 double ImagePlausibility::correlation_at(double offset_s, std::span<const Turn> turns,

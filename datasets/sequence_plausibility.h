@@ -2,6 +2,8 @@
 /// Checks of the sensor data of a sequence against each other: units, axes and clocks.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -12,6 +14,11 @@
 #include "datasets/io/sequence_info.h"
 
 namespace stillpoint::datasets {
+
+/// Units of the inertial samples, where they can be told: a mean acceleration that is not about gravity, and
+/// angular rates that are 180 / pi times those of the ground truth (by the rotation between poses 0.1 s
+/// apart), or of which half exceed 5 rad/s.
+[[nodiscard]] std::vector<std::string> imu_unit_findings(const SequenceInfo& info);
 
 /// Compares gravity with the images: the mean specific force of a camera that is held upright points up, that
 /// is, along -y of the camera. Another direction (by more than 60 degrees) indicates swapped axes, an
@@ -30,6 +37,12 @@ class ImagePlausibility {
   /// Depth whose smallest values (5 %) are below 0.2 m, or whose largest (5 %) are beyond 12 m, is not that
   /// of an RGB-D camera: millimeters that are read as 1/5000 m, or the other way round.
   [[nodiscard]] std::optional<std::string> depth_unit_finding() const;
+
+  /// Compares the scale of depth with the motion of the ground truth: the pixels of a frame are moved into a
+  /// later one by their depth, times 1/5, 1 and 5, and the true motion. The factor 1 should give the smallest
+  /// difference of gray values, by the frames of which most tell it.
+  /// @return the finding; nullopt if there is none, no ground truth, or no motion
+  [[nodiscard]] std::optional<std::string> depth_scale_finding() const;
 
   /// Compares the clocks of camera and IMU. The horizontal shift d [px] between the column means of two
   /// images is d = -fx w_y dt for a rotation with the rate w_y about the y axis of the camera. The offset of
@@ -58,7 +71,19 @@ class ImagePlausibility {
                                       const std::vector<double>& angle) const;
   [[nodiscard]] ClockOffset best_offset(std::span<const Turn> turns, const std::vector<double>& angle) const;
 
+  /// A frame that later ones are compared with.
+  struct DepthFrame {
+    Pose T_w_c;
+    std::vector<Eigen::Vector3d> points_c;  ///< sampled pixels with depth
+    std::vector<double> gray;               ///< of these pixels
+    double median_m = 0.0;                  ///< of the depths
+  };
+
+  void compare_depth(const Frame& frame);
+
   const SequenceInfo& info_;
+  std::optional<DepthFrame> reference_;
+  std::array<int, 3> best_scale_{};   ///< number of pairs of frames for which 1/5, 1 and 5 fit best
   std::vector<double> last_profile_;  ///< column means of the last frame
   Timestamp last_t_;
   std::vector<Turn> turns_;

@@ -18,10 +18,8 @@ namespace {
 constexpr double kGapIntervals = 2.5;       ///< an interval longer than this many median intervals is a gap
 constexpr double kMaxDepthOffset_s = 0.01;  ///< of the median; beyond, color and depth disagree during motion
 constexpr double kMinTruthCoverage = 0.95;  ///< fraction of the images that ground truth should cover
-constexpr double kMaxTruthDistance_s = 0.1;  ///< an image further in time from any true pose is not covered
-constexpr double kMinMeanAccel = 7.0;        ///< [m/s^2] range of the mean |a| of a hand-held or wheeled IMU;
-constexpr double kMaxMeanAccel = 13.0;       ///< a mean near 1 indicates the unit g, near 1000 the unit mg
-constexpr std::size_t kMaxFindingsShown = 5;  ///< per file
+constexpr double kMaxTruthDistance_s = 0.1;   ///< an image further in time from any true pose is not covered
+constexpr std::size_t kMaxFindingsShown = 5;  ///< per kind
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -102,14 +100,6 @@ CheckReport check_imu(const SequenceInfo& info) {
   if (outside > 0) {
     report.findings.push_back(
         warning("imu", fmt::format("does not cover {} of {} images", outside, info.frame_times.size())));
-  }
-  double sum = 0.0;
-  for (const ImuSample& sample : info.imu) sum += sample.accel_b.norm();
-  const double mean = sum / static_cast<double>(info.imu.size());
-  if (mean < kMinMeanAccel || mean > kMaxMeanAccel) {
-    report.findings.push_back(warning(
-        "imu",
-        fmt::format("the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2?", mean)));
   }
   if (const auto finding = gravity_finding(info)) report.findings.push_back(warning("imu", *finding));
   return report;
@@ -200,12 +190,17 @@ CheckReport check_images(const SequenceContent& content, const CheckOptions& opt
   }
   if (const auto finding = plausibility.depth_unit_finding())
     report.findings.push_back(warning("depth", *finding));
+  if (const auto finding = plausibility.depth_scale_finding())
+    report.findings.push_back(warning("depth", *finding));
   if (const auto finding = plausibility.clock_finding()) report.findings.push_back(warning("imu", *finding));
   return report;
 }
 
-/// The file of a location, without its line.
-std::string file_of(const std::string& location) { return location.substr(0, location.find_last_of(':')); }
+/// Findings of one kind: those of the lines of a file, and those of files with the same text, e.g. images.
+std::string kind_of(const Finding& finding) {
+  const std::size_t colon = finding.location.find_last_of(':');
+  return colon == std::string::npos ? finding.text : finding.location.substr(0, colon);
+}
 
 }  // namespace
 
@@ -245,13 +240,14 @@ std::string report_text(const CheckReport& report) {
   for (const std::string& note : report.notes) text += "  note: " + note + "\n";
   std::map<std::string, std::size_t> shown;
   for (const Finding& finding : report.findings) {
-    if (++shown[file_of(finding.location)] > kMaxFindingsShown) continue;
+    if (++shown[kind_of(finding)] > kMaxFindingsShown) continue;
     text += fmt::format("  {}: {}: {}\n", finding.severity == Severity::kError ? "error" : "warning",
                         finding.location, finding.text);
   }
-  for (const auto& [file, count] : shown) {
+  for (const auto& [kind, count] : shown) {
+    const bool is_file = kind.find(' ') == std::string::npos;
     if (count > kMaxFindingsShown)
-      text += fmt::format("  ... {} more in {}\n", count - kMaxFindingsShown, file);
+      text += fmt::format("  ... {} more {} {}\n", count - kMaxFindingsShown, is_file ? "in" : "like", kind);
   }
   return text +
          (report.findings.empty() ? "no findings\n" : fmt::format("{} finding(s)\n", report.findings.size()));

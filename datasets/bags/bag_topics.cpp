@@ -175,7 +175,13 @@ cv::Mat decode_depth_message(const CompressedImageMessage& image, std::string_vi
   if (image.format.find("rvl") != std::string::npos)
     throw InputError(std::string(place), "depth compressed by RVL is not read; record it as PNG");
   ByteReader reader(image.data, place);
-  if (!has_header) return decode_depth(image.data, std::string(place));
+  constexpr std::string_view kPngSignature = "\x89PNG";  // some publishers write no header in front of it
+  if (!has_header || image.data.starts_with(kPngSignature)) {
+    if (has_float_depth(image.format))
+      throw InputError(std::string(place),
+                       "has no header in front of the PNG, which tells the scale of its floats");
+    return decode_depth(image.data, std::string(place));
+  }
   reader.skip(4);
   const float a = reader.number<float>();
   const float b = reader.number<float>();
@@ -263,6 +269,17 @@ int depth_rank(const TopicSummary& topic) {
   return rank;
 }
 
+/// Whether a topic has depth by its encoding and name: infrared brightness has 16 bits, too (mono16, and
+/// 16UC1 by some cameras).
+bool measures_depth(const TopicSummary& topic) {
+  if (topic.image != ImageContent::kDepth) return false;
+  const bool is_named = contains_any(topic.topic, {"depth"});
+  const bool is_infrared =
+      contains_any(topic.topic, {"infra", "/ir/", "/ir_", "_ir/", "brightness", "amplitude"}) ||
+      lower_case(topic.topic).ends_with("/ir");
+  return is_named || (topic.encoding != "mono16" && !is_infrared);
+}
+
 /// The first of the best topics for which `is_candidate` is true; empty without one.
 template <class Candidate, class Rank>
 std::string best_topic(const std::vector<TopicSummary>& topics, const Candidate& is_candidate,
@@ -342,13 +359,15 @@ BagTopics with_request(BagTopics selected, const std::string& request,
         "\"" + request + "\" is not ROLE=TOPIC; the roles are color, depth, imu, gyro, accel and truth");
   const std::string name = request.substr(separator + 1);
   const bool frames_of_tf = role == "truth" && name.starts_with("/tf:");
-  const auto found = std::ranges::find(topics, name, &TopicSummary::topic);
+  const auto found = std::ranges::find_if(topics, [&name](const TopicSummary& topic) {
+    return topic.topic == name || topic.topic == "/" + name || "/" + topic.topic == name;
+  });
   if (!name.empty() && !frames_of_tf && (found == topics.end() || !fits_role(*found, role)))
     throw InputError("--topics",
                      "\"" + name + "\" is no topic for " + role + "; the bag contains " + list_of(topics));
   if (role == "imu") selected.gyro = selected.accel = "";
   if (role == "gyro" || role == "accel") selected.imu = "";
-  *role_of(selected, role) = name;
+  *role_of(selected, role) = name.empty() || frames_of_tf ? name : found->topic;
   return selected;
 }
 
@@ -362,8 +381,7 @@ BagTopics select_topics(const BagFile& bag, std::span<const std::string> request
   for (const std::string& request : requested) {
     if (request.starts_with("color=")) selected = with_request(selected, request, topics);
   }
-  selected.depth = best_topic(
-      topics, [](const TopicSummary& topic) { return topic.image == ImageContent::kDepth; }, depth_rank);
+  selected.depth = best_topic(topics, measures_depth, depth_rank);
   selected.truth = best_topic(topics, names_reference, [](const TopicSummary&) { return 0; });
   selected = with_imu(selected, topics);
   for (const std::string& request : requested) selected = with_request(selected, request, topics);

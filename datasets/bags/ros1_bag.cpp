@@ -226,6 +226,10 @@ class Ros1Indexer {
       index_.complete = false;
       index_.warnings.push_back("is not complete: it ends early, after " +
                                 std::to_string(index_.chunks.size()) + " chunks; those are read");
+    } else if (index_position_ == 0) {
+      index_.warnings.push_back("was not closed by its recorder; all " +
+                                std::to_string(index_.chunks.size()) +
+                                " chunks are complete, but the end of the recording may be missing");
     }
   }
 

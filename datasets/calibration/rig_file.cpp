@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "eval/io/matrix_files.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -92,6 +93,21 @@ class Section {
   const toml::table* table_;
 };
 
+/// Whether the file is YAML by its extension, or its first line that is no comment: a directive or "key:".
+bool is_yaml(const std::filesystem::path& file) {
+  if (file.extension() == ".yaml" || file.extension() == ".yml") return true;
+  const std::string text = eval::read_text_file(file);
+  eval::LineReader lines(text);
+  while (const std::optional<std::string_view> line = lines.next()) {
+    const std::size_t begin = line->find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos || (*line)[begin] == '#') continue;
+    const std::size_t colon = line->find(':');
+    return (*line)[begin] == '%' || line->starts_with("---") ||
+           (colon != std::string_view::npos && line->substr(0, colon).find('=') == std::string_view::npos);
+  }
+  return false;
+}
+
 toml::table parse(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
@@ -100,6 +116,13 @@ toml::table parse(const std::filesystem::path& file) {
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
+    if (is_yaml(file))
+      throw InputError(
+          file.string(),
+          "is YAML, as Kalibr, OpenCV, ORB-SLAM and VINS write it; a rig is TOML: write the values as "
+          "camera = { width = 640, height = 480, fx = 535.4, fy = 539.2, cx = 320.1, cy = 247.6 } and "
+          "imu = { T_b_c = [16 numbers] }, where T_b_c is the pose of the camera in the IMU frame "
+          "(the inverse of T_cam_imu of Kalibr)");
     throw InputError(file.string(), error.source().begin.line, std::string(error.description()));
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -48,7 +49,7 @@ class Stream {
 };
 
 Eigen::Vector3d in_range(const Eigen::Vector3d& value, const SensorRange& range, std::string_view place) {
-  if (value.allFinite() && value.cwiseAbs().maxCoeff() <= range.limit) return value;
+  if (value.cwiseAbs().maxCoeff() <= range.limit) return value;
   throw InputError(std::string(place),
                    "the " + std::string(range.quantity) + " exceeds " +
                        std::to_string(std::lround(range.limit)) + " " + std::string(range.unit) +
@@ -78,6 +79,7 @@ class StreamCollector {
   }
 
   [[nodiscard]] BagStreams finish() {
+    add_warnings();
     const auto place = [this](const std::string& topic) { return bag_.path().string() + ":" + topic; };
     streams_.color = color_.finish(place(topics_.color), streams_.warnings);
     streams_.depth = depth_.finish(place(topics_.depth), streams_.warnings);
@@ -105,7 +107,24 @@ class StreamCollector {
       frame = header.frame;
       if (!is_color) streams_.float_depth = has_meters(connection.type, message);
     }
-    stream.add({.t = header.stamp.ns == 0 ? reference.message.t : header.stamp, .message = reference});
+    stream.add({.t = time_of(connection.topic, header.stamp, reference.message.t), .message = reference});
+  }
+
+  /// The stamp of the header, or the time of recording if it has none.
+  Timestamp time_of(const std::string& topic, Timestamp stamp, Timestamp recorded) {
+    if (stamp.ns != 0) return stamp;
+    ++without_stamp_[topic];
+    return recorded;
+  }
+
+  void add_warnings() {
+    const std::string bag = bag_.path().string();
+    for (const auto& [topic, count] : not_finite_)
+      streams_.warnings.push_back(bag + ":" + topic + ": " + std::to_string(count) +
+                                  " messages with NaN or infinite values are skipped");
+    for (const auto& [topic, count] : without_stamp_)
+      streams_.warnings.push_back(bag + ":" + topic + ": " + std::to_string(count) +
+                                  " messages have the stamp 0; the time of their recording is used");
   }
 
   static bool has_meters(const std::string& type, const SerializedMessage& message) {
@@ -115,7 +134,13 @@ class StreamCollector {
 
   void add_inertial(const std::string& topic, const SerializedMessage& message, Timestamp recorded) {
     const ImuMessage sample = parse_imu(message);
-    const Timestamp t = sample.header.stamp.ns == 0 ? recorded : sample.header.stamp;
+    const bool is_finite = (topic == topics_.accel || sample.gyro.allFinite()) &&
+                           (topic == topics_.gyro || sample.accel.allFinite());
+    if (!is_finite) {
+      ++not_finite_[topic];
+      return;
+    }
+    const Timestamp t = time_of(topic, sample.header.stamp, recorded);
     if (streams_.imu_frame.empty() && topic != topics_.accel) streams_.imu_frame = sample.header.frame;
     if (topic == topics_.imu) {
       imu_.add({.t = t,
@@ -136,6 +161,8 @@ class StreamCollector {
   Stream<ImuSample> imu_;
   Stream<VectorSample> gyro_;
   Stream<VectorSample> accel_;
+  std::map<std::string, std::size_t> not_finite_;     ///< messages by topic
+  std::map<std::string, std::size_t> without_stamp_;  ///< messages by topic
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "datasets/formats/formats.h"
+#include "datasets/formats/image_lists.h"
 #include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
 
@@ -32,11 +33,6 @@ constexpr Camera kIclCamera{.width = 640,
 Timestamp time_of_index(double index) {
   const auto number = static_cast<std::int64_t>(index);
   return {(number * 1'000'000'000 + kIclFramesPerSecond / 2) / kIclFramesPerSecond};
-}
-
-std::filesystem::path associations_file(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "associations.txt";
-  return std::filesystem::exists(file) ? file : folder / "associate.txt";
 }
 
 /// Rows `index depth index color`; the indices are frame numbers.

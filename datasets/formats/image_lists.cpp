@@ -35,6 +35,11 @@ std::vector<Timestamp> stamps_of(const std::vector<StampedFile>& files) {
 
 }  // namespace
 
+std::filesystem::path associations_file(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "associations.txt";
+  return std::filesystem::exists(file) ? file : folder / "associate.txt";
+}
+
 PairedImages pair_images(const std::filesystem::path& color_list, const std::filesystem::path& depth_list,
                          FaultLog& faults, MissingImages missing) {
   std::vector<StampedFile> color = read_list(color_list, faults);

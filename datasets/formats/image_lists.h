@@ -52,4 +52,7 @@ enum class MissingImages { kKeep, kDrop };
 /// `content` with the frames, and a note on the color images that were dropped.
 [[nodiscard]] SequenceContent with_frames(SequenceContent content, const PairedImages& images);
 
+/// The list of pairs that associate.py writes, associations.txt or associate.txt, which may not exist.
+[[nodiscard]] std::filesystem::path associations_file(const std::filesystem::path& folder);
+
 }  // namespace stillpoint::datasets

@@ -96,15 +96,68 @@ void add_imu(SequenceContent& content, FaultLog& faults) {
       "imu: default noise densities, unless a rig.toml sets [imu] gyro_noise etc.");
 }
 
+bool names_depth(std::string_view path) { return path.find("depth") != std::string_view::npos; }
+
+constexpr double kMaxFrameNumber = 1e7;   // larger numbers are stamps
+constexpr double kMinNanoseconds = 1e15;  // larger numbers are no seconds
+
+/// Whether the first row of associate.py begins with a time; ICL-NUIM has frame numbers there.
+bool has_stamps(const std::filesystem::path& associations) {
+  if (!std::filesystem::is_regular_file(associations)) return false;
+  const std::string text = eval::read_text_file(associations);
+  eval::RowReader rows(text, "");
+  const std::optional<eval::TextRow> row = rows.next();
+  if (!row || row->fields.size() < 4) return false;
+  const std::optional<double> first = eval::parse_number(row->fields[0]);
+  return first && (*first > kMaxFrameNumber || row->fields[0].find('.') != std::string_view::npos);
+}
+
+Timestamp association_time(const eval::TextRow& row, std::size_t field) {
+  const bool is_ns = row.finite_number(field) > kMinNanoseconds;
+  return row.time(field, is_ns ? eval::TimeUnit::kNanoseconds : eval::TimeUnit::kSeconds);
+}
+
+/// Rows `stamp image stamp image` as associate.py writes them, color or depth first: the path tells.
+PairedImages read_associations(const std::filesystem::path& file, FaultLog& faults) {
+  const std::string text = eval::read_text_file(file);
+  const std::string name = file.string();
+  PairedImages images;
+  eval::for_each_row(text, name, faults, [&](const eval::TextRow& row) {
+    if (row.fields.size() < 4) throw row.error("expected the four fields: stamp, image, stamp, image");
+    const bool depth_first = names_depth(row.text(1));
+    if (depth_first == names_depth(row.text(3)))
+      throw row.error("exactly one of the two paths must contain \"depth\", to tell the depth image");
+    const std::size_t color = depth_first ? 2 : 0;
+    const std::size_t depth = 2 - color;
+    const Timestamp t = association_time(row, color);
+    if (!images.times.empty()) row.require_increasing(images.times.back(), t);
+    images.times.push_back(t);
+    images.files.push_back(FrameFiles{.color = file.parent_path() / row.text(color + 1),
+                                      .depth = file.parent_path() / row.text(depth + 1),
+                                      .depth_offset_s = seconds_between(t, association_time(row, depth))});
+  });
+  images.color_images = images.times.size();
+  if (images.times.empty()) throw InputError(name, "lists no images; is the sequence complete?");
+  return images;
+}
+
+/// Without the lists of all images, those of associate.py.
+PairedImages read_images(const std::filesystem::path& folder, FaultLog& faults) {
+  const bool has_lists =
+      std::filesystem::exists(folder / "rgb.txt") && std::filesystem::exists(folder / "depth.txt");
+  if (!has_lists && std::filesystem::exists(associations_file(folder)))
+    return read_associations(associations_file(folder), faults);
+  // The lists of the Bonn dataset name images that its archives lack.
+  const bool is_bonn = folder.filename().string().find(kBonn) != std::string::npos;
+  return pair_images(folder / "rgb.txt", folder / "depth.txt", faults,
+                     is_bonn ? MissingImages::kDrop : MissingImages::kKeep);
+}
+
 SequenceContent read_tum(const std::filesystem::path& folder, FaultLog& faults) {
   SequenceContent content;
   content.info.name = folder.filename().string();
   content.info.folder = folder;
-  // The lists of the Bonn dataset name images that its archives lack.
-  const bool is_bonn = content.info.name.find(kBonn) != std::string::npos;
-  content =
-      with_frames(std::move(content), pair_images(folder / "rgb.txt", folder / "depth.txt", faults,
-                                                  is_bonn ? MissingImages::kDrop : MissingImages::kKeep));
+  content = with_frames(std::move(content), read_images(folder, faults));
   set_calibration(content);
   add_imu(content, faults);
   if (std::filesystem::exists(folder / "groundtruth.txt")) {
@@ -115,12 +168,14 @@ SequenceContent read_tum(const std::filesystem::path& folder, FaultLog& faults) 
 }
 
 bool recognize_tum(const std::filesystem::path& folder) {
-  return std::filesystem::exists(folder / "rgb.txt");
+  return std::filesystem::exists(folder / "rgb.txt") || has_stamps(associations_file(folder));
 }
 
 }  // namespace
 
-const SequenceFormat kTumFormat{
-    .name = "tum", .signature = "rgb.txt", .recognize = recognize_tum, .read = read_tum};
+const SequenceFormat kTumFormat{.name = "tum",
+                                .signature = "rgb.txt, or associations.txt with stamps",
+                                .recognize = recognize_tum,
+                                .read = read_tum};
 
 }  // namespace stillpoint::datasets

@@ -228,17 +228,34 @@ bool has_png_end(const std::filesystem::path& file) {
   return in && tail.find("IEND") != std::string::npos;
 }
 
+constexpr std::string_view kJpegSignature = "\xff\xd8\xff";
+
+/// The first bytes of a file, at most 32.
+std::string first_bytes(const std::filesystem::path& file) {
+  std::string bytes(32, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
 /// Decodes by OpenImageIO an image that `decode_png` does not.
 LoadedImage load_image(const std::filesystem::path& file, int depth) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw InputError(file.string(), "no such image; is the sequence complete?");
   }
+  const std::string beginning = first_bytes(file);
+  if (beginning.starts_with("version https://git-lfs"))
+    throw InputError(file.string(), "is a pointer of Git LFS, not the image; run `git lfs pull`");
+  const bool is_jpeg = beginning.starts_with(kJpegSignature);
   const bool is_png = file.extension() == ".png" || file.extension() == ".PNG";
-  if (is_png && !has_png_end(file)) {
+  if (is_png && !is_jpeg && !has_png_end(file)) {
     throw InputError(file.string(), "is truncated or not a PNG; copy the file again");
   }
-  LoadedImage image = image_module().load(file, depth);
+  // By its content: OpenImageIO selects the decoder by the extension.
+  LoadedImage image = is_png && is_jpeg ? image_module().decode(file_bytes(file).value_or(""), depth)
+                                        : image_module().load(file, depth);
   if (!image.problem.empty()) throw InputError(file.string(), image.problem + "; copy the file again");
   return image;
 }
@@ -246,7 +263,7 @@ LoadedImage load_image(const std::filesystem::path& file, int depth) {
 /// The same for bytes in a buffer.
 LoadedImage load_bytes(std::string_view bytes, const std::string& name, int depth) {
   const bool is_png = bytes.starts_with("\x89PNG");
-  if (!is_png && !bytes.starts_with("\xff\xd8\xff"))
+  if (!is_png && !bytes.starts_with(kJpegSignature))
     throw InputError(name, "is neither a PNG nor a JPEG image");
   if (is_png && bytes.find("IEND") == std::string_view::npos)
     throw InputError(name, "is a truncated PNG; copy the file again");
@@ -265,9 +282,11 @@ cv::Mat color_of(const LoadedImage& image, const std::string& name) {
 /// @throws InputError unless the image has one channel of 16 bits
 cv::Mat depth_of(const LoadedImage& image, const std::string& name) {
   if (!image.pixels.empty() && image.channels == 1) return image.pixels;
-  throw InputError(name, "has " + std::to_string(image.channels) + " channel(s) of " +
-                             std::to_string(image.bits) +
-                             " bits, but depth has one channel of 16; is it a color image?");
+  const std::string found = "has " + std::to_string(image.channels) + " channel(s) of " +
+                            std::to_string(image.bits) + " bits, but depth has one channel of 16 bits";
+  if (image.channels == 1 && image.bits == 8)
+    throw InputError(name, found + "; 8 bits cannot hold distances, was it scaled for display?");
+  throw InputError(name, found + " or of 32-bit floats in meters; is it a color image?");
 }
 
 /// nullopt if the file is no PNG of a common kind with this depth; OpenImageIO reads it, or describes the

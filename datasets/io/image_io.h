@@ -32,8 +32,8 @@ struct GrayImage {
 /// @throws InputError as `read_image`
 [[nodiscard]] GrayImage read_gray(const std::filesystem::path& file);
 
-/// Decodes a depth image: one channel of 16 bits.
-/// @return CV_16UC1, the raw values
+/// Decodes a depth image: one channel of 16 bits, or of floats in meters (TIFF, OpenEXR).
+/// @return CV_16UC1, the raw values; CV_32FC1, meters
 /// @throws InputError as above
 [[nodiscard]] cv::Mat read_depth(const std::filesystem::path& file);
 

@@ -12,7 +12,9 @@
 namespace stillpoint::datasets {
 
 struct LoadedImage {
-  cv::Mat pixels;       ///< gray, or the first three channels; empty if the file has another depth
+  /// Gray, or the first three channels; empty if the file has another depth. Floats of one channel are
+  /// returned as CV_32F for an expected depth of 16 bits, and colors of 16 bits are reduced to 8.
+  cv::Mat pixels;
   int channels = 0;     ///< of the file
   int bits = 0;         ///< per channel of the file
   std::string problem;  ///< why the file cannot be decoded, else empty

@@ -81,6 +81,8 @@ std::string read_text_file(const std::filesystem::path& file) {
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!stream)
     throw InputError(file.string(), "cannot be read completely; the file or the disk may be damaged");
+  if (text.starts_with("version https://git-lfs"))
+    throw InputError(file.string(), "is a pointer of Git LFS, not the file; run `git lfs pull`");
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw InputError(file.string(),
                      "is UTF-16 text; convert it to UTF-8, e.g. with `iconv -f UTF-16 -t UTF-8`");

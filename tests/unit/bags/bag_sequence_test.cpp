@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "datasets/bags/bag_file.h"
@@ -105,6 +106,54 @@ class BagBuilder {
 bool has_note(const SequenceInfo& info, const std::string& text) {
   return std::ranges::any_of(
       info.notes, [&text](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
+/// The sequence of a bag with three color images and what `add` writes.
+template <class Add>
+SequenceInfo info_of_bag(const Add& add, std::vector<std::string> topics = {}) {
+  const TemporaryFolder folder;
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.camera_info("/rgb/camera_info", 10.0);
+  bag.transform("imu", "cam", Pose{});
+  for (int i = 0; i < 3; ++i) bag.image("/rgb/image_raw", at_ms(40 * i), "rgb8");
+  add(bag);
+  bag.finish();
+  return open_sequence(folder.path() / "a.bag", {.format = {}, .rig_file = {}, .topics = std::move(topics)})
+      ->info();
+}
+
+bool has_warning(const SequenceInfo& info, const std::string& text) {
+  return std::ranges::any_of(
+      info.warnings, [&text](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+TEST(BagSequence, InfraredBrightnessIsNoDepth) {
+  for (const auto& [topic, encoding] : {std::pair("/ir/image_raw", "mono16"),
+                                        {"/left/image", "mono16"},
+                                        {"/camera/infra1/image_rect_raw", "16UC1"},
+                                        {"/ir/image", "16UC1"}}) {
+    const SequenceInfo info = info_of_bag([&](BagBuilder& bag) {
+      for (int i = 0; i < 3; ++i) bag.image(topic, at_ms(40 * i), encoding);
+    });
+    EXPECT_FALSE(has_note(info, "depth /")) << topic;
+  }
+  const SequenceInfo info = info_of_bag([&](BagBuilder& bag) {
+    for (int i = 0; i < 3; ++i) bag.image("/depth/image_raw", at_ms(40 * i), "mono16");
+  });
+  EXPECT_TRUE(has_note(info, "depth /depth/image_raw"));
+}
+
+TEST(BagSequence, InertialMessagesWithNanAreSkippedAndCounted) {
+  const SequenceInfo info = info_of_bag([&](BagBuilder& bag) {
+    for (int i = 0; i < 10; ++i)
+      bag.imu("/imu", at_ms(10 * i), {i < 3 ? NAN : 0.0, 0, 0}, {0, i == 7 ? INFINITY : -9.8, 0});
+  });
+  EXPECT_EQ(info.imu.size(), 6U);
+  EXPECT_TRUE(has_warning(info, "/imu: 4 messages with NaN or infinite values are skipped"));
+}
+
+TEST(BagSequence, TopicsMayLackTheirSlash) {
+  EXPECT_TRUE(has_note(info_of_bag([](BagBuilder&) {}, {"color=rgb/image_raw"}), "color /rgb/image_raw"));
 }
 
 TEST(BagSequence, TwoInertialTopicsAreMerged) {

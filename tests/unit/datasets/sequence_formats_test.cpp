@@ -48,6 +48,29 @@ TEST(TumFormat, PairsImagesAndUsesColorTimestamps) {
   EXPECT_DOUBLE_EQ(depth_at(frame.depth, frame.depth_units_per_m, 3, 2), 1.0);  // 5000 / 5000
 }
 
+TEST(TumFormat, ReadsTheListOfAssociatePyInAnyOrderIfThereAreNoOthers) {
+  for (const bool depth_first : {false, true}) {
+    const TemporaryFolder folder;
+    write_tum_folder(folder);
+    std::string rows;
+    for (const char* stamp : {"1.000000", "1.040000", "1.080000"}) {
+      const std::string color = std::string(stamp) + " rgb/" + stamp + ".png";
+      const std::string depth = "1.01 depth/" + std::string(stamp) + ".png";
+      rows += (depth_first ? depth + " " + color : color + " " + depth) + "\n";
+    }
+    folder.write("associations.txt", rows);
+    std::filesystem::remove(folder.path() / "rgb.txt");
+    std::filesystem::remove(folder.path() / "depth.txt");
+    FaultLog strict;
+    const SequenceContent content = read_sequence(folder.path(), {}, strict);
+    EXPECT_EQ(content.info.format, "tum");
+    EXPECT_EQ(content.info.frame_times,
+              (std::vector<Timestamp>{{1'000'000'000}, {1'040'000'000}, {1'080'000'000}}));
+    EXPECT_EQ(content.frame_files[1].color.parent_path().filename(), "rgb");
+    EXPECT_EQ(content.frame_files[1].depth.parent_path().filename(), "depth");
+  }
+}
+
 TEST(TumFormat, GroundTruthIsOfTheCamera) {
   const TemporaryFolder folder;
   write_tum_folder(folder);
@@ -230,6 +253,77 @@ TEST(FolderFormat, PairsImagesByNameAndReadsTheJsonCamera) {
   EXPECT_EQ(info.rig.camera.fy, 11.0);
   EXPECT_EQ(info.rig.camera.cx, 3.5);
   EXPECT_EQ(stream->load_frame(2).depth.at<std::uint16_t>(0, 0), 1000);
+}
+
+/// Three images color/NAME.png and depth/NAME.png with the depths 1, 2 and 3 m.
+void write_named_folder(const TemporaryFolder& folder, const std::vector<std::string>& names) {
+  write_plain_folder(folder);
+  for (const char* images : {"color", "depth"}) {
+    std::filesystem::remove_all(folder.path() / images);
+    std::filesystem::create_directory(folder.path() / images);
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    write_png(folder.path() / "color" / (names[i] + ".png"), cv::Mat::zeros(6, 8, CV_8UC3));
+    write_png(folder.path() / "depth" / (names[i] + ".png"),
+              cv::Mat(6, 8, CV_16UC1, cv::Scalar(1000.0 * static_cast<double>(i + 1))));
+  }
+}
+
+TEST(FolderFormat, OrdersNamesByTheirNumbersAndTakesTimesFromThem) {
+  struct Case {
+    std::vector<std::string> names;  // in order of time
+    std::vector<std::int64_t> times_ns;
+  };
+  for (const auto& [names, times_ns] :
+       {Case{{"2", "9", "10"}, {66'666'667, 300'000'000, 333'333'333}},
+        {{"frame_2", "frame_9", "frame_10"}, {66'666'667, 300'000'000, 333'333'333}},
+        {{"1700000000.050000", "1700000000.1", "1700000000.150000"},
+         {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
+        {{"1700000000050000000", "1700000000100000000", "1700000000150000000"},
+         {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
+        {{"1700000000050", "1700000000100", "1700000000150"},
+         {1700000000'050'000'000, 1700000000'100'000'000, 1700000000'150'000'000}},
+        {{"a", "b", "c"}, {0, 33'333'333, 66'666'667}}}) {
+    const TemporaryFolder folder;
+    write_named_folder(folder, names);
+    const auto stream = open_sequence(folder.path());
+    SCOPED_TRACE(names.front());
+    ASSERT_EQ(stream->info().frame_times.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(stream->info().frame_times[i].ns, times_ns[i]);
+      EXPECT_EQ(stream->load_frame(i).depth.at<std::uint16_t>(0, 0), 1000 * (i + 1));
+    }
+  }
+}
+
+TEST(FolderFormat, ReadsInertialSamplesAndGroundTruthIfTheNamesAreTimes) {
+  const TemporaryFolder folder;
+  write_named_folder(folder, {"1700000000.05", "1700000000.10", "1700000000.15"});
+  folder.write("imu.txt", "1700000000.04 0 0 0 0 -9.8 0\n1700000000.16 0 0 0 0 -9.8 0\n");
+  folder.write("groundtruth.txt", "1700000000.04 0 0 0 0 0 0 1\n1700000000.16 1 0 0 0 0 0 1\n");
+  folder.write("rig.toml", "imu = { T_b_c = [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1] }\n");
+  const auto stream = open_sequence(folder.path());
+  EXPECT_EQ(stream->info().imu.size(), 2U);
+  EXPECT_EQ(stream->info().ground_truth.trajectory.poses.size(), 2U);
+  const TemporaryFolder numbered;
+  write_named_folder(numbered, {"1", "2", "3"});
+  numbered.write("imu.txt", "1700000000.04 0 0 0 0 -9.8 0\n");
+  EXPECT_TRUE(
+      has_note(open_sequence(numbered.path())->info(), "not read: the names of the images are no times"));
+}
+
+TEST(OpenSequence, ErrorsNameCompressedFilesPointersAndOtherFiles) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& name, const std::string& content, const std::string& part) {
+    const auto file = folder.write(name, content);
+    expect_input_error([&] { static_cast<void>(open_sequence(file)); }, {name, part});
+  };
+  expect("a_0.db3.zstd", "\x28\xb5\x2f\xfd", "zstd -d");
+  expect("a.tar", "a", "extract it");
+  expect("a.txt", "a", "is a file, but no bag");
+  write_tum_folder(folder);
+  folder.write("rgb.txt", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n");
+  expect_input_error([&] { static_cast<void>(open_sequence(folder.path())); }, {"rgb.txt", "git lfs pull"});
 }
 
 TEST(OpenSequence, UnknownFormatErrorListsTheSupportedFormats) {

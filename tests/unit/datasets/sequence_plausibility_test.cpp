@@ -96,5 +96,77 @@ TEST(ClockFinding, NothingIsClaimedFromOneSecondOrIfTheHalvesDisagree) {
   EXPECT_FALSE(finding_of_clocks(0.20, 115, 0.04));
 }
 
+/// A gyroscope whose rates are `factor` times those of a camera that turns by 0.2 sin(3 t) rad.
+SequenceInfo info_with_rates(double factor, bool with_truth) {
+  SequenceInfo info;
+  for (int i = 0; i < 800; ++i) {
+    const double t = 0.005 * i;
+    const double noise = 0.02 * std::sin(97.0 * i);
+    info.imu.push_back({.t = from_seconds(t),
+                        .gyro_b = {factor * (0.6 * std::cos(3.0 * t) + noise), factor * noise, 0.0},
+                        .accel_b = {0, -9.8, 0}});
+    if (!with_truth) continue;
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(0.2 * std::sin(3.0 * t), Eigen::Vector3d::UnitX()));
+    info.ground_truth.trajectory.poses.push_back({from_seconds(t), Pose{q, {0, 0, 0}}});
+  }
+  return info;
+}
+
+TEST(ImuUnitFindings, DegreesPerSecondAreFoundFromTheMotion) {
+  EXPECT_TRUE(imu_unit_findings(info_with_rates(1.0, true)).empty());
+  EXPECT_TRUE(imu_unit_findings(info_with_rates(1.0, false)).empty());
+  EXPECT_TRUE(imu_unit_findings(SequenceInfo{}).empty());
+  for (const bool with_truth : {true, false}) {
+    const auto findings = imu_unit_findings(info_with_rates(180.0 / M_PI, with_truth));
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_NE(findings[0].find("deg/s"), std::string::npos);
+  }
+}
+
+TEST(ImuUnitFindings, AccelerationsInUnitsOfGravityAreFound) {
+  const auto findings = imu_unit_findings(info_with_force({0.0, -1.0, 0.0}));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_NE(findings[0].find("mean acceleration is 1.000"), std::string::npos);
+}
+
+/// A camera that moves along x by 2 cm per frame in front of a textured wall 1.5 m away, whose depth is read
+/// with `factor` times the right number of units per meter.
+std::optional<std::string> finding_of_depth(double factor, double step_m = 0.02) {
+  SequenceInfo info;
+  info.rig.camera = {.width = 160, .height = 120, .fx = 150.0, .fy = 150.0, .cx = 80.0, .cy = 60.0};
+  info.rig.depth_units_per_m = 1000.0 * factor;
+  for (int i = 0; i < 30; ++i)
+    info.ground_truth.trajectory.poses.push_back(
+        {from_seconds(i / 30.0), Pose{Eigen::Quaterniond::Identity(), {step_m * i, 0, 0}}});
+  ImagePlausibility plausibility(info);
+  for (int i = 0; i < 30; ++i) {
+    Frame frame;
+    frame.t = from_seconds(i / 30.0);
+    frame.gray = cv::Mat(120, 160, CV_8UC1);
+    frame.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(1500));
+    frame.depth_units_per_m = info.rig.depth_units_per_m;
+    for (int row = 0; row < 120; ++row) {
+      for (int column = 0; column < 160; ++column) {
+        const double x = (column - 80) * 1.5 / 150.0 + step_m * i, y = (row - 60) * 1.5 / 150.0;
+        frame.gray.at<std::uint8_t>(row, column) =
+            static_cast<std::uint8_t>(128 + 50 * std::sin(23 * x + 3 * y) + 40 * std::sin(11 * x - 17 * y));
+      }
+    }
+    plausibility.add(frame);
+  }
+  return plausibility.depth_scale_finding();
+}
+
+TEST(DepthScaleFinding, IsThatOfTheMotion) {
+  EXPECT_FALSE(finding_of_depth(1.0));
+  EXPECT_FALSE(finding_of_depth(5.0, 0.0));  // no motion
+  const auto small = finding_of_depth(5.0);  // 0.3 m instead of 1.5 m
+  ASSERT_TRUE(small);
+  EXPECT_NE(small->find("scale = 1000 "), std::string::npos) << *small;
+  const auto large = finding_of_depth(0.2);
+  ASSERT_TRUE(large);
+  EXPECT_NE(large->find("scale = 1000 "), std::string::npos) << *large;
+}
+
 }  // namespace
 }  // namespace stillpoint::datasets
