@@ -62,7 +62,7 @@ std::string failure_sentence(const bench::StoredRun& run) {
   return run.detail.empty() ? text + "." : text + ", " + run.detail + ".";
 }
 
-/// Label with the smallest median error on a sequence.
+/// Label with the smallest median error on a sequence, among those of comparable coverage.
 struct BestLabel {
   std::string label;                ///< empty if fewer than two labels have an error
   std::vector<std::size_t> counts;  ///< number of runs behind each compared median
@@ -70,16 +70,17 @@ struct BestLabel {
 
 BestLabel best_on(std::span<const bench::StoredRun> runs, const std::vector<std::string>& labels,
                   const std::string& sequence) {
+  std::vector<TableCell> cells;
+  for (const std::string& label : labels)
+    cells.push_back(metric_cell(runs_of(runs, label, sequence), bench::headline_metric().id));
+  std::vector<TableCell*> compared;
+  for (TableCell& cell : cells) compared.push_back(&cell);
+  mark_best(compared, false);
   BestLabel best;
-  double smallest = 0.0;
-  for (const std::string& label : labels) {
-    const TableCell cell = metric_cell(runs_of(runs, label, sequence), bench::headline_metric().id);
-    if (!cell.number) continue;
-    if (best.counts.empty() || *cell.number < smallest) {
-      best.label = label;
-      smallest = *cell.number;
-    }
-    best.counts.push_back(cell.count);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!cells[i].number) continue;
+    if (cells[i].is_best && best.label.empty()) best.label = labels[i];
+    best.counts.push_back(cells[i].count);
   }
   return best.counts.size() < 2 ? BestLabel{} : best;
 }

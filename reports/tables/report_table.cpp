@@ -61,8 +61,23 @@ std::size_t footnote_number(const std::vector<std::string>& notes, const TableCe
 }
 
 void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better) {
+  constexpr double kMaxCoverageGap = 0.2;
+  double coverage = 0.0;
+  for (const TableCell* cell : cells) {
+    if (cell->number) coverage = std::max(coverage, cell->coverage.value_or(0.0));
+  }
+  const auto covers_less = [&](const TableCell& cell) {
+    return cell.number && cell.coverage && *cell.coverage < coverage - kMaxCoverageGap;
+  };
+  for (TableCell* cell : cells) {
+    if (!covers_less(*cell)) continue;
+    cell->note += (cell->note.empty() ? "" : "; ") +
+                  fmt::format("coverage {:.2f}, others {:.2f}: not ranked", *cell->coverage, coverage);
+  }
   std::optional<double> best;
-  const auto counts = [](const TableCell& cell) { return cell.number && !cell.is_suspicious; };
+  const auto counts = [&](const TableCell& cell) {
+    return cell.number && !cell.is_suspicious && !covers_less(cell);
+  };
   for (const TableCell* cell : cells) {
     if (!counts(*cell)) continue;
     if (!best || (larger_is_better ? *cell->number > *best : *cell->number < *best)) best = cell->number;

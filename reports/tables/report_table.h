@@ -32,10 +32,11 @@ enum class CellState {
 struct TableCell {
   std::optional<double> number;  ///< absent unless kOk or kPartial
   CellState state = CellState::kEmpty;
-  bool is_best = false;                    ///< printed bold
-  bool is_suspicious = false;              ///< a published number that must not be used as a target
-  std::string note;                        ///< footnote; equal texts share one footnote
-  std::size_t count = 0;                   ///< number of runs; 0 for published numbers
+  bool is_best = false;            ///< printed bold
+  std::optional<double> coverage;  ///< median fraction of frames with a pose, of errors of a trajectory
+  bool is_suspicious = false;      ///< a published number that must not be used as a target
+  std::string note;                ///< footnote; equal texts share one footnote
+  std::size_t count = 0;           ///< number of runs; 0 for published numbers
   std::optional<eval::Interval> interval;  ///< of the median; absent if `count` is too small for one
   std::vector<std::string> run_keys;       ///< keys of these runs
   std::string protocol;                    ///< evaluation protocol of the number
@@ -81,8 +82,9 @@ enum class TableDetail {
 /// 1, 2, ... of a cell's footnote in `notes`; 0 for none.
 [[nodiscard]] std::size_t footnote_number(const std::vector<std::string>& notes, const TableCell& cell);
 
-/// Marks the best number among `cells`; ignores cells without a number and suspicious ones. A mark is no
-/// statement of significance, see `best_note`.
+/// Marks the best number among `cells`; ignores cells without a number and suspicious ones, and those whose
+/// coverage is more than 0.2 below the largest one, which get a footnote: an error over few poses is not
+/// comparable. A mark is no statement of significance, see `best_note`.
 void mark_best(const std::vector<TableCell*>& cells, bool larger_is_better);
 
 /// Meaning of the marks of a table: "Bold: smallest median of a column, n = 1 to 3; ...".

@@ -122,7 +122,10 @@ TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::str
   const bench::MetricDescriptor* descriptor = bench::find_metric(metric);
   const bool is_accuracy =
       descriptor != nullptr && descriptor->source == bench::MetricSource::kTrajectory && cell.number;
-  return is_accuracy ? with_note(std::move(cell), bench::missing_boxes_note(runs)) : cell;
+  if (!is_accuracy) return cell;
+  if (const auto coverage = bench::metric_spread(runs, std::string(bench::metric_id::kCoverage)))
+    cell.coverage = coverage->median;
+  return with_note(std::move(cell), bench::missing_boxes_note(runs));
 }
 
 TableCell mean_cell(std::span<const TableCell> cells) {

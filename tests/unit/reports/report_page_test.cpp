@@ -254,5 +254,19 @@ TEST(Summary, NamesFailedRunsAndTheBestVariant) {
             "b has the smallest median ATE on 1 of 1 sequences (n = 1; not a statement of significance).");
 }
 
+TEST(Summary, AnErrorOverFewPosesIsNotTheSmallest) {
+  bench::StoredRun whole;
+  whole.identity = {.variant = "a", .sequence = "s"};
+  whole.metrics = {{"ate_rmse_m", "", "m", 1.0}, {"coverage", "", "", 0.95}};
+  bench::StoredRun started_later = whole;
+  started_later.identity.variant = "b";
+  started_later.metrics = {{"ate_rmse_m", "", "m", 0.8}, {"coverage", "", "", 0.85}};
+  bench::StoredRun few = whole;
+  few.identity.variant = "c";
+  few.metrics = {{"ate_rmse_m", "", "m", 0.01}, {"coverage", "", "", 0.05}};
+  EXPECT_TRUE(best_sentence(std::vector{whole, started_later, few}).starts_with("b has the smallest"));
+  EXPECT_TRUE(best_sentence(std::vector{whole, few}).starts_with("a has the smallest"));
+}
+
 }  // namespace
 }  // namespace stillpoint::report

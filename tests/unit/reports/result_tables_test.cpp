@@ -27,6 +27,16 @@ bench::StoredRun crashed_run(const std::string& variant, const std::string& sequ
   return run;
 }
 
+TEST(MetricTables, DoNotMarkAnErrorOverFewPoses) {
+  std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), run_of("b", "s", 0.01)};
+  runs[0].metrics.push_back({"coverage", "", "", 0.95});
+  runs[1].metrics.push_back({"coverage", "", "", 0.05});
+  const ReportTable table = metric_tables(runs).front();
+  EXPECT_TRUE(table.rows[0].cells[0].is_best);
+  EXPECT_FALSE(table.rows[1].cells[0].is_best);
+  EXPECT_EQ(table.rows[1].cells[0].note, "coverage 0.05, others 0.95: not ranked");
+}
+
 TEST(MetricTables, ShowMediansAndMarkTheBestOfEachColumn) {
   const std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), run_of("a", "s", 3.0),
                                               run_of("b", "s", 1.5)};
