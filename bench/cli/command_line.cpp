@@ -242,6 +242,10 @@ int report_exception() {
     return print_error(error.what(), kExitBadInput);
   } catch (const std::filesystem::filesystem_error& error) {
     return print_error(error.path1().string() + ": " + error.code().message(), kExitBadInput);
+  } catch (const std::system_error& error) {  // of the operating system: too many open files, no more threads
+    return print_error(std::string("a resource of the system is exhausted: ") + error.what() +
+                           "; raise the limit (`ulimit -a`), or end other programs",
+                       kExitBadInput);
   } catch (const std::bad_alloc&) {
     return print_error("out of memory (bad_alloc)", kExitInternal);
   } catch (const std::exception& error) {

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
 #include "eval/metrics/statistics.h"
+#include "eval/trajectory/alignment.h"
 #include "eval/trajectory/association.h"
 
 namespace stillpoint::eval {
@@ -68,6 +70,33 @@ Eigen::Quaterniond mean_rotation(std::span<const MatchedPose> poses) {
   return Eigen::Quaterniond(Eigen::Vector4d(sum.normalized()));
 }
 
+/// The alignment of the reference poses: by their positions, unless their orientations determine the rotation
+/// better. Few, straight or standing poses leave it to the noise of the positions, and the error grows with
+/// the distance from them. Standard deviations of the rotation: RMSE of the positions over the extension of
+/// the path across its direction, and RMS of the rotations from their mean.
+Similarity aligned_by_best(std::span<const MatchedPose> reference) {
+  const Similarity by_positions = align(reference, Alignment::kSe3).S_w_v;
+  const Eigen::Quaterniond mean = mean_rotation(reference);
+  const double count = static_cast<double>(reference.size());
+  Eigen::Vector3d mean_gt = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean_est = Eigen::Vector3d::Zero();
+  for (const MatchedPose& pose : reference) {
+    mean_gt += pose.gt.p / count;
+    mean_est += pose.est.p / count;
+  }
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double squared_m = 0.0, squared_rad = 0.0;
+  for (const MatchedPose& pose : reference) {
+    covariance += (pose.gt.p - mean_gt) * (pose.gt.p - mean_gt).transpose() / count;
+    squared_m += (by_positions * pose.est.p - pose.gt.p).squaredNorm() / count;
+    squared_rad += std::pow(pose.gt.q.angularDistance(mean * pose.est.q), 2) / count;
+  }
+  const double across =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()(1);
+  if (squared_m <= squared_rad * std::max(across, 0.0)) return by_positions;
+  return {Pose{mean, mean_gt - mean * mean_est}};
+}
+
 /// Sets errors and labels. @return false if the alignment is not determined
 bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin) {
   const bool always_faulty = fault_begin && !frames.empty() && frames.front().pose->t >= *fault_begin;
@@ -81,7 +110,7 @@ bool assess(std::vector<Assessed>& frames, std::optional<Timestamp> fault_begin)
       reference.push_back({.t = frame.pose->t, .gt = frame.truth, .est = frame.pose->T_w_c});
   }
   if (reference.size() < kMinAligned) return false;
-  const Similarity S = align(reference, Alignment::kSe3).S_w_v;
+  const Similarity S = always_faulty ? align(reference, Alignment::kSe3).S_w_v : aligned_by_best(reference);
   const Eigen::Quaterniond rotation = mean_rotation(reference);
   double drift_m = 0.0, drift_rad = 0.0;
   for (Assessed& frame : frames) {

@@ -5,12 +5,14 @@
 ///
 /// For frame k: E_k the reported pose in the world frame of its segment, G_k the true one, s_k and r_k the
 /// claimed standard deviations of position and rotation. S aligns the located poses before the first fault
-/// (all of them without a fault) rigidly. With the position errors e_k and rotation errors theta_k after S,
-/// and their largest values e_0, theta_0 before the fault (if it begins with the first frame: S aligns all
-/// located poses of the first segment, theta_k are the angles after their mean rotation, because positions
-/// within a small space do not determine one, and e_0 = theta_0 = 0), the excess is max(0, e_k - e_0),
-/// likewise for the rotation. A pose is wrong if its excess is beyond both 5 cm and 3 s_k, or beyond both 2
-/// degrees and 3 r_k. A pose of a later segment is in another world: it is neither wrong nor right.
+/// (all of them without a fault) rigidly, with the rotation of their positions, or of their orientations if
+/// these determine it better (few, straight or standing poses). With the position errors e_k and rotation
+/// errors theta_k after S, and their largest values e_0, theta_0 before the fault (if it begins with the
+/// first frame: S aligns all located poses of the first segment, theta_k are the angles after their mean
+/// rotation, because positions within a small space do not determine one, and e_0 = theta_0 = 0), the excess
+/// is max(0, e_k - e_0), likewise for the rotation. A pose is wrong if its excess is beyond both 5 cm and 3
+/// s_k, or beyond both 2 degrees and 3 r_k. A pose of a later segment is in another world: it is neither
+/// wrong nor right.
 ///
 ///   false confidence      fraction of all frames that are located (tracking, degraded, relocated) and wrong
 ///   missed availability   fraction of all frames after the first located one that are lost although the

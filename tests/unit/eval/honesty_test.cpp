@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/support/simulated/located_claims.h"
 #include "tests/support/simulated/smooth_path.h"
 
@@ -109,6 +112,34 @@ TEST_F(HonestyTest, TheClaimIsThatOfLocatedFramesWithACovariance) {
 TEST_F(HonestyTest, NeedsAReferenceBeforeTheFault) {
   claim(0, kFault - 5, PoseClaim::kNone);
   EXPECT_FALSE(honesty(gt_, claims_, fault_));
+}
+
+/// A path that is straight, or stands, until the fault at 4 s, and then goes 12 m away; the estimate has
+/// errors of 2 mm and 0.1 deg.
+double planted_false_confidence(double speed_before, std::size_t first) {
+  Trajectory gt;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const double t = 0.1 * static_cast<double>(i);
+    const double later = std::max(0.0, t - 4.0);
+    const Eigen::Vector3d p(speed_before * t, 2.0 * later, later * std::sin(later));
+    gt.poses.push_back({from_seconds(t), Pose{exp_so3({0.1 * std::sin(t), 0.2 * later, 0.1 * t}), p}});
+  }
+  std::vector<ClaimedPose> claims = test::located_claims(gt, {.sigma_m = 0.005, .sigma_rad = 0.002});
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const auto noise = [&](int k) { return std::sin(37.7 * static_cast<double>(i) + 11.3 * k * k); };
+    claims[i].T_w_c.p += 0.002 * Eigen::Vector3d(noise(1), noise(2), noise(3));
+    claims[i].T_w_c.q = claims[i].T_w_c.q * exp_so3(0.0017 * Eigen::Vector3d(noise(4), noise(5), noise(6)));
+    if (i < first) claims[i].claim = PoseClaim::kNone;
+  }
+  return honesty(gt, claims, std::vector<TimeSpan>{{gt.poses[kFault].t, gt.poses[kFault + 5].t}})
+      .value()
+      .false_confidence;
+}
+
+TEST(HonestyAlignment, OfStraightStandingAndFewPosesIsThatOfTheOrientations) {
+  EXPECT_EQ(planted_false_confidence(0.5, 0), 0.0);            // straight
+  EXPECT_EQ(planted_false_confidence(0.0, 0), 0.0);            // standing
+  EXPECT_EQ(planted_false_confidence(0.5, kFault - 10), 0.0);  // ten poses
 }
 
 }  // namespace
