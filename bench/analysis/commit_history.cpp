@@ -105,6 +105,7 @@ class HistoryBuilder {
     }
     std::sort(order.begin(), order.end());
     std::vector<Commit> commits;
+    commits.reserve(order.size());
     for (const auto& [when, first_run, first_id, name] : order) commits.push_back({name, when});
     return commits;
   }

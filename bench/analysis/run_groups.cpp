@@ -112,12 +112,14 @@ std::vector<std::string> builds_of(std::span<const StoredRun> runs) {
           std::min(std::tuple(time.first_run, time.id), std::tuple(run.started, run.id));
   }
   std::vector<std::tuple<std::string, std::string, std::int64_t, std::string>> order;
+  order.reserve(times.size());
   for (const auto& [build, time] : times) {
     order.emplace_back(time.committed.empty() ? time.first_run : time.committed, time.first_run, time.id,
                        build);
   }
   std::sort(order.rbegin(), order.rend());
   std::vector<std::string> builds;
+  builds.reserve(order.size());
   for (const auto& entry : order) builds.push_back(std::get<3>(entry));
   return builds;
 }
@@ -214,6 +216,7 @@ std::vector<std::string> sentences_of(const std::map<std::string, std::size_t>& 
                                       const std::map<std::string, std::size_t>& data) {
   const auto list = [](const std::map<std::string, std::size_t>& counts) {
     std::vector<std::string> names;
+    names.reserve(counts.size());
     for (const auto& [name, count] : counts)
       names.push_back(fmt::format("{} ({} run{})", name, count, count == 1 ? "" : "s"));
     return listed(names);

@@ -29,6 +29,7 @@ bool is_option(const std::string& word) { return word.starts_with('-'); }
 
 std::vector<std::string> names_of(const std::vector<Command>& commands) {
   std::vector<std::string> names;
+  names.reserve(commands.size());
   for (const Command& command : commands) names.push_back(command.name);
   return names;
 }

@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
 // precedence over that of the library; nothing here uses the value.
 namespace hwy::platform {
 
-[[gnu::visibility("default")]] std::uint64_t TimerResolution();
+[[gnu::visibility("default")]] std::uint64_t
+TimerResolution();  // NOLINT(readability-identifier-naming): the name in Highway
 std::uint64_t TimerResolution() { return 1; }
 
 }  // namespace hwy::platform

@@ -190,14 +190,14 @@ std::vector<ConfigEntry> config_entries(const OdometryConfig& config) {
 
 std::string config_text(const OdometryConfig& config) {
   std::string text;
-  for (const auto& [key, value] : config_entries(config)) text += key + " = " + value + "\n";
+  for (const auto& [key, value] : config_entries(config)) text += fmt::format("{} = {}\n", key, value);
   return text;
 }
 
 std::string config_hash(const OdometryConfig& config) {
   std::string text;
   for (const auto& [key, value] : config_entries(config)) {
-    if (key != kPerturbationKey) text += key + " = " + value + "\n";
+    if (key != kPerturbationKey) text += fmt::format("{} = {}\n", key, value);
   }
   return perturbed_hash(hash_text(content_hash(text)), config.pipeline.perturbation_seed);
 }

@@ -69,9 +69,8 @@ void write_job(const fs::path& folder, const BenchPlan& plan,
                const std::vector<std::vector<std::string>>& tasks) {
   std::vector<OutputFile> files = {{kPlanFile, plan.text}, {kBuildFile, build_name() + "\n"}};
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    std::string& text =
-        files.emplace_back(keys_file("", static_cast<int>(i) + 1).string(), std::string()).text;
-    for (const std::string& key : tasks[i]) text += key + "\n";
+    files.push_back({keys_file("", static_cast<int>(i) + 1).string(), {}});
+    for (const std::string& key : tasks[i]) files.back().text += key + "\n";
   }
   fs::create_directories(folder);
   for (const fs::path& file : files_with(folder, kKeysPrefix)) fs::remove(file);

@@ -264,7 +264,7 @@ class SlurmJobs {
     options.insert(options.end(), command.begin(), command.end());
     const std::string output =
         require_tool({.program = "sbatch", .arguments = options, .stop_requested = options_.stop_requested});
-    const std::string id = output.substr(0, output.find_first_of(";\n"));  // "ID" or "ID;CLUSTER"
+    std::string id = output.substr(0, output.find_first_of(";\n"));  // "ID" or "ID;CLUSTER"
     if (id.empty() || !std::ranges::all_of(id, [](unsigned char c) { return std::isdigit(c) != 0; }))
       throw InputError("sbatch", "printed no job id: " + output);
     return id;

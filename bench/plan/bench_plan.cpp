@@ -37,6 +37,7 @@ std::string toml_text(const SettingValue& value) {
     std::string operator()(const std::string& text) const { return toml_quoted(text); }
     std::string operator()(const std::vector<std::string>& texts) const {
       std::vector<std::string> elements;
+      elements.reserve(texts.size());
       for (const std::string& text : texts) elements.push_back(toml_quoted(text));
       return fmt::format("[{}]", fmt::join(elements, ", "));
     }

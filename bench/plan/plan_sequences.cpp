@@ -9,6 +9,8 @@
 #include <map>
 #include <type_traits>
 
+#include <fmt/format.h>
+
 #include "bench/config/spelling.h"
 #include "bench/plan/sequence_registry.h"
 #include "bench/record/sequence_checksum.h"
@@ -185,6 +187,7 @@ void add_distinct(std::vector<PlanSequence>& found, const RegisteredSequence& se
                                 const std::map<std::string, RegisteredSequence>& known) {
   if (!advice.empty()) throw InputError("sequence \"" + pattern + "\"", "is not available; " + advice);
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const auto& [name, sequence] : known) names.push_back(name);
   throw InputError("sequence \"" + pattern + "\"",
                    "is neither registered nor a folder in " + data_folder().string() +
@@ -250,7 +253,7 @@ std::vector<PlanSequence> recorded_sequences(const RecordedGroup& group) {
          .rendering = {},
          .folder = {},
          .unavailable_reason = !advice.empty()
-                                   ? pattern + ": " + advice
+                                   ? fmt::format("{}: {}", pattern, advice)
                                    : "no folder " + (data_folder() / pattern).string() +
                                          "; set STILLPOINT_DATA, or register it with `stillpoint data add`"});
   }
@@ -296,7 +299,7 @@ std::string without_catalogue_name(const std::string& argument) {
 }  // namespace
 
 std::string resolve_sequence(const std::string& given) {
-  const std::string argument = datasets::is_sequence_path(given) ? given : without_catalogue_name(given);
+  std::string argument = datasets::is_sequence_path(given) ? given : without_catalogue_name(given);
   if (datasets::is_sequence_path(argument)) return argument;
   const std::vector<std::string> presets = synth::preset_names();
   const bool is_preset = std::ranges::find(presets, argument) != presets.end();

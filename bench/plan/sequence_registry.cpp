@@ -115,6 +115,7 @@ std::vector<datasets::CatalogueDataset> load_catalogues() {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) add(find_toml(file.string(), TomlKind::kCatalogue));
   std::vector<datasets::CatalogueDataset> datasets;
+  datasets.reserve(by_name.size());
   for (auto& [name, dataset] : by_name) datasets.push_back(std::move(dataset));
   return datasets;
 }

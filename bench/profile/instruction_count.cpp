@@ -114,7 +114,7 @@ fs::path find_valgrind() {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path file = fs::path(folder) / "valgrind";
+    fs::path file = fs::path(folder) / "valgrind";
     if (!folder.empty() && access(file.c_str(), X_OK) == 0) return file;
   }
   throw InputError("valgrind",

@@ -111,7 +111,7 @@ std::string remembered_checksum(const fs::path& folder, const fs::path& cache) {
   const bool read = static_cast<bool>(in >> state >> remembered >> row_hash);
   if (read && state == before.hash && row_hash == hash_text(content_hash(state + remembered)))
     return remembered;
-  const std::string checksum = sequence_checksum(folder);
+  std::string checksum = sequence_checksum(folder);
   const bool settled = before.modified_ns < now_ns() - kTimeResolution_ns;
   if (cache.empty() || !settled || state_of_folder(folder).hash != before.hash) return checksum;
   remember(file, before.hash + " " + checksum + " " + hash_text(content_hash(before.hash + checksum)));

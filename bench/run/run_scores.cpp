@@ -132,7 +132,7 @@ std::vector<Correction> corrections_of(const Trajectory& odometry, const LoopRep
 Pose corrected(const StampedPose& pose, std::span<const Correction> corrections) {
   const auto next = std::ranges::upper_bound(corrections, pose.t, {}, &Correction::t);
   const auto before = next == corrections.begin() ? next : next - 1;
-  const Pose by_before = before->T_m_w * pose.T_w_f;
+  Pose by_before = before->T_m_w * pose.T_w_f;
   if (next == corrections.end() || next == before) return by_before;
   const double s = seconds_between(before->t, pose.t) / seconds_between(before->t, next->t);
   return interpolate(by_before, next->T_m_w * pose.T_w_f, s);
@@ -212,6 +212,7 @@ std::optional<eval::StrictRpe> rpe_over(const Trajectory& gt, const Trajectory& 
 
 std::vector<double> collect(const std::vector<PoseCorrection>& corrections, double PoseCorrection::*member) {
   std::vector<double> values;
+  values.reserve(corrections.size());
   for (const PoseCorrection& correction : corrections) values.push_back(correction.*member);
   return values;
 }

@@ -32,7 +32,7 @@ void ConnectionLimit::opened(int socket, Clock::time_point now) {
 
 namespace {
 
-constexpr std::size_t kConnectionBytes = 32 * 1024;
+constexpr std::size_t kConnectionBytes = std::size_t{32} * 1024;
 constexpr unsigned kConnections = 32;
 constexpr unsigned kAccepted = 2 * kConnections;  // includes those that were shut down and not yet closed
 constexpr unsigned kTimeoutS = 5;
@@ -88,6 +88,7 @@ std::string host_of(MHD_Connection* connection) {
 
 /// Callback of libmicrohttpd for each request. Called first with the headers only: the response queued then
 /// completes the request, so no body is read.
+// NOLINTNEXTLINE(readability-function-size): libmicrohttpd prescribes the parameters
 MHD_Result on_request(void* server, MHD_Connection* connection, const char* path, const char* method,
                       const char* /*version*/, const char* /*upload*/, std::size_t* /*upload_bytes*/,
                       void** /*request*/) {
@@ -125,7 +126,7 @@ std::string listen_error(const sockaddr_in& address) {
   const int file = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (file < 0) return std::strerror(errno);
   const bool is_free = bind(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  const std::string error = is_free ? "the server cannot be started" : std::strerror(errno);
+  std::string error = is_free ? "the server cannot be started" : std::strerror(errno);
   close(file);
   return error;
 }

@@ -57,7 +57,7 @@ std::optional<Pose> parse_kitti_pose(const TextRow& row) {
   for (std::size_t i = 0; i < 12; ++i) matrix[i] = row.number(i);
   matrix[15] = 1.0;
   if (!all_finite(matrix)) return std::nullopt;
-  const std::optional<Pose> pose = rigid_pose(matrix, kEstimateTolerance);
+  std::optional<Pose> pose = rigid_pose(matrix, kEstimateTolerance);
   if (!pose) throw row.error("the left 3x3 part is not a rotation; expected a row-major pose");
   return pose;
 }
@@ -92,7 +92,7 @@ std::optional<Pose> read_pose_matrix(const fs::path& file, PoseCheck check) {
   }
   std::copy(numbers.begin(), numbers.end(), matrix.begin());
   if (!all_finite(matrix)) return std::nullopt;
-  const std::optional<Pose> pose = rigid_pose(matrix, estimate ? kEstimateTolerance : kRigidTolerance);
+  std::optional<Pose> pose = rigid_pose(matrix, estimate ? kEstimateTolerance : kRigidTolerance);
   if (!pose) throw InputError(name, "is not a rigid transform; remove the file if the pose is unknown");
   return pose;
 }

@@ -234,6 +234,7 @@ constexpr std::array<double, 5> kPathFractions{0.1, 0.2, 0.3, 0.4, 0.5};
 std::vector<double> lengths_for(std::span<const double> path_m, const SegmentOptions& options) {
   if (!options.lengths_m.empty() || path_m.empty() || path_m.back() <= 0.0) return options.lengths_m;
   std::vector<double> lengths;
+  lengths.reserve(kPathFractions.size());
   for (const double fraction : kPathFractions) lengths.push_back(fraction * path_m.back());
   return lengths;
 }

@@ -202,6 +202,7 @@ std::optional<RelativeChange> relative_change(std::span<const Pair> pairs, doubl
   std::erase_if(usable, [](const Pair& pair) { return !is_usable(pair); });
   const bool logarithmic = std::all_of(usable.begin(), usable.end(), has_logarithm);
   std::vector<double> changes;
+  changes.reserve(usable.size());
   for (const Pair& pair : usable) changes.push_back(change_of(pair, logarithmic));
   const std::optional<SignedRank> test = signed_rank(changes, confidence);
   if (!test) return std::nullopt;

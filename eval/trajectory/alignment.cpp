@@ -91,7 +91,7 @@ AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind, std:
 
 AlignmentResult align_or_throw(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n,
                                const std::string& context) {
-  const AlignmentResult result = align(matches, kind, first_n);
+  AlignmentResult result = align(matches, kind, first_n);
   if (result.determined) return result;
   throw InputError(context, "alignment " + std::string(name_of(kind)) + " is not determined by " +
                                 std::to_string(matches.size()) +

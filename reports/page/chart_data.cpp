@@ -54,6 +54,7 @@ std::vector<FaultBand> fault_bands(const std::string& manifest, Timestamp first,
 /// Frame stamps; pose stamps for systems without frame counters.
 std::vector<Timestamp> stamps_of(const std::vector<bench::FrameCounters>& counters, const Trajectory& path) {
   std::vector<Timestamp> stamps;
+  stamps.reserve(counters.size());
   for (const bench::FrameCounters& frame : counters) stamps.push_back({frame.t_ns});
   if (!stamps.empty()) return stamps;
   for (const StampedPose& pose : path.poses) stamps.push_back(pose.t);

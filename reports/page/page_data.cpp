@@ -98,6 +98,7 @@ std::vector<std::string> page_images(const bench::Store& store, std::span<const 
     }
   }
   std::vector<std::string> texts;
+  texts.reserve(images.size());
   for (const Json& json : images) texts.push_back(json.dump());
   return texts;
 }
@@ -231,14 +232,15 @@ struct Flame {
   }
 };
 
-Json flames_json(std::map<std::string, Flame> flames) {
+Json flames_json(const std::map<std::string, Flame>& flames) {
   Json json = Json::array();
-  for (auto& [label, flame] : flames) {
+  for (const auto& [label, flame] : flames) {
+    StackTimes stacks = flame.stacks;
     // The decoding thread runs in parallel and mostly waits for input; it would dominate the chart.
-    std::erase_if(flame.stacks, [&](const auto& stack) {
+    std::erase_if(stacks, [&](const auto& stack) {
       return stack.first.starts_with(bench::track_name(bench::Track::kDecoding));
     });
-    json.push_back({{"label", label}, {"frames", flame.frames}, {"stacks", flame.stacks}});
+    json.push_back({{"label", label}, {"frames", flame.frames}, {"stacks", std::move(stacks)}});
   }
   return json;
 }

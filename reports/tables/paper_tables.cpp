@@ -80,7 +80,7 @@ TableCell difference_cell(const TableCell& ours, const TableCell& published) {
 std::vector<const bench::StoredRun*> own_runs(std::span<const bench::StoredRun> runs,
                                               const PaperSystem& system, const std::string& sequence,
                                               const bench::PublishedTable& published) {
-  const std::vector<const bench::StoredRun*> rendered = runs_of(runs, system.variant, sequence);
+  std::vector<const bench::StoredRun*> rendered = runs_of(runs, system.variant, sequence);
   const auto recording = published.recordings.find(sequence);
   if (!rendered.empty() || recording == published.recordings.end()) return rendered;
   return runs_of(runs, system.variant, recording->second);
@@ -132,6 +132,7 @@ std::vector<TableRow> mean_rows(const std::vector<TableRow>& rows) {
                  {}});
     for (std::size_t column = 0; column < columns; ++column) {
       std::vector<TableCell> cells;
+      cells.reserve(complete.size());
       for (const std::size_t first : complete) cells.push_back(rows[first + kind].cells[column]);
       mean.cells.push_back(mean_cell(cells));
     }

@@ -38,7 +38,7 @@ std::string number_text(const TableColumn& column, const TableCell& cell) {
 }
 
 std::string cell_text(const TableColumn& column, const TableCell& cell, TableDetail detail) {
-  const std::string number = number_text(column, cell);
+  std::string number = number_text(column, cell);
   if (detail == TableDetail::kNumbers || cell.count == 0 || !cell.number) return number;
   return number + " (" + spread_text(cell, column.decimals) + ")";
 }

@@ -175,7 +175,8 @@ ReportTable published_comparison_table(std::span<const bench::StoredRun> runs,
     table.rows.push_back(std::move(row));
   }
   table.notes = published.comparability;
-  for (const auto& [name, source] : published.sources) table.notes.push_back(name + ": " + source);
+  for (const auto& [name, source] : published.sources)
+    table.notes.push_back(fmt::format("{}: {}", name, source));
   return table;
 }
 
@@ -245,7 +246,8 @@ ReportTable dataset_table(const DatasetTableLayout& layout, std::span<const benc
     table.rows.push_back(std::move(row));
   }
   table.notes = published.comparability;
-  for (const auto& [name, source] : published.sources) table.notes.push_back(name + ": " + source);
+  for (const auto& [name, source] : published.sources)
+    table.notes.push_back(fmt::format("{}: {}", name, source));
   return with_means(std::move(table));
 }
 

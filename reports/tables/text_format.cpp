@@ -251,7 +251,7 @@ std::string_view web_file(std::string_view name) {
   for (const bench::EmbeddedFile& file : bench::web_files()) {
     if (file.path.substr(kRoot.size()) == name) return file.text;
   }
-  STILLPOINT_CHECK(!"every requested file is listed in reports/CMakeLists.txt");
+  STILLPOINT_CHECK(false && "every requested file is listed in reports/CMakeLists.txt");
   return {};
 }
 

@@ -196,7 +196,7 @@ std::vector<eval::Evaluation> evaluate_by_default(const eval::EvaluationInput& i
 /// From --level, or from the result.json beside the trajectory of a run.
 std::optional<Eigen::Quaterniond> leveling_rotation(const EvalArguments& arguments, const std::string& path) {
   if (!arguments.level.empty()) {
-    if (const auto q_level_w = read_leveling_rotation(arguments.level)) return q_level_w;
+    if (auto q_level_w = read_leveling_rotation(arguments.level)) return q_level_w;
     throw InputError(arguments.level, "has no leveling_rotation_xyzw; use the result.json of a run");
   }
   const std::filesystem::path result = std::filesystem::path(path).replace_filename("result.json");
@@ -237,6 +237,7 @@ std::vector<std::string> warnings_about(const Trajectory& gt, const report::Eval
 eval::Comparison compare(const EvalArguments& arguments, const Trajectory& gt,
                          const std::vector<report::EvaluatedRun>& runs) {
   std::vector<eval::NamedRun> named;
+  named.reserve(runs.size());
   for (const report::EvaluatedRun& run : runs) {
     named.push_back({run.name, run.est});
     for (StampedPose& pose : named.back().est.poses) pose.t = after(pose.t, arguments.offset_s);
@@ -301,6 +302,7 @@ void print_tables(const EvalArguments& arguments, const Trajectory& gt,
 
 std::vector<report::PlottedRun> plotted_runs(const std::vector<report::EvaluatedRun>& runs) {
   std::vector<report::PlottedRun> plotted;
+  plotted.reserve(runs.size());
   for (const report::EvaluatedRun& run : runs)
     plotted.push_back({run.name, &run.est, &run.evaluations.front()});
   return plotted;

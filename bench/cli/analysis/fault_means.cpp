@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/cli/command_line.h"
 #include "bench/model/metrics.h"
 #include "core/base/error.h"
 
@@ -92,7 +93,7 @@ report::TableRows rows_of(const RunGroup& group) {
     if (!fault.empty()) means[{"(all)", run.identity.variant}].add(group, run);
   }
   if (faults.empty() || (faults.size() == 1 && faults.front().empty())) return {};
-  std::ranges::stable_partition(faults, [](const std::string& fault) { return fault.empty(); });
+  std::stable_partition(faults.begin(), faults.end(), [](const std::string& fault) { return fault.empty(); });
   faults.emplace_back("(all)");
   report::TableRows rows;
   for (const std::string& fault : faults) {

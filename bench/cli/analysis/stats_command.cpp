@@ -380,7 +380,8 @@ class FaultMatrix {
   void add_row(const std::string& sequence, const std::string& fault, const std::string& expected) {
     rows_.push_back({sequence, fault, expected});
     for (std::size_t v = 0; v < plan_.variants.size(); ++v) {
-      const RunIdentity identity{.variant = plan_.variants[v], .sequence = sequence + " + " + fault};
+      const RunIdentity identity{.variant = plan_.variants[v],
+                                 .sequence = fmt::format("{} + {}", sequence, fault)};
       rows_.back().push_back(cell_of(group_, identity, expected, tallies_[v]));
     }
   }

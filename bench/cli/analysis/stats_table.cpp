@@ -108,10 +108,12 @@ void print_groups(const std::vector<std::string>& header, const std::vector<Grou
     if (is_shown(column, groups, arguments.csv)) columns.push_back(column);
   }
   std::vector<std::string> names;
+  names.reserve(columns.size());
   for (const GroupColumn& column : columns) names.emplace_back(column.name);
   report::TableRows table = {joined(names, header)};
   for (const GroupRows& group : groups) {
     std::vector<std::string> values;
+    values.reserve(columns.size());
     for (const GroupColumn& column : columns) values.push_back(group.group->*column.value);
     for (const std::vector<std::string>& row : group.rows) table.push_back(joined(values, row));
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint store`: inspects, checks and merges stores of runs, and accepts changes of their metrics.
+#include <algorithm>
 #include <iostream>
 #include <memory>
-#include <ranges>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -166,7 +167,7 @@ StoredRun find_run(const Store& store, const std::string& key) {
   if (found.size() == 1) return found.front();
   if (found.size() > 1) {
     std::vector<std::string> candidates;
-    for (const StoredRun& run : found | std::views::take(kListedCandidates))
+    for (const StoredRun& run : std::span(found).first(std::min(found.size(), kListedCandidates)))
       candidates.push_back(fmt::format("{} ({} {})", run.key, run.identity.sequence, run.identity.variant));
     throw InputError("run \"" + key + "\"", fmt::format("is the beginning of {} keys; use a longer one: {}{}",
                                                         found.size(), fmt::join(candidates, ", "),
@@ -212,6 +213,7 @@ int extract(const StoreArguments& arguments) {
   std::vector<OutputFile> files = {{"manifest.json", store.manifest(run)}};
   for (const auto& [kind, blob] : run.blobs) files.push_back({file_name(kind), store.attachment(run, kind)});
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const OutputFile& file : files) names.push_back(file.name);
   require_safe_folder(arguments.file, {.names = names, .marks = {names}}, {});
   write_files(arguments.file, files);

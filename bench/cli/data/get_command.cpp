@@ -102,6 +102,7 @@ int catalogue(const std::string& name) {
   const auto found = std::ranges::find(catalogues, name, &CatalogueDataset::name);
   if (found != catalogues.end()) return show_dataset(*found);
   std::vector<std::string> names;
+  names.reserve(catalogues.size());
   for (const CatalogueDataset& dataset : catalogues) names.push_back(dataset.name);
   throw InputError("dataset \"" + name + "\"", "is not in the catalogue" + suggestion(name, names) +
                                                    "; `stillpoint data catalogue` lists the datasets");

@@ -121,6 +121,7 @@ std::string estimate_text(const PlanMatrix& matrix, const fs::path& store, const
   });
   const std::vector<RunCost> costs = expected_costs(pending, history);
   std::vector<double> seconds;
+  seconds.reserve(costs.size());
   for (const RunCost& cost : costs) seconds.push_back(cost.seconds);
   std::string scaling = scaling_text(seconds, workers.tasks);
   if (workers.simulated > 0 && !seconds.empty())

@@ -83,7 +83,7 @@ void print_process(const ProcessUsage& usage, const std::map<int, ThreadUsage>& 
 std::string energy_text(const Profile& profile) {
   if (!profile.energy)
     return "n/a: neither RAPL nor a power sensor is readable (on Jetson devices: --tegrastats LOG)";
-  const std::string whole =
+  std::string whole =
       fmt::format("{:.2f} J, whole machine ({})", profile.energy->joules, profile.energy->source);
   if (!profile.idle_w) return whole;
   const std::optional<double> per_frame = profile.energy_above_idle.joules_per_frame;

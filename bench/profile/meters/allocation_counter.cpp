@@ -47,7 +47,8 @@ bool has_name(pid_t thread, std::string_view name) {
 }  // namespace
 
 // The linker option --wrap redirects calls of f to __wrap_f; __real_f is the original. Eigen allocates with
-// malloc, the standard containers with operator new. NOLINTBEGIN(bugprone-reserved-identifier)
+// malloc, the standard containers with operator new.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __real_calloc(std::size_t number, std::size_t size);
@@ -69,7 +70,7 @@ void* __wrap_realloc(void* old, std::size_t size) {
   return __real_realloc(old, size);
 }
 }
-// NOLINTEND(bugprone-reserved-identifier)
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 void* operator new(std::size_t size) {
   count_allocation();

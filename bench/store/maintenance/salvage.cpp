@@ -9,6 +9,8 @@
 #include <optional>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "bench/store/database.h"
 #include "bench/store/maintenance/maintenance.h"
 #include "bench/store/schema.h"
@@ -253,6 +255,7 @@ std::vector<Metric> Salvage::metrics_of(const StoredRun& run) {
   if (!complete || !valid) report_.losses.push_back(name_of(run.id) + ": metrics are lost");
   report_.saved["metric"] += metrics.size();
   std::vector<Metric> list;
+  list.reserve(metrics.size());
   for (const auto& [name, metric] : metrics) list.push_back(metric);
   return list;
 }
@@ -266,6 +269,7 @@ std::vector<ModuleCost> Salvage::costs_of(const StoredRun& run) {
   if (!complete || !valid) report_.losses.push_back(name_of(run.id) + ": times of modules are lost");
   report_.saved["timing"] += costs.size();
   std::vector<ModuleCost> list;
+  list.reserve(costs.size());
   for (const auto& [module, cost] : costs) list.push_back(cost);
   return list;
 }
@@ -282,7 +286,8 @@ std::map<std::string, std::string> Salvage::blobs_of(const StoredRun& run) {
       contents[kind] = blobs_.get(name);
       ++report_.saved["file"];
     } catch (const InputError&) {
-      report_.losses.push_back(name_of(run.id) + ": file " + kind + " (" + name + ") is missing or damaged");
+      report_.losses.push_back(
+          fmt::format("{}: file {} ({}) is missing or damaged", name_of(run.id), kind, name));
     }
   }
   return contents;
