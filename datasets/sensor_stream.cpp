@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <ranges>
 #include <utility>
 
 #include <fmt/format.h>
@@ -109,7 +108,7 @@ void replay(const std::vector<Item>& items, const Pass& pass, TimeOf time_of, Ap
     if (t.ns >= pass.first.ns && t.ns <= pass.last.ns && !at_turn) append(item, pass.playback_time(t));
   };
   if (pass.backwards()) {
-    for (const Item& item : std::views::reverse(items)) append_in_range(item);
+    std::for_each(items.rbegin(), items.rend(), append_in_range);
   } else {
     for (const Item& item : items) append_in_range(item);
   }

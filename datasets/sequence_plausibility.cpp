@@ -44,7 +44,8 @@ double difference_at(const std::vector<double>& a, const std::vector<double>& b,
   double sum = 0.0;
   int count = 0;
   for (int x = std::max(0, -shift); x < std::min(columns, columns - shift); ++x, ++count) {
-    const double difference = b[static_cast<std::size_t>(x + shift)] - a[static_cast<std::size_t>(x)];
+    const int shifted = x + shift;
+    const double difference = b[static_cast<std::size_t>(shifted)] - a[static_cast<std::size_t>(x)];
     sum += difference * difference;
   }
   return count > 0 ? sum / count : 0.0;

@@ -282,7 +282,7 @@ std::shared_ptr<const std::string> ChunkReader::chunk_bytes(const BagChunk& chun
   if (std::shared_ptr<const std::string> bytes = find(chunk.position)) return bytes;
   const std::string place = file_.path().string() + ", chunk at byte " + std::to_string(chunk.position);
   const std::string stored = file_.read(chunk.position, chunk.stored_bytes);
-  const auto bytes =
+  auto bytes =
       std::make_shared<const std::string>(decompress_chunk(chunk.compression, stored, chunk.bytes, place));
   if (chunk.crc != 0 && crc32_of(*bytes) != chunk.crc)
     throw InputError(place, "the checksum does not match; it is damaged, copy the file again");

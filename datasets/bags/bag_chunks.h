@@ -62,7 +62,7 @@ struct BagIndex {
 inline constexpr std::uint64_t kMaxChunkBytes = 1'000'000'000;
 
 /// Writers close a chunk that has reached this size, the default of rosbag; one message may be larger.
-inline constexpr std::size_t kWrittenChunkBytes = 768 * 1024;
+inline constexpr std::size_t kWrittenChunkBytes = std::size_t{768} * 1024;
 
 /// The method with this name in a bag: none or "", bz2, lz4, zstd.
 [[nodiscard]] std::optional<ChunkCompression> compression_of(std::string_view name);

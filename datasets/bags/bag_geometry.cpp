@@ -47,9 +47,10 @@ Timestamp stamp_or(Timestamp stamp, Timestamp recorded) { return stamp.ns == 0 ?
 eval::LoadedTrajectory sorted_trajectory(std::vector<StampedPose> poses, eval::RowRepairs repairs) {
   for (std::size_t i = 1; i < poses.size(); ++i) repairs.reordered += poses[i].t < poses[i - 1].t;
   std::ranges::stable_sort(poses, {}, &StampedPose::t);
-  const auto repeated = std::ranges::unique(poses, {}, &StampedPose::t);
-  repairs.repeated += repeated.size();
-  poses.erase(repeated.begin(), repeated.end());
+  const auto repeated =
+      std::unique(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.t == b.t; });
+  repairs.repeated += static_cast<std::size_t>(poses.end() - repeated);
+  poses.erase(repeated, poses.end());
   return {.trajectory = {.frame = {}, .poses = std::move(poses)}, .repairs = repairs};
 }
 
@@ -117,7 +118,8 @@ std::vector<Link> links_between(const std::map<Link, std::vector<StampedPose>>& 
                                 const std::vector<NamedTransform>& all, const std::string& parent,
                                 const std::string& child) {
   std::vector<Link> path;
-  for (const auto& [link, poses] : moving) {
+  for (const auto& entry : moving) {
+    const Link& link = entry.first;
     // A tree has one path: without one of its links, the frames are not connected.
     std::vector<NamedTransform> others;
     std::ranges::copy_if(all, std::back_inserter(others), [&link](const NamedTransform& other) {
@@ -178,6 +180,7 @@ std::vector<NamedTransform> read_static_transforms(const BagFile& bag) {
                      }
                    });
   std::vector<NamedTransform> transforms;
+  transforms.reserve(links.size());
   for (const auto& [link, pose] : links)
     transforms.push_back({.parent = link.first, .child = link.second, .T_parent_child = pose});
   return transforms;
@@ -251,7 +254,7 @@ std::optional<CameraInfoMessage> find_camera_info(const BagFile& bag, const std:
   for (const MessageReference& reference : bag.messages()) {
     const BagConnection& connection = bag.connection(reference);
     if (connection.type != kCameraInfo || !seen.insert(connection.topic).second) continue;
-    const std::optional<CameraInfoMessage> info = calibrated(bag, reference);
+    std::optional<CameraInfoMessage> info = calibrated(bag, reference);
     if (connection.topic == beside || connection.topic == of_stream) return info;
     if (info && !of_frame && !image_frame.empty() && info->header.frame == image_frame) of_frame = info;
   }

@@ -249,6 +249,7 @@ std::vector<TopicSummary> summarize_topics(const BagFile& bag) {
     ++entry->second.first.messages;
   }
   std::vector<TopicSummary> summaries;
+  summaries.reserve(topics.size());
   for (const auto& [name, topic] : topics)
     summaries.push_back(with_encoding(topic.first, bag, *topic.second));
   return summaries;

@@ -356,7 +356,7 @@ const TypeText& find_text(const Texts& texts, std::string_view type) {
   for (const TypeText& text : texts) {
     if (text.type == type) return text;
   }
-  STILLPOINT_CHECK(!"a type without definition");
+  STILLPOINT_CHECK(false && "a type without definition");
   return texts.front();
 }
 

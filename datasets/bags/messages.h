@@ -84,7 +84,7 @@ struct PoseMessage {
 /// sensor_msgs/NavSatFix
 struct NavSatFixMessage {
   MessageHeader header;
-  int status = -1;  ///< < 0: no fix
+  std::int8_t status = -1;  ///< < 0: no fix
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
   double altitude_m = 0.0;

@@ -87,7 +87,7 @@ std::uint64_t excess(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : 
 }  // namespace
 
 fs::path cache_folder() {
-  if (const fs::path own = variable("STILLPOINT_CACHE"); !own.empty()) return own;
+  if (fs::path own = variable("STILLPOINT_CACHE"); !own.empty()) return own;
   if (const fs::path users = variable("XDG_CACHE_HOME"); !users.empty()) return users / "stillpoint";
   if (const fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "stillpoint";
   throw InputError("STILLPOINT_CACHE",

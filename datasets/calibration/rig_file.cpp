@@ -231,7 +231,7 @@ std::string_view model_name(CameraModel model) {
   for (const auto& [value, name] : enum_names(CameraModel{})) {
     if (value == model) return name;
   }
-  STILLPOINT_CHECK(!"a camera model without name");
+  STILLPOINT_CHECK(false && "a camera model without name");
   return {};
 }
 

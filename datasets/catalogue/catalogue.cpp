@@ -140,7 +140,7 @@ class CatalogueReader {
 
   /// @param digits number of hexadecimal digits
   [[nodiscard]] std::string digest(const toml::table& table, std::string_view key, std::size_t digits) const {
-    const std::string value = text(table, key, "");
+    std::string value = text(table, key, "");
     const bool is_hex = value.find_first_not_of(kHexDigits) == std::string::npos;
     if (value.empty() || (value.size() == digits && is_hex)) return value;
     fail(table, fmt::format("\"{}\" must have {} lower-case hexadecimal digits", key, digits));

@@ -257,6 +257,7 @@ std::size_t on_body(char* bytes, std::size_t, std::size_t count, void* context) 
   }
 }
 
+// NOLINTNEXTLINE(readability-function-size): libcurl prescribes the parameters
 int on_progress(void* context, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
   return is_stopped(static_cast<Attempt*>(context)->control) ? 1 : 0;
 }

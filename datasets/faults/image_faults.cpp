@@ -227,7 +227,7 @@ Frame with_depth(Frame frame, const Change& change) {
   return frame;
 }
 
-void cut_holes(cv::Mat depth, double fraction, RandomSequence random) {
+void cut_holes(cv::Mat& depth, double fraction, RandomSequence random) {
   for (int v = 0; v < depth.rows; v += kHoleSize_px) {
     for (int u = 0; u < depth.cols; u += kHoleSize_px) {
       const cv::Rect block = cv::Rect(u, v, kHoleSize_px, kHoleSize_px) & cv::Rect({0, 0}, depth.size());
@@ -270,7 +270,7 @@ cv::Mat correlated_noise(cv::Size size, RandomSequence random) {
   return noise;
 }
 
-void add_noise(cv::Mat depth, double units_per_m, double per_m, RandomSequence random) {
+void add_noise(cv::Mat& depth, double units_per_m, double per_m, RandomSequence random) {
   const cv::Mat noise = correlated_noise(depth.size(), random);
   change_depths(depth, units_per_m,
                 [&](double z, int v, int u) { return z + per_m * z * z * noise.at<float>(v, u); });

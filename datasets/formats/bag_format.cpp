@@ -32,14 +32,15 @@ class Stream {
   /// The items, sorted and without repeated stamps; warnings are appended to `warnings`.
   [[nodiscard]] std::vector<Item> finish(const std::string& place, std::vector<std::string>& warnings) {
     std::ranges::stable_sort(items_, {}, &Item::t);
-    const auto repeated = std::ranges::unique(items_, {}, &Item::t);
-    if (!repeated.empty())
-      warnings.push_back(place + ": " + std::to_string(repeated.size()) +
+    const auto repeated =
+        std::unique(items_.begin(), items_.end(), [](const Item& a, const Item& b) { return a.t == b.t; });
+    if (repeated != items_.end())
+      warnings.push_back(place + ": " + std::to_string(items_.end() - repeated) +
                          " messages with the time stamp of an earlier one are dropped");
     if (unordered_ > 0)
       warnings.push_back(place + ": " + std::to_string(unordered_) +
                          " messages have an earlier time stamp than their predecessor and are sorted");
-    items_.erase(repeated.begin(), repeated.end());
+    items_.erase(repeated, items_.end());
     return std::move(items_);
   }
 
@@ -206,7 +207,7 @@ std::uint64_t digest_of(const BagFile& bag, const MessageReference& reference) {
                       bag.state() + reference.file);
 }
 
-ImageSource source_of(std::shared_ptr<const BagImages> images) {
+ImageSource source_of(const std::shared_ptr<const BagImages>& images) {
   return {.color =
               [images](std::size_t frame) {
                 return decode_message(*images->bag, images->color[frame],
@@ -231,6 +232,7 @@ ImageSource source_of(std::shared_ptr<const BagImages> images) {
 
 std::vector<Timestamp> times_of(const std::vector<StampedImage>& images) {
   std::vector<Timestamp> times;
+  times.reserve(images.size());
   for (const StampedImage& image : images) times.push_back(image.t);
   return times;
 }
@@ -264,7 +266,7 @@ void add_frames(SequenceContent& content, const BagStreams& streams,
   if (const std::size_t unpaired = streams.color.size() - images->color.size(); unpaired > 0)
     content.info.notes.push_back(std::to_string(unpaired) + " of " + std::to_string(streams.color.size()) +
                                  " color images have no depth image less than 20 ms away and are dropped");
-  content.images = source_of(std::move(images));
+  content.images = source_of(images);
 }
 
 /// The fixed transforms of a bag, and the names of the frames in them.

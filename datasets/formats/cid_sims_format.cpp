@@ -36,6 +36,7 @@ std::vector<StampedFile> stamped_images(const std::filesystem::path& folder) {
 
 std::vector<Timestamp> times_in(const std::vector<StampedFile>& images) {
   std::vector<Timestamp> times;
+  times.reserve(images.size());
   for (const StampedFile& image : images) times.push_back(image.t);
   return times;
 }

@@ -29,6 +29,7 @@ std::vector<StampedFile> read_list(const std::filesystem::path& list, FaultLog& 
 
 std::vector<Timestamp> stamps_of(const std::vector<StampedFile>& files) {
   std::vector<Timestamp> stamps;
+  stamps.reserve(files.size());
   for (const StampedFile& file : files) stamps.push_back(file.t);
   return stamps;
 }

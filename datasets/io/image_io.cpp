@@ -5,6 +5,7 @@
 #include <turbojpeg.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -55,8 +56,8 @@ std::optional<PngFile> read_header(std::string_view data) {
   if (data.size() != 13) return std::nullopt;
   const std::uint32_t width = big_endian(data);
   const std::uint32_t height = big_endian(data.substr(4));
-  const int bits = data[8];
-  const int color_type = data[9];  // 0: gray, 2: RGB
+  const int bits = static_cast<unsigned char>(data[8]);
+  const int color_type = static_cast<unsigned char>(data[9]);  // 0: gray, 2: RGB
   const bool supported = (color_type == 0 && (bits == 8 || bits == 16)) || (color_type == 2 && bits == 8);
   const bool plain = data[10] == 0 && data[11] == 0 && data[12] == 0;  // compression, filters, interlacing
   const bool valid_size = width > 0 && height > 0 && width <= kMaxSide_px && height <= kMaxSide_px;
@@ -176,13 +177,13 @@ bool undo_filter(const PngFile& file, int filter, const FilteredRow& row) {
 void write_row(const PngFile& file, const std::uint8_t* row, int index, cv::Mat& image) {
   if (file.bits == 16) {
     std::uint16_t* const out = image.ptr<std::uint16_t>(index);
-    for (int i = 0; i < file.width; ++i)
+    for (std::ptrdiff_t i = 0; i < file.width; ++i)
       out[i] = static_cast<std::uint16_t>(row[2 * i] << 8 | row[2 * i + 1]);
   } else if (file.channels == image.channels()) {
     std::memcpy(image.ptr(index), row, file.row_bytes());
   } else {
     std::uint8_t* const out = image.ptr(index);
-    for (int i = 0; i < file.width; ++i) out[i] = luma(row[3 * i], row[3 * i + 1], row[3 * i + 2]);
+    for (std::ptrdiff_t i = 0; i < file.width; ++i) out[i] = luma(row[3 * i], row[3 * i + 1], row[3 * i + 2]);
   }
 }
 

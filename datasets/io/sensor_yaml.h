@@ -38,8 +38,8 @@ class SensorYaml {
   [[noreturn]] void fail(const std::string& key, const std::string& problem) const;
 
  private:
-  SensorYaml(std::string file, std::string prefix, YAML::Node node)
-      : file_(std::move(file)), prefix_(std::move(prefix)), node_(std::move(node)) {}
+  SensorYaml(std::string file, std::string prefix, const YAML::Node& node)
+      : file_(std::move(file)), prefix_(std::move(prefix)), node_(node) {}
   [[nodiscard]] YAML::Node require(const std::string& key) const;
 
   std::string file_;

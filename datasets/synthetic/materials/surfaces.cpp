@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,7 @@ void add_noise(cv::Mat& canvas, double amplitude, const cv::Size& cell, RandomSe
   std::vector<double> lattice(static_cast<std::size_t>(columns * rows));
   for (double& node : lattice) node = random.uniform(-amplitude, amplitude);
   const auto node = [&](int row, int column) {
-    return lattice[static_cast<std::size_t>((row % rows) * columns + column % columns)];
+    return lattice[static_cast<std::size_t>(std::ptrdiff_t{row % rows} * columns + column % columns)];
   };
   for (int y = 0; y < canvas.rows; ++y) {
     const int row = y / cell.height;

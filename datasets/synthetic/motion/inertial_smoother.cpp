@@ -154,7 +154,8 @@ std::vector<Eigen::Vector4d> fit_attitudes(const Problem& problem, const Eigen::
   add_smoothness(system, knots.count, 4, 1);
   const Eigen::MatrixXd solution = system.solve();
   std::vector<Eigen::Vector4d> attitudes;
-  for (int i = 0; i < knots.count; ++i) attitudes.emplace_back(solution.block<4, 1>(4 * i, 0));
+  attitudes.reserve(static_cast<std::size_t>(knots.count));
+  for (int i = 0; i < knots.count; ++i) attitudes.emplace_back(solution.block<4, 1>(Eigen::Index{4} * i, 0));
   return attitudes;
 }
 
@@ -190,6 +191,7 @@ std::vector<Eigen::Vector3d> fit_positions(const Problem& problem, const PathSpl
   add_smoothness(system, knots.count, 1, 3);
   const Eigen::MatrixXd solution = system.solve();
   std::vector<Eigen::Vector3d> positions;
+  positions.reserve(static_cast<std::size_t>(knots.count));
   for (int i = 0; i < knots.count; ++i) positions.emplace_back(solution.row(i).transpose());
   return positions;
 }

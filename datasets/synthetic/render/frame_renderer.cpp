@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 
 #include "datasets/synthetic/render/lightmap.h"
 #include "datasets/synthetic/render/mover_tiles.h"
@@ -95,7 +96,7 @@ RenderedFrame FrameRenderer::render(const Exposure& exposure, const MoverFrame* 
       job.vertex_light.push_back(unshadowed_light(world_, movers->mesh.start[i], movers->normals[i]));
     }
   }
-  const auto pixels = static_cast<std::size_t>(camera_.width * camera_.height);
+  const auto pixels = static_cast<std::size_t>(std::ptrdiff_t{camera_.width} * camera_.height);
   RenderedFrame frame{camera_.width,
                       camera_.height,
                       std::vector<Float4>(pixels),
@@ -118,7 +119,8 @@ RayPacket FrameRenderer::aim(const Job& job, const Block& block, int sample) con
     const bool inside = row == block.row_of(lane) && column == block.column_of(lane);
     const std::size_t pose_row = job.views.size() == 1 ? 0 : static_cast<std::size_t>(row);
     const View& view = job.views[pose_row][static_cast<std::size_t>(sample)];
-    const Eigen::Vector2f& point = table[static_cast<std::size_t>(row * camera_.width + column)];
+    const Eigen::Vector2f& point =
+        table[static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column)];
     const Eigen::Vector3f direction = view.R_w_c * Eigen::Vector3f(point.x(), point.y(), 1.0F);
     const auto time_offset = static_cast<float>(sample_time_offset(sample));
     packet.origin_x[lane] = view.p_w.x(), packet.direction_x[lane] = direction.x();
@@ -152,7 +154,7 @@ void FrameRenderer::render_block(const Job& job, int block_row, int block_column
   for (int lane = 0; lane < kPacket; ++lane) {
     const int row = block.row_of(lane), column = block.column_of(lane);
     if (row >= camera_.height || column >= camera_.width) continue;
-    frame.radiance[static_cast<std::size_t>(row * camera_.width + column)] =
+    frame.radiance[static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column)] =
         light[static_cast<std::size_t>(lane)];
   }
 }
@@ -162,7 +164,7 @@ void FrameRenderer::record_geometry(const Job& job, const Block& block, const Ra
   for (int lane = 0; lane < kPacket; ++lane) {
     const int row = block.row_of(lane), column = block.column_of(lane);
     if (packet.primitive[lane] < 0 || row >= camera_.height || column >= camera_.width) continue;
-    const auto pixel = static_cast<std::size_t>(row * camera_.width + column);
+    const auto pixel = static_cast<std::size_t>(std::ptrdiff_t{row} * camera_.width + column);
     const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
     frame.depth_m[pixel] = packet.far[lane];  // the direction has length 1 along the optical axis
     if (!packet.moving[lane]) continue;

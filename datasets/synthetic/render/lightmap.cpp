@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "datasets/synthetic/counter_random.h"
@@ -107,7 +108,8 @@ float baked_light(const World& world, const Quad& quad, float u, float v) {
   const int column = std::clamp(static_cast<int>(x), 0, quad.light_columns - 2);
   const int row = std::clamp(static_cast<int>(y), 0, quad.light_rows - 2);
   const float weight_x = x - static_cast<float>(column), weight_y = y - static_cast<float>(row);
-  const float* lower = world.light.data() + quad.light_first + row * quad.light_columns + column;
+  const float* lower =
+      world.light.data() + quad.light_first + std::ptrdiff_t{row} * quad.light_columns + column;
   const float* upper = lower + quad.light_columns;
   const float bottom = lower[0] + (lower[1] - lower[0]) * weight_x;
   const float top = upper[0] + (upper[1] - upper[0]) * weight_x;

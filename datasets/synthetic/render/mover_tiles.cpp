@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace stillpoint::synth {
 namespace {
@@ -70,7 +71,7 @@ MoverTiles::MoverTiles(const MovingMesh& mesh, const Camera& camera, std::span<c
     const int right = tile_of(triangle.x_max + kMargin_px, kTile_px, columns_);
     const int bottom = tile_of(triangle.y_max + kMargin_px, kTile_px, rows_);
     for (int row = tile_of(triangle.y_min - kMargin_px, kTile_px, rows_); row <= bottom; ++row) {
-      std::fill_n(marked_.begin() + row * columns_ + left, right - left + 1, true);
+      std::fill_n(marked_.begin() + std::ptrdiff_t{row} * columns_ + left, right - left + 1, true);
     }
   }
 }

@@ -2,6 +2,7 @@
 /// Image tiles that may show moving geometry; rays elsewhere need not be tested against it.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,7 @@ class MoverTiles {
   MoverTiles(const MovingMesh& mesh, const Camera& camera, std::span<const Pose> views);
 
   [[nodiscard]] bool is_marked(int row, int column) const {
-    return marked_[static_cast<std::size_t>(row / kTile_px * columns_ + column / kTile_px)];
+    return marked_[static_cast<std::size_t>(std::ptrdiff_t{row / kTile_px} * columns_ + column / kTile_px)];
   }
 
  private:

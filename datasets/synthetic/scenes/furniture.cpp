@@ -13,6 +13,7 @@ namespace {
 template <class Paint>
 std::vector<int> add_textures(Builder& builder, int count, const Paint& paint, RandomSequence& random) {
   std::vector<int> numbers;
+  numbers.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) numbers.push_back(builder.add_texture(paint(random)));
   return numbers;
 }

@@ -29,7 +29,7 @@ void add_walls(const SceneContext& context, const Room& room) {
   Builder& builder = context.builder;
   const Palette& palette = context.palette;
   const auto walls = room.walls();
-  for (std::size_t i : {0, 2, 3}) decorate(context, walls[i], {});
+  for (std::size_t i : {0U, 2U, 3U}) decorate(context, walls[i], {});
   for (const double along : {0.6, 2.6, 4.6})
     hang(builder, walls[1], {{along, 0.9}, {1.5, 1.5}}, palette.window);
   hang(builder, walls[2], {{6.2, 0.0}, {1.0, 2.1}}, palette.door);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -86,7 +87,7 @@ bool differs(float a, float b) { return std::abs(a - b) > kJump * std::min(a, b)
 bool at_edge(const TrueDepth& image, int row, int column) {
   const int width = image.width, height = image.height;
   const auto depth = [&image](int y, int x) {
-    return image.depth_m[static_cast<std::size_t>(y * image.width + x)];
+    return image.depth_m[static_cast<std::size_t>(std::ptrdiff_t{y} * image.width + x)];
   };
   const float here = depth(row, column);
   return (column > 0 && differs(depth(row, column - 1), here)) ||
@@ -131,8 +132,9 @@ cv::Mat simulate_depth(const TrueDepth& depth, const DepthSensor& sensor, std::u
   const float white_weight = std::sqrt(std::max(0.0F, 1.0F - smooth_weight * smooth_weight));
   std::size_t pixel = 0;
   for (int row = 0; row < height; ++row) {
-    const std::vector<bool> hidden = stereo_shadow(
-        depth_m.data() + row * width, width, sensor.edge_dropout > 0.0 ? sensor.focal_baseline_px_m : 0.0);
+    const std::vector<bool> hidden =
+        stereo_shadow(depth_m.data() + std::ptrdiff_t{row} * width, width,
+                      sensor.edge_dropout > 0.0 ? sensor.focal_baseline_px_m : 0.0);
     for (int column = 0; column < width; ++column, ++pixel) {
       if (depth_m[pixel] <= 0.0F || hidden[static_cast<std::size_t>(column)]) continue;
       const std::uint64_t bits = mix_bits(noise_key + pixel);
@@ -191,7 +193,7 @@ std::vector<VisibleObject> visible_objects(const RenderedFrame& frame) {
   std::map<int, VisibleObject> found;
   for (int row = 0; row < frame.height; ++row) {
     for (int column = 0; column < frame.width; ++column) {
-      const int object = frame.object[static_cast<std::size_t>(row * frame.width + column)];
+      const int object = frame.object[static_cast<std::size_t>(std::ptrdiff_t{row} * frame.width + column)];
       if (object == 0) continue;
       const auto [entry, is_new] = found.try_emplace(object);
       VisibleObject& visible = entry->second;
@@ -203,6 +205,7 @@ std::vector<VisibleObject> visible_objects(const RenderedFrame& frame) {
     }
   }
   std::vector<VisibleObject> objects;
+  objects.reserve(found.size());
   for (const auto& [object, visible] : found) objects.push_back(visible);
   return objects;
 }

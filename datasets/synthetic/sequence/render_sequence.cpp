@@ -362,7 +362,7 @@ fs::path cached_sequence(const SynthRequest& request, const RenderControl& contr
   check_request(request);
   // The last path component is the name shown in tables: preset and seed. The key is the parent folder.
   const std::string name = request.preset + "_" + std::to_string(request.seed);
-  const fs::path folder = datasets::cache_folder() / "synthetic" / request_key(request) / name;
+  fs::path folder = datasets::cache_folder() / "synthetic" / request_key(request) / name;
   if (fs::exists(folder / "detections.txt")) return folder;
   fs::remove_all(folder);  // static scenes that were rendered before version 0.3 have no boxes
   try {
