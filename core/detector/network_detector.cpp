@@ -62,9 +62,10 @@ cv::Mat decode_yolox_grids(cv::Mat rows, int input_px) {
   for (const int stride : kYoloxStrides) {
     const int side = input_px / stride;
     for (int cell = 0; cell < side * side; ++cell, ++row) {
+      const int x = cell % side, y = cell / side;
       float* const values = rows.ptr<float>(row);
-      values[0] = (values[0] + static_cast<float>(cell % side)) * static_cast<float>(stride);
-      values[1] = (values[1] + static_cast<float>(cell / side)) * static_cast<float>(stride);
+      values[0] = (values[0] + static_cast<float>(x)) * static_cast<float>(stride);
+      values[1] = (values[1] + static_cast<float>(y)) * static_cast<float>(stride);
       values[2] = std::exp(values[2]) * static_cast<float>(stride);
       values[3] = std::exp(values[3]) * static_cast<float>(stride);
     }
@@ -286,7 +287,7 @@ NetworkDetector::NetworkDetector(const DetectorConfig& config, std::span<const s
       output_names_(net_.getUnconnectedOutLayersNames()) {
   require_known_class(config, decode_options_.names, dynamic_classes);
   if (config.layout == NetworkLayout::kDarknet) require_complete_weights(net_, config.weights);
-  net_ = with_backend(std::move(net_), config.backend);
+  net_ = with_backend(net_, config.backend);
   const cv::Mat empty(config.input_px, config.input_px, CV_8UC3, cv::Scalar::all(kPadding));
   static_cast<void>(decode_outputs(decode_options_, run(cv::dnn::blobFromImage(empty)), config.weights));
 }

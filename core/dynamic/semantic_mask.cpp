@@ -16,7 +16,7 @@ double median_depth(const DepthView& depth, const Eigen::Vector2d& pixel, int wi
   const int half = window_px / 2;
   const int column = static_cast<int>(std::lround(pixel.x()));
   const int row = static_cast<int>(std::lround(pixel.y()));
-  std::array<std::uint16_t, kMaxDepthWindow_px * kMaxDepthWindow_px> valid;
+  std::array<std::uint16_t, std::size_t{kMaxDepthWindow_px} * kMaxDepthWindow_px> valid;
   std::size_t count = 0;
   for (int v = std::max(row - half, 0); v <= std::min(row + half, depth.pixels.rows - 1); ++v) {
     for (int u = std::max(column - half, 0); u <= std::min(column + half, depth.pixels.cols - 1); ++u) {

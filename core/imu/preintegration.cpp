@@ -212,7 +212,6 @@ NavState Preintegration::predict(const NavState& state_i, const Eigen::Vector3d&
 }
 
 Eigen::Vector3d estimate_gyro_bias(std::span<const RotationPair> pairs) {
-  using Index = ImuErrorIndex;
   STILLPOINT_CHECK(!pairs.empty());
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d normal_vector = Eigen::Vector3d::Zero();

@@ -75,6 +75,7 @@ class Association {
     const std::vector<KeyframeFeature>& of_match = keyframes_[match].features;
     const std::vector<FeatureMatch> matches = match_features(of_query, of_match);
     std::vector<PointPair> pairs;
+    pairs.reserve(matches.size());
     for (const FeatureMatch& found : matches) {
       pairs.push_back({of_query[static_cast<std::size_t>(found.query)].p_c.cast<double>(),
                        of_match[static_cast<std::size_t>(found.match)].p_c.cast<double>()});

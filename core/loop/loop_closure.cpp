@@ -139,12 +139,12 @@ void LoopClosure::find_loops() {
     VerifiedLoop verified = verify_loop(keyframes_.back(), match, camera_, config_);
     verified.record.votes = place.votes;
     verified.record.in_map = parts_.is_loaded(index);
-    assess(std::move(verified), place.place);
+    assess(verified, place.place);
     if (records_.back().outcome == LoopOutcome::kAccepted) return;
   }
 }
 
-void LoopClosure::assess(VerifiedLoop verified, int match) {
+void LoopClosure::assess(const VerifiedLoop& verified, int match) {
   records_.push_back(verified.record);
   LoopOutcome& outcome = records_.back().outcome;
   if (outcome != LoopOutcome::kAccepted) return;

@@ -58,7 +58,7 @@ class LoopClosure {
 
   [[nodiscard]] Keyframe describe(const DepartedKeyframe& keyframe) const;
   void find_loops();
-  void assess(VerifiedLoop verified, int match);
+  void assess(const VerifiedLoop& verified, int match);
   [[nodiscard]] LoopOutcome compare_with_others(const GraphLoop& loop);
   [[nodiscard]] bool is_optimization_due() const;
   void optimize();

@@ -18,7 +18,7 @@ using Rows = std::array<double*, kTile>;
 /// Inner products of columns [begin, end) of three rows with three others. Nine independent sums hide the
 /// latency of the additions.
 Tile inner_products(const Rows& left, const Rows& right, int begin, int end) {
-  std::array<Lanes, kTile * kTile> sums;
+  std::array<Lanes, std::size_t{kTile} * kTile> sums;
   sums.fill(Lanes::Zero());
   int k = begin;
   for (; k + kLanes <= end; k += kLanes) {

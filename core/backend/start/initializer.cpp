@@ -36,8 +36,8 @@ struct AlignmentSystem {
 
 AlignmentSystem alignment_system(const Window& window, const Eigen::Vector3d& gyro_bias, bool metric) {
   const int frames = static_cast<int>(window.frames.size());
-  AlignmentSystem system{Eigen::MatrixXd::Zero(3 * (frames - 1), metric ? 6 : 7),
-                         Eigen::VectorXd::Zero(3 * (frames - 1))};
+  const Eigen::Index rows = 3 * Eigen::Index{frames - 1};
+  AlignmentSystem system{Eigen::MatrixXd::Zero(rows, metric ? 6 : 7), Eigen::VectorXd::Zero(rows)};
   const Eigen::Vector3d p_0 = window.frames[0].state.T_w_b.p;
   Eigen::Vector3d alpha = Eigen::Vector3d::Zero();  // displacement due to specific force
   Eigen::Vector3d beta = Eigen::Vector3d::Zero();   // velocity due to specific force
@@ -49,10 +49,11 @@ AlignmentSystem alignment_system(const Window& window, const Eigen::Vector3d& gy
     alpha += beta * imu.duration_s() + q_w_b * imu.delta_p(gyro_bias, imu.accel_bias());
     beta += q_w_b * imu.delta_v(gyro_bias, imu.accel_bias());
     time += imu.duration_s();
-    system.A.block<3, 3>(3 * (k - 1), 0) = Eigen::Matrix3d::Identity() * time;
-    system.A.block<3, 3>(3 * (k - 1), 3) = Eigen::Matrix3d::Identity() * (0.5 * time * time);
-    if (!metric) system.A.block<3, 1>(3 * (k - 1), 6) = window.T_w_c(0).p - window.T_w_c(k).p;
-    system.y.segment<3>(3 * (k - 1)) = window.frames[static_cast<std::size_t>(k)].state.T_w_b.p - p_0 - alpha;
+    const Eigen::Index row = 3 * Eigen::Index{k - 1};
+    system.A.block<3, 3>(row, 0) = Eigen::Matrix3d::Identity() * time;
+    system.A.block<3, 3>(row, 3) = Eigen::Matrix3d::Identity() * (0.5 * time * time);
+    if (!metric) system.A.block<3, 1>(row, 6) = window.T_w_c(0).p - window.T_w_c(k).p;
+    system.y.segment<3>(row) = window.frames[static_cast<std::size_t>(k)].state.T_w_b.p - p_0 - alpha;
   }
   return system;
 }
@@ -179,7 +180,7 @@ bool contradicts(const Eigen::Vector3d& measured, const Eigen::Matrix2d& covaria
 /// @return the rotation
 Eigen::Quaterniond restore_attitude(const Pose& anchor, Window& window) {
   const Pose first = window.frames[0].state.T_w_b;
-  const Eigen::Quaterniond q_new_old = (anchor.q * first.q.conjugate()).normalized();
+  Eigen::Quaterniond q_new_old = (anchor.q * first.q.conjugate()).normalized();
   const Pose T_new_old{q_new_old, first.p - q_new_old * first.p};
   for (WindowFrame& frame : window.frames) {
     frame.state.T_w_b = T_new_old * frame.state.T_w_b;

@@ -83,6 +83,7 @@ RotationAligner::NormalEquations RotationAligner::normal_equations(const Rotatio
   const std::vector<Residual> all = residuals(at, imu);
   if (all.empty()) return equations;
   std::vector<double> norms;
+  norms.reserve(all.size());
   for (const Residual& residual : all) norms.push_back(residual.r.norm());
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::ranges::nth_element(norms, middle);

@@ -57,12 +57,12 @@ void remove_preintegration(int frame, Window& window) {
 /// Replaces the preintegration to frame + 1 by the one from frame - 1 on; by none if either is absent.
 void merge_preintegrations(int frame, Window& window) {
   std::optional<Preintegration>& earlier = window.frames[static_cast<std::size_t>(frame)].from_previous;
-  std::optional<Preintegration>& later = window.frames[static_cast<std::size_t>(frame + 1)].from_previous;
+  std::optional<Preintegration>& later = window.frames[static_cast<std::size_t>(frame) + 1].from_previous;
   if (earlier && later) earlier->append(*later);
   if (!later) remove_preintegration(frame, window);
   remove_preintegration(frame + 1, window);
   later = std::exchange(earlier, std::nullopt);
-  window.frames[static_cast<std::size_t>(frame + 1)].imu_is_reliable &=
+  window.frames[static_cast<std::size_t>(frame) + 1].imu_is_reliable &=
       window.frames[static_cast<std::size_t>(frame)].imu_is_reliable;
 }
 

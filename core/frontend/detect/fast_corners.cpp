@@ -53,7 +53,7 @@ const std::vector<Corner>& FastCorners::find(const cv::Mat& gray, int threshold)
   for (std::vector<std::uint8_t>& row : scores_) row.assign(width, 0);
   for (int row = kRadius; row <= gray.rows - kRadius; ++row) {
     std::rotate(scores_.begin(), scores_.begin() + 1, scores_.end());
-    const std::span scores = std::span(scores_.back()).subspan(kRadius, width - 2 * kRadius);
+    const std::span scores = std::span(scores_.back()).subspan(kRadius, width - 2 * std::size_t{kRadius});
     if (row < gray.rows - kRadius) {
       score_fast_row(gray.ptr<std::uint8_t>(row) + kRadius, static_cast<std::ptrdiff_t>(gray.step[0]),
                      threshold, scores);

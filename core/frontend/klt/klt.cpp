@@ -26,11 +26,12 @@ void reflect_border(cv::Mat image, int border_px) {
       row[width - 1 + k] = row[width - 1 - k];
     }
   }
+  const int padded_width = width + 2 * border_px;
   std::uint8_t* const first = image.data - border_px;
   std::uint8_t* const last = first + (image.rows - 1) * stride;
   for (int k = 1; k <= border_px; ++k) {
-    std::memcpy(first - k * stride, first + k * stride, static_cast<std::size_t>(width + 2 * border_px));
-    std::memcpy(last + k * stride, last - k * stride, static_cast<std::size_t>(width + 2 * border_px));
+    std::memcpy(first - k * stride, first + k * stride, static_cast<std::size_t>(padded_width));
+    std::memcpy(last + k * stride, last - k * stride, static_cast<std::size_t>(padded_width));
   }
 }
 
@@ -39,7 +40,7 @@ void pyr_down(const cv::Mat& from, cv::Mat to, std::vector<std::uint16_t>& colum
   const std::ptrdiff_t columns = from.cols + 2 * kReach;
   column_sums.resize(static_cast<std::size_t>(columns + 1));
   for (int y = 0; y < to.rows; ++y) {
-    const std::uint8_t* const middle = from.data + 2 * y * stride - kReach;
+    const std::uint8_t* const middle = from.data + 2 * stride * y - kReach;
     for (std::ptrdiff_t x = 0; x < columns; ++x) {  // at most 16 * 255
       column_sums[static_cast<std::size_t>(x)] =
           static_cast<std::uint16_t>(middle[x - 2 * stride] + middle[x + 2 * stride] +

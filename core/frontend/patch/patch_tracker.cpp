@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <utility>
 
@@ -81,7 +82,7 @@ KltResult track_points_patch(const TrackingRequest& request, const PatchSettings
 namespace {
 
 constexpr int kTileSide = 12;  // 8x8 patch, one more pixel for gradients, and two for interpolation
-using Tile = std::array<std::uint8_t, kTileSide * kTileSide>;
+using Tile = std::array<std::uint8_t, std::size_t{kTileSide} * kTileSide>;
 
 /// Position of the feature in a tile, per level. The kernel halves the coordinates of the finest level to
 /// those of the next coarser one, relative to `kTileOrigin`.
@@ -108,7 +109,8 @@ struct FixedPointSampler {
 
   [[nodiscard]] std::uint8_t at(std::int32_t x, std::int32_t y) const {
     const std::int32_t fx = (x >> kFractionBits) & (kOne - 1), fy = (y >> kFractionBits) & (kOne - 1);
-    const std::uint8_t* p = pixels + (y >> (2 * kFractionBits)) * stride + (x >> (2 * kFractionBits));
+    const std::uint8_t* p =
+        pixels + std::ptrdiff_t{y >> (2 * kFractionBits)} * stride + (x >> (2 * kFractionBits));
     const std::int32_t upper = p[0] * (kOne - fx) + p[1] * fx;
     const std::int32_t lower = p[stride] * (kOne - fx) + p[stride + 1] * fx;
     constexpr std::int32_t kHalf = kOne * kOne / 2;
@@ -132,7 +134,7 @@ Tile warp(const FixedPointSampler& sampler, PatchPoint center, const Eigen::Matr
 }
 
 PatchImage view_of(const Tile& tile, int origin) {
-  return {.pixels = tile.data() + origin * (kTileSide + 1),
+  return {.pixels = tile.data() + std::ptrdiff_t{origin} * (kTileSide + 1),
           .stride = kTileSide,
           .width = kTileSide - origin,
           .height = kTileSide - origin};
@@ -165,7 +167,8 @@ std::optional<PatchPoint> TrackTemplate::align(const ImagePyramid& pyramid,
                                                const Eigen::Matrix2d& A_template_image,
                                                PatchPoint initial_guess,
                                                const AlignmentSettings& settings) const {
-  constexpr double kMaxStretch = (kSide / 2 - 1) / kTileReach;
+  constexpr int kLargestOffset = kSide / 2 - 1;
+  constexpr double kMaxStretch = kLargestOffset / kTileReach;
   const bool fits =
       A_template_image.allFinite() && A_template_image.cwiseAbs().rowwise().sum().maxCoeff() <= kMaxStretch;
   const auto levels = static_cast<std::size_t>(std::min(levels_, static_cast<int>(pyramid.levels())));

@@ -48,7 +48,7 @@ class TrackTemplate {
  private:
   static constexpr int kSide = 24;
   struct Level {
-    std::array<std::uint8_t, kSide * kSide> pixels;
+    std::array<std::uint8_t, std::size_t{kSide} * kSide> pixels;
     PatchPoint center;  ///< of the feature in `pixels`
   };
   std::array<Level, 2> level_;

@@ -35,9 +35,6 @@ class RealtimeRun {
 
   RunSummary run() {
     {
-      const auto start = [this](auto work) {
-        return std::jthread([this, work] { errors_.guard([&] { (this->*work)(); }, [this] { close(); }); });
-      };
       const std::jthread camera = start(&RealtimeRun::expose);
       const std::jthread tracker = start(&RealtimeRun::track);
       const std::jthread detector = start(&RealtimeRun::detect);
@@ -54,6 +51,10 @@ class RealtimeRun {
   }
 
  private:
+  std::jthread start(void (RealtimeRun::*work)()) {
+    return std::jthread([this, work] { errors_.guard([&] { (this->*work)(); }, [this] { close(); }); });
+  }
+
   /// Delivers the frames and their samples at the recorded times.
   void expose() {
     name_this_thread("camera");
