@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include "bench/analysis/run_groups.h"
 #include "core/base/error.h"
@@ -17,10 +19,12 @@ namespace {
 
 std::map<std::string, std::set<std::string>> plans_by_run(const Store& store,
                                                           const std::vector<StoredRun>& runs) {
-  std::map<std::string, std::string> planned;
-  for (const StoredRun& run : runs) planned[run.key] = planned_key(run.identity);
   std::map<std::string, std::set<std::string>> plans;
-  for (const StoredPlan& plan : store.plans()) {
+  const std::vector<StoredPlan> stored = store.plans();
+  if (stored.empty()) return plans;
+  std::unordered_map<std::string, std::string> planned;
+  for (const StoredRun& run : runs) planned[run.key] = planned_key(run.identity);
+  for (const StoredPlan& plan : stored) {
     for (const std::string& key : plan.run_keys) {
       if (const auto found = planned.find(key); found != planned.end())
         plans[found->second].insert(plan.name);
@@ -54,6 +58,7 @@ class HistoryBuilder {
     const HistorySubject subject{identity.sequence,    identity.variant, identity.axis,  identity.axis_value,
                                  identity.mode,        identity.kind,    identity.cores, identity.seed,
                                  identity.sequence_id, origin.host};
+    const auto plans = plans_.empty() ? plans_.end() : plans_.find(planned_key(identity));
     const auto value = [&](const std::string& metric, const std::string& unit, const MetricDescriptor* gated,
                            double number) {
       if (!std::isfinite(number)) return;
@@ -61,8 +66,7 @@ class HistoryBuilder {
       collected.unit = unit;
       collected.gated = gated;
       collected.values[origin.commit].push_back(number);
-      if (const auto found = plans_.find(planned_key(identity)); found != plans_.end())
-        collected.plans.insert(found->second.begin(), found->second.end());
+      if (plans != plans_.end()) collected.plans.insert(plans->second.begin(), plans->second.end());
     };
     const bool is_ok = run.outcome == Outcome::kOk;
     succeeded_[subject][origin.commit] += is_ok ? 1 : 0;
@@ -155,10 +159,17 @@ class HistoryBuilder {
 }  // namespace
 
 CommitHistory commit_history(const Store& store) {
-  const std::vector<StoredRun> runs = store.runs({.system = kOwnSystem});
+  constexpr std::size_t kChunk = 5000;  // runs whose details are in memory
+  std::vector<StoredRun> runs = store.run_headers({.system = kOwnSystem});
   HistoryBuilder builder(plans_by_run(store, runs));
   const std::vector<RunOrigin> origins = run_origins(store, runs);
-  for (std::size_t i = 0; i < runs.size(); ++i) builder.add(runs[i], origins[i]);
+  for (std::size_t begin = 0; begin < runs.size(); begin += kChunk) {
+    const auto first = runs.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = first + static_cast<std::ptrdiff_t>(std::min(kChunk, runs.size() - begin));
+    const std::vector<StoredRun> chunk =
+        store.with_details({std::make_move_iterator(first), std::make_move_iterator(last)});
+    for (std::size_t i = 0; i < chunk.size(); ++i) builder.add(chunk[i], origins[begin + i]);
+  }
   return builder.build();
 }
 

@@ -2,9 +2,11 @@
 #include "bench/analysis/run_groups.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -58,12 +60,18 @@ RunOrigin origin_of(const Json& manifest, const StoredRun& run) {
 
 std::vector<RunOrigin> run_origins(const Store& store, std::span<const StoredRun> runs) {
   std::vector<RunOrigin> origins;
-  std::map<std::string, std::string> configs;  // by config hash without the perturbation
+  origins.reserve(runs.size());
+  std::unordered_map<std::string, RunOrigin> known;      // by manifest and build
+  std::unordered_map<std::string, std::string> configs;  // by config hash without the perturbation
   for (const StoredRun& run : runs) {
-    const Json manifest = Json::parse(store.manifest(run), nullptr, false);
     const std::string host = origins.empty() ? kUnknownHost : origins.back().host;
-    origins.push_back(manifest.is_object() ? origin_of(manifest, run)
-                                           : RunOrigin{.commit = run.identity.build, .host = host});
+    const auto [entry, is_new] = known.try_emplace(run.manifest_hash + " " + run.identity.build);
+    if (is_new) {
+      const Json manifest = Json::parse(store.manifest(run), nullptr, false);
+      if (manifest.is_object()) entry->second = origin_of(manifest, run);
+    }
+    origins.push_back(entry->second.commit.empty() ? RunOrigin{.commit = run.identity.build, .host = host}
+                                                   : entry->second);
     if (!origins.back().config.empty())
       configs[std::string(unperturbed_hash(run.identity.config_hash))] = origins.back().config;
   }
@@ -76,22 +84,6 @@ std::vector<RunOrigin> run_origins(const Store& store, std::span<const StoredRun
 }
 
 namespace {
-
-/// A run, and where it comes from.
-struct OriginRun {
-  StoredRun run;
-  RunOrigin origin;
-};
-
-std::vector<OriginRun> with_origins(const Store& store, std::span<const StoredRun> runs) {
-  const std::vector<StoredRun> all = store.runs();
-  const std::vector<RunOrigin> origins = run_origins(store, all);
-  std::map<std::int64_t, std::size_t> index;
-  for (std::size_t i = 0; i < all.size(); ++i) index[all[i].id] = i;
-  std::vector<OriginRun> result;
-  for (const StoredRun& run : runs) result.push_back({run, origins[index.at(run.id)]});
-  return result;
-}
 
 /// Builds of Stillpoint, the newest first: by commit time, or the first run without one, then by the first
 /// run.
@@ -153,10 +145,9 @@ std::string mode_text(const RunIdentity& identity) {
 using ConfigScope =
     std::tuple<std::string, std::string, std::string, std::string, std::string, std::string, double>;
 
-ConfigScope scope_of(const OriginRun& entry) {
-  const RunIdentity& identity = entry.run.identity;
-  return {identity.build,   entry.origin.host, mode_text(identity), identity.system,
-          identity.variant, identity.axis,     identity.axis_value};
+ConfigScope scope_of(const RunIdentity& identity, const RunOrigin& origin) {
+  return {identity.build,   origin.host,   mode_text(identity), identity.system,
+          identity.variant, identity.axis, identity.axis_value};
 }
 
 /// Start and id of a run: later runs compare larger.
@@ -164,12 +155,12 @@ using RunOrder = std::pair<std::string, std::int64_t>;
 
 using NewestConfigs = std::map<ConfigScope, std::pair<RunOrder, std::string>>;  // newest run, its config
 
-NewestConfigs newest_configs(const std::vector<OriginRun>& runs) {
+NewestConfigs newest_configs(std::span<const StoredRun> runs, const std::vector<RunOrigin>& origins) {
   NewestConfigs newest;
-  for (const OriginRun& entry : runs) {
-    auto& config = newest[scope_of(entry)];
-    if (entry.origin.config.empty()) continue;
-    config = std::max(config, {RunOrder(entry.run.started, entry.run.id), entry.origin.config});
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    auto& config = newest[scope_of(runs[i].identity, origins[i])];
+    if (origins[i].config.empty()) continue;
+    config = std::max(config, {RunOrder(runs[i].started, runs[i].id), origins[i].config});
   }
   return newest;
 }
@@ -179,6 +170,12 @@ using DataScope = std::tuple<std::string, std::int64_t, std::string, double>;
 
 DataScope data_scope_of(const RunIdentity& identity) {
   return {identity.sequence, identity.seed, identity.axis, identity.axis_value};
+}
+
+/// Whether the numbers of frames are those of different renderings: seeds of a recording begin some frames
+/// later.
+bool is_other_length(double frames, double others) {
+  return std::abs(frames - others) > 30.0 && std::max(frames, others) > 1.25 * std::min(frames, others);
 }
 
 /// Removes the runs on older data under the name of newer data: another checksum for the same seed, or, as
@@ -202,7 +199,7 @@ std::map<std::string, std::size_t> remove_older_data(std::vector<StoredRun>& run
     const double expected = frames.at({identity.sequence, identity.axis_value}).second;
     const double count = metric_value(run, metric_id::kFrames).value_or(expected);
     const bool is_older = newest.at(data_scope_of(identity)).second != identity.sequence_id ||
-                          (run.outcome == Outcome::kOk && count != expected);
+                          (run.outcome == Outcome::kOk && is_other_length(count, expected));
     removed[identity.sequence] += is_older ? 1 : 0;
     return is_older;
   });
@@ -234,11 +231,9 @@ std::vector<std::string> sentences_of(const std::map<std::string, std::size_t>& 
 }
 
 /// The group of a run; a new one at the end if there is none.
-RunGroup& group_of(std::vector<RunGroup>& groups, const OriginRun& entry) {
-  const RunGroup key{.build = entry.run.identity.build,
-                     .machine = entry.origin.host,
-                     .mode = mode_text(entry.run.identity),
-                     .runs = {}};
+RunGroup& group_of(std::vector<RunGroup>& groups, const StoredRun& run, const RunOrigin& origin) {
+  const RunGroup key{
+      .build = run.identity.build, .machine = origin.host, .mode = mode_text(run.identity), .runs = {}};
   const auto found = std::find_if(groups.begin(), groups.end(), [&](const RunGroup& group) {
     return std::tie(group.build, group.machine, group.mode) == std::tie(key.build, key.machine, key.mode);
   });
@@ -262,7 +257,7 @@ std::vector<StoredRun> runs_of_plan(const Store& store, const std::string& plan)
     planned.insert(planned_key(run.identity));
     builds.insert(run.identity.build);
   }
-  std::vector<StoredRun> runs = store.runs();
+  std::vector<StoredRun> runs = store.run_headers();
   std::erase_if(runs, [&](const StoredRun& run) {
     if (builds.contains(run.identity.build)) return !keys.contains(run.key);
     return !planned.contains(planned_key(run.identity));
@@ -279,28 +274,30 @@ std::string build_named(std::span<const StoredRun> runs, const std::string& name
   return chosen_build(builds_of(runs), name, place);
 }
 
-RunSelection select_runs(const Store& store, std::span<const StoredRun> runs, const std::string& build) {
+RunSelection select_runs(const Store& store, std::vector<StoredRun> runs, const std::string& build) {
   const std::vector<std::string> builds = builds_of(runs);
   const bool is_named = !build.empty() && build != kAllBuilds;
   const std::string chosen = is_named ? chosen_build(builds, build, "--build") : newest_build(runs);
-  const std::vector<OriginRun> all = with_origins(store, runs);
-  const NewestConfigs newest = newest_configs(all);
+  const std::vector<RunOrigin> origins = run_origins(store, runs);
+  const NewestConfigs newest = newest_configs(runs, origins);
   std::map<std::string, std::size_t> other_builds;
   std::map<std::string, std::size_t> older_configs;
   RunSelection selection;
-  for (const OriginRun& entry : all) {
-    const RunIdentity& identity = entry.run.identity;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const RunIdentity& identity = runs[i].identity;
     const bool is_external = identity.system != kOwnSystem && !is_named;
     if (build != kAllBuilds && identity.build != chosen && !is_external) {
       ++other_builds[identity.build];
-    } else if (!entry.origin.config.empty() && entry.origin.config != newest.at(scope_of(entry)).second) {
+    } else if (!origins[i].config.empty() &&
+               origins[i].config != newest.at(scope_of(identity, origins[i])).second) {
       ++older_configs[identity.variant];
     } else {
-      group_of(selection.groups, entry).runs.push_back(entry.run);
+      group_of(selection.groups, runs[i], origins[i]).runs.push_back(std::move(runs[i]));
     }
   }
   std::map<std::string, std::size_t> older_data;
   for (RunGroup& group : selection.groups) {
+    group.runs = store.with_details(std::move(group.runs));
     for (const auto& [sequence, count] : remove_older_data(group.runs)) older_data[sequence] += count;
   }
   selection.left_out = sentences_of(other_builds, older_configs, older_data);

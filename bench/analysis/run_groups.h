@@ -48,8 +48,8 @@ struct RunSelection {
 /// config hash, since defaults may change with the build.
 [[nodiscard]] std::string planned_key(RunIdentity identity);
 
-/// Runs of a plan with the build that executed it last, and those of the same plan entries with other builds,
-/// in the order of their start.
+/// Headers of the runs of a plan with the build that executed it last, and those of the same plan entries
+/// with other builds, in the order of their start.
 /// @throws InputError if the store does not contain the plan; the message lists those that it contains
 [[nodiscard]] std::vector<StoredRun> runs_of_plan(const Store& store, const std::string& plan);
 
@@ -67,10 +67,10 @@ struct RunSelection {
 /// Divides runs into groups. If a variant was executed with several configs in one group, only its newest
 /// config is kept, and of each sequence only the newest data. Runs of external systems, whose builds are
 /// their own, are kept with the newest build and with all.
-/// @param runs  of `store`
+/// @param runs  of `store`; headers suffice, the details of the selected ones are read
 /// @param build a build or a unique prefix of one, "all", or empty for the newest one
 /// @throws InputError if there is no such build, or if the prefix is ambiguous; the message lists the builds
-[[nodiscard]] RunSelection select_runs(const Store& store, std::span<const StoredRun> runs,
+[[nodiscard]] RunSelection select_runs(const Store& store, std::vector<StoredRun> runs,
                                        const std::string& build);
 
 }  // namespace stillpoint::bench

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/store/store.h"
 
+#include <algorithm>
 #include <tuple>
 #include <unordered_map>
 
@@ -38,26 +39,39 @@ std::vector<StoredRun> with_origins(const Database& database, std::vector<Stored
   return runs;
 }
 
-/// The runs with their rows of the tables that reference them; reads each table in one pass.
-std::vector<StoredRun> with_details(const Database& database, std::vector<StoredRun> runs) {
+/// The runs with their rows of the tables that reference them; reads the rows of their range of ids in one
+/// pass.
+std::vector<StoredRun> with_rows(const Database& database, std::vector<StoredRun> runs) {
+  if (runs.empty()) return runs;
   std::unordered_map<std::int64_t, StoredRun*> by_id;
-  for (StoredRun& run : runs) by_id[run.id] = &run;
+  for (StoredRun& run : runs) {
+    by_id[run.id] = &run;
+    run.metrics.clear();
+    run.costs.clear();
+    run.blobs.clear();
+  }
+  const auto [first, last] = std::ranges::minmax(runs, {}, &StoredRun::id);
   const auto run_at = [&](const Statement& row) {
     const auto found = by_id.find(row.integer(0));
     return found == by_id.end() ? nullptr : found->second;
   };
+  const auto prepared = [&](const std::string& columns, const std::string& table, const std::string& order) {
+    Statement rows = database.prepare("SELECT " + columns + " FROM " + table +
+                                      " WHERE run BETWEEN ? AND ? ORDER BY " + order);
+    rows.bind(first.id).bind(last.id);
+    return rows;
+  };
   const std::string protocol = protocol_column(database);
-  Statement metrics = database.prepare("SELECT run, name, " + protocol +
-                                       ", unit, value FROM metric ORDER BY run, name, " + protocol);
+  Statement metrics =
+      prepared("run, name, " + protocol + ", unit, value", "metric", "run, name, " + protocol);
   while (metrics.step()) {
     if (StoredRun* run = run_at(metrics)) run->metrics.push_back(metric_of(metrics));
   }
-  Statement costs =
-      database.prepare(std::string("SELECT ") + kCostColumns + " FROM timing ORDER BY run, module");
+  Statement costs = prepared(kCostColumns, "timing", "run, module");
   while (costs.step()) {
     if (StoredRun* run = run_at(costs)) run->costs.push_back(cost_of(costs));
   }
-  Statement blobs = database.prepare("SELECT run, kind, blob FROM attachment ORDER BY run, kind");
+  Statement blobs = prepared("run, kind, blob", "attachment", "run, kind");
   while (blobs.step()) {
     if (StoredRun* run = run_at(blobs)) run->blobs[current_kind(blobs.text(1))] = blobs.text(2);
   }
@@ -82,13 +96,21 @@ Store::Store(const fs::path& file)
   require_readable_schema(database_);
 }
 
-std::vector<StoredRun> Store::runs(const RunFilter& filter) const {
-  database_.execute("BEGIN");  // one snapshot of all tables
+std::vector<StoredRun> Store::run_headers(const RunFilter& filter) const {
   std::vector<StoredRun> runs;
   Statement rows = database_.prepare(std::string("SELECT ") + kRunColumns + " FROM run " + kSelected);
   rows.bind(filter.system).bind(filter.variant).bind(filter.sequence).bind(filter.build).bind(filter.kind);
   while (rows.step()) runs.push_back(run_of(rows));
-  runs = with_origins(database_, with_details(database_, std::move(runs)));
+  return with_origins(database_, std::move(runs));
+}
+
+std::vector<StoredRun> Store::with_details(std::vector<StoredRun> runs) const {
+  return with_rows(database_, std::move(runs));
+}
+
+std::vector<StoredRun> Store::runs(const RunFilter& filter) const {
+  database_.execute("BEGIN");  // one snapshot of all tables
+  std::vector<StoredRun> runs = with_details(run_headers(filter));
   database_.execute("COMMIT");
   return runs;
 }

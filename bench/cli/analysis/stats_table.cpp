@@ -51,11 +51,11 @@ std::string common_note(const std::vector<GroupRows>& groups, bool csv) {
 }  // namespace
 
 RunSelection chosen_runs(const Store& store, const StatsArguments& arguments) {
-  const std::vector<StoredRun> runs =
-      arguments.plan.empty() ? store.runs() : runs_of_plan(store, arguments.plan);
+  std::vector<StoredRun> runs =
+      arguments.plan.empty() ? store.run_headers() : runs_of_plan(store, arguments.plan);
   if (runs.empty())
     throw InputError(arguments.store, "contains no completed run; execute some with `stillpoint bench`");
-  return select_runs(store, runs, arguments.build);
+  return select_runs(store, std::move(runs), arguments.build);
 }
 
 void require_metric(const RunSelection& selection, const std::string& metric) {
