@@ -85,7 +85,7 @@ struct BenchPlan {
   std::vector<std::string> variants;  ///< of this odometry
   std::string ablation_base;          ///< the variant that the others are compared with; empty: no ablation
   std::vector<std::string> systems;   ///< external systems: files, see bench/systems/slam_system.h
-  std::vector<int> seeds = {1};       ///< for rendering and for the odometry
+  std::vector<int> seeds = {1};       ///< for rendering and for the odometry; see `PlannedRun::later_frames`
   int repetitions = 1;
   int max_frames = 0;  ///< process only the first frames of each sequence; 0 = all
   std::string mode = "sequential";

@@ -4,6 +4,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -44,7 +45,12 @@ class PlanExpander {
         at_place(plan, "recorded.sequences", [&] { return recorded_sequences(plan.recorded); });
     for (const PlanSequence& sequence : recorded) {
       matrix_.sequences.push_back(sequence);
-      for (const int seed : plan.seeds) add_recorded(seed);
+      later_frames_ = 0;
+      for (const int seed : plan.seeds) {
+        add_recorded(seed);
+        ++later_frames_;
+      }
+      later_frames_ = 0;
     }
     return std::move(matrix_);
   }
@@ -117,11 +123,12 @@ class PlanExpander {
     ConfigRequest config{matrix_.plan.base, variant, settings};
     identity.variant = variant;
     identity.build = build_;
-    identity.config_hash = config_hash(load_config(config));
+    identity.config_hash = hash_of(config, identity);
     matrix_.runs.push_back({.sequence = matrix_.sequences.size() - 1,
                             .identity = std::move(identity),
                             .config = std::move(config),
                             .max_frames = matrix_.plan.max_frames,
+                            .later_frames = later_frames_,
                             .fault = std::move(injected),
                             .system = 0});
   }
@@ -139,8 +146,23 @@ class PlanExpander {
                             .system = system});
   }
 
+  /// Hash of the config of a run; configs differ only in the seed for all seeds.
+  std::string hash_of(const ConfigRequest& config, const RunIdentity& identity) {
+    const std::string name =
+        fmt::format("{}\x1f{}\x1f{}", config.variant, identity.axis, identity.axis_value);
+    const std::string key = fmt::format("{}\x1f{}", name, identity.seed);
+    if (const auto known = hashes_.find(key); known != hashes_.end()) return known->second;
+    auto loaded = configs_.find(name);
+    if (loaded == configs_.end()) loaded = configs_.emplace(name, load_config(config)).first;
+    loaded->second.seed = static_cast<int>(identity.seed);
+    return hashes_[key] = config_hash(loaded->second);
+  }
+
   std::string build_;
   PlanMatrix matrix_;
+  int later_frames_ = 0;  ///< of the runs that are added
+  std::unordered_map<std::string, OdometryConfig> configs_;
+  std::unordered_map<std::string, std::string> hashes_;
   std::vector<SweepAxis> sweep_points_;  ///< one value each; one point with an empty key if there is no sweep
 };
 

@@ -17,8 +17,12 @@ namespace stillpoint::bench {
 struct PlannedRun {
   std::size_t sequence = 0;  ///< index into `PlanMatrix::sequences`
   RunIdentity identity;
-  ConfigRequest config;           ///< of a run of this odometry
-  int max_frames = 0;             ///< of a run of this odometry; 0 = all
+  ConfigRequest config;  ///< of a run of this odometry
+  int max_frames = 0;    ///< of a run of this odometry; 0 = all
+  /// Of a run of this odometry: frames by which it begins later. A recording does not depend on the seed; run
+  /// k of n seeds begins k - 1 frames later, so that the seeds are replicates: decisions that depend on the
+  /// start differ.
+  int later_frames = 0;
   std::string fault;              ///< injected sensor fault, canonical; empty = none
   std::size_t system = 0;         ///< index into `PlanMatrix::systems`, of a run of an external system
   std::filesystem::path program;  ///< executable of this odometry; empty = the current executable

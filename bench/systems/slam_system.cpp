@@ -216,6 +216,9 @@ ProcessSpec OwnOdometry::command(const RunRequest& request) const {
     spec.arguments.insert(spec.arguments.end(), {"--max-frames", std::to_string(request.max_frames)});
   }
   if (!request.frame_cache) spec.arguments.emplace_back("--no-frame-cache");
+  if (request.start_s > 0.0) {
+    spec.arguments.insert(spec.arguments.end(), {"--start", fmt::format("{:.6f}", request.start_s)});
+  }
   if (!request.fault.empty()) spec.arguments.insert(spec.arguments.end(), {"--fault", request.fault});
   for (const std::string& setting : config.settings) {
     spec.arguments.insert(spec.arguments.end(), {"--set", setting});

@@ -21,6 +21,7 @@ struct RunRequest {
   RunIdentity identity;
   ConfigRequest config;            ///< of this odometry
   int max_frames = 0;              ///< of this odometry; 0 = all
+  double start_s = 0.0;            ///< of this odometry: time after the first frame at which the run begins
   std::string fault;               ///< sensor fault to inject, for this odometry; empty = none
   std::filesystem::path program;   ///< executable of this odometry; empty = the current executable
   std::filesystem::path sequence;  ///< folder

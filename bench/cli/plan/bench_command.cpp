@@ -10,8 +10,10 @@
 #include <numeric>
 #include <set>
 #include <string>
+#include <unordered_set>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
@@ -164,22 +166,27 @@ int incomplete_code(const PlanMatrix& matrix, const PlanReport& report) {
   return kExitFindings;
 }
 
+/// Empty, or ", from frame 3 on": how the seeds of a recording differ.
+std::string later_text(const PlannedRun& run) {
+  return run.later_frames == 0 ? "" : fmt::format(", from frame {} on", run.later_frames);
+}
+
 /// Prints the state of each run of the plan. Executes nothing and does not create the store.
 int dry_run(const PlanMatrix& matrix, const fs::path& store) {
-  std::vector<std::string> stored_keys;
+  std::unordered_set<std::string> stored_keys;
   if (fs::exists(store)) {
-    for (const StoredRun& run : Store(store).runs()) stored_keys.push_back(run.key);
+    for (const StoredRun& run : Store(store).run_headers()) stored_keys.insert(run.key);
   }
   std::size_t missing = 0;
   for (const PlannedRun& run : matrix.runs) {
-    const bool cached = std::ranges::find(stored_keys, run_key(run.identity)) != stored_keys.end();
+    const bool cached = stored_keys.contains(run_key(run.identity));
     const bool available = matrix.sequences[run.sequence].unavailable_reason.empty();
     missing += cached ? 0 : 1;
     std::cout << fmt::format("{}  {}\n",
                              cached      ? "cached "
                              : available ? "pending"
                                          : "skipped",
-                             run_label(matrix.plan, run.identity));
+                             run_label(matrix.plan, run.identity) + later_text(run));
   }
   std::cout << fmt::format("{} of {} runs cached\n", matrix.runs.size() - missing, matrix.runs.size());
   return kExitOk;
@@ -232,6 +239,10 @@ int run_bench(const BenchArguments& arguments) {
   const PlanMatrix matrix = expand_plan(plan_of(arguments), build_name(), arguments.filters);
   if (matrix.runs.empty() && !arguments.filters.empty())
     throw InputError("--filter", "matches no run of the plan; see `stillpoint plan show`");
+  const auto last = std::ranges::max_element(matrix.runs, {}, &PlannedRun::later_frames);
+  if (last != matrix.runs.end() && last->later_frames > 0)
+    spdlog::info("seeds of recorded sequences begin later, by 0 to {} frames: they are replicates",
+                 last->later_frames);
   if (arguments.workers > 0 && !arguments.estimate) throw InputError("--workers", "requires --estimate");
   if (arguments.dry_run) return dry_run(matrix, arguments.store);
   if (arguments.estimate) {

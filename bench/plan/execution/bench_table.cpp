@@ -94,6 +94,10 @@ BenchRow row_of(const Group& group, const std::string& unavailable_reason) {
     if (const std::optional<double> median = median_of(succeeded, metric->id))
       row.metrics[std::string(metric->id)] = *median;
   }
+  for (const StoredRun* run : succeeded) {
+    const std::optional<double> value = metric_value(*run, headline_metric().id);
+    if (value) row.worst = std::max(row.worst.value_or(*value), *value);
+  }
   for (std::size_t i = 0; i < kModuleCount; ++i) {
     row.mean_ms[i] = median_cost(succeeded, module_name(static_cast<Module>(i)));
   }
@@ -181,6 +185,8 @@ Cells header(const Columns& columns) {
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
     cells.push_back(fmt::format("{}{}{}", metric->label, metric->unit.empty() ? "" : " ", metric->unit));
   }
+  if (columns.runs)
+    cells.push_back(fmt::format("worst {} {}", headline_metric().label, headline_metric().unit));
   for (const TimedColumn& column : columns.timed) cells.push_back(std::string(column.title) + " ms");
   return cells;
 }
@@ -192,6 +198,7 @@ Cells cells_of(const BenchRow& row, const Columns& columns) {
   if (columns.runs) cells.push_back(fmt::format("{} of {}", row.succeeded_runs, row.runs));
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory))
     cells.push_back(cell(metric_of(row, *metric), metric->decimals));
+  if (columns.runs) cells.push_back(cell(row.worst, headline_metric().decimals));
   for (const TimedColumn& column : columns.timed) {
     cells.push_back(cell(row.mean_ms[static_cast<std::size_t>(column.module)], 2));
   }
@@ -230,6 +237,7 @@ Json row_json(const BenchRow& row) {
                {"succeeded_runs", row.succeeded_runs}};
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory))
     json[std::string(metric->id)] = number_or_null(metric_of(row, *metric));
+  json["worst_" + std::string(headline_metric().id)] = number_or_null(row.worst);
   json["mean_ms"] = timings;
   if (!timings.empty()) json["mean_ms_note"] = time_source_note(row.time_source);
   return json;

@@ -8,6 +8,7 @@
 #include <deque>
 #include <filesystem>
 #include <set>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,9 +21,26 @@
 #include "bench/run/odometry_run.h"
 #include "bench/systems/slam_system.h"
 #include "core/base/error.h"
+#include "datasets/open_sequence.h"
 
 namespace stillpoint::bench {
 namespace {
+
+/// Time after the first frame at which frame `index` is the next one [s]; 0 for the first.
+/// @throws InputError if the sequence cannot be opened, or has too few frames
+double time_of_frame(const std::filesystem::path& folder, int index) {
+  if (index == 0) return 0.0;
+  const auto stream = datasets::open_sequence(folder);
+  const std::vector<Timestamp>& times = stream->info().frame_times;
+  if (static_cast<std::size_t>(index) >= times.size()) {
+    throw InputError("seeds",
+                     fmt::format("seed number {} begins {} frames later, but the sequence has {} frames; "
+                                 "use fewer seeds",
+                                 index + 1, index, times.size()));
+  }
+  constexpr double kRounding_s = 2e-6;  // of the option --start
+  return seconds_between(times.front(), times[static_cast<std::size_t>(index)]) - kRounding_s;
+}
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -285,6 +303,7 @@ class PlanRunner {
     return {.identity = planned.identity,
             .config = planned.config,
             .max_frames = planned.max_frames,
+            .start_s = time_of_frame(folder, planned.later_frames),
             .fault = planned.fault,
             .program = planned.program,
             .sequence = folder,
