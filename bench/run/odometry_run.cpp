@@ -259,16 +259,20 @@ class RunRecorder {
     EstimatedCalibration& calibration = run_.calibration;
     calibration.time_offset_s = update.time_offset_s;
     calibration.depth_scale = update.depth_scale;
+    calibration.lens = update.lens;
     calibration.T_b_c = update.state.T_w_b.inverse() * update.T_w_c;
     if (update.agrees_with_rig.extrinsics || calibration.extrinsics_agree)
       calibration.extrinsics_agree = update.agrees_with_rig.extrinsics;
     if (update.agrees_with_rig.depth_scale || calibration.depth_scale_agrees)
       calibration.depth_scale_agrees = update.agrees_with_rig.depth_scale;
+    if (update.agrees_with_rig.lens || calibration.lens_agrees)
+      calibration.lens_agrees = update.agrees_with_rig.lens;
     calibration.time_offset_at_bound += update.at_bound.time_offset;
     calibration.extrinsics_at_bound += update.at_bound.extrinsics;
     calibration.depth_scale_at_bound += update.at_bound.depth_scale;
     if (!update.covariance) return;
     calibration.time_offset_sigma_s = std::sqrt(update.covariance->time_offset);
+    calibration.lens_sigma = update.covariance->lens.diagonal().cwiseSqrt();
     calibration.depth_scale_sigma =
         std::sqrt(update.covariance->depth_scale) * update.depth_scale * update.depth_scale;
     calibration.extrinsics_sigma_m = largest_sigma(update.covariance->extrinsics.topLeftCorner<3, 3>());

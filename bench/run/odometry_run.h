@@ -105,13 +105,15 @@ struct FrameSpan {
 struct EstimatedCalibration {
   double time_offset_s = 0.0;
   double depth_scale = 1.0;
-  Pose T_b_c;  ///< extrinsics
+  Eigen::Vector2d lens = Eigen::Vector2d::Zero();  ///< corrections of focal length and k1
+  Pose T_b_c;                                      ///< extrinsics
   /// Standard deviations, if `backend.covariance` is on; zero if constant. Those of the extrinsics are along
   /// the least certain direction.
   std::optional<double> time_offset_sigma_s, depth_scale_sigma, extrinsics_sigma_m, extrinsics_sigma_rad;
+  std::optional<Eigen::Vector2d> lens_sigma;  ///< same
   /// Whether the data agrees with the rig, so that the value is that of the rig; absent if it is not compared
   /// (`backend.calibration_agreement_probability`).
-  std::optional<bool> extrinsics_agree, depth_scale_agrees;
+  std::optional<bool> extrinsics_agree, depth_scale_agrees, lens_agrees;
   int time_offset_at_bound = 0;  ///< number of frames in which the value was at its bound
   int extrinsics_at_bound = 0;   ///< same
   int depth_scale_at_bound = 0;  ///< same

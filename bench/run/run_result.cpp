@@ -65,6 +65,13 @@ std::vector<std::string> calibration_warnings(const EstimatedCalibration& calibr
         "deviation), the poses before it was estimated are less accurate",
         calibration.depth_scale, calibration.depth_scale_sigma.value_or(0.0)));
   }
+  if (calibration.lens_agrees == false) {
+    warnings.push_back(
+        fmt::format("calibration: the data contradicts the lens of the rig; focal length {:+.2f} %, k1 "
+                    "{:+.4f}, the poses "
+                    "before it was estimated are less accurate",
+                    -100.0 * calibration.lens[0], -calibration.lens[1]));
+  }
   if (calibration.extrinsics_agree == false) {
     warnings.push_back(
         "calibration: the data contradicts the camera pose on the body of the rig; the estimate is in "

@@ -179,6 +179,7 @@ struct BackendConfig {
   double time_offset_walk = 0.0;
   double time_offset_bound_s = 1.0;
   bool estimate_extrinsics = false;
+  bool estimate_lens = false;
   double extrinsics_sigma_m = 0.02;
   double extrinsics_sigma_rad = 0.02;
   double extrinsics_bound_m = 10.0;
@@ -283,6 +284,9 @@ void visit_calibration_fields(Visitor&& field, Config& config) {
             "s", 1e-3, 1.0});
   field("estimate_extrinsics", config.estimate_extrinsics,
         FieldInfo{.text = "Whether the transform between camera and IMU is estimated."});
+  field("estimate_lens", config.estimate_lens,
+        FieldInfo{.text = "Whether corrections of focal length and radial distortion are estimated; none "
+                          "without an IMU."});
   field("extrinsics_sigma_m", config.extrinsics_sigma_m,
         FieldInfo{"Prior standard deviation of the lever arm around the calibrated value.", "m", 1e-6, 1.0});
   field("extrinsics_sigma_rad", config.extrinsics_sigma_rad,

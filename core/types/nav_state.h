@@ -35,9 +35,10 @@ struct StateCovariance {
   Eigen::Matrix2d gravity = Eigen::Matrix2d::Zero();
   /// Of T_b_c, in the same tangent space as the pose; zero if constant.
   Matrix6 extrinsics = Matrix6::Zero();
-  double time_offset = 0.0;  ///< variance [s^2]; zero if constant
-  double depth_scale = 0.0;  ///< variance of its inverse; zero if constant
-  bool inertial = false;     ///< velocity and biases are estimated
+  double time_offset = 0.0;                        ///< variance [s^2]; zero if constant
+  double depth_scale = 0.0;                        ///< variance of its inverse; zero if constant
+  Eigen::Matrix2d lens = Eigen::Matrix2d::Zero();  ///< of the lens correction; zero if constant
+  bool inertial = false;                           ///< velocity and biases are estimated
 
   [[nodiscard]] Matrix6 pose() const { return state.topLeftCorner<6, 6>(); }
   [[nodiscard]] Eigen::Matrix3d position() const { return state.block<3, 3>(0, 0); }

@@ -55,8 +55,9 @@ struct Rig {
 struct AgreesWithRig {
   bool extrinsics = false;
   bool depth_scale = false;
+  bool lens = false;
 
-  [[nodiscard]] bool any() const { return extrinsics || depth_scale; }
+  [[nodiscard]] bool any() const { return extrinsics || depth_scale || lens; }
 };
 
 }  // namespace stillpoint

@@ -14,16 +14,16 @@
 namespace stillpoint {
 
 /// The first two belong to a frame, the others to the window (global states). The value of kDepthScale is the
-/// inverse depth scale, see reprojection_rows.h.
-enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity, kDepthScale };
+/// inverse depth scale, that of kLens the lens correction, see reprojection_rows.h.
+enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity, kDepthScale, kLens };
 
 /// Number of doubles in a parameter block, and of its tangent space.
 [[nodiscard]] constexpr int global_size(BlockKind kind) {
-  constexpr int kSizes[] = {7, 9, 7, 1, 3, 1};
+  constexpr int kSizes[] = {7, 9, 7, 1, 3, 1, 2};
   return kSizes[static_cast<std::size_t>(kind)];
 }
 [[nodiscard]] constexpr int local_size(BlockKind kind) {
-  constexpr int kSizes[] = {6, 9, 6, 1, 2, 1};
+  constexpr int kSizes[] = {6, 9, 6, 1, 2, 1, 2};
   return kSizes[static_cast<std::size_t>(kind)];
 }
 

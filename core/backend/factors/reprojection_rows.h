@@ -20,6 +20,12 @@
 /// bounded rho (Geman & McClure 1985) keeps a depth measured across an object's edge from outweighing the
 /// bearing.
 ///
+/// If the lens differs from that of the rig, with c = (f, k1) and the bearing s that its camera gives,
+///
+///   u = s (1 + f + k1 |s|^2),    du/dc = s (1, |s|^2):
+///
+/// f is the relative error of the stated focal length, k1 what the radial distortion lacks.
+///
 /// Scaling the point by lambda removes the pole at infinity: the residual is defined for every inverse depth,
 /// including zero and negative values, and for points behind camera j. One outlier therefore cannot make the
 /// solver reject a step.
@@ -37,6 +43,16 @@ struct ReprojectionNoise {
   double inverse_depth = 1.0;  ///< of a measured inverse depth [1/m]
   double depth_outlier = 2.0;  ///< the depth row saturates at this many standard deviations
 };
+
+/// Correction factor of a bearing, 1 + f + k1 |s|^2, and its derivative (1, |s|^2). @param seen s
+[[nodiscard]] inline Eigen::RowVector2d lens_powers(const Eigen::Vector2d& seen) {
+  return {1.0, seen.squaredNorm()};
+}
+[[nodiscard]] inline Eigen::Vector2d corrected_bearing(const Eigen::Vector2d& seen,
+                                                       const Eigen::Vector2d& lens) {
+  if (lens.isZero(0.0)) return seen;  // also where the square of the bearing overflows
+  return (1.0 + lens_powers(seen) * lens) * seen;
+}
 
 /// Bounded error rho(d) = d / sqrt(1 + (d/c)^2) of a whitened error d (Geman & McClure 1985), |rho| < c, and
 /// its derivative rho'(d).

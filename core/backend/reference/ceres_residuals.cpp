@@ -52,8 +52,11 @@ void ResidualBuilder::add_landmark(int index) {
 
   const Eigen::Vector3d position_w = observation_model_.position(landmark);
   const TimedBearing in_host = observation_model_.at(landmark, landmark.host, position_w);
-  ReprojectionMeasurement m{
-      .bearing_i = in_host.bearing, .velocity_i = in_host.velocity, .exposure_i_s = in_host.exposure_s};
+  ReprojectionMeasurement m{.bearing_i = in_host.bearing,
+                            .seen_i = in_host.seen,
+                            .lens = window_.lens,
+                            .velocity_i = in_host.velocity,
+                            .exposure_i_s = in_host.exposure_s};
   for (int frame = landmark.host + 1; frame <= landmark.last(); ++frame) {
     const std::array<const double*, 3> first = {first_estimate({BlockKind::kPose, landmark.host}),
                                                 first_estimate({BlockKind::kPose, frame}),
@@ -61,13 +64,15 @@ void ResidualBuilder::add_landmark(int index) {
     const Observation& observation = landmark.observation_in(frame);
     const TimedBearing timed = observation_model_.at(landmark, frame, position_w);
     m.bearing_j = timed.bearing;
+    m.seen_j = timed.seen;
     m.velocity_j = timed.velocity;
     m.exposure_j_s = timed.exposure_s;
     std::unique_ptr<ceres::CostFunction> cost;
     std::vector<BlockRef> states = {{BlockKind::kPose, landmark.host},
                                     {BlockKind::kPose, frame},
                                     {BlockKind::kExtrinsics},
-                                    {BlockKind::kTimeOffset}};
+                                    {BlockKind::kTimeOffset},
+                                    {BlockKind::kLens}};
     if (uses_depth(observation, config_)) {
       m.inverse_depth_j = 1.0 / observation.depth;
       cost = std::make_unique<ReprojectionFactor<3>>(m, noise_, first);

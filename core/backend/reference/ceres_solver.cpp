@@ -75,6 +75,7 @@ class WindowProblem {
     add_state(blocks_.time_offset(), 1, nullptr);
     add_state(blocks_.gravity(), 3, &gravity_manifold_);
     add_state(blocks_.inverse_depth_scale(), 1, nullptr);
+    add_state(blocks_.lens(), 2, nullptr);
   }
 
   void add_state(double* block, int size, ceres::Manifold* manifold) {
@@ -98,6 +99,7 @@ class WindowProblem {
     if (!variable.extrinsics) problem_.SetParameterBlockConstant(blocks_.extrinsics());
     if (!variable.time_offset) problem_.SetParameterBlockConstant(blocks_.time_offset());
     if (!variable.gravity) problem_.SetParameterBlockConstant(blocks_.gravity());
+    if (!variable.lens) problem_.SetParameterBlockConstant(blocks_.lens());
     if (!variable.depth_scale) problem_.SetParameterBlockConstant(blocks_.inverse_depth_scale());
   }
 
@@ -179,9 +181,9 @@ LinearPrior CeresSolver::marginalize_oldest(const Window& window, const BackendC
     prior.blocks.push_back(prior_block_after_slide(block, at.point));
   }
   if (remaining.empty()) return prior;
-  SquareRoot root = eliminate(equations.H, equations.b, marginalized, remaining);
-  prior.jacobian = std::move(root.jacobian);
-  prior.residual = std::move(root.residual);
+  const SquareRoot root = eliminate(equations.H, equations.b, marginalized, remaining);
+  prior.jacobian = root.jacobian;
+  prior.residual = root.residual;
   if (at.at_first_estimates()) move_residual_to_linearization(blocks, prior);
   return prior;
 }

@@ -14,7 +14,7 @@ namespace stillpoint {
 class StateLayout {
  public:
   explicit StateLayout(int frames) : frames_(frames) {}
-  [[nodiscard]] int size() const { return 15 * frames_ + 10; }
+  [[nodiscard]] int size() const { return 15 * frames_ + 12; }
   [[nodiscard]] int column(BlockRef block) const {
     switch (block.kind) {
       case BlockKind::kPose:
@@ -27,6 +27,8 @@ class StateLayout {
         return 15 * frames_ + 7;
       case BlockKind::kDepthScale:
         return 15 * frames_ + 9;
+      case BlockKind::kLens:
+        return 15 * frames_ + 10;
       case BlockKind::kTimeOffset:
         break;
     }

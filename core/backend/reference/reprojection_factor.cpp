@@ -97,10 +97,13 @@ template <int Rows>
 bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
   const ReprojectionMeasurement& m = measurement_;
   const double time_offset = x[3][0];
-  const Eigen::Vector2d bearing_i = m.bearing_i - (time_offset + m.exposure_i_s) * m.velocity_i;
-  const Eigen::Vector2d bearing_j = m.bearing_j - (time_offset + m.exposure_j_s) * m.velocity_j;
-  constexpr std::size_t kLambda = Rows == 3 ? 5 : 4;
-  const double inverse_depth_scale = Rows == 3 ? x[4][0] : 1.0;
+  const Eigen::Vector2d lens_change = Eigen::Vector2d(x[4]) - m.lens;
+  const Eigen::Vector2d bearing_i = m.bearing_i + corrected_bearing(m.seen_i, lens_change) - m.seen_i -
+                                    (time_offset + m.exposure_i_s) * m.velocity_i;
+  const Eigen::Vector2d bearing_j = m.bearing_j + corrected_bearing(m.seen_j, lens_change) - m.seen_j -
+                                    (time_offset + m.exposure_j_s) * m.velocity_j;
+  constexpr std::size_t kLambda = Rows == 3 ? 6 : 5;
+  const double inverse_depth_scale = Rows == 3 ? x[5][0] : 1.0;
   const TransferredPoint t(x, x[kLambda][0], bearing_i);
   const ReprojectionRows rows = reprojection_rows(t.p_cj, t.lambda,
                                                   {.bearing = bearing_j,
@@ -116,14 +119,19 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   for (std::size_t i = 0; i < J_poses.size(); ++i) {
     if (jacobians[i] != nullptr) write_pose_jacobian<Rows>(jacobians[i], J_point, J_poses[i]);
   }
+  const Eigen::Matrix<double, Rows, 3> J_ray = J_point * t.R_cj_bi * t.T_b_c.R();
   if (jacobians[3] != nullptr) {
-    const Eigen::Matrix<double, Rows, 3> J_ray = J_point * t.R_cj_bi * t.T_b_c.R();
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[3]);
     J = J_ray.template leftCols<2>() * -m.velocity_i;
     J.template head<2>() += m.velocity_j / noise_.bearing;
   }
-  if (Rows == 3 && jacobians[4] != nullptr) {
-    Eigen::Map<Eigen::Vector3d>{jacobians[4]} = rows.J_depth_scale * Eigen::Vector3d::UnitZ();
+  if (jacobians[4] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, Rows, 2, Eigen::RowMajor>> J(jacobians[4]);
+    J = J_ray.template leftCols<2>() * m.seen_i * lens_powers(m.seen_i);
+    J.template topRows<2>() -= m.seen_j / noise_.bearing * lens_powers(m.seen_j);
+  }
+  if (Rows == 3 && jacobians[5] != nullptr) {
+    Eigen::Map<Eigen::Vector3d>{jacobians[5]} = rows.J_depth_scale * Eigen::Vector3d::UnitZ();
   }
   if (jacobians[kLambda] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[kLambda]);

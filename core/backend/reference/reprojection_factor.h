@@ -16,6 +16,9 @@ namespace stillpoint {
 struct ReprojectionMeasurement {
   Eigen::Vector2d bearing_i = Eigen::Vector2d::Zero();  ///< normalized image plane
   Eigen::Vector2d bearing_j = Eigen::Vector2d::Zero();
+  Eigen::Vector2d seen_i = Eigen::Vector2d::Zero();  ///< by the camera of the rig
+  Eigen::Vector2d seen_j = Eigen::Vector2d::Zero();
+  Eigen::Vector2d lens = Eigen::Vector2d::Zero();        ///< with which the bearings were corrected
   Eigen::Vector2d velocity_i = Eigen::Vector2d::Zero();  ///< of the bearing [1/s]
   Eigen::Vector2d velocity_j = Eigen::Vector2d::Zero();
   double exposure_i_s = 0.0;  ///< row readout offset minus the time offset at which state i is defined
@@ -26,13 +29,13 @@ struct ReprojectionMeasurement {
 /// The residual of reprojection_rows.h: two rows of bearing error and, with `Rows == 3`, one of inverse
 /// depth.
 ///
-/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, with `Rows == 3` k, lambda. The derivative
-/// of the relative pose of the cameras is evaluated with the first estimates in place of the poses, where
-/// given; the residual is not.
+/// Parameter blocks: pose i, pose j, T_b_c (p, q xyzw each), td, c, with `Rows == 3` k, lambda. The
+/// derivative of the relative pose of the cameras is evaluated with the first estimates in place of the
+/// poses, where given; the residual is not.
 template <int Rows>
 class ReprojectionFactor final
-    : public std::conditional_t<Rows == 3, ceres::SizedCostFunction<3, 7, 7, 7, 1, 1, 1>,
-                                ceres::SizedCostFunction<2, 7, 7, 7, 1, 1>> {
+    : public std::conditional_t<Rows == 3, ceres::SizedCostFunction<3, 7, 7, 7, 1, 2, 1, 1>,
+                                ceres::SizedCostFunction<2, 7, 7, 7, 1, 2, 1>> {
   static_assert(Rows == 2 || Rows == 3);
 
  public:

@@ -21,7 +21,7 @@ class FrameMarginalizer {
 
  private:
   static constexpr int kMaxColumns = 15;  ///< pose, velocity and biases
-  static constexpr int kGlobalColumns = 10;
+  static constexpr int kGlobalColumns = 12;
   static constexpr int kMaxRows = kMaxColumns * (kMaxWindowSize + 1) + kGlobalColumns;
   /// Columns of the states of one frame; fixed capacity, so the factorization does not allocate.
   using FrameColumns =

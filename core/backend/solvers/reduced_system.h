@@ -14,7 +14,7 @@ namespace stillpoint {
 
 /// Column order of the variable states: velocities and biases, newest first (IMU factors couple only
 /// neighbors, so these cause little fill-in); then poses, oldest first; then extrinsics, gravity, time
-/// offset and depth scale, if variable.
+/// offset, depth scale and lens, if variable.
 class ReducedLayout {
  public:
   ReducedLayout() = default;
@@ -34,6 +34,8 @@ class ReducedLayout {
         return variable_.gravity ? first_gravity() : -1;
       case BlockKind::kDepthScale:
         return variable_.depth_scale ? first_depth_scale() : -1;
+      case BlockKind::kLens:
+        return variable_.lens ? first_lens() : -1;
       case BlockKind::kTimeOffset:
         break;
     }
@@ -48,15 +50,14 @@ class ReducedLayout {
   [[nodiscard]] const VariableGlobals& variable_globals() const { return variable_; }
 
  private:
-  [[nodiscard]] int globals() const {
-    return first_depth_scale() + (variable_.depth_scale ? 1 : 0) - first_global();
-  }
+  [[nodiscard]] int globals() const { return first_lens() + (variable_.lens ? 2 : 0) - first_global(); }
   [[nodiscard]] int first_global() const { return first_pose() + 6 * frames_; }
   [[nodiscard]] int first_gravity() const { return first_global() + (variable_.extrinsics ? 6 : 0); }
   [[nodiscard]] int first_time_offset() const { return first_gravity() + (variable_.gravity ? 2 : 0); }
   [[nodiscard]] int first_depth_scale() const {
     return first_time_offset() + (variable_.time_offset ? 1 : 0);
   }
+  [[nodiscard]] int first_lens() const { return first_depth_scale() + (variable_.depth_scale ? 1 : 0); }
 
   int frames_ = 0;
   bool inertial_ = false;

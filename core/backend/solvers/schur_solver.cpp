@@ -151,6 +151,8 @@ void SchurSolver::apply_step() {
   if (time_offset >= 0) *candidate_.time_offset() += step_.states[time_offset];
   const int depth_scale = layout_.column({BlockKind::kDepthScale});
   if (depth_scale >= 0) *candidate_.inverse_depth_scale() += step_.states[depth_scale];
+  const int lens = layout_.column({BlockKind::kLens});
+  if (lens >= 0) Eigen::Map<Eigen::Vector2d>{candidate_.lens()} += step_.states.segment<2>(lens);
   const int gravity = layout_.column({BlockKind::kGravity});
   if (gravity >= 0) {
     Eigen::Map<Eigen::Vector3d> g(candidate_.gravity());

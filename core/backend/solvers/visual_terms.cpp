@@ -5,13 +5,12 @@
 #include <cmath>
 
 namespace stillpoint {
-namespace {
 
-Eigen::Vector2d at_state(const TimedBearing& timed, double time_offset_s) {
-  return timed.bearing - (time_offset_s + timed.exposure_s) * timed.velocity;
+/// The bearing at the time of the state, with the present time offset and lens.
+Eigen::Vector2d VisualTerms::at_state(const TimedBearing& timed) const {
+  const Eigen::Vector2d change = corrected_bearing(timed.seen, lens_change_) - timed.seen;
+  return timed.bearing + change - (time_offset_ + timed.exposure_s) * timed.velocity;
 }
-
-}  // namespace
 
 void VisualTerms::read(const Window& window, const BackendConfig& config, double focal_px,
                        LandmarkSelection selection) {
@@ -21,11 +20,13 @@ void VisualTerms::read(const Window& window, const BackendConfig& config, double
   marginalizes_ = selection == LandmarkSelection::kHostedByOldest;
   bearings_move_ = window.time_offset_model == TimeOffsetModel::kBearing;
   observation_model_.read(window);
-  const auto pairs = static_cast<std::size_t>(frames_ * frames_);
+  lens_at_read_ = window.lens;
+  const auto pairs = static_cast<std::size_t>(frames_) * static_cast<std::size_t>(frames_);
   pair_used_.assign(pairs, 0);
   relative_poses_.resize(pairs);
   sums_.resize(pairs);
   scale_sums_.resize(pairs);
+  lens_sums_.resize(pairs);
   landmarks_.clear();
   timed_observations_.clear();
   host_frames_.clear();
@@ -72,12 +73,12 @@ void VisualTerms::add_landmark(const Window& window, std::size_t index, const Ba
 
 VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
                                                  const ParameterBlocks& blocks) const {
-  return {*blocks.inverse_depth(landmark.index), at_state(landmark.in_host, time_offset_).homogeneous(),
-          landmark.in_host.velocity};
+  return {*blocks.inverse_depth(landmark.index), at_state(landmark.in_host).homogeneous(),
+          landmark.in_host.seen, landmark.in_host.velocity};
 }
 
 MeasuredPoint VisualTerms::measured_point_at(const TimedObservation& observation) const {
-  return {.bearing = at_state(observation.bearing, time_offset_),
+  return {.bearing = at_state(observation.bearing),
           .inverse_depth = observation.inverse_depth,
           .inverse_depth_scale = inverse_depth_scale_,
           .has_depth = observation.has_depth};
@@ -118,8 +119,11 @@ double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
     if (pair_used_[i] == 0) continue;
     sums_[i].setZero();
     scale_sums_[i].setZero();
+    lens_sums_[i].setZero();
   }
   scale_information_ = host_scale_gradient_ = 0.0;
+  lens_information_.setZero();
+  lens_scale_.setZero();
   coupling_.resize(system.layout.size() - system.layout.first_pose(), variable_count_);
   double total = 0.0;
   for (const VisualLandmark& landmark : landmarks_) total += linearize(landmark, at.states, system.layout);
@@ -133,6 +137,9 @@ double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
     system.H(depth_scale, depth_scale) += scale_information_;
     system.g[depth_scale] += host_scale_gradient_;
   }
+  const int lens = system.layout.column({BlockKind::kLens});
+  if (lens >= 0) system.H.block<2, 2>(lens, lens) += lens_information_;
+  if (lens >= 0 && depth_scale >= 0) system.H.block<2, 1>(lens, depth_scale) += lens_scale_.transpose();
   return 0.5 * total;
 }
 
@@ -162,6 +169,10 @@ VisualTerms::ObservationTerm VisualTerms::linearize(const TimedObservation& time
     }
     term.rows.row(6).head<2>() += timed.bearing.velocity.transpose() / noise_.bearing;
   }
+  const Eigen::Vector3d J_host = at.J_point * (to.R_cj_ci.leftCols<2>() * host.seen);
+  term.J_lens = lens_powers(host.seen).transpose() * J_host.transpose();
+  term.J_lens.leftCols<2>() -=
+      lens_powers(timed.bearing.seen).transpose() * (timed.bearing.seen.transpose() / noise_.bearing);
   term.J_lambda = at.J_point * to.p_cj_ci;
   term.J_lambda[2] += at.J_depth_lambda;
   term.J_scale = at.J_depth_scale;
@@ -189,6 +200,7 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
     const Eigen::Matrix<double, 8, 3> weighted = term.rows / term.inverse_weight;
     sums_[shared].noalias() += weighted * term.rows.transpose();
     if (with_scale) add_scale_terms(landmark, frame, term, layout);
+    if (layout.variable_globals().lens) add_lens_terms(landmark, frame, term, layout);
     if (landmark.column < 0) continue;
     const Column8 column = weighted * term.J_lambda;
     information += term.J_lambda.squaredNorm() / term.inverse_weight;
@@ -199,6 +211,18 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
   information_[landmark.column] = information;
   gradient_[landmark.column] = gradient;
   return total;
+}
+
+/// The same terms of the lens, by all rows of one observation.
+void VisualTerms::add_lens_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term,
+                                 const ReducedLayout& layout) {
+  const Eigen::Matrix<double, 2, 3> weighted = term.J_lens / term.inverse_weight;
+  lens_sums_[pair(landmark.host, frame)].noalias() += term.rows * weighted.transpose();
+  lens_information_.noalias() += weighted * term.J_lens.transpose();
+  lens_scale_ += term.J_scale * weighted.col(2).transpose();
+  if (landmark.column < 0) return;
+  coupling_.block<2, 1>(layout.column({BlockKind::kLens}) - layout.first_pose(), landmark.column) +=
+      weighted * term.J_lambda;
 }
 
 /// H_ps, H_ss, g_s and H_ls of the depth row of one observation.
@@ -232,7 +256,7 @@ Pose pose_at(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Ve
 
 /// Computes what the relative poses of `blocks` share.
 CameraOnBody VisualTerms::place_cameras(const ParameterBlocks& blocks) {
-  const CameraOnBody camera(pose_at(blocks.extrinsics()));
+  CameraOnBody camera(pose_at(blocks.extrinsics()));
   cameras_.clear();
   for (int frame = 0; frame < frames_; ++frame) {
     cameras_.emplace_back(pose_at(blocks.pose(static_cast<std::size_t>(frame))), camera);
@@ -244,6 +268,7 @@ CameraOnBody VisualTerms::place_cameras(const ParameterBlocks& blocks) {
 void VisualTerms::update_relative_poses(const ParameterBlocks& blocks) {
   time_offset_ = *blocks.time_offset();
   inverse_depth_scale_ = *blocks.inverse_depth_scale();
+  lens_change_ = Eigen::Vector2d(blocks.lens()) - lens_at_read_;
   const CameraOnBody camera = place_cameras(blocks);
   for (std::size_t host = 0; host < cameras_.size(); ++host) {
     for (std::size_t frame = host + 1; frame < cameras_.size(); ++frame) {
@@ -273,8 +298,9 @@ void VisualTerms::add_coupling(const VisualLandmark& landmark, int frame, const 
   const RelativePoseLinearization& to = relative_poses_[pair(landmark.host, frame)];
   const Eigen::Matrix<double, 6, 1> relative = column.head<6>();
   const Eigen::Index to_column = landmark.column;
-  coupling_.block<6, 1>(6 * frame, to_column).noalias() = to.J_pose_j.transpose() * relative;
-  coupling_.block<6, 1>(6 * landmark.host, to_column).noalias() += to.J_pose_i.transpose() * relative;
+  coupling_.block<6, 1>(Eigen::Index{6} * frame, to_column).noalias() = to.J_pose_j.transpose() * relative;
+  coupling_.block<6, 1>(Eigen::Index{6} * landmark.host, to_column).noalias() +=
+      to.J_pose_i.transpose() * relative;
   if (layout.variable_globals().extrinsics) {
     const int extrinsics = layout.column({BlockKind::kExtrinsics}) - layout.first_pose();
     coupling_.block<6, 1>(extrinsics, to_column).noalias() += to.J_extrinsics.transpose() * relative;
@@ -297,6 +323,8 @@ void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
   const int time = system.layout.column({BlockKind::kTimeOffset});
   const int scale = system.layout.column({BlockKind::kDepthScale});
   const Column8& scale_sum = scale_sums_[pair(host, frame)];
+  const int lens = system.layout.column({BlockKind::kLens});
+  const Eigen::Matrix<double, 8, 2>& lens_sum = lens_sums_[pair(host, frame)];
   for (const PoseBlock& a : pose_blocks) {
     if (a.column < 0) continue;
     const Matrix6 left = a.map.transpose() * sum.topLeftCorner<6, 6>();
@@ -309,9 +337,14 @@ void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
     if (scale >= 0) {
       system.H.block<1, 6>(scale, a.column).noalias() += scale_sum.head<6>().transpose() * a.map;
     }
+    if (lens >= 0) {
+      system.H.block<2, 6>(lens, a.column).noalias() += lens_sum.topRows<6>().transpose() * a.map;
+    }
   }
   if (scale >= 0) system.g[scale] += scale_sum[7];
   if (scale >= 0 && time >= 0) system.H(scale, time) += scale_sum[6];
+  if (lens >= 0) system.g.segment<2>(lens) += lens_sum.row(7).transpose();
+  if (lens >= 0 && time >= 0) system.H.block<2, 1>(lens, time) += lens_sum.row(6).transpose();
   if (time < 0) return;
   system.H(time, time) += sum(6, 6);
   system.g[time] += sum(6, 7);
@@ -339,7 +372,7 @@ void VisualTerms::eliminate(double damping, Eigen::Ref<RowMajorMatrix> S, Eigen:
       rhs.tail(states) += (gradient_[landmark] * inverse_root) * scaled_.col(i);
     }
     // A landmark involves only the poses from its host on.
-    const Eigen::Index involved = states - 6 * first_frame;
+    const Eigen::Index involved = states - Eigen::Index{6} * first_frame;
     S.bottomRightCorner(involved, involved)
         .selfadjointView<Eigen::Lower>()
         .rankUpdate(scaled_.bottomRows(involved).leftCols(count), -1.0);

@@ -32,7 +32,8 @@ enum class LandmarkSelection { kAll, kHostedByOldest };
 /// S -= H_pl H_ll^-1 H_pl^T.
 ///
 /// If the inverse depth scale k is variable, it has the sum a_ij = sum w J_k [J_y r] per pair, mapped
-/// likewise to H_pk and g_k, and H_kk = sum w J_k^2; both only from depth rows.
+/// likewise to H_pk and g_k, and H_kk = sum w J_k^2; both only from depth rows. The lens c has the same sums
+/// with two columns.
 class VisualTerms {
  public:
   /// Reads the observations of a window; allocates only if it is larger than all windows before.
@@ -81,13 +82,15 @@ class VisualTerms {
   struct LandmarkState {
     double lambda;
     Eigen::Vector3d ray;       // bearing at the time of the host's state, z = 1
+    Eigen::Vector2d seen;      // by the camera of the rig
     Eigen::Vector2d velocity;  // of the bearing [1/s]
   };
   /// Three whitened rows, not yet weighted by the loss.
   struct ObservationTerm {
     Eigen::Matrix<double, 8, 3> rows;  // [J_y r]^T
     Eigen::Vector3d J_lambda;
-    double J_scale;         // of the depth row
+    double J_scale;  // of the depth row
+    Eigen::Matrix<double, 2, 3> J_lens;
     double inverse_weight;  // 1 / w
   };
 
@@ -101,6 +104,9 @@ class VisualTerms {
     return timed_observations_[landmark.first_observation +
                                static_cast<std::size_t>(frame - landmark.host - 1)];
   }
+  [[nodiscard]] Eigen::Vector2d at_state(const TimedBearing& timed) const;
+  void add_lens_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term,
+                      const ReducedLayout& layout);
   void add_scale_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term,
                        const ReducedLayout& layout);
   void add_host_scale_terms(const VisualLandmark& landmark, double lambda, const BoundedError& depth,
@@ -126,6 +132,8 @@ class VisualTerms {
   double cauchy_squared_ = 1.0;
   double time_offset_ = 0.0;
   double inverse_depth_scale_ = 1.0;
+  Eigen::Vector2d lens_at_read_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d lens_change_ = Eigen::Vector2d::Zero();  // since then
   ReprojectionNoise noise_;
   ObservationModel observation_model_;
   std::vector<VisualLandmark> landmarks_;
@@ -134,9 +142,12 @@ class VisualTerms {
   std::vector<CameraInWorld> cameras_;
   std::vector<RelativePoseLinearization> relative_poses_;
   std::vector<PairSum> sums_;
-  std::vector<Column8> scale_sums_;   // a_ij
-  double scale_information_ = 0.0;    // H_ss
-  double host_scale_gradient_ = 0.0;  // part of g_s
+  std::vector<Column8> scale_sums_;  // a_ij
+  std::vector<Eigen::Matrix<double, 8, 2>> lens_sums_;
+  Eigen::Matrix2d lens_information_ = Eigen::Matrix2d::Zero();
+  Eigen::RowVector2d lens_scale_ = Eigen::RowVector2d::Zero();  // of H
+  double scale_information_ = 0.0;                              // H_ss
+  double host_scale_gradient_ = 0.0;                            // part of g_s
   int variable_count_ = 0;
   std::vector<int> host_frames_;  // host of each variable landmark
   ReusableVector information_;

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/backend/window/landmark_tracks.h"
+
 namespace stillpoint {
 namespace {
 
 /// A bearing at the time of the middle row, where the state is defined.
 TimedBearing without_readout(const TimedBearing& timed, double readout_offset_s) {
-  return {.bearing = timed.bearing - readout_offset_s * timed.velocity};
+  return {.bearing = timed.bearing - readout_offset_s * timed.velocity, .seen = timed.seen};
 }
 
 }  // namespace
@@ -38,9 +40,11 @@ void ObservationModel::read(const Window& window) {
 TimedBearing ObservationModel::at(const Landmark& landmark, int frame,
                                   const Eigen::Vector3d& position_w) const {
   const Observation& observation = landmark.observation_in(frame);
-  if (at_exposure_ && observation.readout_offset_s == 0.0) return {.bearing = observation.bearing};
+  if (at_exposure_ && observation.readout_offset_s == 0.0)
+    return {.bearing = observation.bearing, .seen = observation.seen};
   const Camera& camera = cameras_[static_cast<std::size_t>(frame)];
   TimedBearing timed{.bearing = observation.bearing,
+                     .seen = observation.seen,
                      .velocity = observation.velocity,
                      .exposure_s = observation.readout_offset_s - camera.time_offset_s};
   if (!inertial_) return at_exposure_ ? without_readout(timed, observation.readout_offset_s) : timed;
@@ -77,7 +81,7 @@ Pose unpack_pose(const double* values) {
 
 void ParameterBlocks::assign(const Window& window) {
   frames_ = window.frames.size();
-  values_.resize(16 * frames_ + 12 + window.landmarks.size());
+  values_.resize(16 * frames_ + 14 + window.landmarks.size());
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     const NavState& state = window.frames[i].state;
     pack_pose(state.T_w_b, pose(i));
@@ -86,6 +90,7 @@ void ParameterBlocks::assign(const Window& window) {
   pack_pose(window.T_b_c, extrinsics());
   *time_offset() = window.time_offset_s;
   *inverse_depth_scale() = 1.0 / window.depth_scale;
+  Eigen::Map<Eigen::Vector2d>{lens()} = window.lens;
   Eigen::Map<Eigen::Vector3d>{gravity()} = window.gravity_w;
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     *inverse_depth(i) = window.landmarks[i].inverse_depth;
@@ -104,18 +109,28 @@ std::size_t ParameterBlocks::offset(BlockRef block) const {
       return 16 * frames_ + 8;
     case BlockKind::kDepthScale:
       return 16 * frames_ + 11;
+    case BlockKind::kLens:
+      return 16 * frames_ + 12;
     case BlockKind::kTimeOffset:
       break;
   }
   return 16 * frames_ + 7;
 }
 
+namespace {
+
+bool is_calibration_of_images(BlockKind kind) {
+  return kind == BlockKind::kTimeOffset || kind == BlockKind::kDepthScale || kind == BlockKind::kLens;
+}
+
+}  // namespace
+
 Linearization linearize_at(const ParameterBlocks& now, const Window& window, const BackendConfig& config,
                            ParameterBlocks& point) {
   if (!has_consistent_prior(window, config)) return {now, now};
   point = now;
   for (const PriorBlock& block : window.prior.blocks) {
-    if (block.kind == BlockKind::kTimeOffset || block.kind == BlockKind::kDepthScale) continue;
+    if (is_calibration_of_images(block.kind)) continue;
     std::copy_n(block.linearization.data(), global_size(block.kind), point.at({block.kind, block.frame}));
   }
   return {now, point};
@@ -133,6 +148,7 @@ void unpack(const ParameterBlocks& blocks, Window& window) {
   window.T_b_c = unpack_pose(blocks.extrinsics());
   window.time_offset_s = *blocks.time_offset();
   window.depth_scale = 1.0 / *blocks.inverse_depth_scale();
+  set_lens(Eigen::Vector2d(blocks.lens()), window);
   window.gravity_w = Eigen::Vector3d(blocks.gravity());
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     window.landmarks[i].inverse_depth = *blocks.inverse_depth(i);
@@ -159,13 +175,15 @@ VariableGlobals variable_globals(const Window& window, const BackendConfig& conf
   return {.extrinsics = config.estimate_extrinsics && moving,
           .time_offset = config.estimate_time_offset && moving,
           .gravity = window.estimates_gravity(),
-          .depth_scale = config.depth.estimate_scale && window.inertial};
+          .depth_scale = config.depth.estimate_scale && window.inertial,
+          .lens = config.estimate_lens && window.inertial};
 }
 
 VariableGlobals solved_globals(const Window& window, const BackendConfig& config) {
   VariableGlobals globals = variable_globals(window, config);
   if (window.agrees_with_rig.extrinsics) globals.extrinsics = false;
   if (window.agrees_with_rig.depth_scale) globals.depth_scale = false;
+  if (window.agrees_with_rig.lens) globals.lens = false;
   return globals;
 }
 
@@ -202,6 +220,7 @@ std::vector<BlockRef> candidate_blocks(const Window& window, const BackendConfig
   if (globals.gravity) blocks.push_back({BlockKind::kGravity});
   if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
   if (globals.depth_scale) blocks.push_back({BlockKind::kDepthScale});
+  if (globals.lens) blocks.push_back({BlockKind::kLens});
   return blocks;
 }
 

@@ -14,6 +14,7 @@ namespace stillpoint {
 /// A bearing, its velocity on the image plane and its time.
 struct TimedBearing {
   Eigen::Vector2d bearing = Eigen::Vector2d::Zero();   ///< normalized image plane
+  Eigen::Vector2d seen = Eigen::Vector2d::Zero();      ///< by the camera of the rig
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< [1/s]
   double exposure_s = 0.0;  ///< row readout offset minus the time offset at which the state is defined
 };
@@ -58,8 +59,8 @@ struct BlockRef {
 };
 
 /// Copies of the window's states in the solver's layout: T_w_b of each frame as (p, q xyzw), then each
-/// frame's v, gyro bias and accel bias, then T_b_c, the time offset, gravity, the inverse depth scale, and
-/// the inverse depth of each landmark, usable or not.
+/// frame's v, gyro bias and accel bias, then T_b_c, the time offset, gravity, the inverse depth scale, the
+/// lens, and the inverse depth of each landmark, usable or not.
 ///
 /// A single array: Ceres orders blocks by address, so with separate arrays the elimination order, and thereby
 /// the rounding of the result, would depend on the allocator.
@@ -77,7 +78,8 @@ class ParameterBlocks {
   [[nodiscard]] double* time_offset() { return &values_[16 * frames_ + 7]; }
   [[nodiscard]] double* gravity() { return &values_[16 * frames_ + 8]; }
   [[nodiscard]] double* inverse_depth_scale() { return &values_[16 * frames_ + 11]; }
-  [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 12 + landmark]; }
+  [[nodiscard]] double* lens() { return &values_[16 * frames_ + 12]; }
+  [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 14 + landmark]; }
   [[nodiscard]] double* at(BlockRef block) { return &values_[offset(block)]; }
 
   [[nodiscard]] const double* pose(std::size_t frame) const { return &values_[7 * frame]; }
@@ -88,8 +90,9 @@ class ParameterBlocks {
   [[nodiscard]] const double* time_offset() const { return &values_[16 * frames_ + 7]; }
   [[nodiscard]] const double* gravity() const { return &values_[16 * frames_ + 8]; }
   [[nodiscard]] const double* inverse_depth_scale() const { return &values_[16 * frames_ + 11]; }
+  [[nodiscard]] const double* lens() const { return &values_[16 * frames_ + 12]; }
   [[nodiscard]] const double* inverse_depth(std::size_t landmark) const {
-    return &values_[16 * frames_ + 12 + landmark];
+    return &values_[16 * frames_ + 14 + landmark];
   }
   [[nodiscard]] const double* at(BlockRef block) const { return &values_[offset(block)]; }
 
@@ -112,13 +115,13 @@ struct Linearization {
 /// consistent one the states that the prior involves are replaced by their linearization points in the prior
 /// (first-estimates Jacobians, Huang et al. 2009): the null space of the prior is that at its linearization
 /// points, and if the other residuals had another one, the world would gain information about its own
-/// position and orientation. Time offset and depth scale remain at `now`: a displacement does not change
-/// them.
+/// position and orientation. Time offset, depth scale and lens remain at `now`: a displacement does not
+/// change them.
 /// @param point storage for the point
 [[nodiscard]] Linearization linearize_at(const ParameterBlocks& now, const Window& window,
                                          const BackendConfig& config, ParameterBlocks& point);
 
-/// Writes the values of the blocks back to the states of the window.
+/// Writes the values of the blocks back to the states of the window, and corrects its bearings by the lens.
 void unpack(const ParameterBlocks& blocks, Window& window);
 
 /// Standard deviations of the visual residuals.
@@ -141,6 +144,7 @@ struct VariableGlobals {
   bool time_offset = false;
   bool gravity = false;
   bool depth_scale = false;
+  bool lens = false;
 };
 /// In the covariance.
 [[nodiscard]] VariableGlobals variable_globals(const Window& window, const BackendConfig& config);

@@ -38,6 +38,7 @@ std::vector<BlockRef> newest_blocks(const Window& window, const BackendConfig& c
   if (globals.extrinsics) blocks.push_back({BlockKind::kExtrinsics});
   if (globals.time_offset) blocks.push_back({BlockKind::kTimeOffset});
   if (globals.depth_scale) blocks.push_back({BlockKind::kDepthScale});
+  if (globals.lens) blocks.push_back({BlockKind::kLens});
   return blocks;
 }
 
@@ -65,6 +66,9 @@ StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestM
       case BlockKind::kDepthScale:
         result.depth_scale = covariance(column, column);
         break;
+      case BlockKind::kLens:
+        result.lens = covariance.block<2, 2>(column, column);
+        break;
     }
     column += local_size(block.kind);
   }
@@ -84,6 +88,7 @@ RigContradiction rig_contradiction(const AgreesWithRig& constant, std::span<cons
       result.depth_scale_step = step[column];
       result.depth_scale = step[column] * step[column] / covariance(column, column);
     }
+    if (block.kind == BlockKind::kLens && constant.lens) result.lens_step = step.segment<2>(column);
     column += local_size(block.kind);
   }
   return result;

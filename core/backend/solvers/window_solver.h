@@ -35,7 +35,8 @@ struct SolveReport {
 struct RigContradiction {
   double extrinsics = 0.0;
   double depth_scale = 0.0;
-  double depth_scale_step = 0.0;  ///< d, of the inverse depth scale
+  double depth_scale_step = 0.0;                        ///< d, of the inverse depth scale
+  Eigen::Vector2d lens_step = Eigen::Vector2d::Zero();  ///< d
 };
 
 struct WindowCovariance {
@@ -104,8 +105,8 @@ class WindowSolver {
 
 // The blocks whose covariance is reported with each frame, and their place in WindowCovariance.
 
-/// At most 25 rows: pose, velocity and biases, gravity, extrinsics, time offset, depth scale.
-using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 25, 25>;
+/// At most 27 rows: pose, velocity and biases, gravity, extrinsics, time offset, depth scale, lens.
+using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 27, 27>;
 
 /// Pose of the newest frame, its velocity and biases if there are any, and the variable global states.
 /// @param recycled storage for the result; its content is ignored
@@ -117,7 +118,7 @@ using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
                                                const NewestMatrix& covariance);
 
 /// At most as many rows as NewestMatrix.
-using NewestVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 25, 1>;
+using NewestVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 27, 1>;
 
 /// @param blocks, covariance as in `state_covariance`
 /// @param step Gauss-Newton step of the blocks, if all of them were variable

@@ -5,7 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include "core/backend/start/initial_prior.h"
+#include "core/backend/window/landmark_tracks.h"
 #include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
 
@@ -21,6 +24,8 @@ constexpr double kAccelScale = 0.006;
 constexpr double kNoiseKnown_s = 1.5;
 /// Squared difference, in variances, below which a scale that differed is again that of the rig.
 constexpr double kLikeRig = 4.0;
+/// Relative error of the focal length and error of k1 that a calibration leaves.
+const Eigen::Vector2d kLensTolerance{0.002, 0.004};
 constexpr double kAveragingHalfWidth_s = 0.02;  // as far as samples are available after the newest exposure
 
 /// Limits `value` to [center - bound, center + bound]. @return whether it was outside
@@ -53,7 +58,9 @@ Window Calibration::calibrated_window() const {
   window.time_offset_s = rig_.time_offset_s;
   window.time_offset_model = config_.time_offset_model;
   window.agrees_with_rig = {.extrinsics = starts_with_rig() && config_.estimate_extrinsics,
-                            .depth_scale = compares_depth_scale() && !depth_scale_found_};
+                            .depth_scale = compares_depth_scale() && !depth_scale_found_,
+                            .lens = compares_lens() && !lens_found_};
+  if (lens_found_) window.lens = *lens_found_;
   if (depth_scale_found_) window.depth_scale = depth_scale_found_->value;
   if (!is_aligned_otherwise()) return window;
   window.T_b_c.q = rotation_alignment_->q_b_c;
@@ -97,9 +104,24 @@ double Calibration::depth_scale_contradiction(double difference, double variance
   return difference * difference / (variance * (1.0 + early * early) + kAccelScale * kAccelScale);
 }
 
-void Calibration::compare_with_rig(const RigContradiction& score, double depth_scale_variance,
+/// d^T (C + S)^-1 d with S what a calibration is good to.
+void Calibration::compare_lens(const Eigen::Vector2d& step, const Eigen::Matrix2d& covariance,
+                               Window& window) {
+  bool& agrees = window.agrees_with_rig.lens;
+  const Eigen::Vector2d difference = agrees ? step : window.lens;
+  const Eigen::Matrix2d tolerated = covariance + Eigen::Matrix2d(kLensTolerance.cwiseAbs2().asDiagonal());
+  const double contradiction = difference.dot(tolerated.llt().solve(difference));
+  agrees = agrees ? agrees_with_rig(contradiction, 2) : contradiction < kLikeRig;
+  if (agrees) set_lens(Eigen::Vector2d::Zero(), window);
+  lens_found_.reset();
+  if (!agrees) lens_found_ = window.lens;
+}
+
+void Calibration::compare_with_rig(const RigContradiction& score, const StateCovariance& covariance,
                                    Window& window) {
   AgreesWithRig& agrees = window.agrees_with_rig;
+  const double depth_scale_variance = covariance.depth_scale;
+  if (compares_lens() && covariance.lens(0, 0) > 0.0) compare_lens(score.lens_step, covariance.lens, window);
   if (compares_depth_scale() && depth_scale_variance > 0.0) {
     const double difference = agrees.depth_scale ? score.depth_scale_step : 1.0 / window.depth_scale - 1.0;
     const double contradiction =

@@ -46,9 +46,8 @@ class Calibration {
   ///
   /// is compared with the quantile of one degree of freedom; the term with t_n = 1.5 s doubts the inertial
   /// noise of the start. Below 4 the scale is that of the rig again: the prior of the window holds for any.
-  /// @param depth_scale_variance C; zero if unknown
   /// @param window calibration that contradicts the rig becomes variable in it
-  void compare_with_rig(const RigContradiction& score, double depth_scale_variance, Window& window);
+  void compare_with_rig(const RigContradiction& score, const StateCovariance& covariance, Window& window);
 
   /// `limit_calibration` about the rig.
   CalibrationAtBound limit(Window& window) const;
@@ -62,6 +61,7 @@ class Calibration {
   [[nodiscard]] bool starts_with_rig() const {
     return uses_imu_ && config_.calibration_agreement_probability > 0.0;
   }
+  [[nodiscard]] bool compares_lens() const { return starts_with_rig() && config_.estimate_lens; }
   [[nodiscard]] bool compares_depth_scale() const {
     return starts_with_rig() && config_.depth.estimate_scale;
   }
@@ -75,6 +75,9 @@ class Calibration {
   Rig rig_;
   std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
   std::optional<Timestamp> compared_since_;              ///< depth scales
+  void compare_lens(const Eigen::Vector2d& step, const Eigen::Matrix2d& covariance, Window& window);
+
+  std::optional<Eigen::Vector2d> lens_found_;            ///< same
   std::optional<DepthScaleEstimate> depth_scale_found_;  ///< contradicts the rig
 };
 

@@ -17,6 +17,10 @@ constexpr double kGaugeSigma_rad = 1e-3;
 /// [m] and [rad]: exact up to rounding errors, so that covariances are relative to the first pose.
 constexpr double kExactSigma = 1e-6;
 
+/// What calibrations of consumer cameras are off by: 2 % of the focal length, 0.05 of k1.
+constexpr double kFocalSigma = 0.02;
+constexpr double kDistortionSigma = 0.05;
+
 /// Jump of the oldest pose in one solve above which the gauge is restored.
 constexpr double kJump_m = 0.1;
 constexpr double kJump_rad = 0.02;
@@ -111,13 +115,18 @@ LinearPrior calibration_prior(const Window& window, const BackendConfig& config)
   prior.blocks.push_back(prior_block(window, BlockKind::kExtrinsics, -1));
   prior.blocks.push_back(prior_block(window, BlockKind::kTimeOffset, -1));
   if (config.depth.estimate_scale) prior.blocks.push_back(prior_block(window, BlockKind::kDepthScale, -1));
-  const Eigen::Index size = config.depth.estimate_scale ? 8 : 7;
+  if (config.estimate_lens) prior.blocks.push_back(prior_block(window, BlockKind::kLens, -1));
+  const Eigen::Index size = 7 + (config.depth.estimate_scale ? 1 : 0) + (config.estimate_lens ? 2 : 0);
   prior.residual = Eigen::VectorXd::Zero(size);
   prior.jacobian = Eigen::MatrixXd::Zero(size, size);
   prior.jacobian.topLeftCorner<6, 6>() =
       pose_root_information(config.extrinsics_sigma_m, config.extrinsics_sigma_rad);
   prior.jacobian(6, 6) = 1.0 / config.time_offset_sigma_s;
   if (config.depth.estimate_scale) prior.jacobian(7, 7) = 1.0 / config.depth.scale_sigma;
+  if (config.estimate_lens) {
+    prior.jacobian(size - 2, size - 2) = 1.0 / kFocalSigma;
+    prior.jacobian(size - 1, size - 1) = 1.0 / kDistortionSigma;
+  }
   return prior;
 }
 

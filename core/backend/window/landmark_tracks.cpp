@@ -4,13 +4,24 @@
 #include <optional>
 #include <utility>
 
+#include "core/backend/factors/reprojection_rows.h"
+
 namespace stillpoint {
 namespace {
 
-Observation make_observation(const TrackedFeature& feature, const Rig& rig, const DepthConfig& config) {
+/// What the observations of a frame share.
+struct FrameCalibration {
+  const Rig& rig;
+  const DepthConfig& depth;
+  Eigen::Vector2d lens;
+};
+
+Observation make_observation(const TrackedFeature& feature, const FrameCalibration& calibration) {
+  const auto& [rig, config, lens] = calibration;
   const double row = feature.pixel.y() / rig.camera.height - 0.5;
   const bool valid_depth = config.usage != DepthUsage::kOff && feature.depth >= config.min_m;
-  return Observation{.bearing = feature.bearing,
+  return Observation{.bearing = corrected_bearing(feature.bearing, lens),
+                     .seen = feature.bearing,
                      .velocity = feature.velocity,
                      .depth = valid_depth ? feature.depth : 0.0,
                      .readout_offset_s = row * rig.rolling_shutter_s};
@@ -80,8 +91,17 @@ void move_to_next_host(const Window& window, Landmark& landmark) {
 
 }  // namespace
 
+void set_lens(const Eigen::Vector2d& lens, Window& window) {
+  if (lens == window.lens) return;
+  window.lens = lens;
+  for (Landmark& landmark : window.landmarks)
+    for (Observation& observation : landmark.observations)
+      observation.bearing = corrected_bearing(observation.seen, lens);
+}
+
 void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConfig& config, Window& window) {
   const int newest = window.newest();
+  const FrameCalibration calibration{rig, config, window.lens};
   auto landmark = window.landmarks.begin();
   for (const TrackedFeature& feature : frame.features) {
     if (!feature.bearing.allFinite()) continue;
@@ -90,12 +110,12 @@ void add_observations(const TrackedFrame& frame, const Rig& rig, const DepthConf
         landmark != window.landmarks.end() && landmark->id == feature.id && landmark->last() == newest - 1;
     if (known) {
       complete_first_velocity(feature, window, *landmark);
-      landmark->observations.push_back(make_observation(feature, rig, config));
+      landmark->observations.push_back(make_observation(feature, calibration));
     } else if (landmark == window.landmarks.end() || landmark->id != feature.id) {
       landmark = window.landmarks.insert(
-          landmark, make_landmark(feature, make_observation(feature, rig, config), window));
+          landmark, make_landmark(feature, make_observation(feature, calibration), window));
     } else {  // recognized after a loss
-      landmark->observations.push_back(make_observation(feature, rig, config));
+      landmark->observations.push_back(make_observation(feature, calibration));
       landmark->host = newest + 1 - static_cast<int>(landmark->observations.size());
       restart_track(*landmark);
     }

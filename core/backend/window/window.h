@@ -19,7 +19,8 @@ namespace stillpoint {
 
 /// Observation of one landmark in one frame of the window.
 struct Observation {
-  Eigen::Vector2d bearing = Eigen::Vector2d::Zero();   ///< normalized image plane
+  Eigen::Vector2d bearing = Eigen::Vector2d::Zero();   ///< normalized image plane, with the lens correction
+  Eigen::Vector2d seen = Eigen::Vector2d::Zero();      ///< bearing by the camera of the rig
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of the bearing [1/s]
   double depth = 0.0;                                  ///< measured [m]; 0 = not measured or out of range
   double readout_offset_s = 0.0;  ///< readout time of its row minus that of the middle row
@@ -64,6 +65,8 @@ struct Window {
   double time_offset_s = 0.0;
   TimeOffsetModel time_offset_model = TimeOffsetModel::kBearing;
   double depth_scale = 1.0;  ///< ratio of measured to true depth
+  Eigen::Vector2d lens =
+      Eigen::Vector2d::Zero();  ///< correction (f, k1) of the rig's camera, see reprojection_rows.h
   AgreesWithRig agrees_with_rig;
   Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();
   /// Covariance of the direction of gravity [rad^2] in its tangent space (see gravity_direction.h) when the

@@ -66,14 +66,36 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   const AgreesWithRig& agrees = compared.agrees_with_rig;
   EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
   // 16.8 is the 0.99 quantile of six degrees of freedom.
-  calibration.compare_with_rig({.extrinsics = 16.8}, 0.0, compared);
+  calibration.compare_with_rig({.extrinsics = 16.8}, {}, compared);
   EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
-  calibration.compare_with_rig({.extrinsics = 30.0}, 0.0, compared);
+  calibration.compare_with_rig({.extrinsics = 30.0}, {}, compared);
   EXPECT_FALSE(agrees.extrinsics);
   const Window window = calibration.calibrated_window();
   EXPECT_EQ(window.T_b_c.p, rig.T_b_c.p);
   EXPECT_EQ(window.time_offset_s, rig.time_offset_s);
   EXPECT_EQ(window.depth_scale, 1.0);
+}
+
+TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
+  BackendConfig config = estimating_config();
+  config.estimate_lens = true;
+  Calibration calibration(config, true, {});
+  Window window = calibration.calibrated_window();
+  StateCovariance covariance;
+  covariance.lens = 1e-6 * Eigen::Matrix2d::Identity();
+  EXPECT_TRUE(window.agrees_with_rig.lens);
+  calibration.compare_with_rig({.lens_step = {0.003, 0.006}}, covariance, window);
+  EXPECT_TRUE(window.agrees_with_rig.lens);
+  calibration.compare_with_rig({.lens_step = {0.02, 0.0}}, covariance, window);
+  EXPECT_FALSE(window.agrees_with_rig.lens);
+  window.lens = {0.02, -0.04};
+  calibration.compare_with_rig({}, covariance, window);
+  EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector2d(0.02, -0.04));
+  window.lens = {0.002, 0.001};
+  calibration.compare_with_rig({}, covariance, window);
+  EXPECT_TRUE(window.agrees_with_rig.lens);
+  EXPECT_EQ(window.lens, Eigen::Vector2d::Zero());
+  EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector2d::Zero());
 }
 
 /// A calibration and a window that are compared after `seconds` for the second time.
@@ -84,7 +106,9 @@ struct Compared {
   void compare(double step, double sigma, double seconds) {
     window.frames.resize(1);
     window.frames.back().state.t = after(Timestamp{}, seconds);
-    calibration.compare_with_rig({.depth_scale_step = step}, sigma * sigma, window);
+    StateCovariance covariance;
+    covariance.depth_scale = sigma * sigma;
+    calibration.compare_with_rig({.depth_scale_step = step}, covariance, window);
   }
 };
 

@@ -70,7 +70,8 @@ class FullInformation {
     return (within(BlockKind::kExtrinsics) && !variable.extrinsics) ||
            (within(BlockKind::kTimeOffset) && !variable.time_offset) ||
            (within(BlockKind::kGravity) && !variable.gravity) ||
-           (within(BlockKind::kDepthScale) && !variable.depth_scale);
+           (within(BlockKind::kDepthScale) && !variable.depth_scale) ||
+           (within(BlockKind::kLens) && !variable.lens);
   }
 
   void add(const Residual& residual) {
@@ -151,6 +152,7 @@ TEST(NewestCovariance, OfTheWholeCalibration) {
   options.config.time_offset_model = TimeOffsetModel::kInertial;
   options.config.estimate_extrinsics = true;
   options.config.depth.estimate_scale = true;
+  options.config.estimate_lens = true;
   expect_covariances(options);
 }
 

@@ -22,6 +22,9 @@ constexpr double kInverseDepth = 0.5;  // [1/m]
 ReprojectionMeasurement measurement() {
   return {.bearing_i = {0.2, -0.1},
           .bearing_j = {0.1, -0.05},
+          .seen_i = {0.19, -0.08},
+          .seen_j = {0.11, -0.06},
+          .lens = {0.01, -0.02},
           .velocity_i = {0.3, -0.2},
           .velocity_j = {0.25, 0.1},
           .exposure_i_s = 0.004,
@@ -30,12 +33,12 @@ ReprojectionMeasurement measurement() {
 }
 const ReprojectionNoise kNoise{.bearing = 0.003, .inverse_depth = 0.01, .depth_outlier = 2.0};
 
-/// With the depth scale 1.
+/// With the depth scale 1 and the lens of the measurement.
 Blocks blocks_at(double time_offset) {
-  return {block(kTwBi), block(kTwBj), block(kTbC), {time_offset}, {1.0}, {kInverseDepth}};
+  return {block(kTwBi), block(kTwBj), block(kTbC), {time_offset}, {0.01, -0.02}, {1.0}, {kInverseDepth}};
 }
 Blocks without_depth_scale(Blocks blocks) {
-  blocks.erase(blocks.begin() + 4);
+  blocks.erase(blocks.begin() + 5);
   return blocks;
 }
 
@@ -51,13 +54,13 @@ TEST(ReprojectionFactor, JacobiansMatchNumericDifferentiationWithDepth) {
 
 TEST(ReprojectionFactor, JacobiansMatchNumericDifferentiationWithADepthScale) {
   Blocks blocks = blocks_at(0.002);
-  blocks[4] = {0.9};
+  blocks[5] = {0.9};
   const ReprojectionFactor<3> factor(measurement(), kNoise);
   EXPECT_LT(jacobian_error(factor, blocks), 1e-6);
   // By the depth scale to 1e-9: Richardson extrapolation of two step sizes.
-  const Eigen::MatrixXd coarse = numeric_jacobians(factor, blocks, 2e-4)[4];
-  const Eigen::MatrixXd numeric = (4.0 * numeric_jacobians(factor, blocks, 1e-4)[4] - coarse) / 3.0;
-  EXPECT_LT((numeric - analytic_jacobians(factor, blocks)[4]).norm(), 1e-9 * numeric.norm());
+  const Eigen::MatrixXd coarse = numeric_jacobians(factor, blocks, 2e-4)[5];
+  const Eigen::MatrixXd numeric = (4.0 * numeric_jacobians(factor, blocks, 1e-4)[5] - coarse) / 3.0;
+  EXPECT_LT((numeric - analytic_jacobians(factor, blocks)[5]).norm(), 1e-9 * numeric.norm());
 }
 
 TEST(ReprojectionFactor, IsSmoothAtInfinity) {

@@ -82,6 +82,7 @@ const std::vector<Case> kCases = {
                 o.config.prior = PriorModel::kConsistent;
                 o.config.estimate_extrinsics = true;
                 o.config.depth.estimate_scale = true;
+                o.config.estimate_lens = true;
                 o.depth_factor = 1.03;
                 o.time_offset_s = -0.01;
                 o.frames = 24;
@@ -126,8 +127,11 @@ struct ColumnPairs {
 
 ColumnPairs matching_columns(const Window& window, const ReducedLayout& reduced) {
   const StateLayout reference(static_cast<int>(window.frames.size()));
-  std::vector<BlockRef> blocks = {
-      {BlockKind::kExtrinsics}, {BlockKind::kTimeOffset}, {BlockKind::kGravity}, {BlockKind::kDepthScale}};
+  std::vector<BlockRef> blocks = {{BlockKind::kExtrinsics},
+                                  {BlockKind::kTimeOffset},
+                                  {BlockKind::kGravity},
+                                  {BlockKind::kDepthScale},
+                                  {BlockKind::kLens}};
   for (int frame = 0; frame <= window.newest(); ++frame) {
     blocks.push_back({BlockKind::kPose, frame});
     blocks.push_back({BlockKind::kSpeedBias, frame});
