@@ -122,7 +122,8 @@ TEST(CompareCommand, RepetitionsOfAProgramWithoutPerturbationAreOneReplicate) {
   const std::string base = write_program(fixture.folder(), "base", "--unperturbed");
   const std::string head = write_program(fixture.folder(), "head", "--worse freiburg1_fast 1.1");
   const CompareResult result = fixture.compare(base, head, 6);
-  EXPECT_NE(result.exit_code, 1) << result.out;
+  EXPECT_NE(change_class(result.json, "ate_rmse_m", "freiburg1_fast"), "worse") << result.out;
+  EXPECT_NE(change_class(result.json, "ate_rmse_m"), "worse") << result.out;
   EXPECT_EQ(result.json["compared"], 12);
   EXPECT_NE(result.out.find("does not accept pipeline.perturbation_seed"), std::string::npos) << result.out;
 }
