@@ -22,6 +22,8 @@ struct OrderFinding {
 
 /// Compares the R.RPE of the files as read with that of the estimate, the ground truth, or both in the other
 /// order of quaternions. Two files with the same wrong order agree approximately, so both are tried, too.
+/// @param gt ground truth
+/// @param est estimate
 /// @param offset_s added to the stamps of the estimate
 /// @return nullopt if no other reading reduces the R.RPE to less than a third, or the R.RPE is less than
 /// 0.5 deg/s, or fewer than ten poses match

@@ -40,6 +40,7 @@ enum class Quantity { kPosition, kQuaternion, kAngularVelocity, kAcceleration };
 [[nodiscard]] std::optional<std::size_t> time_column(const TableHeader& header);
 
 /// Unit of the column of time stamps: by the unit behind its name, or a name that ends with "ns".
+/// @param header of the file
 /// @param file name of the file, for messages
 /// @return nullopt if the header states none
 /// @throws InputError for milliseconds and microseconds

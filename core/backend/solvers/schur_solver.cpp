@@ -315,7 +315,9 @@ std::optional<WindowCovariance> SchurSolver::covariance(const Window& window, co
   WindowCovariance result{.newest = state_covariance(prior_blocks_, newest)};
   if (window.agrees_with_rig.any()) {
     skyline_solve(system_.first, S_, newton_.states);
-    const NewestVector step = newton_.states(columns_);
+    NewestVector step(static_cast<Eigen::Index>(columns_.size()));  // a view by columns_ would copy them
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      step[static_cast<Eigen::Index>(i)] = newton_.states[columns_[i]];
     result.rig = rig_contradiction(window.agrees_with_rig, prior_blocks_, newest, step);
   }
   if (oldest_motion) result.oldest_motion = oldest_motion_of(window, inverse_blocks(kOldestPoses));
