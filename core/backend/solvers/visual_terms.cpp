@@ -113,6 +113,7 @@ double VisualTerms::cost(const ParameterBlocks& blocks) {
 }
 
 double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
+  lens_varies_ = system.layout.variable_globals().lens;
   update_relative_poses(at.states);
   update_pose_jacobians(at.point, system.layout.variable_globals().extrinsics);
   for (std::size_t i = 0; i < sums_.size(); ++i) {
@@ -169,10 +170,12 @@ VisualTerms::ObservationTerm VisualTerms::linearize(const TimedObservation& time
     }
     term.rows.row(6).head<2>() += timed.bearing.velocity.transpose() / noise_.bearing;
   }
-  const Eigen::Vector3d J_host = at.J_point * (to.R_cj_ci.leftCols<2>() * host.seen);
-  term.J_lens = lens_powers(host.seen).transpose() * J_host.transpose();
-  term.J_lens.leftCols<2>() -=
-      lens_powers(timed.bearing.seen).transpose() * (timed.bearing.seen.transpose() / noise_.bearing);
+  if (lens_varies_) {
+    const Eigen::Vector3d J_host = at.J_point * (to.R_cj_ci.leftCols<2>() * host.seen);
+    term.J_lens = lens_powers(host.seen).transpose() * J_host.transpose();
+    term.J_lens.leftCols<2>() -=
+        lens_powers(timed.bearing.seen).transpose() * (timed.bearing.seen.transpose() / noise_.bearing);
+  }
   term.J_lambda = at.J_point * to.p_cj_ci;
   term.J_lambda[2] += at.J_depth_lambda;
   term.J_scale = at.J_depth_scale;
@@ -200,7 +203,7 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
     const Eigen::Matrix<double, 8, 3> weighted = term.rows / term.inverse_weight;
     sums_[shared].noalias() += weighted * term.rows.transpose();
     if (with_scale) add_scale_terms(landmark, frame, term, layout);
-    if (layout.variable_globals().lens) add_lens_terms(landmark, frame, term, layout);
+    if (lens_varies_) add_lens_terms(landmark, frame, term, layout);
     if (landmark.column < 0) continue;
     const Column8 column = weighted * term.J_lambda;
     information += term.J_lambda.squaredNorm() / term.inverse_weight;

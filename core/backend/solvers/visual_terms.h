@@ -128,7 +128,8 @@ class VisualTerms {
   int frames_ = 0;
   int measured_ = 0;
   bool bearings_move_ = false;  // with the time offset, see ObservationModel
-  bool marginalizes_ = false;   // only a fraction of the information, see marginalized_fraction
+  bool lens_varies_ = false;
+  bool marginalizes_ = false;  // only a fraction of the information, see marginalized_fraction
   double cauchy_squared_ = 1.0;
   double time_offset_ = 0.0;
   double inverse_depth_scale_ = 1.0;

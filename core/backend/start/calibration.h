@@ -13,11 +13,11 @@
 
 namespace stillpoint {
 
-/// The calibration that a window starts with, and whether it is that of the rig. Estimated extrinsics and
-/// depth scale have the values of the rig until the data contradicts those with
+/// The calibration that a window starts with, and whether it is that of the rig. Estimated extrinsics,
+/// depth scale and lens have the values of the rig until the data contradicts those with
 /// `calibration_agreement_probability`. Then a window starts with what was found so far: rotation and time
-/// offset by a RotationAlignment, the depth scale by the window before. The lever arm is estimated by the
-/// window itself.
+/// offset by a RotationAlignment, depth scale and lens by the window before. The lever arm is estimated by
+/// the window itself.
 class Calibration {
  public:
   Calibration(const BackendConfig& config, bool uses_imu, const Rig& rig);
@@ -46,6 +46,9 @@ class Calibration {
   ///
   /// is compared with the quantile of one degree of freedom; the term with t_n = 1.5 s doubts the inertial
   /// noise of the start. Below 4 the scale is that of the rig again: the prior of the window holds for any.
+  /// The lens likewise, with what a calibration leaves in place of s_a, and from the start.
+  /// @param score of the last solve
+  /// @param covariance of its newest state
   /// @param window calibration that contradicts the rig becomes variable in it
   void compare_with_rig(const RigContradiction& score, const StateCovariance& covariance, Window& window);
 
@@ -65,6 +68,7 @@ class Calibration {
   [[nodiscard]] bool compares_depth_scale() const {
     return starts_with_rig() && config_.depth.estimate_scale;
   }
+  void compare_lens(const Eigen::Vector2d& step, const Eigen::Matrix2d& covariance, Window& window);
   [[nodiscard]] double depth_scale_contradiction(double difference, double variance, Timestamp now);
   [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
   /// Whether there is an alignment that contradicts the rig.
@@ -75,10 +79,8 @@ class Calibration {
   Rig rig_;
   std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
   std::optional<Timestamp> compared_since_;              ///< depth scales
-  void compare_lens(const Eigen::Vector2d& step, const Eigen::Matrix2d& covariance, Window& window);
-
-  std::optional<Eigen::Vector2d> lens_found_;            ///< same
   std::optional<DepthScaleEstimate> depth_scale_found_;  ///< contradicts the rig
+  std::optional<Eigen::Vector2d> lens_found_;            ///< same
 };
 
 /// Sets what the IMU measures at the exposure of a frame to means over up to 40 ms around it, if there are
