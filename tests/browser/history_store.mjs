@@ -23,7 +23,7 @@ function run(i, variant, sequence, cpu, numbers) {
   return {
     identity: { system: "stillpoint", variant, sequence, sequence_id: "data", config_hash: "c", build: commit, mode: "sequential", kind: "accuracy",
       cores: "", seed: 1, repetition: 1, axis: "", axis_value: 0, },
-    outcome: "ok", detail: "", attachments: {},
+    outcome: "ok", detail: "", started: time(i), ended: time(i), attachments: {},
     metrics: [["ate_rmse_m", "m", numbers.ate], ["coverage", "", 0.96], ["process_cpu_s", "s", numbers.cpu], ["resets", "", 0]]
       .map(([name, unit, value]) => ({ name, protocol: "r", unit, value })),
     costs: [["state_optimization", numbers.solve], ["feature_tracking", numbers.track]]
