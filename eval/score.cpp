@@ -21,7 +21,7 @@ Score score(const Trajectory& gt, const Trajectory& est, const ScoreOptions& opt
                                        .offset_s = options.offset_s};
   result.ate = ate(gt, est, association);
   result.rpe_delta_s = options.rpe_delta_s;
-  if (missing_orientations(gt, est).empty()) {
+  if (missing_orientations(gt, est, options.offset_s).empty()) {
     result.rpe = rpe(gt, est, {.delta = options.rpe_delta_s, .offset_s = options.offset_s});
     result.correct_rate = correct_rate(gt, est, options.correct, options.offset_s);
   }

@@ -214,9 +214,8 @@ std::optional<ConventionFinding> body_frame(const Trajectory& gt, const Trajecto
   constexpr double kMaxSpread = 0.2;  // relative to the mean rotation error
   const std::vector<MatchedPose> matches = strict_matches(gt, est);
   if (matches.size() < kMinMatches) return std::nullopt;
-  AlignmentResult fit = align(matches, Alignment::kSe3);
-  if (!fit.determined) return std::nullopt;
-  fit.S_w_v = complete_rotation(matches, fit.S_w_v).S_w_v;
+  const CompletedAlignment fit = complete_rotation(matches, align(matches, Alignment::kSe3).S_w_v);
+  if (!fit.determined || !missing_orientations(gt, est).empty()) return std::nullopt;
   Eigen::Quaterniond mean = (fit.S_w_v * matches.front().est).q.conjugate() * matches.front().gt.q;
   const auto rotation_error = [&](const MatchedPose& match) {
     return (fit.S_w_v * match.est).q.conjugate() * match.gt.q;

@@ -115,7 +115,10 @@ std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
   if (matches.empty()) return 0.0;
   for (MatchedPose& match : matches) match.t = after(match.t, offset_s);
   const Similarity S_w_v = align(matches, Alignment::kSe3).S_w_v;
-  const AteErrors errors = ate_errors(matches, complete_rotation(matches, S_w_v).S_w_v);
+  const CompletedAlignment completed = complete_rotation(matches, S_w_v);
+  if (!completed.determined && std::isfinite(options.max_rotation_deg)) return std::nullopt;
+  AteErrors errors = ate_errors(matches, S_w_v);
+  errors.rotation_deg = ate_errors(matches, completed.S_w_v).rotation_deg;
   const double correct = correct_seconds(matches, errors, gt.poses.back().t, options);
   return correct / seconds_between(gt.poses.front().t, gt.poses.back().t);
 }

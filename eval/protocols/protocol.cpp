@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -15,6 +16,8 @@
 namespace stillpoint::eval {
 namespace {
 
+constexpr double kNotDetermined = std::numeric_limits<double>::quiet_NaN();
+
 /// RPE of a protocol, and the warnings that belong to it.
 struct RpeEvaluation {
   std::optional<Statistics> translation_m;
@@ -22,28 +25,38 @@ struct RpeEvaluation {
   std::vector<std::string> notes;
 };
 
+/// Matches, and an alignment that was fitted to the first of them.
+struct AlignedMatches {
+  std::span<const MatchedPose> matches;
+  AlignmentResult alignment;
+  CompletedAlignment completed;
+};
+
+AlignedMatches aligned(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n) {
+  const std::size_t count = first_n == 0 ? matches.size() : std::min(first_n, matches.size());
+  AlignedMatches result{matches, align(matches, kind, first_n), {}};
+  result.completed = complete_rotation(matches.first(count), result.alignment.S_w_v, kind);
+  return result;
+}
+
 /// An evaluation with the alignment, the ATE and the errors per pose; the other fields are empty.
-/// @param fitted whether the rotation was fitted to the positions
-Evaluation ate_evaluation(std::span<const MatchedPose> matches, const AlignmentResult& alignment,
-                          bool fitted) {
+Evaluation ate_evaluation(const AlignedMatches& aligned) {
   Evaluation evaluation;
-  evaluation.pairs = matches.size();
-  evaluation.alignment = alignment;
-  AteErrors errors = ate_errors(matches, alignment.S_w_v);
-  const CompletedAlignment completed = complete_rotation(matches, alignment.S_w_v);
-  if (fitted && completed.source != RotationSource::kPositions) {
-    errors.rotation_deg = ate_errors(matches, completed.S_w_v).rotation_deg;
-    evaluation.notes.emplace_back(
-        completed.source == RotationSource::kLine
-            ? "the path is a straight line: for the errors in degrees, the rotation about it is that of the "
-              "orientations"
-            : "the positions stand still: for the errors in degrees, the alignment is that of the "
-              "orientations");
+  evaluation.pairs = aligned.matches.size();
+  evaluation.alignment = aligned.alignment;
+  evaluation.rotation_source = aligned.completed.source;
+  evaluation.rotation_determined = aligned.completed.determined;
+  AteErrors errors = ate_errors(aligned.matches, aligned.alignment.S_w_v);
+  if (aligned.completed.source != RotationSource::kPositions) {
+    evaluation.alignment.determined = false;
+    errors.rotation_deg = ate_errors(aligned.matches, aligned.completed.S_w_v).rotation_deg;
   }
   evaluation.ate_m = statistics(errors.translation_m);
-  evaluation.ate_deg = statistics(errors.rotation_deg);
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    evaluation.per_pose.push_back({matches[i].t, errors.translation_m[i], errors.rotation_deg[i]});
+  if (aligned.completed.determined) evaluation.ate_deg = statistics(errors.rotation_deg);
+  evaluation.per_pose.reserve(aligned.matches.size());
+  for (std::size_t i = 0; i < aligned.matches.size(); ++i) {
+    evaluation.per_pose.push_back({aligned.matches[i].t, errors.translation_m[i],
+                                   aligned.completed.determined ? errors.rotation_deg[i] : kNotDetermined});
   }
   return evaluation;
 }
@@ -56,11 +69,21 @@ Evaluation with_rpe(Evaluation evaluation, const RpeEvaluation& rpe) {
   return evaluation;
 }
 
-bool is_fitted(Alignment alignment) { return alignment == Alignment::kSe3 || alignment == Alignment::kSim3; }
-
 /// The alignment of a tool, SE(3) unless the options override it, over the matches.
-bool is_fitted(const ProtocolOptions& options) {
-  return is_fitted(options.alignment.value_or(Alignment::kSe3));
+AlignedMatches aligned(std::span<const MatchedPose> matches, const ProtocolOptions& options) {
+  return aligned(matches, options.alignment.value_or(Alignment::kSe3), options.align_first_n);
+}
+
+/// `aligned`, for tools that reject positions that do not determine the alignment.
+/// @throws InputError with the name of the protocol
+AlignedMatches aligned_or_throw(std::span<const MatchedPose> matches, const ProtocolOptions& options,
+                                const std::string& protocol) {
+  AlignedMatches result = aligned(matches, options);
+  if (result.alignment.determined) return result;
+  throw InputError(
+      protocol, "the alignment is not determined by " + std::to_string(matches.size()) +
+                    " matched poses (their positions coincide or are collinear), which the tool rejects; use "
+                    "strict:se3, or --align first_pose or none");
 }
 
 constexpr double kEvoMaxDifference = 0.01;  // [s], evo's t_max_diff
@@ -122,9 +145,7 @@ Evaluation evaluate_compat_tum(const EvaluationInput& input) {
   const std::vector<MatchedPose> matches = matched_poses(
       input.gt, input.est, associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
   if (matches.size() >= 2) {
-    evaluation = ate_evaluation(
-        matches, align(matches, options.alignment.value_or(Alignment::kSe3), options.align_first_n),
-        is_fitted(options));
+    evaluation = ate_evaluation(aligned(matches, options));
   }
   return with_rpe(std::move(evaluation), tum_rpe(input));
 }
@@ -134,9 +155,8 @@ Evaluation evaluate_compat_evo(const EvaluationInput& input) {
   const std::vector<MatchedPose> matches = matched_poses(
       input.gt, input.est, associate_evo(input.gt, input.est, tool_association(options, kEvoMaxDifference)));
   if (matches.empty()) return {};
-  const AlignmentResult alignment = align_or_throw(matches, options.alignment.value_or(Alignment::kSe3),
-                                                   options.align_first_n, "compat:evo");
-  return with_rpe(ate_evaluation(matches, alignment, is_fitted(options)), evo_rpe(matches, options));
+  return with_rpe(ate_evaluation(aligned_or_throw(matches, options, "compat:evo")),
+                  evo_rpe(matches, options));
 }
 
 Evaluation evaluate_compat_rpg(const EvaluationInput& input) {
@@ -144,10 +164,8 @@ Evaluation evaluate_compat_rpg(const EvaluationInput& input) {
   std::vector<MatchedPose> matches = matched_poses(
       input.gt, input.est, associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
   if (matches.empty()) return {};
-  const AlignmentResult alignment = align_or_throw(matches, options.alignment.value_or(Alignment::kSe3),
-                                                   options.align_first_n, "compat:rpg");
-  Evaluation evaluation = ate_evaluation(matches, alignment, is_fitted(options));
-  for (MatchedPose& match : matches) match.est = alignment.S_w_v * match.est;
+  Evaluation evaluation = ate_evaluation(aligned_or_throw(matches, options, "compat:rpg"));
+  for (MatchedPose& match : matches) match.est = evaluation.alignment.S_w_v * match.est;
   evaluation.segments = segment_errors(
       matches, {.lengths_m = options.segment_lengths_m, .tolerance = kRpgTolerance, .shift_starts = true});
   evaluation.drift_percent = drift_percent(evaluation.segments);
@@ -164,12 +182,11 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
       .correct = {}, .max_gap_s = options.max_difference_s.value_or(0.5), .scale = false};
   const std::vector<MatchedPose> matches = matched_poses(
       input.gt, input.est, associate_interpolated(input.gt, input.est, metric.max_gap_s, options.offset_s));
-  const AlignmentResult alignment =
-      align(matches, options.alignment.value_or(Alignment::kSe3), options.align_first_n);
-  Evaluation evaluation = ate_evaluation(matches, alignment, is_fitted(options));
+  Evaluation evaluation = ate_evaluation(aligned(matches, options));
   Trajectory shifted = input.est;
   for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, options.offset_s);
-  const OpenlorisSequenceScore score = score_openloris_sequence(input.gt, shifted, alignment.S_w_v, metric);
+  const OpenlorisSequenceScore score =
+      score_openloris_sequence(input.gt, shifted, evaluation.alignment.S_w_v, metric);
   evaluation.correct_rate = score.correct_rate;
   evaluation.first_pose_s = score.relocalization_time_s;
   return evaluation;
@@ -257,6 +274,24 @@ std::optional<double> jitter_of(std::span<const MatchedPose> matches, const Simi
   return std::sqrt(sum / static_cast<double>(matches.size() - 2));
 }
 
+/// The alignment, with the rotation of `complete_rotation` where it was fitted to a part of the matches,
+/// since it decides the position errors of the others.
+/// @throws InputError if position errors depend on what the matches do not determine
+AlignedMatches strictly_aligned(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n) {
+  AlignedMatches result = aligned(matches, kind, first_n);
+  const CompletedAlignment& completed = result.completed;
+  const bool no_scale = kind == Alignment::kSim3 && completed.source == RotationSource::kStanding;
+  if (no_scale || (first_n > 0 && !completed.determined)) {
+    throw InputError("strict protocol",
+                     std::string(no_scale ? "the scale" : "the rotation") + " is not determined by " +
+                         std::to_string(first_n > 0 ? std::min(first_n, matches.size()) : matches.size()) +
+                         " matched poses (their positions coincide or are collinear); use --align " +
+                         (no_scale ? "se3, first_pose or none" : "first_pose or none"));
+  }
+  if (first_n > 0) result.alignment.S_w_v = completed.S_w_v;
+  return result;
+}
+
 /// @param alignment used unless the options override it
 /// @throws InputError if the matches do not determine the alignment, or for an RPE over frames
 Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
@@ -267,10 +302,7 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   std::vector<MatchedPose> matches = matched_poses(
       input.gt, est, associate_interpolated(input.gt, est, options.max_difference_s.value_or(kStrictMaxGap)));
   Evaluation evaluation;
-  if (!matches.empty()) {
-    evaluation = ate_evaluation(
-        matches, align_or_throw(matches, kind, options.align_first_n, "strict protocol"), is_fitted(kind));
-  }
+  if (!matches.empty()) evaluation = ate_evaluation(strictly_aligned(matches, kind, options.align_first_n));
   if (!input.gt.poses.empty()) {
     const TimeSpan whole{input.gt.poses.front().t, input.gt.poses.back().t};
     evaluation.lost = lost_spans(est, whole, kMaxHold);
@@ -322,7 +354,10 @@ constexpr std::string_view kOpenlorisText =
 constexpr std::string_view kStrictText =
     "Ground truth interpolated at each estimated pose, both neighbors less than 0.11 s (--max-difference) "
     "away, "
-    "exact stamps. Alignment over all matches, an error if they do not determine it. RPE from every match to "
+    "exact stamps. Alignment over all matches; a rotation that positions do not determine (straight or "
+    "standing) "
+    "is that of the orientations, errors in degrees are n/a if these contradict each other. RPE from every "
+    "match to "
     "the one closest to delta later; pairs that miss delta by more than half a frame interval or a tenth "
     "of delta are dropped and counted. Coverage: fraction of the ground truth's duration with a valid "
     "pose; a pose is valid for at most 1 s. Errors are only comparable together with the coverage.";
@@ -386,16 +421,32 @@ std::span<const Protocol> protocols() { return kProtocols; }
 
 namespace {
 
+/// What the positions leave open; empty if nothing.
+std::string rotation_note(const Evaluation& evaluation) {
+  if (evaluation.rotation_source == RotationSource::kPositions) return "";
+  const std::string open =
+      evaluation.rotation_source == RotationSource::kLine
+          ? "the path is a straight line: positions leave the rotation about it not determined"
+          : "the positions stand still: they leave the rotation not determined";
+  return open + (evaluation.rotation_determined
+                     ? "; errors in degrees are those after the rotation that fits the orientations best"
+                     : ", and the orientations do not tell it: errors in degrees are n/a");
+}
+
 /// `evaluation` without the metrics that mean nothing, and with notes about doubtful ones.
 Evaluation with_doubts(Evaluation evaluation, const EvaluationInput& input) {
   constexpr std::size_t kFewPairs = 10;
   const auto note = [&](const std::string& text) { evaluation.notes.push_back(text); };
-  if (const std::string missing = missing_orientations(input.gt, input.est); !missing.empty()) {
+  if (const std::string missing = missing_orientations(input.gt, input.est, input.options.offset_s);
+      !missing.empty()) {
     note(missing);
+    evaluation.rotation_determined = evaluation.rotation_source == RotationSource::kPositions;
     evaluation.ate_deg = evaluation.rpe_m = evaluation.rpe_deg = std::nullopt;
+    for (PoseError& error : evaluation.per_pose) error.rotation_deg = kNotDetermined;
     evaluation.segments.clear();
     evaluation.drift_percent = evaluation.correct_rate = std::nullopt;
   }
+  if (const std::string open = rotation_note(evaluation); !open.empty()) note(open);
   if (evaluation.pairs > 0 && evaluation.pairs < kFewPairs)
     note("only " + std::to_string(evaluation.pairs) + " poses were compared");
   if (evaluation.rpe_m && evaluation.rpe_m->count < kFewPairs)

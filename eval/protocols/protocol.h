@@ -14,6 +14,7 @@
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
 #include "eval/trajectory/alignment.h"
+#include "eval/trajectory/orientations.h"
 
 namespace stillpoint::eval {
 
@@ -36,7 +37,7 @@ struct ProtocolOptions {
 struct PoseError {
   Timestamp t;
   double translation_m = 0.0;
-  double rotation_deg = 0.0;
+  double rotation_deg = 0.0;  ///< NaN: not determined
 };
 
 /// Result of one protocol for one estimate. nullopt means "n/a".
@@ -47,7 +48,9 @@ struct Evaluation {
   std::size_t gt_poses = 0;
   std::size_t est_poses = 0;
   std::size_t pairs = 0;
-  AlignmentResult alignment;
+  AlignmentResult alignment;  ///< `determined`: by the positions alone
+  RotationSource rotation_source = RotationSource::kPositions;
+  bool rotation_determined = true;  ///< by its source; otherwise errors of orientations are n/a
   std::optional<Statistics> ate_m;
   std::optional<Statistics> ate_deg;
   double rpe_delta = 1.0;
@@ -83,8 +86,8 @@ struct Protocol {
 [[nodiscard]] std::span<const Protocol> protocols();
 
 /// Evaluates an estimate with the named protocol.
-/// @throws InputError for an unknown protocol, for options that the protocol does not support, or if the
-/// alignment of a strict protocol is not determined
+/// @throws InputError for an unknown protocol, for options that the protocol does not support, or if the data
+/// do not determine what all errors depend on: the scale at standing positions, the rotation for evo and rpg
 [[nodiscard]] Evaluation evaluate(std::string_view protocol, const EvaluationInput& input);
 
 }  // namespace stillpoint::eval

@@ -4,9 +4,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <string>
-
-#include "core/base/error.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -53,7 +50,7 @@ AlignmentResult fit_rotation(const Moments& moments, bool with_scale) {
   const Eigen::Matrix3d R_w_v = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
   const Eigen::Vector3d& singular = svd.singularValues();
   const bool determined = singular(0) > 0.0 && singular(1) > kRankTolerance * singular(0);
-  const double scale = with_scale && determined ? singular.dot(signs) / moments.variance_est : 1.0;
+  const double scale = with_scale && singular(0) > 0.0 ? singular.dot(signs) / moments.variance_est : 1.0;
   return {map_means(moments, Eigen::Quaterniond(R_w_v).normalized(), scale), determined};
 }
 
@@ -68,13 +65,6 @@ AlignmentResult fit_yaw(const Moments& moments) {
   return {map_means(moments, q, 1.0), determined};
 }
 
-std::string_view name_of(Alignment kind) {
-  for (const auto& [value, name] : enum_names(kind)) {
-    if (value == kind) return name;
-  }
-  return "?";
-}
-
 }  // namespace
 
 AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n) {
@@ -87,16 +77,6 @@ AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind, std:
   const Moments moments = moments_of(matches.first(count));
   if (kind == Alignment::kYaw) return fit_yaw(moments);
   return fit_rotation(moments, kind == Alignment::kSim3);
-}
-
-AlignmentResult align_or_throw(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n,
-                               const std::string& context) {
-  AlignmentResult result = align(matches, kind, first_n);
-  if (result.determined) return result;
-  throw InputError(context, "alignment " + std::string(name_of(kind)) + " is not determined by " +
-                                std::to_string(matches.size()) +
-                                " matched poses (their positions coincide or are collinear); "
-                                "use first_pose or none");
 }
 
 Trajectory move_to_frame(const Trajectory& trajectory, const Pose& T_f_g, const std::string& name) {

@@ -67,11 +67,6 @@ struct AlignmentResult {
 [[nodiscard]] AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind,
                                     std::size_t first_n = 0);
 
-/// `align`, but an undetermined alignment is an error.
-/// @throws InputError if the alignment is not determined; the message begins with `context`
-[[nodiscard]] AlignmentResult align_or_throw(std::span<const MatchedPose> matches, Alignment kind,
-                                             std::size_t first_n, const std::string& context);
-
 /// Change of the body frame: T_w_g = T_w_f T_f_g for every pose; f and g are rigidly connected.
 /// @param trajectory poses T_w_f
 /// @param T_f_g pose of frame g in frame f

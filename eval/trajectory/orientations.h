@@ -29,21 +29,29 @@ enum class RotationSource {
 struct CompletedAlignment {
   Similarity S_w_v;  ///< maps the mean position as the given alignment does
   RotationSource source = RotationSource::kPositions;
+  bool determined = true;  ///< false: the orientations contradict each other, and S_w_v is as given
 };
 
 /// The alignment with the part of its rotation that the positions do not determine taken from the
 /// orientations. A path is a line if its standard deviation across is less than 5 % of that along, and less
-/// than three times the RMSE of the aligned positions; the camera stands if the standard deviation is less
-/// than 5 cm and three times the RMSE.
+/// than three times the RMSE of the aligned positions (of an estimate, which may have another scale, only an
+/// exact line counts); it stands if the standard deviation is less than 5 cm and three times the RMSE, or if
+/// the correlation of the aligned positions is less than 0.5. The orientations decide if the mean cosine of
+/// the angles between them is at least 0.5.
 /// @param matches positions and orientations
 /// @param S_w_v an alignment of the positions
+/// @param kind of that alignment: yaw is determined by a path that is no vertical line; kNone and kFirstPose
+/// have no fitted rotation and remain
 [[nodiscard]] CompletedAlignment complete_rotation(std::span<const MatchedPose> matches,
-                                                   const Similarity& S_w_v);
+                                                   const Similarity& S_w_v, Alignment kind = Alignment::kSe3);
 
 /// Why rotation errors and relative errors, which depend on orientations, mean nothing: the orientations of
 /// one trajectory are all equal (a system or receiver without orientations), while the other turns by more
-/// than 5 deg.
+/// than 5 deg, or they differ from those of the other by an RMS of more than 5 deg after alignment.
+/// @param gt, est ground truth and estimate
+/// @param offset_s added to the stamps of the estimate
 /// @return a sentence without a full stop; empty if the orientations can be compared
-[[nodiscard]] std::string missing_orientations(const Trajectory& gt, const Trajectory& est);
+[[nodiscard]] std::string missing_orientations(const Trajectory& gt, const Trajectory& est,
+                                               double offset_s = 0.0);
 
 }  // namespace stillpoint::eval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/text/evaluation_report.h"
 
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -84,8 +85,9 @@ std::string per_pose_csv(const std::vector<EvaluatedRun>& runs) {
   for (const EvaluatedRun& run : runs) {
     for (const eval::Evaluation& evaluation : run.evaluations) {
       for (const eval::PoseError& error : evaluation.per_pose) {
-        text += fmt::format("{},{},{},{:.17g},{:.17g}\n", run.name, evaluation.protocol,
-                            eval::format_stamp(error.t), error.translation_m, error.rotation_deg);
+        text += fmt::format("{},{},{},{:.17g},", run.name, evaluation.protocol, eval::format_stamp(error.t),
+                            error.translation_m);
+        text += std::isnan(error.rotation_deg) ? "n/a\n" : fmt::format("{:.17g}\n", error.rotation_deg);
       }
     }
   }
@@ -127,12 +129,17 @@ std::optional<double> rmse_per(const std::optional<eval::Statistics>& values, do
   return values->rmse / delta;
 }
 
-Json alignment_json(const eval::AlignmentResult& alignment) {
+Json alignment_json(const eval::Evaluation& evaluation) {
+  const eval::AlignmentResult& alignment = evaluation.alignment;
   const Pose& T = alignment.S_w_v.T_w_v;
+  const bool by_positions = evaluation.rotation_source == eval::RotationSource::kPositions;
   return {{"scale", alignment.S_w_v.scale},
           {"translation_m", {T.p.x(), T.p.y(), T.p.z()}},
           {"quaternion_xyzw", {T.q.x(), T.q.y(), T.q.z(), T.q.w()}},
-          {"determined", alignment.determined}};
+          {"determined", alignment.determined},
+          {"rotation", !evaluation.rotation_determined ? "not determined"
+                       : by_positions                  ? "positions"
+                                                       : "orientations"}};
 }
 
 Json segments_json(const std::vector<eval::SegmentErrors>& segments) {
@@ -219,7 +226,7 @@ Json evaluation_json(const eval::Evaluation& evaluation) {
   json["rpe_deg"] = statistics_json(evaluation.rpe_deg);
   json[id(metric_id::kDrift)] = number(evaluation.drift_percent);
   json["jitter_m"] = number(evaluation.jitter_m);
-  json["alignment"] = alignment_json(evaluation.alignment);
+  json["alignment"] = alignment_json(evaluation);
   json["segments"] = segments_json(evaluation.segments);
   json["lost_s"] = lost_json(evaluation.lost);
   json["notes"] = evaluation.notes;

@@ -37,7 +37,7 @@ struct EvaluatedRun {
 /// First line of `per_pose_csv`: `run,protocol,t,translation_m,rotation_deg`.
 [[nodiscard]] std::string per_pose_header();
 
-/// The header, and one row per matched pose.
+/// The header, and one row per matched pose; n/a: a rotation error that is not determined.
 [[nodiscard]] std::string per_pose_csv(const std::vector<EvaluatedRun>& runs);
 
 /// Description of each protocol used: association, alignment, and what it ignores.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -130,16 +131,44 @@ TEST(EvalCommand, AcceptsTheFormerNameOfTheProtocolOption) {
   EXPECT_EQ(run_program({"eval", "--help"}).out.find("--recipe"), std::string::npos);
 }
 
-TEST(EvalCommand, OmitsTheStrictProtocolForAStraightLineUnlessRequested) {
-  const TemporaryFolder folder;
+/// Poses on a line whose direction is the x or the y axis, which turn about it.
+std::string line_rows(bool along_x, double turn_per_pose) {
   std::string text;
-  for (int i = 0; i < 30; ++i) text += std::to_string(0.1 * i) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
-  const std::string line = folder.write("line.txt", text).string();
-  const ProgramResult by_default = run_program({"eval", line, line, "--csv"});
-  EXPECT_EQ(by_default.exit_code, 0);
-  EXPECT_NE(by_default.err.find("omitted: strict protocol: alignment se3 is not determined"),
-            std::string::npos);
-  EXPECT_EQ(run_program({"eval", line, line, "--protocol", "strict:se3"}).exit_code, 2);
+  char row[160];
+  for (int i = 0; i < 60; ++i) {
+    std::snprintf(row, sizeof row, "%.1f %d %d 0 %.9f 0 0 %.9f\n", 0.1 * i, along_x ? i : 0, along_x ? 0 : i,
+                  std::sin(0.5 * turn_per_pose * i), std::cos(0.5 * turn_per_pose * i));
+    text += row;
+  }
+  return text;
+}
+
+TEST(EvalCommand, SaysThatAStraightLineLeavesTheRotationNotDetermined) {
+  const TemporaryFolder folder;
+  const std::string gt = folder.write("gt.txt", line_rows(true, 0.0)).string();
+  const std::string same = folder.write("same.txt", line_rows(true, 0.001)).string();
+  const ProgramResult decided = run_program({"eval", gt, same, "--json"});
+  EXPECT_EQ(decided.exit_code, 0) << decided.err;
+  const auto evaluations = nlohmann::json::parse(decided.out).at("evaluations");
+  ASSERT_EQ(evaluations.size(), 2U);
+  for (const auto& evaluation : evaluations) {
+    EXPECT_EQ(evaluation.at("alignment").at("rotation"), "orientations");
+    EXPECT_LT(evaluation.at("ate_deg").at("rmse"), 3.0);
+    EXPECT_NE(evaluation.at("notes").dump().find("not determined"), std::string::npos);
+  }
+  const std::string spinning = folder.write("spinning.txt", line_rows(true, 0.5)).string();
+  const std::string errors = (folder.path() / "errors.csv").string();
+  const std::string turned = folder.write("turned.txt", line_rows(true, 0.01)).string();
+  const ProgramResult undecided =
+      run_program({"eval", turned, spinning, "--protocol", "strict:se3", "--csv", "--per-pose", errors});
+  EXPECT_EQ(undecided.exit_code, 0) << undecided.err;
+  EXPECT_NE(undecided.out.find("strict:se3,60,1.0000,n/a,0.000000,n/a,"), std::string::npos) << undecided.out;
+  EXPECT_NE(undecided.err.find("not determined, and the orientations do not tell it"), std::string::npos);
+  std::ifstream rows(errors);
+  std::string row;
+  std::getline(rows, row);
+  std::getline(rows, row);
+  EXPECT_TRUE(row.ends_with(",n/a")) << row;
 }
 
 TEST(EvalOpenlorisCommand, PrintsTheSceneTableAndDrawsTheFigure) {
