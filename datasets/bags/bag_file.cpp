@@ -39,6 +39,18 @@ std::vector<fs::path> files_of_folder(const fs::path& folder) {
   return files;
 }
 
+/// @throws InputError for files without a content, which no container recognizes
+void require_content(const fs::path& path) {
+  constexpr std::string_view kLfsPointer = "version https://git-lfs";
+  const ByteFile file(path);
+  if (file.size() == 0) throw InputError(path.string(), "is empty (0 bytes); copy or record it again");
+  const std::string beginning = file.read(0, 64);
+  if (beginning.starts_with(kLfsPointer))
+    throw InputError(path.string(), "is a pointer of Git LFS, not the bag; run `git lfs pull`");
+  if (beginning.find_first_not_of('\0') == std::string::npos)
+    throw InputError(path.string(), "begins with zero bytes only; copy it again");
+}
+
 /// The type in the spelling of ROS 1: "sensor_msgs/Image" of "sensor_msgs/msg/Image".
 std::string ros1_type(std::string type) {
   const std::size_t middle = type.find("/msg/");
@@ -61,6 +73,7 @@ BagFile::BagFile(const fs::path& path) : path_(path) {
   } else {
     add_file(path);
   }
+  if (messages_.empty()) throw InputError(path.string(), "contains no messages; record or copy it again");
   std::ranges::stable_sort(messages_, {},
                            [](const MessageReference& reference) { return reference.message.t; });
 }
@@ -68,6 +81,7 @@ BagFile::BagFile(const fs::path& path) : path_(path) {
 void BagFile::add_file(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) throw InputError(path.string(), "no such file");
+  require_content(path);
   File file{.path = path,
             .container = nullptr,
             .first_connection = static_cast<std::uint32_t>(connections_.size())};

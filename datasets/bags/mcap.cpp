@@ -72,25 +72,44 @@ class McapIndexer {
     std::uint64_t position = mcap::kMagic.size();
     bool complete = false;
     bool at_footer = false;
+    closed_ = file.size() >= 2 * mcap::kMagic.size() &&
+              file.read(file.size() - mcap::kMagic.size(), mcap::kMagic.size()) == mcap::kMagic;
     while (!at_footer && position + mcap::kRecordHeadBytes <= file.size()) {
       const RecordHead head = parse_head(file.read(position, mcap::kRecordHeadBytes), place_);
       const std::uint64_t data = position + mcap::kRecordHeadBytes;
-      if (head.bytes > file.size() - data) break;
+      if (head.opcode == 0 || head.bytes > file.size() - data) break;  // 0: a file is enlarged by zeros
       at_footer = head.opcode == mcap::kFooter;
       complete |= at_footer || head.opcode == mcap::kDataEnd;
-      add(head, position);
+      if (!read([&] { add(head, position); })) break;
       position = data + head.bytes;
     }
     index_.complete = complete;
     if (!complete)
       index_.warnings.emplace_back(
           "is not complete: it ends without its end mark; the records before are read");
-    finish_chunk();
+    static_cast<void>(read([this] { finish_chunk(); }));
     find_missing_channels();
+    if (index_.messages.empty() && !complete)
+      throw InputError(place_, "ends before its first message; copy or record it again");
     return std::move(index_);
   }
 
  private:
+  /// Runs `action`, which reads a record or chunk. The last one of a file that was not closed may be damaged.
+  /// @return false if it is
+  template <class Action>
+  [[nodiscard]] bool read(const Action& action) {
+    try {
+      action();
+      return true;
+    } catch (const InputError& error) {
+      if (closed_) throw;
+      index_.warnings.push_back("a record is damaged and was read in part (" + std::string(error.what()) +
+                                ")");
+      return false;
+    }
+  }
+
   [[nodiscard]] std::string fields_of(const RecordHead& head, std::uint64_t position) const {
     if (head.bytes > kMaxFieldsBytes)
       throw InputError(place_, "contains a record of impossible size; it is damaged, copy the file again");
@@ -235,7 +254,7 @@ class McapIndexer {
       if (unknown.contains(message.connection) && message.chunk != kWholeFile) chunks.insert(message.chunk);
     }
     for (const std::uint32_t chunk : chunks) {
-      if (known_.size() < ids_.size()) walk_chunk(chunk, false);
+      if (known_.size() < ids_.size()) static_cast<void>(read([&] { walk_chunk(chunk, false); }));
     }
     std::erase_if(index_.messages, [this](const BagMessage& message) {
       return index_.connections[message.connection].topic.empty();
@@ -248,6 +267,7 @@ class McapIndexer {
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, std::uint32_t> ids_;  ///< number in the file to index
   std::set<std::uint16_t> known_;               ///< described channels
+  bool closed_ = true;                          ///< whether the file ends as its recorder ends it
   bool indexed_ = true;                         ///< whether index records followed the last chunk
 };
 

@@ -90,24 +90,47 @@ class Ros1Indexer {
   explicit Ros1Indexer(const ChunkReader& reader) : reader_(reader), place_(reader.file().path().string()) {}
 
   [[nodiscard]] BagIndex run() {
-    const ByteFile& file = reader_.file();
+    const std::uint64_t size = reader_.file().size();
     std::uint64_t position = kVersion2.size();
-    while (position < file.size()) {
-      const std::optional<Record> record = record_at(
-          position, [&file](auto offset, auto count) { return file.read(offset, count); }, place_);
-      if (!record || record->end() > file.size()) {
-        truncated_ = true;
-        break;
+    while (position < size) {
+      if (const std::optional<Record> record = record_of_file(position)) {
+        add(*record);
+        position = record->end();
+        continue;
       }
-      add(*record);
-      position = record->end();
+      // `rosbag reindex` leaves a damaged chunk in front of the index; recorders leave zeros at the end.
+      const std::uint64_t end = position < index_position_ ? std::min(index_position_, size) : size;
+      if (is_foreign_) {
+        index_.warnings.push_back(std::to_string(end - position) + " bytes from byte " +
+                                  std::to_string(position) + " on are no records of a bag; they are ignored");
+      }
+      truncated_ |= !is_foreign_ && end == size;
+      position = end;
     }
-    truncated_ |= index_position_ >= file.size();  // it may end between two records
+    // It may end between two records. Only the index of a bag without messages is empty.
+    truncated_ |= index_position_ > size || (index_position_ == size && !index_.chunks.empty());
     finish();
     return std::move(index_);
   }
 
  private:
+  /// The record at a position of the file; nullopt if the file ends within it, or (`is_foreign_`) if the
+  /// bytes are not those of a record.
+  std::optional<Record> record_of_file(std::uint64_t position) {
+    const ByteFile& file = reader_.file();
+    is_foreign_ = false;
+    try {
+      std::optional<Record> record = record_at(
+          position, [&file](auto offset, auto count) { return file.read(offset, count); }, place_);
+      is_foreign_ = record ? !record->fields.contains("op")
+                           : file.read(position, kHeadBytes).find_first_not_of('\0') == std::string::npos;
+      if (record && !is_foreign_ && record->end() <= file.size()) return record;
+    } catch (const InputError&) {
+      is_foreign_ = true;
+    }
+    return std::nullopt;
+  }
+
   void add(const Record& record) {
     switch (record.number<std::uint8_t>("op", place_)) {
       case kBagHeader:
@@ -219,9 +242,23 @@ class Ros1Indexer {
     }
   }
 
+  /// Runs `action`, which reads a chunk. The last one of a bag that was not closed may be damaged.
+  template <class Action>
+  void read_chunk(const Action& action) {
+    try {
+      action();
+    } catch (const InputError& error) {
+      if (!truncated_ && index_position_ != 0) throw;
+      const std::string text = "a chunk is damaged and was read in part (" + std::string(error.what()) + ")";
+      if (std::ranges::find(index_.warnings, text) == index_.warnings.end()) index_.warnings.push_back(text);
+    }
+  }
+
   void finish() {
-    finish_chunk();
+    read_chunk([this] { finish_chunk(); });
     find_missing_connections();
+    if (index_.messages.empty() && (truncated_ || index_position_ == 0))
+      throw InputError(place_, "ends before its first message; copy or record it again");
     if (truncated_) {
       index_.complete = false;
       index_.warnings.push_back("is not complete: it ends early, after " +
@@ -239,7 +276,7 @@ class Ros1Indexer {
     for (const BagMessage& message : index_.messages) {
       if (index_.connections[message.connection].topic.empty()) chunks.insert(message.chunk);
     }
-    for (const std::uint32_t chunk : chunks) walk_chunk(chunk, false);
+    for (const std::uint32_t chunk : chunks) read_chunk([&] { walk_chunk(chunk, false); });
     const std::size_t dropped = std::erase_if(index_.messages, [this](const BagMessage& message) {
       return index_.connections[message.connection].topic.empty();
     });
@@ -254,6 +291,7 @@ class Ros1Indexer {
   std::size_t first_of_chunk_ = 0;              ///< index of the first message of the last chunk
   bool indexed_ = true;                         ///< whether index records followed the last chunk
   bool truncated_ = false;
+  bool is_foreign_ = false;           ///< whether the last position that was read has no record
   std::uint64_t index_position_ = 0;  ///< of the connections at the end; 0 = the bag was not closed
 };
 

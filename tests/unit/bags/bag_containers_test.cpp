@@ -115,6 +115,85 @@ TEST(BagContainers, AnInterruptedMcapFileIsReadUpToItsLastCompleteChunk) {
   ASSERT_EQ(bag.warnings().size(), 1U);
 }
 
+/// The text of all warnings.
+std::string warnings_of(const BagFile& bag) {
+  std::string text;
+  for (const std::string& warning : bag.warnings()) text += warning + "\n";
+  return text;
+}
+
+/// Bytes that are left at the end of a file: zeros of a recorder that enlarges files in advance, parts of
+/// other files, text.
+std::vector<std::string> foreign_bytes() {
+  return {std::string(100'000, '\0'), content(7), "<html>error 500: the transfer failed</html>\n",
+          std::string(3, '\0')};
+}
+
+TEST(BagContainers, ForeignBytesAtTheEndAreIgnored) {
+  for (const char* const name : {"a.bag", "a.mcap"}) {
+    for (const std::string& tail : foreign_bytes()) {
+      const TemporaryFolder folder;
+      const std::filesystem::path path = write_bag(folder, name, ChunkCompression::kLz4);
+      std::ofstream(path, std::ios::binary | std::ios::app) << tail;
+      expect_content(BagFile(path));
+    }
+  }
+}
+
+TEST(BagContainers, ForeignBytesInsteadOfTheEndAreIgnoredWithAWarning) {
+  for (const char* const name : {"a.bag", "a.mcap"}) {
+    for (const std::string& tail : foreign_bytes()) {
+      const TemporaryFolder folder;
+      const std::filesystem::path path = write_bag(folder, name, ChunkCompression::kLz4);
+      std::filesystem::resize_file(path, std::filesystem::file_size(path) * 8 / 10);
+      std::ofstream(path, std::ios::binary | std::ios::app) << tail;
+      const BagFile bag(path);
+      ASSERT_GE(bag.messages().size(), 28U) << name;
+      EXPECT_FALSE(bag.warnings().empty()) << name;
+      EXPECT_FALSE(bag.is_complete()) << name;
+      for (std::size_t i = 0; i < 28; ++i)
+        EXPECT_EQ(bag.payload(in_file_order(bag.messages())[i]), content(static_cast<int>(i)));
+    }
+  }
+}
+
+TEST(BagContainers, ForeignBytesBeforeTheIndexOfRos1AreSkipped) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = write_bag(folder, "a.bag", ChunkCompression::kLz4);
+  const std::string text = file_text(path);
+  std::uint64_t index = 0;
+  const std::size_t field = text.find("index_pos=") + 10;
+  std::memcpy(&index, text.data() + field, sizeof(index));
+  for (const std::string& junk : foreign_bytes()) {
+    const std::uint64_t moved = index + junk.size();
+    std::string changed = text;
+    std::memcpy(changed.data() + field, &moved, sizeof(moved));
+    std::ofstream(path, std::ios::binary) << changed.insert(index, junk);
+    const BagFile bag(path);
+    expect_content(bag);
+    EXPECT_TRUE(bag.is_complete());
+    EXPECT_EQ(warnings_of(bag).find("not closed"), std::string::npos) << warnings_of(bag);
+  }
+}
+
+TEST(BagContainers, FilesWithoutContentAreCalledSo) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& name, const std::string& text, const std::string& part) {
+    expect_input_error([&] { static_cast<void>(BagFile(folder.write(name, text))); }, {name, part});
+  };
+  for (const char* const name : {"a.bag", "a.mcap", "a.db3"}) {
+    expect(name, "", "is empty (0 bytes)");
+    expect(name, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 5\n", "git lfs pull");
+    expect(name, std::string(5000, '\0'), "zero bytes");
+  }
+  for (const char* const name : {"b.bag", "b.mcap"}) {
+    const std::string text = file_text(write_bag(folder, name, ChunkCompression::kLz4));
+    expect(name, text.substr(0, 6000), "ends before its first message");
+    BagWriter(folder.path() / "c.bag", ChunkCompression::kNone).finish();
+    expect("c.bag", file_text(folder.path() / "c.bag"), "contains no messages");
+  }
+}
+
 /// The file without its records for which `remove(op, record)` is true.
 template <class Remove>
 void remove_mcap_records(const std::filesystem::path& path, const Remove& remove) {
