@@ -50,19 +50,27 @@ std::filesystem::path normalized_folder(const std::filesystem::path& folder) {
   return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-/// Applies the requested rig file, or else the rig.toml of the sequence if there is one.
+/// Applies a rig file to what is known of the calibration.
+void apply_rig(SequenceContent& content, const std::filesystem::path& file) {
+  const OverriddenRig overridden = apply_rig_file(file, content.info.rig);
+  content.info.rig = overridden.rig;
+  content.extrinsic_known |= overridden.has_extrinsic;
+  std::string read;
+  for (const std::string& note : overridden.notes) read += (read.empty() ? ": " : ", ") + note;
+  content.info.notes.push_back("calibration: overridden by " + file.string() + read);
+  if (!overridden.depth_camera) return;
+  content.depth_camera = overridden.depth_camera;
+  content.info.notes.emplace_back("depth is registered to the color camera by [depth] of this file");
+}
+
+/// Applies the rig.toml of the sequence if there is one, then the requested file: what that does not contain,
+/// as the YAML of other programs the unit of depth, keeps the value of the sequence.
 void override_rig(SequenceContent& content, const std::filesystem::path& requested) {
   const std::filesystem::path local = companion_file(content.info.folder, "rig.toml");
-  const std::filesystem::path file = requested.empty() && std::filesystem::exists(local) ? local : requested;
-  if (!file.empty()) {
-    const OverriddenRig overridden = apply_rig_file(file, content.info.rig);
-    content.info.rig = overridden.rig;
-    content.extrinsic_known |= overridden.has_extrinsic;
-    content.info.notes.push_back("calibration: overridden by " + file.string());
-    if (!overridden.depth_camera) return;
-    content.depth_camera = overridden.depth_camera;
-    content.info.notes.emplace_back("depth is registered to the color camera by [depth] of this file");
-  }
+  std::error_code ignored;
+  if (std::filesystem::exists(local, ignored) && !std::filesystem::equivalent(local, requested, ignored))
+    apply_rig(content, local);
+  if (!requested.empty()) apply_rig(content, requested);
 }
 
 /// A valid line of a rig.toml: the camera of TUM freiburg3.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -62,6 +63,12 @@ std::string camera_list(const Camera& camera) {
 
 const char* model_text(const Camera& camera) {
   return camera.model == CameraModel::kKannalaBrandt ? "kannala-brandt" : "radial-tangential";
+}
+
+/// Four coefficients, as in the data of EuRoC, unless others are not 0.
+std::span<const double> euroc_coefficients(const Camera& camera) {
+  const std::span<const double> all = camera.coefficients();
+  return all.size() == 5 && all[4] == 0.0 ? all.first(4) : all;
 }
 
 std::string pose_text(const Pose& pose) {
@@ -131,8 +138,7 @@ void write_euroc_sensors(const Rig& rig, const fs::path& mav) {
                   "camera_model: pinhole\nintrinsics: {}\ndistortion_model: {}\n"
                   "distortion_coefficients: [{:.17g}]\n",
                   matrix_text(rig.T_b_c), camera.width, camera.height, camera_list(camera),
-                  model_text(camera),
-                  fmt::join(camera.distortion.begin(), camera.distortion.begin() + 4, ", ")));
+                  model_text(camera), fmt::join(euroc_coefficients(camera), ", ")));
   eval::write_text_file(
       mav / "imu0" / "sensor.yaml",
       fmt::format(
@@ -289,12 +295,16 @@ class BagExporter {
   [[nodiscard]] std::string camera_info(Timestamp t) const {
     const Camera& camera = info_.rig.camera;
     const bool fisheye = camera.model == CameraModel::kKannalaBrandt;
+    const std::span<const double> coefficients =
+        camera.coefficients().first(fisheye ? 4 : camera.coefficients().size());
     const CameraInfoMessage message{
         .header = {.stamp = t, .frame = kCameraFrame},
         .height = static_cast<std::uint32_t>(camera.height),
         .width = static_cast<std::uint32_t>(camera.width),
-        .distortion_model = fisheye ? "equidistant" : "plumb_bob",
-        .D = std::vector<double>(camera.distortion.begin(), camera.distortion.end() - (fisheye ? 1 : 0)),
+        .distortion_model = fisheye                    ? "equidistant"
+                            : camera.has_denominator() ? "rational_polynomial"
+                                                       : "plumb_bob",
+        .D = std::vector<double>(coefficients.begin(), coefficients.end()),
         .K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1},
         .P = {camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0}};
     return serialize(message, writer_.format());

@@ -65,6 +65,11 @@ inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells repor
 /// @return the exit code: `kExitBadInput` or `kExitInternal`
 [[nodiscard]] int report_exception();
 
+/// Help of the option --rig.
+inline constexpr const char* kRigHelp =
+    "Calibration that overrides that of the sequence: rig.toml, or YAML of Kalibr, OpenCV, ROS, ORB-SLAM, "
+    "VINS";
+
 /// Help of the option --topics, of which the values are passed to `OpenOptions::topics`.
 inline constexpr const char* kTopicsHelp =
     "Topic of a bag: ROLE=TOPIC, with a role color, depth, imu, gyro, accel or truth; may be repeated [by "

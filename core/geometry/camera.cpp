@@ -16,11 +16,18 @@ struct Distorted {
   Eigen::Matrix2d jacobian;  // d point / d (x, y)
 };
 
-Distorted distort_radial_tangential(const std::array<double, 5>& d, const Eigen::Vector2d& m) {
+bool is_rational(const std::array<double, 8>& d) { return d[5] != 0.0 || d[6] != 0.0 || d[7] != 0.0; }
+
+Distorted distort_radial_tangential(const std::array<double, 8>& d, const Eigen::Vector2d& m) {
   const double x = m.x(), y = m.y();
   const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-  const double slope = d[0] + r2 * (2.0 * d[1] + r2 * 3.0 * d[4]);  // d radial / d r2
+  double radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
+  double slope = d[0] + r2 * (2.0 * d[1] + r2 * 3.0 * d[4]);  // d radial / d r2
+  if (is_rational(d)) {
+    const double denominator = 1.0 + r2 * (d[5] + r2 * (d[6] + r2 * d[7]));
+    radial /= denominator;
+    slope = (slope - radial * (d[5] + r2 * (2.0 * d[6] + r2 * 3.0 * d[7]))) / denominator;
+  }
   Distorted out;
   out.point << x * radial + 2.0 * d[2] * x * y + d[3] * (r2 + 2.0 * x * x),
       y * radial + d[2] * (r2 + 2.0 * y * y) + 2.0 * d[3] * x * y;
@@ -30,17 +37,17 @@ Distorted distort_radial_tangential(const std::array<double, 5>& d, const Eigen:
   return out;
 }
 
-double kannala_brandt_radius(const std::array<double, 5>& d, double theta) {
+double kannala_brandt_radius(const std::array<double, 8>& d, double theta) {
   const double t2 = theta * theta;
   return theta * (1.0 + t2 * (d[0] + t2 * (d[1] + t2 * (d[2] + t2 * d[3]))));
 }
 
-double kannala_brandt_slope(const std::array<double, 5>& d, double theta) {
+double kannala_brandt_slope(const std::array<double, 8>& d, double theta) {
   const double t2 = theta * theta;
   return 1.0 + t2 * (3.0 * d[0] + t2 * (5.0 * d[1] + t2 * (7.0 * d[2] + t2 * 9.0 * d[3])));
 }
 
-Eigen::Vector2d undistort_radial_tangential(const std::array<double, 5>& d, const Eigen::Vector2d& target) {
+Eigen::Vector2d undistort_radial_tangential(const std::array<double, 8>& d, const Eigen::Vector2d& target) {
   Eigen::Vector2d m = target;
   for (int step = 0; step < kMaxNewtonSteps; ++step) {
     const Distorted now = distort_radial_tangential(d, m);
@@ -51,7 +58,7 @@ Eigen::Vector2d undistort_radial_tangential(const std::array<double, 5>& d, cons
   return m;
 }
 
-Eigen::Vector2d undistort_kannala_brandt(const std::array<double, 5>& d, const Eigen::Vector2d& target) {
+Eigen::Vector2d undistort_kannala_brandt(const std::array<double, 8>& d, const Eigen::Vector2d& target) {
   const double radius = target.norm();
   if (radius < kNewtonTolerance) return target;
   double theta = std::min(radius, 1.5);
@@ -68,6 +75,14 @@ Eigen::Vector2d undistort_kannala_brandt(const std::array<double, 5>& d, const E
 bool Camera::has_distortion() const {
   return model == CameraModel::kKannalaBrandt ||
          std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0.0; });
+}
+
+bool Camera::has_denominator() const {
+  return model == CameraModel::kRadialTangential && is_rational(distortion);
+}
+
+std::span<const double> Camera::coefficients() const {
+  return std::span<const double>(distortion).first(has_denominator() ? 8 : 5);
 }
 
 Eigen::Vector2d Camera::project(const Eigen::Vector3d& p_c) const {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Central camera models: pinhole with radial-tangential distortion (Brown 1966) and Kannala-Brandt (2006).
+/// Central camera models: pinhole with radial-tangential distortion (Brown 1966), with the denominator that
+/// OpenCV adds ("rational"), and Kannala-Brandt (2006).
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 
 #include "core/base/fields.h"
 
@@ -19,9 +21,10 @@ constexpr auto enum_names(CameraModel) {
 ///
 /// With the normalized coordinates (x, y) of a point and r^2 = x^2 + y^2, the pixel is
 /// u = fx x_d + cx, v = fy y_d + cy, where
-/// radial-tangential (k1 k2 p1 p2 k3):
-///   x_d = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2)
-///   y_d = y (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 y^2) + 2 p2 x y
+/// radial-tangential (k1 k2 p1 p2 k3 k4 k5 k6; OpenCV's order and rational model, Azure Kinect):
+///   g   = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
+///   x_d = x g + 2 p1 x y + p2 (r^2 + 2 x^2)
+///   y_d = y g + p1 (r^2 + 2 y^2) + 2 p2 x y
 /// Kannala-Brandt (k1 k2 k3 k4), with theta = atan(r):
 ///   (x_d, y_d) = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8) / r * (x, y)
 struct Camera {
@@ -32,7 +35,7 @@ struct Camera {
   double cx = 0.0;
   double cy = 0.0;
   CameraModel model = CameraModel::kRadialTangential;
-  std::array<double, 5> distortion{};
+  std::array<double, 8> distortion{};
 
   /// Mean focal length; converts thresholds in pixels to the normalized plane.
   [[nodiscard]] double focal_px() const { return 0.5 * (fx + fy); }
@@ -49,6 +52,10 @@ struct Camera {
            pixel.y() <= height - 1 - border;
   }
   [[nodiscard]] bool has_distortion() const;
+  /// Whether k4 k5 k6 are not all 0, in the radial-tangential model.
+  [[nodiscard]] bool has_denominator() const;
+  /// The first 5 numbers of `distortion`, all 8 with a denominator.
+  [[nodiscard]] std::span<const double> coefficients() const;
 };
 
 }  // namespace stillpoint

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "datasets/io/lens_model.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -219,7 +220,6 @@ eval::LoadedTrajectory read_bag_trajectory(const BagTopic& source) {
 namespace {
 
 constexpr std::string_view kCameraInfo = "sensor_msgs/CameraInfo";
-constexpr std::size_t kMaxDistortion = 5;  ///< coefficients of `Camera`
 
 /// "/camera/color" of "/camera/color/image_raw/compressed".
 std::string camera_name(std::string topic) {
@@ -235,12 +235,6 @@ std::optional<CameraInfoMessage> calibrated(const BagFile& bag, const MessageRef
   const CameraInfoMessage info =
       parse_camera_info({.bytes = bytes, .format = bag.connection(reference).format, .place = place});
   return info.K[0] > 0.0 && info.K[4] > 0.0 ? std::optional(info) : std::nullopt;
-}
-
-/// The model of OpenCV with 8 coefficients has three more of a denominator.
-bool has_only_radial_tangential(const CameraInfoMessage& info) {
-  return std::all_of(info.D.begin() + static_cast<std::ptrdiff_t>(std::min(kMaxDistortion, info.D.size())),
-                     info.D.end(), [](double coefficient) { return coefficient == 0.0; });
 }
 
 }  // namespace
@@ -276,19 +270,7 @@ Camera camera_of(const CameraInfoMessage& info, const std::string& image_topic, 
     return camera;
   }
   if (std::ranges::all_of(info.D, [](double coefficient) { return coefficient == 0.0; })) return camera;
-  const std::string& model = info.distortion_model;
-  if (model == "equidistant" || model == "fisheye" || model == "kannala_brandt4" ||
-      model == "kannala_brandt") {
-    camera.model = CameraModel::kKannalaBrandt;
-  } else if (!(model == "plumb_bob" || model == "radial-tangential" || model == "Brown Conrady" ||
-               model == "brown_conrady" || model.empty() ||
-               (model == "rational_polynomial" && has_only_radial_tangential(info)))) {
-    throw InputError(place, "the distortion model \"" + model +
-                                "\" is not supported; calibrate the camera as plumb_bob or equidistant and "
-                                "write it to a rig.toml");
-  }
-  std::copy_n(info.D.begin(), std::min(info.D.size(), kMaxDistortion), camera.distortion.begin());
-  return camera;
+  return with_lens(camera, {.name = info.distortion_model, .coefficients = info.D}, place);
 }
 
 std::optional<std::string> realsense_stream(const std::string& topic) {

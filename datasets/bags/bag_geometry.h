@@ -47,8 +47,8 @@ struct BagTopic {
                                                                 const std::string& image_frame);
 
 /// The camera of an image topic. A topic with "rect" in its name has rectified images: focal lengths and
-/// principal point of P, without distortion. Others: K and D, models plumb_bob, rational_polynomial
-/// without its denominator, equidistant, and any model whose coefficients are all 0.
+/// principal point of P, without distortion. Others: K and D, with the models of `with_lens`, and any model
+/// whose coefficients are all 0.
 /// @throws InputError if the distortion model is another one
 [[nodiscard]] Camera camera_of(const CameraInfoMessage& info, const std::string& image_topic,
                                const std::string& place);

@@ -130,7 +130,7 @@ class Bits {
     add(static_cast<std::uint64_t>(camera.height));
     for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy}) add(value);
     add(static_cast<std::uint64_t>(camera.model));
-    for (const double value : camera.distortion) add(value);
+    for (const double value : camera.coefficients()) add(value);
   }
 
   void add(const Pose& pose) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "datasets/calibration/rig_yaml.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/text_reader.h"
 
@@ -109,20 +110,9 @@ bool is_yaml(const std::filesystem::path& file) {
 }
 
 toml::table parse(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw InputError(file.string(), "no such rig file");
-  }
   try {
     return toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
-    if (is_yaml(file))
-      throw InputError(
-          file.string(),
-          "is YAML, as Kalibr, OpenCV, ORB-SLAM and VINS write it; a rig is TOML: write the values as "
-          "camera = { width = 640, height = 480, fx = 535.4, fy = 539.2, cx = 320.1, cy = 247.6 } and "
-          "imu = { T_b_c = [16 numbers] }, where T_b_c is the pose of the camera in the IMU frame "
-          "(the inverse of T_cam_imu of Kalibr)");
     throw InputError(file.string(), error.source().begin.line, std::string(error.description()));
   }
 }
@@ -169,7 +159,7 @@ Camera override_camera(const Section& section, const Camera& known) {
   if (distortion == nullptr) return camera;
   const std::vector<double> values = section.numbers(*distortion, "distortion");
   if (values.size() > camera.distortion.size())
-    section.fail(*distortion, "distortion", "has more than 5 numbers");
+    section.fail(*distortion, "distortion", "has more than 8 numbers");
   camera.distortion.fill(0.0);
   std::copy(values.begin(), values.end(), camera.distortion.begin());
   return camera;
@@ -197,6 +187,9 @@ std::optional<DepthCamera> depth_camera_of(const Section& depth) {
 }  // namespace
 
 OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) throw InputError(file.string(), "no such rig file");
+  if (is_yaml(file)) return apply_rig_yaml(file, rig);
   const toml::table root = parse(file);
   if (root.empty())
     throw InputError(file.string(), "is empty; add [camera], [imu] or [depth], or remove the file");
@@ -206,8 +199,10 @@ OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig) 
   const Section imu = section(file.string(), root, "imu");
   imu.allow_only({"T_b_c", "gyro_noise", "accel_noise", "gyro_walk", "accel_walk", "time_offset_s"});
 
-  OverriddenRig result{
-      .rig = rig, .has_extrinsic = imu.find("T_b_c") != nullptr, .depth_camera = depth_camera_of(depth)};
+  OverriddenRig result{.rig = rig,
+                       .has_extrinsic = imu.find("T_b_c") != nullptr,
+                       .depth_camera = depth_camera_of(depth),
+                       .notes = {}};
   result.rig.camera = override_camera(camera, rig.camera);
   const toml::node* const shutter = camera.find("rolling_shutter_s");
   result.rig.rolling_shutter_s = camera.number("rolling_shutter_s", rig.rolling_shutter_s);
@@ -244,7 +239,7 @@ std::string rig_file_text(const Rig& rig, bool with_extrinsic) {
       "\"{}\"\n"
       "distortion = [{:.17g}]\nrolling_shutter_s = {:.17g}\n\n[depth]\nscale = {:.17g}\n",
       camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, model_name(camera.model),
-      fmt::join(camera.distortion, ", "), rig.rolling_shutter_s, rig.depth_units_per_m);
+      fmt::join(camera.coefficients(), ", "), rig.rolling_shutter_s, rig.depth_units_per_m);
   if (!rig.has_imu) return text;
   text += "\n[imu]\n";
   if (with_extrinsic) {

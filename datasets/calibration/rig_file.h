@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// `rig.toml`: a user-provided calibration that overrides the calibration of the sequence format.
+/// Rig files: a user-provided calibration that overrides the calibration of the sequence format, as
+/// `rig.toml` or as YAML of another program.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/types/rig.h"
 #include "datasets/calibration/depth_registration.h"
@@ -15,6 +17,7 @@ struct OverriddenRig {
   Rig rig;
   bool has_extrinsic = false;               ///< whether the file contains the camera-IMU extrinsic
   std::optional<DepthCamera> depth_camera;  ///< set if the depth images are those of another camera
+  std::vector<std::string> notes;           ///< of a YAML file: what was read of it
 };
 
 /// Replaces the values of `rig` that the file sets:
@@ -23,7 +26,7 @@ struct OverriddenRig {
 ///            width height fx fy cx cy T_c_d          (camera of depth images that are not registered; px)
 ///   [imu]    T_b_c gyro_noise accel_noise gyro_walk accel_walk time_offset_s
 /// T_b_c and T_c_d are 4x4 matrices in row-major order; the units of the others are those of `ImuNoise` and
-/// `Rig`.
+/// `Rig`. YAML, by the first line or the extension, is read by `apply_rig_yaml`.
 /// @throws InputError with file and line on an unknown key, a wrong type, a value out of range, or a missing
 /// value of a depth camera, or of a color camera of which `rig` contains nothing
 [[nodiscard]] OverriddenRig apply_rig_file(const std::filesystem::path& file, const Rig& rig);

@@ -24,29 +24,57 @@ constexpr std::uint64_t kHeaderBytes = 1024;
 template <class Item>
 class Stream {
  public:
-  void add(const Item& item) {
-    unordered_ += !items_.empty() && item.t < items_.back().t;
+  /// @param item with the stamp of its header
+  void add(const Item& item, Timestamp recorded) {
     items_.push_back(item);
+    recorded_.push_back(recorded);
   }
 
   /// The items, sorted and without repeated stamps; warnings are appended to `warnings`.
   [[nodiscard]] std::vector<Item> finish(const std::string& place, std::vector<std::string>& warnings) {
-    std::ranges::stable_sort(items_, {}, &Item::t);
+    set_missing_stamps(place, warnings);
+    const auto is_earlier = [](const Item& a, const Item& b) { return a.t < b.t; };
+    std::size_t unordered = 0;
+    for (std::size_t i = 1; i < items_.size(); ++i) unordered += is_earlier(items_[i], items_[i - 1]) ? 1 : 0;
+    std::ranges::stable_sort(items_, is_earlier);
     const auto repeated =
         std::unique(items_.begin(), items_.end(), [](const Item& a, const Item& b) { return a.t == b.t; });
     if (repeated != items_.end())
       warnings.push_back(place + ": " + std::to_string(items_.end() - repeated) +
                          " messages with the time stamp of an earlier one are dropped");
-    if (unordered_ > 0)
-      warnings.push_back(place + ": " + std::to_string(unordered_) +
+    if (unordered > 0)
+      warnings.push_back(place + ": " + std::to_string(unordered) +
                          " messages have an earlier time stamp than their predecessor and are sorted");
     items_.erase(repeated, items_.end());
     return std::move(items_);
   }
 
  private:
+  /// Stamps that are 0 become the time of recording plus the median difference of the others of the topic,
+  /// which is the delay of the transport, or of another clock.
+  void set_missing_stamps(const std::string& place, std::vector<std::string>& warnings) {
+    std::vector<std::int64_t> differences_ns;
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+      if (items_[i].t.ns != 0) differences_ns.push_back(items_[i].t.ns - recorded_[i].ns);
+    }
+    const std::size_t missing = items_.size() - differences_ns.size();
+    if (missing == 0) return;
+    std::int64_t difference_ns = 0;
+    if (!differences_ns.empty()) {
+      const auto middle = differences_ns.begin() + static_cast<std::ptrdiff_t>(differences_ns.size() / 2);
+      std::nth_element(differences_ns.begin(), middle, differences_ns.end());
+      difference_ns = *middle;
+    }
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+      if (items_[i].t.ns == 0) items_[i].t.ns = recorded_[i].ns + difference_ns;
+    }
+    warnings.push_back(place + ": " + std::to_string(missing) + " of " + std::to_string(items_.size()) +
+                       " messages have the stamp 0; the time of their recording is used" +
+                       (differences_ns.empty() ? "" : ", with the median delay of the others"));
+  }
+
   std::vector<Item> items_;
-  std::size_t unordered_ = 0;
+  std::vector<Timestamp> recorded_;
 };
 
 Eigen::Vector3d in_range(const Eigen::Vector3d& value, const SensorRange& range, std::string_view place) {
@@ -108,14 +136,7 @@ class StreamCollector {
       frame = header.frame;
       if (!is_color) streams_.float_depth = has_meters(connection.type, message);
     }
-    stream.add({.t = time_of(connection.topic, header.stamp, reference.message.t), .message = reference});
-  }
-
-  /// The stamp of the header, or the time of recording if it has none.
-  Timestamp time_of(const std::string& topic, Timestamp stamp, Timestamp recorded) {
-    if (stamp.ns != 0) return stamp;
-    ++without_stamp_[topic];
-    return recorded;
+    stream.add({.t = header.stamp, .message = reference}, reference.message.t);
   }
 
   void add_warnings() {
@@ -123,9 +144,6 @@ class StreamCollector {
     for (const auto& [topic, count] : not_finite_)
       streams_.warnings.push_back(bag + ":" + topic + ": " + std::to_string(count) +
                                   " messages with NaN or infinite values are skipped");
-    for (const auto& [topic, count] : without_stamp_)
-      streams_.warnings.push_back(bag + ":" + topic + ": " + std::to_string(count) +
-                                  " messages have the stamp 0; the time of their recording is used");
   }
 
   static bool has_meters(const std::string& type, const SerializedMessage& message) {
@@ -141,16 +159,17 @@ class StreamCollector {
       ++not_finite_[topic];
       return;
     }
-    const Timestamp t = time_of(topic, sample.header.stamp, recorded);
+    const Timestamp t = sample.header.stamp;
     if (streams_.imu_frame.empty() && topic != topics_.accel) streams_.imu_frame = sample.header.frame;
     if (topic == topics_.imu) {
       imu_.add({.t = t,
                 .gyro_b = in_range(sample.gyro, kGyroscopeRange, message.place),
-                .accel_b = in_range(sample.accel, kAccelerometerRange, message.place)});
+                .accel_b = in_range(sample.accel, kAccelerometerRange, message.place)},
+               recorded);
     } else if (topic == topics_.gyro) {
-      gyro_.add({.t = t, .value = in_range(sample.gyro, kGyroscopeRange, message.place)});
+      gyro_.add({.t = t, .value = in_range(sample.gyro, kGyroscopeRange, message.place)}, recorded);
     } else {
-      accel_.add({.t = t, .value = in_range(sample.accel, kAccelerometerRange, message.place)});
+      accel_.add({.t = t, .value = in_range(sample.accel, kAccelerometerRange, message.place)}, recorded);
     }
   }
 
@@ -162,8 +181,7 @@ class StreamCollector {
   Stream<ImuSample> imu_;
   Stream<VectorSample> gyro_;
   Stream<VectorSample> accel_;
-  std::map<std::string, std::size_t> not_finite_;     ///< messages by topic
-  std::map<std::string, std::size_t> without_stamp_;  ///< messages by topic
+  std::map<std::string, std::size_t> not_finite_;  ///< messages by topic
 };
 
 }  // namespace
@@ -302,7 +320,12 @@ void set_cameras(SequenceContent& content, const BagFile& bag, const BagTopics& 
     return;
   }
   Camera& camera = content.info.rig.camera;
-  camera = camera_of(*color, topics.color, bag.path().string());
+  try {
+    camera = camera_of(*color, topics.color, "CameraInfo of " + topics.color);
+  } catch (const InputError& error) {
+    content.missing_calibration = error.what();
+    return;
+  }
   content.info.notes.push_back("calibration: CameraInfo of " + topics.color);
   if (topics.depth.empty() || frames.depth == frames.color) return;
   const std::optional<CameraInfoMessage> info = find_camera_info(bag, topics.depth, frames.depth);

@@ -35,9 +35,10 @@ struct BagStreams {
 };
 
 /// Reads the messages of the selected topics in one pass over the bag; of images, only the first kilobyte
-/// unless the chunk is compressed. Stamps that are 0 are replaced by the time of recording. Messages with
-/// the stamp of an earlier one are dropped, unordered ones are sorted. Accelerations of a separate topic are
-/// interpolated, see `merge_onto_gyro`.
+/// unless the chunk is compressed. Stamps that are 0 are replaced by the time of recording, which is shifted
+/// by the median difference of the others of the topic. Messages with the stamp of an earlier one are
+/// dropped, unordered ones are sorted. Accelerations of a separate topic are interpolated, see
+/// `merge_onto_gyro`.
 /// @throws InputError if a message is damaged, or an inertial sample is out of the range of sensors; or as
 /// `faults` decides
 [[nodiscard]] BagStreams read_bag_streams(const BagFile& bag, const BagTopics& topics, FaultLog& faults);

@@ -18,24 +18,6 @@ std::filesystem::path sensors_folder(const std::filesystem::path& folder) {
   return std::filesystem::exists(folder / "mav0") ? folder / "mav0" : folder;
 }
 
-Camera euroc_camera(const SensorYaml& sensor) {
-  Camera camera = sensor.with_distortion(Camera{});
-  const std::vector<double> size = sensor.numbers("resolution");
-  if (size.size() != 2 || size[0] < 1.0 || size[1] < 1.0)
-    sensor.fail("resolution", "must be two positive numbers: width, height");
-  camera.width = static_cast<int>(size[0]);
-  camera.height = static_cast<int>(size[1]);
-  const std::vector<double> values = sensor.numbers("intrinsics");
-  if (values.size() != 4 || values[0] <= 0.0 || values[1] <= 0.0) {
-    sensor.fail("intrinsics", "must be the four numbers fu, fv, cu, cv");
-  }
-  camera.fx = values[0];
-  camera.fy = values[1];
-  camera.cx = values[2];
-  camera.cy = values[3];
-  return camera;
-}
-
 void add_images(const std::filesystem::path& camera_folder, SequenceContent& content, FaultLog& faults) {
   for (const StampedFile& image : read_image_list(camera_folder / "data.csv", camera_folder / "data",
                                                   eval::TimeUnit::kNanoseconds, faults)) {
@@ -76,13 +58,10 @@ SequenceContent read_euroc(const std::filesystem::path& folder, FaultLog& faults
   const SensorYaml imu(sensors / "imu0" / "sensor.yaml");
   const Pose T_body_b = imu.pose("T_BS");
   Rig& rig = content.info.rig;
-  rig.camera = euroc_camera(camera);
+  rig.camera = camera.camera();
   rig.has_imu = true;
   rig.T_b_c = T_body_b.inverse() * camera.pose("T_BS");
-  rig.imu_noise = ImuNoise{.gyro_noise = imu.number("gyroscope_noise_density"),
-                           .accel_noise = imu.number("accelerometer_noise_density"),
-                           .gyro_walk = imu.number("gyroscope_random_walk"),
-                           .accel_walk = imu.number("accelerometer_random_walk")};
+  rig.imu_noise = imu.imu_noise();
   return with_truth_of(std::move(content), T_body_b, faults);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// TUM VI benchmark (Schubert et al., IROS 2018), exported in EuRoC format: fisheye cameras, images of 8 or
 /// 16 bits, no depth, calibration by Kalibr in dso/.
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -49,40 +48,14 @@ ImageSource gray_images(std::vector<FrameFiles> files) {
               }};
 }
 
-Camera kalibr_camera(const SensorYaml& sensor) {
-  Camera camera;
-  const std::vector<double> size = sensor.numbers("resolution");
-  const std::vector<double> intrinsics = sensor.numbers("intrinsics");
-  const std::vector<double> distortion = sensor.numbers("distortion_coeffs");
-  if (size.size() != 2 || size[0] < 1.0 || size[1] < 1.0)
-    sensor.fail("resolution", "must be width and height");
-  if (intrinsics.size() != 4 || intrinsics[0] <= 0.0 || intrinsics[1] <= 0.0)
-    sensor.fail("intrinsics", "must be the four numbers fx, fy, cx, cy");
-  if (sensor.text("distortion_model") != "equidistant" || distortion.size() != 4)
-    sensor.fail("distortion_model", "must be equidistant with four coefficients");
-  camera = {.width = static_cast<int>(size[0]),
-            .height = static_cast<int>(size[1]),
-            .fx = intrinsics[0],
-            .fy = intrinsics[1],
-            .cx = intrinsics[2],
-            .cy = intrinsics[3],
-            .model = CameraModel::kKannalaBrandt};
-  std::copy(distortion.begin(), distortion.end(), camera.distortion.begin());
-  return camera;
-}
-
 void set_tum_vi_rig(SequenceContent& content) {
   const std::filesystem::path calibration = content.info.folder / "dso";
   const SensorYaml camera = SensorYaml(calibration / "camchain.yaml").child("cam0");
   Rig& rig = content.info.rig;
-  rig.camera = kalibr_camera(camera);
+  rig.camera = camera.camera();
   rig.has_imu = true;
   rig.T_b_c = camera.pose("T_cam_imu").inverse();
-  const SensorYaml imu(calibration / "imu_config.yaml");
-  rig.imu_noise = ImuNoise{.gyro_noise = imu.number("gyroscope_noise_density"),
-                           .accel_noise = imu.number("accelerometer_noise_density"),
-                           .gyro_walk = imu.number("gyroscope_random_walk"),
-                           .accel_walk = imu.number("accelerometer_random_walk")};
+  rig.imu_noise = SensorYaml(calibration / "imu_config.yaml").imu_noise();
 }
 
 SequenceContent read_tum_vi(const std::filesystem::path& folder, FaultLog& faults) {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
+#include "datasets/io/lens_model.h"
 #include "eval/io/matrix_files.h"
 
 namespace stillpoint::datasets {
@@ -102,6 +103,12 @@ double SensorYaml::number(const std::string& key) const {
   return value;
 }
 
+double SensorYaml::positive(const std::string& key) const {
+  const double value = number(key);
+  if (!(value > 0.0)) fail(key, "must be greater than 0");
+  return value;
+}
+
 int SensorYaml::positive_int(const std::string& key) const {
   const double value = number(key);
   if (value < 1.0 || value > 65535.0 || value != std::floor(value)) {
@@ -134,17 +141,33 @@ Pose SensorYaml::pose(const std::string& key) const {
 }
 
 Camera SensorYaml::with_distortion(Camera camera) const {
-  const std::string model = text("distortion_model");
-  const bool radial = model == "radial-tangential" || model == "radtan" || model == "plumb_bob";
-  const bool fisheye = model == "Kannala-Brandt" || model == "kannala-brandt" || model == "equidistant";
-  if (!radial && !fisheye) {
-    fail("distortion_model", "is unknown: \"" + model + "\"; expected radial-tangential or kannala-brandt");
-  }
-  camera.model = radial ? CameraModel::kRadialTangential : CameraModel::kKannalaBrandt;
-  const std::vector<double> values = numbers("distortion_coefficients");
-  if (values.size() > camera.distortion.size()) fail("distortion_coefficients", "has more than 5 numbers");
-  std::copy(values.begin(), values.end(), camera.distortion.begin());
-  return camera;
+  const std::string key = has("distortion_coeffs") ? "distortion_coeffs" : "distortion_coefficients";
+  return with_lens(camera, {.name = text("distortion_model"), .coefficients = numbers(key)},
+                   file_ + ": \"" + prefix_ + "distortion_model\"");
+}
+
+Camera SensorYaml::camera() const {
+  if (has("camera_model") && text("camera_model") != "pinhole")
+    fail("camera_model", "is \"" + text("camera_model") +
+                             "\", which is not supported; calibrate with pinhole-radtan or pinhole-equi");
+  const std::vector<double> size = numbers("resolution");
+  if (size.size() != 2 || size[0] < 1.0 || size[1] < 1.0) fail("resolution", "must be width and height");
+  const std::vector<double> values = numbers("intrinsics");
+  if (values.size() != 4 || values[0] <= 0.0 || values[1] <= 0.0)
+    fail("intrinsics", "must be the four numbers fx, fy, cx, cy");
+  return with_distortion(Camera{.width = static_cast<int>(size[0]),
+                                .height = static_cast<int>(size[1]),
+                                .fx = values[0],
+                                .fy = values[1],
+                                .cx = values[2],
+                                .cy = values[3]});
+}
+
+ImuNoise SensorYaml::imu_noise() const {
+  return ImuNoise{.gyro_noise = positive("gyroscope_noise_density"),
+                  .accel_noise = positive("accelerometer_noise_density"),
+                  .gyro_walk = positive("gyroscope_random_walk"),
+                  .accel_walk = positive("accelerometer_random_walk")};
 }
 
 void SensorYaml::fail(const std::string& key, const std::string& problem) const {

@@ -10,6 +10,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/pose.h"
+#include "core/types/rig.h"
 
 namespace stillpoint::datasets {
 
@@ -26,13 +27,20 @@ class SensorYaml {
   [[nodiscard]] std::string text(const std::string& key) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;  ///< a list of single values
   [[nodiscard]] double number(const std::string& key) const;                   ///< finite
+  [[nodiscard]] double positive(const std::string& key) const;                 ///< finite, greater than 0
   [[nodiscard]] int positive_int(const std::string& key) const;
   /// A list of finite numbers, or of rows of numbers: the value of `key` itself, or of its entry `data`.
   [[nodiscard]] std::vector<double> numbers(const std::string& key) const;
   /// A 4x4 matrix of 16 numbers in row-major order.
   [[nodiscard]] Pose pose(const std::string& key) const;
-  /// `camera` with model and coefficients from `distortion_model` and `distortion_coefficients`.
+  /// `camera` with model and coefficients from `distortion_model`, and `distortion_coefficients` or, as
+  /// Kalibr writes it, `distortion_coeffs`.
   [[nodiscard]] Camera with_distortion(Camera camera) const;
+  /// A camera of Kalibr or EuRoC: `resolution`, `intrinsics` (fx fy cx cy) and distortion. Of the models that
+  /// may be named by `camera_model`, only pinhole.
+  [[nodiscard]] Camera camera() const;
+  /// The four densities of an IMU in a file of Kalibr or EuRoC; greater than 0.
+  [[nodiscard]] ImuNoise imu_noise() const;
 
   [[nodiscard]] bool has(const std::string& key) const;
   [[noreturn]] void fail(const std::string& key, const std::string& problem) const;

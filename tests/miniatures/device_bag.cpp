@@ -104,7 +104,7 @@ void write_librealsense(BagWriter& bag, const SensorStream& stream) {
       .height = static_cast<std::uint32_t>(camera.height),
       .width = static_cast<std::uint32_t>(camera.width),
       .distortion_model = "plumb_bob",
-      .D = std::vector<double>(camera.distortion.begin(), camera.distortion.end()),
+      .D = std::vector<double>(camera.coefficients().begin(), camera.coefficients().end()),
       .K = {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1},
       .P = {}};
   for (const std::string& topic : {depth, color}) {

@@ -172,7 +172,7 @@ Command export_command() {
            {"--compression", "Of a bag: none, bz2 (ROS 1), lz4 (ROS 1, MCAP) or zstd (MCAP)",
             &arguments->compression},
            {"--format", "Format of the input [detected]", &arguments->format},
-           {"--rig", "rig.toml that overrides the calibration of the input", &arguments->rig},
+           {"--rig", kRigHelp, &arguments->rig},
            {"--topics", kTopicsHelp, &arguments->topics}},
       .action = [arguments] { return export_sequence(*arguments); }};
 }

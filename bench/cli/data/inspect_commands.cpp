@@ -54,7 +54,7 @@ Command check_command() {
                   {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
                    &arguments->format},
                   {"--topics", kTopicsHelp, &arguments->topics},
-                  {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig_file}},
+                  {"--rig", kRigHelp, &arguments->rig_file}},
       .action = [arguments] { return check(*arguments); }};
 }
 

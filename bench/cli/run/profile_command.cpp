@@ -456,7 +456,7 @@ std::vector<Option> profile_options(const std::shared_ptr<ProfileArguments>& arg
           {"--out", "Output folder of profile.json, trace.json and stacks.folded [build/profile/SEQ]",
            &arguments->out},
           {"--format", "Sequence format [detected]", &arguments->format},
-          {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
+          {"--rig", kRigHelp, &arguments->rig},
           {"--max-frames",
            "Maximum number of frames; 0 = all, or 30 with --instructions",
            &arguments->max_frames,

@@ -380,7 +380,7 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
       {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]",
        &arguments->format},
       {"--topics", kTopicsHelp, &arguments->topics},
-      {"--rig", "rig.toml that overrides the calibration of the sequence", &arguments->rig},
+      {"--rig", kRigHelp, &arguments->rig},
       {"--dump",
        "Additional output: labels (labels.csv, dynamic labels of all features) or cost (cost.svg, "
        "processing time of each frame; loop_cost.svg: of loop closure); may be repeated",

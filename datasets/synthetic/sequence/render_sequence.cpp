@@ -52,7 +52,7 @@ std::string camera_yaml(const char* name, const Camera& camera, double frames_pe
   return fmt::format(
       "{}:\n  width: {}\n  height: {}\n  fps: {}\n  distortion_model: radial-tangential\n"
       "  distortion_coefficients:\n    data: [{}]\n  intrinsics:\n    data: [{}, {}, {}, {}]\n",
-      name, camera.width, camera.height, frames_per_s, fmt::join(camera.distortion, ", "), camera.fx,
+      name, camera.width, camera.height, frames_per_s, fmt::join(camera.coefficients(), ", "), camera.fx,
       camera.cx, camera.fy, camera.cy);
 }
 

@@ -18,7 +18,7 @@ TEST_P(ExportedBag, KeepsEveryBitOfTheSequence) {
   stream.info_.rig.imu_noise.gyro_noise = 0.0123;
   stream.info_.rig.time_offset_s = 0.005;
   stream.info_.rig.rolling_shutter_s = 0.02;
-  stream.info_.rig.camera.distortion = {0.1, 0.2, 0.3, 0.4, 0.5};
+  stream.info_.rig.camera.distortion = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
   export_bag(stream, folder.path() / GetParam());
   const std::unique_ptr<SensorStream> read = open_sequence(folder.path() / GetParam());
   const SequenceInfo& info = read->info();

@@ -46,6 +46,19 @@ class BagBuilder {
                     writer_.format()));
   }
 
+  /// A gray image whose stamp is not the time of its recording.
+  void delayed_image(const std::string& topic, Timestamp stamp, Timestamp recorded) {
+    const std::string data(48, '\1');
+    write(topic, "sensor_msgs/Image", recorded,
+          serialize(ImageMessage{.header = {.stamp = stamp, .frame = "cam"},
+                                 .height = 6,
+                                 .width = 8,
+                                 .encoding = "mono8",
+                                 .step = 8,
+                                 .data = data},
+                    writer_.format()));
+  }
+
   void camera_info(const std::string& topic, double fx, const std::string& model = "plumb_bob",
                    std::vector<double> D = {}) {
     const CameraInfoMessage info{.header = {.stamp = at_ms(0), .frame = "cam"},
@@ -258,6 +271,30 @@ TEST(BagSequence, RepeatedAndUnorderedStampsAreRepairedWithAWarning) {
             std::string::npos);
 }
 
+TEST(BagSequence, MissingStampsAreReplacedByTheTimeOfRecording) {
+  // The camera has a clock of its own that started 90 s ago, and its images arrive 5 ms after their exposure.
+  const auto times = [](std::initializer_list<int> without_stamp) {
+    const TemporaryFolder folder;
+    BagBuilder bag(folder.path() / "a.bag");
+    bag.camera_info("/camera_info", 10.0);
+    for (int i = 0; i < 5; ++i) {
+      const bool has_stamp = std::ranges::find(without_stamp, i) == without_stamp.end();
+      const Timestamp stamp{has_stamp ? (10'000 + 40 * i) * std::int64_t{1'000'000} : 0};
+      bag.delayed_image("/image_raw", stamp, at_ms(40 * i + 5));
+    }
+    bag.finish();
+    return open_sequence(folder.path() / "a.bag")->info();
+  };
+  const SequenceInfo all = times({0, 1, 2, 3, 4});
+  EXPECT_EQ(all.frame_times[1], at_ms(45));
+  EXPECT_TRUE(has_warning(all, "/image_raw: 5 of 5 messages have the stamp 0; the time of their recording"));
+  const SequenceInfo some = times({1, 3});
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(some.frame_times[static_cast<std::size_t>(i)].ns, (10'000 + 40 * i) * std::int64_t{1'000'000});
+  EXPECT_TRUE(has_warning(some, "/image_raw: 2 of 5 messages have the stamp 0"));
+  EXPECT_TRUE(times({}).warnings.empty());
+}
+
 /// VCU-RVI has accelerations in g whose sign is inverted.
 TEST(BagSequence, AccelerationsInGAreConverted) {
   const auto accel_of = [](const Eigen::Vector3d& recorded) {
@@ -291,11 +328,25 @@ TEST(BagSequence, MissingCalibrationNamesTheFileToWrite) {
 TEST(BagSequence, DistortionModelsThatAreNotSupportedAreRejected) {
   const TemporaryFolder folder;
   BagBuilder bag(folder.path() / "a.bag");
-  bag.camera_info("/camera_info", 10.0, "rational_polynomial", {0.1, 0, 0, 0, 0, 0.5, 0, 0});
+  bag.camera_info("/camera_info", 10.0, "fov", {0.9});
   bag.image("/image_raw", at_ms(0), "mono8");
   bag.finish();
   expect_input_error([&] { static_cast<void>(open_sequence(folder.path() / "a.bag")); },
-                     {"rational_polynomial", "rig.toml"});
+                     {"CameraInfo of /image_raw", "\"fov\"", "rational_polynomial", "a.rig.toml"});
+  folder.write("a.rig.toml", "[camera]\nwidth = 8\nheight = 6\nfx = 5\nfy = 5\ncx = 4\ncy = 3\n");
+  EXPECT_EQ(open_sequence(folder.path() / "a.bag")->info().rig.camera.fx, 5.0);
+}
+
+TEST(BagSequence, TheLensOfAnAzureKinectIsRead) {
+  const TemporaryFolder folder;
+  const std::vector<double> D = {0.40386, -2.60288, 8.94e-4, -4.2e-5, 1.51188, 0.28428, -2.42072, 1.43544};
+  BagBuilder bag(folder.path() / "a.bag");
+  bag.camera_info("/camera_info", 10.0, "rational_polynomial", D);
+  bag.image("/image_raw", at_ms(0), "mono8");
+  bag.finish();
+  const Camera camera = open_sequence(folder.path() / "a.bag")->info().rig.camera;
+  EXPECT_EQ(camera.model, CameraModel::kRadialTangential);
+  EXPECT_TRUE(std::ranges::equal(camera.distortion, D));
 }
 
 TEST(BagSequence, ABagWithoutImagesListsItsTopics) {

@@ -122,12 +122,12 @@ TEST(BadSequence, InvalidCalibrationIsAnError) {
   with(identity + rest + "distortion_coefficients: [0, 0, 0, 0]\nintrinsics: [10, .nan, 3, 2]\n");
   expect_rejected(folder, {"sensor.yaml", "\"intrinsics\" must contain finite numbers"});
   with(identity + rest + "distortion_coefficients: [0, 0, 0, 0]\nintrinsics: [10, 10]\n");
-  expect_rejected(folder, {"sensor.yaml", "fu, fv, cu, cv"});
+  expect_rejected(folder, {"sensor.yaml", "fx, fy, cx, cy"});
   with("T_BS:\n  data: [1, 2, 3]\n" + rest + "distortion_coefficients: [0]\nintrinsics: [10, 10, 3, 2]\n");
   expect_rejected(folder, {"sensor.yaml", "\"T_BS\" must have 16 numbers"});
   with(identity +
        "resolution: [8, 6]\ndistortion_model: fov\ndistortion_coefficients: [1]\nintrinsics: [1, 1, 1, 1]\n");
-  expect_rejected(folder, {"sensor.yaml", "is unknown: \"fov\""});
+  expect_rejected(folder, {"sensor.yaml", "\"fov\" is not supported"});
 }
 
 TEST(BadSequence, UnconnectedCoordinateFramesAreAnError) {

@@ -50,7 +50,7 @@ TEST(RigFile, ReadsEveryKey) {
   EXPECT_EQ(rig.camera.cx, 320.0);
   EXPECT_EQ(rig.camera.cy, 240.0);
   EXPECT_EQ(rig.camera.model, CameraModel::kKannalaBrandt);
-  EXPECT_EQ(rig.camera.distortion, (std::array<double, 5>{0.1, 0.2, 0, 0, 0}));
+  EXPECT_EQ(rig.camera.distortion, (std::array<double, 8>{0.1, 0.2}));
   EXPECT_EQ(rig.rolling_shutter_s, 0.03);
   EXPECT_EQ(rig.depth_units_per_m, 5000.0);
   EXPECT_TRUE((rig.T_b_c * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(0.1, 1.2, 0.3)));
@@ -87,7 +87,7 @@ TEST(RigFile, TypeAndRangeErrorsNameTheLine) {
   expect_rejected("[camera]\nwidth = 640.5\n", {"rig.toml:2", "integer"});
   expect_rejected("[camera]\nfx = nan\n", {"rig.toml:2", "finite"});
   expect_rejected("[camera]\nmodel = \"fov\"\n", {"rig.toml:2", "radial-tangential"});
-  expect_rejected("[camera]\ndistortion = [1,2,3,4,5,6]\n", {"rig.toml:2", "more than 5"});
+  expect_rejected("[camera]\ndistortion = [1,2,3,4,5,6,7,8,9]\n", {"rig.toml:2", "more than 8"});
   expect_rejected("[camera]\nrolling_shutter_s = -0.1\n", {"rig.toml:2", "must not be negative"});
   expect_rejected("[depth]\nscale = 0\n", {"rig.toml:2", "greater than 0"});
   expect_rejected("[imu]\nT_b_c = [1, 0]\n", {"rig.toml:2", "16 numbers"});

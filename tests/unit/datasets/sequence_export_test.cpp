@@ -48,6 +48,15 @@ TEST(SequenceExport, EurocRoundTripPreservesTheSequence) {
   expect_same_trajectory(read->info());
 }
 
+TEST(SequenceExport, EurocKeepsAllCoefficientsOfTheLens) {
+  const TemporaryFolder folder;
+  SmallStream stream;
+  stream.info_.rig.camera.distortion = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+  export_euroc(stream, folder.path() / "out");
+  EXPECT_EQ(open_sequence(folder.path() / "out")->info().rig.camera.distortion,
+            stream.info_.rig.camera.distortion);
+}
+
 TEST(SequenceExport, EurocRequiresAnImu) {
   const TemporaryFolder folder;
   SmallStream stream;

@@ -36,6 +36,30 @@ TEST(Camera, UnprojectInvertsProjectWithKannalaBrandtDistortion) {
   expect_round_trip(camera);
 }
 
+/// The color camera of an Azure Kinect at 1280x720.
+Camera azure_kinect_camera() {
+  return Camera{.width = 1280,
+                .height = 720,
+                .fx = 613.02,
+                .fy = 612.93,
+                .cx = 648.6,
+                .cy = 374.0,
+                .model = CameraModel::kRadialTangential,
+                .distortion = {0.40386, -2.60288, 8.94e-4, -4.2e-5, 1.51188, 0.28428, -2.42072, 1.43544}};
+}
+
+TEST(Camera, UnprojectInvertsProjectWithARationalLens) { expect_round_trip(azure_kinect_camera()); }
+
+TEST(Camera, ARationalLensDividesByItsDenominator) {
+  Camera camera = azure_kinect_camera();
+  camera.distortion = {0.5, 0.0, 0.0, 0.0, 0.0, 0.25, 0.5, 1.0};
+  // r^2 = 1: (1 + 0.5) / (1 + 0.25 + 0.5 + 1) = 6 / 11
+  EXPECT_NEAR(camera.project({2.0, 0.0, 2.0}).x(), 613.02 * 6.0 / 11.0 + 648.6, 1e-9);
+  EXPECT_EQ(camera.coefficients().size(), 8u);
+  camera.distortion = {0.5};
+  EXPECT_EQ(camera.coefficients().size(), 5u);
+}
+
 TEST(Camera, WithoutDistortionProjectsByThePinholeModel) {
   Camera camera = euroc_camera();
   camera.distortion = {};
