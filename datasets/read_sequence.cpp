@@ -95,6 +95,24 @@ void check_rig(const SequenceContent& content) {
   }
 }
 
+/// Depth in the place of color has gray values of 16 bits, too, but not their whole range.
+/// @throws InputError if the brightest of three images is darker than a quarter of it, or a frame has one
+/// file for both
+void require_brightness(const SequenceContent& content) {
+  constexpr int kQuarter = 1 << 14;
+  const std::vector<FrameFiles>& files = content.frame_files;
+  if (content.images || files.empty() || files.front().depth.empty()) return;
+  if (files.front().color == files.front().depth)
+    throw InputError(files.front().color.string(), "is listed as color and as depth; correct one list");
+  std::optional<int> brightest;
+  for (const std::size_t i : {std::size_t{0}, files.size() / 2, files.size() - 1})
+    brightest = std::max(brightest, largest_deep_gray(files[i].color));
+  if (!brightest || *brightest >= kQuarter) return;
+  throw InputError(files.front().color.string(),
+                   "has 16 bits per channel, of which values up to " + std::to_string(*brightest) +
+                       " are used; is it a depth image? scale gray images to the whole range or to 8 bits");
+}
+
 /// `content` with warnings about the repaired rows of the ground truth.
 SequenceContent with_warnings(SequenceContent content) {
   for (const std::string& text : eval::repair_texts(content.truth_repairs))
@@ -187,6 +205,7 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   check_rig(content);
   if (&format == &kBagFormat) content = with_metric_accelerations(std::move(content));
   check_overlap(content.info, faults);
+  faults.guard([&content] { require_brightness(content); });
   for (const std::string& finding : imu_unit_findings(content.info))
     content.info.warnings.push_back("imu: " + finding);
   return content;

@@ -273,11 +273,19 @@ LoadedImage load_bytes(std::string_view bytes, const std::string& name, int dept
   return image;
 }
 
-/// @throws InputError unless the image has 8 bits per channel
+/// The upper 8 bits of gray values of 16 bits.
+cv::Mat upper_bits(const cv::Mat& deep) {
+  cv::Mat gray(deep.size(), CV_8UC1);
+  std::transform(deep.begin<std::uint16_t>(), deep.end<std::uint16_t>(), gray.begin<std::uint8_t>(),
+                 [](std::uint16_t value) { return static_cast<std::uint8_t>(value >> 8); });
+  return gray;
+}
+
+/// @throws InputError unless the image has 8 or 16 bits per channel
 cv::Mat color_of(const LoadedImage& image, const std::string& name) {
   if (!image.pixels.empty()) return image.pixels;
-  throw InputError(
-      name, "has " + std::to_string(image.bits) + " bits per channel, expected 8; is it a depth image?");
+  throw InputError(name, "has " + std::to_string(image.bits) +
+                             " bits per channel, expected 8 or 16; is it a depth image?");
 }
 
 /// @throws InputError unless the image has one channel of 16 bits
@@ -290,13 +298,14 @@ cv::Mat depth_of(const LoadedImage& image, const std::string& name) {
   throw InputError(name, found + " or of 32-bit floats in meters; is it a color image?");
 }
 
-/// nullopt if the file is no PNG of a common kind with this depth; OpenImageIO reads it, or describes the
-/// fault.
-std::optional<DecodedPng> decode_fast(const std::filesystem::path& file, PngPixels pixels, int depth) {
+/// nullopt if the file is no PNG of a common kind; OpenImageIO reads it, or describes the fault.
+std::optional<DecodedPng> decode_fast(const std::filesystem::path& file, PngPixels pixels) {
   const std::optional<std::string> bytes = file_bytes(file);
-  const std::optional<DecodedPng> png = bytes ? decode_png(*bytes, pixels) : std::nullopt;
-  return png && png->image.depth() == depth ? png : std::nullopt;
+  return bytes ? decode_png(*bytes, pixels) : std::nullopt;
 }
+
+/// The image with 8 bits per channel.
+cv::Mat with_8_bits(const cv::Mat& image) { return image.depth() == CV_16U ? upper_bits(image) : image; }
 
 using Bytes = std::vector<unsigned char>;
 
@@ -341,27 +350,38 @@ void write_atomically(const std::filesystem::path& file, const Bytes& bytes) {
 }  // namespace
 
 cv::Mat read_image(const std::filesystem::path& file) {
-  if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored, CV_8U)) return png->image;
+  if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored))
+    return with_8_bits(png->image);
   return color_of(load_image(file, CV_8U), file.string());
 }
 
 GrayImage read_gray(const std::filesystem::path& file) {
-  if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kGray, CV_8U)) {
-    return {.image = png->image, .is_color = png->is_color};
+  if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kGray)) {
+    return {.image = with_8_bits(png->image), .is_color = png->is_color};
   }
   const cv::Mat image = read_image(file);
   return {.image = to_gray(image), .is_color = image.channels() == 3};
 }
 
 cv::Mat read_depth(const std::filesystem::path& file) {
-  if (const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored, CV_16U))
-    return png->image;
+  const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored);
+  if (png && png->image.depth() == CV_16U) return png->image;
   return depth_of(load_image(file, CV_16U), file.string());
+}
+
+std::optional<int> largest_deep_gray(const std::filesystem::path& file) {
+  constexpr std::size_t kBitDepth = 24;  ///< position in a PNG: signature, head of IHDR, width and height
+  const std::string beginning = first_bytes(file);
+  if (!beginning.starts_with(kSignature) || beginning.size() <= kBitDepth || beginning[kBitDepth] != 16)
+    return std::nullopt;
+  const std::optional<DecodedPng> png = decode_fast(file, PngPixels::kAsStored);
+  if (!png || png->image.type() != CV_16UC1) return std::nullopt;
+  return *std::max_element(png->image.begin<std::uint16_t>(), png->image.end<std::uint16_t>());
 }
 
 cv::Mat decode_image(std::string_view bytes, const std::string& name) {
   const std::optional<DecodedPng> png = decode_png(bytes);
-  return png && png->image.depth() == CV_8U ? png->image : color_of(load_bytes(bytes, name, CV_8U), name);
+  return png ? with_8_bits(png->image) : color_of(load_bytes(bytes, name, CV_8U), name);
 }
 
 cv::Mat decode_depth(std::string_view bytes, const std::string& name) {

@@ -18,7 +18,8 @@
 
 namespace stillpoint::datasets {
 
-/// Decodes a gray or color image (PNG, JPEG or any other format of OpenImageIO) of 8 bits per channel.
+/// Decodes a gray or color image (PNG, JPEG or any other format of OpenImageIO) of 8 or 16 bits per channel,
+/// of which the upper 8 are used.
 /// @return CV_8UC1, or CV_8UC3 in the order R, G, B; an alpha channel is dropped
 /// @throws InputError if the file is missing, truncated, undecodable, or has another bit depth
 [[nodiscard]] cv::Mat read_image(const std::filesystem::path& file);
@@ -31,6 +32,10 @@ struct GrayImage {
 /// `to_gray(read_image(file))`, in less time.
 /// @throws InputError as `read_image`
 [[nodiscard]] GrayImage read_gray(const std::filesystem::path& file);
+
+/// The largest value of a PNG with gray values of 16 bits, which may be brightness or depth.
+/// @return nullopt of other files
+[[nodiscard]] std::optional<int> largest_deep_gray(const std::filesystem::path& file);
 
 /// Decodes a depth image: one channel of 16 bits, or of floats in meters (TIFF, OpenEXR).
 /// @return CV_16UC1, the raw values; CV_32FC1, meters

@@ -34,13 +34,15 @@ std::string reason(std::string text) {
 LoadedImage pixels_of(OIIO::ImageInput& input, int depth) {
   const OIIO::ImageSpec& spec = input.spec();
   LoadedImage image{.channels = spec.nchannels, .bits = static_cast<int>(8 * spec.format.size())};
-  const bool has_meters = depth == CV_16U && spec.format == OIIO::TypeDesc::FLOAT && spec.nchannels == 1;
-  const bool deep_color = depth == CV_8U && spec.format == OIIO::TypeDesc::UINT16 && spec.nchannels >= 3;
+  const bool is_float = spec.format == OIIO::TypeDesc::FLOAT || spec.format == OIIO::TypeDesc::HALF ||
+                        spec.format == OIIO::TypeDesc::DOUBLE;
+  const bool has_meters = depth == CV_16U && is_float && spec.nchannels == 1;
+  const bool deep_color = depth == CV_8U && spec.format == OIIO::TypeDesc::UINT16;
   if (has_meters) depth = CV_32F;
   const OIIO::TypeDesc type(depth == CV_32F   ? OIIO::TypeDesc::FLOAT
                             : depth == CV_16U ? OIIO::TypeDesc::UINT16
                                               : OIIO::TypeDesc::UINT8);
-  if (spec.format != type && !deep_color) return image;
+  if (spec.format != type && !deep_color && !has_meters) return image;
   const int channels = spec.nchannels < 3 ? 1 : 3;
   image.pixels.create(spec.height, spec.width, CV_MAKETYPE(depth, channels));
   const bool complete = input.read_image(0, 0, 0, channels, type, image.pixels.data);

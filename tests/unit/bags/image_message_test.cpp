@@ -107,6 +107,18 @@ TEST(ImageMessage, CompressedDepthHasAHeader) {
                 CompressedImageMessage{.header = {}, .format = "16UC1; png compressed ", .data = png}, "bag")
                 .at<std::uint16_t>(0, 0),
             1234);
+  // Some publishers leave the header out; without it, the scale of inverse depth is not known.
+  EXPECT_EQ(
+      decode_depth_message(
+          CompressedImageMessage{.header = {}, .format = "16UC1; compressedDepth png", .data = png}, "bag")
+          .at<std::uint16_t>(0, 0),
+      1234);
+  expect_input_error(
+      [&] {
+        static_cast<void>(decode_depth_message(
+            CompressedImageMessage{.header = {}, .format = "32FC1; compressedDepth", .data = png}, "bag"));
+      },
+      {"bag", "no header", "scale"});
 }
 
 TEST(ImageMessage, CompressedColorIsDecoded) {

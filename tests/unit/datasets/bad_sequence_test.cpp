@@ -43,6 +43,19 @@ TEST(BadSequence, DepthOfAnotherSizeAffectsItsFrameOnly) {
   expect_only_frame_rejected(folder, 1, {"100.040000.png", "is 8x5", "calibration is for 8x6"});
 }
 
+TEST(BadSequence, DepthInThePlaceOfColorIsAnError) {
+  const TemporaryFolder folder;
+  write_tum_folder(folder);
+  for (const char* const name : {"1.000000.png", "1.040000.png", "1.080000.png"})
+    write_png(folder.path() / "rgb" / name, cv::Mat(6, 8, CV_16UC1, cv::Scalar(9'000)));
+  expect_rejected(folder, {"rgb/1.000000.png", "16 bits per channel", "values up to 9000", "depth image"});
+  // Brightness uses the whole range.
+  write_png(folder.path() / "rgb" / "1.040000.png", cv::Mat(6, 8, CV_16UC1, cv::Scalar(60'000)));
+  EXPECT_EQ(open_sequence(folder.path())->load_frame(1).gray.at<std::uint8_t>(3, 3), 60'000 >> 8);
+  folder.write("rgb.txt", "1.005 depth/1.005000.png\n1.045 depth/1.045000.png\n");
+  expect_rejected(folder, {"depth/1.005000.png", "as color and as depth"});
+}
+
 TEST(BadSequence, EmptyAndUnsortedImuFilesAreErrors) {
   const TemporaryFolder folder;
   write_openloris_folder(folder);
