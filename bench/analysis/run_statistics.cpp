@@ -13,6 +13,7 @@
 
 #include "bench/analysis/paired_runs.h"
 #include "bench/model/metrics.h"
+#include "bench/model/run_notes.h"
 #include "bench/model/stored_run.h"
 #include "core/base/error.h"
 #include "eval/metrics/statistics.h"
@@ -218,6 +219,7 @@ std::vector<RunSpread> run_spreads(std::span<const StoredRun> runs, const std::s
     const auto with_value = static_cast<std::size_t>(std::ranges::count_if(
         members[i], [&](const StoredRun* run) { return value_of(*run, metric).has_value(); }));
     rows[i].without_value = rows[i].runs - rows[i].failed - with_value;
+    rows[i].doubt = few_rpe_pairs_note(members[i], metric);
     rows[i].copies = with_value - (rows[i].spread ? rows[i].spread->count : 0);
   }
   return rows;

@@ -28,6 +28,13 @@ Value rpe(const Measurements& m, eval::Statistics eval::RpeResult::*errors) {
 Value rpe_translation(const Measurements& m) { return rpe(m, &eval::RpeResult::translation_m); }
 Value rpe_rotation(const Measurements& m) { return rpe(m, &eval::RpeResult::rotation_deg); }
 
+/// A pose that is paired with itself counts as zero error in the RPE, but is no pair.
+Value rpe_pairs(const Measurements& m) {
+  const eval::Score* score = score_of(m);
+  if (score == nullptr) return std::nullopt;
+  return score->rpe ? static_cast<double>(score->rpe->translation_m.count - score->rpe->self_pairs) : 0.0;
+}
+
 template <Value eval::Score::*kMember>
 Value member(const Measurements& m) {
   const eval::Score* score = score_of(m);
@@ -116,6 +123,12 @@ constexpr MetricDescriptor kMetrics[] = {
      .direction = kSmallerIsBetter,
      .decimals = 0,
      .value = count<&RunCounts::segments>},
+    {.id = metric_id::kRpePairs,
+     .label = "RPE pairs",
+     .title = "Pairs of poses in the relative pose error",
+     .description = "Number of pairs of two poses in T.RPE and R.RPE; few ones tell little",
+     .decimals = 0,
+     .value = rpe_pairs},
     {.id = "resets",
      .label = "resets",
      .title = "Estimator resets",

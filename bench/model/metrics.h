@@ -27,6 +27,7 @@ inline constexpr std::string_view kAte = "ate_rmse_m";
 inline constexpr std::string_view kAteRotation = "ate_rmse_deg";
 inline constexpr std::string_view kRpeTranslation = "rpe_trans_rmse_m_per_s";
 inline constexpr std::string_view kRpeRotation = "rpe_rot_rmse_deg_per_s";
+inline constexpr std::string_view kRpePairs = "rpe_pairs";
 inline constexpr std::string_view kRpeTranslationPerDelta = "rpe_rmse_m";
 inline constexpr std::string_view kRpeRotationPerDelta = "rpe_rmse_deg";
 inline constexpr std::string_view kCorrectRate = "correct_rate";

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bench/model/metrics.h"
+#include "eval/metrics/rpe.h"
 #include "eval/metrics/statistics.h"
 
 namespace stillpoint::bench {
@@ -88,6 +89,23 @@ std::string protocol_difference_note(std::span<const StoredRun* const> runs, std
                           values.shown.size(), kMaxProtocolFactor, values.different);
   }
   return note;
+}
+
+std::string few_rpe_pairs_note(std::span<const StoredRun* const> runs, std::string_view metric) {
+  const std::string_view id = without_protocol(metric);
+  if (id != metric_id::kRpeTranslation && id != metric_id::kRpeRotation &&
+      id != metric_id::kRpeTranslationPerDelta && id != metric_id::kRpeRotationPerDelta)
+    return "";
+  const std::string counter =
+      std::string(metric.substr(0, metric.size() - id.size())) + std::string(metric_id::kRpePairs);
+  std::optional<double> fewest;
+  for (const StoredRun* run : runs) {
+    const std::optional<double> pairs = metric_value(*run, counter);
+    if (run->outcome != Outcome::kOk || !metric_value(*run, metric) || !pairs) continue;
+    fewest = std::min(fewest.value_or(*pairs), *pairs);
+  }
+  if (!fewest || *fewest >= static_cast<double>(eval::kFewRpePairs)) return "";
+  return fmt::format("RPE of only {:.0f} pairs of poses: not ranked", *fewest);
 }
 
 TimeSource time_source(const StoredRun& run) {

@@ -26,6 +26,12 @@ namespace stillpoint::bench {
 [[nodiscard]] std::string protocol_difference_note(std::span<const StoredRun* const> runs,
                                                    std::string_view metric);
 
+/// Footnote about an RPE, by any protocol, of fewer than ten pairs of poses in at least one run: "RPE of only
+/// 4 pairs of poses: not ranked"; empty for other metrics, and for runs that did not record the number.
+/// @param runs of one variant on one sequence; failed ones are ignored
+/// @param metric name, e.g. "rpe_trans_rmse_m_per_s"
+[[nodiscard]] std::string few_rpe_pairs_note(std::span<const StoredRun* const> runs, std::string_view metric);
+
 /// How far the times of a run are its own; the best first.
 enum class TimeSource {
   kUndisturbed,  ///< timing run on an idle machine

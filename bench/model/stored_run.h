@@ -39,7 +39,7 @@ struct RunIdentity {
 /// How a run ended.
 enum class Outcome {
   kOk,
-  kLost,         ///< processed all frames without any pose
+  kLost,         ///< processed all frames with fewer than two poses
   kInterrupted,  ///< stopped on request; the results cover the processed frames. Only in result.json, never
                  ///< in stores
   kCrashed,      ///< terminated by a signal, or exited with an error

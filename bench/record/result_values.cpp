@@ -65,7 +65,6 @@ Json metric_members(const Measurements& measurements) {
   if (!measurements.scored) return json;
   const eval::Score& score = measurements.scored->score;
   json["ate_pairs"] = score.ate ? score.ate->pairs : 0;
-  json["rpe_pairs"] = score.rpe ? score.rpe->translation_m.count : 0;
   json["protocols"] = protocols_json();
   return json;
 }

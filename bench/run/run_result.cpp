@@ -29,7 +29,7 @@ Trajectory camera_truth(const datasets::SequenceInfo& info, const std::vector<Ti
 
 Outcome outcome_of(const OdometryRun& run) {
   if (run.summary.interrupted) return Outcome::kInterrupted;
-  return run.trajectory.poses.empty() ? Outcome::kLost : Outcome::kOk;
+  return run.trajectory.poses.size() < 2 ? Outcome::kLost : Outcome::kOk;
 }
 
 std::string failure_of(const OdometryRun& run) {
@@ -38,7 +38,8 @@ std::string failure_of(const OdometryRun& run) {
       return "interrupted after " + std::to_string(run.summary.frames) + " of " +
              std::to_string(run.frames_planned) + " frames";
     case Outcome::kLost:
-      return "no frame has a pose: the estimator never initialized";
+      return run.trajectory.poses.empty() ? "no frame has a pose: the estimator never initialized"
+                                          : "only one frame has a pose, which tells no error";
     default:
       return "";
   }

@@ -115,6 +115,12 @@ RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& 
     for (const std::string& repair : eval::repair_texts(loaded.repairs))
       result.attachments["log"] += system_.trajectory + ": " + repair + "\n";
     run.trajectory = std::move(loaded.trajectory);
+    if (run.trajectory.poses.size() < 2) {
+      RunOutcome lost =
+          failed(Outcome::kLost, system_.trajectory + " has only one pose, which tells no error");
+      lost.attachments = std::move(result.attachments);
+      return lost;
+    }
     const std::unique_ptr<datasets::SensorStream> stream = datasets::open_sequence(request.sequence);
     run.summary.frames = stream->info().frame_times.size();
     const RunResult scored = score_run(stream->info(), run);

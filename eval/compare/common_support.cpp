@@ -6,6 +6,7 @@
 
 #include "eval/metrics/ate.h"
 #include "eval/metrics/rpe.h"
+#include "eval/trajectory/orientations.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -58,6 +59,7 @@ ComparedRun with_common_errors(ComparedRun run, std::span<const MatchedPose> mat
   if (const StrictRpeResult rpe = strict_rpe(shared, options.rpe_delta_s); rpe.errors) {
     run.common_rpe_m = rpe.errors->translation_m.rmse / options.rpe_delta_s;
     run.common_rpe_deg = rpe.errors->rotation_deg.rmse / options.rpe_delta_s;
+    run.common_rpe_pairs = rpe.errors->translation_m.count;
   }
   return run;
 }
@@ -72,11 +74,11 @@ Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs, co
   std::vector<std::vector<MatchedPose>> matches;
   for (const NamedRun& run : runs) {
     const std::vector<TimeSpan> lost = lost_spans(run.est, whole, options.max_hold_s);
-    matches.push_back(strict_matches(gt, run.est));
+    matches.push_back(matched_poses(gt, run.est, associate_interpolated(gt, run.est, options.max_gap_s)));
     ComparedRun compared;
     compared.name = run.name;
     compared.coverage = time_coverage(lost, whole).value_or(0.0);
-    compared.failed = matches.back().empty() || compared.coverage < options.min_coverage;
+    compared.failed = matches.back().size() < 2 || compared.coverage < options.min_coverage;
     compared.own_ate_rmse_m = ate_rmse(matches.back(), options.alignment);
     if (!compared.failed) lost_by_any.insert(lost_by_any.end(), lost.begin(), lost.end());
     comparison.ranking.push_back(compared);
@@ -85,7 +87,11 @@ Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs, co
   for (const TimeSpan& span : common) comparison.common_s += seconds_between(span.begin, span.end);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     ComparedRun& run = comparison.ranking[i];
-    if (!run.failed) run = with_common_errors(run, matches[i], common, options);
+    if (run.failed) continue;
+    run = with_common_errors(run, matches[i], common, options);
+    if (missing_orientations(gt, runs[i].est).empty()) continue;
+    run.common_rpe_m = run.common_rpe_deg = std::nullopt;
+    run.common_rpe_pairs = 0;
   }
   std::stable_sort(comparison.ranking.begin(), comparison.ranking.end(), ranks_before);
   return comparison;

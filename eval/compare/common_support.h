@@ -20,7 +20,8 @@ struct CompareOptions {
   Alignment alignment = Alignment::kSe3;
   double max_hold_s = 1.0;    ///< validity of a pose, see ate.h
   double rpe_delta_s = 1.0;   ///< interval of the relative errors
-  double min_coverage = 0.5;  ///< runs with a smaller time coverage count as failed
+  double max_gap_s = 0.11;    ///< of interpolated ground truth, to each neighbor
+  double min_coverage = 0.5;  ///< runs with a smaller time coverage, or one pose, count as failed
 };
 
 /// Errors of one run, over all its poses (own) and over the common support of all runs that did not fail.
@@ -32,6 +33,7 @@ struct ComparedRun {
   std::optional<double> common_ate_rmse_m;
   std::optional<double> common_rpe_m;  ///< RMSE of the strict RPE over `rpe_delta_s`, per second
   std::optional<double> common_rpe_deg;
+  std::size_t common_rpe_pairs = 0;
   std::size_t common_pairs = 0;
 };
 

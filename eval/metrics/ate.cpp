@@ -112,7 +112,7 @@ std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
   if (gt.poses.size() < 2) return std::nullopt;
   std::vector<MatchedPose> matches =
       matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
-  if (matches.empty()) return 0.0;
+  if (matches.size() < 2) return 0.0;
   for (MatchedPose& match : matches) match.t = after(match.t, offset_s);
   const Similarity S_w_v = align(matches, Alignment::kSe3).S_w_v;
   const CompletedAlignment completed = complete_rotation(matches, S_w_v);

@@ -92,8 +92,9 @@ struct CorrectRateOptions {
 
 /// Correct rate as defined above, after SE(3) alignment over all matches. Ground truth is interpolated
 /// between neighbors that are both less than 0.5 s away.
-/// @return 0 if no pose matches; nullopt if the ground truth has fewer than two poses, or if neither
-/// positions nor orientations determine the rotation of the alignment, unless `max_rotation_deg` is infinite
+/// @return 0 if fewer than two poses match, as one is aligned without an error; nullopt if the ground truth
+/// has fewer than two poses, or if neither positions nor orientations determine the rotation of the
+/// alignment, unless `max_rotation_deg` is infinite
 [[nodiscard]] std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
                                                  const CorrectRateOptions& options = {},
                                                  double offset_s = 0.0);

@@ -44,6 +44,9 @@
 
 namespace stillpoint::eval {
 
+/// An RPE of fewer pairs is marked in tables and not ranked.
+inline constexpr std::size_t kFewRpePairs = 10;
+
 /// Start and end of a relative motion, as indices of matches.
 struct PosePair {
   std::size_t from = 0;

@@ -22,6 +22,7 @@ constexpr double kNotDetermined = std::numeric_limits<double>::quiet_NaN();
 struct RpeEvaluation {
   std::optional<Statistics> translation_m;
   std::optional<Statistics> rotation_deg;
+  std::size_t pairs = 0;  ///< of two poses
   std::vector<std::string> notes;
 };
 
@@ -61,10 +62,19 @@ Evaluation ate_evaluation(const AlignedMatches& aligned) {
   return evaluation;
 }
 
+constexpr std::size_t kMinMatchedPoses = 2;  // one is aligned without an error, whatever it is
+
+Evaluation without_errors(std::span<const MatchedPose> matches) {
+  Evaluation evaluation;
+  evaluation.pairs = matches.size();
+  return evaluation;
+}
+
 /// `evaluation` with an RPE and its notes.
 Evaluation with_rpe(Evaluation evaluation, const RpeEvaluation& rpe) {
   evaluation.rpe_m = rpe.translation_m;
   evaluation.rpe_deg = rpe.rotation_deg;
+  evaluation.rpe_pairs = rpe.pairs;
   evaluation.notes.insert(evaluation.notes.end(), rpe.notes.begin(), rpe.notes.end());
   return evaluation;
 }
@@ -115,6 +125,7 @@ RpeEvaluation evo_rpe(std::span<const MatchedPose> matches, const ProtocolOption
     result.notes.emplace_back("evo has no RPE over seconds; use --rpe-unit f or m");
   }
   const RelativeErrors errors = relative_errors(matches, pairs);
+  result.pairs = pairs.size();
   result.translation_m = statistics(errors.translation_m);
   result.rotation_deg = statistics(errors.rotation_deg);
   return result;
@@ -125,8 +136,11 @@ RpeEvaluation tum_rpe(const EvaluationInput& input) {
   const std::optional<RpeResult> relative =
       rpe(input.gt, input.est,
           {.delta = options.rpe_delta, .unit = options.rpe_unit, .offset_s = options.offset_s});
-  if (!relative) return {{}, {}, {"no RPE pair of two poses: they are further apart than delta"}};
-  RpeEvaluation result{relative->translation_m, relative->rotation_deg, {}};
+  if (!relative) return {{}, {}, 0, {"no RPE pair of two poses: they are further apart than delta"}};
+  RpeEvaluation result{relative->translation_m,
+                       relative->rotation_deg,
+                       relative->translation_m.count - relative->self_pairs,
+                       {}};
   if (relative->self_pairs > 0) {
     result.notes.push_back(std::to_string(relative->self_pairs) + " of " +
                            std::to_string(relative->translation_m.count) +
@@ -141,12 +155,10 @@ RpeEvaluation tum_rpe(const EvaluationInput& input) {
 
 Evaluation evaluate_compat_tum(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
-  Evaluation evaluation;
   const std::vector<MatchedPose> matches = matched_poses(
       input.gt, input.est, associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
-  if (matches.size() >= 2) {
-    evaluation = ate_evaluation(aligned(matches, options));
-  }
+  Evaluation evaluation =
+      matches.size() < kMinMatchedPoses ? without_errors(matches) : ate_evaluation(aligned(matches, options));
   return with_rpe(std::move(evaluation), tum_rpe(input));
 }
 
@@ -154,21 +166,28 @@ Evaluation evaluate_compat_evo(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
   const std::vector<MatchedPose> matches = matched_poses(
       input.gt, input.est, associate_evo(input.gt, input.est, tool_association(options, kEvoMaxDifference)));
-  if (matches.empty()) return {};
+  if (matches.size() < kMinMatchedPoses) return without_errors(matches);
   return with_rpe(ate_evaluation(aligned_or_throw(matches, options, "compat:evo")),
                   evo_rpe(matches, options));
+}
+
+/// Of a tool without RPE, if the options state its interval.
+void note_missing_rpe(Evaluation& evaluation, const ProtocolOptions& options) {
+  if (options.rpe_delta != ProtocolOptions{}.rpe_delta || options.rpe_unit != RpeUnit::kSeconds)
+    evaluation.notes.emplace_back("the tool has no RPE: --rpe-delta and --rpe-unit have no effect");
 }
 
 Evaluation evaluate_compat_rpg(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
   std::vector<MatchedPose> matches = matched_poses(
       input.gt, input.est, associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
-  if (matches.empty()) return {};
+  if (matches.size() < kMinMatchedPoses) return without_errors(matches);
   Evaluation evaluation = ate_evaluation(aligned_or_throw(matches, options, "compat:rpg"));
   for (MatchedPose& match : matches) match.est = evaluation.alignment.S_w_v * match.est;
   evaluation.segments = segment_errors(
       matches, {.lengths_m = options.segment_lengths_m, .tolerance = kRpgTolerance, .shift_starts = true});
   evaluation.drift_percent = drift_percent(evaluation.segments);
+  note_missing_rpe(evaluation, options);
   return evaluation;
 }
 
@@ -182,13 +201,15 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
       .correct = {}, .max_gap_s = options.max_difference_s.value_or(0.5), .scale = false};
   const std::vector<MatchedPose> matches = matched_poses(
       input.gt, input.est, associate_interpolated(input.gt, input.est, metric.max_gap_s, options.offset_s));
-  Evaluation evaluation = ate_evaluation(aligned(matches, options));
+  Evaluation evaluation =
+      matches.size() < kMinMatchedPoses ? without_errors(matches) : ate_evaluation(aligned(matches, options));
   Trajectory shifted = input.est;
   for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, options.offset_s);
   const OpenlorisSequenceScore score =
       score_openloris_sequence(input.gt, shifted, evaluation.alignment.S_w_v, metric);
   evaluation.correct_rate = score.correct_rate;
   evaluation.first_pose_s = score.relocalization_time_s;
+  note_missing_rpe(evaluation, options);
   return evaluation;
 }
 
@@ -244,6 +265,7 @@ RpeEvaluation strict_rpe_evaluation(std::span<const MatchedPose> matches, const 
     if (result.errors) {
       rpe.translation_m = result.errors->translation_m;
       rpe.rotation_deg = result.errors->rotation_deg;
+      rpe.pairs = result.errors->translation_m.count;
     }
   } else {
     const std::vector<double> lengths = path_lengths(matches, PathOf::kGroundTruth);
@@ -251,6 +273,7 @@ RpeEvaluation strict_rpe_evaluation(std::span<const MatchedPose> matches, const 
         pairs_over_meters(lengths, options.rpe_delta, kSegmentTolerance * options.rpe_delta);
     const RelativeErrors errors = relative_errors(matches, found.pairs);
     dropped = found.dropped;
+    rpe.pairs = found.pairs.size();
     rpe.translation_m = statistics(errors.translation_m);
     rpe.rotation_deg = statistics(errors.rotation_deg);
   }
@@ -301,8 +324,9 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   const Alignment kind = options.alignment.value_or(alignment);
   std::vector<MatchedPose> matches = matched_poses(
       input.gt, est, associate_interpolated(input.gt, est, options.max_difference_s.value_or(kStrictMaxGap)));
-  Evaluation evaluation;
-  if (!matches.empty()) evaluation = ate_evaluation(strictly_aligned(matches, kind, options.align_first_n));
+  Evaluation evaluation = matches.size() < kMinMatchedPoses
+                              ? without_errors(matches)
+                              : ate_evaluation(strictly_aligned(matches, kind, options.align_first_n));
   if (!input.gt.poses.empty()) {
     const TimeSpan whole{input.gt.poses.front().t, input.gt.poses.back().t};
     evaluation.lost = lost_spans(est, whole, kMaxHold);
@@ -312,7 +336,9 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   const std::vector<std::string> association = association_notes(input, matches.size());
   evaluation.notes.insert(evaluation.notes.end(), association.begin(), association.end());
   evaluation.correct_rate = correct_rate(input.gt, est, options.correct);
-  if (matches.empty()) return evaluation;
+  if (evaluation.correct_rate && (kind != Alignment::kSe3 || options.align_first_n > 0))
+    evaluation.notes.emplace_back("CR is that after SE(3) alignment over all matches, whatever --align");
+  if (matches.size() < kMinMatchedPoses) return evaluation;
   const Similarity S_w_v = evaluation.alignment.S_w_v;
   evaluation.jitter_m = jitter_of(matches, S_w_v);
   for (MatchedPose& match : matches) match.est = S_w_v * match.est;
@@ -435,22 +461,27 @@ std::string rotation_note(const Evaluation& evaluation) {
 
 /// `evaluation` without the metrics that mean nothing, and with notes about doubtful ones.
 Evaluation with_doubts(Evaluation evaluation, const EvaluationInput& input) {
-  constexpr std::size_t kFewPairs = 10;
+  constexpr std::size_t kFewPoses = 10;
   const auto note = [&](const std::string& text) { evaluation.notes.push_back(text); };
   if (const std::string missing = missing_orientations(input.gt, input.est, input.options.offset_s);
       !missing.empty()) {
     note(missing);
     evaluation.rotation_determined = evaluation.rotation_source == RotationSource::kPositions;
     evaluation.ate_deg = evaluation.rpe_m = evaluation.rpe_deg = std::nullopt;
+    evaluation.rpe_pairs = 0;
     for (PoseError& error : evaluation.per_pose) error.rotation_deg = kNotDetermined;
     evaluation.segments.clear();
     evaluation.drift_percent = evaluation.correct_rate = std::nullopt;
   }
   if (const std::string open = rotation_note(evaluation); !open.empty()) note(open);
-  if (evaluation.pairs > 0 && evaluation.pairs < kFewPairs)
-    note("only " + std::to_string(evaluation.pairs) + " poses were compared");
-  if (evaluation.rpe_m && evaluation.rpe_m->count < kFewPairs)
-    note("the RPE is that of only " + std::to_string(evaluation.rpe_m->count) + " pairs");
+  if (input.est.poses.size() == 1) {
+    note("failed: the estimate has one pose, and no error can be computed from it");
+  } else if (evaluation.pairs > 0 && evaluation.pairs < kFewPoses) {
+    note("only " + std::to_string(evaluation.pairs) +
+         (evaluation.pairs == 1 ? " pose was compared, which tells no error" : " poses were compared"));
+  }
+  if (evaluation.rpe_m && evaluation.rpe_pairs < kFewRpePairs)
+    note("the RPE is that of only " + std::to_string(evaluation.rpe_pairs) + " pairs");
   const std::size_t comparable = std::min(input.gt.poses.size(), input.est.poses.size());
   if (evaluation.pairs > 0 && 2 * evaluation.pairs < comparable)
     note("only " + std::to_string(evaluation.pairs) + " of " + std::to_string(input.est.poses.size()) +

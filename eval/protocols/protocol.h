@@ -57,6 +57,7 @@ struct Evaluation {
   RpeUnit rpe_unit = RpeUnit::kSeconds;
   std::optional<Statistics> rpe_m;
   std::optional<Statistics> rpe_deg;
+  std::size_t rpe_pairs = 0;  ///< of two poses
   std::vector<SegmentErrors> segments;
   std::optional<double> drift_percent;  ///< mean translation error of the segments relative to their length
   std::optional<double> correct_rate;

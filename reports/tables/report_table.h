@@ -34,7 +34,7 @@ struct TableCell {
   CellState state = CellState::kEmpty;
   bool is_best = false;            ///< printed bold
   std::optional<double> coverage;  ///< median fraction of frames with a pose, of errors of a trajectory
-  bool is_suspicious = false;      ///< a published number that must not be used as a target
+  bool is_suspicious = false;      ///< must not be ranked or used as a target; `note` is the reason
   std::string note;                ///< footnote; equal texts share one footnote
   std::size_t count = 0;           ///< number of runs; 0 for published numbers
   std::optional<eval::Interval> interval;  ///< of the median; absent if `count` is too small for one

@@ -119,6 +119,10 @@ TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::str
     }
   }
   cell = with_note(std::move(cell), bench::protocol_difference_note(runs, metric));
+  if (const std::string few = bench::few_rpe_pairs_note(runs, metric); !few.empty()) {
+    cell = with_note(std::move(cell), few);
+    cell.is_suspicious = true;
+  }
   const bench::MetricDescriptor* descriptor = bench::find_metric(metric);
   const bool is_accuracy =
       descriptor != nullptr && descriptor->source == bench::MetricSource::kTrajectory && cell.number;

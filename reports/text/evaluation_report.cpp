@@ -35,31 +35,61 @@ std::string unit_of(const eval::Evaluation& evaluation) {
 
 }  // namespace
 
+namespace {
+
+/// Marks an RPE of few pairs; CSV has numbers only.
+class FewPairs {
+ public:
+  explicit FewPairs(TableStyle style) : style_(style) {}
+
+  [[nodiscard]] std::string marked(const std::optional<double>& rpe, std::size_t pairs) {
+    const bool few = rpe && pairs < eval::kFewRpePairs && style_ != TableStyle::kCsv;
+    any_ |= few;
+    return cell(rpe, 6) + (few ? "*" : "");
+  }
+
+  /// Below the table; empty without a mark.
+  [[nodiscard]] std::string note() const {
+    if (!any_) return "";
+    return fmt::format("{}* RPE of fewer than {} pairs.\n", style_ == TableStyle::kMarkdown ? "\n\\" : "",
+                       eval::kFewRpePairs);
+  }
+
+ private:
+  TableStyle style_;
+  bool any_ = false;
+};
+
+}  // namespace
+
 std::string evaluation_table(const std::vector<EvaluatedRun>& runs, TableStyle style) {
   TableRows rows{{"estimate", "protocol", "pairs", "coverage", "CR", "ATE [m]", "ATE [deg]", "T.RPE [m]",
-                  "R.RPE [deg]", "over", "drift [%]"}};
+                  "R.RPE [deg]", "RPE pairs", "over", "drift [%]"}};
+  FewPairs few(style);
   for (const EvaluatedRun& run : runs) {
     for (const eval::Evaluation& e : run.evaluations) {
       rows.push_back({run.name, e.protocol, std::to_string(e.pairs), cell(e.coverage, 4),
                       cell(e.correct_rate, 4), cell(rmse(e.ate_m), 6), cell(rmse(e.ate_deg), 6),
-                      cell(rmse(e.rpe_m), 6), cell(rmse(e.rpe_deg), 6), unit_of(e),
-                      cell(e.drift_percent, 3)});
+                      few.marked(rmse(e.rpe_m), e.rpe_pairs), few.marked(rmse(e.rpe_deg), e.rpe_pairs),
+                      std::to_string(e.rpe_pairs), unit_of(e), cell(e.drift_percent, 3)});
     }
   }
-  return format_table(rows, style);
+  return format_table(rows, style) + few.note();
 }
 
 std::string comparison_table(const eval::Comparison& comparison, TableStyle style) {
   TableRows rows{{"rank", "estimate", "coverage", "ATE on common poses [m]", "T.RPE [m/s]", "R.RPE [deg/s]",
-                  "ATE on all own poses [m]"}};
+                  "RPE pairs", "ATE on all own poses [m]"}};
+  FewPairs few(style);
   int rank = 0;
   for (const eval::ComparedRun& run : comparison.ranking) {
     ++rank;
     rows.push_back({run.failed ? "failed" : std::to_string(rank), run.name, cell(run.coverage, 4),
-                    cell(run.common_ate_rmse_m, 6), cell(run.common_rpe_m, 6), cell(run.common_rpe_deg, 6),
-                    cell(run.own_ate_rmse_m, 6)});
+                    cell(run.common_ate_rmse_m, 6), few.marked(run.common_rpe_m, run.common_rpe_pairs),
+                    few.marked(run.common_rpe_deg, run.common_rpe_pairs),
+                    std::to_string(run.common_rpe_pairs), cell(run.own_ate_rmse_m, 6)});
   }
-  return format_table(rows, style);
+  return format_table(rows, style) + few.note();
 }
 
 std::string openloris_table(const eval::OpenlorisBenchmark& benchmark, TableStyle style) {
@@ -218,6 +248,7 @@ Json evaluation_json(const eval::Evaluation& evaluation) {
   }
   json["ate_m"] = statistics_json(evaluation.ate_m);
   json["ate_deg"] = statistics_json(evaluation.ate_deg);
+  json["rpe_pairs"] = evaluation.rpe_pairs;
   json["rpe_delta"] = evaluation.rpe_delta;
   for (const auto& [unit, name] : enum_names(evaluation.rpe_unit)) {
     if (unit == evaluation.rpe_unit) json["rpe_unit"] = name;
@@ -240,6 +271,7 @@ Json comparison_json(const eval::Comparison& comparison) {
                                {"failed", run.failed},
                                {id(metric_id::kCoverage), run.coverage},
                                {"common_pairs", run.common_pairs},
+                               {"common_rpe_pairs", run.common_rpe_pairs},
                                {"common_" + id(metric_id::kAte), number(run.common_ate_rmse_m)},
                                {"common_" + id(metric_id::kRpeTranslation), number(run.common_rpe_m)},
                                {"common_" + id(metric_id::kRpeRotation), number(run.common_rpe_deg)},

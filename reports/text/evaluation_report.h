@@ -16,7 +16,7 @@
 
 namespace stillpoint::report {
 
-/// One estimated trajectory and its evaluation under each chosen protocol.
+/// One estimated trajectory and its evaluation under each chosen protocol. With one pose it has failed.
 struct EvaluatedRun {
   std::string name;
   Trajectory est;
@@ -24,10 +24,11 @@ struct EvaluatedRun {
   std::vector<eval::Evaluation> evaluations;
 };
 
-/// One row per estimate and protocol; "n/a" without data. Coverage precedes the errors.
+/// One row per estimate and protocol; "n/a" without data. Coverage precedes the errors. An RPE of few pairs
+/// has an asterisk and a line below the table, but in CSV, whose column "RPE pairs" tells it.
 [[nodiscard]] std::string evaluation_table(const std::vector<EvaluatedRun>& runs, TableStyle style);
 
-/// The ranking on the common support.
+/// The ranking on the common support; few RPE pairs are marked as in `evaluation_table`.
 [[nodiscard]] std::string comparison_table(const eval::Comparison& comparison, TableStyle style);
 
 /// OpenLORIS scores: one row per system and scene; every definition of correct rate and error has a column of

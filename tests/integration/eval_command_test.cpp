@@ -171,6 +171,114 @@ TEST(EvalCommand, SaysThatAStraightLineLeavesTheRotationNotDetermined) {
   EXPECT_TRUE(row.ends_with(",n/a")) << row;
 }
 
+TEST(EvalCommand, AOnePoseTrajectoryIsAFailure) {
+  const PathFiles files;
+  const std::string one =
+      files.folder.write("one.txt", eval::format_tum(test::smooth_path(1, 0.05))).string();
+  const ProgramResult alone = run_program({"eval", files.gt, one});
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_NE(alone.err.find("one.txt: has one pose: a failed run"), std::string::npos) << alone.err;
+  const ProgramResult table = run_program({"eval", files.gt, one, files.est});
+  EXPECT_EQ(table.exit_code, 1) << table.err;
+  EXPECT_NE(table.out.find("failed  one.txt"), std::string::npos) << table.out;
+  const ProgramResult text = run_program({"eval", files.gt, one, files.est, "--json"});
+  const auto json = nlohmann::json::parse(text.out);
+  EXPECT_EQ(json.at("runs").at(0).at("status"), "failed");
+  EXPECT_TRUE(json.at("runs").at(0).at("ate_rmse_m").is_null());
+  EXPECT_EQ(json.at("runs").at(1).at("status"), "ok");
+  EXPECT_EQ(json.at("comparison").at("ranking").at(1).at("failed"), true);
+}
+
+TEST(EvalCommand, MarksRelativeErrorsOfFewPairs) {
+  const PathFiles files;
+  const std::string few =
+      files.folder.write("few.txt", eval::format_tum(test::smooth_path(26, 0.05))).string();
+  for (const char* style : {"--markdown", "--csv", "--json"}) {
+    const ProgramResult result = run_program({"eval", files.gt, few, "--protocol", "strict:se3", style});
+    const ProgramResult many = run_program({"eval", files.gt, files.est, "--protocol", "strict:se3", style});
+    const std::string mark = style == std::string("--markdown") ? "\\* RPE of fewer than 10 pairs."
+                             : style == std::string("--csv")    ? ",6,1 s,"
+                                                                : "the RPE is that of only 6 pairs";
+    EXPECT_NE(result.out.find(mark), std::string::npos) << result.out;
+    EXPECT_EQ(many.out.find(mark), std::string::npos) << many.out;
+  }
+}
+
+/// The document of one estimate with these options.
+nlohmann::json eval_json(const std::vector<std::string>& files, std::vector<std::string> options) {
+  std::vector<std::string> words = {"eval"};
+  words.insert(words.end(), files.begin(), files.end());
+  words.insert(words.end(), options.begin(), options.end());
+  words.emplace_back("--json");
+  const ProgramResult result = run_program(words);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return nlohmann::json::parse(result.out);
+}
+
+TEST(EvalCommand, TheTopLevelMetricsFollowTheProtocolAndItsOptions) {
+  const TemporaryFolder folder;
+  const std::string gt = folder.write("gt.txt", eval::format_tum(test::smooth_path(2001, 0.01))).string();
+  Trajectory path = test::smooth_path(401, 0.05);
+  for (StampedPose& pose : path.poses)
+    pose.T_w_f.p = 1.5 * pose.T_w_f.p + 0.01 * std::sin(40.0 * to_seconds(pose.t)) * Eigen::Vector3d::UnitZ();
+  const std::string est = folder.write("est.txt", eval::format_tum(path)).string();
+  const std::vector<std::vector<std::string>> cases = {
+      {"--protocol", "strict:sim3"},
+      {"--protocol", "strict:none", "--rpe-delta", "2"},
+      {"--align", "sim3"},
+      {"--rpe-delta", "0.5"},
+      {"--max-difference", "0.004"},
+      {"--offset", "0.003"},
+      {"--protocol", "compat:evo", "--rpe-unit", "f", "--rpe-delta", "3"},
+      {"--protocol", "strict:se3", "--rpe-unit", "m", "--rpe-delta", "0.5"}};
+  for (const auto& options : cases) {
+    const auto json = eval_json({gt, est}, options);
+    const auto& first = json.at("evaluations").at(0);
+    for (const char* key : {"ate_rmse_m", "rpe_trans_rmse_m_per_s", "rpe_rot_rmse_deg_per_s"})
+      EXPECT_EQ(json.at(key), first.value(key, nlohmann::json())) << key << options[1];
+    EXPECT_EQ(json.at("ate_pairs"), first.at("pairs"));
+    const std::string protocol = first.at("protocol");
+    EXPECT_TRUE(json.at("protocols").at("ate").get<std::string>().starts_with(protocol));
+    EXPECT_TRUE(json.at("protocols").at("rpe").get<std::string>().starts_with(protocol));
+  }
+}
+
+TEST(EvalCommand, TheComparisonFollowsTheOptionsOrNamesThem) {
+  const TemporaryFolder folder;
+  const std::string gt = folder.write("gt.txt", eval::format_tum(test::smooth_path(2001, 0.01))).string();
+  Trajectory path = test::smooth_path(401, 0.05);
+  const std::string rigid = folder.write("rigid.txt", eval::format_tum(path)).string();
+  for (StampedPose& pose : path.poses) pose.T_w_f.p *= 1.5;
+  const std::string scaled = folder.write("scaled.txt", eval::format_tum(path)).string();
+  const auto comparison = [&](const std::vector<std::string>& options) {
+    return eval_json({gt, scaled, rigid}, options).at("comparison");
+  };
+  const auto by_protocol = comparison({"--protocol", "strict:sim3"});
+  EXPECT_EQ(by_protocol.at("alignment"), "sim3");
+  EXPECT_LT(by_protocol.at("ranking").at(1).at("common_ate_rmse_m"), 1e-5);
+  EXPECT_TRUE(by_protocol.at("not_followed").empty());
+  EXPECT_GT(comparison({"--protocol", "strict:se3"}).at("ranking").at(1).at("common_ate_rmse_m"), 0.05);
+  EXPECT_EQ(comparison({"--max-difference", "0.5"}).at("max_difference_s"), 0.5);
+  EXPECT_EQ(comparison({"--rpe-delta", "2"}).at("rpe_delta_s"), 2.0);
+  EXPECT_EQ(
+      comparison({"--protocol", "compat:tum", "--rpe-unit", "m", "--align-first", "50"}).at("not_followed"),
+      nlohmann::json({"--rpe-delta 1 --rpe-unit m", "--align-first 50", "the association of compat:tum"}));
+  const ProgramResult text = run_program({"eval", gt, scaled, rigid, "--align-first", "50"});
+  EXPECT_NE(text.out.find("; not followed: --align-first 50"), std::string::npos) << text.out;
+}
+
+TEST(EvalCommand, AnOffsetThatIsAppliedIsNoWarning) {
+  const PathFiles files;
+  const std::string late =
+      files.folder.write("late.txt", eval::format_tum(test::smooth_path(401, 0.05))).string();
+  Trajectory path = test::smooth_path(401, 0.05);
+  for (StampedPose& pose : path.poses) pose.t = after(pose.t, 0.3);
+  files.folder.write("late.txt", eval::format_tum(path));
+  EXPECT_NE(run_program({"eval", files.gt, late}).err.find("time offset of -0.3"), std::string::npos);
+  EXPECT_EQ(run_program({"eval", files.gt, late, "--offset", "-0.3"}).err.find("time offset of"),
+            std::string::npos);
+}
+
 TEST(EvalOpenlorisCommand, PrintsTheSceneTableAndDrawsTheFigure) {
   const TemporaryFolder folder;
   const eval::OpenlorisFile truth{

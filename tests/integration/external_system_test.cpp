@@ -13,12 +13,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kReplay = STILLPOINT_BINARY_DIR "/tests/replay_program";
 
-/// Benchmarks the replay program on the rendered sequence. @param keys additional lines of its system file
-ProgramResult run_bench(const TemporaryFolder& folder, const std::string& keys,
-                        const std::string& flags = "") {
-  folder.write("replay.toml", "name = \"replay\"\n" + keys + "command = [\"" + kReplay + "\", " + flags +
-                                  "\"run\", \"{sequence}\", \"--out\", \"{out}\"]\n");
-  const fs::path plan = folder.write("plan.toml", "systems = [\"" + (folder.path() / "replay.toml").string() +
+/// Benchmarks the system of a file in the folder on the rendered sequence.
+ProgramResult bench_system(const TemporaryFolder& folder, const std::string& file) {
+  const fs::path plan = folder.write("plan.toml", "systems = [\"" + (folder.path() / file).string() +
                                                       "\"]\nprotocols = [\"strict:se3\"]\n" +
                                                       "[recorded]\nsequences = [\"office\"]\n");
   ProgramOptions options;
@@ -28,6 +25,14 @@ ProgramResult run_bench(const TemporaryFolder& folder, const std::string& keys,
   return run_program({"bench", plan.string(), "--store", (folder.path() / "store.sqlite").string(), "--out",
                       (folder.path() / "out").string()},
                      options);
+}
+
+/// Benchmarks the replay program. @param keys additional lines of its system file
+ProgramResult run_bench(const TemporaryFolder& folder, const std::string& keys,
+                        const std::string& flags = "") {
+  folder.write("replay.toml", "name = \"replay\"\n" + keys + "command = [\"" + kReplay + "\", " + flags +
+                                  "\"run\", \"{sequence}\", \"--out\", \"{out}\"]\n");
+  return bench_system(folder, "replay.toml");
 }
 
 bench::StoredRun run_of(const TemporaryFolder& folder) {
@@ -57,6 +62,19 @@ TEST(ExternalSystem, WithoutTrajectoryIsLost) {
   EXPECT_EQ(run_bench(folder, "layout = \"tum\"\ntrajectory = \"elsewhere.txt\"\n").exit_code, 1);
   EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kLost);
   EXPECT_EQ(run_of(folder).detail, "wrote no elsewhere.txt");
+}
+
+TEST(ExternalSystem, WithOnePoseIsLost) {
+  const TemporaryFolder folder;
+  const std::string script =
+      folder.write("one.sh", "#!/bin/sh\necho '0.1 0 0 0 0 0 0 1' >\"$1/trajectory.tum\"\n").string();
+  folder.write("one.toml",
+               "name = \"one\"\nlayout = \"tum\"\ncommand = [\"sh\", \"" + script + "\", \"{out}\"]\n");
+  const ProgramResult result = bench_system(folder, "one.toml");
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kLost);
+  EXPECT_EQ(run_of(folder).detail, "trajectory.tum has only one pose, which tells no error");
+  EXPECT_NE(result.out.find("| lost "), std::string::npos) << result.out;
 }
 
 TEST(ExternalSystem, IsRejectedWithoutACommand) {

@@ -65,6 +65,21 @@ TEST_F(StatsCommand, SummarizesTheNewestBuildAndSaysWhatWasLeftOut) {
   EXPECT_NE(result.out.find("Left out, other builds: older (6 runs)"), std::string::npos) << result.out;
 }
 
+TEST_F(StatsCommand, NamesRelativeErrorsOfFewPairs) {
+  {
+    bench::StoreWriter writer(file_);
+    for (const std::string variant : {"many", "few"}) {
+      const bench::RunIdentity identity{.variant = variant, .sequence = "a", .config_hash = variant};
+      static_cast<void>(writer.acquire(identity));
+      writer.finish(identity, {.metrics = {{"rpe_trans_rmse_m_per_s", "", "m/s", 0.01},
+                                           {"rpe_pairs", "", "", variant == "few" ? 3.0 : 300.0}}});
+    }
+  }
+  const std::string out = stats({"summary", "--metric", "rpe_trans_rmse_m_per_s"}).out;
+  EXPECT_NE(out.find("a, few: RPE of only 3 pairs of poses: not ranked."), std::string::npos) << out;
+  EXPECT_EQ(out.find("a, many: RPE"), std::string::npos) << out;
+}
+
 TEST_F(StatsCommand, ShowsAllBuildsInSeparateRows) {
   fill(6);
   const ProgramResult result = stats({"summary", "--build", "all", "--csv"});

@@ -14,6 +14,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line.h"
+#include "bench/model/metrics.h"
+#include "bench/model/stored_run.h"
 #include "bench/record/output_folder.h"
 #include "bench/record/result_values.h"
 #include "core/base/error.h"
@@ -157,19 +159,23 @@ std::vector<PoseFile> with_consistent_orders(std::vector<PoseFile> files, double
   return files;
 }
 
+/// With one pose, a run has failed: after alignment it has no error, whatever it is.
+bool has_failed(const report::EvaluatedRun& run) { return run.est.poses.size() < 2; }
+
 /// @throws InputError if no protocol found two poses to compare
 void require_matches(const Trajectory& gt, const report::EvaluatedRun& run) {
   for (const eval::Evaluation& evaluation : run.evaluations) {
-    if (evaluation.pairs > 0) return;
+    if (evaluation.pairs > 1) return;
   }
   const double interval_s = seconds_between(gt.poses.front().t, gt.poses.back().t) /
                             static_cast<double>(std::max<std::size_t>(gt.poses.size(), 2) - 1);
   throw InputError(
       run.name,
-      fmt::format("none of {} poses has a ground-truth pose close enough in time ({}); the ground truth "
-                  "has one pose per {:.3g} s: --protocol strict:se3 --max-difference {:.3g} interpolates "
-                  "between them; or correct the stamps with --offset",
-                  run.est.poses.size(), run.evaluations.front().protocol, interval_s, 1.1 * interval_s));
+      fmt::format(
+          "fewer than two of {} poses have a ground-truth pose close enough in time ({}); the ground truth "
+          "has one pose per {:.3g} s: --protocol strict:se3 --max-difference {:.3g} interpolates "
+          "between them; or correct the stamps with --offset",
+          run.est.poses.size(), run.evaluations.front().protocol, interval_s, 1.1 * interval_s));
 }
 
 /// The file name, or the complete path if several files have the same name.
@@ -180,8 +186,8 @@ std::string display_name(const std::string& path, const std::vector<std::string>
   return same > 1 || name_of(path).empty() ? path : name_of(path).string();
 }
 
-/// Evaluates with compat:tum and strict:se3. The strict protocol rejects degenerate trajectories (a straight
-/// line, a static camera); it is then omitted, as it was not requested explicitly.
+/// Evaluates with compat:tum and strict:se3. Where the strict protocol rejects the data, it is omitted, as it
+/// was not requested explicitly.
 std::vector<eval::Evaluation> evaluate_by_default(const eval::EvaluationInput& input,
                                                   const std::string& name) {
   std::vector<eval::Evaluation> evaluations{eval::evaluate("compat:tum", input)};
@@ -214,42 +220,136 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments,
                              .est = loaded.trajectory,
                              .repairs = loaded.repairs,
                              .evaluations = {}};
-    if (!arguments.find_offset) eval::require_overlap(gt, run.est, arguments.offset_s, path);
+    if (has_failed(run) && arguments.estimates.size() == 1)
+      throw InputError(path, "has one pose: a failed run, of which no error can be computed");
+    const bool comparable = !arguments.find_offset && !has_failed(run);
+    if (comparable) eval::require_overlap(gt, run.est, arguments.offset_s, path);
     options.q_level_w = leveling_rotation(arguments, path);
     const eval::EvaluationInput input{gt, run.est, options};
     for (const std::string& protocol : arguments.protocols)
       run.evaluations.push_back(eval::evaluate(protocol, input));
     if (arguments.protocols.empty()) run.evaluations = evaluate_by_default(input, run.name);
-    if (!arguments.find_offset) require_matches(gt, run);
+    if (comparable) require_matches(gt, run);
     runs.push_back(std::move(run));
   }
   return runs;
 }
 
-std::vector<std::string> warnings_about(const Trajectory& gt, const report::EvaluatedRun& run) {
+/// The estimate with --offset added to its stamps.
+Trajectory shifted_estimate(const EvalArguments& arguments, const report::EvaluatedRun& run) {
+  Trajectory shifted = run.est;
+  for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, arguments.offset_s);
+  return shifted;
+}
+
+std::vector<std::string> warnings_about(const EvalArguments& arguments, const Trajectory& gt,
+                                        const report::EvaluatedRun& run) {
   std::vector<std::string> warnings;
-  for (const eval::ConventionFinding& finding : eval::find_convention_violations(gt, run.est))
+  for (const eval::ConventionFinding& finding :
+       eval::find_convention_violations(gt, shifted_estimate(arguments, run)))
     warnings.push_back(finding.message);
   return warnings;
 }
 
-/// With the offset, the alignment and the RPE interval of the options.
+/// How the comparison follows the options, and which of them it cannot follow.
+struct ComparisonSetup {
+  eval::CompareOptions options;
+  std::vector<std::string> ignored;  ///< options as the user wrote them
+};
+
+/// The alignment of --align, or that in the name of the first protocol ("strict:sim3"); the tools of compat:*
+/// align with SE(3).
+eval::Alignment comparison_alignment(const EvalArguments& arguments) {
+  if (const auto chosen = protocol_options(arguments).alignment) return *chosen;
+  const std::string& protocol = arguments.protocols.empty() ? "" : arguments.protocols.front();
+  for (const auto& [kind, name] : enum_names(eval::Alignment{})) {
+    if (protocol == fmt::format("strict:{}", name)) return kind;
+  }
+  return eval::Alignment::kSe3;
+}
+
+ComparisonSetup comparison_setup(const EvalArguments& arguments) {
+  ComparisonSetup setup;
+  setup.options.alignment = comparison_alignment(arguments);
+  if (arguments.max_difference_s > 0.0) setup.options.max_gap_s = arguments.max_difference_s;
+  if (arguments.rpe_unit == "s") {
+    setup.options.rpe_delta_s = arguments.rpe_delta;
+  } else {
+    setup.ignored.push_back(
+        fmt::format("--rpe-delta {:g} --rpe-unit {}", arguments.rpe_delta, arguments.rpe_unit));
+  }
+  if (arguments.align_first > 0)
+    setup.ignored.push_back(fmt::format("--align-first {}", arguments.align_first));
+  if (setup.options.alignment == eval::Alignment::kYaw) setup.ignored.emplace_back("--level");
+  if (!arguments.protocols.empty() && arguments.protocols.front().starts_with("compat:"))
+    setup.ignored.push_back("the association of " + arguments.protocols.front());
+  return setup;
+}
+
 eval::Comparison compare(const EvalArguments& arguments, const Trajectory& gt,
                          const std::vector<report::EvaluatedRun>& runs) {
   std::vector<eval::NamedRun> named;
   named.reserve(runs.size());
-  for (const report::EvaluatedRun& run : runs) {
-    named.push_back({run.name, run.est});
-    for (StampedPose& pose : named.back().est.poses) pose.t = after(pose.t, arguments.offset_s);
+  for (const report::EvaluatedRun& run : runs) named.push_back({run.name, shifted_estimate(arguments, run)});
+  return eval::compare_runs(gt, named, comparison_setup(arguments).options);
+}
+
+std::string_view alignment_name(eval::Alignment alignment) {
+  for (const auto& [kind, name] : enum_names(alignment)) {
+    if (kind == alignment) return name;
   }
-  eval::CompareOptions options;
-  options.alignment = protocol_options(arguments).alignment.value_or(options.alignment);
-  if (arguments.rpe_unit == "s") options.rpe_delta_s = arguments.rpe_delta;
-  return eval::compare_runs(gt, named, options);
+  return "?";
+}
+
+std::string comparison_heading(const ComparisonSetup& setup, double common_s) {
+  return fmt::format(
+      "\nComparison over {:.2f} s for which all successful runs have poses (ground truth interpolated "
+      "between "
+      "neighbors less than {:g} s away, alignment {}, relative errors over {:g} s{}{}):\n",
+      common_s, setup.options.max_gap_s, alignment_name(setup.options.alignment), setup.options.rpe_delta_s,
+      setup.ignored.empty() ? "" : "; not followed: ", fmt::join(setup.ignored, ", "));
+}
+
+Json comparison_document(const EvalArguments& arguments, const Trajectory& gt,
+                         const std::vector<report::EvaluatedRun>& runs) {
+  const ComparisonSetup setup = comparison_setup(arguments);
+  Json json = report::comparison_json(compare(arguments, gt, runs));
+  json["max_difference_s"] = setup.options.max_gap_s;
+  json["alignment"] = alignment_name(setup.options.alignment);
+  json["rpe_delta_s"] = setup.options.rpe_delta_s;
+  json["not_followed"] = setup.ignored;
+  return json;
 }
 
 Json rows_json(const eval::RowRepairs& rows) {
   return {{"skipped", rows.skipped}, {"repeated_stamps", rows.repeated}, {"reordered", rows.reordered}};
+}
+
+/// The keys of a result.json, with the values of the first protocol where it has them: they follow its
+/// options.
+Json top_level_metrics(const EvalArguments& arguments, const Trajectory& gt,
+                       const report::EvaluatedRun& run) {
+  const eval::ScoreOptions options{.offset_s = arguments.offset_s, .expected_times = {}};
+  const eval::Score score = eval::score(gt, run.est, options);
+  Json json = metric_members({.scored = ScoredTrajectory{.gt = gt, .est = run.est, .score = score}});
+  const eval::Evaluation& first = run.evaluations.front();
+  const Json evaluation = report::evaluation_json(first);
+  for (const std::string_view id : {metric_id::kAte, metric_id::kRpeTranslation, metric_id::kRpeRotation}) {
+    const std::string key(id);
+    json[key] = evaluation.contains(key) ? evaluation.at(key) : Json(nullptr);
+  }
+  json["ate_pairs"] = first.pairs;
+  json[std::string(metric_id::kRpePairs)] = first.rpe_pairs;
+  const std::string text = fmt::format("{}: {}", first.protocol, first.text);
+  json["protocols"]["ate"] = text;
+  json["protocols"]["rpe"] = fmt::format("{} RPE over {:g} {}.", text, first.rpe_delta, arguments.rpe_unit);
+  for (const std::string_view id : {metric_id::kCorrectRate, metric_id::kCoverage, metric_id::kFirstPose}) {
+    const std::string key(id);
+    if (evaluation.at(key).is_null()) continue;
+    json[key] = evaluation.at(key);
+    json["protocols"][key] = text;
+  }
+  return json;
 }
 
 /// The document of a single estimate has the keys of a result.json at its top level.
@@ -258,19 +358,17 @@ Json document(const EvalArguments& arguments, const eval::LoadedTrajectory& trut
   const Trajectory& gt = truth.trajectory;
   Json list = Json::array();
   for (const report::EvaluatedRun& run : runs) {
-    eval::ScoreOptions options{.offset_s = arguments.offset_s, .expected_times = {}};
-    if (arguments.rpe_unit == "s") options.rpe_delta_s = arguments.rpe_delta;
-    const eval::Score score = eval::score(gt, run.est, options);
-    Json json = metric_members({.scored = ScoredTrajectory{.gt = gt, .est = run.est, .score = score}});
+    Json json = top_level_metrics(arguments, gt, run);
     json["estimate"] = run.name;
+    json["status"] = status_name(has_failed(run) ? Outcome::kLost : Outcome::kOk);
     json["rows"] = {{"ground_truth", rows_json(truth.repairs)}, {"estimate", rows_json(run.repairs)}};
-    json["warnings"] = warnings_about(gt, run);
+    json["warnings"] = warnings_about(arguments, gt, run);
     for (const eval::Evaluation& evaluation : run.evaluations)
       json["evaluations"].push_back(report::evaluation_json(evaluation));
     list.push_back(std::move(json));
   }
   if (list.size() == 1) return list.front();
-  return {{"runs", list}, {"comparison", report::comparison_json(compare(arguments, gt, runs))}};
+  return {{"runs", list}, {"comparison", comparison_document(arguments, gt, runs)}};
 }
 
 void print_tables(const EvalArguments& arguments, const Trajectory& gt,
@@ -281,13 +379,8 @@ void print_tables(const EvalArguments& arguments, const Trajectory& gt,
   std::cout << report::evaluation_table(runs, style);
   if (runs.size() > 1 && style != report::TableStyle::kCsv) {
     const eval::Comparison comparison = compare(arguments, gt, runs);
-    std::cout
-        << fmt::format(
-               "\nComparison over {:.2f} s for which all successful runs have poses (alignment {}, relative "
-               "errors over {:g} s):\n",
-               comparison.common_s, arguments.alignment.empty() ? "se3" : arguments.alignment,
-               arguments.rpe_unit == "s" ? arguments.rpe_delta : 1.0)
-        << report::comparison_table(comparison, style);
+    std::cout << comparison_heading(comparison_setup(arguments), comparison.common_s)
+              << report::comparison_table(comparison, style);
   }
   if (arguments.explain) std::cout << '\n' << report::explanation_text(runs);
   for (const report::EvaluatedRun& run : runs) {
@@ -296,7 +389,8 @@ void print_tables(const EvalArguments& arguments, const Trajectory& gt,
         spdlog::info("{}, {}: {}", run.name, evaluation.protocol, note);
       }
     }
-    for (const std::string& warning : warnings_about(gt, run)) spdlog::warn("{}: {}", run.name, warning);
+    for (const std::string& warning : warnings_about(arguments, gt, run))
+      spdlog::warn("{}: {}", run.name, warning);
   }
 }
 
@@ -356,7 +450,7 @@ int evaluate_files(const EvalArguments& arguments) {
     report::write_drawing(arguments.map, report::local_map(gt, plotted_runs(runs)), kPlotPixelsPerUnit,
                           rules);
   if (!arguments.per_pose.empty()) write_output(arguments.per_pose, report::per_pose_csv(runs), rules);
-  return kExitOk;
+  return std::ranges::any_of(runs, has_failed) ? kExitFindings : kExitOk;
 }
 
 /// @param a receives the values when the command line is parsed

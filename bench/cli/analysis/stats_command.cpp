@@ -459,6 +459,7 @@ struct SpreadRows {
   std::set<std::size_t> counts;
   std::size_t copies = 0;
   std::size_t without_value = 0;
+  std::vector<std::string> doubts;
 };
 
 /// One row for each spread that satisfies `keep`; a group without a row is left out.
@@ -473,6 +474,8 @@ SpreadRows spread_rows(const RunSelection& selection, const std::string& metric,
       result.counts.insert(count_of(row));
       result.copies += row.copies;
       result.without_value += row.without_value;
+      if (!row.doubt.empty())
+        result.doubts.push_back(fmt::format("{}, {}: {}.", row.sequence, row.variant, row.doubt));
       rows.rows.push_back(cells(row));
     }
     if (!rows.rows.empty()) result.groups.push_back(std::move(rows));
@@ -491,7 +494,7 @@ int summary(const StatsArguments& arguments) {
   if (rows.without_value > 0) notes.push_back(without_value_note(rows.without_value, "succeeded runs"));
   print_groups(
       {"sequence", "variant", "sweep", "runs", "failed", "n", "median", "median 95 %", "quartiles", "worst"},
-      rows.groups, with_left_out(std::move(notes), selection), arguments);
+      rows.groups, with_left_out(with_doubts(std::move(notes), rows.doubts), selection), arguments);
   return kExitOk;
 }
 
@@ -521,7 +524,10 @@ int sweep(const StatsArguments& arguments) {
   print_groups(
       {"axis", "value", "sequence", "variant", "runs", "failed", "n", "median", "median 95 % low", "high"},
       rows.groups,
-      with_left_out({arguments.metric + ".", interval_note(kMedianTest, rows.counts)}, selection), arguments);
+      with_left_out(
+          with_doubts({arguments.metric + ".", interval_note(kMedianTest, rows.counts)}, rows.doubts),
+          selection),
+      arguments);
   return kExitOk;
 }
 

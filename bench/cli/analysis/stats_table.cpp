@@ -101,6 +101,14 @@ std::vector<std::string> with_left_out(std::vector<std::string> notes, const Run
   return notes;
 }
 
+std::vector<std::string> with_doubts(std::vector<std::string> notes, const std::vector<std::string>& doubts) {
+  constexpr std::size_t kListed = 10;
+  const std::size_t listed = std::min(kListed, doubts.size());
+  notes.insert(notes.end(), doubts.begin(), doubts.begin() + static_cast<std::ptrdiff_t>(listed));
+  if (doubts.size() > listed) notes.push_back(fmt::format("And {} more.", doubts.size() - listed));
+  return notes;
+}
+
 void print_groups(const std::vector<std::string>& header, const std::vector<GroupRows>& groups,
                   const std::vector<std::string>& notes, const StatsArguments& arguments) {
   std::vector<GroupColumn> columns;

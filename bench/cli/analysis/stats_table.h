@@ -47,6 +47,10 @@ void require_metric(const RunSelection& selection, const std::string& metric);
 [[nodiscard]] std::vector<std::string> with_left_out(std::vector<std::string> notes,
                                                      const RunSelection& selection);
 
+/// `notes` with the first of the doubts, and the number of the others.
+[[nodiscard]] std::vector<std::string> with_doubts(std::vector<std::string> notes,
+                                                   const std::vector<std::string>& doubts);
+
 /// Rows of one group.
 struct GroupRows {
   const RunGroup* group = nullptr;

@@ -76,6 +76,7 @@ std::vector<Metric> protocol_metrics(const eval::Evaluation& evaluation) {
   add(metric_id::kAteRotation, rmse(evaluation.ate_deg));
   add(metric_id::kRpeTranslationPerDelta, rmse(evaluation.rpe_m));
   add(metric_id::kRpeRotationPerDelta, rmse(evaluation.rpe_deg));
+  if (evaluation.rpe_m) add(metric_id::kRpePairs, static_cast<double>(evaluation.rpe_pairs));
   add(metric_id::kDrift, evaluation.drift_percent);
   add(metric_id::kCorrectRate, evaluation.correct_rate);
   add(metric_id::kCoverage, evaluation.coverage);

@@ -33,6 +33,31 @@ TEST(CompareRuns, RanksALostRunLastEvenIfItsErrorIsTheSmallest) {
   EXPECT_NEAR(comparison.common_s, 60.0, 1e-9);  // failed runs do not restrict the common support
 }
 
+TEST(CompareRuns, ARunWithOnePoseHasFailed) {
+  const Trajectory gt = test::smooth_path(1000, 0.1);
+  Trajectory one = gt;
+  one.poses.resize(1);
+  Trajectory start = gt;  // of 1 s
+  start.poses.resize(10);
+  const std::vector<NamedRun> runs = {{"one", one}, {"all", gt}};
+  CompareOptions options;
+  options.min_coverage = 0.0;
+  const Comparison comparison = compare_runs(gt, runs, options);
+  EXPECT_EQ(comparison.ranking[0].name, "all");
+  EXPECT_GT(comparison.ranking[0].common_rpe_pairs, 900U);
+  EXPECT_TRUE(comparison.ranking[1].failed);
+  EXPECT_FALSE(comparison.ranking[1].common_rpe_m || comparison.ranking[1].own_ate_rmse_m);
+}
+
+TEST(CompareRuns, HasNoRelativeErrorsWithoutOrientations) {
+  const Trajectory gt = test::smooth_path(1000, 0.1);
+  Trajectory identity = gt;
+  for (StampedPose& pose : identity.poses) pose.T_w_f.q.setIdentity();
+  const Comparison comparison = compare_runs(gt, std::vector<NamedRun>{{"a", identity}});
+  EXPECT_LT(*comparison.ranking[0].common_ate_rmse_m, 1e-9);
+  EXPECT_FALSE(comparison.ranking[0].common_rpe_m || comparison.ranking[0].common_rpe_deg);
+}
+
 TEST(CompareRuns, RanksByTheErrorOverTheCommonSupport) {
   const Trajectory gt = test::smooth_path(6001, 0.01);
   // "short" ends at 40 s and drifts; "whole" is exact until 41 s and 5 m off afterwards.

@@ -220,11 +220,29 @@ TEST(SlowGroundTruth, IsInterpolatedByTheStrictProtocolsIfAskedTo) {
   EXPECT_TRUE(has_note(evaluation, "interpolated over 1 s"));
 }
 
+TEST(OnePose, HasNoErrorsAndIsNotCorrect) {
+  const Trajectory gt = circle(0, 50, 0.01);
+  const Trajectory one = circle(0, 0, 0.1);
+  ASSERT_EQ(one.poses.size(), 1U);
+  for (const Protocol& protocol : protocols()) {
+    const Evaluation evaluation = evaluate_with(protocol.name, gt, one);
+    EXPECT_FALSE(evaluation.ate_m || evaluation.ate_deg || evaluation.rpe_m) << protocol.name;
+    EXPECT_TRUE(evaluation.per_pose.empty()) << protocol.name;
+    EXPECT_TRUE(has_note(evaluation, "failed: the estimate has one pose")) << protocol.name;
+    if (protocol.name.starts_with("strict")) {
+      EXPECT_EQ(evaluation.correct_rate, 0.0) << protocol.name;
+    }
+  }
+}
+
 TEST(FewPairs, AreNoted) {
   const Trajectory gt = circle(0, 50, 0.01);
   const Evaluation evaluation = evaluate_with("strict:se3", gt, circle(0, 50, 10.0));
   EXPECT_TRUE(has_note(evaluation, "only 6 poses were compared"));
   EXPECT_TRUE(has_note(evaluate_with("strict:se3", gt, circle(0, 1.2, 0.1)), "only"));
+  const Evaluation sparse = evaluate_with("compat:tum", gt, circle(0, 3.0, 0.6));
+  EXPECT_EQ(sparse.rpe_pairs, sparse.rpe_m->count);
+  EXPECT_TRUE(has_note(sparse, "the RPE is that of only"));
 }
 
 TEST(RpeAcrossAGap, IsNotPartOfTheStrictRpe) {

@@ -44,6 +44,31 @@ TEST(ProtocolDifference, IgnoresFailedRunsOtherMetricsAndDifferencesBelowThePrec
   EXPECT_EQ(note_of({}), "");
 }
 
+TEST(FewRpePairs, AreNotedForTheRunWithTheFewest) {
+  const auto run_with = [](const std::string& prefix, double pairs) {
+    StoredRun run;
+    run.metrics = {{prefix + "rpe_trans_rmse_m_per_s", "", "m/s", 0.001},
+                   {prefix + "rpe_pairs", "", "", pairs}};
+    return run;
+  };
+  const auto note = [](const std::vector<StoredRun>& runs, const std::string& metric) {
+    std::vector<const StoredRun*> pointers;
+    for (const StoredRun& run : runs) pointers.push_back(&run);
+    return few_rpe_pairs_note(pointers, metric);
+  };
+  const std::string metric = "rpe_trans_rmse_m_per_s";
+  EXPECT_EQ(note({run_with("", 200), run_with("", 4)}, metric), "RPE of only 4 pairs of poses: not ranked");
+  EXPECT_EQ(note({run_with("", 200), run_with("", 10)}, metric), "");
+  EXPECT_EQ(note({run_with("strict:se3/", 3)}, "strict:se3/" + metric),
+            "RPE of only 3 pairs of poses: not ranked");
+  EXPECT_EQ(note({run_with("", 4)}, "ate_rmse_m"), "");
+  StoredRun failed = run_with("", 4);
+  failed.outcome = Outcome::kCrashed;
+  StoredRun older = run_with("", 4);
+  older.metrics.pop_back();
+  EXPECT_EQ(note({failed, older}, metric), "");
+}
+
 TEST(TimeSource, DependsOnTheKindOfTheRunAndOnOtherLoad) {
   StoredRun run;
   EXPECT_EQ(time_source(run), TimeSource::kShared);

@@ -30,13 +30,13 @@ TEST(BenchTable, AlignsColumnsAndShowsMissingNumbersAsNotAvailable) {
   EXPECT_EQ(
       markdown_table(rows),
       "| sequence | variant     | status  |  ATE m | T.RPE m/s | R.RPE deg/s |  CR | coverage | first pose s "
-      "| segments | track ms |\n"
+      "| segments | RPE pairs | track ms |\n"
       "|----------|-------------|---------|-------:|----------:|------------:|----:|---------:|-------------:"
-      "|---------:|---------:|\n"
+      "|---------:|----------:|---------:|\n"
       "| desk     | vo          | ok      | 0.0123 |       n/a |         n/a | n/a |   0.5000 |          n/a "
-      "|      n/a |     1.23 |\n"
+      "|      n/a |       n/a |     1.23 |\n"
       "| desk     | longer_name | crashed |    n/a |       n/a |         n/a | n/a |      n/a |          n/a "
-      "|      n/a |      n/a |\n"
+      "|      n/a |       n/a |      n/a |\n"
       "\ndesk longer_name crashed: terminated by signal 11\n");
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/tables/result_tables.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -35,6 +36,19 @@ TEST(MetricTables, DoNotMarkAnErrorOverFewPoses) {
   EXPECT_TRUE(table.rows[0].cells[0].is_best);
   EXPECT_FALSE(table.rows[1].cells[0].is_best);
   EXPECT_EQ(table.rows[1].cells[0].note, "coverage 0.05, others 0.95: not ranked");
+}
+
+TEST(MetricTables, DoNotRankARelativeErrorOfFewPairs) {
+  std::vector<bench::StoredRun> runs = {run_of("a", "s", 1.0), run_of("b", "s", 1.0)};
+  runs[0].metrics = {{"rpe_trans_rmse_m_per_s", "", "m/s", 0.02}, {"rpe_pairs", "", "", 500}};
+  runs[1].metrics = {{"rpe_trans_rmse_m_per_s", "", "m/s", 0.001}, {"rpe_pairs", "", "", 2}};
+  const std::vector<ReportTable> tables = metric_tables(runs);
+  const auto found = std::ranges::find(tables, "rpe_trans_rmse_m_per_s", &ReportTable::name);
+  ASSERT_NE(found, tables.end());
+  const ReportTable& table = *found;
+  EXPECT_TRUE(table.rows[0].cells[0].is_best);
+  EXPECT_FALSE(table.rows[1].cells[0].is_best);
+  EXPECT_EQ(table.rows[1].cells[0].note, "RPE of only 2 pairs of poses: not ranked");
 }
 
 TEST(MetricTables, ShowMediansAndMarkTheBestOfEachColumn) {

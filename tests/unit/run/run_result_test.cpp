@@ -76,6 +76,17 @@ TEST(RunResult, OfARunWithoutPosesIsFailedWithAReason) {
   EXPECT_FALSE(result.score.ate.has_value());
 }
 
+TEST(RunResult, OfARunWithOnePoseIsFailed) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  run.trajectory.poses.resize(1);
+  const RunResult result = score_run(info, std::move(run));
+  EXPECT_EQ(result.outcome, Outcome::kLost);
+  EXPECT_EQ(result.failure, "only one frame has a pose, which tells no error");
+  EXPECT_FALSE(result.score.ate || result.score.rpe);
+  EXPECT_EQ(result.score.correct_rate, 0.0);
+}
+
 TEST(RunResult, WarnsOfRepairedFilesGapsAndMissingBoxes) {
   datasets::SequenceInfo info = straight_sequence();
   info.warnings = {"ground truth: repaired"};
