@@ -18,6 +18,7 @@ struct OpenOptions {
   std::string format;               ///< one of `sequence_format_names`
   std::filesystem::path rig_file;   ///< a rig.toml that overrides the calibration of the format
   std::vector<std::string> topics;  ///< of a bag: "ROLE=TOPIC", see `select_topics`
+  bool raw_depth = false;           ///< do not register depth images of another camera; without a frame cache
   bool defer_color = false;         ///< decode color images only when they are used, see `color_image`
   std::optional<FrameCacheOptions> frame_cache;  ///< keep decoded frames on disk
 };

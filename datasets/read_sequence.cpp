@@ -59,7 +59,7 @@ void apply_rig(SequenceContent& content, const std::filesystem::path& file) {
   for (const std::string& note : overridden.notes) read += (read.empty() ? ": " : ", ") + note;
   content.info.notes.push_back("calibration: overridden by " + file.string() + read);
   if (!overridden.depth_camera) return;
-  content.depth_camera = overridden.depth_camera;
+  content.info.depth_camera = overridden.depth_camera;
   content.info.notes.emplace_back("depth is registered to the color camera by [depth] of this file");
 }
 
@@ -166,15 +166,15 @@ cv::Mat load_depth(const SequenceContent& content, std::size_t index) {
   cv::Mat depth = content.images ? content.images->depth(index) : read_depth(file);
   const Rig& rig = content.info.rig;
   if (depth.type() == CV_32FC1) depth = in_depth_units(depth, rig.depth_units_per_m);
-  require_size(file, depth, content.depth_camera ? content.depth_camera->camera : rig.camera,
+  require_size(file, depth, content.info.depth_camera ? content.info.depth_camera->camera : rig.camera,
                "if it is the image of another camera, write width, height, fx, fy, cx, cy and T_c_d of that "
                "camera into [depth] in rig.toml, and it is registered");
   if (content.no_depth_value != 0) {
     std::replace(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>(), content.no_depth_value,
                  std::uint16_t{0});
   }
-  if (!content.depth_camera) return depth;
-  return register_depth(depth, rig.depth_units_per_m, *content.depth_camera, rig.camera);
+  if (!content.info.depth_camera || content.raw_depth) return depth;
+  return register_depth(depth, rig.depth_units_per_m, *content.info.depth_camera, rig.camera);
 }
 
 std::vector<DetectionSet> read_optional_boxes(const std::filesystem::path& file, FaultLog& faults) {
@@ -202,6 +202,7 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
   content.info.detections = read_optional_boxes(companion_file(root, "detections.txt"), faults);
   content.info.true_boxes = read_optional_boxes(companion_file(root, "true_boxes.txt"), faults);
   override_rig(content, options.rig_file);
+  content.raw_depth = options.raw_depth;
   check_rig(content);
   if (&format == &kBagFormat) content = with_metric_accelerations(std::move(content));
   check_overlap(content.info, faults);

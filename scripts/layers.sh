@@ -42,6 +42,7 @@ row core/backend/health $common $window core/backend/vision
 backend="$window core/backend/solvers core/backend/reference core/backend/vision core/backend/start core/backend/health"
 row core/backend $common $backend
 row core/loop $common core/backend/factors
+row core/calibration $common core/imu core/backend/factors core/backend/reference
 row core/pipeline/stages $common core/imu core/frontend core/dynamic core/detector core/loop core/backend \
   core/backend/start core/backend/window
 row core/pipeline $common core/imu core/frontend core/dynamic core/detector core/loop core/backend core/backend/start \
@@ -128,7 +129,7 @@ row reports/dashboard $stored bench/record reports/tables reports/page
 # --- the program ---
 row bench/cli core/base eval/io bench/config bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
-row bench/cli/run $execution core/config core/pipeline/runners datasets datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
+row bench/cli/run $execution core/calibration core/config core/geometry core/types core/pipeline/runners datasets datasets/cache datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
@@ -149,9 +150,9 @@ libraries=(
   '<turbojpeg        ^datasets/io/image_io\.cpp$'
   '<embree[34]/        ^datasets/synthetic/render/embree\.h$'
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
-  '<ceres/            ^core/backend/(factors|reference)/|^core/loop/'
+  '<ceres/            ^core/backend/(factors|reference)/|^core/(loop|calibration)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
-  '<opencv2/core[./]  ^core/(types|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
+  '<opencv2/core[./]  ^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
   '<opencv2/imgproc[./]  ^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
   '<opencv2/calib3d[./]  ^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/monocular_structure\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'

@@ -84,6 +84,7 @@ inline constexpr const char* kSysfsRootHelp =
 [[nodiscard]] std::vector<Command> all_commands();
 
 [[nodiscard]] Command run_command();          ///< `stillpoint run`: odometry on one sequence
+[[nodiscard]] Command calibrate_command();    ///< `stillpoint calibrate`: calibration from a recording
 [[nodiscard]] Command eval_command();         ///< `stillpoint eval`: score trajectory files
 [[nodiscard]] Command bench_command();        ///< `stillpoint bench`: execute a benchmark plan
 [[nodiscard]] Command worker_command();       ///< `stillpoint worker`: execute tasks of a plan

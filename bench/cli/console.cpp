@@ -75,6 +75,11 @@ void ProgressLine::draw() const {
   std::fflush(stderr);
 }
 
+void ProgressLine::update(std::size_t done, std::string label) {
+  label_ = std::move(label);
+  update(done);
+}
+
 void ProgressLine::update(std::size_t done) {
   done_ = done;
   const auto now = std::chrono::steady_clock::now();

@@ -33,6 +33,8 @@ class ProgressLine {
 
   /// Redraws at most 10 times per second.
   void update(std::size_t done);
+  /// The same with another label.
+  void update(std::size_t done, std::string label);
 
   /// Clears the line, so that other output can be printed; `draw` restores it.
   void clear() const;

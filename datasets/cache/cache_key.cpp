@@ -169,10 +169,10 @@ std::uint64_t cache_key(const SequenceContent& content, std::span<const FrameDig
   bits.add(content.info.rig.camera);
   bits.add(content.info.rig.depth_units_per_m);
   bits.add(std::uint64_t{content.no_depth_value});
-  bits.add(std::uint64_t{content.depth_camera.has_value()});
-  if (content.depth_camera) {
-    bits.add(content.depth_camera->camera);
-    bits.add(content.depth_camera->T_c_d);
+  bits.add(std::uint64_t{content.info.depth_camera.has_value()});
+  if (content.info.depth_camera) {
+    bits.add(content.info.depth_camera->camera);
+    bits.add(content.info.depth_camera->T_c_d);
   }
   bits.add(std::uint64_t{frames.size()});
   for (const FrameDigest& frame : frames) {

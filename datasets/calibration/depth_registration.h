@@ -5,15 +5,9 @@
 #include <opencv2/core/mat.hpp>
 
 #include "core/geometry/camera.h"
-#include "core/geometry/pose.h"
+#include "datasets/io/sequence_info.h"
 
 namespace stillpoint::datasets {
-
-/// Intrinsics and extrinsic of the depth camera.
-struct DepthCamera {
-  Camera camera;  ///< without distortion
-  Pose T_c_d;     ///< depth camera to color camera
-};
 
 /// Forward-warps every measured depth pixel (u, v) with depth z into the color camera:
 ///   p_c = R_c_d z K_d^-1 (u, v, 1)^T + p_c_d,   (u_c, v_c) = project_c(p_c),   z_c = [p_c]_z

@@ -335,7 +335,7 @@ void set_cameras(SequenceContent& content, const BagFile& bag, const BagTopics& 
   const bool same_camera = depth.width == camera.width && depth.height == camera.height &&
                            depth.fx == camera.fx && depth.cx == camera.cx && depth.cy == camera.cy;
   if (same_camera) return;
-  content.depth_camera = DepthCamera{.camera = depth, .T_c_d = T_c_d.value_or(Pose{})};
+  content.info.depth_camera = DepthCamera{.camera = depth, .T_c_d = T_c_d.value_or(Pose{})};
   content.info.notes.push_back("depth of " + topics.depth + " is registered to the color camera");
   if (!T_c_d)
     content.info.warnings.push_back(

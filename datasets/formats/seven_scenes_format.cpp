@@ -86,7 +86,7 @@ void add_frame(const NumberedFrame& frame, SequenceContent& content, FaultLog& f
 void set_seven_scenes_calibration(SequenceContent& content) {
   content.info.rig.camera = kColorCamera;
   content.info.rig.rolling_shutter_s = kRollingShutter_s;
-  content.depth_camera = DepthCamera{.camera = kDepthCamera, .T_c_d = depth_to_color()};
+  content.info.depth_camera = DepthCamera{.camera = kDepthCamera, .T_c_d = depth_to_color()};
   content.info.ground_truth.T_c_f = depth_to_color();
   content.info.notes.emplace_back(
       "calibration: that of 7-Scenes; depth (585 px) is registered to the color camera (527.5 px, baseline "

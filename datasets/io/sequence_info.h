@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,14 +22,21 @@ struct GroundTruth {
   Pose T_c_f;             ///< pose of f in the camera frame: T_w_c = T_w_f * T_c_f.inverse()
 };
 
+/// Intrinsics and extrinsic of a depth camera whose images are not registered to the color camera.
+struct DepthCamera {
+  Camera camera;  ///< without distortion
+  Pose T_c_d;     ///< depth camera to color camera
+};
+
 /// Everything of a sequence but its images.
 struct SequenceInfo {
   std::string name;  ///< the folder's name
   std::filesystem::path folder;
   std::string format;  ///< name of its format, see datasets/formats/formats.h
   Rig rig;
-  std::vector<Timestamp> frame_times;  ///< one per frame, strictly increasing
-  std::vector<ImuSample> imu;          ///< strictly increasing in time; empty without an IMU
+  std::optional<DepthCamera> depth_camera;  ///< of the depth images; absent: they are registered
+  std::vector<Timestamp> frame_times;       ///< one per frame, strictly increasing
+  std::vector<ImuSample> imu;               ///< strictly increasing in time; empty without an IMU
   GroundTruth ground_truth;
   std::vector<DetectionSet> detections;  ///< recorded boxes in order of time; empty when there are none
   std::vector<DetectionSet> true_boxes;  ///< of all moving objects, in order of time; rendered sequences only

@@ -16,6 +16,7 @@
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
 #include "bench/cli/run/run_dumps.h"
+#include "bench/cli/run/sequence_playback.h"
 #include "bench/config/config_file.h"
 #include "bench/model/metrics.h"
 #include "bench/model/stored_run.h"
@@ -29,11 +30,8 @@
 #include "bench/run/frame_cache.h"
 #include "bench/run/odometry_run.h"
 #include "bench/run/run_scores.h"
-#include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "core/config/odometry_config.h"
-#include "datasets/faults/faulty_stream.h"
-#include "datasets/faults/rig_faults.h"
 #include "datasets/faults/sensor_fault.h"
 #include "datasets/open_sequence.h"
 #include "datasets/sensor_stream.h"
@@ -86,48 +84,6 @@ void save_map(const MapOptions& options, const LoopReport& report) {
   write_output(options.save, map_bytes(*report.map), rules_of(options));
 }
 
-/// `find_sequence` with a progress line while a preset is rendered.
-/// @return null if interrupted
-std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& name,
-                                                           const datasets::OpenOptions& options) {
-  std::unique_ptr<ProgressLine> progress;
-  const auto on_rendered = [&](int done, int total) {
-    if (!progress) {
-      progress =
-          std::make_unique<ProgressLine>("rendering " + name, static_cast<std::size_t>(total), "frames");
-    }
-    progress->update(static_cast<std::size_t>(done));
-  };
-  return find_sequence(name, options, {.progress = on_rendered, .stop_requested = interrupt_requested});
-}
-
-/// How a sequence is played.
-struct Playback {
-  double start_s = 0.0;  ///< see datasets/sensor_stream.h, as the next two
-  int every = 1, passes = 1;
-  std::vector<datasets::SensorFault> faults;
-};
-
-/// The stream from the start on, every n-th frame of it, in passes, with faults relative to the start.
-/// @param stream with at least one frame
-/// @throws InputError as `start_at`, `every_nth_frame`, `ping_pong_playback` and `with_faults`
-std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
-                                               const Playback& playback) {
-  stream = datasets::start_at(std::move(stream), playback.start_s);
-  stream = datasets::every_nth_frame(std::move(stream), playback.every);
-  if (playback.passes > 1) stream = datasets::ping_pong_playback(std::move(stream), playback.passes);
-  return datasets::with_faults(std::move(stream), playback.faults);
-}
-
-/// Options of the frame cache whose warnings are logged.
-/// @param max_frames 0 = all
-/// @return nullopt unless `enabled`, or as `frame_cache_options`
-std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames) {
-  if (!enabled) return std::nullopt;
-  return frame_cache_options(static_cast<std::size_t>(max_frames),
-                             [](const std::string& text) { spdlog::warn("{}", text); });
-}
-
 struct RunArguments {
   std::string sequence, base = "stillpoint", mode = "sequential";
   std::vector<std::string> variants, settings, faults, topics, dumps;
@@ -145,18 +101,12 @@ struct ConfiguredRun {
   fs::path folder, video;                     ///< of the files, and of annotated frames; empty = none
 };
 
-std::vector<datasets::SensorFault> faults_of(const RunArguments& arguments) {
-  std::vector<datasets::SensorFault> faults;
-  for (const std::string& text : arguments.faults) faults.push_back(datasets::parse_fault(text));
-  return datasets::expanded_rigs(faults);
-}
-
 /// Loads all configs and faults before the first run starts, so that errors are reported early.
 std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   std::vector<std::string> variants = arguments.variants;
   if (variants.empty()) variants.emplace_back();
   // Not in the braces below: g++ 12 destroys members of an aggregate twice if an initializer throws.
-  const std::vector<datasets::SensorFault> faults = faults_of(arguments);
+  const std::vector<datasets::SensorFault> faults = parsed_faults(arguments.faults);
   std::vector<std::string> settings = arguments.settings;
   if (arguments.imu_rate) settings.emplace_back("pipeline.imu_rate=true");
   if (arguments.map.final_ba) settings.emplace_back("loop.final_bundle_adjustment=true");

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint calibrate`: runs the odometry on a recording, and estimates the calibration from its tracks.
+#include <algorithm>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/console.h"
+#include "bench/cli/run/calibration_report.h"
+#include "bench/cli/run/sequence_playback.h"
+#include "bench/config/config_file.h"
+#include "bench/plan/plan_sequences.h"
+#include "bench/record/output_folder.h"
+#include "bench/run/odometry_run.h"
+#include "core/base/error.h"
+#include "core/calibration/calibrate.h"
+#include "core/calibration/calibration_recording.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr double kLeastInterval_s = 0.1;  // between keyframes
+constexpr double kMostKeyframes = 300.0;
+constexpr std::size_t kIterationsPerRound = 25;
+
+struct CalibrateArguments {
+  std::string sequence, out, rig, format, base = "stillpoint", variant;
+  std::vector<std::string> settings, topics, faults, keep;
+  double start_s = 0.0;
+  int max_frames = 0;
+  bool depth_camera = false, json = false;
+};
+
+/// The switches of --keep.
+struct NamedSwitch {
+  std::string_view name;
+  bool CalibrationSwitches::*value;
+};
+constexpr std::array<NamedSwitch, 8> kSwitches = {{{"focal", &CalibrationSwitches::focal},
+                                                   {"center", &CalibrationSwitches::center},
+                                                   {"distortion", &CalibrationSwitches::distortion},
+                                                   {"rolling_shutter", &CalibrationSwitches::rolling_shutter},
+                                                   {"depth_scale", &CalibrationSwitches::depth_scale},
+                                                   {"depth_camera", &CalibrationSwitches::depth_camera},
+                                                   {"extrinsics", &CalibrationSwitches::extrinsics},
+                                                   {"time_offset", &CalibrationSwitches::time_offset}}};
+
+std::string switch_names() {
+  std::string names;
+  for (const NamedSwitch& entry : kSwitches) names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  return names;
+}
+
+CalibrationSwitches switches_of(const CalibrateArguments& arguments) {
+  CalibrationSwitches switches;
+  for (const std::string& name : arguments.keep) {
+    const auto found = std::ranges::find(kSwitches, name, &NamedSwitch::name);
+    if (found == kSwitches.end())
+      throw InputError("--keep", "unknown parameter \"" + name + "\"; expected one of: " + switch_names());
+    switches.*(found->value) = false;
+  }
+  return switches;
+}
+
+OutputRules rules_of(const CalibrateArguments& arguments) {
+  return {.inputs = {arguments.rig}, .force = false, .beginning = {}};
+}
+
+/// @param raw_depth without registration of depth images to the color camera
+/// @return null if interrupted
+std::unique_ptr<datasets::SensorStream> open_stream(const CalibrateArguments& arguments, bool raw_depth) {
+  const bool cached = arguments.start_s == 0.0 && !raw_depth;
+  auto stream = open_with_progress(resolve_sequence(arguments.sequence),
+                                   {.format = arguments.format,
+                                    .rig_file = arguments.rig,
+                                    .topics = arguments.topics,
+                                    .raw_depth = raw_depth,
+                                    .defer_color = true,
+                                    .frame_cache = logged_frame_cache(cached, arguments.max_frames)});
+  if (!stream) return nullptr;
+  return played(std::move(stream), {.start_s = arguments.start_s, .faults = parsed_faults(arguments.faults)});
+}
+
+/// Time of the frames that are used [s].
+double duration_s(const datasets::SequenceInfo& info, int max_frames) {
+  if (info.frame_times.empty()) return 0.0;
+  const std::size_t count = max_frames == 0
+                                ? info.frame_times.size()
+                                : std::min(info.frame_times.size(), static_cast<std::size_t>(max_frames));
+  return seconds_between(info.frame_times.front(), info.frame_times[count - 1]);
+}
+
+/// The depth images of another camera as they are.
+void load_raw_depth(const CalibrateArguments& arguments, CalibrationInput& input) {
+  const std::unique_ptr<datasets::SensorStream> raw = open_stream(arguments, true);
+  if (!raw) return;
+  for (CalibrationSection& section : input.sections) {
+    for (CalibrationKeyframe& keyframe : section.keyframes)
+      keyframe.depth = raw->load_frame(static_cast<std::size_t>(keyframe.frame)).depth;
+  }
+}
+
+/// Keyframes of a run of the odometry. @return nothing if interrupted
+std::optional<CalibrationInput> record(const CalibrateArguments& arguments,
+                                       const datasets::SensorStream& stream) {
+  const datasets::SequenceInfo& info = stream.info();
+  const bool inertial = info.rig.has_imu && !info.imu.empty();
+  const std::string variant = arguments.variant.empty() && !inertial ? "vo" : arguments.variant;
+  const OdometryConfig config = load_config({arguments.base, variant, arguments.settings});
+  const RunSpec spec{.config = config, .max_frames = static_cast<std::size_t>(arguments.max_frames)};
+  CalibrationCollector collector(
+      std::max(kLeastInterval_s, duration_s(info, arguments.max_frames) / kMostKeyframes));
+  ProgressLine progress("tracking " + info.name, info.frame_times.size(), "frames");
+  RunControl control{.stop_requested = interrupt_requested};
+  control.on_frame.emplace_back([&](const FrameReport& report) {
+    collector.add(report.tracked, report.dynamic.labels, report.update);
+    progress.update(static_cast<std::size_t>(report.update.frame_id) + 1);
+  });
+  const OdometryRun run = run_odometry(stream, spec, control);
+  if (run.summary.interrupted) return std::nullopt;
+  CalibrationInput input{.stated = {.rig = info.rig, .depth_camera = info.rig.camera},
+                         .sections = collector.finish(),
+                         .gravity = config.imu.gravity};
+  input.stated.depth_camera.distortion.fill(0.0);
+  if (inertial && config.imu.enabled) input.imu = info.imu;
+  input.depth_is_registered = !info.depth_camera && !arguments.depth_camera;
+  if (info.depth_camera) {
+    input.stated.depth_camera = info.depth_camera->camera;
+    input.stated.T_c_d = info.depth_camera->T_c_d;
+    load_raw_depth(arguments, input);
+  }
+  return input;
+}
+
+CalibrationResult estimate(const CalibrateArguments& arguments, const CalibrationInput& input) {
+  std::optional<ProgressLine> line;
+  const CalibrationOptions options{
+      .estimate = switches_of(arguments), .on_iteration = [&](const CalibrationProgress& now) {
+        const std::size_t total = kIterationsPerRound * static_cast<std::size_t>(now.steps);
+        if (!line) line.emplace("calibrating", total, "iterations");
+        const std::size_t done = kIterationsPerRound * static_cast<std::size_t>(now.step) +
+                                 static_cast<std::size_t>(now.iteration);
+        line->update(std::min(done, total), fmt::format("calibrating, round {} of {}, cost {:.1f}",
+                                                        now.step + 1, now.steps, now.cost));
+        spdlog::debug("round {} of {}, iteration {}: cost {}", now.step + 1, now.steps, now.iteration,
+                      now.cost);
+        return !interrupt_requested();
+      }};
+  return calibrate(input, options);
+}
+
+int calibrate_sequence(const CalibrateArguments& arguments) {
+  static_cast<void>(switches_of(arguments));
+  if (!arguments.out.empty()) require_safe_output(arguments.out, rules_of(arguments));
+  install_interrupt_handlers();
+  const std::unique_ptr<datasets::SensorStream> stream = open_stream(arguments, false);
+  if (!stream) return kExitInterrupted;
+  for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
+  const std::optional<CalibrationInput> input = record(arguments, *stream);
+  if (!input) return kExitInterrupted;
+  const CalibrationResult result = estimate(arguments, *input);
+  const CalibrationSubject subject{.sequence = stream->info().name,
+                                   .has_imu = !input->imu.empty(),
+                                   .has_depth_camera = !input->depth_is_registered};
+  std::cout << (arguments.json ? calibration_json(subject, result) : calibration_table(subject, result));
+  if (!arguments.out.empty())
+    write_output(arguments.out, calibrated_rig_text(subject, result), rules_of(arguments));
+  if (result.interrupted) return kExitInterrupted;
+  return result.usable ? kExitOk : kExitInconclusive;
+}
+
+}  // namespace
+
+Command calibrate_command() {
+  const auto a = std::make_shared<CalibrateArguments>();
+  return {
+      .name = "calibrate",
+      .summary = "Estimate the calibration from a recording, without a target; write rig.toml",
+      .example = "calibrate walking_xyz --out rig.toml",
+      .options =
+          {{"SEQ", "Sequence folder, bag or preset name", &a->sequence},
+           {"--out", "Rig file to write; an existing file is not replaced", &a->out},
+           {"--keep", "Keep a parameter as stated: " + switch_names() + "; may be repeated", &a->keep},
+           {"--depth-camera",
+            "Depth images are those of another camera, not registered: estimate its intrinsics and pose",
+            &a->depth_camera},
+           {"--rig", "rig.toml that overrides the calibration of the sequence", &a->rig},
+           {"--config", "Base config: an embedded name or a TOML file", &a->base},
+           {"--variant", "Overlays joined by + [vo without an IMU]", &a->variant},
+           {"--set", "Override a config key: key=value; may be repeated", &a->settings},
+           {"--fault", "Inject a sensor fault, as `run --fault`; may be repeated", &a->faults},
+           {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]", &a->format},
+           {"--topics", kTopicsHelp, &a->topics},
+           {"--start",
+            "Time after the first frame at which the recording is used [0 s]",
+            &a->start_s,
+            {0, 1e9}},
+           {"--max-frames", "Maximum number of frames; 0 = all", &a->max_frames, {0, 1e9}},
+           {"--json", "Print JSON with full precision", &a->json}},
+      .action = [a] { return calibrate_sequence(*a); }};
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/cli/run/calibration_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "core/base/fields.h"
+#include "reports/tables/text_format.h"
+
+namespace stillpoint::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// With as many digits as the deviation supports.
+std::string number_text(double value, double sigma) {
+  const int digits = sigma > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, 6) : 4;
+  return fmt::format("{:.{}f}", value, digits);
+}
+
+double sigmas_of(const ParameterEstimate& parameter) {
+  return parameter.sigma > 0.0 ? std::abs(parameter.difference()) / parameter.sigma : 0.0;
+}
+
+std::string outcome_text(const ParameterEstimate& parameter) {
+  if (parameter.outcome == ParameterOutcome::kNotObserved) return "not observed";
+  if (parameter.outcome == ParameterOutcome::kAgrees)
+    return fmt::format("agrees ({:.1f} sigma)", sigmas_of(parameter));
+  return fmt::format("differs by {} ({:.1f} sigma)", number_text(parameter.difference(), parameter.sigma),
+                     sigmas_of(parameter));
+}
+
+std::string_view outcome_name(ParameterOutcome outcome) {
+  constexpr std::string_view kNames[] = {"not_observed", "agrees", "differs"};
+  return kNames[static_cast<std::size_t>(outcome)];
+}
+
+/// What limits the result; empty if nothing does.
+std::vector<std::string> remarks(const CalibrationSubject& subject, const CalibrationResult& result) {
+  std::vector<std::string> lines;
+  if (result.interrupted) lines.emplace_back("interrupted: the values are those of the last iteration");
+  if (!result.usable) lines.emplace_back("doubtful: the solver failed, or the deviations cannot be computed");
+  if (!subject.has_imu)
+    lines.emplace_back(
+        "without an IMU the scale is that of the depth sensor: the depth scale cannot be observed");
+  if (result.deviation_factor > 3.0)
+    lines.push_back(
+        fmt::format("doubtful: the halves of the recording differ {:.1f} times more than their residuals "
+                    "explain; the deviations are increased by it",
+                    result.deviation_factor));
+  const HeldOutResiduals& held_out = result.held_out;
+  if (result.has_held_out && held_out.pixel_after_px > 1.02 * held_out.pixel_before_px)
+    lines.emplace_back("doubtful: with the calibration of one half the residuals of the other half increase");
+  return lines;
+}
+
+std::string residual_text(const CalibrationResult& result) {
+  std::string text = fmt::format(
+      "{} keyframes, {} points, {} observations, {} depths, {} inertial intervals\n"
+      "deviation of a pixel {:.3f} px, of an inverse depth {:.4f} 1/m",
+      result.keyframes, result.landmarks, result.observations, result.depths, result.inertial_factors,
+      result.pixel_sigma_px, result.inverse_depth_sigma);
+  if (result.inertial_factors > 0)
+    text += fmt::format("; noise of the IMU {:.1f} (gyro) and {:.1f} (accel) times the stated one",
+                        result.imu_noise.gyro, result.imu_noise.accel);
+  text += '\n';
+  if (!result.has_held_out) return text;
+  const HeldOutResiduals& held_out = result.held_out;
+  return text +
+         fmt::format(
+             "held out (second half, calibration of the first): pixels {:.3f} -> {:.3f} px, inverse depths "
+             "{:.4f} -> {:.4f} 1/m; deviations times {:.2f} by the difference of the halves\n",
+             held_out.pixel_before_px, held_out.pixel_after_px, held_out.depth_before, held_out.depth_after,
+             result.deviation_factor);
+}
+
+}  // namespace
+
+std::string calibration_table(const CalibrationSubject& subject, const CalibrationResult& result) {
+  report::TableRows rows = {{"parameter", "unit", "value", "deviation", "stated", "prior", "conclusion"}};
+  for (const ParameterEstimate& p : result.parameters) {
+    rows.push_back({p.name, p.unit, number_text(p.value, p.sigma), number_text(p.sigma, p.sigma),
+                    number_text(p.stated, p.sigma), number_text(p.prior_sigma, p.prior_sigma),
+                    outcome_text(p)});
+  }
+  std::string text = report::format_table(rows, report::TableStyle::kText) + residual_text(result);
+  for (const std::string& line : remarks(subject, result)) text += line + '\n';
+  return text;
+}
+
+std::string calibration_json(const CalibrationSubject& subject, const CalibrationResult& result) {
+  Json parameters = Json::array();
+  for (const ParameterEstimate& p : result.parameters) {
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"value", p.value},
+                          {"sigma", p.sigma},
+                          {"stated", p.stated},
+                          {"prior_sigma", p.prior_sigma},
+                          {"outcome", outcome_name(p.outcome)}});
+  }
+  const HeldOutResiduals& h = result.held_out;
+  Json json = {{"sequence", subject.sequence},
+               {"keyframes", result.keyframes},
+               {"landmarks", result.landmarks},
+               {"observations", result.observations},
+               {"depths", result.depths},
+               {"inertial_intervals", result.inertial_factors},
+               {"pixel_sigma_px", result.pixel_sigma_px},
+               {"inverse_depth_sigma", result.inverse_depth_sigma},
+               {"imu_noise_factors", {{"gyro", result.imu_noise.gyro}, {"accel", result.imu_noise.accel}}},
+               {"deviation_factor", result.deviation_factor},
+               {"parameters", parameters},
+               {"interrupted", result.interrupted},
+               {"remarks", remarks(subject, result)}};
+  if (result.has_held_out)
+    json["held_out"] = {{"pixel_before_px", h.pixel_before_px},
+                        {"pixel_after_px", h.pixel_after_px},
+                        {"depth_before", h.depth_before},
+                        {"depth_after", h.depth_after}};
+  return json.dump(2) + "\n";
+}
+
+namespace {
+
+/// Lines of a rig file with comments about the estimated values.
+class RigLines {
+ public:
+  explicit RigLines(const CalibrationResult& result) : result_(result) {}
+
+  /// "key = value  # ...": the comment of the parameters with this prefix.
+  void add(const std::string& key, double value, const std::string& parameter = "") {
+    add_text(key, fmt::format("{:.17g}", value), parameter.empty() ? key : parameter);
+  }
+  void add_pose(const std::string& key, const Pose& pose) {
+    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = pose.matrix();
+    for (const ParameterEstimate& p : result_.parameters) {
+      if (p.name.starts_with(key + " ")) text_ += fmt::format("# {}: {}\n", p.name, comment(p));
+    }
+    text_ += fmt::format("{} = [{:.17g}]\n", key, fmt::join(rows.data(), rows.data() + 16, ", "));
+  }
+  void add_text(const std::string& key, const std::string& value, const std::string& parameter = "") {
+    const auto found = std::ranges::find(result_.parameters, parameter, &ParameterEstimate::name);
+    text_ += fmt::format("{} = {}{}\n", key, value,
+                         found == result_.parameters.end() ? "" : "  # " + comment(*found));
+  }
+  void add_line(const std::string& line) { text_ += line + '\n'; }
+  /// A comment of its own line.
+  void add_comment(const std::string& parameter) {
+    const auto found = std::ranges::find(result_.parameters, parameter, &ParameterEstimate::name);
+    if (found != result_.parameters.end()) add_line(fmt::format("# {}: {}", parameter, comment(*found)));
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  static std::string comment(const ParameterEstimate& p) {
+    if (p.outcome == ParameterOutcome::kNotObserved) return "not observed, as stated";
+    const std::string unit = p.unit.empty() ? "" : " " + p.unit;
+    return fmt::format("{} +- {}{}, was {}", number_text(p.value, p.sigma), number_text(p.sigma, p.sigma),
+                       unit, number_text(p.stated, p.sigma));
+  }
+
+  const CalibrationResult& result_;
+  std::string text_;
+};
+
+std::string model_text(CameraModel model) {
+  for (const auto& [value, name] : enum_names(CameraModel{})) {
+    if (value == model) return fmt::format("\"{}\"", name);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string calibrated_rig_text(const CalibrationSubject& subject, const CalibrationResult& result) {
+  const Rig& rig = result.calibration.rig;
+  RigLines lines(result);
+  lines.add_line("# By `stillpoint calibrate` from " + report::clean_line(subject.sequence) +
+                 ": value +- standard deviation, was the stated value");
+  for (const std::string& line : remarks(subject, result)) lines.add_line("# " + line);
+  lines.add_line("[camera]");
+  lines.add_text("width", fmt::format("{}", rig.camera.width));
+  lines.add_text("height", fmt::format("{}", rig.camera.height));
+  lines.add("fx", rig.camera.fx);
+  lines.add("fy", rig.camera.fy);
+  lines.add("cx", rig.camera.cx);
+  lines.add("cy", rig.camera.cy);
+  lines.add_text("model", model_text(rig.camera.model));
+  lines.add_comment("k1");
+  lines.add_comment("k2");
+  lines.add_text("distortion", fmt::format("[{:.17g}]", fmt::join(rig.camera.coefficients(), ", ")));
+  lines.add("rolling_shutter_s", std::max(0.0, rig.rolling_shutter_s));
+  lines.add_line("\n[depth]");
+  lines.add("scale", rig.depth_units_per_m, "depth scale");
+  lines.add_comment("depth offset");
+  if (subject.has_depth_camera) {
+    const Camera& camera = result.calibration.depth_camera;
+    lines.add_text("width", fmt::format("{}", camera.width));
+    lines.add_text("height", fmt::format("{}", camera.height));
+    lines.add("fx", camera.fx, "depth fx");
+    lines.add("fy", camera.fy, "depth fy");
+    lines.add("cx", camera.cx, "depth cx");
+    lines.add("cy", camera.cy, "depth cy");
+    lines.add_pose("T_c_d", result.calibration.T_c_d);
+  }
+  if (!rig.has_imu) return lines.text();
+  lines.add_line("\n[imu]");
+  lines.add_pose("T_b_c", rig.T_b_c);
+  lines.add("gyro_noise", rig.imu_noise.gyro_noise);
+  lines.add("accel_noise", rig.imu_noise.accel_noise);
+  lines.add("gyro_walk", rig.imu_noise.gyro_walk);
+  lines.add("accel_walk", rig.imu_noise.accel_walk);
+  lines.add("time_offset_s", rig.time_offset_s);
+  return lines.text();
+}
+
+}  // namespace stillpoint::bench

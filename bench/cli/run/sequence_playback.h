@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Opens a sequence for commands that run the odometry on it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/cache/frame_cache_options.h"
+#include "datasets/faults/sensor_fault.h"
+#include "datasets/open_sequence.h"
+#include "datasets/sensor_stream.h"
+
+namespace stillpoint::bench {
+
+/// `find_sequence` with a progress line while a preset is rendered.
+/// @return null if interrupted
+[[nodiscard]] std::unique_ptr<datasets::SensorStream> open_with_progress(
+    const std::string& name, const datasets::OpenOptions& options);
+
+/// How a sequence is played.
+struct Playback {
+  double start_s = 0.0;  ///< see datasets/sensor_stream.h, as the next two
+  int every = 1, passes = 1;
+  std::vector<datasets::SensorFault> faults;
+};
+
+/// The stream from the start on, every n-th frame of it, in passes, with faults relative to the start.
+/// @param stream with at least one frame
+/// @throws InputError as `start_at`, `every_nth_frame`, `ping_pong_playback` and `with_faults`
+[[nodiscard]] std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,
+                                                             const Playback& playback);
+
+/// Options of the frame cache whose warnings are logged.
+/// @param max_frames 0 = all
+/// @return nullopt unless `enabled`, or as `frame_cache_options`
+[[nodiscard]] std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int max_frames);
+
+/// The faults of the options --fault. @throws InputError as `parse_fault`
+[[nodiscard]] std::vector<datasets::SensorFault> parsed_faults(const std::vector<std::string>& texts);
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The variables of the batch estimation of a calibration, and their initial values.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/calibration/calibrate.h"
+#include "core/calibration/calibration_factors.h"
+
+namespace stillpoint {
+
+using PoseValues = std::array<double, 7>;       ///< p, q xyzw
+using SpeedBiasValues = std::array<double, 9>;  ///< v, gyro bias, accel bias
+
+/// The parameters that all keyframes share.
+struct SharedValues {
+  std::array<double, kCameraValues> camera{};
+  double readout_s = 0.0;
+  std::array<double, 2> depth = {1.0, 0.0};  ///< scale relative to the stated one, offset [1/m]
+  std::array<double, 4> depth_camera{};
+  PoseValues T_b_c{}, T_c_d{};
+  double time_offset_s = 0.0;
+};
+
+[[nodiscard]] SharedValues shared_values(const RigCalibration& calibration);
+/// @param stated from which the depth scale is counted
+[[nodiscard]] RigCalibration rig_calibration(const SharedValues& shared, const RigCalibration& stated);
+
+[[nodiscard]] PoseValues values_of(const Pose& pose);
+[[nodiscard]] Pose pose_of(const PoseValues& values);
+
+struct BatchObservation {
+  int keyframe = 0;  ///< in `BatchState`
+  CalibrationFeature feature;
+  bool pixel_is_inlier = true;
+  bool depth_is_inlier = true;
+};
+
+struct BatchLandmark {
+  Eigen::Vector3d p_w = Eigen::Vector3d::Zero();
+  std::vector<BatchObservation> observations;
+
+  [[nodiscard]] bool is_usable() const;  ///< three inliers
+};
+
+struct BatchKeyframe {
+  Timestamp t;
+  int section = 0;
+  PoseValues pose{};
+  SpeedBiasValues speed_bias{};
+  cv::Mat depth;
+};
+
+struct BatchState {
+  std::vector<BatchKeyframe> keyframes;
+  std::vector<BatchLandmark> landmarks;
+  std::vector<Eigen::Vector3d> gravity_w;  ///< per section [m/s^2]
+  SharedValues shared;
+  double pixel_sigma_px = 1.0;
+  double inverse_depth_sigma = 0.01;
+  ImuNoiseFactors imu_noise;
+};
+
+/// The keyframes from the fraction `begin` to the fraction `end` of all, with the landmarks that at least
+/// three of them see and whose position measured depth or a parallax of one degree determines.
+[[nodiscard]] BatchState initial_state(const CalibrationInput& input, double begin, double end);
+
+}  // namespace stillpoint

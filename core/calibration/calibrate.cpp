@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/calibration/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/calibration/batch_problem.h"
+#include "core/calibration/batch_state.h"
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+using enum SharedValue;
+
+constexpr int kRounds = 4;
+constexpr std::size_t kMinKeyframes = 10;
+constexpr std::size_t kMinLandmarks = 50;
+constexpr double kObservedRatio = 0.5;  // of deviation and prior, below which a value is observed
+constexpr double kDifferentSigmas = 3.0;
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// Description of a shared value.
+struct SharedDescription {
+  const char* name;
+  const char* unit;
+  double factor;  ///< from SI units
+};
+
+constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
+    {"fx", "px", 1.0},
+    {"fy", "px", 1.0},
+    {"cx", "px", 1.0},
+    {"cy", "px", 1.0},
+    {"k1", "", 1.0},
+    {"k2", "", 1.0},
+    {"rolling_shutter_s", "ms", 1e3},
+    {"depth scale", "", 1.0},
+    {"depth offset", "1/m", 1.0},
+    {"depth fx", "px", 1.0},
+    {"depth fy", "px", 1.0},
+    {"depth cx", "px", 1.0},
+    {"depth cy", "px", 1.0},
+    {"T_c_d x", "mm", 1e3},
+    {"T_c_d y", "mm", 1e3},
+    {"T_c_d z", "mm", 1e3},
+    {"T_c_d rotation x", "deg", kDegrees},
+    {"T_c_d rotation y", "deg", kDegrees},
+    {"T_c_d rotation z", "deg", kDegrees},
+    {"T_b_c x", "mm", 1e3},
+    {"T_b_c y", "mm", 1e3},
+    {"T_b_c z", "mm", 1e3},
+    {"T_b_c rotation x", "deg", kDegrees},
+    {"T_b_c rotation y", "deg", kDegrees},
+    {"T_b_c rotation z", "deg", kDegrees},
+    {"time_offset_s", "ms", 1e3},
+}};
+
+void set(SharedFlags& flags, SharedValue first, int count, bool value) {
+  std::fill_n(flags.begin() + static_cast<int>(first), count, value);
+}
+
+/// The values that the data can determine at all.
+SharedFlags variable_values(const CalibrationSwitches& estimate, const CalibrationInput& input) {
+  const bool inertial = !input.imu.empty();
+  const bool depth_camera = estimate.depth_camera && !input.depth_is_registered;
+  SharedFlags flags{};
+  set(flags, kFx, 2, estimate.focal);
+  set(flags, kCx, 2, estimate.center);
+  set(flags, kK1, 2, estimate.distortion);
+  set(flags, kReadout, 1, estimate.rolling_shutter);
+  set(flags, kDepthScale, 1, estimate.depth_scale && inertial);
+  set(flags, kDepthOffset, 1, estimate.depth_offset);
+  set(flags, kDepthFx, 4, depth_camera);
+  set(flags, kDepthPose, 6, depth_camera);
+  set(flags, kExtrinsics, 6, estimate.extrinsics && inertial);
+  set(flags, kTimeOffset, 1, estimate.time_offset && inertial);
+  return flags;
+}
+
+/// The numbers of the shared values; rotations relative to the stated ones.
+SharedVector vector_of(const SharedValues& shared, const RigCalibration& stated) {
+  SharedVector v = SharedVector::Zero();
+  std::copy_n(shared.camera.begin(), 6, v.data());
+  v[static_cast<int>(kReadout)] = shared.readout_s;
+  std::ranges::copy(shared.depth, v.data() + static_cast<int>(kDepthScale));
+  std::ranges::copy(shared.depth_camera, v.data() + static_cast<int>(kDepthFx));
+  const auto add_pose = [&](SharedValue first, const Pose& pose, const Pose& from) {
+    v.segment<3>(static_cast<int>(first)) = pose.p;
+    v.segment<3>(static_cast<int>(first) + 3) = log_so3(from.q.conjugate() * pose.q);
+  };
+  add_pose(kDepthPose, pose_of(shared.T_c_d), stated.T_c_d);
+  add_pose(kExtrinsics, pose_of(shared.T_b_c), stated.rig.T_b_c);
+  v[static_cast<int>(kTimeOffset)] = shared.time_offset_s;
+  return v;
+}
+
+SharedVector prior_sigmas(const CalibrationPriors& priors, const RigCalibration& stated) {
+  SharedVector s;
+  const Camera& camera = stated.rig.camera;
+  s << priors.focal * camera.fx, priors.focal * camera.fy, priors.center_px, priors.center_px,
+      priors.distortion, priors.distortion, priors.rolling_shutter_s, priors.depth_scale, priors.depth_offset,
+      priors.depth_focal * stated.depth_camera.fx, priors.depth_focal * stated.depth_camera.fy,
+      priors.depth_center_px, priors.depth_center_px, Eigen::Vector3d::Constant(priors.lever_m),
+      Eigen::Vector3d::Constant(priors.rotation_rad), Eigen::Vector3d::Constant(priors.lever_m),
+      Eigen::Vector3d::Constant(priors.rotation_rad), priors.time_offset_s;
+  return s;
+}
+
+/// Solution of one part of the recording.
+struct Solution {
+  BatchState state;
+  RoundStatistics statistics;
+  std::optional<SharedVector> sigmas;
+  bool usable = true;
+};
+
+/// Runs rounds, counts them, and passes the progress on.
+class Rounds {
+ public:
+  Rounds(const CalibrationInput& input, const CalibrationOptions& options)
+      : input_(input), options_(options) {}
+
+  void set_steps(int steps) { progress_.steps = steps; }
+  [[nodiscard]] bool interrupted() const { return interrupted_; }
+
+  /// From the initial values of `state`, by `kRounds` rounds.
+  [[nodiscard]] Solution solve(BatchState state, const SharedFlags& is_variable) {
+    Solution solution{.state = std::move(state)};
+    for (int round = 0; round < kRounds && solution.usable && !interrupted_; ++round) {
+      run_round(solution, is_variable, round == 0);
+    }
+    return solution;
+  }
+
+  /// One more round, with other constant values.
+  void run_round(Solution& solution, const SharedFlags& is_variable, bool is_first) {
+    const RoundOptions round{
+        .is_variable = is_variable,
+        .is_first = is_first,
+        .depth_is_registered = input_.depth_is_registered,
+        .max_iterations = 25,
+        .on_iteration = [this](int iteration, double cost) { return report(iteration, cost); }};
+    BatchProblem problem(input_, options_.priors, round, solution.state);
+    solution.usable = problem.solve();
+    solution.statistics = problem.update_deviations();
+    ++progress_.step;
+  }
+
+  /// Standard deviations at the present values and deviations of the residuals.
+  [[nodiscard]] std::optional<SharedVector> deviations(Solution& solution,
+                                                       const SharedFlags& is_variable) const {
+    const RoundOptions round{.is_variable = is_variable, .depth_is_registered = input_.depth_is_registered};
+    return BatchProblem(input_, options_.priors, round, solution.state).deviations();
+  }
+
+ private:
+  bool report(int iteration, double cost) {
+    progress_.iteration = iteration;
+    progress_.cost = cost;
+    if (options_.on_iteration && !options_.on_iteration(progress_)) interrupted_ = true;
+    return !interrupted_;
+  }
+
+  const CalibrationInput& input_;
+  const CalibrationOptions& options_;
+  CalibrationProgress progress_;
+  bool interrupted_ = false;
+};
+
+void require_content(const CalibrationInput& input, const BatchState& state) {
+  if (state.keyframes.size() < kMinKeyframes) {
+    throw InputError("calibration",
+                     "the odometry located only " + std::to_string(state.keyframes.size()) + " keyframes, " +
+                         std::to_string(kMinKeyframes) +
+                         " are needed; use a longer recording, or correct the rig so that it is tracked");
+  }
+  if (state.landmarks.size() < kMinLandmarks) {
+    throw InputError("calibration", "only " + std::to_string(state.landmarks.size()) + " static points, " +
+                                        std::to_string(kMinLandmarks) +
+                                        " are needed; record a scene with more texture, in motion");
+  }
+  const bool has_depth = std::ranges::any_of(state.landmarks, [](const BatchLandmark& landmark) {
+    return std::ranges::any_of(landmark.observations,
+                               [](const BatchObservation& seen) { return seen.feature.depth_m > 0.0; });
+  });
+  if (!has_depth && input.imu.empty())
+    throw InputError("calibration", "needs depth images or an IMU: images alone have no metric scale");
+}
+
+/// Values with a deviation that is clearly smaller than that of the prior.
+SharedFlags observed_values(const SharedVector& sigmas, const SharedVector& priors,
+                            const SharedFlags& is_variable) {
+  SharedFlags observed{};
+  for (int i = 0; i < kSharedCount; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    observed[k] = is_variable[k] && sigmas[i] > 0.0 && sigmas[i] < kObservedRatio * priors[i];
+  }
+  return observed;
+}
+
+/// Makes numbers that are not observed constant, with their stated values; poses are kept.
+/// @return whether there are any
+bool set_back_unobserved(Solution& solution, const RigCalibration& stated, const SharedFlags& observed,
+                         SharedFlags& is_variable) {
+  const SharedValues from = shared_values(stated);
+  SharedValues& to = solution.state.shared;
+  bool changed = false;
+  const auto visit = [&](SharedValue value, double& number, double stated_number) {
+    const auto k = static_cast<std::size_t>(value);
+    if (!is_variable[k] || observed[k]) return;
+    is_variable[k] = false;
+    number = stated_number;
+    changed = true;
+  };
+  for (std::size_t i = 0; i < 6; ++i) visit(static_cast<SharedValue>(i), to.camera[i], from.camera[i]);
+  visit(kReadout, to.readout_s, from.readout_s);
+  visit(kDepthScale, to.depth[0], from.depth[0]);
+  visit(kDepthOffset, to.depth[1], from.depth[1]);
+  visit(kTimeOffset, to.time_offset_s, from.time_offset_s);
+  return changed;
+}
+
+/// Of the second half, with its poses and landmarks estimated at constant calibrations.
+HeldOutResiduals held_out_residuals(Rounds& rounds, const CalibrationInput& input,
+                                    const SharedValues& found) {
+  BatchState state = initial_state(input, 0.5, 1.0);
+  const RoundStatistics before = rounds.solve(state, SharedFlags{}).statistics;
+  state.shared = found;
+  const RoundStatistics after = rounds.solve(std::move(state), SharedFlags{}).statistics;
+  return {.pixel_before_px = before.pixel_rms_px,
+          .pixel_after_px = after.pixel_rms_px,
+          .depth_before = before.inverse_depth_rms,
+          .depth_after = after.inverse_depth_rms};
+}
+
+/// By how much more the halves differ than their deviations say; at least 1.
+double deviation_factor(const std::array<Solution, 2>& halves, const RigCalibration& stated,
+                        const SharedVector& priors) {
+  if (!halves[0].sigmas || !halves[1].sigmas) return 1.0;
+  const SharedVector difference =
+      vector_of(halves[0].state.shared, stated) - vector_of(halves[1].state.shared, stated);
+  double sum = 0.0;
+  int count = 0;
+  for (int i = 0; i < kSharedCount; ++i) {
+    const double a = (*halves[0].sigmas)[i], b = (*halves[1].sigmas)[i];
+    if (a <= 0.0 || b <= 0.0 || std::max(a, b) > kObservedRatio * priors[i]) continue;
+    sum += difference[i] * difference[i] / (a * a + b * b);
+    ++count;
+  }
+  return count == 0 ? 1.0 : std::max(1.0, std::sqrt(sum / count));
+}
+
+ParameterOutcome outcome_of(double difference, double sigma, bool observed) {
+  if (!observed) return ParameterOutcome::kNotObserved;
+  return std::abs(difference) > kDifferentSigmas * sigma ? ParameterOutcome::kDiffers
+                                                         : ParameterOutcome::kAgrees;
+}
+
+/// Estimation of the whole recording, then of its halves.
+class Calibration {
+ public:
+  Calibration(const CalibrationInput& input, const CalibrationOptions& options)
+      : input_(input),
+        options_(options),
+        rounds_(input, options),
+        priors_(prior_sigmas(options.priors, input.stated)),
+        is_variable_(variable_values(options.estimate, input)) {
+    rounds_.set_steps(options.hold_out ? 5 * kRounds + 1 : kRounds + 1);
+  }
+
+  [[nodiscard]] CalibrationResult run() {
+    solution_.state = initial_state(input_, 0.0, 1.0);
+    require_content(input_, solution_.state);
+    result_.keyframes = solution_.state.keyframes.size();
+    const SharedFlags wanted = is_variable_;
+    estimate_all();
+    if (options_.hold_out && !rounds_.interrupted() && solution_.usable) estimate_halves();
+    describe();
+    list_parameters(wanted);
+    return std::move(result_);
+  }
+
+ private:
+  void estimate_all() {
+    solution_ = rounds_.solve(std::move(solution_.state), is_variable_);
+    if (solution_.usable) solution_.sigmas = rounds_.deviations(solution_, is_variable_);
+    if (!solution_.sigmas) return;
+    observed_ = observed_values(*solution_.sigmas, priors_, is_variable_);
+    if (rounds_.interrupted() || !set_back_unobserved(solution_, input_.stated, observed_, is_variable_))
+      return;
+    rounds_.run_round(solution_, is_variable_, false);
+    solution_.sigmas = rounds_.deviations(solution_, is_variable_);
+  }
+
+  void estimate_halves() {
+    std::array<Solution, 2> halves = {rounds_.solve(initial_state(input_, 0.0, 0.5), is_variable_),
+                                      rounds_.solve(initial_state(input_, 0.5, 1.0), is_variable_)};
+    for (Solution& half : halves) {
+      if (half.usable) half.sigmas = rounds_.deviations(half, is_variable_);
+    }
+    result_.deviation_factor = deviation_factor(halves, input_.stated, priors_);
+    result_.held_out = held_out_residuals(rounds_, input_, halves[0].state.shared);
+    result_.has_held_out = !rounds_.interrupted();
+  }
+
+  void describe() {
+    result_.usable = solution_.usable && solution_.sigmas.has_value();
+    result_.interrupted = rounds_.interrupted();
+    result_.calibration = rig_calibration(solution_.state.shared, input_.stated);
+    result_.landmarks = solution_.statistics.landmarks;
+    result_.observations = solution_.statistics.observations;
+    result_.depths = solution_.statistics.depths;
+    result_.inertial_factors = solution_.statistics.inertial_factors;
+    result_.pixel_sigma_px = solution_.state.pixel_sigma_px;
+    result_.inverse_depth_sigma = solution_.state.inverse_depth_sigma;
+    result_.imu_noise = solution_.state.imu_noise;
+  }
+
+  void list_parameters(SharedFlags listed) {
+    const SharedVector values = vector_of(solution_.state.shared, input_.stated);
+    const SharedVector stated = vector_of(shared_values(input_.stated), input_.stated);
+    set(listed, kDepthScale, 1, options_.estimate.depth_scale && result_.depths > 0);
+    for (int i = 0; i < kSharedCount; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!listed[k]) continue;
+      const SharedDescription& description = kDescriptions[k];
+      const bool is_observed = solution_.sigmas && observed_[k];
+      const double sigma = is_observed ? result_.deviation_factor * (*solution_.sigmas)[i] : priors_[i];
+      result_.parameters.push_back({.name = description.name,
+                                    .unit = description.unit,
+                                    .value = description.factor * values[i],
+                                    .sigma = description.factor * sigma,
+                                    .stated = description.factor * stated[i],
+                                    .prior_sigma = description.factor * priors_[i],
+                                    .outcome = outcome_of(values[i] - stated[i], sigma, is_observed)});
+    }
+  }
+
+  const CalibrationInput& input_;
+  const CalibrationOptions& options_;
+  Rounds rounds_;
+  SharedVector priors_;
+  SharedFlags is_variable_;
+  SharedFlags observed_{};
+  Solution solution_;
+  CalibrationResult result_;
+};
+
+}  // namespace
+
+CalibrationResult calibrate(const CalibrationInput& input, const CalibrationOptions& options) {
+  return Calibration(input, options).run();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Batch estimation of the calibration from a recording of an unknown scene, without a target.
+///
+/// The minimum over keyframe poses, landmarks, velocities, biases, gravity and the shared parameters of the
+/// rig of
+///
+///   sum |r_pixel|^2 + sum |r_depth|^2 + sum |r_imu|^2 + sum |r_prior|^2
+///
+/// with the residuals of calibration_factors.h and ImuFactor, robust losses, and one prior per shared
+/// parameter around its stated value. Each section of the recording has a world of its own, whose first pose
+/// is fixed. Without inertial data the metric scale is that of the depth sensor: its scale is then not
+/// observed and stays as stated.
+///
+/// Rounds: solve; estimate the deviation of pixels, of inverse depths and of the inertial data from their
+/// residuals, corrected for the number of estimated values; leave out observations beyond four deviations;
+/// integrate the inertial samples again at the new biases and time offset. The first round uses fixed
+/// deviations and Cauchy losses.
+///
+/// Standard deviations: diagonal of the inverse of the information of all parameters (Triggs et al. 2000,
+/// Sec. 9), with the estimated deviations of the residuals. Errors of one recording are correlated over time:
+/// the two halves of the keyframes are estimated separately, too, and if their estimates x_1 and x_2 differ
+/// by more than their deviations s_1 and s_2 allow, all deviations are multiplied by
+///
+///   sqrt(mean_p (x_1p - x_2p)^2 / (s_1p^2 + s_2p^2))
+///
+/// over the observed parameters p.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/calibration/calibration_recording.h"
+#include "core/types/rig.h"
+
+namespace stillpoint {
+
+/// Calibration of a rig, with what `Rig` lacks.
+struct RigCalibration {
+  Rig rig;                    ///< `depth_units_per_m` includes the scale of the depth
+  double depth_offset = 0.0;  ///< measured minus true inverse depth [1/m]
+  Camera depth_camera;        ///< of depth images that are not registered, else that of the rig
+  Pose T_c_d;                 ///< depth camera to color camera
+};
+
+/// Which parameters are estimated.
+struct CalibrationSwitches {
+  bool focal = true;
+  bool center = true;
+  bool distortion = true;  ///< the first two coefficients of the model of the rig
+  bool rolling_shutter = true;
+  bool depth_scale = true;  ///< with inertial data only
+  bool depth_offset = false;
+  bool depth_camera = true;  ///< intrinsics and pose, of depth images that are not registered
+  bool extrinsics = true;    ///< with inertial data only, as the next
+  bool time_offset = true;
+};
+
+/// Standard deviations of stated values: by what rigs are off whose calibration is a drawing, a data sheet or
+/// that of another device of the same kind.
+struct CalibrationPriors {
+  double focal = 0.03;         ///< relative
+  double focal_ratio = 0.005;  ///< of fx / fy
+  double center_px = 10.0;
+  double distortion = 0.1;  ///< of each coefficient
+  double rolling_shutter_s = 0.02;
+  double depth_scale = 0.15;
+  double depth_offset = 0.02;  ///< [1/m]
+  double depth_focal = 0.05;   ///< relative
+  double depth_center_px = 10.0;
+  double rotation_rad = 0.035;  ///< 2 deg; of T_b_c and T_c_d
+  double lever_m = 0.03;
+  double time_offset_s = 0.02;
+};
+
+struct CalibrationProgress {
+  int step = 0;       ///< rounds so far
+  int steps = 1;      ///< rounds in all
+  int iteration = 0;  ///< of this round
+  double cost = 0.0;  ///< half the sum of the squared residuals
+};
+
+struct CalibrationOptions {
+  CalibrationSwitches estimate;
+  CalibrationPriors priors;
+  bool hold_out = true;  ///< estimate the halves, too
+  /// Called after each iteration; false: stop with the present values. May be empty.
+  std::function<bool(const CalibrationProgress&)> on_iteration;
+};
+
+/// Conclusion about one parameter.
+enum class ParameterOutcome { kNotObserved, kAgrees, kDiffers };
+
+/// One number of the calibration.
+struct ParameterEstimate {
+  std::string name;  ///< as in rig.toml where it has a key, e.g. "fx"; rotations: "T_b_c rotation x"
+  std::string unit;
+  double value = 0.0;
+  double sigma = 0.0;   ///< standard deviation; that of the prior if it is not observed
+  double stated = 0.0;  ///< in the rig that the estimation started from
+  double prior_sigma = 0.0;
+  ParameterOutcome outcome = ParameterOutcome::kNotObserved;
+
+  [[nodiscard]] double difference() const { return value - stated; }
+};
+
+/// RMS of the residuals of one half of the keyframes, with the calibration that was estimated from the other.
+struct HeldOutResiduals {
+  double pixel_before_px = 0.0;  ///< with the stated calibration
+  double pixel_after_px = 0.0;
+  double depth_before = 0.0;  ///< inverse depth [1/m]; zero without depth
+  double depth_after = 0.0;
+};
+
+struct CalibrationResult {
+  RigCalibration calibration;
+  std::vector<ParameterEstimate> parameters;  ///< those that were to be estimated
+  std::size_t keyframes = 0, landmarks = 0, observations = 0, depths = 0, inertial_factors = 0;
+  double pixel_sigma_px = 0.0;
+  double inverse_depth_sigma = 0.0;  ///< [1/m]
+  ImuNoiseFactors imu_noise;         ///< by the residuals, at least 1
+  double deviation_factor = 1.0;     ///< by which the halves differ more than expected, at least 1
+  HeldOutResiduals held_out;
+  bool has_held_out = false;
+  bool interrupted = false;  ///< by `on_iteration`
+  bool usable = true;        ///< false: the solver failed, or the deviations could not be computed
+};
+
+/// @param stated calibration from which the sections were computed
+/// @param sections with at least ten keyframes in all
+/// @param imu ascending; empty: without inertial data
+/// @param gravity norm [m/s^2]
+struct CalibrationInput {
+  RigCalibration stated;
+  std::vector<CalibrationSection> sections;
+  std::vector<ImuSample> imu;
+  double gravity = 9.81;
+  /// Whether the depth images have the pixels of the color camera; else those of `depth_camera`.
+  bool depth_is_registered = true;
+};
+
+/// @throws InputError if fewer than ten keyframes or 50 landmarks remain, or without both depth and IMU
+[[nodiscard]] CalibrationResult calibrate(const CalibrationInput& input, const CalibrationOptions& options);
+
+}  // namespace stillpoint

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/calibration/calibration_factors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/geometry/so3.h"
+
+namespace stillpoint {
+namespace {
+
+using Matrix36 = Eigen::Matrix<double, 3, 6>;
+
+Pose pose_of(const double* x) { return Pose{Eigen::Quaterniond(x + 3), Eigen::Vector3d(x)}; }
+
+/// A landmark in the camera frame, and its derivatives.
+struct PointInCamera {
+  Pose T_w_b, T_b_c;
+  Eigen::Vector3d p_b, p_c;
+
+  PointInCamera(const double* pose, const double* extrinsics, const double* point)
+      : T_w_b(pose_of(pose)),
+        T_b_c(pose_of(extrinsics)),
+        p_b(T_w_b.q.conjugate() * (Eigen::Vector3d(point) - T_w_b.p)),
+        p_c(T_b_c.q.conjugate() * (p_b - T_b_c.p)) {}
+
+  [[nodiscard]] Eigen::Matrix3d J_point() const { return (T_w_b.R() * T_b_c.R()).transpose(); }
+  [[nodiscard]] Matrix36 J_pose() const {
+    Matrix36 J;
+    J << -J_point(), T_b_c.R().transpose() * skew(p_b);
+    return J;
+  }
+  [[nodiscard]] Matrix36 J_extrinsics() const {
+    Matrix36 J;
+    J << -T_b_c.R().transpose(), skew(p_c);
+    return J;
+  }
+};
+
+/// Writes a Jacobian by a pose; the tangent space is in the first six of seven columns.
+template <int Rows>
+void write_by_pose(double* out, const Eigen::Matrix<double, Rows, 6>& J) {
+  if (out == nullptr) return;
+  for (int row = 0; row < Rows; ++row) {
+    for (int column = 0; column < 6; ++column) out[7 * row + column] = J(row, column);
+    out[7 * row + 6] = 0.0;
+  }
+}
+
+/// Distorted normalized coordinates, and their derivatives.
+struct DistortedPoint {
+  Eigen::Vector2d m;        ///< (x_d, y_d)
+  Eigen::Matrix2d J_plane;  ///< by the undistorted coordinates
+  Eigen::Matrix<double, 2, 8> J_coefficients;
+};
+
+/// Equations in core/geometry/camera.h.
+DistortedPoint radial_tangential(const double* k, const Eigen::Vector2d& p) {
+  const double x = p.x(), y = p.y(), r2 = p.squaredNorm();
+  const double denominator = 1.0 + r2 * (k[5] + r2 * (k[6] + r2 * k[7]));
+  const double radial = (1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / denominator;
+  const double slope = (k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[4]) -
+                        radial * (k[5] + r2 * (2.0 * k[6] + r2 * 3.0 * k[7]))) /
+                       denominator;
+  DistortedPoint d;
+  d.m << x * radial + 2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x),
+      y * radial + k[2] * (r2 + 2.0 * y * y) + 2.0 * k[3] * x * y;
+  const double mixed = 2.0 * x * y * slope + 2.0 * k[2] * x + 2.0 * k[3] * y;
+  d.J_plane << radial + 2.0 * x * x * slope + 2.0 * k[2] * y + 6.0 * k[3] * x, mixed, mixed,
+      radial + 2.0 * y * y * slope + 6.0 * k[2] * y + 2.0 * k[3] * x;
+  const Eigen::Vector3d powers = Eigen::Vector3d(r2, r2 * r2, r2 * r2 * r2) / denominator;
+  d.J_coefficients.leftCols<2>() = p * powers.head<2>().transpose();
+  d.J_coefficients.middleCols<2>(2) << 2.0 * x * y, r2 + 2.0 * x * x, r2 + 2.0 * y * y, 2.0 * x * y;
+  d.J_coefficients.col(4) = powers[2] * p;
+  d.J_coefficients.rightCols<3>() = -radial * p * powers.transpose();
+  return d;
+}
+
+DistortedPoint kannala_brandt(const double* k, const Eigen::Vector2d& p) {
+  const double r = std::max(p.norm(), 1e-9);
+  const double theta = std::atan(r), t2 = theta * theta;
+  const double radius = theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+  const double slope = 1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])));
+  const Eigen::Vector2d direction = p / r;
+  DistortedPoint d;
+  d.m = radius * direction;
+  const Eigen::Matrix2d outer = direction * direction.transpose();
+  d.J_plane = slope / (1.0 + r * r) * outer + radius / r * (Eigen::Matrix2d::Identity() - outer);
+  double power = theta;
+  for (int i = 0; i < 4; ++i) d.J_coefficients.col(i) = (power *= t2) * direction;
+  d.J_coefficients.rightCols<4>().setZero();
+  return d;
+}
+
+}  // namespace
+
+bool PixelFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const PointInCamera point(x[0], x[1], x[4]);
+  const double* const camera = x[2];
+  const bool in_front = point.p_c.z() > kNearestPoint_m;
+  const double inverse_z = 1.0 / (in_front ? point.p_c.z() : kNearestPoint_m);
+  const Eigen::Vector2d plane = inverse_z * point.p_c.head<2>();
+  const DistortedPoint d = model_ == CameraModel::kKannalaBrandt ? kannala_brandt(camera + 4, plane)
+                                                                 : radial_tangential(camera + 4, plane);
+  const Eigen::Vector2d focal(camera[0], camera[1]);
+  const Eigen::Vector2d shift = measurement_.row_fraction * measurement_.velocity_px;
+  Eigen::Map<Eigen::Vector2d>{residuals} =
+      weight_ * (focal.cwiseProduct(d.m) + Eigen::Vector2d(camera[2], camera[3]) - measurement_.pixel +
+                 x[3][0] * shift);
+  if (jacobians == nullptr) return true;
+  Eigen::Matrix<double, 2, 3> J_plane;
+  J_plane << inverse_z, 0.0, in_front ? -inverse_z * plane.x() : 0.0,  //
+      0.0, inverse_z, in_front ? -inverse_z * plane.y() : 0.0;
+  const Eigen::Matrix<double, 2, 3> J = weight_ * focal.asDiagonal() * d.J_plane * J_plane;
+  write_by_pose<2>(jacobians[0], J * point.J_pose());
+  write_by_pose<2>(jacobians[1], J * point.J_extrinsics());
+  if (jacobians[2] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, 2, kCameraValues, Eigen::RowMajor>> J_camera(jacobians[2]);
+    J_camera.leftCols<4>() << d.m.x(), 0.0, 1.0, 0.0, 0.0, d.m.y(), 0.0, 1.0;
+    J_camera.rightCols<8>() = focal.asDiagonal() * d.J_coefficients;
+    J_camera *= weight_;
+  }
+  if (jacobians[3] != nullptr) Eigen::Map<Eigen::Vector2d>{jacobians[3]} = weight_ * shift;
+  if (jacobians[4] != nullptr)
+    Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>>{jacobians[4]} = J * point.J_point();
+  return true;
+}
+
+bool DepthFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const PointInCamera point(x[0], x[1], x[5]);
+  const Pose T_c_d = pose_of(x[2]);
+  const double* const camera = x[3];
+  const double scale = x[4][0];
+  const Eigen::Vector3d p_d = T_c_d.q.conjugate() * (point.p_c - T_c_d.p);
+  const bool in_front = p_d.z() > kNearestPoint_m;
+  const double inverse_z = 1.0 / (in_front ? p_d.z() : kNearestPoint_m);
+  const Eigen::Vector2d plane = inverse_z * p_d.head<2>();
+  const Eigen::Vector2d& g = measurement_.gradient;
+  const Eigen::Vector2d u(camera[0] * plane.x() + camera[2], camera[1] * plane.y() + camera[3]);
+  residuals[0] =
+      weight_ * (inverse_z / scale + x[4][1] - measurement_.inverse_depth - g.dot(u - measurement_.pixel));
+  if (jacobians == nullptr) return true;
+  const Eigen::Vector2d slope(g.x() * camera[0], g.y() * camera[1]);
+  const Eigen::RowVector3d J_d =
+      weight_ * inverse_z *
+      Eigen::RowVector3d(-slope.x(), -slope.y(), in_front ? slope.dot(plane) - inverse_z / scale : 0.0);
+  const Eigen::RowVector3d J = J_d * T_c_d.R().transpose();
+  write_by_pose<1>(jacobians[0], J * point.J_pose());
+  write_by_pose<1>(jacobians[1], J * point.J_extrinsics());
+  Eigen::Matrix<double, 1, 6> J_depth_pose;
+  J_depth_pose << -J, J_d * skew(p_d);
+  write_by_pose<1>(jacobians[2], J_depth_pose);
+  if (jacobians[3] != nullptr) {
+    Eigen::Map<Eigen::RowVector4d>{jacobians[3]} =
+        -weight_ * Eigen::RowVector4d(g.x() * plane.x(), g.y() * plane.y(), g.x(), g.y());
+  }
+  if (jacobians[4] != nullptr) {
+    jacobians[4][0] = -weight_ * inverse_z / (scale * scale);
+    jacobians[4][1] = weight_;
+  }
+  if (jacobians[5] != nullptr) Eigen::Map<Eigen::RowVector3d>{jacobians[5]} = J * point.J_point();
+  return true;
+}
+
+LinearPriorFactor::LinearPriorFactor(Eigen::VectorXd mean, Eigen::MatrixXd A)
+    : mean_(std::move(mean)), A_(std::move(A)) {
+  set_num_residuals(static_cast<int>(A_.rows()));
+  mutable_parameter_block_sizes()->push_back(static_cast<int>(A_.cols()));
+}
+
+bool LinearPriorFactor::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  Eigen::Map<Eigen::VectorXd>(residuals, A_.rows()) =
+      A_ * (Eigen::Map<const Eigen::VectorXd>(x[0], A_.cols()) - mean_);
+  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(jacobians[0], A_.rows(),
+                                                                                     A_.cols()) = A_;
+  return true;
+}
+
+bool PosePrior::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const Pose pose = pose_of(x[0]);
+  const Eigen::Vector3d rotation = log_so3(mean_.q.conjugate() * pose.q);
+  Eigen::Map<Eigen::Vector3d>{residuals} = (pose.p - mean_.p) / sigma_m_;
+  Eigen::Map<Eigen::Vector3d>{residuals + 3} = rotation / sigma_rad_;
+  if (jacobians == nullptr) return true;
+  Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Zero();
+  J.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / sigma_m_);
+  J.bottomRightCorner<3, 3>() = right_jacobian_inverse(rotation) / sigma_rad_;
+  write_by_pose<6>(jacobians[0], J);
+  return true;
+}
+
+}  // namespace stillpoint

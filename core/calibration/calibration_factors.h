@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Residuals of the batch estimation of the calibration, as Ceres cost functions.
+///
+/// Parameter blocks: poses T_w_b, T_b_c and T_c_d (p, q xyzw; tangent space as for PoseManifold), `camera`
+/// (fx, fy, cx, cy, eight distortion coefficients), `readout` (rolling-shutter time [s]), `depth` (scale and
+/// offset), `depth_camera` (fx, fy, cx, cy), and the landmark X_w [m].
+#pragma once
+
+#include <Eigen/Core>
+
+#include <ceres/sized_cost_function.h>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/pose.h"
+
+namespace stillpoint {
+
+/// Values of `camera`.
+inline constexpr int kCameraValues = 12;
+
+/// Smallest depth at which a landmark is projected [m]; nearer ones are projected from there.
+inline constexpr double kNearestPoint_m = 0.05;
+
+/// A pixel u with velocity u', whose row is read out the fraction a of the readout time T after the middle
+/// row:
+///
+///   r = (project(T_c_b T_b_w X_w) - (u - a T u')) / sigma
+class PixelFactor final : public ceres::SizedCostFunction<2, 7, 7, kCameraValues, 1, 3> {
+ public:
+  struct Measurement {
+    Eigen::Vector2d pixel;
+    Eigen::Vector2d velocity_px;  ///< [px/s]
+    double row_fraction = 0.0;    ///< a, from -1/2 to 1/2
+  };
+
+  /// @param sigma_px standard deviation of a coordinate
+  PixelFactor(CameraModel model, const Measurement& measurement, double sigma_px)
+      : model_(model), measurement_(measurement), weight_(1.0 / sigma_px) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  CameraModel model_;
+  Measurement measurement_;
+  double weight_;
+};
+
+/// The depth image around a pixel u_0 of the depth camera: inverse depth rho_0 + g . (u - u_0), which is
+/// exact on a plane. With p_d = T_d_c p_c, its depth z, its pixel u(p_d) and the scale s (ratio of measured
+/// to true depth) and the offset o [1/m] of the sensor:
+///
+///   r = (1 / (s z) + o - rho_0 - g . (u(p_d) - u_0)) / sigma
+///
+/// For a registered depth image g = 0, and T_c_d is the identity.
+class DepthFactor final : public ceres::SizedCostFunction<1, 7, 7, 7, 4, 2, 3> {
+ public:
+  struct Measurement {
+    double inverse_depth = 0.0;                          ///< rho_0 [1/m]
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< g [1/m/px]
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();     ///< u_0 [px]
+  };
+
+  /// @param sigma of the inverse depth [1/m]
+  DepthFactor(const Measurement& measurement, double sigma)
+      : measurement_(measurement), weight_(1.0 / sigma) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  Measurement measurement_;
+  double weight_;
+};
+
+/// r = A (x - x_0). Ceres' NormalPrior would allocate matrices that this project frees in another way.
+class LinearPriorFactor final : public ceres::CostFunction {
+ public:
+  LinearPriorFactor(Eigen::VectorXd mean, Eigen::MatrixXd A);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  Eigen::VectorXd mean_;
+  Eigen::MatrixXd A_;
+};
+
+/// r = ((p - p_0) / sigma_m, Log(q_0^-1 q) / sigma_rad).
+class PosePrior final : public ceres::SizedCostFunction<6, 7> {
+ public:
+  PosePrior(const Pose& mean, double sigma_m, double sigma_rad)
+      : mean_(mean), sigma_m_(sigma_m), sigma_rad_(sigma_rad) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  Pose mean_;
+  double sigma_m_, sigma_rad_;
+};
+
+}  // namespace stillpoint

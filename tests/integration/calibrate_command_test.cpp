@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint calibrate`: table, JSON, the rig file that it writes, and its errors.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+#include "tests/support/sequences/rendered_sequence.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> calibrate_with(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {"calibrate", rendered_sequence().string()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+nlohmann::json parameter_of(const std::string& json, const std::string& name) {
+  const nlohmann::json document = nlohmann::json::parse(json);
+  for (const nlohmann::json& entry : document["parameters"]) {
+    if (entry["name"] == name) return entry;
+  }
+  return {};
+}
+
+TEST(CalibrateCommand, FindsAWrongFocalLengthAndWritesARigFile) {
+  const TemporaryFolder out;
+  const fs::path rig = out.path() / "rig.toml";
+  const std::vector<std::string> fault = {"--fault", "focal_error:amount=4"};
+  const ProgramResult result =
+      run_program(calibrate_with({"--json", "--out", rig.string(), fault[0], fault[1]}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json fx = parameter_of(result.out, "fx");
+  EXPECT_EQ(fx["outcome"], "differs");
+  const double truth = fx["stated"].get<double>() / 1.04;
+  EXPECT_LT(std::abs(fx["value"].get<double>() - truth), 3.0 * fx["sigma"].get<double>());
+
+  // The rig file is complete: with it the fault of the stated calibration is gone.
+  const ProgramResult again = run_program(calibrate_with({"--json", "--rig", rig.string()}));
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_NEAR(parameter_of(again.out, "fx")["stated"].get<double>(), fx["value"].get<double>(), 1e-9);
+}
+
+TEST(CalibrateCommand, KeepsWhatIsToBeKept) {
+  const ProgramResult result = run_program(calibrate_with({"--keep", "focal", "--keep", "rolling_shutter"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out.find("fx"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("held out"), std::string::npos) << result.out;
+}
+
+TEST(CalibrateCommand, NeverReplacesAFile) {
+  const TemporaryFolder out;
+  const fs::path rig = out.path() / "rig.toml";
+  std::ofstream(rig) << "[camera]\nfx = 500\n";
+  const ProgramResult result = run_program(calibrate_with({"--out", rig.string()}));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("rig.toml"), std::string::npos) << result.err;
+  EXPECT_EQ(fs::file_size(rig), std::string("[camera]\nfx = 500\n").size());
+}
+
+TEST(CalibrateCommand, NamesTheParametersForAMistypedOne) {
+  const ProgramResult result = run_program(calibrate_with({"--keep", "focus"}));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("focal"), std::string::npos) << result.err;
+}
+
+TEST(CalibrateCommand, WritesTheLastIterationWhenInterrupted) {
+  const TemporaryFolder out;
+  const fs::path rig = out.path() / "rig.toml";
+  const ProgramResult result =
+      run_program(calibrate_with({"-v", "--out", rig.string()}), {.interrupt_after = "iteration 2"});
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_NE(result.out.find("interrupted"), std::string::npos) << result.out;
+  EXPECT_TRUE(fs::exists(rig));
+}
+
+}  // namespace
+}  // namespace stillpoint
