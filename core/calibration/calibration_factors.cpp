@@ -60,9 +60,9 @@ DistortedPoint radial_tangential(const double* k, const Eigen::Vector2d& p) {
   const double x = p.x(), y = p.y(), r2 = p.squaredNorm();
   const double denominator = 1.0 + r2 * (k[5] + r2 * (k[6] + r2 * k[7]));
   const double radial = (1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / denominator;
-  const double slope = (k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[4]) -
-                        radial * (k[5] + r2 * (2.0 * k[6] + r2 * 3.0 * k[7]))) /
-                       denominator;
+  const double slope =
+      (k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[4]) - radial * (k[5] + r2 * (2.0 * k[6] + r2 * 3.0 * k[7]))) /
+      denominator;
   DistortedPoint d;
   d.m << x * radial + 2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x),
       y * radial + k[2] * (r2 + 2.0 * y * y) + 2.0 * k[3] * x * y;
