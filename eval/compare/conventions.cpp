@@ -21,6 +21,15 @@ constexpr double kMinImprovement = 3.0;  // minimum factor by which correcting a
 constexpr double kMinAte = 0.01;         // [m]; smaller errors need no explanation
 constexpr double kMinRotation = 5.0;     // [deg]
 constexpr std::size_t kMinMatches = 10;
+constexpr std::size_t kCheckedPoses = 20000;  // a convention holds for all; limits the run time
+
+/// Every n-th pose, so that at most `kCheckedPoses` remain.
+Trajectory thinned(const Trajectory& path) {
+  const std::size_t step = path.poses.size() / kCheckedPoses + 1;
+  Trajectory result{.frame = path.frame, .poses = {}};
+  for (std::size_t i = 0; i < path.poses.size(); i += step) result.poses.push_back(path.poses[i]);
+  return result;
+}
 
 /// Errors before or after the correction of a suspected violation.
 struct Errors {
@@ -57,7 +66,7 @@ constexpr double kBothOrderGain = 1.5;  // of the R.RPE, if the ATE in degrees f
 
 std::optional<OrderFinding> find_quaternion_order(const LoadedTrajectory& gt, const LoadedTrajectory& est,
                                                   double offset_s) {
-  Trajectory shifted = est.trajectory;
+  Trajectory shifted = thinned(est.trajectory);
   for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, offset_s);
   const std::optional<Errors> current = errors_of(gt.trajectory, shifted);
   if (!current || current->rpe_deg_per_s < kMinOrderRpe) return std::nullopt;
@@ -215,7 +224,7 @@ std::optional<ConventionFinding> body_frame(const Trajectory& gt, const Trajecto
   const std::vector<MatchedPose> matches = strict_matches(gt, est);
   if (matches.size() < kMinMatches) return std::nullopt;
   const CompletedAlignment fit = complete_rotation(matches, align(matches, Alignment::kSe3).S_w_v);
-  if (!fit.determined || !missing_orientations(gt, est).empty()) return std::nullopt;
+  if (!fit.determined) return std::nullopt;
   Eigen::Quaterniond mean = (fit.S_w_v * matches.front().est).q.conjugate() * matches.front().gt.q;
   const auto rotation_error = [&](const MatchedPose& match) {
     return (fit.S_w_v * match.est).q.conjugate() * match.gt.q;
@@ -230,6 +239,7 @@ std::optional<ConventionFinding> body_frame(const Trajectory& gt, const Trajecto
       std::sqrt(squared / static_cast<double>(matches.size())) * 180.0 / std::numbers::pi;
   const double rotation_deg = rotation_angle(mean) * 180.0 / std::numbers::pi;
   if (rotation_deg < kMinRotation || spread_deg > kMaxSpread * rotation_deg) return std::nullopt;
+  if (!missing_orientations(gt, est).empty()) return std::nullopt;
   return ConventionFinding{
       Convention::kBodyFrame,
       format_message(
@@ -269,22 +279,23 @@ std::optional<ConventionFinding> swapped_arguments(const Trajectory& gt, const T
 
 }  // namespace
 
-std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt, const Trajectory& est) {
+std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt, const Trajectory& whole) {
   std::vector<ConventionFinding> findings;
-  if (gt.poses.size() < 2 || est.poses.size() < 2) return findings;
+  if (gt.poses.size() < 2 || whole.poses.size() < 2) return findings;
+  const Trajectory est = thinned(whole);
   const auto add = [&findings](std::optional<ConventionFinding> finding) {
     if (finding) findings.push_back(std::move(*finding));
   };
-  add(stamp_unit(gt, est));
+  add(stamp_unit(gt, whole));
   add(wrong_scale(gt, est));
   add(mirrored(gt, est));
-  if (findings.empty()) add(time_offset(gt, est));
+  if (findings.empty()) add(time_offset(gt, whole));
   if (const std::optional<Errors> current = errors_of(gt, est)) {
     add(quaternion_order(gt, est, *current));
     add(inverted_poses(gt, est, *current));
     if (findings.empty()) add(body_frame(gt, est));
   }
-  add(swapped_arguments(gt, est));
+  add(swapped_arguments(gt, whole));
   return findings;
 }
 

@@ -128,7 +128,8 @@ std::vector<double> candidates(const Trajectory& gt, const Trajectory& est, doub
 /// ATE as a function of the offset.
 class OffsetError {
  public:
-  OffsetError(const Trajectory& gt, const Trajectory& est) : gt_(gt), est_(est) {}
+  OffsetError(const Trajectory& gt, const Trajectory& est)
+      : gt_(gt), est_(est), max_gap_s_(std::max(0.11, 1.1 * median_interval_s(gt))) {}
 
   /// Infinite with fewer than the required matches, which rejects offsets that move the estimate beyond the
   /// ground truth.
@@ -146,12 +147,12 @@ class OffsetError {
 
  private:
   [[nodiscard]] std::vector<MatchedPose> matches_at(double offset_s) const {
-    const double max_gap_s = std::max(0.11, 1.1 * median_interval_s(gt_));
-    return matched_poses(gt_, est_, associate_interpolated(gt_, est_, max_gap_s, offset_s));
+    return matched_poses(gt_, est_, associate_interpolated(gt_, est_, max_gap_s_, offset_s));
   }
 
   const Trajectory& gt_;
   const Trajectory& est_;
+  double max_gap_s_;
   std::size_t min_matches_ = kMinOffsetMatches;
 };
 

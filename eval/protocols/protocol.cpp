@@ -191,6 +191,11 @@ Evaluation evaluate_compat_rpg(const EvaluationInput& input) {
   return evaluation;
 }
 
+Trajectory shifted(Trajectory path, double offset_s) {
+  for (StampedPose& pose : path.poses) pose.t = after(pose.t, offset_s);
+  return path;
+}
+
 Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
   if (options.alignment && *options.alignment != Alignment::kSe3 && *options.alignment != Alignment::kSim3) {
@@ -203,10 +208,8 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
       input.gt, input.est, associate_interpolated(input.gt, input.est, metric.max_gap_s, options.offset_s));
   Evaluation evaluation =
       matches.size() < kMinMatchedPoses ? without_errors(matches) : ate_evaluation(aligned(matches, options));
-  Trajectory shifted = input.est;
-  for (StampedPose& pose : shifted.poses) pose.t = after(pose.t, options.offset_s);
-  const OpenlorisSequenceScore score =
-      score_openloris_sequence(input.gt, shifted, evaluation.alignment.S_w_v, metric);
+  const OpenlorisSequenceScore score = score_openloris_sequence(
+      input.gt, shifted(input.est, options.offset_s), evaluation.alignment.S_w_v, metric);
   evaluation.correct_rate = score.correct_rate;
   evaluation.first_pose_s = score.relocalization_time_s;
   note_missing_rpe(evaluation, options);
@@ -319,8 +322,13 @@ AlignedMatches strictly_aligned(std::span<const MatchedPose> matches, Alignment 
 /// @throws InputError if the matches do not determine the alignment, or for an RPE over frames
 Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   const ProtocolOptions& options = input.options;
-  Trajectory est = input.est;
-  for (StampedPose& pose : est.poses) pose.t = after(pose.t, options.offset_s);
+  if (options.offset_s != 0.0) {
+    ProtocolOptions without_offset = options;
+    without_offset.offset_s = 0.0;
+    return evaluate_strict({input.gt, shifted(input.est, options.offset_s), without_offset}, alignment);
+  }
+  const Trajectory& est = input.est;
+  const std::optional<double> correct = correct_rate(input.gt, est, options.correct);
   const Alignment kind = options.alignment.value_or(alignment);
   std::vector<MatchedPose> matches = matched_poses(
       input.gt, est, associate_interpolated(input.gt, est, options.max_difference_s.value_or(kStrictMaxGap)));
@@ -335,7 +343,7 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   }
   const std::vector<std::string> association = association_notes(input, matches.size());
   evaluation.notes.insert(evaluation.notes.end(), association.begin(), association.end());
-  evaluation.correct_rate = correct_rate(input.gt, est, options.correct);
+  evaluation.correct_rate = correct;
   if (evaluation.correct_rate && (kind != Alignment::kSe3 || options.align_first_n > 0))
     evaluation.notes.emplace_back("CR is that after SE(3) alignment over all matches, whatever --align");
   if (matches.size() < kMinMatchedPoses) return evaluation;

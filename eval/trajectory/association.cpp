@@ -150,14 +150,32 @@ std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est
   return pairs;
 }
 
+namespace {
+
+/// The last pose at or before t, not before `from`; `from` if there is none. Doubles the step, so that the
+/// next pose costs as little as that of an estimate with a millionth of the poses.
+std::size_t last_until(const std::vector<StampedPose>& poses, std::size_t from, Timestamp t) {
+  std::size_t step = 1;
+  while (from + step < poses.size() && poses[from + step].t <= t) step *= 2;
+  const auto begin = poses.begin() + static_cast<std::ptrdiff_t>(from + step / 2);
+  const auto end = poses.begin() + static_cast<std::ptrdiff_t>(std::min(from + step, poses.size()));
+  const auto after_t = std::upper_bound(
+      begin, end, t, [](Timestamp value, const StampedPose& pose) { return value < pose.t; });
+  return std::max(from, static_cast<std::size_t>(after_t - poses.begin()) -
+                            (after_t == poses.begin() ? std::size_t{0} : std::size_t{1}));
+}
+
+}  // namespace
+
 std::vector<InterpolatedPair> associate_interpolated(const Trajectory& gt, const Trajectory& est,
                                                      double max_gap_s, double offset_s) {
   std::vector<InterpolatedPair> pairs;
+  if (gt.poses.empty()) return pairs;
   std::size_t g = 0;
   for (std::size_t e = 0; e < est.poses.size(); ++e) {
     const Timestamp t = after(est.poses[e].t, offset_s);
-    while (g + 1 < gt.poses.size() && gt.poses[g + 1].t <= t) ++g;
-    if (g >= gt.poses.size() || t < gt.poses[g].t) continue;
+    g = last_until(gt.poses, g, t);
+    if (t < gt.poses[g].t) continue;
     if (t == gt.poses[g].t) {
       pairs.push_back({g, e, 0.0});
       continue;

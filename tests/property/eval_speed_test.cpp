@@ -7,6 +7,7 @@
 #include <ctime>
 #include <memory>
 
+#include "eval/compare/conventions.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/protocols/protocol.h"
 #include "eval/score.h"
@@ -65,6 +66,13 @@ TEST_F(MillionPoses, EveryProtocolTakesAtMostTenSeconds) {
     std::printf("%s: %.2f s\n", std::string(protocol.name).c_str(), seconds);
     EXPECT_LE(seconds, 10.0) << protocol.name;
   }
+}
+
+TEST_F(MillionPoses, ChecksOfConventionsTakeAtMostTwoSeconds) {
+  const double seconds =
+      least_seconds_of([&] { EXPECT_TRUE(find_convention_violations(*gt_, *est_).empty()); });
+  std::printf("conventions of 1,000,000 poses: %.2f s\n", seconds);
+  EXPECT_LE(seconds, 2.0);
 }
 
 TEST_F(MillionPoses, ParsingTakesAtMostFiveSeconds) {

@@ -209,15 +209,14 @@ std::optional<Eigen::Quaterniond> leveling_rotation(const EvalArguments& argumen
   return std::filesystem::exists(result) ? read_leveling_rotation(result) : std::nullopt;
 }
 
-/// @param files ground truth and estimates
-std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments,
-                                               std::span<const PoseFile> files) {
+/// @param files ground truth and estimates, whose poses move to the result
+std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, std::span<PoseFile> files) {
   const Trajectory& gt = files.front().loaded.trajectory;
   eval::ProtocolOptions options = protocol_options(arguments);
   std::vector<report::EvaluatedRun> runs;
-  for (const auto& [path, loaded] : files.subspan(1)) {
+  for (auto& [path, loaded] : files.subspan(1)) {
     report::EvaluatedRun run{.name = display_name(path, arguments.estimates),
-                             .est = loaded.trajectory,
+                             .est = std::move(loaded.trajectory),
                              .repairs = loaded.repairs,
                              .evaluations = {}};
     if (has_failed(run) && arguments.estimates.size() == 1)
@@ -245,9 +244,10 @@ Trajectory shifted_estimate(const EvalArguments& arguments, const report::Evalua
 std::vector<std::string> warnings_about(const EvalArguments& arguments, const Trajectory& gt,
                                         const report::EvaluatedRun& run) {
   std::vector<std::string> warnings;
-  for (const eval::ConventionFinding& finding :
-       eval::find_convention_violations(gt, shifted_estimate(arguments, run)))
-    warnings.push_back(finding.message);
+  const std::vector<eval::ConventionFinding> findings =
+      arguments.offset_s == 0.0 ? eval::find_convention_violations(gt, run.est)
+                                : eval::find_convention_violations(gt, shifted_estimate(arguments, run));
+  for (const eval::ConventionFinding& finding : findings) warnings.push_back(finding.message);
   return warnings;
 }
 

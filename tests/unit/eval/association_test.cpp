@@ -33,6 +33,25 @@ TEST(AssociateTum, PrefersTheClosestPairToTheOrderOfTime) {
   EXPECT_EQ(pairs, (std::vector<IndexPair>{{0, 0}, {1, 1}}));
 }
 
+TEST(AssociateInterpolated, FindsTheNeighborsAtAnyDistance) {
+  // Steps of 1 to 400 poses between estimates, before, between, at and after those of the ground truth.
+  Trajectory gt;
+  for (int i = 0; i < 1000; ++i) gt.poses.push_back({Timestamp{i * 10'000'000LL}, Pose{}});
+  for (const int step_ms : {1, 7, 10, 33, 250, 4000}) {
+    Trajectory est;
+    std::vector<IndexPair> expected;
+    for (int ms = -45; ms < 10'100; ms += step_ms) {
+      est.poses.push_back({Timestamp{ms * 1'000'000LL}, Pose{}});
+      if (ms >= 0 && ms <= 9990)
+        expected.push_back({static_cast<std::size_t>(ms / 10), est.poses.size() - 1});
+    }
+    std::vector<IndexPair> found;
+    for (const InterpolatedPair& pair : associate_interpolated(gt, est, 0.5))
+      found.push_back({pair.gt, pair.est});
+    EXPECT_EQ(found, expected) << step_ms;
+  }
+}
+
 TEST(AssociateTum, AcceptsStampsWithoutPoses) {
   const std::vector<Timestamp> gt{{20'000'000}, {30'000'000}};
   const std::vector<Timestamp> est{{29'000'000}};
