@@ -6,8 +6,9 @@
 #include <utility>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
 
-#include <ceres/covariance.h>
+#include <ceres/crs_matrix.h>
 #include <ceres/solver.h>
 
 #include "core/calibration/depth_patch.h"
@@ -17,10 +18,11 @@ namespace {
 
 constexpr double kLargestResidual = 4.0;  // of an inlier, in standard deviations
 // Priors on the first state of a section, and after a gap of the inertial data.
-constexpr double kSpeedSigma = 5.0;        // [m/s]
-constexpr double kGyroBiasSigma = 0.05;    // [rad/s]
-constexpr double kAccelBiasSigma = 0.3;    // [m/s^2]
-constexpr double kRateHalfWidth_s = 0.01;  // of the mean rate at an exposure
+constexpr double kSpeedSigma = 5.0;         // [m/s]
+constexpr double kGyroBiasSigma = 0.05;     // [rad/s]
+constexpr double kAccelBiasSigma = 0.3;     // [m/s^2]
+constexpr double kLeastInformation = 1e-6;  // of each number: of points that almost nothing determines
+constexpr double kRateHalfWidth_s = 0.01;   // of the mean rate at an exposure
 
 int index(SharedValue value) { return static_cast<int>(value); }
 
@@ -144,24 +146,61 @@ void BatchProblem::add_shared() {
   add_pose_block(shared.T_b_c.data(), SharedValue::kExtrinsics);
   problem_.AddParameterBlock(&shared.time_offset_s, 1);
   hold(&shared.time_offset_s, 1, constant_of(SharedValue::kTimeOffset, 1));
+  problem_.AddParameterBlock(&shared.depth_delay_s, 1);
+  hold(&shared.depth_delay_s, 1, constant_of(SharedValue::kDepthDelay, 1));
+}
+
+/// Across the ray by the velocity of the pixel, along it by the neighboring poses.
+Eigen::Vector3d BatchProblem::velocity_c(const BatchObservation& seen, const Eigen::Vector3d& p_w) const {
+  const auto section_of = [&](int keyframe) {
+    return state_.keyframes[static_cast<std::size_t>(keyframe)].section;
+  };
+  const int last = static_cast<int>(state_.keyframes.size()) - 1;
+  const int section = section_of(seen.keyframe);
+  const int before =
+      seen.keyframe > 0 && section_of(seen.keyframe - 1) == section ? seen.keyframe - 1 : seen.keyframe;
+  const int next =
+      seen.keyframe < last && section_of(seen.keyframe + 1) == section ? seen.keyframe + 1 : seen.keyframe;
+  if (before == next) return Eigen::Vector3d::Zero();
+  const SharedValues& shared = state_.shared;
+  const Pose T_b_c = pose_of(shared.T_b_c);
+  const auto p_c = [&](int keyframe) -> Eigen::Vector3d {
+    return (pose_of(state_.keyframes[static_cast<std::size_t>(keyframe)].pose) * T_b_c).inverse() * p_w;
+  };
+  const double duration_s = seconds_between(state_.keyframes[static_cast<std::size_t>(before)].t,
+                                            state_.keyframes[static_cast<std::size_t>(next)].t);
+  const Eigen::Vector3d p = p_c(seen.keyframe);
+  const double rate = (p_c(next).z() - p_c(before).z()) / duration_s;
+  const Eigen::Vector2d plane_rate(seen.feature.velocity_px.x() / shared.camera[0],
+                                   seen.feature.velocity_px.y() / shared.camera[1]);
+  return {p.z() * plane_rate.x() + p.x() / p.z() * rate, p.z() * plane_rate.y() + p.y() / p.z() * rate, rate};
 }
 
 std::optional<DepthFactor::Measurement> BatchProblem::depth_of(const BatchObservation& seen,
                                                                const Eigen::Vector3d& p_w) const {
   if (!seen.depth_is_inlier) return std::nullopt;
+  const double row_fraction = (seen.feature.pixel.y() + 0.5) / input_.stated.rig.camera.height - 0.5;
+  const Eigen::Vector3d velocity = velocity_c(seen, p_w);
+  std::optional<DepthFactor::Measurement> measurement;
   if (options_.depth_is_registered) {
-    if (seen.feature.depth_m <= 0.0) return std::nullopt;
-    return DepthFactor::Measurement{.inverse_depth = 1.0 / seen.feature.depth_m};
+    if (seen.feature.depth_m > 0.0) measurement.emplace().inverse_depth = 1.0 / seen.feature.depth_m;
+  } else {
+    const BatchKeyframe& keyframe = state_.keyframes[static_cast<std::size_t>(seen.keyframe)];
+    const SharedValues& shared = state_.shared;
+    const Pose T_w_c = pose_of(keyframe.pose) * pose_of(shared.T_b_c);
+    const Eigen::Vector3d p_c =
+        T_w_c.inverse() * p_w + (row_fraction * shared.readout_s + shared.depth_delay_s) * velocity;
+    const Eigen::Vector3d p_d = pose_of(shared.T_c_d).inverse() * p_c;
+    if (p_d.z() < kNearestPoint_m) return std::nullopt;
+    const auto& camera = shared.depth_camera;
+    const Eigen::Vector2d pixel(camera[0] * p_d.x() / p_d.z() + camera[2],
+                                camera[1] * p_d.y() / p_d.z() + camera[3]);
+    measurement = depth_patch(keyframe.depth, input_.stated.rig.depth_units_per_m, pixel);
   }
-  const BatchKeyframe& keyframe = state_.keyframes[static_cast<std::size_t>(seen.keyframe)];
-  const SharedValues& shared = state_.shared;
-  const Pose T_w_d = pose_of(keyframe.pose) * pose_of(shared.T_b_c) * pose_of(shared.T_c_d);
-  const Eigen::Vector3d p_d = T_w_d.inverse() * p_w;
-  if (p_d.z() < kNearestPoint_m) return std::nullopt;
-  const auto& camera = shared.depth_camera;
-  const Eigen::Vector2d pixel(camera[0] * p_d.x() / p_d.z() + camera[2],
-                              camera[1] * p_d.y() / p_d.z() + camera[3]);
-  return depth_patch(keyframe.depth, input_.stated.rig.depth_units_per_m, pixel);
+  if (!measurement) return std::nullopt;
+  measurement->velocity_c = velocity;
+  measurement->row_fraction = row_fraction;
+  return measurement;
 }
 
 void BatchProblem::add_landmark(BatchLandmark& landmark) {
@@ -189,7 +228,8 @@ void BatchProblem::add_landmark(BatchLandmark& landmark) {
       seen.depth = &depth_factors_.back();
       if (observation.pixel_is_inlier)
         problem_.AddResidualBlock(seen.depth, loss, pose, shared.T_b_c.data(), shared.T_c_d.data(),
-                                  shared.depth_camera.data(), shared.depth.data(), landmark.p_w.data());
+                                  shared.depth_camera.data(), shared.depth.data(), landmark.p_w.data(),
+                                  &shared.readout_s, &shared.depth_delay_s);
     }
     seen_.push_back(seen);
   }
@@ -228,6 +268,7 @@ void BatchProblem::add_priors() {
   };
   scalar(&shared.readout_s, stated.readout_s, priors_.rolling_shutter_s);
   scalar(&shared.time_offset_s, stated.time_offset_s, priors_.time_offset_s);
+  scalar(&shared.depth_delay_s, stated.depth_delay_s, priors_.depth_delay_s);
   add_linear_prior(shared.depth.data(), mean(stated.depth),
                    Eigen::Vector2d(1.0 / priors_.depth_scale, 1.0 / priors_.depth_offset).asDiagonal());
   for (auto [block, pose] : {std::pair{shared.T_b_c.data(), input_.stated.rig.T_b_c},
@@ -257,14 +298,16 @@ bool BatchProblem::solve() {
   return summary.IsSolutionUsable();
 }
 
-std::array<const double*, 6> BatchProblem::depth_blocks(const Seen& seen) const {
+std::array<const double*, 8> BatchProblem::depth_blocks(const Seen& seen) const {
   const SharedValues& shared = state_.shared;
   return {state_.keyframes[static_cast<std::size_t>(seen.observation->keyframe)].pose.data(),
           shared.T_b_c.data(),
           shared.T_c_d.data(),
           shared.depth_camera.data(),
           shared.depth.data(),
-          seen.point->data()};
+          seen.point->data(),
+          &shared.readout_s,
+          &shared.depth_delay_s};
 }
 
 namespace {
@@ -298,7 +341,7 @@ RoundStatistics BatchProblem::update_deviations() {
   std::vector<double> pixel_norms(seen_.size()), depth_errors(seen_.size(), 0.0);
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Seen& seen = seen_[i];
-    const std::array<const double*, 6> blocks = depth_blocks(seen);
+    const std::array<const double*, 8> blocks = depth_blocks(seen);
     const std::array<const double*, 5> pixel_blocks = {blocks[0], blocks[1], state_.shared.camera.data(),
                                                        &state_.shared.readout_s, blocks[5]};
     Eigen::Vector2d r;
@@ -366,41 +409,67 @@ void BatchProblem::update_imu_noise() {
   state_.imu_noise.accel = std::max(1.0, state_.imu_noise.accel * rms_of(accel));
 }
 
+namespace {
+
+/// The diagonal of the inverse of J^T J at some columns; nullopt if it is singular.
+/// @param J row-major sparse
+std::optional<Eigen::VectorXd> variances(const ceres::CRSMatrix& J, const std::vector<int>& columns) {
+  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+  const Eigen::Map<const RowMajor> jacobian(J.num_rows, J.num_cols, static_cast<int>(J.values.size()),
+                                            J.rows.data(), J.cols.data(), J.values.data());
+  Eigen::SparseMatrix<double> information = RowMajor(jacobian.transpose()) * RowMajor(jacobian);
+  for (int i = 0; i < information.cols(); ++i) information.coeffRef(i, i) += kLeastInformation;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(information);
+  if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0.0)) return std::nullopt;
+  Eigen::VectorXd result(static_cast<int>(columns.size()));
+  for (int i = 0; i < result.size(); ++i) {
+    const int column = columns[static_cast<std::size_t>(i)];
+    const Eigen::VectorXd solution = solver.solve(Eigen::VectorXd::Unit(information.cols(), column));
+    result[i] = solution[column];
+  }
+  if (!result.allFinite() || !(result.array() > 0.0).all()) return std::nullopt;
+  return result;
+}
+
+}  // namespace
+
 std::optional<SharedVector> BatchProblem::deviations() {
   SharedValues& shared = state_.shared;
-  struct Block {
-    double* values;
-    int size;
-    SharedValue first;
-    int count;  ///< of values that may vary
-  };
-  const std::array<Block, 7> all = {{{shared.camera.data(), kCameraValues, SharedValue::kFx, 6},
-                                     {&shared.readout_s, 1, SharedValue::kReadout, 1},
-                                     {shared.depth.data(), 2, SharedValue::kDepthScale, 2},
-                                     {shared.depth_camera.data(), 4, SharedValue::kDepthFx, 4},
-                                     {shared.T_c_d.data(), 6, SharedValue::kDepthPose, 6},
-                                     {shared.T_b_c.data(), 6, SharedValue::kExtrinsics, 6},
-                                     {&shared.time_offset_s, 1, SharedValue::kTimeOffset, 1}}};
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::SPARSE_QR;
-  options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-  ceres::Covariance covariance(options);
-  std::vector<std::pair<const double*, const double*>> pairs;
-  for (const Block& block : all) {
-    if (!problem_.IsParameterBlockConstant(block.values)) pairs.emplace_back(block.values, block.values);
+  const std::array<std::pair<double*, SharedValue>, 8> shared_blocks = {
+      {{shared.camera.data(), SharedValue::kFx},
+       {&shared.readout_s, SharedValue::kReadout},
+       {shared.depth.data(), SharedValue::kDepthScale},
+       {shared.depth_camera.data(), SharedValue::kDepthFx},
+       {shared.T_c_d.data(), SharedValue::kDepthPose},
+       {shared.T_b_c.data(), SharedValue::kExtrinsics},
+       {&shared.time_offset_s, SharedValue::kTimeOffset},
+       {&shared.depth_delay_s, SharedValue::kDepthDelay}}};
+  ceres::Problem::EvaluateOptions options;
+  problem_.GetParameterBlocks(&options.parameter_blocks);
+  std::erase_if(options.parameter_blocks,
+                [this](const double* block) { return problem_.IsParameterBlockConstant(block); });
+  std::vector<int> columns;
+  std::vector<int> values;  // shared value of each column
+  int column = 0;
+  for (const double* block : options.parameter_blocks) {
+    const auto found = std::ranges::find(shared_blocks, block, [](const auto& entry) { return entry.first; });
+    const int size = problem_.ParameterBlockTangentSize(block);
+    for (int i = 0, value = 0; found != shared_blocks.end() && i < size; ++value) {
+      // Constant numbers of a block have no column; of a pose, all are variable.
+      if (!options_.is_variable[static_cast<std::size_t>(index(found->second) + value)]) continue;
+      columns.push_back(column + i++);
+      values.push_back(index(found->second) + value);
+    }
+    column += size;
   }
   SharedVector result = SharedVector::Zero();
-  if (pairs.empty()) return result;
-  if (!covariance.Compute(pairs, &problem_)) return std::nullopt;
-  for (const Block& block : all) {
-    if (problem_.IsParameterBlockConstant(block.values)) continue;
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> P(block.size, block.size);
-    const bool is_pose = block.size == 6;
-    if (!(is_pose ? covariance.GetCovarianceBlockInTangentSpace(block.values, block.values, P.data())
-                  : covariance.GetCovarianceBlock(block.values, block.values, P.data())))
-      return std::nullopt;
-    for (int i = 0; i < block.count; ++i) result[index(block.first) + i] = std::sqrt(std::max(0.0, P(i, i)));
-  }
+  if (columns.empty()) return result;
+  ceres::CRSMatrix jacobian;
+  if (!problem_.Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) return std::nullopt;
+  const std::optional<Eigen::VectorXd> diagonal = variances(jacobian, columns);
+  if (!diagonal) return std::nullopt;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    result[values[i]] = std::sqrt((*diagonal)[static_cast<Eigen::Index>(i)]);
   return result;
 }
 

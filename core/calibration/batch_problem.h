@@ -39,6 +39,7 @@ enum class SharedValue : std::uint8_t {
   kDepthPose,                    ///< T_c_d: three of position, three of rotation
   kExtrinsics = kDepthPose + 6,  ///< T_b_c: likewise
   kTimeOffset = kExtrinsics + 6,
+  kDepthDelay,
   kCount
 };
 inline constexpr int kSharedCount = static_cast<int>(SharedValue::kCount);
@@ -105,7 +106,8 @@ class BatchProblem {
   [[nodiscard]] bool is_variable(SharedValue value) const {
     return options_.is_variable[static_cast<std::size_t>(value)];
   }
-  [[nodiscard]] std::array<const double*, 6> depth_blocks(const Seen& seen) const;
+  [[nodiscard]] std::array<const double*, 8> depth_blocks(const Seen& seen) const;
+  [[nodiscard]] Eigen::Vector3d velocity_c(const BatchObservation& seen, const Eigen::Vector3d& p_w) const;
   void update_imu_noise();
 
   const CalibrationInput& input_;

@@ -33,7 +33,8 @@ SharedValues shared_values(const RigCalibration& calibration) {
                       .depth_camera = {depth.fx, depth.fy, depth.cx, depth.cy},
                       .T_b_c = values_of(calibration.rig.T_b_c),
                       .T_c_d = values_of(calibration.T_c_d),
-                      .time_offset_s = calibration.rig.time_offset_s};
+                      .time_offset_s = calibration.rig.time_offset_s,
+                      .depth_delay_s = calibration.depth_delay_s};
   std::ranges::copy(camera.distortion, shared.camera.begin() + 4);
   return shared;
 }
@@ -56,6 +57,7 @@ RigCalibration rig_calibration(const SharedValues& shared, const RigCalibration&
   result.depth_camera.cx = shared.depth_camera[2];
   result.depth_camera.cy = shared.depth_camera[3];
   result.T_c_d = pose_of(shared.T_c_d);
+  result.depth_delay_s = shared.depth_delay_s;
   return result;
 }
 

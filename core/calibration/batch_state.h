@@ -23,6 +23,7 @@ struct SharedValues {
   std::array<double, 4> depth_camera{};
   PoseValues T_b_c{}, T_c_d{};
   double time_offset_s = 0.0;
+  double depth_delay_s = 0.0;
 };
 
 [[nodiscard]] SharedValues shared_values(const RigCalibration& calibration);

@@ -23,7 +23,8 @@
 ///
 ///   sqrt(mean_p (x_1p - x_2p)^2 / (s_1p^2 + s_2p^2))
 ///
-/// over the observed parameters p.
+/// over the observed parameters p, and the whole is solved again with data of such larger deviations against
+/// the priors. What both halves have in common is added as a constant per parameter, see calibrate.cpp.
 #pragma once
 
 #include <cstddef>
@@ -39,10 +40,11 @@ namespace stillpoint {
 
 /// Calibration of a rig, with what `Rig` lacks.
 struct RigCalibration {
-  Rig rig;                    ///< `depth_units_per_m` includes the scale of the depth
-  double depth_offset = 0.0;  ///< measured minus true inverse depth [1/m]
-  Camera depth_camera;        ///< of depth images that are not registered, else that of the rig
-  Pose T_c_d;                 ///< depth camera to color camera
+  Rig rig;                     ///< `depth_units_per_m` includes the scale of the depth
+  double depth_offset = 0.0;   ///< measured minus true inverse depth [1/m]
+  Camera depth_camera;         ///< of depth images that are not registered, else that of the rig
+  Pose T_c_d;                  ///< depth camera to color camera
+  double depth_delay_s = 0.0;  ///< exposure of the depth image minus that of the color image
 };
 
 /// Which parameters are estimated.
@@ -73,6 +75,7 @@ struct CalibrationPriors {
   double rotation_rad = 0.035;  ///< 2 deg; of T_b_c and T_c_d
   double lever_m = 0.03;
   double time_offset_s = 0.02;
+  double depth_delay_s = 0.02;
 };
 
 struct CalibrationProgress {

@@ -132,7 +132,9 @@ bool DepthFactor::Evaluate(double const* const* x, double* residuals, double** j
   const Pose T_c_d = pose_of(x[2]);
   const double* const camera = x[3];
   const double scale = x[4][0];
-  const Eigen::Vector3d p_d = T_c_d.q.conjugate() * (point.p_c - T_c_d.p);
+  const Eigen::Vector3d& velocity_c = measurement_.velocity_c;
+  const Eigen::Vector3d moved_c = (measurement_.row_fraction * x[6][0] + x[7][0]) * velocity_c;
+  const Eigen::Vector3d p_d = T_c_d.q.conjugate() * (point.p_c + moved_c - T_c_d.p);
   const bool in_front = p_d.z() > kNearestPoint_m;
   const double inverse_z = 1.0 / (in_front ? p_d.z() : kNearestPoint_m);
   const Eigen::Vector2d plane = inverse_z * p_d.head<2>();
@@ -160,6 +162,8 @@ bool DepthFactor::Evaluate(double const* const* x, double* residuals, double** j
     jacobians[4][1] = weight_;
   }
   if (jacobians[5] != nullptr) Eigen::Map<Eigen::RowVector3d>{jacobians[5]} = J * point.J_point();
+  if (jacobians[6] != nullptr) jacobians[6][0] = measurement_.row_fraction * J.dot(velocity_c);
+  if (jacobians[7] != nullptr) jacobians[7][0] = J.dot(velocity_c);
   return true;
 }
 

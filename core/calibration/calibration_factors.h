@@ -3,7 +3,7 @@
 ///
 /// Parameter blocks: poses T_w_b, T_b_c and T_c_d (p, q xyzw; tangent space as for PoseManifold), `camera`
 /// (fx, fy, cx, cy, eight distortion coefficients), `readout` (rolling-shutter time [s]), `depth` (scale and
-/// offset), `depth_camera` (fx, fy, cx, cy), and the landmark X_w [m].
+/// offset), `depth_camera` (fx, fy, cx, cy), the landmark X_w [m], and the delay of the depth image [s].
 #pragma once
 
 #include <Eigen/Core>
@@ -49,14 +49,17 @@ class PixelFactor final : public ceres::SizedCostFunction<2, 7, 7, kCameraValues
 /// to true depth) and the offset o [1/m] of the sensor:
 ///
 ///   r = (1 / (s z) + o - rho_0 - g . (u(p_d) - u_0)) / sigma
-///
-/// For a registered depth image g = 0, and T_c_d is the identity.
-class DepthFactor final : public ceres::SizedCostFunction<1, 7, 7, 7, 4, 2, 3> {
+/// The depth image is late by t_d, and read out like the color image: with the velocity v_c of the landmark
+/// in the camera frame, p_c is that of the middle row of the color image plus (a T + t_d) v_c. For a
+/// registered depth image g = 0, T_c_d is the identity, and t_d = 0.
+class DepthFactor final : public ceres::SizedCostFunction<1, 7, 7, 7, 4, 2, 3, 1, 1> {
  public:
   struct Measurement {
-    double inverse_depth = 0.0;                          ///< rho_0 [1/m]
-    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< g [1/m/px]
-    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();     ///< u_0 [px]
+    double inverse_depth = 0.0;                            ///< rho_0 [1/m]
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();    ///< g [1/m/px]
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();       ///< u_0 [px]
+    Eigen::Vector3d velocity_c = Eigen::Vector3d::Zero();  ///< v_c [m/s]
+    double row_fraction = 0.0;                             ///< a, of the color image
   };
 
   /// @param sigma of the inverse depth [1/m]

@@ -160,7 +160,8 @@ class RigLines {
 
  private:
   static std::string comment(const ParameterEstimate& p) {
-    if (p.outcome == ParameterOutcome::kNotObserved) return "not observed, as stated";
+    if (p.outcome == ParameterOutcome::kNotObserved && p.difference() == 0.0)
+      return "not observed, as stated";
     const std::string unit = p.unit.empty() ? "" : " " + p.unit;
     return fmt::format("{} +- {}{}, was {}", number_text(p.value, p.sigma), number_text(p.sigma, p.sigma),
                        unit, number_text(p.stated, p.sigma));
