@@ -33,15 +33,27 @@ std::map<std::string, std::set<std::string>> plans_by_run(const Store& store,
   return plans;
 }
 
-/// Values of one series, by commit name.
+/// Commits are numbered in the order of their first runs: of 10^5 runs, their names are most of the memory.
+using CommitId = std::size_t;
+
+/// Values of one series.
 struct SeriesValues {
   std::string unit;
   const MetricDescriptor* gated = nullptr;
   std::set<std::string> plans;
-  std::map<std::string, std::vector<double>> values;
+  std::vector<std::pair<CommitId, double>> values;
 };
 
+using ValuesByCommit = std::map<CommitId, std::vector<double>>;
+
+ValuesByCommit by_commit(const SeriesValues& collected) {
+  ValuesByCommit values;
+  for (const auto& [commit, value] : collected.values) values[commit].push_back(value);
+  return values;
+}
+
 struct CommitTime {
+  std::string name;
   std::string committed;
   std::string first_run;
   std::int64_t first_id = 0;
@@ -53,7 +65,7 @@ class HistoryBuilder {
   explicit HistoryBuilder(std::map<std::string, std::set<std::string>> plans) : plans_(std::move(plans)) {}
 
   void add(const StoredRun& run, const RunOrigin& origin) {
-    note_time(run, origin);
+    const CommitId commit = noted(run, origin);
     const RunIdentity& identity = run.identity;
     const HistorySubject subject{identity.sequence,    identity.variant, identity.axis,  identity.axis_value,
                                  identity.mode,        identity.kind,    identity.cores, identity.seed,
@@ -65,11 +77,11 @@ class HistoryBuilder {
       SeriesValues& collected = series_[{subject, metric}];
       collected.unit = unit;
       collected.gated = gated;
-      collected.values[origin.commit].push_back(number);
+      collected.values.emplace_back(commit, number);
       if (plans != plans_.end()) collected.plans.insert(plans->second.begin(), plans->second.end());
     };
     const bool is_ok = run.outcome == Outcome::kOk;
-    succeeded_[subject][origin.commit] += is_ok ? 1 : 0;
+    succeeded_[subject][commit] += is_ok ? 1 : 0;
     value(std::string(metric_id::kFailedRuns), "", gated_metric(metric_id::kFailedRuns), is_ok ? 0.0 : 1.0);
     if (!is_ok) return;
     for (const Metric& metric : run.metrics)
@@ -79,11 +91,16 @@ class HistoryBuilder {
   }
 
   [[nodiscard]] CommitHistory build() const {
-    CommitHistory history{.commits = ordered_commits(), .series = {}};
-    std::map<std::string, std::size_t> index;
-    for (std::size_t i = 0; i < history.commits.size(); ++i) index[history.commits[i].name] = i;
+    const std::vector<CommitId> order = commit_order();
+    CommitHistory history;
+    std::vector<std::size_t> index(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const CommitTime& time = times_[order[i]];
+      history.commits.push_back({time.name, time.committed.empty() ? time.first_run : time.committed});
+      index[order[i]] = i;
+    }
     for (const auto& [key, collected] : series_) {
-      HistorySeries series = series_of(key, with_missing(key, collected), index);
+      HistorySeries series = series_of(key, collected, with_missing(key, collected), index);
       if (!series.commits.empty()) history.series.push_back(std::move(series));
     }
     return history;
@@ -92,53 +109,59 @@ class HistoryBuilder {
  private:
   using Key = std::pair<HistorySubject, std::string>;
 
-  void note_time(const StoredRun& run, const RunOrigin& origin) {
-    const auto [entry, is_new] = times_.insert({origin.commit, {origin.time, run.started, run.id}});
-    CommitTime& time = entry->second;
+  /// The number of the commit of a run, whose times are noted.
+  CommitId noted(const StoredRun& run, const RunOrigin& origin) {
+    const auto [entry, is_new] = ids_.insert({origin.commit, times_.size()});
+    if (is_new) times_.push_back({origin.commit, origin.time, run.started, run.id});
+    CommitTime& time = times_[entry->second];
     if (time.committed.empty()) time.committed = origin.time;
-    if (is_new || run.started >= time.first_run) return;
-    time.first_run = run.started;
-    time.first_id = run.id;
+    if (run.started < time.first_run) {
+      time.first_run = run.started;
+      time.first_id = run.id;
+    }
+    return entry->second;
   }
 
-  [[nodiscard]] std::vector<Commit> ordered_commits() const {
-    std::vector<std::tuple<std::string, std::string, std::int64_t, std::string>> order;
-    for (const auto& [name, time] : times_) {
+  [[nodiscard]] std::vector<CommitId> commit_order() const {
+    std::vector<std::tuple<std::string, std::string, std::int64_t, std::string, CommitId>> order;
+    for (CommitId id = 0; id < times_.size(); ++id) {
+      const CommitTime& time = times_[id];
       order.emplace_back(time.committed.empty() ? time.first_run : time.committed, time.first_run,
-                         time.first_id, name);
+                         time.first_id, time.name, id);
     }
     std::sort(order.begin(), order.end());
-    std::vector<Commit> commits;
-    commits.reserve(order.size());
-    for (const auto& [when, first_run, first_id, name] : order) commits.push_back({name, when});
-    return commits;
+    std::vector<CommitId> ids;
+    for (const auto& commit : order) ids.push_back(std::get<CommitId>(commit));
+    return ids;
   }
 
   /// Successful runs without a finite value count as worse than any number. The median is then infinite if
   /// they are the majority: the commit has no value.
-  [[nodiscard]] SeriesValues with_missing(const Key& key, SeriesValues collected) const {
+  [[nodiscard]] ValuesByCommit with_missing(const Key& key, const SeriesValues& collected) const {
     const auto& [subject, metric] = key;
     const MetricDescriptor* gated = collected.gated;
-    if (gated == nullptr || gated->gate->absent_is_good || metric == metric_id::kFailedRuns) return collected;
+    ValuesByCommit all = by_commit(collected);
+    if (gated == nullptr || gated->gate->absent_is_good || metric == metric_id::kFailedRuns) return all;
     const double worst = gated->direction == MetricDirection::kLargerIsBetter
                              ? -std::numeric_limits<double>::infinity()
                              : std::numeric_limits<double>::infinity();
-    const std::map<std::string, std::size_t>& counts = succeeded_.at(subject);
-    for (auto& [commit, values] : collected.values) values.resize(counts.at(commit), worst);
-    std::erase_if(collected.values,
+    const std::map<CommitId, std::size_t>& counts = succeeded_.at(subject);
+    for (auto& [commit, values] : all) values.resize(counts.at(commit), worst);
+    std::erase_if(all,
                   [](const auto& entry) { return !std::isfinite(*eval::percentile(entry.second, 0.5)); });
-    return collected;
+    return all;
   }
 
-  static HistorySeries series_of(const Key& key, const SeriesValues& collected,
-                                 const std::map<std::string, std::size_t>& index) {
+  /// @param index position of each commit in the history
+  static HistorySeries series_of(const Key& key, const SeriesValues& collected, const ValuesByCommit& all,
+                                 const std::vector<std::size_t>& index) {
     HistorySeries series{.subject = key.first,
                          .plans = {collected.plans.begin(), collected.plans.end()},
                          .metric = key.second,
                          .unit = collected.unit,
                          .gated = collected.gated};
     std::vector<std::pair<std::size_t, const std::vector<double>*>> ordered;
-    for (const auto& [commit, values] : collected.values) ordered.emplace_back(index.at(commit), &values);
+    for (const auto& [commit, values] : all) ordered.emplace_back(index[commit], &values);
     std::sort(ordered.begin(), ordered.end());
     for (const auto& [commit, values] : ordered) {
       series.commits.push_back(commit);
@@ -152,8 +175,9 @@ class HistoryBuilder {
 
   std::map<std::string, std::set<std::string>> plans_;
   std::map<Key, SeriesValues> series_;
-  std::map<HistorySubject, std::map<std::string, std::size_t>> succeeded_;  // runs by commit
-  std::map<std::string, CommitTime> times_;
+  std::map<HistorySubject, std::map<CommitId, std::size_t>> succeeded_;  // runs by commit
+  std::map<std::string, CommitId> ids_;
+  std::vector<CommitTime> times_;  // by id
 };
 
 }  // namespace
