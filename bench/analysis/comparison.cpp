@@ -150,7 +150,9 @@ std::vector<std::string> notes_on_pairs(const Comparison& comparison, CompareSou
         metrics, metrics == 1 ? "" : "s", metrics == 1 ? "s" : "",
         source == CompareSource::kPrograms
             ? fmt::format("run with --pairs {}", needed)
-            : fmt::format("store {} seeds or perturbations of each sequence", needed)));
+            : fmt::format("store {} seeds or perturbations of each sequence, or repeat each run: bit-equal "
+                          "repetitions make a change exact",
+                          needed)));
   }
   return notes;
 }

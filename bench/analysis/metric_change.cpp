@@ -65,6 +65,25 @@ struct PairedSubject {
   std::set<Input> inputs;  ///< of `pairs`
   DistinctRuns base;
   DistinctRuns head;
+  bool any_failed = false;
+
+  /// Whether the difference has no noise: at least two repetitions of each side, without perturbation, and
+  /// all runs of a side have one trajectory to the bit.
+  [[nodiscard]] bool is_deterministic() const {
+    if (pairs.size() != 1 || any_failed) return false;
+    const RunPair& first = pairs.front();
+    std::size_t repetitions = 0;
+    for (const RunPair& pair : all) {
+      for (const auto& [run, same] : {std::pair(pair.base, first.base), {pair.head, first.head}}) {
+        const auto trajectory = run->blobs.find("trajectory");
+        if (trajectory == run->blobs.end() || fingerprint(*run) != fingerprint(*same)) return false;
+      }
+      const RunIdentity& identity = pair.base->identity;
+      const bool repeats = identity.seed == first.base->identity.seed && !is_perturbed(identity.config_hash);
+      repetitions += repeats ? 1 : 0;
+    }
+    return repetitions >= 2;
+  }
 
   /// Runs with equal results are copies, whatever their seeds: a seed that a recorded sequence does not use,
   /// or a repetition of a deterministic program.
@@ -201,7 +220,12 @@ std::vector<double> sorted(std::vector<double> values) {
 std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
   std::map<std::string, PairedSubject> subjects;
   for (const RunPair& pair : runs.pairs) {
-    if (both_succeeded(pair)) subjects[subject_label(pair.base->identity)].add(pair);
+    PairedSubject& subject = subjects[subject_label(pair.base->identity)];
+    if (both_succeeded(pair)) {
+      subject.add(pair);
+    } else {
+      subject.any_failed = true;
+    }
   }
   std::vector<MetricSeries> list;
   for (const auto& [subject, members] : subjects) {
@@ -210,7 +234,9 @@ std::vector<MetricSeries> accuracy_series(const PairedRuns& runs) {
       if (series.pairs.empty()) continue;
       // The rank test of two samples counts ties against a difference: of little power for rates that are
       // mostly 0.
-      if (series.inputs == 1 && !has_zero_base(series)) {
+      if (members.is_deterministic()) {
+        series.test = ChangeTest::kExact;
+      } else if (series.inputs == 1 && !has_zero_base(series)) {
         series.test = ChangeTest::kReplicates;
         series.base = members.side(&RunPair::base, runs.only_in_base).values(metric);
         series.head = members.side(&RunPair::head, runs.only_in_head).values(metric);

@@ -38,8 +38,9 @@ namespace stillpoint::bench {
 
 /// The test of the change of a metric.
 enum class ChangeTest {
-  kExact,       ///< none: the metric has no noise, each difference is caused by the program (instructions)
-  kPairs,       ///< signed-rank test over pairs: times, memory, and accuracy over several inputs
+  kExact,  ///< none: the metric has no noise, each difference is caused by the program: instructions, and
+           ///< accuracy on one input if all repetitions of each side, two or more, are bit-equal
+  kPairs,  ///< signed-rank test over pairs: times, memory, and accuracy over several inputs
   kReplicates,  ///< rank test of two samples: accuracy over replicates on one input
 };
 
@@ -59,7 +60,8 @@ struct MetricSeries {
 };
 
 /// Accuracy per variant and sequence, from runs that succeeded. Runs with equal fingerprints count once, also
-/// with different seeds. With one input, replicates of only one side are used as well.
+/// with different seeds. With one input, replicates of only one side are used as well; bit-equal repetitions
+/// of both sides make the change exact.
 [[nodiscard]] std::vector<MetricSeries> accuracy_series(const PairedRuns& runs);
 
 /// Times and memory per variant, over all its sequences; instructions per variant and sequence. Those of runs
@@ -157,8 +159,9 @@ struct MetricChange {
 /// and the margin is max(floor, margin |median of base|). If most runs are equal, m is the difference of the
 /// means.
 ///
-/// Instructions (`ChangeTest::kExact`) are compared with the margin only: the count of a program is the same
-/// in each run, so one pair is sufficient.
+/// Instructions and the accuracy of runs with bit-equal repetitions (`ChangeTest::kExact`) are compared with
+/// the margin only: each run of a program gives the same, so one pair is sufficient. This is a fact about
+/// that input; how far another rounding changes it, perturbed replicates tell.
 /// @param metric with a gate
 [[nodiscard]] ChangeClass classify(const MetricChange& change, const MetricDescriptor& metric);
 

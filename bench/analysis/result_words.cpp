@@ -16,7 +16,8 @@ constexpr ResultWord kWords[] = {
     {kCompare, "same",
      "the 95 % interval of the change lies within the margin, or the medians differ by less than the floor; "
      "without an interval: no pair changed by more than the margin (error), or at all (cost)"},
-    {kCompare, "better", "change for the better of at least margin and floor, p <= level; fewer failures"},
+    {kCompare, "better",
+     "change for the better of at least margin and floor, p <= level or exact; fewer failures"},
     {kCompare, "inconclusive",
      "none of the other words: too few runs, too much noise, no result, or something was not measured alike"},
     {kCompare, "changed, inconclusive", "the estimate exceeds margin and floor, but p > level"},
@@ -25,7 +26,11 @@ constexpr ResultWord kWords[] = {
      "significantly more often than at base"},
     {kCompare, "allowed", "missing in HEAD, with --allow-missing"},
     {kCompare, "worse",
-     "change for the worse of at least margin and floor, p <= level; or runs fail more often at head"},
+     "change for the worse of at least margin and floor, p <= level or exact; or runs fail more often at "
+     "head"},
+    {kCompare, "exact",
+     "in place of p: counted instructions, or all repetitions of each side (two or more) are bit-equal; the "
+     "difference is a fact about this sequence, without a test"},
     {kCompare, "error", "all runs failed on both sides"},
     {kCompare, "reported only",
      "does not decide: a cost of runs that were not made to measure it, a time that is unlike, or too few "

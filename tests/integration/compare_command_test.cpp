@@ -117,14 +117,16 @@ TEST(CompareCommand, ALargerErrorInOneReplicateIsInconclusive) {
   EXPECT_NE(result.out.find("run with --pairs "), std::string::npos) << result.out;
 }
 
-TEST(CompareCommand, RepetitionsOfAProgramWithoutPerturbationAreOneReplicate) {
+TEST(CompareCommand, EqualRepetitionsOfAProgramWithoutPerturbationAreOnePairAndMakeAChangeExact) {
   const CompareFixture fixture;
   const std::string base = write_program(fixture.folder(), "base", "--unperturbed");
   const std::string head = write_program(fixture.folder(), "head", "--worse freiburg1_fast 1.1");
   const CompareResult result = fixture.compare(base, head, 6);
-  EXPECT_NE(change_class(result.json, "ate_rmse_m", "freiburg1_fast"), "worse") << result.out;
-  EXPECT_NE(change_class(result.json, "ate_rmse_m"), "worse") << result.out;
+  EXPECT_EQ(change_class(result.json, "ate_rmse_m", "freiburg1_fast"), "worse") << result.out;
+  EXPECT_EQ(change_class(result.json, "ate_rmse_m", "freiburg1_slow"), "same") << result.out;
   EXPECT_EQ(result.json["compared"], 12);
+  EXPECT_NE(result.out.find("| 1   | 0.006977 m | 0.007675 m | +10.0 % | exact"), std::string::npos)
+      << result.out;
   EXPECT_NE(result.out.find("does not accept pipeline.perturbation_seed"), std::string::npos) << result.out;
 }
 

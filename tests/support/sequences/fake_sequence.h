@@ -11,16 +11,18 @@ namespace stillpoint {
 
 /// Writes the sequence `name` into the folder: 60 frames at 30 Hz along a curved path of about 2 m.
 inline std::filesystem::path fake_sequence(const TemporaryFolder& folder, const std::string& name) {
-  std::string images;
+  std::string color;
+  std::string depth;
   std::string poses;
   for (int i = 0; i < 60; ++i) {
     const double t = 1000.0 + i / 30.0;
     const std::string stamp = std::to_string(t);
-    images += stamp + " rgb/" + stamp + ".png\n";
+    color += stamp + " rgb/" + stamp + ".png\n";
+    depth += stamp + " depth/" + stamp + ".png\n";
     poses += stamp + " " + std::to_string(std::cos(t)) + " " + std::to_string(std::sin(t)) + " 0 0 0 0 1\n";
   }
-  folder.write(name + "/rgb.txt", images);
-  folder.write(name + "/depth.txt", images);
+  folder.write(name + "/rgb.txt", color);
+  folder.write(name + "/depth.txt", depth);
   folder.write(name + "/groundtruth.txt", poses);
   return folder.path() / name;
 }

@@ -80,6 +80,63 @@ TEST(ComparisonAccuracy, RepetitionsOfADeterministicProgramAreOneReplicate) {
   EXPECT_EQ(comparison.result(), ChangeClass::kInconclusive);
 }
 
+/// Two repetitions per side and sequence; those of a deterministic program are equal.
+Sides repeated(int sequences, double factor, bool deterministic) {
+  Sides sides;
+  for (int s = 0; s < sequences; ++s) {
+    for (const bool is_base : {true, false}) {
+      for (int repetition = 1; repetition <= 2; ++repetition) {
+        const double ate = 0.01 * (is_base ? 1.0 : factor) * (deterministic || repetition == 1 ? 1.0 : 1.01);
+        StoredRun run = compared_run("s" + std::to_string(s), ate, 1, is_base ? "base" : "head");
+        run.identity.repetition = repetition;
+        (is_base ? sides.base : sides.head).push_back(std::move(run));
+      }
+    }
+  }
+  return sides;
+}
+
+TEST(ComparisonAccuracy, ADeterministicChangeIsAFactWithOnePairPerSequence) {
+  for (const int sequences : {1, 2, 3, 12}) {
+    const Sides worse = repeated(sequences, 1.1, true);
+    const Comparison comparison = compare_runs(worse.base, worse.head);
+    EXPECT_EQ(comparison.result(), ChangeClass::kWorse) << sequences;
+    const MetricChange& change = change_on(comparison, "vo on s0");
+    EXPECT_EQ(change.test, ChangeTest::kExact);
+    EXPECT_EQ(change.change.count, 1u);
+    EXPECT_NEAR(change.change.median, 0.1, 1e-9);
+    const Sides better = repeated(sequences, 0.9, true);
+    EXPECT_EQ(compare_runs(better.base, better.head).result(), ChangeClass::kBetter);
+    const Sides within_margin = repeated(sequences, 1.04, true);
+    EXPECT_EQ(compare_runs(within_margin.base, within_margin.head).result(), ChangeClass::kSame);
+  }
+}
+
+TEST(ComparisonAccuracy, AChangeIsNoFactUnlessRepetitionsOfBothSidesAreBitEqual) {
+  const Sides random = repeated(1, 1.1, false);
+  EXPECT_EQ(compare_runs(random.base, random.head).result(), ChangeClass::kInconclusive);
+  Sides one_side = repeated(3, 1.1, true);
+  for (StoredRun& run : one_side.head) {
+    if (run.identity.repetition == 2) run.blobs["trajectory"] += " other";
+  }
+  EXPECT_EQ(compare_runs(one_side.base, one_side.head).result(), ChangeClass::kInconclusive);
+  Sides failing = repeated(1, 1.1, true);
+  failing.base[1].outcome = failing.head[1].outcome = Outcome::kCrashed;
+  EXPECT_EQ(compare_runs(failing.base, failing.head).result(), ChangeClass::kInconclusive);
+  Sides single = repeated(3, 1.1, true);
+  for (std::vector<StoredRun>* side : {&single.base, &single.head})
+    std::erase_if(*side, [](const StoredRun& run) { return run.identity.repetition == 2; });
+  const Comparison comparison = compare_runs(single.base, single.head);
+  EXPECT_EQ(comparison.result(), ChangeClass::kInconclusive);
+  EXPECT_TRUE(has_note(comparison, "or repeat each run: bit-equal repetitions make a change exact"));
+  Sides without_trajectories = repeated(3, 1.1, true);
+  for (std::vector<StoredRun>* side : {&without_trajectories.base, &without_trajectories.head}) {
+    for (StoredRun& run : *side) run.blobs.clear();
+  }
+  EXPECT_EQ(compare_runs(without_trajectories.base, without_trajectories.head).result(),
+            ChangeClass::kInconclusive);
+}
+
 TEST(ComparisonAccuracy, AChangeOf20PercentOverPerturbationsIsDetected) {
   const Sides worse = replicates(6, 1.2);
   const Comparison comparison = compare_runs(worse.base, worse.head);
