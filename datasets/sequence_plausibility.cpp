@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/so3.h"
+#include "eval/io/nmea_file.h"
+
 namespace stillpoint::datasets {
 namespace {
 
@@ -119,11 +122,17 @@ constexpr double kMinRate = 0.02;          ///< [rad/s], RMS of the true rate th
 constexpr double kMaxMedianRate = 5.0;     ///< [rad/s]
 constexpr double kMinDegreesRatio = 25.0;  ///< of the rates; 57.3 with degrees, less with noise
 constexpr double kMaxDegreesRatio = 130.0;
+constexpr double kMinUnitMotions = 15;
+constexpr double kMinUnitCorrelation = 0.6;
+constexpr double kScaleInterval_s = 0.2;
+constexpr double kScaleBlock_s = 1.5;
+constexpr double kMinScaleFinding = 3.0;
 
 /// The pose of the camera by the ground truth; nullopt without a pose on both sides at most 0.1 s away.
 std::optional<Pose> true_pose(const SequenceInfo& info, Timestamp t) {
   constexpr double kMaxGap_s = 0.1;
   const std::vector<StampedPose>& poses = info.ground_truth.trajectory.poses;
+  if (info.ground_truth.trajectory.frame == eval::kGnssFrame) return std::nullopt;  // no orientations
   const auto next = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);
   if (next == poses.end() || (next == poses.begin() && next->t != t)) return std::nullopt;
   const Pose T_f_c = info.ground_truth.T_c_f.inverse();
@@ -209,6 +218,7 @@ void ImagePlausibility::add(const Frame& frame) {
   }
   compare_depth(frame);
   if (info_.imu.empty()) return;
+  add_motion(frame);
   std::vector<double> profile = column_profile(frame.gray);
   if (last_profile_.size() == profile.size() && last_t_ < frame.t) {
     const std::optional<double> shift_px = shift_between(last_profile_, profile);
@@ -318,6 +328,138 @@ std::optional<std::string> ImagePlausibility::depth_scale_finding() const {
         info_.rig.depth_units_per_m / kDepthScales[k]);
   }
   return std::nullopt;
+}
+
+void ImagePlausibility::add_motion(const Frame& frame) {
+  constexpr std::size_t kMaxMotions = 600;  // 20 s; each takes milliseconds
+  if (motions_.size() >= kMaxMotions) return;
+  const std::optional<Pose> T_now_last = image_motion_.add(frame);
+  if (T_now_last && last_motion_t_ < frame.t)
+    motions_.push_back({.from = last_motion_t_, .to = frame.t, .T_to_from = *T_now_last});
+  last_motion_t_ = frame.t;
+}
+
+namespace {
+
+/// The samples between two times.
+std::span<const ImuSample> samples_between(const std::vector<ImuSample>& imu, Timestamp from, Timestamp to) {
+  const auto begin = std::ranges::lower_bound(imu, from, {}, &ImuSample::t);
+  const auto end = std::ranges::upper_bound(begin, imu.end(), to, {}, &ImuSample::t);
+  return {begin, end};
+}
+
+}  // namespace
+
+std::optional<std::string> ImagePlausibility::gyro_unit_finding() const {
+  const auto is_known = [](const std::string& finding) { return finding.find("deg/s") != std::string::npos; };
+  if (std::ranges::any_of(imu_unit_findings(info_), is_known)) return std::nullopt;
+  std::vector<double> by_images, by_gyro;
+  double product = 0.0, squares = 0.0;
+  for (const Motion& motion : motions_) {
+    const double offset_s = info_.rig.time_offset_s;
+    const auto samples = samples_between(info_.imu, after(motion.from, offset_s), after(motion.to, offset_s));
+    if (samples.empty()) continue;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const ImuSample& sample : samples) sum += sample.gyro_b;
+    by_gyro.push_back(sum.norm() / static_cast<double>(samples.size()));
+    by_images.push_back(log_so3(motion.T_to_from.q).norm() / seconds_between(motion.from, motion.to));
+    product += by_gyro.back() * by_images.back();
+    squares += by_images.back() * by_images.back();
+  }
+  const double count = static_cast<double>(by_images.size());
+  if (count < kMinUnitMotions || squares < count * kMinRate * kMinRate) return std::nullopt;
+  const double ratio = product / squares;
+  if (ratio < kMinDegreesRatio || ratio > kMaxDegreesRatio ||
+      correlation(by_images, by_gyro) < kMinUnitCorrelation)
+    return std::nullopt;
+  return fmt::format(
+      "the angular rates are {:.1f} times the rotation in the images; are they in deg/s instead of rad/s?",
+      ratio);
+}
+
+ImagePlausibility::ScaleSums ImagePlausibility::scale_sums(std::span<const Motion> block) const {
+  std::vector<Pose> poses{Pose{}};  // T_w_c at the begin of the first motion, then at the end of each
+  std::vector<Timestamp> times{block.front().from};
+  for (const Motion& motion : block) {
+    poses.push_back(poses.back() * motion.T_to_from.inverse());
+    times.push_back(motion.to);
+  }
+  const double interval_s = seconds_between(times.front(), times.back()) / static_cast<double>(block.size());
+  const auto step = static_cast<std::size_t>(std::max(1.0, std::round(kScaleInterval_s / interval_s)));
+  const Eigen::Matrix3d R_c_b = info_.rig.T_b_c.R().transpose();
+  std::vector<std::array<Eigen::Vector3d, 2>> sides;
+  std::vector<double> weights;
+  for (std::size_t j = step; j + step < poses.size(); ++j) {
+    const std::size_t i = j - step, k = j + step;
+    const double before_s = seconds_between(times[i], times[j]),
+                 behind_s = seconds_between(times[j], times[k]);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double sum_of_weights = 0.0;
+    for (const ImuSample& sample : samples_between(info_.imu, after(times[i], info_.rig.time_offset_s),
+                                                   after(times[k], info_.rig.time_offset_s))) {
+      const Timestamp t = after(sample.t, -info_.rig.time_offset_s);
+      const double w =
+          t < times[j] ? seconds_between(times[i], t) / before_s : seconds_between(t, times[k]) / behind_s;
+      const auto next = std::ranges::lower_bound(times, t);
+      const auto n = std::clamp<std::ptrdiff_t>(next - times.begin(), 1, std::ssize(times) - 1);
+      const std::size_t to = static_cast<std::size_t>(n);
+      const double fraction = seconds_between(times[to - 1], t) / seconds_between(times[to - 1], times[to]);
+      sum += w * (interpolate(poses[to - 1], poses[to], fraction).q * (R_c_b * sample.accel_b));
+      sum_of_weights += w;
+    }
+    if (sum_of_weights <= 0.0) continue;
+    const double weight = 0.5 * (before_s + behind_s);  // integral of w
+    sides.push_back({(poses[k].p - poses[j].p) / behind_s - (poses[j].p - poses[i].p) / before_s,
+                     weight / sum_of_weights * sum});
+    weights.push_back(weight);
+  }
+  // The part of both sides along the weights is that of gravity.
+  std::array<Eigen::Vector3d, 2> gravity{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  double squares = 0.0;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    for (std::size_t side = 0; side < 2; ++side) gravity[side] += weights[i] * sides[i][side];
+    squares += weights[i] * weights[i];
+  }
+  ScaleSums sums;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Eigen::Vector3d images = sides[i][0] - weights[i] / squares * gravity[0];
+    const Eigen::Vector3d inertial = sides[i][1] - weights[i] / squares * gravity[1];
+    sums.images += images.squaredNorm();
+    sums.both += images.dot(inertial);
+    sums.inertial += inertial.squaredNorm();
+  }
+  return sums;
+}
+
+std::optional<std::string> ImagePlausibility::depth_motion_finding() const {
+  if (depths_m_.empty() || motions_.empty() || depth_scale_finding()) return std::nullopt;
+  double accel = 0.0;
+  for (const ImuSample& sample : info_.imu)
+    accel += sample.accel_b.norm() / static_cast<double>(info_.imu.size());
+  if (accel < kMinMeanAccel || accel > kMaxMeanAccel) return std::nullopt;
+  ScaleSums all;
+  for (std::size_t begin = 0; begin < motions_.size();) {
+    std::size_t end = begin + 1;
+    while (end < motions_.size() && motions_[end].from == motions_[end - 1].to &&
+           seconds_between(motions_[begin].from, motions_[end].to) < kScaleBlock_s)
+      ++end;
+    const ScaleSums sums = scale_sums(std::span(motions_).subspan(begin, end - begin));
+    all.images += sums.images;
+    all.both += sums.both;
+    all.inertial += sums.inertial;
+    begin = end;
+  }
+  if (all.images <= 0.0 || all.inertial <= 0.0) return std::nullopt;
+  const double correlation = all.both / std::sqrt(all.images * all.inertial);
+  const double scale = all.both / all.images;
+  if (correlation < kMinUnitCorrelation || (scale > 1.0 / kMinScaleFinding && scale < kMinScaleFinding))
+    return std::nullopt;
+  const double factor = scale > 1.0 ? 5.0 : 0.2;
+  return fmt::format(
+      "by the accelerometer, the camera moves {:.1f} times as far as the images show with {:g} units per "
+      "meter "
+      "(correlation {:.2f}); is [depth] scale = {:g} in a rig.toml right?",
+      scale, info_.rig.depth_units_per_m, correlation, info_.rig.depth_units_per_m / factor);
 }
 
 double ImagePlausibility::correlation_at(double offset_s, std::span<const Turn> turns,

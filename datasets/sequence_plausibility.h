@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/types/frame.h"
+#include "datasets/image_motion.h"
 #include "datasets/io/sequence_info.h"
 
 namespace stillpoint::datasets {
@@ -29,7 +30,7 @@ namespace stillpoint::datasets {
 /// Collects what the images of a sequence tell about the other sensors, one frame after the other.
 class ImagePlausibility {
  public:
-  explicit ImagePlausibility(const SequenceInfo& info) : info_(info) {}
+  explicit ImagePlausibility(const SequenceInfo& info) : info_(info), image_motion_(info.rig.camera) {}
 
   /// @param frame the next one; a frame that cannot be decoded is left out
   void add(const Frame& frame);
@@ -43,6 +44,20 @@ class ImagePlausibility {
   /// difference of gray values, by the frames of which most tell it.
   /// @return the finding; nullopt if there is none, no ground truth, or no motion
   [[nodiscard]] std::optional<std::string> depth_scale_finding() const;
+
+  /// Compares the rates of the gyroscope with the rotation between images (`ImageMotion`), without ground
+  /// truth: sum |w| |w_image| / sum |w_image|^2 is 180 / pi in deg/s.
+  /// @return the finding; nullopt if there is none, or no rotation that both sensors see
+  [[nodiscard]] std::optional<std::string> gyro_unit_finding() const;
+
+  /// Compares the scale of depth with the accelerometer, without ground truth. The motion between images has
+  /// the scale s of the true depth to the stated one. With the position P and rotation R of the camera by
+  /// images, the specific force f and gravity g, over times t_i < t_j < t_k of 0.2 s each,
+  ///   s [(P_k - P_j) / (t_k - t_j) - (P_j - P_i) / (t_j - t_i)] = integral w(t) (R f + g) dt,
+  /// where w rises from 0 at t_i to 1 at t_j and falls to 0 at t_k. g is solved for in blocks of 1.5 s, in
+  /// which the rotation drifts little.
+  /// @return the finding if s is beyond 1/3 and 3; nullopt if the accelerations do not follow the images
+  [[nodiscard]] std::optional<std::string> depth_motion_finding() const;
 
   /// Compares the clocks of camera and IMU. The horizontal shift d [px] between the column means of two
   /// images is d = -fx w_y dt for a rotation with the rate w_y about the y axis of the camera. The offset of
@@ -79,7 +94,22 @@ class ImagePlausibility {
     double median_m = 0.0;                  ///< of the depths
   };
 
+  /// The motion between two frames, by their images.
+  struct Motion {
+    Timestamp from;
+    Timestamp to;
+    Pose T_to_from;  ///< coordinates of the camera
+  };
+
   void compare_depth(const Frame& frame);
+  void add_motion(const Frame& frame);
+  /// Sums of s for a block of consecutive motions: of products of both sides, without their common gravity.
+  struct ScaleSums {
+    double images = 0.0;    ///< squares of the left side
+    double both = 0.0;      ///< products
+    double inertial = 0.0;  ///< squares of the right side
+  };
+  [[nodiscard]] ScaleSums scale_sums(std::span<const Motion> block) const;
 
   const SequenceInfo& info_;
   std::optional<DepthFrame> reference_;
@@ -88,6 +118,9 @@ class ImagePlausibility {
   Timestamp last_t_;
   std::vector<Turn> turns_;
   std::vector<float> depths_m_;  ///< samples of all frames
+  ImageMotion image_motion_;
+  Timestamp last_motion_t_;
+  std::vector<Motion> motions_;  ///< of the first 600 frames of a sequence with an IMU
 };
 
 }  // namespace stillpoint::datasets

@@ -192,6 +192,10 @@ CheckReport check_images(const SequenceContent& content, const CheckOptions& opt
     report.findings.push_back(warning("depth", *finding));
   if (const auto finding = plausibility.depth_scale_finding())
     report.findings.push_back(warning("depth", *finding));
+  if (const auto finding = plausibility.gyro_unit_finding())
+    report.findings.push_back(warning("imu", *finding));
+  if (const auto finding = plausibility.depth_motion_finding())
+    report.findings.push_back(warning("depth", *finding));
   if (const auto finding = plausibility.clock_finding()) report.findings.push_back(warning("imu", *finding));
   return report;
 }
