@@ -237,16 +237,22 @@ std::function<int()> parse_command_line(int argc, char** argv, const std::vector
 }
 
 int report_exception() {
+  const auto print_exhausted = [](const std::system_error& error) {
+    return print_error(std::string("a resource of the system is exhausted: ") + error.what() +
+                           "; raise the limit (`ulimit -a`), or end other programs",
+                       kExitBadInput);
+  };
   try {
     throw;
   } catch (const InputError& error) {
     return print_error(error.what(), kExitBadInput);
   } catch (const std::filesystem::filesystem_error& error) {
+    if (error.code() == std::errc::too_many_files_open ||
+        error.code() == std::errc::too_many_files_open_in_system)
+      return print_exhausted(error);
     return print_error(error.path1().string() + ": " + error.code().message(), kExitBadInput);
   } catch (const std::system_error& error) {  // of the operating system: too many open files, no more threads
-    return print_error(std::string("a resource of the system is exhausted: ") + error.what() +
-                           "; raise the limit (`ulimit -a`), or end other programs",
-                       kExitBadInput);
+    return print_exhausted(error);
   } catch (const std::bad_alloc&) {
     return print_error("out of memory (bad_alloc)", kExitInternal);
   } catch (const std::exception& error) {

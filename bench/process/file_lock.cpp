@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/system_resources.h"
 
 namespace stillpoint::bench {
 
@@ -23,6 +24,7 @@ FileLock::FileLock(const std::filesystem::path& file, LockKind kind)
   if (result == 0) return;
   const int error = errno;
   if (descriptor_ >= 0) close(descriptor_);
+  require_resources(error, file.string());
   throw InputError(file.string(), std::string("cannot be locked: ") + std::strerror(error) +
                                       "; its folder must be writable and support locks");
 }

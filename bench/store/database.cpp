@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include "core/base/error.h"
+#include "core/base/system_resources.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -33,6 +34,7 @@ std::string remedy(int result) {
 }
 
 [[noreturn]] void fail(const fs::path& file, sqlite3* connection, int result) {
+  if (connection != nullptr) require_resources(sqlite3_system_errno(connection), file.string());
   const std::string what = connection != nullptr ? sqlite3_errmsg(connection) : sqlite3_errstr(result);
   throw InputError(file.string(), what + "; " + remedy(result));
 }
@@ -51,6 +53,7 @@ int open_read_only(const fs::path& file, sqlite3** connection) {
     result = sqlite3_exec(*connection, "SELECT 1 FROM sqlite_master", nullptr, nullptr, nullptr);
   const int kind = result & 0xff;
   if (kind != SQLITE_CANTOPEN && kind != SQLITE_READONLY) return result;
+  require_resources(sqlite3_system_errno(*connection), file.string());  // else its log would be ignored
   sqlite3_close(*connection);
   const std::string uri = "file:" + fs::absolute(file).string() + "?immutable=1";
   return open_connection(uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, connection);

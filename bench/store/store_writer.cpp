@@ -12,6 +12,7 @@
 
 #include "bench/store/schema.h"
 #include "core/base/error.h"
+#include "core/base/system_resources.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void cannot_lock(const fs::path& file, int error) {
+  require_resources(error, file.string());
   throw InputError(file.string(), std::string("cannot be locked: ") + std::strerror(error) +
                                       "; the folder of the store must be writable and on a local disk");
 }

@@ -13,6 +13,8 @@
 #include <string>
 #include <utility>
 
+#include "core/base/system_resources.h"
+
 namespace stillpoint::datasets {
 
 class FileDescriptor {
@@ -58,6 +60,7 @@ struct FileState {
 /// meanwhile.
 [[nodiscard]] inline std::optional<std::string> file_bytes(const std::filesystem::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // does not wait for pipes
+  if (descriptor < 0) require_resources(errno, file.string());
   if (descriptor < 0) return std::nullopt;
   struct stat status {};
   const bool regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);

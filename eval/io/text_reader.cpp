@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/system_resources.h"
 
 namespace stillpoint::eval {
 namespace {
@@ -72,8 +73,12 @@ std::optional<Decimal> parse_decimal(std::string_view field) {
 
 std::string read_text_file(const std::filesystem::path& file) {
   require_regular_file(file);
+  errno = 0;
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) throw InputError(file.string(), "cannot be opened; check the path and the permissions");
+  if (!stream) {
+    require_resources(errno, file.string());
+    throw InputError(file.string(), "cannot be opened; check the path and the permissions");
+  }
   const auto size = static_cast<std::uint64_t>(stream.tellg());
   if (size > kMaxBytes) throw InputError(file.string(), "is larger than 4 GB; expected a text file");
   std::string text(size, '\0');

@@ -148,11 +148,17 @@ std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const R
   return runs;
 }
 
+constexpr std::size_t kMaxLines = 5;  ///< about frames, of one kind
+
+/// "... and 88 more frames"
+void warn_of_more(std::size_t count) {
+  if (count > kMaxLines) spdlog::warn("... and {} more frames", count - kMaxLines);
+}
+
 void log_update(const OdometryUpdate& update) {
   spdlog::debug("frame {}: {} features, {} landmarks, {} iterations{}", update.frame_id,
                 update.counters.tracked_features, update.counters.window_landmarks,
                 update.counters.solver_iterations, update.counters.keyframe ? ", keyframe" : "");
-  if (update.counters.reset) spdlog::warn("frame {}: tracking failed, estimator reset", update.frame_id);
 }
 
 DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& configured) {
@@ -175,17 +181,23 @@ class RunWatch {
 
   void frame_done(const OdometryUpdate& update) {
     log_update(update);
+    if (update.counters.reset && ++resets_ <= kMaxLines)
+      spdlog::warn("frame {}: tracking failed, estimator reset", update.frame_id);
     monitor_.frame_done();
     if (heartbeat_) heartbeat_->beat(update.frame_id);
     progress_.update(static_cast<std::size_t>(update.frame_id) + 1);
   }
 
-  [[nodiscard]] std::optional<DeviceScore> finish() { return monitor_.finish(); }
+  [[nodiscard]] std::optional<DeviceScore> finish() {
+    warn_of_more(resets_);
+    return monitor_.finish();
+  }
 
  private:
   const std::optional<Heartbeat> heartbeat_;
   ProgressLine progress_;
   RunMonitor monitor_;
+  std::size_t resets_ = 0;
 };
 
 /// --sequence-id, or the checksum of the sequence.
@@ -225,8 +237,10 @@ std::string score_line(const RunResult& result) {
 }
 
 void print_result(const RunResult& result, const fs::path& folder) {
-  for (const SkippedFrame& frame : result.run.summary.skipped)
-    spdlog::warn("frame {} skipped: {}", frame.index, frame.reason);
+  const std::vector<SkippedFrame>& skipped = result.run.summary.skipped;
+  for (std::size_t i = 0; i < std::min(skipped.size(), kMaxLines); ++i)
+    spdlog::warn("frame {} skipped: {}", skipped[i].index, skipped[i].reason);
+  warn_of_more(skipped.size());
   for (const std::string& warning : result.warnings) spdlog::warn("{}", warning);
   if (!result.failure.empty()) spdlog::warn("{}", result.failure);
   std::cout << fmt::format("{} {}: {}, {} of {} frames, {}\n  {}\n", result.sequence, result.variant,
