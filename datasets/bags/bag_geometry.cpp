@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
@@ -10,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "datasets/io/lens_model.h"
+#include "eval/io/nmea_file.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -17,6 +19,7 @@ namespace {
 constexpr std::string_view kTransforms = "/tf";
 constexpr std::string_view kStaticTransforms = "/tf_static";
 constexpr std::string_view kTransformsOfFrames = "/tf:";
+constexpr std::string_view kNavSatFix = "sensor_msgs/NavSatFix";
 constexpr double kMaxInterpolation_s = 1.0;  ///< between two transforms; robots publish at 10 Hz or more
 
 using Link = std::pair<std::string, std::string>;  // parent, child
@@ -25,13 +28,18 @@ bool is_transforms_type(std::string_view type) {
   return type == "tf2_msgs/TFMessage" || type == "tf/tfMessage";
 }
 
+/// Topics of old recorders and of some MCAP writers have no leading slash.
+std::string_view without_slash(std::string_view topic) {
+  return topic.starts_with('/') ? topic.substr(1) : topic;
+}
+
 /// Calls `action(connection, message, time of recording)` for all messages of a topic, in the order of their
 /// bytes.
 template <class Action>
 void for_each_message(const BagFile& bag, std::string_view topic, const Action& action) {
   std::vector<MessageReference> selected;
   std::ranges::copy_if(bag.messages(), std::back_inserter(selected), [&](const MessageReference& reference) {
-    return bag.connection(reference).topic == topic;
+    return without_slash(bag.connection(reference).topic) == without_slash(topic);
   });
   for (const MessageReference& reference : in_file_order(selected)) {
     const std::string bytes = bag.payload(reference);
@@ -55,20 +63,45 @@ eval::LoadedTrajectory sorted_trajectory(std::vector<StampedPose> poses, eval::R
   return {.trajectory = {.frame = {}, .poses = std::move(poses)}, .repairs = repairs};
 }
 
+/// Positions in the tangent plane at the first fix; messages without a fix are skipped.
+class GnssPositions {
+ public:
+  std::optional<Pose> pose_of(const NavSatFixMessage& fix) {
+    const eval::GeodeticPosition position{.latitude_deg = fix.latitude_deg,
+                                          .longitude_deg = fix.longitude_deg,
+                                          .height_m = std::isfinite(fix.altitude_m) ? fix.altitude_m : 0.0};
+    if (fix.status < 0 || !std::isfinite(fix.latitude_deg) || !std::isfinite(fix.longitude_deg)) return {};
+    if (!origin_) origin_ = position;
+    return Pose{Eigen::Quaterniond::Identity(), eval::east_north_up(position, *origin_)};
+  }
+
+ private:
+  std::optional<eval::GeodeticPosition> origin_;
+};
+
 eval::LoadedTrajectory trajectory_of_topic(const BagFile& bag, const std::string& topic) {
   std::vector<StampedPose> poses;
   eval::RowRepairs repairs;
   std::string frame;
+  GnssPositions positions;
   for_each_message(
       bag, topic, [&](const BagConnection& connection, const SerializedMessage& message, Timestamp recorded) {
-        if (!is_pose_type(connection.type))
-          throw InputError(bag.path().string() + ":" + topic,
-                           "has the type " + connection.type +
-                               ", which contains no pose; expected PoseStamped, Odometry or "
-                               "TransformStamped, or /tf:PARENT.CHILD");
-        const PoseMessage pose = parse_pose(message, connection.type);
+        if (!is_trajectory_type(connection.type))
+          throw InputError(
+              bag.path().string() + ":" + topic,
+              "has the type " + connection.type +
+                  ", which contains no pose; expected PoseStamped, Odometry, TransformStamped or "
+                  "NavSatFix, or /tf:PARENT.CHILD");
+        PoseMessage pose;
+        if (connection.type == kNavSatFix) {
+          const NavSatFixMessage fix = parse_nav_sat_fix(message);
+          pose = {.header = fix.header, .child = eval::kGnssFrame, .pose = positions.pose_of(fix)};
+        } else {
+          pose = parse_pose(message, connection.type);
+        }
         frame = pose.child;
         if (pose.pose) {
+          repairs.unstamped += pose.header.stamp.ns == 0 ? 1 : 0;
           poses.push_back({.t = stamp_or(pose.header.stamp, recorded), .T_w_f = *pose.pose});
         } else {
           ++repairs.skipped;
@@ -165,10 +198,16 @@ eval::LoadedTrajectory trajectory_of_frames(const BagFile& bag, const std::strin
 
 }  // namespace
 
+bool is_trajectory_type(std::string_view type) { return is_pose_type(type) || type == kNavSatFix; }
+
 std::optional<BagTopic> parse_bag_topic(const std::string& text) {
-  const std::size_t separator = text.find(":/");
-  if (separator == std::string::npos || !eval::is_bag(text.substr(0, separator))) return std::nullopt;
-  return BagTopic{.bag = text.substr(0, separator), .topic = text.substr(separator + 1)};
+  for (std::size_t separator = text.find(':'); separator != std::string::npos;
+       separator = text.find(':', separator + 1)) {
+    if (!eval::is_bag(text.substr(0, separator))) continue;
+    const std::string topic = text.substr(separator + 1);
+    return BagTopic{.bag = text.substr(0, separator), .topic = (topic.starts_with('/') ? "" : "/") + topic};
+  }
+  return std::nullopt;
 }
 
 std::vector<NamedTransform> read_static_transforms(const BagFile& bag) {
@@ -202,7 +241,7 @@ eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string
   if (loaded.trajectory.poses.empty()) {
     std::set<std::string> topics;
     for (const BagConnection& connection : bag.connections()) {
-      if (is_pose_type(connection.type) || is_transforms_type(connection.type))
+      if (is_trajectory_type(connection.type) || is_transforms_type(connection.type))
         topics.insert(connection.topic);
     }
     std::string text;
@@ -211,6 +250,20 @@ eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string
                      "contains no poses; the topics with poses are " + (text.empty() ? "none" : text));
   }
   return loaded;
+}
+
+std::vector<eval::StampedCovariance> read_bag_covariances(const BagTopic& source) {
+  std::vector<eval::StampedCovariance> covariances;
+  const BagFile bag(source.bag);
+  for_each_message(
+      bag, source.topic,
+      [&](const BagConnection& connection, const SerializedMessage& message, Timestamp recorded) {
+        if (!is_pose_type(connection.type)) return;
+        const PoseMessage pose = parse_pose(message, connection.type);
+        if (pose.covariance)
+          covariances.push_back(eval::covariance_of(stamp_or(pose.header.stamp, recorded), *pose.covariance));
+      });
+  return covariances;
 }
 
 eval::LoadedTrajectory read_bag_trajectory(const BagTopic& source) {

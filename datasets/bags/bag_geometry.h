@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/geometry/camera.h"
 #include "datasets/bags/bag_file.h"
 #include "datasets/bags/messages.h"
 #include "datasets/calibration/transform_graph.h"
+#include "eval/io/covariance_file.h"
 #include "eval/io/trajectory_file.h"
 
 namespace stillpoint::datasets {
@@ -22,19 +24,27 @@ struct BagTopic {
   std::string topic;
 };
 
-/// @return nullopt if the text before its first ":/" is not the name of a bag
+/// The topic gets a leading slash if it has none.
+/// @return nullopt if no text before a ":" is the name of a bag
 [[nodiscard]] std::optional<BagTopic> parse_bag_topic(const std::string& text);
 
-/// The poses of a topic of type PoseStamped, PoseWithCovarianceStamped, TransformStamped or Odometry; or,
-/// with the topic "/tf:PARENT.CHILD" (the notation of evo), of the frame CHILD in PARENT along the chain of
-/// transforms in /tf and /tf_static. The times are those of the transform of the chain with the most
-/// messages; the others are interpolated. Stamps that are 0 are replaced by the time of recording. Poses
-/// without a rotation, repeated and unordered ones are skipped or sorted, and counted.
+/// Whether `read_bag_trajectory` reads a topic of this type.
+[[nodiscard]] bool is_trajectory_type(std::string_view type);
+
+/// The poses of a topic of type PoseStamped, PoseWithCovarianceStamped, TransformStamped or Odometry; the
+/// positions of a NavSatFix, as those of `eval::parse_nmea`; or, with the topic "/tf:PARENT.CHILD" (the
+/// notation of evo), of the frame CHILD in PARENT along the chain of transforms in /tf and /tf_static. The
+/// times are those of the transform of the chain with the most messages; the others are interpolated. Stamps
+/// that are 0 are replaced by the time of recording. Poses without a rotation, repeated and unordered ones
+/// are skipped or sorted, and counted.
 /// @throws InputError if there is no such topic, it has no poses, or the frames are not connected
 [[nodiscard]] eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string& topic);
 
 /// The same, of a bag that is opened for it. @throws InputError also as `BagFile`
 [[nodiscard]] eval::LoadedTrajectory read_bag_trajectory(const BagTopic& source);
+
+/// The covariances of the poses of a topic, of PoseWithCovarianceStamped or Odometry; empty for other types.
+[[nodiscard]] std::vector<eval::StampedCovariance> read_bag_covariances(const BagTopic& source);
 
 /// The transforms of /tf_static, the last one of each pair of frames.
 [[nodiscard]] std::vector<NamedTransform> read_static_transforms(const BagFile& bag);

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "datasets/bags/bag_geometry.h"
 #include "datasets/bags/byte_stream.h"
 #include "datasets/io/image_io.h"
 
@@ -345,7 +346,7 @@ std::string* role_of(BagTopics& topics, std::string_view role) {
 bool fits_role(const TopicSummary& topic, std::string_view role) {
   if (role == "color") return topic.image == ImageContent::kColor;
   if (role == "depth") return topic.image == ImageContent::kDepth;
-  return role == "truth" ? is_pose_type(topic.type) : topic.type == kImu;
+  return role == "truth" ? is_trajectory_type(topic.type) : topic.type == kImu;
 }
 
 /// `selected` with one request applied.

@@ -200,6 +200,8 @@ PoseMessage parse_pose(const SerializedMessage& message, std::string_view type) 
   result.header = fields.header();
   if (type == "geometry_msgs/TransformStamped" || type == "nav_msgs/Odometry") result.child = fields.frame();
   result.pose = fields.pose();
+  if (type == "geometry_msgs/PoseWithCovarianceStamped" || type == "nav_msgs/Odometry")
+    result.covariance = fields.numbers<36>();
   return result;
 }
 
@@ -451,8 +453,11 @@ std::string serialize_pose(const PoseMessage& message, std::string_view type, Wi
   if (type == "geometry_msgs/TransformStamped" || type == "nav_msgs/Odometry")
     fields.writer().text(message.child);
   fields.pose(message.pose.value());
-  if (type == "geometry_msgs/PoseWithCovarianceStamped") fields.zeros(kPoseCovariance);
-  if (type == "nav_msgs/Odometry") fields.zeros(2 * kPoseCovariance + 6);
+  if (type == "geometry_msgs/PoseWithCovarianceStamped" || type == "nav_msgs/Odometry") {
+    for (const double value : message.covariance.value_or(std::array<double, kPoseCovariance>{}))
+      fields.writer().number(value);
+  }
+  if (type == "nav_msgs/Odometry") fields.zeros(kPoseCovariance + 6);  // velocities
   return fields.take();
 }
 

@@ -79,6 +79,9 @@ struct PoseMessage {
   /// A rotation whose quaternion has no direction (0 0 0 0, or not finite) or a position that is not finite:
   /// nullopt.
   std::optional<Pose> pose;
+  /// Of position and rotation about the axes of the frame of the header, row by row [m, rad]; of
+  /// PoseWithCovarianceStamped and Odometry. Publishers without one leave it 0.
+  std::optional<std::array<double, 36>> covariance = std::nullopt;
 };
 
 /// sensor_msgs/NavSatFix
@@ -134,7 +137,7 @@ struct NavSatFixMessage {
 [[nodiscard]] std::string serialize(const NavSatFixMessage& message, WireFormat format);
 
 /// @param message with a pose
-/// @param type for which `is_pose_type` is true; covariances and velocities are 0
+/// @param type for which `is_pose_type` is true; a covariance that is not set and velocities are 0
 [[nodiscard]] std::string serialize_pose(const PoseMessage& message, std::string_view type,
                                          WireFormat format);
 

@@ -13,6 +13,7 @@
 #include "datasets/bags/messages.h"
 #include "datasets/formats/image_lists.h"
 #include "datasets/io/imu_file.h"
+#include "eval/io/nmea_file.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -355,6 +356,13 @@ void set_imu(SequenceContent& content, const BagFrames& frames) {
 void set_ground_truth(SequenceContent& content, const BagFile& bag, const std::string& topic,
                       const BagFrames& frames) {
   eval::LoadedTrajectory truth = read_bag_trajectory(bag, topic);
+  if (truth.trajectory.frame == eval::kGnssFrame) {
+    content.info.notes.emplace_back(
+        "ground truth: positions of a GNSS antenna, whose orientations and distance to the camera are "
+        "unknown");
+    content = with_ground_truth(std::move(content), std::move(truth));
+    return;
+  }
   // OpenLORIS: the poses of /gt are those of the base of the robot.
   std::string frame = truth.trajectory.frame;
   if (frame.empty()) frame = "base_link";

@@ -34,11 +34,15 @@ SequenceContent read_bag_sequence(const std::filesystem::path& path, std::span<c
 SequenceContent with_metric_accelerations(SequenceContent content) { return content; }
 
 std::optional<BagTopic> parse_bag_topic(const std::string& text) {
-  const std::string bag = text.substr(0, text.find(":/"));
+  const std::string bag = text.substr(0, text.find(':'));
   if (bag != text && eval::is_bag(bag)) refuse(bag);
   return std::nullopt;
 }
 
 eval::LoadedTrajectory read_bag_trajectory(const BagTopic& source) { refuse(source.bag.string()); }
+
+std::vector<eval::StampedCovariance> read_bag_covariances(const BagTopic& source) {
+  refuse(source.bag.string());
+}
 
 }  // namespace stillpoint::datasets

@@ -37,6 +37,9 @@ std::vector<std::string> repair_texts(const RowRepairs& repairs) {
   if (repairs.reordered > 0) {
     texts.push_back(rows_text(repairs.reordered) + " sorted by time: earlier than a row before");
   }
+  if (repairs.unstamped > 0) {
+    texts.push_back(rows_text(repairs.unstamped) + " with the stamp 0: the time of recording is used");
+  }
   return texts;
 }
 

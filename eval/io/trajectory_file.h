@@ -31,6 +31,7 @@ struct RowRepairs {
   std::size_t skipped = 0;    ///< without a pose: a value that is not finite, or the quaternion 0 0 0 0
   std::size_t repeated = 0;   ///< with the stamp of an earlier row, which is used instead
   std::size_t reordered = 0;  ///< up to `kMaxDisorder_s` earlier than a row before them; sorted by time
+  std::size_t unstamped = 0;  ///< of a bag, with the stamp 0; the time of their recording is used
 };
 
 /// Rows that are further from their place by time are an error: the file may contain several runs.

@@ -226,7 +226,21 @@ Nees nees(const Pose& gt, const Pose& est, const Eigen::Matrix3d& rotation_covar
           squared_mahalanobis(gt.p - est.p, position_covariance, "position")};
 }
 
-std::optional<MeanNees> mean_nees(const Trajectory& gt, std::span<const ClaimedPose> claims) {
+namespace {
+
+/// One error with its claimed covariance.
+struct ClaimedError {
+  Eigen::Vector3d error;
+  Eigen::Matrix3d covariance;
+};
+
+struct ClaimedErrors {
+  std::vector<ClaimedError> position;
+  std::vector<ClaimedError> rotation;
+};
+
+/// The errors of the poses that count.
+ClaimedErrors claimed_errors(const Trajectory& gt, std::span<const ClaimedPose> claims, ClaimOrigin origin) {
   Trajectory located;
   std::vector<const ClaimedPose*> sources;
   for (const ClaimedPose& claim : claims) {
@@ -236,8 +250,7 @@ std::optional<MeanNees> mean_nees(const Trajectory& gt, std::span<const ClaimedP
   }
   const std::vector<InterpolatedPair> pairs = associate_interpolated(gt, located, kMaxTruthGap_s);
   const std::vector<MatchedPose> poses = matched_poses(gt, located, pairs);
-  MeanNees sum;
-  int count = 0;
+  ClaimedErrors errors;
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const ClaimedPose& claim = *sources[pairs[i].est];
     if (seconds_between(poses.front().t, claim.t) < kConverged_s ||
@@ -245,14 +258,100 @@ std::optional<MeanNees> mean_nees(const Trajectory& gt, std::span<const ClaimedP
         !is_positive_definite(claim.rotation_covariance)) {
       continue;
     }
-    const Pose truth = poses.front().est * (poses.front().gt.inverse() * poses[i].gt);
-    const Nees frame = nees(truth, poses[i].est, claim.rotation_covariance, claim.position_covariance);
-    sum.rotation += frame.rotation / 3.0;
-    sum.position += frame.position / 3.0;
-    ++count;
+    const Pose truth = origin == ClaimOrigin::kWorld
+                           ? poses[i].gt
+                           : poses.front().est * (poses.front().gt.inverse() * poses[i].gt);
+    const Pose& est = poses[i].est;
+    errors.position.push_back({.error = truth.p - est.p, .covariance = claim.position_covariance});
+    errors.rotation.push_back(
+        {.error = -log_so3(truth.q * est.q.conjugate()), .covariance = claim.rotation_covariance});
   }
-  if (count == 0) return std::nullopt;
-  return MeanNees{.rotation = sum.rotation / count, .position = sum.position / count};
+  return errors;
+}
+
+std::vector<double> all_nees(const std::vector<ClaimedError>& errors, const char* quantity) {
+  std::vector<double> values;
+  values.reserve(errors.size());
+  for (const ClaimedError& error : errors)
+    values.push_back(squared_mahalanobis(error.error, error.covariance, quantity));
+  return values;
+}
+
+double mean_of(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// Number of independent values with the same variance of the mean, N / (1 + 2 sum rho_k), of every n-th one
+/// of a long series.
+double independent_values(const std::vector<double>& series) {
+  constexpr std::size_t kMaxValues = 2000;
+  const std::size_t stride = series.size() / kMaxValues + 1;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < series.size(); i += stride) values.push_back(series[i]);
+  const double mean = mean_of(values);
+  const auto covariance_at = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t i = lag; i < values.size(); ++i) sum += (values[i] - mean) * (values[i - lag] - mean);
+    return sum;
+  };
+  const double variance = covariance_at(0);
+  double correlated = 1.0;
+  for (std::size_t lag = 1; variance > 0.0 && lag < values.size(); ++lag) {
+    const double rho = covariance_at(lag) / variance;
+    if (rho <= 0.0) break;
+    correlated += 2.0 * rho;
+  }
+  return std::max(1.0, static_cast<double>(values.size()) / correlated);
+}
+
+/// Quantile of the chi-square distribution divided by its degrees of freedom (Wilson and Hilferty 1931).
+double chi_square_ratio(double normal_quantile, double degrees_of_freedom) {
+  const double variance = 2.0 / (9.0 * degrees_of_freedom);
+  return std::pow(std::max(0.0, 1.0 - variance + normal_quantile * std::sqrt(variance)), 3.0);
+}
+
+ClaimQuality quality_of(const std::vector<ClaimedError>& errors, const char* quantity) {
+  constexpr double kQuantile = 1.959964;  // of 97.5 %
+  const std::vector<double> values = all_nees(errors, quantity);
+  const double freedom = 3.0 * independent_values(values);
+  ClaimQuality quality{.nees = mean_of(values) / 3.0,
+                       .nees_low = chi_square_ratio(-kQuantile, freedom),
+                       .nees_high = chi_square_ratio(kQuantile, freedom)};
+  const double count = static_cast<double>(errors.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const Eigen::Matrix3d& P = errors[i].covariance;
+    quality.nll += 0.5 * (values[i] + std::log(P.determinant()) + 3.0 * std::log(2.0 * M_PI)) / count;
+    for (int k = 0; k < 3; ++k) {
+      const bool inside = std::abs(errors[i].error[k]) <= kSigmas * std::sqrt(P(k, k));
+      quality.within_3_sigma += inside ? 1.0 / (3.0 * count) : 0.0;
+    }
+  }
+  return quality;
+}
+
+}  // namespace
+
+std::optional<MeanNees> mean_nees(const Trajectory& gt, std::span<const ClaimedPose> claims) {
+  const ClaimedErrors errors = claimed_errors(gt, claims, ClaimOrigin::kFirstPose);
+  if (errors.position.empty()) return std::nullopt;
+  const auto mean_ratio = [](const std::vector<double>& nees) {
+    double sum = 0.0;
+    for (const double value : nees) sum += value / 3.0;
+    return sum / static_cast<double>(nees.size());
+  };
+  return MeanNees{.rotation = mean_ratio(all_nees(errors.rotation, "rotation")),
+                  .position = mean_ratio(all_nees(errors.position, "position"))};
+}
+
+std::optional<CovarianceScore> covariance_score(const Trajectory& gt, std::span<const ClaimedPose> claims,
+                                                ClaimOrigin origin) {
+  const ClaimedErrors errors = claimed_errors(gt, claims, origin);
+  if (errors.position.empty()) return std::nullopt;
+  return CovarianceScore{.poses = errors.position.size(),
+                         .position = quality_of(errors.position, "position"),
+                         .rotation = quality_of(errors.rotation, "rotation")};
 }
 
 }  // namespace stillpoint::eval

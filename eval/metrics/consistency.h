@@ -104,4 +104,36 @@ struct MeanNees {
 /// @return nullopt if no frame counts
 [[nodiscard]] std::optional<MeanNees> mean_nees(const Trajectory& gt, std::span<const ClaimedPose> claims);
 
+/// Errors of the position or of the rotation against their claimed covariances.
+struct ClaimQuality {
+  double nees = 0.0;  ///< mean of NEES / 3
+  /// Interval that contains `nees` of a consistent system with a probability of 95 %: of a chi-square
+  /// distribution with 3 N / (1 + 2 sum rho_k) degrees of freedom, divided by them. rho_k: autocorrelation of
+  /// the NEES of N poses at lag k, up to the first that is not positive: errors of consecutive poses are not
+  /// independent.
+  double nees_low = 0.0;
+  double nees_high = 0.0;
+  double nll = 0.0;  ///< mean of (NEES + log det P + 3 log 2 pi) / 2, of errors in m or rad
+  double within_3_sigma =
+      0.0;  ///< fraction of the components with |e_i| <= 3 sqrt(P_ii); .9973 of a normal error
+};
+
+struct CovarianceScore {
+  std::size_t poses = 0;  ///< that count
+  ClaimQuality position;
+  ClaimQuality rotation;
+};
+
+/// What claimed covariances are relative to.
+enum class ClaimOrigin {
+  kFirstPose,  ///< as in `mean_nees`
+  kWorld,      ///< the world of the ground truth, which is that of the estimate
+};
+
+/// Over the poses that `mean_nees` counts.
+/// @return nullopt if no pose counts
+[[nodiscard]] std::optional<CovarianceScore> covariance_score(const Trajectory& gt,
+                                                              std::span<const ClaimedPose> claims,
+                                                              ClaimOrigin origin = ClaimOrigin::kFirstPose);
+
 }  // namespace stillpoint::eval

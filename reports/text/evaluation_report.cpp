@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "reports/text/evaluation_report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -77,6 +79,28 @@ std::string evaluation_table(const std::vector<EvaluatedRun>& runs, TableStyle s
   return format_table(rows, style) + few.note();
 }
 
+std::string covariance_table(const std::vector<EvaluatedRun>& runs, TableStyle style) {
+  std::vector<const EvaluatedRun*> claiming;
+  for (const EvaluatedRun& run : runs) {
+    if (run.covariance) claiming.push_back(&run);
+  }
+  if (claiming.empty()) return {};
+  std::ranges::stable_sort(claiming, {}, [](const EvaluatedRun* run) {
+    return std::abs(std::log(std::max(run->covariance->position.nees, 1e-12)));
+  });
+  TableRows rows{
+      {"estimate", "covariance", "poses", "NEES/3", "95 % if consistent", "NLL", "within 3 sigma"}};
+  for (const EvaluatedRun* const run : claiming) {
+    for (const auto& [name, quality] : {std::pair("position", &run->covariance->position),
+                                        std::pair("rotation", &run->covariance->rotation)}) {
+      rows.push_back({run->name, name, std::to_string(run->covariance->poses), cell(quality->nees, 3),
+                      fmt::format("{:.3f} to {:.3f}", quality->nees_low, quality->nees_high),
+                      cell(quality->nll, 3), cell(quality->within_3_sigma, 4)});
+    }
+  }
+  return format_table(rows, style);
+}
+
 std::string comparison_table(const eval::Comparison& comparison, TableStyle style) {
   TableRows rows{{"rank", "estimate", "coverage", "ATE on common poses [m]", "T.RPE [m/s]", "R.RPE [deg/s]",
                   "RPE pairs", "ATE on all own poses [m]"}};
@@ -144,6 +168,13 @@ using Json = nlohmann::ordered_json;
 namespace metric_id = bench::metric_id;
 
 std::string id(std::string_view metric) { return std::string(metric); }
+
+Json quality_json(const eval::ClaimQuality& quality) {
+  return {{"nees_ratio", quality.nees},
+          {"nees_ratio_95_percent", {quality.nees_low, quality.nees_high}},
+          {"nll", quality.nll},
+          {"within_3_sigma", quality.within_3_sigma}};
+}
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
@@ -230,6 +261,12 @@ Json scene_json(const eval::OpenlorisScene& scene) {
 }
 
 }  // namespace
+
+Json covariance_json(const eval::CovarianceScore& score) {
+  return {{"poses", score.poses},
+          {"position", quality_json(score.position)},
+          {"rotation", quality_json(score.rotation)}};
+}
 
 Json evaluation_json(const eval::Evaluation& evaluation) {
   Json json{{"protocol", evaluation.protocol},

@@ -3,6 +3,7 @@
 /// data.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 #include "eval/compare/common_support.h"
 #include "eval/io/trajectory_file.h"
+#include "eval/metrics/consistency.h"
 #include "eval/openloris/benchmark.h"
 #include "eval/protocols/protocol.h"
 #include "reports/tables/text_format.h"
@@ -22,11 +24,17 @@ struct EvaluatedRun {
   Trajectory est;
   eval::RowRepairs repairs = {};  ///< of the file of the estimate
   std::vector<eval::Evaluation> evaluations;
+  std::optional<eval::CovarianceScore> covariance = std::nullopt;  ///< of estimates that bring covariances
 };
 
 /// One row per estimate and protocol; "n/a" without data. Coverage precedes the errors. An RPE of few pairs
 /// has an asterisk and a line below the table, but in CSV, whose column "RPE pairs" tells it.
 [[nodiscard]] std::string evaluation_table(const std::vector<EvaluatedRun>& runs, TableStyle style);
+
+/// Two rows per estimate with covariances, the most consistent position first; empty without one.
+[[nodiscard]] std::string covariance_table(const std::vector<EvaluatedRun>& runs, TableStyle style);
+
+[[nodiscard]] nlohmann::ordered_json covariance_json(const eval::CovarianceScore& score);
 
 /// The ranking on the common support; few RPE pairs are marked as in `evaluation_table`.
 [[nodiscard]] std::string comparison_table(const eval::Comparison& comparison, TableStyle style);

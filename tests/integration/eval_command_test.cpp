@@ -113,6 +113,44 @@ TEST(EvalCommand, RefusesAnOrderOfQuaternionsThatContradictsTheFormat) {
   }
 }
 
+TEST(EvalCommand, RatesTheCovariancesThatAnEstimateBrings) {
+  const PathFiles files;
+  // Errors of 0.2 m and claimed standard deviations of 0.1 m and 0.01 rad: NEES / 3 = 4 / 3.
+  std::string columns = "# t tx ty tz qx qy qz qw\n", rows;
+  const Trajectory path = test::smooth_path(401, 0.05);
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    StampedPose pose = path.poses[i];
+    pose.T_w_f.p.x() += i == 0 ? 0.0 : i % 2 == 0 ? 0.2 : -0.2;
+    Trajectory one;
+    one.poses.push_back(pose);
+    const std::string text = eval::format_tum(one);  // a header, then the pose
+    const std::string row = text.substr(text.find('\n') + 1, text.size() - text.find('\n') - 2);
+    const std::string variances = " 0.01 0.01 0.01 0.0001 0.0001 0.0001\n";
+    columns += row + variances;
+    rows += row.substr(0, row.find(' ')) + variances;
+  }
+  const std::string est = files.folder.write("claims.txt", columns).string();
+  const std::string extra = files.folder.write("covariances.txt", rows).string();
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"eval", files.gt, est, "--json"},
+        std::vector<std::string>{"eval", files.gt, est, "--json", "--covariance", extra}}) {
+    const ProgramResult result = run_program(arguments);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto covariance = nlohmann::json::parse(result.out).at("covariance");
+    EXPECT_EQ(covariance.at("poses"), 341);
+    EXPECT_NEAR(covariance.at("position").at("nees_ratio").get<double>(), 4.0 / 3.0, 1e-3);
+    EXPECT_NEAR(covariance.at("position").at("within_3_sigma").get<double>(), 1.0, 1e-9);
+    EXPECT_LT(covariance.at("rotation").at("nees_ratio").get<double>(), 1e-6);
+  }
+  const ProgramResult table = run_program({"eval", files.gt, est});
+  EXPECT_NE(table.out.find("relative to the first pose"), std::string::npos) << table.out;
+  EXPECT_NE(table.err.find("6 columns after the pose are covariances"), std::string::npos) << table.err;
+  EXPECT_EQ(run_program({"eval", files.gt, files.est}).out.find("NEES"), std::string::npos);
+  const ProgramResult several = run_program({"eval", files.gt, est, files.est, "--covariance", extra});
+  EXPECT_EQ(several.exit_code, 2);
+  EXPECT_NE(several.err.find("--covariance"), std::string::npos);
+}
+
 TEST(EvalCommand, RejectsAnUnknownProtocol) {
   const PathFiles files;
   const ProgramResult result = run_program({"eval", files.gt, files.est, "--protocol", "tum"});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `stillpoint eval`: evaluates trajectory files; `stillpoint eval openloris`: result files of a benchmark by
-// scene.
+// `stillpoint eval`: evaluates trajectory files.
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <span>
@@ -22,12 +22,11 @@
 #include "datasets/bags/bag_geometry.h"
 #include "eval/compare/conventions.h"
 #include "eval/compare/time_offset.h"
+#include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
-#include "eval/openloris/benchmark.h"
 #include "eval/protocols/protocol.h"
 #include "eval/trajectory/association.h"
 #include "reports/drawing/drawing.h"
-#include "reports/drawing/openloris_figure.h"
 #include "reports/drawing/trajectory_plot.h"
 #include "reports/text/evaluation_report.h"
 
@@ -37,7 +36,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kPlotPixelsPerUnit = 1.5;  // of PNG files
-constexpr const char* kFigureExtensions[] = {".svg", ".png"};
 
 struct EvalArguments {
   std::string ground_truth;
@@ -61,6 +59,7 @@ struct EvalArguments {
   std::string plot;
   std::string map;
   std::string per_pose;
+  std::string covariance;
   bool force = false;
 };
 
@@ -80,6 +79,7 @@ eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
 struct PoseFile {
   std::string path;
   eval::LoadedTrajectory loaded;
+  std::optional<eval::CovarianceTable> covariances = std::nullopt;  ///< of an estimate
 };
 
 enum class FileRole { kTruth, kEstimate };
@@ -105,7 +105,66 @@ PoseFile load(const EvalArguments& arguments, const std::string& path, FileRole 
   const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path);
   eval::LoadedTrajectory loaded = bag ? datasets::read_bag_trajectory(*bag) : eval::read_trajectory(source);
   for (const std::string& repair : eval::repair_texts(loaded.repairs)) spdlog::warn("{}: {}", path, repair);
-  return {path, std::move(loaded)};
+  return {.path = path, .loaded = std::move(loaded)};
+}
+
+/// Whether the rows of a file have columns after the pose: most have none, and are not read twice.
+bool has_further_columns(const std::string& path) {
+  constexpr std::size_t kPoseColumns = 8;
+  std::string text(8192, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  eval::RowReader rows(text, path);
+  std::optional<eval::TextRow> row = rows.next();
+  if (row && !eval::parse_number(row->fields.front())) row = rows.next();  // names of the columns
+  return row && row->fields.size() > kPoseColumns;
+}
+
+/// The covariances of an estimate: of --covariance, of the messages of a bag, or of further columns.
+std::optional<eval::CovarianceTable> covariances_of(const EvalArguments& arguments, const PoseFile& file) {
+  if (!arguments.covariance.empty())
+    return eval::parse_covariances(eval::read_text_file(arguments.covariance), arguments.covariance);
+  if (const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(file.path)) {
+    eval::CovarianceTable table{.rows = datasets::read_bag_covariances(*bag), .columns = 36};
+    const auto is_given = [](const eval::StampedCovariance& row) { return !row.position.isZero(0.0); };
+    if (std::ranges::none_of(table.rows, is_given)) return std::nullopt;
+    return table;
+  }
+  if (!has_further_columns(file.path)) return std::nullopt;
+  std::optional<eval::CovarianceTable> table =
+      eval::find_covariances(eval::read_text_file(file.path), file.path);
+  if (table) {
+    spdlog::info("{}: the {} columns after the pose are covariances ({})", file.path, table->columns,
+                 table->columns == 12 ? "rotation, position" : "position, rotation");
+  }
+  return table;
+}
+
+/// The poses with their covariances; nullopt without any.
+std::optional<eval::CovarianceScore> covariance_score_of(const EvalArguments& arguments, const Trajectory& gt,
+                                                         const PoseFile& file) {
+  if (!file.covariances) return std::nullopt;
+  const Trajectory& est = file.loaded.trajectory;
+  const std::vector<eval::StampedCovariance> rows = eval::at_poses(est, *file.covariances);
+  std::vector<eval::ClaimedPose> claims;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    claims.push_back({.t = after(est.poses[i].t, arguments.offset_s),
+                      .T_w_c = est.poses[i].T_w_f,
+                      .claim = eval::PoseClaim::kLocated,
+                      .position_covariance = rows[i].position,
+                      .rotation_covariance = rows[i].rotation});
+  }
+  const auto origin =
+      arguments.alignment == "none" ? eval::ClaimOrigin::kWorld : eval::ClaimOrigin::kFirstPose;
+  const auto score = eval::covariance_score(gt, claims, origin);
+  if (!score) {
+    spdlog::warn(
+        "{}: no covariance was evaluated: none is positive definite, has a ground-truth pose and is 3 s "
+        "later than the first pose",
+        file.path);
+  }
+  return score;
 }
 
 const char* order_text(eval::QuaternionOrder order) {
@@ -214,11 +273,12 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, s
   const Trajectory& gt = files.front().loaded.trajectory;
   eval::ProtocolOptions options = protocol_options(arguments);
   std::vector<report::EvaluatedRun> runs;
-  for (auto& [path, loaded] : files.subspan(1)) {
+  for (PoseFile& file : files.subspan(1)) {
+    const std::string& path = file.path;
     report::EvaluatedRun run{.name = display_name(path, arguments.estimates),
-                             .est = std::move(loaded.trajectory),
-                             .repairs = loaded.repairs,
-                             .evaluations = {}};
+                             .covariance = covariance_score_of(arguments, gt, file)};
+    run.est = std::move(file.loaded.trajectory);
+    run.repairs = file.loaded.repairs;
     if (has_failed(run) && arguments.estimates.size() == 1)
       throw InputError(path, "has one pose: a failed run, of which no error can be computed");
     const bool comparable = !arguments.find_offset && !has_failed(run);
@@ -365,6 +425,7 @@ Json document(const EvalArguments& arguments, const eval::LoadedTrajectory& trut
     json["warnings"] = warnings_about(arguments, gt, run);
     for (const eval::Evaluation& evaluation : run.evaluations)
       json["evaluations"].push_back(report::evaluation_json(evaluation));
+    if (run.covariance) json["covariance"] = report::covariance_json(*run.covariance);
     list.push_back(std::move(json));
   }
   if (list.size() == 1) return list.front();
@@ -377,6 +438,16 @@ void print_tables(const EvalArguments& arguments, const Trajectory& gt,
                                    : arguments.markdown ? report::TableStyle::kMarkdown
                                                         : report::TableStyle::kText;
   std::cout << report::evaluation_table(runs, style);
+  if (const std::string table = report::covariance_table(runs, style); !table.empty()) {
+    if (style != report::TableStyle::kCsv) {
+      std::cout << fmt::format("\nCovariances from 3 s on ({}):\n", arguments.alignment == "none"
+                                                                        ? "in the world of the ground truth"
+                                                                        : "relative to the first pose");
+    } else {
+      std::cout << '\n';
+    }
+    std::cout << table;
+  }
   if (runs.size() > 1 && style != report::TableStyle::kCsv) {
     const eval::Comparison comparison = compare(arguments, gt, runs);
     std::cout << comparison_heading(comparison_setup(arguments), comparison.common_s)
@@ -404,7 +475,7 @@ std::vector<report::PlottedRun> plotted_runs(const std::vector<report::Evaluated
 
 /// What --plot and --per-pose must not overwrite.
 OutputRules output_rules(const EvalArguments& arguments) {
-  OutputRules rules{.inputs = {arguments.ground_truth, arguments.times},
+  OutputRules rules{.inputs = {arguments.ground_truth, arguments.times, arguments.covariance},
                     .force = arguments.force,
                     .beginning = report::per_pose_header()};
   rules.inputs.insert(rules.inputs.end(), arguments.estimates.begin(), arguments.estimates.end());
@@ -431,8 +502,12 @@ int evaluate_files(const EvalArguments& arguments) {
   if (!arguments.map.empty()) report::require_drawing_file(arguments.map, rules);
   if (!arguments.per_pose.empty()) require_safe_output(arguments.per_pose, rules);
   std::vector<PoseFile> files{load(arguments, arguments.ground_truth, FileRole::kTruth)};
-  for (const std::string& path : arguments.estimates)
+  if (!arguments.covariance.empty() && arguments.estimates.size() > 1)
+    throw InputError("--covariance", "is that of one estimate, but several are given");
+  for (const std::string& path : arguments.estimates) {
     files.push_back(load(arguments, path, FileRole::kEstimate));
+    files.back().covariances = covariances_of(arguments, files.back());
+  }
   files = with_consistent_orders(std::move(files), arguments.offset_s);
   const eval::LoadedTrajectory& truth = files.front().loaded;
   const Trajectory& gt = truth.trajectory;
@@ -484,6 +559,11 @@ std::vector<Option> options_of(EvalArguments& a) {
        &a.formats},
       {"--times", "File of time stamps of a KITTI trajectory", &a.times},
       {"--seq", "Sequence number in an OpenLORIS file", &a.sequence, {0, 1e9}},
+      {"--covariance",
+       "File with the covariances of the estimate: stamp and 6 (variances), 21 (upper triangle) or 36 "
+       "numbers of "
+       "position and rotation [further columns of EST, or its messages]",
+       &a.covariance},
       {"--explain", "Print a description of each protocol", &a.explain},
       {"--json", "Print JSON with full precision", &a.json},
       {"--csv", "Print CSV", &a.csv},
@@ -493,71 +573,6 @@ std::vector<Option> options_of(EvalArguments& a) {
       {"--plot", "Write a plot of trajectories and errors (.svg, .pdf or .png)", &a.plot},
       {"--per-pose", "Write the errors of all poses as CSV", &a.per_pose},
       {"--force", "Replace existing files of --plot and --per-pose", &a.force}};
-}
-
-struct OpenlorisArguments {
-  std::string results;
-  std::string ground_truth;
-  std::string figure;
-  bool lifelong = false;
-  bool keep_repeated = false;
-  bool json = false;
-  bool csv = false;
-  bool markdown = false;
-  bool force = false;
-};
-
-void write_figure(const OpenlorisArguments& arguments, const eval::OpenlorisBenchmark& benchmark) {
-  const report::Drawing drawing = report::openloris_figure(benchmark);
-  for (const char* extension : kFigureExtensions)
-    report::write_drawing(arguments.figure + extension, drawing, 1.0, {.force = arguments.force});
-}
-
-int evaluate_folder(const OpenlorisArguments& arguments) {
-  if (arguments.ground_truth.empty()) {
-    throw InputError("--ground-truth", "is required: the folder with gt_<scene>_1.txt");
-  }
-  for (const char* extension : kFigureExtensions) {
-    if (!arguments.figure.empty())
-      report::require_drawing_file(arguments.figure + extension, {.force = arguments.force});
-  }
-  const eval::OpenlorisEvaluation evaluation =
-      eval::evaluate_openloris(arguments.results, arguments.ground_truth,
-                               {.metric = {},
-                                .lifelong_thresholds = arguments.lifelong,
-                                .keep_repeated_poses = arguments.keep_repeated});
-  for (const std::string& sentence : evaluation.skipped) spdlog::warn("{}", sentence);
-  if (arguments.json) {
-    std::cout << report::openloris_json(evaluation).dump(2) << '\n';
-  } else {
-    const report::TableStyle style = arguments.csv        ? report::TableStyle::kCsv
-                                     : arguments.markdown ? report::TableStyle::kMarkdown
-                                                          : report::TableStyle::kText;
-    std::cout << report::openloris_table(evaluation.benchmark, style);
-  }
-  if (!arguments.figure.empty()) write_figure(arguments, evaluation.benchmark);
-  return kExitOk;
-}
-
-Command eval_openloris_command() {
-  const auto arguments = std::make_shared<OpenlorisArguments>();
-  OpenlorisArguments& a = *arguments;
-  return {
-      .name = "openloris",
-      .summary = "Evaluate OpenLORIS result files by scene; one folder per system",
-      .example = "eval openloris results --ground-truth groundtruth --figure openloris",
-      .options = {{"RESULTS", "Folder with one folder per system", &a.results},
-                  {"--ground-truth", "Folder with gt_<scene>_1.txt", &a.ground_truth},
-                  {"--figure", "Write the figure of the paper as BASE.svg and BASE.png", &a.figure},
-                  {"--force", "Replace existing files of --figure", &a.force},
-                  {"--lifelong",
-                   "Count poses as correct within 1, 3 or 5 m (by scene) and 30 deg [any pose is correct]",
-                   &a.lifelong},
-                  {"--keep-repeated", "Keep poses that are equal to their predecessor", &a.keep_repeated},
-                  {"--json", "Print JSON with full precision", &a.json},
-                  {"--csv", "Print CSV", &a.csv},
-                  {"--markdown", "Print Markdown", &a.markdown}},
-      .action = [arguments] { return evaluate_folder(*arguments); }};
 }
 
 }  // namespace

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "datasets/bags/bag_file.h"
 #include "datasets/bags/messages.h"
+#include "eval/io/nmea_file.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -84,12 +87,65 @@ TEST(BagTrajectory, PosesAreSortedAndRepairsCounted) {
   EXPECT_EQ(loaded.repairs.skipped, 1U);
   EXPECT_EQ(loaded.repairs.repeated, 1U);
   EXPECT_EQ(loaded.repairs.reordered, 1U);
+  EXPECT_EQ(loaded.repairs.unstamped, 1U);
+  EXPECT_EQ(eval::repair_texts(loaded.repairs).back(),
+            "1 row with the stamp 0: the time of recording is used");
   EXPECT_EQ(loaded.trajectory.frame, "base");
+}
+
+TEST(BagTrajectory, FixesOfAGnssReceiverBecomePositionsInAPlane) {
+  const TemporaryFolder folder;
+  BagWriter writer(folder.path() / "gnss.bag", ChunkCompression::kNone);
+  const std::uint32_t topic = writer.add_connection("/fix", "sensor_msgs/NavSatFix");
+  const auto write = [&](int i, int status, double latitude_deg) {
+    const NavSatFixMessage fix{.header = {.stamp = at_ms(100 * i), .frame = "gps"},
+                               .status = static_cast<std::int8_t>(status),
+                               .latitude_deg = latitude_deg,
+                               .longitude_deg = 11.0,
+                               .altitude_m = 500.0};
+    writer.write(topic, at_ms(100 * i), serialize(fix, writer.format()));
+  };
+  write(0, -1, 0.0);  // no fix
+  write(1, 0, 48.0);
+  write(2, 0, NAN);
+  write(3, 2, 48.0 + 1e-4);
+  writer.finish();
+  const BagFile bag(folder.path() / "gnss.bag");
+  for (const char* const name : {"/fix", "fix"}) {
+    const eval::LoadedTrajectory loaded = read_bag_trajectory(bag, name);
+    ASSERT_EQ(loaded.trajectory.poses.size(), 2U) << name;
+    EXPECT_EQ(loaded.trajectory.frame, eval::kGnssFrame);
+    EXPECT_EQ(loaded.repairs.skipped, 2U);
+    // A degree of latitude is 111.2 km at 48 degrees.
+    EXPECT_NEAR(loaded.trajectory.poses[1].T_w_f.p.y(), 11.12, 0.01);
+    EXPECT_NEAR(loaded.trajectory.poses[1].T_w_f.p.x(), 0.0, 1e-6);
+  }
+}
+
+TEST(BagTrajectory, CovariancesOfOdometryAreRead) {
+  const TemporaryFolder folder;
+  BagWriter writer(folder.path() / "odom.bag", ChunkCompression::kNone);
+  const std::uint32_t with = writer.add_connection("/odom", "nav_msgs/Odometry");
+  const std::uint32_t without = writer.add_connection("/pose", "geometry_msgs/PoseStamped");
+  PoseMessage pose = link("odom", "base", at_ms(0), shifted(1));
+  pose.covariance.emplace();
+  for (std::size_t i = 0; i < 6; ++i) (*pose.covariance)[7 * i] = 1.0 + static_cast<double>(i);
+  writer.write(with, at_ms(0), serialize_pose(pose, "nav_msgs/Odometry", writer.format()));
+  writer.write(without, at_ms(0), serialize_pose(pose, "geometry_msgs/PoseStamped", writer.format()));
+  writer.finish();
+  const auto rows = read_bag_covariances({.bag = folder.path() / "odom.bag", .topic = "/odom"});
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].t, at_ms(0));
+  EXPECT_EQ(rows[0].position.diagonal(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(rows[0].rotation.diagonal(), Eigen::Vector3d(4, 5, 6));
+  EXPECT_TRUE(read_bag_covariances({.bag = folder.path() / "odom.bag", .topic = "/pose"}).empty());
 }
 
 TEST(BagTrajectory, ArgumentsAreBagsAndTopics) {
   EXPECT_EQ(parse_bag_topic("a/b.bag:/gt")->topic, "/gt");
   EXPECT_EQ(parse_bag_topic("a/b.mcap:/tf:map.base")->bag, "a/b.mcap");
+  EXPECT_EQ(parse_bag_topic("a/b.mcap:/tf:map.base")->topic, "/tf:map.base");
+  EXPECT_EQ(parse_bag_topic("a/b.bag:odom")->topic, "/odom");
   EXPECT_FALSE(parse_bag_topic("a/b.txt:/gt"));
   EXPECT_FALSE(parse_bag_topic("a/b.bag"));
 }
