@@ -64,6 +64,12 @@ constexpr std::array<SharedDescription, kSharedCount> kDescriptions = {{
     {"depth delay", "ms", 1e3, 1e-3},
 }};
 
+/// @param stated value, for focal lengths
+double systematic_sigma(SharedValue value, double stated) {
+  const bool is_focal = value == kFx || value == kFy || value == kDepthFx || value == kDepthFy;
+  return kDescriptions[static_cast<std::size_t>(value)].systematic * (is_focal ? stated : 1.0);
+}
+
 void set(SharedFlags& flags, SharedValue first, int count, bool value) {
   std::fill_n(flags.begin() + static_cast<int>(first), count, value);
 }
@@ -71,7 +77,6 @@ void set(SharedFlags& flags, SharedValue first, int count, bool value) {
 /// The values that the data can determine at all.
 SharedFlags variable_values(const CalibrationSwitches& estimate, const CalibrationInput& input) {
   const bool inertial = !input.imu.empty();
-  const bool depth_camera = estimate.depth_camera && !input.depth_is_registered;
   SharedFlags flags{};
   set(flags, kFx, 2, estimate.focal);
   set(flags, kCx, 2, estimate.center);
@@ -79,9 +84,9 @@ SharedFlags variable_values(const CalibrationSwitches& estimate, const Calibrati
   set(flags, kReadout, 1, estimate.rolling_shutter);
   set(flags, kDepthScale, 1, estimate.depth_scale && inertial);
   set(flags, kDepthOffset, 1, estimate.depth_offset);
-  set(flags, kDepthFx, 4, depth_camera);
-  set(flags, kDepthPose, 6, depth_camera);
-  set(flags, kDepthDelay, 1, depth_camera);
+  set(flags, kDepthFx, 4, estimate.depth_intrinsics && !input.depth_is_registered);
+  set(flags, kDepthPose, 6, estimate.depth_pose && !input.depth_is_registered);
+  set(flags, kDepthDelay, 1, estimate.depth_pose && !input.depth_is_registered);
   set(flags, kExtrinsics, 6, estimate.extrinsics && inertial);
   set(flags, kTimeOffset, 1, estimate.time_offset && inertial);
   return flags;
@@ -221,16 +226,21 @@ SharedFlags observed_values(const SharedVector& sigmas, const SharedVector& prio
   return observed;
 }
 
-/// Makes numbers that are not observed constant, with their stated values; poses are kept.
+/// Makes numbers constant that are not observed, with their stated values; poses are kept. The readout time
+/// as well if it agrees with the stated one: a global shutter stays one.
 /// @return whether there are any
 bool set_back_unobserved(Solution& solution, const RigCalibration& stated, const SharedFlags& observed,
                          SharedFlags& is_variable) {
   const SharedValues from = shared_values(stated);
   SharedValues& to = solution.state.shared;
+  const SharedVector& sigmas = *solution.sigmas;
+  const double readout_sigma_s =
+      std::hypot(sigmas[static_cast<int>(kReadout)], systematic_sigma(kReadout, 0.0));
+  const bool readout_agrees = std::abs(to.readout_s - from.readout_s) < kDifferentSigmas * readout_sigma_s;
   bool changed = false;
   const auto visit = [&](SharedValue value, double& number, double stated_number) {
     const auto k = static_cast<std::size_t>(value);
-    if (!is_variable[k] || observed[k]) return;
+    if (!is_variable[k] || (observed[k] && !(value == kReadout && readout_agrees))) return;
     is_variable[k] = false;
     number = stated_number;
     changed = true;
@@ -298,7 +308,7 @@ class Calibration {
     result_.keyframes = solution_.state.keyframes.size();
     const SharedFlags wanted = is_variable_;
     estimate_all();
-    if (options_.hold_out && !rounds_.interrupted() && solution_.usable) estimate_halves();
+    if (options_.hold_out && !rounds_.interrupted() && solution_.sigmas) estimate_halves();
     describe();
     list_parameters(wanted);
     return std::move(result_);
@@ -313,7 +323,17 @@ class Calibration {
     if (rounds_.interrupted() || !set_back_unobserved(solution_, input_.stated, observed_, is_variable_))
       return;
     rounds_.run_round(solution_, is_variable_, false);
+    update_deviations();
+  }
+
+  /// Constant values keep the deviations that they had when they were variable.
+  void update_deviations() {
+    const SharedVector before = *solution_.sigmas;
     solution_.sigmas = rounds_.deviations(solution_, is_variable_);
+    if (!solution_.sigmas) return;
+    for (int i = 0; i < kSharedCount; ++i) {
+      if (!is_variable_[static_cast<std::size_t>(i)]) (*solution_.sigmas)[i] = before[i];
+    }
   }
 
   void estimate_halves() {
@@ -328,9 +348,9 @@ class Calibration {
     if (rounds_.interrupted() || result_.deviation_factor == 1.0) return;
     rounds_.weaken_data(result_.deviation_factor);
     for (int i = 0; i < kRoundsAfterHalves; ++i) rounds_.run_round(solution_, is_variable_, false);
-    solution_.sigmas = rounds_.deviations(solution_, is_variable_);
+    update_deviations();
     if (solution_.sigmas)
-      observed_ = observed_values(result_.deviation_factor * *solution_.sigmas, priors_, is_variable_);
+      observed_ = observed_values(result_.deviation_factor * *solution_.sigmas, priors_, observed_);
   }
 
   void describe() {
@@ -355,8 +375,7 @@ class Calibration {
       if (!listed[k]) continue;
       const SharedDescription& description = kDescriptions[k];
       const bool is_observed = solution_.sigmas && observed_[k];
-      const bool is_focal = k <= 1 || i == static_cast<int>(kDepthFx) || i == static_cast<int>(kDepthFy);
-      const double systematic = description.systematic * (is_focal ? stated[i] : 1.0);
+      const double systematic = systematic_sigma(static_cast<SharedValue>(i), stated[i]);
       const double sigma = is_observed
                                ? std::hypot(result_.deviation_factor * (*solution_.sigmas)[i], systematic)
                                : priors_[i];

@@ -55,8 +55,9 @@ struct CalibrationSwitches {
   bool rolling_shutter = true;
   bool depth_scale = true;  ///< with inertial data only
   bool depth_offset = false;
-  bool depth_camera = true;  ///< intrinsics and pose, of depth images that are not registered
-  bool extrinsics = true;    ///< with inertial data only, as the next
+  bool depth_intrinsics = true;  ///< of depth images that are not registered; as the next
+  bool depth_pose = true;        ///< and the delay of its images
+  bool extrinsics = true;        ///< with inertial data only, as the next
   bool time_offset = true;
 };
 

@@ -44,14 +44,16 @@ struct NamedSwitch {
   std::string_view name;
   bool CalibrationSwitches::*value;
 };
-constexpr std::array<NamedSwitch, 8> kSwitches = {{{"focal", &CalibrationSwitches::focal},
-                                                   {"center", &CalibrationSwitches::center},
-                                                   {"distortion", &CalibrationSwitches::distortion},
-                                                   {"rolling_shutter", &CalibrationSwitches::rolling_shutter},
-                                                   {"depth_scale", &CalibrationSwitches::depth_scale},
-                                                   {"depth_camera", &CalibrationSwitches::depth_camera},
-                                                   {"extrinsics", &CalibrationSwitches::extrinsics},
-                                                   {"time_offset", &CalibrationSwitches::time_offset}}};
+constexpr std::array<NamedSwitch, 9> kSwitches = {
+    {{"focal", &CalibrationSwitches::focal},
+     {"center", &CalibrationSwitches::center},
+     {"distortion", &CalibrationSwitches::distortion},
+     {"rolling_shutter", &CalibrationSwitches::rolling_shutter},
+     {"depth_scale", &CalibrationSwitches::depth_scale},
+     {"depth_intrinsics", &CalibrationSwitches::depth_intrinsics},
+     {"depth_pose", &CalibrationSwitches::depth_pose},
+     {"extrinsics", &CalibrationSwitches::extrinsics},
+     {"time_offset", &CalibrationSwitches::time_offset}}};
 
 std::string switch_names() {
   std::string names;
