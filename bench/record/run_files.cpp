@@ -104,6 +104,10 @@ Json image_waits_s(const RunSummary& summary) {
   return 1e-9 * static_cast<double>(waits->for_items.ns);
 }
 
+Json lens_json(const Eigen::Vector4d& lens) {
+  return {{"focal", lens[0]}, {"k1", lens[1]}, {"center_x", lens[2]}, {"center_y", lens[3]}};
+}
+
 Json calibration_json(const EstimatedCalibration& calibration) {
   const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
   const auto& [q, p] = calibration.T_b_c;
@@ -111,10 +115,8 @@ Json calibration_json(const EstimatedCalibration& calibration) {
           {"time_offset_sigma_s", or_null(calibration.time_offset_sigma_s)},
           {"depth_scale", calibration.depth_scale},
           {"depth_scale_sigma", or_null(calibration.depth_scale_sigma)},
-          {"focal_correction", calibration.lens[0]},
-          {"k1_correction", calibration.lens[1]},
-          {"focal_sigma", calibration.lens_sigma ? Json((*calibration.lens_sigma)[0]) : Json(nullptr)},
-          {"k1_sigma", calibration.lens_sigma ? Json((*calibration.lens_sigma)[1]) : Json(nullptr)},
+          {"lens_correction", lens_json(calibration.lens)},
+          {"lens_sigma", calibration.lens_sigma ? lens_json(*calibration.lens_sigma) : Json(nullptr)},
           {"T_b_c", {{"p_m", {p.x(), p.y(), p.z()}}, {"q_xyzw", {q.x(), q.y(), q.z(), q.w()}}}},
           {"extrinsics_sigma_m", or_null(calibration.extrinsics_sigma_m)},
           {"extrinsics_sigma_rad", or_null(calibration.extrinsics_sigma_rad)},

@@ -105,12 +105,12 @@ struct FrameSpan {
 struct EstimatedCalibration {
   double time_offset_s = 0.0;
   double depth_scale = 1.0;
-  Eigen::Vector2d lens = Eigen::Vector2d::Zero();  ///< corrections of focal length and k1
+  Eigen::Vector4d lens = Eigen::Vector4d::Zero();  ///< see OdometryUpdate
   Pose T_b_c;                                      ///< extrinsics
   /// Standard deviations, if `backend.covariance` is on; zero if constant. Those of the extrinsics are along
   /// the least certain direction.
   std::optional<double> time_offset_sigma_s, depth_scale_sigma, extrinsics_sigma_m, extrinsics_sigma_rad;
-  std::optional<Eigen::Vector2d> lens_sigma;  ///< same
+  std::optional<Eigen::Vector4d> lens_sigma;  ///< same
   /// Whether the data agrees with the rig, so that the value is that of the rig; absent if it is not compared
   /// (`backend.calibration_agreement_probability`).
   std::optional<bool> extrinsics_agree, depth_scale_agrees, lens_agrees;

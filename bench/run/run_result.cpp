@@ -67,11 +67,11 @@ std::vector<std::string> calibration_warnings(const EstimatedCalibration& calibr
         calibration.depth_scale, calibration.depth_scale_sigma.value_or(0.0)));
   }
   if (calibration.lens_agrees == false) {
-    warnings.push_back(
-        fmt::format("calibration: the data contradicts the lens of the rig; focal length {:+.2f} %, k1 "
-                    "{:+.4f}, the poses "
-                    "before it was estimated are less accurate",
-                    -100.0 * calibration.lens[0], -calibration.lens[1]));
+    warnings.push_back(fmt::format(
+        "calibration: the data contradicts the lens of the rig; focal length {:+.2f} %, k1 "
+        "{:+.4f}, center ({:+.4f}, {:+.4f}) focal lengths, the poses before it was estimated are "
+        "less accurate",
+        -100.0 * calibration.lens[0], -calibration.lens[1], -calibration.lens[2], -calibration.lens[3]));
   }
   if (calibration.extrinsics_agree == false) {
     warnings.push_back(

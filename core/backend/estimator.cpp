@@ -241,7 +241,7 @@ void Estimator::solve() {
   if (!solution.covariance) return;
   update_.covariance = solution.covariance->newest;
   monitor_.add_contradiction(window().frames.back().state.t, *update_.covariance);
-  calibration_.compare_with_rig(solution.covariance->rig, *update_.covariance, window_.states());
+  calibration_.compare_with_rig(solution.covariance->rig_step, *update_.covariance, window_.states());
 }
 
 /// The biases were part of a divergence, and are forgotten with it.

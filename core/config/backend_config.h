@@ -285,8 +285,8 @@ void visit_calibration_fields(Visitor&& field, Config& config) {
   field("estimate_extrinsics", config.estimate_extrinsics,
         FieldInfo{.text = "Whether the transform between camera and IMU is estimated."});
   field("estimate_lens", config.estimate_lens,
-        FieldInfo{.text = "Whether corrections of focal length and radial distortion are estimated; none "
-                          "without an IMU."});
+        FieldInfo{.text = "Whether corrections of focal length, radial distortion and principal point are "
+                          "estimated; none without an IMU."});
   field("extrinsics_sigma_m", config.extrinsics_sigma_m,
         FieldInfo{"Prior standard deviation of the lever arm around the calibrated value.", "m", 1e-6, 1.0});
   field("extrinsics_sigma_rad", config.extrinsics_sigma_rad,

@@ -37,7 +37,7 @@ struct StateCovariance {
   Matrix6 extrinsics = Matrix6::Zero();
   double time_offset = 0.0;                        ///< variance [s^2]; zero if constant
   double depth_scale = 0.0;                        ///< variance of its inverse; zero if constant
-  Eigen::Matrix2d lens = Eigen::Matrix2d::Zero();  ///< of the lens correction; zero if constant
+  Eigen::Matrix4d lens = Eigen::Matrix4d::Zero();  ///< of the lens correction; zero if constant
   bool inertial = false;                           ///< velocity and biases are estimated
 
   [[nodiscard]] Matrix6 pose() const { return state.topLeftCorner<6, 6>(); }

@@ -128,9 +128,10 @@ struct OdometryUpdate {
   StatusReason reason = StatusReason::kNone;
   int segment = 0;        ///< number of the world frame; a new one begins after a loss without relocation
   bool inertial = false;  ///< whether inertial samples propagate `state`; else constant velocity does
-  double time_offset_s = 0.0;                      ///< current estimate
-  double depth_scale = 1.0;                        ///< ratio of measured to true depth; current estimate
-  Eigen::Vector2d lens = Eigen::Vector2d::Zero();  ///< lens correction (focal length, k1); current estimate
+  double time_offset_s = 0.0;  ///< current estimate
+  double depth_scale = 1.0;    ///< ratio of measured to true depth; current estimate
+  /// Current estimate of the lens correction (f, k1, cx, cy), see core/backend/factors/reprojection_rows.h.
+  Eigen::Vector4d lens = Eigen::Vector4d::Zero();
   CalibrationAtBound at_bound;
   AgreesWithRig agrees_with_rig;
   ImuNoiseFactors imu_noise;  ///< current estimate

@@ -15,7 +15,7 @@ namespace stillpoint {
 namespace {
 
 /// Of a prior: 15 states per frame, and the global ones.
-constexpr int kMaxSize = 15 * (kMaxWindowSize + 1) + 12;
+constexpr int kMaxSize = 15 * (kMaxWindowSize + 1) + 14;
 
 }  // namespace
 

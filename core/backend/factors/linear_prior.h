@@ -19,11 +19,11 @@ enum class BlockKind { kPose, kSpeedBias, kExtrinsics, kTimeOffset, kGravity, kD
 
 /// Number of doubles in a parameter block, and of its tangent space.
 [[nodiscard]] constexpr int global_size(BlockKind kind) {
-  constexpr int kSizes[] = {7, 9, 7, 1, 3, 1, 2};
+  constexpr int kSizes[] = {7, 9, 7, 1, 3, 1, 4};
   return kSizes[static_cast<std::size_t>(kind)];
 }
 [[nodiscard]] constexpr int local_size(BlockKind kind) {
-  constexpr int kSizes[] = {6, 9, 6, 1, 2, 1, 2};
+  constexpr int kSizes[] = {6, 9, 6, 1, 2, 1, 4};
   return kSizes[static_cast<std::size_t>(kind)];
 }
 

@@ -20,11 +20,20 @@
 /// bounded rho (Geman & McClure 1985) keeps a depth measured across an object's edge from outweighing the
 /// bearing.
 ///
-/// If the lens differs from that of the rig, with c = (f, k1) and the bearing s that its camera gives,
+/// If the lens differs from that of the rig, with c = (f, k1, cx, cy) and the bearing s that its camera
+/// gives,
 ///
-///   u = s (1 + f + k1 |s|^2),    du/dc = s (1, |s|^2):
+///   u = s (1 + f + k1 |s|^2) + (cx, cy),    du/dc = [s  s |s|^2  I]:
 ///
-/// f is the relative error of the stated focal length, k1 what the radial distortion lacks.
+/// f is the relative error of the stated focal length, k1 what the radial distortion lacks, (cx, cy) the
+/// principal point that is stated minus the true one, in focal lengths. The noise of the bearing is magnified
+/// with it, by the mean of the radial and the tangential derivative:
+///
+///   sigma_u -> g_j sigma_u,    g = 1 + f + 2 k1 |s|^2,    dr_u/dc = -[s_j  s_j |s_j|^2  I] / (g_j sigma_u)
+///                                                                    - r_u (1, 2 |s_j|^2, 0, 0) / g_j
+///
+/// With sigma_u alone a longer focal length would have less noise, and be found where there is little
+/// parallax: 5 % on a robot that drives slowly.
 ///
 /// Scaling the point by lambda removes the pole at infinity: the residual is defined for every inverse depth,
 /// including zero and negative values, and for points behind camera j. One outlier therefore cannot make the
@@ -44,14 +53,24 @@ struct ReprojectionNoise {
   double depth_outlier = 2.0;  ///< the depth row saturates at this many standard deviations
 };
 
-/// Correction factor of a bearing, 1 + f + k1 |s|^2, and its derivative (1, |s|^2). @param seen s
-[[nodiscard]] inline Eigen::RowVector2d lens_powers(const Eigen::Vector2d& seen) {
-  return {1.0, seen.squaredNorm()};
+/// du/dc. @param seen s
+[[nodiscard]] inline Eigen::Matrix<double, 2, 4> lens_jacobian(const Eigen::Vector2d& seen) {
+  Eigen::Matrix<double, 2, 4> J;
+  J << seen, seen * seen.squaredNorm(), Eigen::Matrix2d::Identity();
+  return J;
 }
 [[nodiscard]] inline Eigen::Vector2d corrected_bearing(const Eigen::Vector2d& seen,
-                                                       const Eigen::Vector2d& lens) {
+                                                       const Eigen::Vector4d& lens) {
   if (lens.isZero(0.0)) return seen;  // also where the square of the bearing overflows
-  return (1.0 + lens_powers(seen) * lens) * seen;
+  return seen + lens_jacobian(seen) * lens;
+}
+
+/// g, and dg/dc. @param seen s
+[[nodiscard]] inline double lens_noise_ratio(const Eigen::Vector2d& seen, const Eigen::Vector4d& lens) {
+  return lens.isZero(0.0) ? 1.0 : 1.0 + lens[0] + 2.0 * lens[1] * seen.squaredNorm();
+}
+[[nodiscard]] inline Eigen::RowVector4d lens_noise_gradient(const Eigen::Vector2d& seen) {
+  return {1.0, 2.0 * seen.squaredNorm(), 0.0, 0.0};
 }
 
 /// Bounded error rho(d) = d / sqrt(1 + (d/c)^2) of a whitened error d (Geman & McClure 1985), |rho| < c, and
@@ -69,6 +88,7 @@ struct BoundedError {
 /// Measurement of a landmark in frame j.
 struct MeasuredPoint {
   Eigen::Vector2d bearing = Eigen::Vector2d::Zero();  ///< at the time of the state, normalized image plane
+  double noise_ratio = 1.0;                           ///< g
   double inverse_depth = 0.0;                         ///< measured [1/m]
   double inverse_depth_scale = 1.0;                   ///< ratio of true to measured depth
   bool has_depth = false;                             ///< whether the depth row is evaluated
@@ -93,7 +113,7 @@ inline constexpr double kMinDepthRatio = 0.01;
   const bool in_front = p_cj.z() > kMinDepthRatio;
   const double inverse_z = 1.0 / (in_front ? p_cj.z() : kMinDepthRatio);
   const double dlog_dz = in_front ? -inverse_z : 0.0;  // d log(1/z) / dz
-  const double weight = 1.0 / noise.bearing;
+  const double weight = 1.0 / (noise.bearing * observation.noise_ratio);
   const Eigen::Vector2d projected = p_cj.head<2>() * inverse_z;
 
   ReprojectionRows rows;

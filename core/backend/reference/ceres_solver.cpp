@@ -75,7 +75,7 @@ class WindowProblem {
     add_state(blocks_.time_offset(), 1, nullptr);
     add_state(blocks_.gravity(), 3, &gravity_manifold_);
     add_state(blocks_.inverse_depth_scale(), 1, nullptr);
-    add_state(blocks_.lens(), 2, nullptr);
+    add_state(blocks_.lens(), 4, nullptr);
   }
 
   void add_state(double* block, int size, ceres::Manifold* manifold) {
@@ -230,9 +230,9 @@ std::optional<WindowCovariance> CeresSolver::covariance(const Window& window, co
   const std::vector<BlockRef> blocks = newest_blocks(window, config);
   WindowCovariance result{.newest = state_covariance(blocks, inverse_blocks(blocks))};
   const Eigen::VectorXd step = -inverse * equations.b(columns);
-  result.rig =
-      rig_contradiction(window.agrees_with_rig, blocks, inverse_blocks(blocks),
-                        step.head(static_cast<Eigen::Index>(columns_of(blocks, equations.layout).size())));
+  result.rig_step =
+      rig_step(window.agrees_with_rig, blocks,
+               step.head(static_cast<Eigen::Index>(columns_of(blocks, equations.layout).size())));
   if (oldest_motion) result.oldest_motion = oldest_motion_of(window, inverse_blocks(kOldestPoses));
   return result;
 }

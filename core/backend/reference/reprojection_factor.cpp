@@ -97,7 +97,9 @@ template <int Rows>
 bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
   const ReprojectionMeasurement& m = measurement_;
   const double time_offset = x[3][0];
-  const Eigen::Vector2d lens_change = Eigen::Vector2d(x[4]) - m.lens;
+  const Eigen::Vector4d lens = Eigen::Vector4d(x[4]);
+  const Eigen::Vector4d lens_change = lens - m.lens;
+  const double noise_ratio = lens_noise_ratio(m.seen_j, lens);
   const Eigen::Vector2d bearing_i = m.bearing_i + corrected_bearing(m.seen_i, lens_change) - m.seen_i -
                                     (time_offset + m.exposure_i_s) * m.velocity_i;
   const Eigen::Vector2d bearing_j = m.bearing_j + corrected_bearing(m.seen_j, lens_change) - m.seen_j -
@@ -107,6 +109,7 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   const TransferredPoint t(x, x[kLambda][0], bearing_i);
   const ReprojectionRows rows = reprojection_rows(t.p_cj, t.lambda,
                                                   {.bearing = bearing_j,
+                                                   .noise_ratio = noise_ratio,
                                                    .inverse_depth = m.inverse_depth_j,
                                                    .inverse_depth_scale = inverse_depth_scale,
                                                    .has_depth = Rows == 3},
@@ -123,12 +126,13 @@ bool ReprojectionFactor<Rows>::Evaluate(double const* const* x, double* residual
   if (jacobians[3] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, Rows, 1>> J(jacobians[3]);
     J = J_ray.template leftCols<2>() * -m.velocity_i;
-    J.template head<2>() += m.velocity_j / noise_.bearing;
+    J.template head<2>() += m.velocity_j / (noise_ratio * noise_.bearing);
   }
   if (jacobians[4] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, Rows, 2, Eigen::RowMajor>> J(jacobians[4]);
-    J = J_ray.template leftCols<2>() * m.seen_i * lens_powers(m.seen_i);
-    J.template topRows<2>() -= m.seen_j / noise_.bearing * lens_powers(m.seen_j);
+    Eigen::Map<Eigen::Matrix<double, Rows, 4, Eigen::RowMajor>> J(jacobians[4]);
+    J = J_ray.template leftCols<2>() * lens_jacobian(m.seen_i);
+    J.template topRows<2>() -= lens_jacobian(m.seen_j) / (noise_ratio * noise_.bearing) +
+                               rows.residual.head<2>() * lens_noise_gradient(m.seen_j) / noise_ratio;
   }
   if (Rows == 3 && jacobians[5] != nullptr) {
     Eigen::Map<Eigen::Vector3d>{jacobians[5]} = rows.J_depth_scale * Eigen::Vector3d::UnitZ();

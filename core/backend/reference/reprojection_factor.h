@@ -18,7 +18,7 @@ struct ReprojectionMeasurement {
   Eigen::Vector2d bearing_j = Eigen::Vector2d::Zero();
   Eigen::Vector2d seen_i = Eigen::Vector2d::Zero();  ///< by the camera of the rig
   Eigen::Vector2d seen_j = Eigen::Vector2d::Zero();
-  Eigen::Vector2d lens = Eigen::Vector2d::Zero();        ///< with which the bearings were corrected
+  Eigen::Vector4d lens = Eigen::Vector4d::Zero();        ///< with which the bearings were corrected
   Eigen::Vector2d velocity_i = Eigen::Vector2d::Zero();  ///< of the bearing [1/s]
   Eigen::Vector2d velocity_j = Eigen::Vector2d::Zero();
   double exposure_i_s = 0.0;  ///< row readout offset minus the time offset at which state i is defined
@@ -34,8 +34,8 @@ struct ReprojectionMeasurement {
 /// poses, where given; the residual is not.
 template <int Rows>
 class ReprojectionFactor final
-    : public std::conditional_t<Rows == 3, ceres::SizedCostFunction<3, 7, 7, 7, 1, 2, 1, 1>,
-                                ceres::SizedCostFunction<2, 7, 7, 7, 1, 2, 1>> {
+    : public std::conditional_t<Rows == 3, ceres::SizedCostFunction<3, 7, 7, 7, 1, 4, 1, 1>,
+                                ceres::SizedCostFunction<2, 7, 7, 7, 1, 4, 1>> {
   static_assert(Rows == 2 || Rows == 3);
 
  public:

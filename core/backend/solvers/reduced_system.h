@@ -50,7 +50,7 @@ class ReducedLayout {
   [[nodiscard]] const VariableGlobals& variable_globals() const { return variable_; }
 
  private:
-  [[nodiscard]] int globals() const { return first_lens() + (variable_.lens ? 2 : 0) - first_global(); }
+  [[nodiscard]] int globals() const { return first_lens() + (variable_.lens ? 4 : 0) - first_global(); }
   [[nodiscard]] int first_global() const { return first_pose() + 6 * frames_; }
   [[nodiscard]] int first_gravity() const { return first_global() + (variable_.extrinsics ? 6 : 0); }
   [[nodiscard]] int first_time_offset() const { return first_gravity() + (variable_.gravity ? 2 : 0); }

@@ -152,7 +152,7 @@ void SchurSolver::apply_step() {
   const int depth_scale = layout_.column({BlockKind::kDepthScale});
   if (depth_scale >= 0) *candidate_.inverse_depth_scale() += step_.states[depth_scale];
   const int lens = layout_.column({BlockKind::kLens});
-  if (lens >= 0) Eigen::Map<Eigen::Vector2d>{candidate_.lens()} += step_.states.segment<2>(lens);
+  if (lens >= 0) Eigen::Map<Eigen::Vector4d>{candidate_.lens()} += step_.states.segment<4>(lens);
   const int gravity = layout_.column({BlockKind::kGravity});
   if (gravity >= 0) {
     Eigen::Map<Eigen::Vector3d> g(candidate_.gravity());
@@ -318,7 +318,7 @@ std::optional<WindowCovariance> SchurSolver::covariance(const Window& window, co
     NewestVector step(static_cast<Eigen::Index>(columns_.size()));  // a view by columns_ would copy them
     for (std::size_t i = 0; i < columns_.size(); ++i)
       step[static_cast<Eigen::Index>(i)] = newton_.states[columns_[i]];
-    result.rig = rig_contradiction(window.agrees_with_rig, prior_blocks_, newest, step);
+    result.rig_step = rig_step(window.agrees_with_rig, prior_blocks_, step);
   }
   if (oldest_motion) result.oldest_motion = oldest_motion_of(window, inverse_blocks(kOldestPoses));
   return result;

@@ -26,7 +26,7 @@ void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajor
                      Eigen::Ref<Eigen::VectorXd> x);
 
 /// Several right-hand sides; unused columns are zero.
-using ForwardColumns = Eigen::Matrix<double, Eigen::Dynamic, 28, Eigen::RowMajor>;
+using ForwardColumns = Eigen::Matrix<double, Eigen::Dynamic, 32, Eigen::RowMajor>;
 
 /// X <- L^-1 X. Rows of X before `begin` are zero; a multiple of kTile.
 void skyline_forward(std::span<const int> first, const Eigen::Ref<const RowMajorMatrix>& factor, int begin,

@@ -8,7 +8,7 @@ namespace stillpoint {
 
 /// The bearing at the time of the state, with the present time offset and lens.
 Eigen::Vector2d VisualTerms::at_state(const TimedBearing& timed) const {
-  const Eigen::Vector2d change = corrected_bearing(timed.seen, lens_change_) - timed.seen;
+  const Eigen::Vector2d change = corrected_bearing(timed.seen, lens_ - lens_at_read_) - timed.seen;
   return timed.bearing + change - (time_offset_ + timed.exposure_s) * timed.velocity;
 }
 
@@ -79,6 +79,7 @@ VisualTerms::LandmarkState VisualTerms::state_of(const VisualLandmark& landmark,
 
 MeasuredPoint VisualTerms::measured_point_at(const TimedObservation& observation) const {
   return {.bearing = at_state(observation.bearing),
+          .noise_ratio = lens_noise_ratio(observation.bearing.seen, lens_),
           .inverse_depth = observation.inverse_depth,
           .inverse_depth_scale = inverse_depth_scale_,
           .has_depth = observation.has_depth};
@@ -139,8 +140,8 @@ double VisualTerms::add_to(ReducedSystem& system, const Linearization& at) {
     system.g[depth_scale] += host_scale_gradient_;
   }
   const int lens = system.layout.column({BlockKind::kLens});
-  if (lens >= 0) system.H.block<2, 2>(lens, lens) += lens_information_;
-  if (lens >= 0 && depth_scale >= 0) system.H.block<2, 1>(lens, depth_scale) += lens_scale_.transpose();
+  if (lens >= 0) system.H.block<4, 4>(lens, lens) += lens_information_;
+  if (lens >= 0 && depth_scale >= 0) system.H.block<4, 1>(lens, depth_scale) += lens_scale_;
   return 0.5 * total;
 }
 
@@ -148,7 +149,8 @@ VisualTerms::ObservationTerm VisualTerms::linearize(const TimedObservation& time
                                                     const RelativePoseLinearization& to,
                                                     const LandmarkState& host) const {
   const Eigen::Vector3d p_cj = to.R_cj_ci * host.ray + host.lambda * to.p_cj_ci;
-  const ReprojectionRows at = reprojection_rows(p_cj, host.lambda, measured_point_at(timed), noise_);
+  const MeasuredPoint measured = measured_point_at(timed);
+  const ReprojectionRows at = reprojection_rows(p_cj, host.lambda, measured, noise_);
   const double x = p_cj.x(), y = p_cj.y(), z = p_cj.z();
   const double J_xy = at.J_point(0, 0), J_xz = at.J_point(0, 2), J_yz = at.J_point(1, 2);
   const double J_zz = at.J_point(2, 2);
@@ -168,13 +170,16 @@ VisualTerms::ObservationTerm VisualTerms::linearize(const TimedObservation& time
       const Eigen::Vector3d J_point = at.J_point.row(row).transpose();
       term.rows(6, row) = J_point.dot(J_time);
     }
-    term.rows.row(6).head<2>() += timed.bearing.velocity.transpose() / noise_.bearing;
+    term.rows.row(6).head<2>() +=
+        timed.bearing.velocity.transpose() / (measured.noise_ratio * noise_.bearing);
   }
   if (lens_varies_) {
-    const Eigen::Vector3d J_host = at.J_point * (to.R_cj_ci.leftCols<2>() * host.seen);
-    term.J_lens = lens_powers(host.seen).transpose() * J_host.transpose();
+    const Eigen::Matrix<double, 3, 2> J_host = at.J_point * to.R_cj_ci.leftCols<2>();
+    term.J_lens.noalias() = lens_jacobian(host.seen).transpose() * J_host.transpose();
     term.J_lens.leftCols<2>() -=
-        lens_powers(timed.bearing.seen).transpose() * (timed.bearing.seen.transpose() / noise_.bearing);
+        lens_jacobian(timed.bearing.seen).transpose() / (measured.noise_ratio * noise_.bearing) +
+        lens_noise_gradient(timed.bearing.seen).transpose() * at.residual.head<2>().transpose() /
+            measured.noise_ratio;
   }
   term.J_lambda = at.J_point * to.p_cj_ci;
   term.J_lambda[2] += at.J_depth_lambda;
@@ -219,12 +224,12 @@ double VisualTerms::linearize(const VisualLandmark& landmark, const ParameterBlo
 /// The same terms of the lens, by all rows of one observation.
 void VisualTerms::add_lens_terms(const VisualLandmark& landmark, int frame, const ObservationTerm& term,
                                  const ReducedLayout& layout) {
-  const Eigen::Matrix<double, 2, 3> weighted = term.J_lens / term.inverse_weight;
+  const Eigen::Matrix<double, 4, 3> weighted = term.J_lens / term.inverse_weight;
   lens_sums_[pair(landmark.host, frame)].noalias() += term.rows * weighted.transpose();
   lens_information_.noalias() += weighted * term.J_lens.transpose();
-  lens_scale_ += term.J_scale * weighted.col(2).transpose();
+  lens_scale_ += term.J_scale * weighted.col(2);
   if (landmark.column < 0) return;
-  coupling_.block<2, 1>(layout.column({BlockKind::kLens}) - layout.first_pose(), landmark.column) +=
+  coupling_.block<4, 1>(layout.column({BlockKind::kLens}) - layout.first_pose(), landmark.column) +=
       weighted * term.J_lambda;
 }
 
@@ -271,7 +276,7 @@ CameraOnBody VisualTerms::place_cameras(const ParameterBlocks& blocks) {
 void VisualTerms::update_relative_poses(const ParameterBlocks& blocks) {
   time_offset_ = *blocks.time_offset();
   inverse_depth_scale_ = *blocks.inverse_depth_scale();
-  lens_change_ = Eigen::Vector2d(blocks.lens()) - lens_at_read_;
+  lens_ = Eigen::Vector4d(blocks.lens());
   const CameraOnBody camera = place_cameras(blocks);
   for (std::size_t host = 0; host < cameras_.size(); ++host) {
     for (std::size_t frame = host + 1; frame < cameras_.size(); ++frame) {
@@ -327,7 +332,7 @@ void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
   const int scale = system.layout.column({BlockKind::kDepthScale});
   const Column8& scale_sum = scale_sums_[pair(host, frame)];
   const int lens = system.layout.column({BlockKind::kLens});
-  const Eigen::Matrix<double, 8, 2>& lens_sum = lens_sums_[pair(host, frame)];
+  const Eigen::Matrix<double, 8, 4>& lens_sum = lens_sums_[pair(host, frame)];
   for (const PoseBlock& a : pose_blocks) {
     if (a.column < 0) continue;
     const Matrix6 left = a.map.transpose() * sum.topLeftCorner<6, 6>();
@@ -341,13 +346,13 @@ void VisualTerms::add_pair(int host, int frame, ReducedSystem& system) const {
       system.H.block<1, 6>(scale, a.column).noalias() += scale_sum.head<6>().transpose() * a.map;
     }
     if (lens >= 0) {
-      system.H.block<2, 6>(lens, a.column).noalias() += lens_sum.topRows<6>().transpose() * a.map;
+      system.H.block<4, 6>(lens, a.column).noalias() += lens_sum.topRows<6>().transpose() * a.map;
     }
   }
   if (scale >= 0) system.g[scale] += scale_sum[7];
   if (scale >= 0 && time >= 0) system.H(scale, time) += scale_sum[6];
-  if (lens >= 0) system.g.segment<2>(lens) += lens_sum.row(7).transpose();
-  if (lens >= 0 && time >= 0) system.H.block<2, 1>(lens, time) += lens_sum.row(6).transpose();
+  if (lens >= 0) system.g.segment<4>(lens) += lens_sum.row(7).transpose();
+  if (lens >= 0 && time >= 0) system.H.block<4, 1>(lens, time) += lens_sum.row(6).transpose();
   if (time < 0) return;
   system.H(time, time) += sum(6, 6);
   system.g[time] += sum(6, 7);

@@ -33,7 +33,7 @@ enum class LandmarkSelection { kAll, kHostedByOldest };
 ///
 /// If the inverse depth scale k is variable, it has the sum a_ij = sum w J_k [J_y r] per pair, mapped
 /// likewise to H_pk and g_k, and H_kk = sum w J_k^2; both only from depth rows. The lens c has the same sums
-/// with two columns.
+/// with four columns.
 class VisualTerms {
  public:
   /// Reads the observations of a window; allocates only if it is larger than all windows before.
@@ -90,7 +90,7 @@ class VisualTerms {
     Eigen::Matrix<double, 8, 3> rows;  // [J_y r]^T
     Eigen::Vector3d J_lambda;
     double J_scale;  // of the depth row
-    Eigen::Matrix<double, 2, 3> J_lens;
+    Eigen::Matrix<double, 4, 3> J_lens;
     double inverse_weight;  // 1 / w
   };
 
@@ -133,8 +133,8 @@ class VisualTerms {
   double cauchy_squared_ = 1.0;
   double time_offset_ = 0.0;
   double inverse_depth_scale_ = 1.0;
-  Eigen::Vector2d lens_at_read_ = Eigen::Vector2d::Zero();
-  Eigen::Vector2d lens_change_ = Eigen::Vector2d::Zero();  // since then
+  Eigen::Vector4d lens_at_read_ = Eigen::Vector4d::Zero();
+  Eigen::Vector4d lens_ = Eigen::Vector4d::Zero();
   ReprojectionNoise noise_;
   ObservationModel observation_model_;
   std::vector<VisualLandmark> landmarks_;
@@ -144,11 +144,11 @@ class VisualTerms {
   std::vector<RelativePoseLinearization> relative_poses_;
   std::vector<PairSum> sums_;
   std::vector<Column8> scale_sums_;  // a_ij
-  std::vector<Eigen::Matrix<double, 8, 2>> lens_sums_;
-  Eigen::Matrix2d lens_information_ = Eigen::Matrix2d::Zero();
-  Eigen::RowVector2d lens_scale_ = Eigen::RowVector2d::Zero();  // of H
-  double scale_information_ = 0.0;                              // H_ss
-  double host_scale_gradient_ = 0.0;                            // part of g_s
+  std::vector<Eigen::Matrix<double, 8, 4>> lens_sums_;
+  Eigen::Matrix4d lens_information_ = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d lens_scale_ = Eigen::Vector4d::Zero();  // of H
+  double scale_information_ = 0.0;                        // H_ss
+  double host_scale_gradient_ = 0.0;                      // part of g_s
   int variable_count_ = 0;
   std::vector<int> host_frames_;  // host of each variable landmark
   ReusableVector information_;

@@ -81,7 +81,7 @@ Pose unpack_pose(const double* values) {
 
 void ParameterBlocks::assign(const Window& window) {
   frames_ = window.frames.size();
-  values_.resize(16 * frames_ + 14 + window.landmarks.size());
+  values_.resize(16 * frames_ + 16 + window.landmarks.size());
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
     const NavState& state = window.frames[i].state;
     pack_pose(state.T_w_b, pose(i));
@@ -90,7 +90,7 @@ void ParameterBlocks::assign(const Window& window) {
   pack_pose(window.T_b_c, extrinsics());
   *time_offset() = window.time_offset_s;
   *inverse_depth_scale() = 1.0 / window.depth_scale;
-  Eigen::Map<Eigen::Vector2d>{lens()} = window.lens;
+  Eigen::Map<Eigen::Vector4d>{lens()} = window.lens;
   Eigen::Map<Eigen::Vector3d>{gravity()} = window.gravity_w;
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     *inverse_depth(i) = window.landmarks[i].inverse_depth;
@@ -148,7 +148,7 @@ void unpack(const ParameterBlocks& blocks, Window& window) {
   window.T_b_c = unpack_pose(blocks.extrinsics());
   window.time_offset_s = *blocks.time_offset();
   window.depth_scale = 1.0 / *blocks.inverse_depth_scale();
-  set_lens(Eigen::Vector2d(blocks.lens()), window);
+  set_lens(Eigen::Vector4d(blocks.lens()), window);
   window.gravity_w = Eigen::Vector3d(blocks.gravity());
   for (std::size_t i = 0; i < window.landmarks.size(); ++i) {
     window.landmarks[i].inverse_depth = *blocks.inverse_depth(i);

@@ -79,7 +79,7 @@ class ParameterBlocks {
   [[nodiscard]] double* gravity() { return &values_[16 * frames_ + 8]; }
   [[nodiscard]] double* inverse_depth_scale() { return &values_[16 * frames_ + 11]; }
   [[nodiscard]] double* lens() { return &values_[16 * frames_ + 12]; }
-  [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 14 + landmark]; }
+  [[nodiscard]] double* inverse_depth(std::size_t landmark) { return &values_[16 * frames_ + 16 + landmark]; }
   [[nodiscard]] double* at(BlockRef block) { return &values_[offset(block)]; }
 
   [[nodiscard]] const double* pose(std::size_t frame) const { return &values_[7 * frame]; }
@@ -92,7 +92,7 @@ class ParameterBlocks {
   [[nodiscard]] const double* inverse_depth_scale() const { return &values_[16 * frames_ + 11]; }
   [[nodiscard]] const double* lens() const { return &values_[16 * frames_ + 12]; }
   [[nodiscard]] const double* inverse_depth(std::size_t landmark) const {
-    return &values_[16 * frames_ + 14 + landmark];
+    return &values_[16 * frames_ + 16 + landmark];
   }
   [[nodiscard]] const double* at(BlockRef block) const { return &values_[offset(block)]; }
 

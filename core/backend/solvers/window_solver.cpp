@@ -67,7 +67,7 @@ StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestM
         result.depth_scale = covariance(column, column);
         break;
       case BlockKind::kLens:
-        result.lens = covariance.block<2, 2>(column, column);
+        result.lens = covariance.block<4, 4>(column, column);
         break;
     }
     column += local_size(block.kind);
@@ -75,20 +75,14 @@ StateCovariance state_covariance(std::span<const BlockRef> blocks, const NewestM
   return result;
 }
 
-RigContradiction rig_contradiction(const AgreesWithRig& constant, std::span<const BlockRef> blocks,
-                                   const NewestMatrix& covariance, const NewestVector& step) {
-  RigContradiction result;
+RigStep rig_step(const AgreesWithRig& constant, std::span<const BlockRef> blocks, const NewestVector& step) {
+  RigStep result;
   int column = 0;
   for (const BlockRef block : blocks) {
-    if (block.kind == BlockKind::kExtrinsics && constant.extrinsics) {
-      const auto d = step.segment<6>(column);
-      result.extrinsics = d.dot(covariance.block<6, 6>(column, column).llt().solve(d));
-    }
-    if (block.kind == BlockKind::kDepthScale && constant.depth_scale) {
-      result.depth_scale_step = step[column];
-      result.depth_scale = step[column] * step[column] / covariance(column, column);
-    }
-    if (block.kind == BlockKind::kLens && constant.lens) result.lens_step = step.segment<2>(column);
+    if (block.kind == BlockKind::kExtrinsics && constant.extrinsics)
+      result.extrinsics = step.segment<6>(column);
+    if (block.kind == BlockKind::kDepthScale && constant.depth_scale) result.depth_scale = step[column];
+    if (block.kind == BlockKind::kLens && constant.lens) result.lens = step.segment<4>(column);
     column += local_size(block.kind);
   }
   return result;

@@ -24,24 +24,19 @@ struct SolveReport {
   bool usable = true;  ///< false: the solver failed and the window is unchanged
 };
 
-/// How strongly the residuals contradict calibration that is constant in the solve (Window::agrees_with_rig):
-/// with the Gauss-Newton step d of that calibration if it were variable, and its covariance C,
-///
-///   d^T C^-1 d,
-///
-/// chi-square distributed if the values of the rig are true (score test, Rao 1948), with six degrees of
-/// freedom for the extrinsics and one for the depth scale. Zero for calibration that is variable in the
-/// solve.
-struct RigContradiction {
-  double extrinsics = 0.0;
-  double depth_scale = 0.0;
-  double depth_scale_step = 0.0;                        ///< d, of the inverse depth scale
-  Eigen::Vector2d lens_step = Eigen::Vector2d::Zero();  ///< d
+/// What the residuals say about calibration that is constant in the solve (Window::agrees_with_rig): the
+/// Gauss-Newton step d of that calibration if it were variable. With its covariance C, d^T C^-1 d is
+/// chi-square distributed if the values of the rig are true (score test, Rao 1948). Zero for calibration that
+/// is variable in the solve.
+struct RigStep {
+  Eigen::Matrix<double, 6, 1> extrinsics = Eigen::Matrix<double, 6, 1>::Zero();
+  double depth_scale = 0.0;  ///< of its inverse
+  Eigen::Vector4d lens = Eigen::Vector4d::Zero();
 };
 
 struct WindowCovariance {
   StateCovariance newest;
-  RigContradiction rig;
+  RigStep rig_step;
   /// Of the motion T_b0_b1 from the oldest frame to the next one; absent unless requested.
   std::optional<UncertainPose> oldest_motion;
 };
@@ -105,8 +100,8 @@ class WindowSolver {
 
 // The blocks whose covariance is reported with each frame, and their place in WindowCovariance.
 
-/// At most 27 rows: pose, velocity and biases, gravity, extrinsics, time offset, depth scale, lens.
-using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 27, 27>;
+/// At most 29 rows: pose, velocity and biases, gravity, extrinsics, time offset, depth scale, lens.
+using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 29, 29>;
 
 /// Pose of the newest frame, its velocity and biases if there are any, and the variable global states.
 /// @param recycled storage for the result; its content is ignored
@@ -118,13 +113,12 @@ using NewestMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
                                                const NewestMatrix& covariance);
 
 /// At most as many rows as NewestMatrix.
-using NewestVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 27, 1>;
+using NewestVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 29, 1>;
 
-/// @param blocks, covariance as in `state_covariance`
+/// @param blocks as in `state_covariance`
 /// @param step Gauss-Newton step of the blocks, if all of them were variable
-[[nodiscard]] RigContradiction rig_contradiction(const AgreesWithRig& constant,
-                                                 std::span<const BlockRef> blocks,
-                                                 const NewestMatrix& covariance, const NewestVector& step);
+[[nodiscard]] RigStep rig_step(const AgreesWithRig& constant, std::span<const BlockRef> blocks,
+                               const NewestVector& step);
 
 inline constexpr std::array<BlockRef, 2> kOldestPoses = {BlockRef{BlockKind::kPose, 0},
                                                          BlockRef{BlockKind::kPose, 1}};

@@ -24,8 +24,9 @@ constexpr double kAccelScale = 0.006;
 constexpr double kNoiseKnown_s = 1.5;
 /// Squared difference, in variances, below which a scale that differed is again that of the rig.
 constexpr double kLikeRig = 4.0;
-/// Relative error of the focal length and error of k1 that a calibration leaves.
-const Eigen::Vector2d kLensTolerance{0.002, 0.004};
+/// What a calibration leaves: relative error of the focal length, of k1, and half a pixel of the center.
+const Eigen::Vector4d kLensTolerance{0.002, 0.004, 0.001, 0.001};
+constexpr double kRigLever_m = 0.01;            // what a calibration leaves of the lever arm
 constexpr double kAveragingHalfWidth_s = 0.02;  // as far as samples are available after the newest exposure
 
 /// Limits `value` to [center - bound, center + bound]. @return whether it was outside
@@ -105,25 +106,32 @@ double Calibration::depth_scale_contradiction(double difference, double variance
 }
 
 /// d^T (C + S)^-1 d with S what a calibration is good to.
-void Calibration::compare_lens(const Eigen::Vector2d& step, const Eigen::Matrix2d& covariance,
+void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance,
                                Window& window) {
   bool& agrees = window.agrees_with_rig.lens;
-  const Eigen::Vector2d difference = agrees ? step : window.lens;
-  const Eigen::Matrix2d tolerated = covariance + Eigen::Matrix2d(kLensTolerance.cwiseAbs2().asDiagonal());
+  const Eigen::Vector4d difference = agrees ? step : window.lens;
+  const Eigen::Matrix4d tolerated = covariance + Eigen::Matrix4d(kLensTolerance.cwiseAbs2().asDiagonal());
   const double contradiction = difference.dot(tolerated.llt().solve(difference));
-  agrees = agrees ? agrees_with_rig(contradiction, 2) : contradiction < kLikeRig;
-  if (agrees) set_lens(Eigen::Vector2d::Zero(), window);
+  agrees = agrees ? agrees_with_rig(contradiction, local_size(BlockKind::kLens)) : contradiction < kLikeRig;
+  if (agrees) set_lens(Eigen::Vector4d::Zero(), window);
   lens_found_.reset();
   if (!agrees) lens_found_ = window.lens;
 }
 
-void Calibration::compare_with_rig(const RigContradiction& score, const StateCovariance& covariance,
-                                   Window& window) {
+void Calibration::compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) const {
+  Matrix6 tolerated = covariance;
+  tolerated.diagonal().head<3>().array() += kRigLever_m * kRigLever_m;
+  tolerated.diagonal().tail<3>().array() += kRigRotation_rad * kRigRotation_rad;
+  const double contradiction = step.dot(tolerated.llt().solve(step));
+  window.agrees_with_rig.extrinsics &= agrees_with_rig(contradiction, local_size(BlockKind::kExtrinsics));
+}
+
+void Calibration::compare_with_rig(const RigStep& step, const StateCovariance& covariance, Window& window) {
   AgreesWithRig& agrees = window.agrees_with_rig;
   const double depth_scale_variance = covariance.depth_scale;
-  if (compares_lens() && covariance.lens(0, 0) > 0.0) compare_lens(score.lens_step, covariance.lens, window);
+  if (compares_lens() && covariance.lens(0, 0) > 0.0) compare_lens(step.lens, covariance.lens, window);
   if (compares_depth_scale() && depth_scale_variance > 0.0) {
-    const double difference = agrees.depth_scale ? score.depth_scale_step : 1.0 / window.depth_scale - 1.0;
+    const double difference = agrees.depth_scale ? step.depth_scale : 1.0 / window.depth_scale - 1.0;
     const double contradiction =
         depth_scale_contradiction(difference, depth_scale_variance, window.frames.back().state.t);
     agrees.depth_scale = agrees.depth_scale ? agrees_with_rig(contradiction, 1) : contradiction < kLikeRig;
@@ -131,8 +139,7 @@ void Calibration::compare_with_rig(const RigContradiction& score, const StateCov
     depth_scale_found_.reset();
     if (!agrees.depth_scale) depth_scale_found_ = {window.depth_scale, std::sqrt(depth_scale_variance)};
   }
-  if (!awaits_alignment())
-    agrees.extrinsics &= agrees_with_rig(score.extrinsics, local_size(BlockKind::kExtrinsics));
+  if (!awaits_alignment()) compare_extrinsics(step.extrinsics, covariance.extrinsics, window);
 }
 
 CalibrationAtBound Calibration::limit(Window& window) const {

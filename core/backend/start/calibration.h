@@ -36,8 +36,7 @@ class Calibration {
   /// @return whether it contradicts the rig: windows start with it from now on
   [[nodiscard]] bool align(const RotationAlignment& alignment);
 
-  /// Compares the rig with the residuals of the last solve. Until rotations are aligned, it is not known
-  /// which value is wrong.
+  /// Compares the rig with the residuals of the last solve.
   ///
   /// The inverse depth scale k differs from 1 by d, the step of the score test while it is constant. With its
   /// variance C, s_a the scale error of the accelerometer, and t the time since the first comparison,
@@ -46,16 +45,19 @@ class Calibration {
   ///
   /// is compared with the quantile of one degree of freedom; the term with t_n = 1.5 s doubts the inertial
   /// noise of the start. Below 4 the scale is that of the rig again: the prior of the window holds for any.
-  /// The lens likewise, with what a calibration leaves in place of s_a, and from the start.
-  /// @param score of the last solve
+  /// The lens likewise, with what a calibration leaves in place of s_a, and from the start; the extrinsics
+  /// too, once rotations are aligned (until then it is not known which value is wrong), and for good.
+  /// @param step of the last solve
   /// @param covariance of its newest state
   /// @param window calibration that contradicts the rig becomes variable in it
-  void compare_with_rig(const RigContradiction& score, const StateCovariance& covariance, Window& window);
+  void compare_with_rig(const RigStep& step, const StateCovariance& covariance, Window& window);
 
   /// `limit_calibration` about the rig.
   CalibrationAtBound limit(Window& window) const;
 
  private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = StateCovariance::Matrix6;
   struct DepthScaleEstimate {
     double value = 1.0;  ///< ratio of measured to true depth
     double sigma = 0.0;  ///< standard deviation of its inverse
@@ -68,7 +70,8 @@ class Calibration {
   [[nodiscard]] bool compares_depth_scale() const {
     return starts_with_rig() && config_.depth.estimate_scale;
   }
-  void compare_lens(const Eigen::Vector2d& step, const Eigen::Matrix2d& covariance, Window& window);
+  void compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) const;
+  void compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance, Window& window);
   [[nodiscard]] double depth_scale_contradiction(double difference, double variance, Timestamp now);
   [[nodiscard]] bool agrees_with_rig(double contradiction, int degrees_of_freedom) const;
   /// Whether there is an alignment that contradicts the rig.
@@ -80,7 +83,7 @@ class Calibration {
   std::optional<RotationAlignment> rotation_alignment_;  ///< found at the start
   std::optional<Timestamp> compared_since_;              ///< depth scales
   std::optional<DepthScaleEstimate> depth_scale_found_;  ///< contradicts the rig
-  std::optional<Eigen::Vector2d> lens_found_;            ///< same
+  std::optional<Eigen::Vector4d> lens_found_;            ///< same
 };
 
 /// Sets what the IMU measures at the exposure of a frame to means over up to 40 ms around it, if there are

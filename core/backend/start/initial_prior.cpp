@@ -17,9 +17,8 @@ constexpr double kGaugeSigma_rad = 1e-3;
 /// [m] and [rad]: exact up to rounding errors, so that covariances are relative to the first pose.
 constexpr double kExactSigma = 1e-6;
 
-/// What calibrations of consumer cameras are off by: 2 % of the focal length, 0.05 of k1.
-constexpr double kFocalSigma = 0.02;
-constexpr double kDistortionSigma = 0.05;
+/// What calibrations of consumer cameras are off by: 2 % of the focal length, 0.05 of k1, 5 px of the center.
+const Eigen::Vector4d kLensSigma{0.02, 0.05, 0.01, 0.01};
 
 /// Jump of the oldest pose in one solve above which the gauge is restored.
 constexpr double kJump_m = 0.1;
@@ -116,17 +115,14 @@ LinearPrior calibration_prior(const Window& window, const BackendConfig& config)
   prior.blocks.push_back(prior_block(window, BlockKind::kTimeOffset, -1));
   if (config.depth.estimate_scale) prior.blocks.push_back(prior_block(window, BlockKind::kDepthScale, -1));
   if (config.estimate_lens) prior.blocks.push_back(prior_block(window, BlockKind::kLens, -1));
-  const Eigen::Index size = 7 + (config.depth.estimate_scale ? 1 : 0) + (config.estimate_lens ? 2 : 0);
+  const Eigen::Index size = 7 + (config.depth.estimate_scale ? 1 : 0) + (config.estimate_lens ? 4 : 0);
   prior.residual = Eigen::VectorXd::Zero(size);
   prior.jacobian = Eigen::MatrixXd::Zero(size, size);
   prior.jacobian.topLeftCorner<6, 6>() =
       pose_root_information(config.extrinsics_sigma_m, config.extrinsics_sigma_rad);
   prior.jacobian(6, 6) = 1.0 / config.time_offset_sigma_s;
   if (config.depth.estimate_scale) prior.jacobian(7, 7) = 1.0 / config.depth.scale_sigma;
-  if (config.estimate_lens) {
-    prior.jacobian(size - 2, size - 2) = 1.0 / kFocalSigma;
-    prior.jacobian(size - 1, size - 1) = 1.0 / kDistortionSigma;
-  }
+  if (config.estimate_lens) prior.jacobian.diagonal().tail<4>() = kLensSigma.cwiseInverse();
   return prior;
 }
 

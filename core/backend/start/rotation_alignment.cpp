@@ -111,7 +111,10 @@ std::optional<RotationAlignment> RotationAligner::align(Timestamp now, ImuBuffer
   found.covariance = normal_equations(found, imu).H.inverse().topLeftCorner<4, 4>();
   Eigen::Vector4d from_rig;
   from_rig << log_so3(q_b_c_.conjugate() * found.q_b_c), found.time_offset_s - time_offset_s_;
-  found.rig_contradiction = from_rig.dot(found.covariance.llt().solve(from_rig));
+  Eigen::Matrix4d tolerated = found.covariance;
+  tolerated.diagonal().head<3>().array() += kRigRotation_rad * kRigRotation_rad;
+  tolerated(3, 3) += kRigOffset_s * kRigOffset_s;
+  found.rig_contradiction = from_rig.dot(tolerated.llt().solve(from_rig));
   const bool certain = largest_sigma(found.covariance.topLeftCorner<3, 3>()) < kCertainRotation_rad &&
                        found.covariance(3, 3) < kCertainOffset_s * kCertainOffset_s;
   if (!certain && span < kMaxSpan_s) return std::nullopt;

@@ -13,7 +13,7 @@ namespace {
 struct FrameCalibration {
   const Rig& rig;
   const DepthConfig& depth;
-  Eigen::Vector2d lens;
+  Eigen::Vector4d lens;
 };
 
 Observation make_observation(const TrackedFeature& feature, const FrameCalibration& calibration) {
@@ -91,7 +91,7 @@ void move_to_next_host(const Window& window, Landmark& landmark) {
 
 }  // namespace
 
-void set_lens(const Eigen::Vector2d& lens, Window& window) {
+void set_lens(const Eigen::Vector4d& lens, Window& window) {
   if (lens == window.lens) return;
   window.lens = lens;
   for (Landmark& landmark : window.landmarks)

@@ -9,7 +9,7 @@
 namespace stillpoint {
 
 /// Changes the lens correction of a window and the bearings of its observations.
-void set_lens(const Eigen::Vector2d& lens, Window& window);
+void set_lens(const Eigen::Vector4d& lens, Window& window);
 
 /// Adds the tracked features of the newest frame as observations; unknown ids become new landmarks.
 /// @param frame features sorted by id; those whose bearing is not finite are ignored

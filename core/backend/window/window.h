@@ -64,9 +64,8 @@ struct Window {
   Pose T_b_c;
   double time_offset_s = 0.0;
   TimeOffsetModel time_offset_model = TimeOffsetModel::kBearing;
-  double depth_scale = 1.0;  ///< ratio of measured to true depth
-  Eigen::Vector2d lens =
-      Eigen::Vector2d::Zero();  ///< correction (f, k1) of the rig's camera, see reprojection_rows.h
+  double depth_scale = 1.0;                        ///< ratio of measured to true depth
+  Eigen::Vector4d lens = Eigen::Vector4d::Zero();  ///< correction of the camera, see reprojection_rows.h
   AgreesWithRig agrees_with_rig;
   Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();
   /// Covariance of the direction of gravity [rad^2] in its tangent space (see gravity_direction.h) when the

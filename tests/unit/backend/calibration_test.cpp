@@ -65,10 +65,15 @@ TEST(Calibration, IsThatOfTheRigUntilTheDataContradictsIt) {
   Window compared = calibration.calibrated_window();
   const AgreesWithRig& agrees = compared.agrees_with_rig;
   EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
-  // 16.8 is the 0.99 quantile of six degrees of freedom.
-  calibration.compare_with_rig({.extrinsics = 16.8}, {}, compared);
+  StateCovariance covariance;
+  covariance.extrinsics = 1e-6 * StateCovariance::Matrix6::Identity();
+  RigStep step;
+  // 16.8 is the 0.99 quantile of six degrees of freedom; a calibration leaves 0.003 rad.
+  step.extrinsics[4] = 4.0 * std::sqrt(1e-6 + 0.003 * 0.003);
+  calibration.compare_with_rig(step, covariance, compared);
   EXPECT_TRUE(agrees.extrinsics && agrees.depth_scale);
-  calibration.compare_with_rig({.extrinsics = 30.0}, {}, compared);
+  step.extrinsics[4] *= 1.4;
+  calibration.compare_with_rig(step, covariance, compared);
   EXPECT_FALSE(agrees.extrinsics);
   const Window window = calibration.calibrated_window();
   EXPECT_EQ(window.T_b_c.p, rig.T_b_c.p);
@@ -82,20 +87,20 @@ TEST(Calibration, TheLensIsThatOfTheRigWithinWhatACalibrationIsGoodTo) {
   Calibration calibration(config, true, {});
   Window window = calibration.calibrated_window();
   StateCovariance covariance;
-  covariance.lens = 1e-6 * Eigen::Matrix2d::Identity();
+  covariance.lens = 1e-6 * Eigen::Matrix4d::Identity();
   EXPECT_TRUE(window.agrees_with_rig.lens);
-  calibration.compare_with_rig({.lens_step = {0.003, 0.006}}, covariance, window);
+  calibration.compare_with_rig({.lens = {0.003, 0.006, 0.0, 0.0}}, covariance, window);
   EXPECT_TRUE(window.agrees_with_rig.lens);
-  calibration.compare_with_rig({.lens_step = {0.02, 0.0}}, covariance, window);
+  calibration.compare_with_rig({.lens = {0.02, 0.0, 0.0, 0.0}}, covariance, window);
   EXPECT_FALSE(window.agrees_with_rig.lens);
-  window.lens = {0.02, -0.04};
+  window.lens = {0.02, -0.04, 0.0, 0.01};
   calibration.compare_with_rig({}, covariance, window);
-  EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector2d(0.02, -0.04));
-  window.lens = {0.002, 0.001};
+  EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d(0.02, -0.04, 0.0, 0.01));
+  window.lens = {0.002, 0.001, 0.0, 0.0};
   calibration.compare_with_rig({}, covariance, window);
   EXPECT_TRUE(window.agrees_with_rig.lens);
-  EXPECT_EQ(window.lens, Eigen::Vector2d::Zero());
-  EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector2d::Zero());
+  EXPECT_EQ(window.lens, Eigen::Vector4d::Zero());
+  EXPECT_EQ(calibration.calibrated_window().lens, Eigen::Vector4d::Zero());
 }
 
 /// A calibration and a window that are compared after `seconds` for the second time.
@@ -108,7 +113,7 @@ struct Compared {
     window.frames.back().state.t = after(Timestamp{}, seconds);
     StateCovariance covariance;
     covariance.depth_scale = sigma * sigma;
-    calibration.compare_with_rig({.depth_scale_step = step}, covariance, window);
+    calibration.compare_with_rig({.depth_scale = step}, covariance, window);
   }
 };
 

@@ -156,9 +156,9 @@ TEST(NewestCovariance, OfTheWholeCalibration) {
   expect_covariances(options);
 }
 
-/// For small errors of the rig the score statistic is that of the likelihood ratio: twice the decrease of the
-/// cost if the calibration becomes variable.
-TEST(RigContradiction, IsTwiceTheCostOfTheValuesOfTheRig) {
+/// For small errors of the rig the squared step, in variances, is that of the likelihood ratio: twice the
+/// decrease of the cost if the calibration becomes variable.
+TEST(RigStep, IsTwiceTheCostOfTheValuesOfTheRig) {
   SimulatedWindowOptions options{.frames = 24, .points = 80, .depth_factor = 0.97};
   options.config.gravity = GravityModel::kEstimated;
   options.config.prior = PriorModel::kConsistent;
@@ -171,7 +171,8 @@ TEST(RigContradiction, IsTwiceTheCostOfTheValuesOfTheRig) {
   const double constant = schur.solve(window, options.config, kSimulatedFocal_px).final_cost;
   ASSERT_EQ(window.depth_scale, 1.0);
   const auto contradiction = [&](WindowSolver& solver) {
-    return solver.covariance(window, options.config, kSimulatedFocal_px, false)->rig.depth_scale;
+    const auto found = solver.covariance(window, options.config, kSimulatedFocal_px, false);
+    return found->rig_step.depth_scale * found->rig_step.depth_scale / found->newest.depth_scale;
   };
   const double by_schur = contradiction(schur), by_ceres = contradiction(ceres);
   EXPECT_NEAR(by_schur, by_ceres, 1e-6 * by_ceres);

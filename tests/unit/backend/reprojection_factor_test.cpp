@@ -24,7 +24,7 @@ ReprojectionMeasurement measurement() {
           .bearing_j = {0.1, -0.05},
           .seen_i = {0.19, -0.08},
           .seen_j = {0.11, -0.06},
-          .lens = {0.01, -0.02},
+          .lens = {0.01, -0.02, 0.003, -0.004},
           .velocity_i = {0.3, -0.2},
           .velocity_j = {0.25, 0.1},
           .exposure_i_s = 0.004,
@@ -35,7 +35,8 @@ const ReprojectionNoise kNoise{.bearing = 0.003, .inverse_depth = 0.01, .depth_o
 
 /// With the depth scale 1 and the lens of the measurement.
 Blocks blocks_at(double time_offset) {
-  return {block(kTwBi), block(kTwBj), block(kTbC), {time_offset}, {0.01, -0.02}, {1.0}, {kInverseDepth}};
+  return {block(kTwBi), block(kTwBj),   block(kTbC), {time_offset}, {0.01, -0.02, 0.003, -0.004},
+          {1.0},        {kInverseDepth}};
 }
 Blocks without_depth_scale(Blocks blocks) {
   blocks.erase(blocks.begin() + 5);
