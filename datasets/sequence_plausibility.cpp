@@ -126,6 +126,7 @@ constexpr double kMinUnitMotions = 15;
 constexpr double kMinUnitCorrelation = 0.6;
 constexpr double kScaleInterval_s = 0.2;
 constexpr double kScaleBlock_s = 1.5;
+constexpr double kMinBlockCorrelation = 0.7;
 constexpr double kMinScaleFinding = 3.0;
 
 /// The pose of the camera by the ground truth; nullopt without a pose on both sides at most 0.1 s away.
@@ -444,16 +445,20 @@ std::optional<std::string> ImagePlausibility::depth_motion_finding() const {
            seconds_between(motions_[begin].from, motions_[end].to) < kScaleBlock_s)
       ++end;
     const ScaleSums sums = scale_sums(std::span(motions_).subspan(begin, end - begin));
-    all.images += sums.images;
-    all.both += sums.both;
-    all.inertial += sums.inertial;
+    // A person who fills the image moves unlike the accelerometer.
+    const bool follows = sums.both >= kMinBlockCorrelation * std::sqrt(sums.images * sums.inertial);
+    const bool is_long = seconds_between(motions_[begin].from, motions_[end - 1].to) >= 0.6 * kScaleBlock_s;
+    if (follows && is_long) {
+      all.images += sums.images;
+      all.both += sums.both;
+      all.inertial += sums.inertial;
+    }
     begin = end;
   }
   if (all.images <= 0.0 || all.inertial <= 0.0) return std::nullopt;
   const double correlation = all.both / std::sqrt(all.images * all.inertial);
   const double scale = all.both / all.images;
-  if (correlation < kMinUnitCorrelation || (scale > 1.0 / kMinScaleFinding && scale < kMinScaleFinding))
-    return std::nullopt;
+  if (scale > 1.0 / kMinScaleFinding && scale < kMinScaleFinding) return std::nullopt;
   const double factor = scale > 1.0 ? 5.0 : 0.2;
   return fmt::format(
       "by the accelerometer, the camera moves {:.1f} times as far as the images show with {:g} units per "

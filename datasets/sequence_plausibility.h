@@ -55,7 +55,7 @@ class ImagePlausibility {
   /// images, the specific force f and gravity g, over times t_i < t_j < t_k of 0.2 s each,
   ///   s [(P_k - P_j) / (t_k - t_j) - (P_j - P_i) / (t_j - t_i)] = integral w(t) (R f + g) dt,
   /// where w rises from 0 at t_i to 1 at t_j and falls to 0 at t_k. g is solved for in blocks of 1.5 s, in
-  /// which the rotation drifts little.
+  /// which the rotation drifts little; blocks whose sides have a correlation below 0.7 are left out.
   /// @return the finding if s is beyond 1/3 and 3; nullopt if the accelerations do not follow the images
   [[nodiscard]] std::optional<std::string> depth_motion_finding() const;
 

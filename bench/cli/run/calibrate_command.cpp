@@ -194,7 +194,7 @@ Command calibrate_command() {
            {"--depth-camera",
             "Depth images are those of another camera, not registered: estimate its intrinsics and pose",
             &a->depth_camera},
-           {"--rig", "rig.toml that overrides the calibration of the sequence", &a->rig},
+           {"--rig", kRigHelp, &a->rig},
            {"--config", "Base config: an embedded name or a TOML file", &a->base},
            {"--variant", "Overlays joined by + [vo without an IMU]", &a->variant},
            {"--set", "Override a config key: key=value; may be repeated", &a->settings},
