@@ -2,6 +2,7 @@
 #include "bench/model/run_notes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -106,6 +107,34 @@ std::string few_rpe_pairs_note(std::span<const StoredRun* const> runs, std::stri
   }
   if (!fewest || *fewest >= static_cast<double>(eval::kFewRpePairs)) return "";
   return fmt::format("RPE of only {:.0f} pairs of poses: not ranked", *fewest);
+}
+
+std::string scatter_note(std::span<const StoredRun* const> runs, std::string_view metric) {
+  constexpr double kMinFactor = 2.0;
+  const MetricDescriptor* descriptor = gated_metric(metric);
+  if (descriptor == nullptr || descriptor->gate->family != MetricFamily::kAccuracy ||
+      descriptor->direction != MetricDirection::kSmallerIsBetter)
+    return "";
+  std::map<std::string, std::pair<double, double>> ranges;  // by data
+  for (const StoredRun* run : runs) {
+    const std::optional<double> value = metric_value(*run, metric);
+    if (run->outcome != Outcome::kOk || !value || !std::isfinite(*value)) continue;
+    const auto [range, is_new] = ranges.insert({run->identity.sequence_id, {*value, *value}});
+    range->second = {std::min(range->second.first, *value), std::max(range->second.second, *value)};
+  }
+  std::pair<double, double> widest;
+  double factor = 0.0;
+  for (const auto& [data, range] : ranges) {
+    const auto& [low, high] = range;
+    if (data.empty() || low <= 0.0 || high - low <= descriptor->gate->floor || high < kMinFactor * low)
+      continue;
+    if (high / low <= factor) continue;
+    widest = range;
+    factor = high / low;
+  }
+  if (factor == 0.0) return "";
+  return fmt::format("{} to {} on the same data, a factor of {:.1f}: one run is no result",
+                     value_text(*descriptor, widest.first), value_text(*descriptor, widest.second), factor);
 }
 
 TimeSource time_source(const StoredRun& run) {

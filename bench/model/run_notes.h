@@ -32,6 +32,14 @@ namespace stillpoint::bench {
 /// @param metric name, e.g. "rpe_trans_rmse_m_per_s"
 [[nodiscard]] std::string few_rpe_pairs_note(std::span<const StoredRun* const> runs, std::string_view metric);
 
+/// Footnote about an error that differs by a factor of 2 or more, and by more than the floor of its gate,
+/// between runs on the same data: starts, seeds or perturbations of one recording. One run of them tells
+/// little: "ATE 0.0033 m to ATE 0.0278 m on the same data, a factor of 8.4: one run is no result". Empty for
+/// other metrics.
+/// @param runs of one variant on one sequence; failed ones are ignored
+/// @param metric id, e.g. "ate_rmse_m"
+[[nodiscard]] std::string scatter_note(std::span<const StoredRun* const> runs, std::string_view metric);
+
 /// How far the times of a run are its own; the best first.
 enum class TimeSource {
   kUndisturbed,  ///< timing run on an idle machine

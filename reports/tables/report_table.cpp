@@ -27,9 +27,10 @@ std::string count_text(std::size_t least, std::size_t most) {
 
 std::string spread_text(const TableCell& cell, int decimals) {
   const std::string count = count_text(cell.count, cell.count);
-  if (!cell.interval) return count + ", no interval";
-  return count +
-         fmt::format(", {:.{}f} to {:.{}f}", cell.interval->low, decimals, cell.interval->high, decimals);
+  const std::string interval = cell.interval ? fmt::format(", {:.{}f} to {:.{}f}", cell.interval->low,
+                                                           decimals, cell.interval->high, decimals)
+                                             : ", no interval";
+  return count + interval + (cell.worst ? fmt::format(", worst {:.{}f}", *cell.worst, decimals) : "");
 }
 
 std::string number_text(const TableColumn& column, const TableCell& cell) {

@@ -111,7 +111,9 @@ TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::str
     cell.number = spread->median;
     cell.count = spread->count;
     cell.interval = spread->median_interval;
+    if (spread->count > 1) cell.worst = spread->worst;
   }
+  cell = with_note(std::move(cell), bench::scatter_note(runs, metric));
   cell = with_note(std::move(cell), infinite_note(runs, metric));
   for (const bench::StoredRun* run : runs) {
     for (const bench::Metric& candidate : run->metrics) {

@@ -271,6 +271,7 @@ Json cell_json(const TableColumn& column, const TableCell& cell) {
   json["value"] = cell.number ? Json::parse(number_text(column, cell)) : Json(nullptr);
   json["exact"] = cell.number ? Json(*cell.number) : Json(nullptr);
   json["n"] = cell.count;
+  if (cell.worst) json["worst"] = *cell.worst;
   json["interval"] = cell.interval ? Json({cell.interval->low, cell.interval->high}) : Json(nullptr);
   json["best"] = cell.is_best;
   if (cell.is_suspicious) json["suspicious"] = true;

@@ -75,6 +75,7 @@ BenchRow row_with_outcome(const std::vector<const StoredRun*>& runs, const std::
         fmt::format("the machine was not idle: other processes used {:.0f} % of the CPU", 100.0 * *load);
   }
   if (row.reason.empty()) row.reason = protocol_difference_note(runs, headline_metric().id);
+  if (row.reason.empty()) row.reason = scatter_note(runs, headline_metric().id);
   if (row.reason.empty()) row.reason = few_rpe_pairs_note(runs, metric_id::kRpeTranslation);
   return row;
 }

@@ -69,6 +69,27 @@ TEST(FewRpePairs, AreNotedForTheRunWithTheFewest) {
   EXPECT_EQ(note({failed, older}, metric), "");
 }
 
+TEST(Scatter, OfRunsOnTheSameDataIsNotedFromAFactorOfTwoOn) {
+  const auto note = [](const std::vector<std::pair<std::string, double>>& errors) {
+    std::vector<StoredRun> runs;
+    for (const auto& [data, ate] : errors) {
+      runs.emplace_back();
+      runs.back().identity.sequence_id = data;
+      runs.back().metrics = {{"ate_rmse_m", "", "m", ate}};
+    }
+    std::vector<const StoredRun*> pointers;
+    for (const StoredRun& run : runs) pointers.push_back(&run);
+    return scatter_note(pointers, metric_id::kAte);
+  };
+  EXPECT_EQ(note({{"a", 0.0126}, {"a", 0.0278}, {"a", 0.0045}, {"a", 0.0033}}),
+            "ATE 0.0033 m to ATE 0.0278 m on the same data, a factor of 8.4: one run is no result");
+  EXPECT_EQ(note({{"a", 0.01}, {"a", 0.019}}), "");
+  EXPECT_EQ(note({{"a", 0.01}, {"b", 0.09}}), "");       // other scenes
+  EXPECT_EQ(note({{"a", 0.00001}, {"a", 0.0001}}), "");  // below the floor
+  EXPECT_EQ(note({{"", 0.01}, {"", 0.09}}), "");         // unknown data
+  EXPECT_EQ(note({}), "");
+}
+
 TEST(TimeSource, DependsOnTheKindOfTheRunAndOnOtherLoad) {
   StoredRun run;
   EXPECT_EQ(time_source(run), TimeSource::kShared);
