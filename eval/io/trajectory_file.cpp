@@ -28,7 +28,8 @@ std::string rows_text(std::size_t count) { return std::to_string(count) + (count
 std::vector<std::string> repair_texts(const RowRepairs& repairs) {
   std::vector<std::string> texts;
   if (repairs.skipped > 0) {
-    texts.push_back(rows_text(repairs.skipped) + " skipped: no valid pose (nan, or a zero quaternion)");
+    texts.push_back(rows_text(repairs.skipped) +
+                    " skipped: no valid pose (nan, a zero quaternion, or no GNSS fix)");
   }
   if (repairs.repeated > 0) {
     texts.push_back(rows_text(repairs.repeated) +

@@ -184,7 +184,7 @@ MotionFindings findings_of_motion(double gyro_factor, double depth_factor, doubl
                 motion * Eigen::Vector3d(0.06 * std::sin(6.0 * t), 0.04 * std::sin(7.0 * t), 0.0)};
   };
   SequenceInfo info;
-  info.rig.camera = {.width = 96, .height = 72, .fx = 90.0, .fy = 90.0, .cx = 48.0, .cy = 36.0};
+  info.rig.camera = {.width = 64, .height = 48, .fx = 60.0, .fy = 60.0, .cx = 32.0, .cy = 24.0};
   info.rig.depth_units_per_m = 1000.0 * depth_factor;
   constexpr double kStep_s = 0.005;
   for (int i = 0; i < 340; ++i) {
@@ -197,16 +197,16 @@ MotionFindings findings_of_motion(double gyro_factor, double depth_factor, doubl
          .accel_b = now.q.conjugate() * (accel + Eigen::Vector3d(0.0, -9.81, 0.0))});  // y points down
   }
   ImagePlausibility plausibility(info);
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < 36; ++i) {
     const double t = i / 30.0;
     const Pose T_w_c = pose_at(t);
     Frame frame{.t = from_seconds(t),
-                .gray = cv::Mat(72, 96, CV_8UC1),
-                .depth = cv::Mat(72, 96, CV_16UC1),
+                .gray = cv::Mat(48, 64, CV_8UC1),
+                .depth = cv::Mat(48, 64, CV_16UC1),
                 .depth_units_per_m = info.rig.depth_units_per_m};
-    for (int row = 0; row < 72; ++row) {
-      for (int column = 0; column < 96; ++column) {
-        const Eigen::Vector3d ray = T_w_c.q * Eigen::Vector3d((column - 48) / 90.0, (row - 36) / 90.0, 1.0);
+    for (int row = 0; row < 48; ++row) {
+      for (int column = 0; column < 64; ++column) {
+        const Eigen::Vector3d ray = T_w_c.q * Eigen::Vector3d((column - 32) / 60.0, (row - 24) / 60.0, 1.0);
         const double depth_m = (1.5 - T_w_c.p.z()) / ray.z();
         const Eigen::Vector3d p = T_w_c.p + depth_m * ray;
         frame.depth.at<std::uint16_t>(row, column) = static_cast<std::uint16_t>(1000.0 * depth_m);
