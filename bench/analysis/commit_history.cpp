@@ -186,7 +186,7 @@ CommitHistory commit_history(const Store& store) {
   constexpr std::size_t kChunk = 5000;  // runs whose details are in memory
   std::vector<StoredRun> runs = store.run_headers({.system = kOwnSystem});
   HistoryBuilder builder(plans_by_run(store, runs));
-  const std::vector<RunOrigin> origins = run_origins(store, runs);
+  const RunOrigins origins = run_origins(store, runs);
   for (std::size_t begin = 0; begin < runs.size(); begin += kChunk) {
     const auto first = runs.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto last = first + static_cast<std::ptrdiff_t>(std::min(kChunk, runs.size() - begin));

@@ -58,27 +58,30 @@ RunOrigin origin_of(const Json& manifest, const StoredRun& run) {
 
 }  // namespace
 
-std::vector<RunOrigin> run_origins(const Store& store, std::span<const StoredRun> runs) {
-  std::vector<RunOrigin> origins;
-  origins.reserve(runs.size());
+RunOrigins run_origins(const Store& store, std::span<const StoredRun> runs) {
+  RunOrigins stated;
   std::unordered_map<std::string, RunOrigin> known;      // by manifest and build
   std::unordered_map<std::string, std::string> configs;  // by config hash without the perturbation
+  std::string host = kUnknownHost;
   for (const StoredRun& run : runs) {
-    const std::string host = origins.empty() ? kUnknownHost : origins.back().host;
     const auto [entry, is_new] = known.try_emplace(run.manifest_hash + " " + run.identity.build);
     if (is_new) {
       const Json manifest = Json::parse(store.manifest(run), nullptr, false);
       if (manifest.is_object()) entry->second = origin_of(manifest, run);
     }
-    origins.push_back(entry->second.commit.empty() ? RunOrigin{.commit = run.identity.build, .host = host}
-                                                   : entry->second);
-    if (!origins.back().config.empty())
-      configs[std::string(unperturbed_hash(run.identity.config_hash))] = origins.back().config;
+    const RunOrigin origin =
+        entry->second.commit.empty() ? RunOrigin{.commit = run.identity.build, .host = host} : entry->second;
+    stated.push_back(origin);
+    host = origin.host;
+    if (!origin.config.empty())
+      configs[std::string(unperturbed_hash(run.identity.config_hash))] = origin.config;
   }
+  RunOrigins origins;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!origins[i].config.empty()) continue;
+    RunOrigin origin = stated[i];
     const auto found = configs.find(std::string(unperturbed_hash(runs[i].identity.config_hash)));
-    if (found != configs.end()) origins[i].config = found->second;
+    if (origin.config.empty() && found != configs.end()) origin.config = found->second;
+    origins.push_back(origin);
   }
   return origins;
 }
@@ -155,7 +158,7 @@ using RunOrder = std::pair<std::string, std::int64_t>;
 
 using NewestConfigs = std::map<ConfigScope, std::pair<RunOrder, std::string>>;  // newest run, its config
 
-NewestConfigs newest_configs(std::span<const StoredRun> runs, const std::vector<RunOrigin>& origins) {
+NewestConfigs newest_configs(std::span<const StoredRun> runs, const RunOrigins& origins) {
   NewestConfigs newest;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     auto& config = newest[scope_of(runs[i].identity, origins[i])];
@@ -278,7 +281,7 @@ RunSelection select_runs(const Store& store, std::vector<StoredRun> runs, const 
   const std::vector<std::string> builds = builds_of(runs);
   const bool is_named = !build.empty() && build != kAllBuilds;
   const std::string chosen = is_named ? chosen_build(builds, build, "--build") : newest_build(runs);
-  const std::vector<RunOrigin> origins = run_origins(store, runs);
+  const RunOrigins origins = run_origins(store, runs);
   const NewestConfigs newest = newest_configs(runs, origins);
   std::map<std::string, std::size_t> other_builds;
   std::map<std::string, std::size_t> older_configs;

@@ -3,6 +3,8 @@
 /// machine and config.
 #pragma once
 
+#include <compare>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,13 +23,30 @@ struct RunOrigin {
   std::string host;    ///< CPU model and count: "Intel(R) N100, 4 processors"
   /// Identifies the config without its seeds, so that it is equal for replicates. Empty if unknown.
   std::string config;
+
+  auto operator<=>(const RunOrigin&) const = default;
+};
+
+/// The origins of runs, by their index. Few of them differ, and each is stored once.
+class RunOrigins {
+ public:
+  RunOrigins() = default;
+  RunOrigins(RunOrigins&&) = default;  // a copy would refer to the elements of the other one
+  RunOrigins& operator=(RunOrigins&&) = default;
+
+  void push_back(const RunOrigin& origin) { runs_.push_back(&*distinct_.insert(origin).first); }
+  [[nodiscard]] const RunOrigin& operator[](std::size_t run) const { return *runs_[run]; }
+
+ private:
+  std::set<RunOrigin> distinct_;
+  std::vector<const RunOrigin*> runs_;
 };
 
 /// Origins of the runs of a store. A run without a manifest (interrupted) is assigned to the machine of the
 /// previous run, and to the config of the runs with the same config hash.
 /// @param runs in the order of their start
 /// @return one element per run
-[[nodiscard]] std::vector<RunOrigin> run_origins(const Store& store, std::span<const StoredRun> runs);
+[[nodiscard]] RunOrigins run_origins(const Store& store, std::span<const StoredRun> runs);
 
 /// Runs of one build on one machine in one mode. Each variant has one config at each point of a sweep, up to
 /// its seeds.
