@@ -146,6 +146,7 @@ std::vector<Metric> accuracy_metrics(const PairedSubject& runs) {
     }
   }
   std::vector<Metric> list;
+  list.reserve(metrics.size());
   for (const auto& [name, metric] : metrics) list.push_back(metric);
   return list;
 }

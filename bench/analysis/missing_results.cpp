@@ -114,6 +114,7 @@ std::vector<MissingResult> missing_scopes(const PairedRuns& runs) {
     }
   }
   std::vector<MissingResult> missing;
+  missing.reserve(counts.size());
   for (const auto& [name, count] : counts)
     missing.push_back({.what = name.first, .subject = name.second, .base = count});
   return missing;

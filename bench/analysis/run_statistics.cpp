@@ -141,6 +141,7 @@ void add_estimates(AblationRow& row, const std::vector<std::vector<eval::Pair>>&
       differences = ratios = pairs;
     } else {
       std::vector<double> of_sequence;
+      of_sequence.reserve(pairs.size());
       for (const eval::Pair& pair : pairs) of_sequence.push_back(pair.changed - pair.base);
       differences.push_back({0.0, *eval::percentile(of_sequence, 0.5)});
       // With few values per sequence, the pseudomedian is the estimate of the row of the sequence, too.

@@ -16,6 +16,7 @@
 #include "bench/model/run_csv.h"
 #include "bench/profile/timeline.h"
 #include "bench/record/result_values.h"
+#include "bench/run/rig_report.h"
 #include "core/base/content_hash.h"
 #include "core/base/error.h"
 #include "eval/io/trajectory_file.h"
@@ -106,6 +107,18 @@ Json image_waits_s(const RunSummary& summary) {
 
 Json lens_json(const Eigen::Vector4d& lens) {
   return {{"focal", lens[0]}, {"k1", lens[1]}, {"center_x", lens[2]}, {"center_y", lens[3]}};
+}
+
+/// The report on the rig: a verdict per parameter.
+Json rig_report_json(const EstimatedCalibration& calibration) {
+  Json report = Json::array();
+  for (const RigFinding& finding : rig_report(calibration)) {
+    report.push_back({{"parameter", finding.parameter},
+                      {"verdict", verdict_name(finding.verdict)},
+                      {"difference", finding.difference},
+                      {"sigma", finding.sigma}});
+  }
+  return report;
 }
 
 Json calibration_json(const EstimatedCalibration& calibration) {
@@ -255,6 +268,7 @@ std::string result_json(const RunResult& result) {
   json["leveling_rotation_xyzw"] = {q_level_w.x(), q_level_w.y(), q_level_w.z(), q_level_w.w()};
   json["leveling_covariance_rad2"] = matrix_json(result.run.level_covariance);
   json["calibration"] = calibration_json(result.run.calibration);
+  json["rig_report"] = rig_report_json(result.run.calibration);
   json["notes"] = result.notes;
   json["warnings"] = result.warnings;
   json["start_s"] = result.start_s;

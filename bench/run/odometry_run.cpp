@@ -257,6 +257,7 @@ class RunRecorder {
 
   void record_calibration(const OdometryUpdate& update) {
     EstimatedCalibration& calibration = run_.calibration;
+    calibration.rig = stream_.info().rig;
     calibration.time_offset_s = update.time_offset_s;
     calibration.depth_scale = update.depth_scale;
     calibration.lens = update.lens;

@@ -103,6 +103,7 @@ struct FrameSpan {
 
 /// Calibration as estimated at the end of a run.
 struct EstimatedCalibration {
+  Rig rig;  ///< as it was stated
   double time_offset_s = 0.0;
   double depth_scale = 1.0;
   Eigen::Vector4d lens = Eigen::Vector4d::Zero();  ///< see OdometryUpdate

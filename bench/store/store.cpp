@@ -50,7 +50,7 @@ std::vector<StoredRun> with_rows(const Database& database, std::vector<StoredRun
     run.costs.clear();
     run.blobs.clear();
   }
-  const auto [first, last] = std::ranges::minmax(runs, {}, &StoredRun::id);
+  const auto range = std::ranges::minmax(runs, {}, &StoredRun::id);
   const auto run_at = [&](const Statement& row) {
     const auto found = by_id.find(row.integer(0));
     return found == by_id.end() ? nullptr : found->second;
@@ -58,7 +58,7 @@ std::vector<StoredRun> with_rows(const Database& database, std::vector<StoredRun
   const auto prepared = [&](const std::string& columns, const std::string& table, const std::string& order) {
     Statement rows = database.prepare("SELECT " + columns + " FROM " + table +
                                       " WHERE run BETWEEN ? AND ? ORDER BY " + order);
-    rows.bind(first.id).bind(last.id);
+    rows.bind(range.min.id).bind(range.max.id);
     return rows;
   };
   const std::string protocol = protocol_column(database);

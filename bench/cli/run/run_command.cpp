@@ -29,6 +29,7 @@
 #include "bench/record/sequence_checksum.h"
 #include "bench/run/frame_cache.h"
 #include "bench/run/odometry_run.h"
+#include "bench/run/rig_report.h"
 #include "bench/run/run_scores.h"
 #include "core/base/error.h"
 #include "core/config/odometry_config.h"
@@ -246,6 +247,8 @@ void print_result(const RunResult& result, const fs::path& folder) {
   std::cout << fmt::format("{} {}: {}, {} of {} frames, {}\n  {}\n", result.sequence, result.variant,
                            status_name(result.outcome), result.run.summary.frames, result.run.frames_planned,
                            score_line(result), (folder / "result.json").string());
+  const std::vector<RigFinding> rig = rig_report(result.run.calibration);
+  if (!rig.empty()) std::cout << fmt::format("  rig: {}\n", rig_report_line(rig));
 }
 
 int exit_code(Outcome outcome) {

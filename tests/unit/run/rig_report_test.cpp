@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/run/rig_report.h"
+
+#include <gtest/gtest.h>
+
+namespace stillpoint::bench {
+namespace {
+
+/// An exact rig, all of which was observed.
+EstimatedCalibration observed_calibration() {
+  EstimatedCalibration calibration;
+  calibration.rig.camera.fx = calibration.rig.camera.fy = 500.0;
+  calibration.depth_scale_agrees = calibration.lens_agrees = true;
+  calibration.depth_scale_sigma = 0.002;
+  calibration.lens_sigma = Eigen::Vector4d(0.0005, 0.0005, 0.0005, 0.0005);
+  calibration.time_offset_sigma_s = 0.0002;
+  return calibration;
+}
+
+TEST(RigReport, IsSilentAboutAnExactRig) {
+  const std::vector<RigFinding> findings = rig_report(observed_calibration());
+  ASSERT_EQ(findings.size(), 6U);
+  for (const RigFinding& finding : findings) EXPECT_EQ(finding.verdict, RigVerdict::kAgrees);
+  EXPECT_EQ(rig_report_line({findings[0], findings[1]}),
+            "depth scale [%]: agrees (to 0.2); focal length [%]: agrees (to 0.05)");
+}
+
+TEST(RigReport, NamesTheParameterOfTheLensThatDiffers) {
+  EstimatedCalibration calibration = observed_calibration();
+  calibration.lens_agrees = false;
+  calibration.lens = {0.001, -0.05, 0.0, 0.01};
+  const std::vector<RigFinding> findings = rig_report(calibration);
+  EXPECT_EQ(findings[1].verdict, RigVerdict::kAgrees);
+  EXPECT_EQ(findings[2].verdict, RigVerdict::kDiffers);
+  EXPECT_DOUBLE_EQ(findings[2].difference, 0.05);
+  EXPECT_EQ(findings[3].verdict, RigVerdict::kAgrees);
+  EXPECT_EQ(rig_report_line({findings[4]}), "center y [px]: differs by -5 (20 sigma)");
+}
+
+TEST(RigReport, SaysWhatWasNotObserved) {
+  EstimatedCalibration calibration = observed_calibration();
+  calibration.depth_scale_sigma = 0.06;
+  EXPECT_EQ(rig_report_line(rig_report(calibration)).substr(0, 29), "depth scale [%]: not observed");
+}
+
+TEST(RigReport, ATimeOffsetOfMoreThanAMillisecondDiffers) {
+  EstimatedCalibration calibration = observed_calibration();
+  calibration.rig.time_offset_s = 0.002;
+  calibration.time_offset_s = 0.004;
+  EXPECT_EQ(rig_report(calibration).back().verdict, RigVerdict::kAgrees);
+  calibration.time_offset_s = 0.006;
+  EXPECT_EQ(rig_report_line({rig_report(calibration).back()}), "time offset [ms]: differs by +4 (20 sigma)");
+}
+
+TEST(RigReport, IsEmptyIfNothingWasEstimated) { EXPECT_TRUE(rig_report({}).empty()); }
+
+}  // namespace
+}  // namespace stillpoint::bench
