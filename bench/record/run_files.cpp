@@ -109,12 +109,12 @@ Json lens_json(const Eigen::Vector4d& lens) {
   return {{"focal", lens[0]}, {"k1", lens[1]}, {"center_x", lens[2]}, {"center_y", lens[3]}};
 }
 
-/// The report on the rig: a verdict per parameter.
+/// The report on the rig: a result per parameter.
 Json rig_report_json(const EstimatedCalibration& calibration) {
   Json report = Json::array();
   for (const RigFinding& finding : rig_report(calibration)) {
     report.push_back({{"parameter", finding.parameter},
-                      {"verdict", verdict_name(finding.verdict)},
+                      {"result", result_name(finding.result)},
                       {"difference", finding.difference},
                       {"sigma", finding.sigma}});
   }

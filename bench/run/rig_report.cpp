@@ -26,10 +26,10 @@ RigFinding finding_of(const Estimate& estimate, bool agrees) {
   RigFinding finding{.parameter = estimate.name, .sigma = estimate.sigma};
   const double doubt = std::hypot(estimate.sigma, estimate.tolerance);
   if (!agrees && std::abs(estimate.difference) > kSignificant * doubt) {
-    finding.verdict = RigVerdict::kDiffers;
+    finding.result = RigResult::kDiffers;
     finding.difference = estimate.difference;
   } else if (estimate.sigma <= estimate.observed) {
-    finding.verdict = RigVerdict::kAgrees;
+    finding.result = RigResult::kAgrees;
   }
   return finding;
 }
@@ -74,13 +74,13 @@ std::vector<RigFinding> rig_report(const EstimatedCalibration& calibration) {
   return findings;
 }
 
-std::string_view verdict_name(RigVerdict verdict) {
-  switch (verdict) {
-    case RigVerdict::kAgrees:
+std::string_view result_name(RigResult result) {
+  switch (result) {
+    case RigResult::kAgrees:
       return "agrees";
-    case RigVerdict::kDiffers:
+    case RigResult::kDiffers:
       return "differs";
-    case RigVerdict::kNotObserved:
+    case RigResult::kNotObserved:
       break;
   }
   return "not observed";
@@ -89,11 +89,11 @@ std::string_view verdict_name(RigVerdict verdict) {
 std::string rig_report_line(const std::vector<RigFinding>& findings) {
   std::vector<std::string> parts;
   for (const RigFinding& finding : findings) {
-    std::string part = fmt::format("{}: {}", finding.parameter, verdict_name(finding.verdict));
-    if (finding.verdict == RigVerdict::kDiffers) {
+    std::string part = fmt::format("{}: {}", finding.parameter, result_name(finding.result));
+    if (finding.result == RigResult::kDiffers) {
       part += fmt::format(" by {:+.3g} ({:.0f} sigma)", finding.difference,
                           std::abs(finding.difference) / finding.sigma);
-    } else if (finding.verdict == RigVerdict::kAgrees) {
+    } else if (finding.result == RigResult::kAgrees) {
       part += fmt::format(" (to {:.2g})", finding.sigma);
     }
     parts.push_back(std::move(part));

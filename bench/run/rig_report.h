@@ -10,12 +10,12 @@
 
 namespace stillpoint::bench {
 
-enum class RigVerdict { kAgrees, kDiffers, kNotObserved };
+enum class RigResult { kAgrees, kDiffers, kNotObserved };
 
 /// One parameter of the rig, in the unit of its name.
 struct RigFinding {
   std::string parameter;  ///< such as "focal length [%]"
-  RigVerdict verdict = RigVerdict::kNotObserved;
+  RigResult result = RigResult::kNotObserved;
   double difference = 0.0;  ///< of the true value from the stated one; zero unless it differs
   double sigma = 0.0;       ///< standard deviation of the estimate
 };
@@ -28,7 +28,7 @@ struct RigFinding {
 [[nodiscard]] std::vector<RigFinding> rig_report(const EstimatedCalibration& calibration);
 
 /// "agrees", "differs" or "not observed".
-[[nodiscard]] std::string_view verdict_name(RigVerdict verdict);
+[[nodiscard]] std::string_view result_name(RigResult result);
 
 /// "focal length [%]: differs by -1.85 (18 sigma); k1: agrees (to 0.001); ...".
 [[nodiscard]] std::string rig_report_line(const std::vector<RigFinding>& findings);

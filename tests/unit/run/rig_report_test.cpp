@@ -20,7 +20,7 @@ EstimatedCalibration observed_calibration() {
 TEST(RigReport, IsSilentAboutAnExactRig) {
   const std::vector<RigFinding> findings = rig_report(observed_calibration());
   ASSERT_EQ(findings.size(), 6U);
-  for (const RigFinding& finding : findings) EXPECT_EQ(finding.verdict, RigVerdict::kAgrees);
+  for (const RigFinding& finding : findings) EXPECT_EQ(finding.result, RigResult::kAgrees);
   EXPECT_EQ(rig_report_line({findings[0], findings[1]}),
             "depth scale [%]: agrees (to 0.2); focal length [%]: agrees (to 0.05)");
 }
@@ -30,10 +30,10 @@ TEST(RigReport, NamesTheParameterOfTheLensThatDiffers) {
   calibration.lens_agrees = false;
   calibration.lens = {0.001, -0.05, 0.0, 0.01};
   const std::vector<RigFinding> findings = rig_report(calibration);
-  EXPECT_EQ(findings[1].verdict, RigVerdict::kAgrees);
-  EXPECT_EQ(findings[2].verdict, RigVerdict::kDiffers);
+  EXPECT_EQ(findings[1].result, RigResult::kAgrees);
+  EXPECT_EQ(findings[2].result, RigResult::kDiffers);
   EXPECT_DOUBLE_EQ(findings[2].difference, 0.05);
-  EXPECT_EQ(findings[3].verdict, RigVerdict::kAgrees);
+  EXPECT_EQ(findings[3].result, RigResult::kAgrees);
   EXPECT_EQ(rig_report_line({findings[4]}), "center y [px]: differs by -5 (20 sigma)");
 }
 
@@ -47,7 +47,7 @@ TEST(RigReport, ATimeOffsetOfMoreThanAMillisecondDiffers) {
   EstimatedCalibration calibration = observed_calibration();
   calibration.rig.time_offset_s = 0.002;
   calibration.time_offset_s = 0.004;
-  EXPECT_EQ(rig_report(calibration).back().verdict, RigVerdict::kAgrees);
+  EXPECT_EQ(rig_report(calibration).back().result, RigResult::kAgrees);
   calibration.time_offset_s = 0.006;
   EXPECT_EQ(rig_report_line({rig_report(calibration).back()}), "time offset [ms]: differs by +4 (20 sigma)");
 }
