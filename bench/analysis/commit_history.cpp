@@ -131,6 +131,7 @@ class HistoryBuilder {
     }
     std::sort(order.begin(), order.end());
     std::vector<CommitId> ids;
+    ids.reserve(order.size());
     for (const auto& commit : order) ids.push_back(std::get<CommitId>(commit));
     return ids;
   }

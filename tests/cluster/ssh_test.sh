@@ -67,7 +67,7 @@ echo "equal stores: local and 4 tasks on 2 logins"
 # A recorded sequence that only this machine has is copied, once.
 sequence="$(find "$work/cache" -name request.toml -printf '%h\n' | head -n 1)"
 cp -r "$sequence" "$work/data/recorded_a"
-printf 'title = "Recorded"\nvariants = ["stillpoint"]\nimages = 0\nmax_frames = 10\n[recorded]\nsequences = ["recorded_a"]\n' \
+printf 'title = "Recorded"\nvariants = ["stillpoint"]\nimages = 0\nmax_frames = 15\n[recorded]\nsequences = ["recorded_a"]\n' \
   >"$work/recorded.toml"
 bench recorded recorded_local || fail "local execution of a recorded sequence: $(tail -n 3 "$work/bench-recorded_local.log")"
 bench recorded recorded "${by_ssh[@]}" || fail "recorded sequence over ssh: $(tail -n 3 "$work/bench-recorded.log")"

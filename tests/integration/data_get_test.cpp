@@ -78,7 +78,7 @@ TEST(DataGet, ABagThatEndsEarlyIsNotRegistered) {
   EXPECT_EQ(whole.exit_code, 0) << whole.err;
   const ProgramResult cut = host.get({"lab/cut"});
   EXPECT_EQ(cut.exit_code, 2) << cut.out;
-  EXPECT_NE(cut.err.find("cut.bag is not complete"), std::string::npos) << cut.err;
+  EXPECT_NE(cut.err.find("cut.bag: ends before its first message"), std::string::npos) << cut.err;
   EXPECT_EQ(host.registered(), 1U);
 }
 

@@ -307,6 +307,7 @@ std::vector<std::string> warnings_about(const EvalArguments& arguments, const Tr
   const std::vector<eval::ConventionFinding> findings =
       arguments.offset_s == 0.0 ? eval::find_convention_violations(gt, run.est)
                                 : eval::find_convention_violations(gt, shifted_estimate(arguments, run));
+  warnings.reserve(findings.size());
   for (const eval::ConventionFinding& finding : findings) warnings.push_back(finding.message);
   return warnings;
 }

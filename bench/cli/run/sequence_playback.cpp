@@ -42,6 +42,7 @@ std::optional<datasets::FrameCacheOptions> logged_frame_cache(bool enabled, int 
 
 std::vector<datasets::SensorFault> parsed_faults(const std::vector<std::string>& texts) {
   std::vector<datasets::SensorFault> faults;
+  faults.reserve(texts.size());
   for (const std::string& text : texts) faults.push_back(datasets::parse_fault(text));
   return datasets::expanded_rigs(faults);
 }
