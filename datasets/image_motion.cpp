@@ -146,7 +146,7 @@ std::optional<Pose> ImageMotion::add(const Frame& frame) {
     levels.push_back(reduced(frame.gray, finest << k));
     last_.push_back(points_of(levels.back(), frame));
   }
-  const std::optional<Pose> T = before.empty() ? std::nullopt : aligned(levels, before);
+  std::optional<Pose> T = before.empty() ? std::nullopt : aligned(levels, before);
   has_depth_ = !frame.depth.empty();
   return T;
 }

@@ -128,7 +128,7 @@ void BatchProblem::add_shared() {
   const auto constant_of = [&](SharedValue first, int size) {
     std::vector<int> constant;
     for (int i = 0; i < size; ++i) {
-      if (!options_.is_variable[static_cast<std::size_t>(index(first) + i)]) constant.push_back(i);
+      if (!is_variable(static_cast<SharedValue>(index(first) + i))) constant.push_back(i);
     }
     return constant;
   };
@@ -456,7 +456,7 @@ std::optional<SharedVector> BatchProblem::deviations() {
     const int size = problem_.ParameterBlockTangentSize(block);
     for (int i = 0, value = 0; found != shared_blocks.end() && i < size; ++value) {
       // Constant numbers of a block have no column; of a pose, all are variable.
-      if (!options_.is_variable[static_cast<std::size_t>(index(found->second) + value)]) continue;
+      if (!is_variable(static_cast<SharedValue>(index(found->second) + value))) continue;
       columns.push_back(column + i++);
       values.push_back(index(found->second) + value);
     }

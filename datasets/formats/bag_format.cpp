@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/base/content_hash.h"
 #include "datasets/bags/bag_geometry.h"
 #include "datasets/bags/messages.h"
@@ -141,10 +143,9 @@ class StreamCollector {
   }
 
   void add_warnings() {
-    const std::string bag = bag_.path().string();
     for (const auto& [topic, count] : not_finite_)
-      streams_.warnings.push_back(bag + ":" + topic + ": " + std::to_string(count) +
-                                  " messages with NaN or infinite values are skipped");
+      streams_.warnings.push_back(fmt::format("{}:{}: {} messages with NaN or infinite values are skipped",
+                                              bag_.path().string(), topic, count));
   }
 
   static bool has_meters(const std::string& type, const SerializedMessage& message) {

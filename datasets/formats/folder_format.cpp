@@ -104,6 +104,7 @@ NamedImages named_images(const std::filesystem::path& folder) {
 
 std::vector<Timestamp> times_of(const std::vector<NamedImage>& images) {
   std::vector<Timestamp> times;
+  times.reserve(images.size());
   for (const NamedImage& image : images) times.push_back(image.t);
   return times;
 }

@@ -235,6 +235,7 @@ std::optional<TimeOffset> find_time_offset(const Trajectory& gt, const Trajector
   }
   error.require_matches(offsets);
   std::vector<Minimum> minima;
+  minima.reserve(offsets.size());
   for (const double offset_s : offsets)
     minima.push_back(minimum_near(error, offset_s, std::max(0.2, 1.5 * step_s)));
   const Minimum best = *std::min_element(

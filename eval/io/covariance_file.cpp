@@ -85,14 +85,8 @@ bool is_header(const TextRow& row) { return row.fields.empty() || !parse_number(
 }  // namespace
 
 StampedCovariance covariance_of(Timestamp t, std::span<const double, 36> matrix) {
-  StampedCovariance result{.t = t};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      result.position(row, column) = matrix[static_cast<std::size_t>(6 * row + column)];
-      result.rotation(row, column) = matrix[static_cast<std::size_t>(6 * (row + 3) + column + 3)];
-    }
-  }
-  return result;
+  const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> pose(matrix.data());
+  return {.t = t, .position = pose.topLeftCorner<3, 3>(), .rotation = pose.bottomRightCorner<3, 3>()};
 }
 
 std::optional<CovarianceTable> find_covariances(std::string_view text, const std::string& name) {

@@ -75,7 +75,7 @@ Eigen::Quaterniond mean_rotation(std::span<const MatchedPose> poses) {
 /// the distance from them. Standard deviations of the rotation: RMSE of the positions over the extension of
 /// the path across its direction, and RMS of the rotations from their mean.
 Similarity aligned_by_best(std::span<const MatchedPose> reference) {
-  const Similarity by_positions = align(reference, Alignment::kSe3).S_w_v;
+  Similarity by_positions = align(reference, Alignment::kSe3).S_w_v;
   const Eigen::Quaterniond mean = mean_rotation(reference);
   const double count = static_cast<double>(reference.size());
   Eigen::Vector3d mean_gt = Eigen::Vector3d::Zero();

@@ -74,6 +74,7 @@ BestLabel best_on(std::span<const bench::StoredRun> runs, const std::vector<std:
   for (const std::string& label : labels)
     cells.push_back(metric_cell(runs_of(runs, label, sequence), bench::headline_metric().id));
   std::vector<TableCell*> compared;
+  compared.reserve(cells.size());
   for (TableCell& cell : cells) compared.push_back(&cell);
   mark_best(compared, false);
   BestLabel best;
