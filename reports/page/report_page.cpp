@@ -71,6 +71,7 @@ struct BestLabel {
 BestLabel best_on(std::span<const bench::StoredRun> runs, const std::vector<std::string>& labels,
                   const std::string& sequence) {
   std::vector<TableCell> cells;
+  cells.reserve(labels.size());
   for (const std::string& label : labels)
     cells.push_back(metric_cell(runs_of(runs, label, sequence), bench::headline_metric().id));
   std::vector<TableCell*> compared;
