@@ -209,6 +209,7 @@ class RunRecorder {
   [[nodiscard]] OdometryRun finish(RunSummary summary, double wall_s, const FramePrefetcher& prefetcher) {
     run_.summary = std::move(summary);
     run_.wall_s = wall_s;
+    run_.calibration.rig = stream_.info().rig;
     if (imu_rate_) run_.imu_rate = imu_rate_->take();
     if (run_.loops && run_.summary.loops) {
       run_.loops->report = std::move(*run_.summary.loops);
@@ -257,7 +258,6 @@ class RunRecorder {
 
   void record_calibration(const OdometryUpdate& update) {
     EstimatedCalibration& calibration = run_.calibration;
-    calibration.rig = stream_.info().rig;
     calibration.time_offset_s = update.time_offset_s;
     calibration.depth_scale = update.depth_scale;
     calibration.lens = update.lens;

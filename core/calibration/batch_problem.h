@@ -21,7 +21,7 @@
 
 namespace stillpoint {
 
-/// The numbers of the calibration, in the order of `SharedInformation`.
+/// The numbers of the calibration, in the order of `SharedVector`.
 enum class SharedValue : std::uint8_t {
   kFx,
   kFy,
