@@ -23,6 +23,7 @@ namespace {
 
 constexpr int kExecFailed = 127;
 constexpr std::size_t kMaxMessageBytes = 65'536;
+constexpr std::int64_t kMaxBytesPerPoll = std::int64_t{1} << 20;  // a child may print faster than it is read
 constexpr int kPollIntervalMs = 100;    // longest delay until an exceeded limit is detected
 constexpr int kExitPollIntervalMs = 2;  // a child that closed stderr is about to exit
 
@@ -52,7 +53,7 @@ struct Launch {
   char* const* arguments;
   char* const* environment;
   const char* folder;  ///< null = inherited
-  const char* output;  ///< file that receives stdout
+  const char* output;  ///< file that receives stdout; null = the message pipe
   int message_pipe;
   pid_t parent;
   bool pinned;
@@ -68,7 +69,9 @@ struct Launch {
   if (getppid() != launch.parent) _exit(kExecFailed);  // the parent died before prctl
   if (launch.pinned) sched_setaffinity(0, sizeof launch.processors, &launch.processors);
   dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
-  dup2(open(launch.output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), STDOUT_FILENO);
+  dup2(launch.output == nullptr ? launch.message_pipe
+                                : open(launch.output, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666),
+       STDOUT_FILENO);
   dup2(launch.message_pipe, STDERR_FILENO);
   if (launch.folder == nullptr || chdir(launch.folder) == 0) {
     if (launch.fixed_addresses) personality(ADDR_NO_RANDOMIZE);
@@ -79,12 +82,35 @@ struct Launch {
   _exit(kExecFailed);
 }
 
+/// The processes that the threads of a process have started and that are still running; none if the kernel
+/// does not list them.
+std::vector<pid_t> children_of(pid_t pid) {
+  std::vector<pid_t> children;
+  std::error_code ended;
+  const std::filesystem::path tasks = "/proc/" + std::to_string(pid) + "/task";
+  for (std::filesystem::directory_iterator task(tasks, ended), end; !ended && task != end;
+       task.increment(ended)) {
+    std::ifstream file(task->path() / "children");
+    for (pid_t child = 0; file >> child;) children.push_back(child);
+  }
+  return children;
+}
+
+/// Of a process and its descendants: a system may be started by a script.
 std::int64_t resident_bytes(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/statm");
-  std::int64_t total_pages = 0;
-  std::int64_t resident_pages = 0;
-  file >> total_pages >> resident_pages;
-  return resident_pages * sysconf(_SC_PAGESIZE);
+  std::int64_t pages = 0;
+  for (std::vector<pid_t> processes = {pid}; !processes.empty();) {
+    const pid_t process = processes.back();
+    processes.pop_back();
+    std::ifstream file("/proc/" + std::to_string(process) + "/statm");
+    std::int64_t total_pages = 0;
+    std::int64_t resident_pages = 0;
+    file >> total_pages >> resident_pages;
+    pages += resident_pages;
+    const std::vector<pid_t> children = children_of(process);
+    processes.insert(processes.end(), children.begin(), children.end());
+  }
+  return pages * sysconf(_SC_PAGESIZE);
 }
 
 double cpu_seconds(const timeval& time) {
@@ -131,7 +157,9 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
                       .arguments = arguments.data(),
                       .environment = spec.environment ? environment.data() : environ,
                       .folder = spec.folder.empty() ? nullptr : spec.folder.c_str(),
-                      .output = spec.output.empty() ? "/dev/null" : spec.output.c_str(),
+                      .output = spec.output_in_messages ? nullptr
+                                : spec.output.empty()   ? "/dev/null"
+                                                        : spec.output.c_str(),
                       .message_pipe = ends[1],
                       .parent = getpid(),
                       .pinned = !spec.cores.empty(),
@@ -159,9 +187,13 @@ ChildProcess::~ChildProcess() {
 
 void ChildProcess::read_messages() {
   std::array<char, 4096> block{};
-  while (pipe_ >= 0) {
+  const std::int64_t end = message_bytes_ + kMaxBytesPerPoll;
+  while (pipe_ >= 0 && message_bytes_ < end) {
     const ssize_t got = read(pipe_, block.data(), block.size());
-    if (got > 0) result_.messages.append(block.data(), static_cast<std::size_t>(got));
+    if (got > 0) {
+      result_.messages.append(block.data(), static_cast<std::size_t>(got));
+      message_bytes_ += got;
+    }
     if (got == 0) close_pipe();
     if (got < 0 && errno != EINTR) break;
   }
@@ -185,9 +217,12 @@ void ChildProcess::enforce_limits() {
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const bool late = spec_.time_limit_s && elapsed_s > *spec_.time_limit_s;
   const bool large = spec_.memory_limit_bytes && resident_bytes(pid_) > *spec_.memory_limit_bytes;
-  if ((!late && !large) || result_.timed_out || result_.out_of_memory) return;
+  const bool loud = spec_.message_limit_bytes && message_bytes_ > *spec_.message_limit_bytes;
+  const bool is_killed = result_.timed_out || result_.out_of_memory || result_.too_many_messages;
+  if ((!late && !large && !loud) || is_killed) return;
   result_.timed_out = late;
   result_.out_of_memory = large && !late;
+  result_.too_many_messages = loud && !large && !late;
   kill(-pid_, SIGKILL);
   kill(pid_, SIGKILL);
 }

@@ -22,11 +22,13 @@ struct ProcessSpec {
   std::filesystem::path program;  ///< searched in PATH if it contains no slash
   std::vector<std::string> arguments;
   std::optional<double> time_limit_s;
-  std::optional<std::int64_t> memory_limit_bytes;       ///< of resident memory
+  std::optional<std::int64_t> memory_limit_bytes;       ///< resident, of it and its descendants
+  std::optional<std::int64_t> message_limit_bytes;      ///< of all messages
   std::vector<int> cores;                               ///< CPU affinity; empty = all processors
   std::filesystem::path folder;                         ///< working directory; empty = inherited
   std::optional<std::vector<std::string>> environment;  ///< "NAME=value", complete; nullopt = inherited
   std::filesystem::path output;                         ///< receives stdout; empty = discarded
+  bool output_in_messages = false;                      ///< stdout belongs to the messages; `output` is empty
   bool fixed_addresses = false;                         ///< disables address space randomization
 };
 
@@ -35,8 +37,9 @@ struct ProcessResult {
   int exit_code = 0;  ///< 0 when terminated by a signal
   int signal = 0;     ///< 0 when it exited
   bool timed_out = false;
-  bool out_of_memory = false;  ///< killed at its memory limit
-  std::string messages;        ///< last 64 kB of stderr
+  bool out_of_memory = false;      ///< killed at its memory limit
+  bool too_many_messages = false;  ///< killed at its message limit
+  std::string messages;            ///< last 64 kB of stderr
   double wall_s = 0.0;
   double user_s = 0.0;
   double system_s = 0.0;
@@ -87,6 +90,7 @@ class ChildProcess {
   ProcessSpec spec_;
   pid_t pid_ = -1;
   int pipe_ = -1;
+  std::int64_t message_bytes_ = 0;  ///< read so far
   std::chrono::steady_clock::time_point start_;
   ProcessResult result_;
 };

@@ -58,6 +58,37 @@ TEST(ChildProcess, KillsAProcessAtItsTimeLimit) {
   EXPECT_GE(end.wall_s, 0.05);
 }
 
+// The pipe never becomes empty: reading until then would not return.
+TEST(ChildProcess, KillsAtItsTimeLimitAProcessThatPrintsWithoutEnd) {
+  ProcessSpec spec = shell("exec yes >&2");
+  spec.time_limit_s = 0.05;
+  const ProcessResult end = run_process(spec);
+  EXPECT_TRUE(end.timed_out);
+  EXPECT_FALSE(end.too_many_messages);
+}
+
+TEST(ChildProcess, KillsAProcessAtItsMessageLimit) {
+  ProcessSpec spec = shell("exec yes");
+  spec.output_in_messages = true;
+  spec.message_limit_bytes = 100'000;
+  spec.time_limit_s = 60.0;
+  const ProcessResult end = run_process(spec);
+  EXPECT_TRUE(end.too_many_messages);
+  EXPECT_FALSE(end.timed_out);
+  EXPECT_EQ(last_line(end.messages.substr(0, 4)), "y");
+}
+
+// 16 MB of a child of the shell, which itself is smaller.
+TEST(ChildProcess, MemoryLimitCountsDescendants) {
+  ProcessSpec spec =
+      shell("awk 'BEGIN { s = \"x\"; while (length(s) < 16000000) s = s s; while (1) n = length(s) }'; :");
+  spec.memory_limit_bytes = 8'000'000;
+  spec.time_limit_s = 20.0;
+  const ProcessResult end = run_process(spec);
+  EXPECT_TRUE(end.out_of_memory);
+  EXPECT_FALSE(end.timed_out);
+}
+
 TEST(ChildProcess, MeasuresProcessorTimeAndMemory) {
   const ProcessResult end = run_process(shell("i=0; while [ $i -lt 20000 ]; do i=$((i+1)); done"));
   EXPECT_GT(end.user_s + end.system_s, 0.0);
