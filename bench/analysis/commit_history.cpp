@@ -10,6 +10,9 @@
 #include <tuple>
 #include <unordered_map>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "bench/analysis/run_groups.h"
 #include "core/base/error.h"
 #include "eval/metrics/statistics.h"
@@ -183,9 +186,29 @@ class HistoryBuilder {
 
 }  // namespace
 
-CommitHistory commit_history(const Store& store) {
+namespace {
+
+std::string chosen_system(const Store& store, const std::string& name) {
+  const std::vector<std::string> systems = systems_of(store);
+  const bool is_known = std::ranges::find(systems, name.empty() ? kOwnSystem : name) != systems.end();
+  if (is_known && !name.empty()) return name;
+  if (name.empty()) return !is_known && systems.size() == 1 ? systems.front() : kOwnSystem;
+  throw InputError("--system", fmt::format("the store has no run of \"{}\"; it has those of: {}", name,
+                                           fmt::join(systems, ", ")));
+}
+
+}  // namespace
+
+std::vector<std::string> systems_of(const Store& store) {
+  std::set<std::string> systems;
+  for (const StoredRun& run : store.run_headers()) systems.insert(run.identity.system);
+  return {systems.begin(), systems.end()};
+}
+
+CommitHistory commit_history(const Store& store, const std::string& system) {
   constexpr std::size_t kChunk = 5000;  // runs whose details are in memory
-  std::vector<StoredRun> runs = store.run_headers({.system = kOwnSystem});
+  const std::string chosen = chosen_system(store, system);
+  std::vector<StoredRun> runs = store.run_headers({.system = chosen});
   HistoryBuilder builder(plans_by_run(store, runs));
   const RunOrigins origins = run_origins(store, runs);
   for (std::size_t begin = 0; begin < runs.size(); begin += kChunk) {
@@ -195,7 +218,9 @@ CommitHistory commit_history(const Store& store) {
         store.with_details({std::make_move_iterator(first), std::make_move_iterator(last)});
     for (std::size_t i = 0; i < chunk.size(); ++i) builder.add(chunk[i], origins[begin + i]);
   }
-  return builder.build();
+  CommitHistory history = builder.build();
+  history.system = chosen;
+  return history;
 }
 
 std::size_t find_commit(const CommitHistory& history, const std::string& name) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// History of all metrics of the odometry over commits, as time series.
+/// History of all metrics of a system over its commits or versions, as time series.
 #pragma once
 
 #include <compare>
@@ -49,13 +49,21 @@ struct HistorySeries {
 };
 
 struct CommitHistory {
+  std::string system;           ///< this odometry or an external system
   std::vector<Commit> commits;  ///< by time, ties by the order of their first runs
   std::vector<HistorySeries> series;
 };
 
-/// History of the runs in a store, without those of external systems. A run without a manifest (interrupted)
-/// is assigned to the machine of the previous run.
-[[nodiscard]] CommitHistory commit_history(const Store& store);
+/// The systems of the completed runs, in alphabetical order.
+[[nodiscard]] std::vector<std::string> systems_of(const Store& store);
+
+/// History of the runs of one system in a store; the commits of an external system are its versions, in the
+/// order of their first runs. A run without a manifest (interrupted) is assigned to the machine of the
+/// previous run.
+/// @param store of all systems
+/// @param system name; empty: this odometry, or the only one in a store without it
+/// @throws InputError if a name is given of which the store has no run
+[[nodiscard]] CommitHistory commit_history(const Store& store, const std::string& system = "");
 
 /// Index of the commit with a name or unique name prefix.
 /// @throws InputError if there is none, or more than one

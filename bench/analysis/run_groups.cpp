@@ -88,9 +88,9 @@ RunOrigins run_origins(const Store& store, std::span<const StoredRun> runs) {
 
 namespace {
 
-/// Builds of Stillpoint, the newest first: by commit time, or the first run without one, then by the first
-/// run.
-std::vector<std::string> builds_of(std::span<const StoredRun> runs) {
+/// Builds, the newest first: by commit time, or the first run without one, then by the first run.
+/// @param own only those of this odometry
+std::vector<std::string> builds_of(std::span<const StoredRun> runs, bool own) {
   struct BuildTime {
     std::string committed;
     std::string first_run;
@@ -98,7 +98,7 @@ std::vector<std::string> builds_of(std::span<const StoredRun> runs) {
   };
   std::map<std::string, BuildTime> times;
   for (const StoredRun& run : runs) {
-    if (run.identity.system != kOwnSystem) continue;
+    if (own && run.identity.system != kOwnSystem) continue;
     const auto [entry, is_new] = times.insert({run.identity.build, {run.committed, run.started, run.id}});
     BuildTime& time = entry->second;
     if (time.committed.empty()) time.committed = run.committed;
@@ -269,18 +269,18 @@ std::vector<StoredRun> runs_of_plan(const Store& store, const std::string& plan)
 }
 
 std::string newest_build(std::span<const StoredRun> runs) {
-  const std::vector<std::string> builds = builds_of(runs);
+  std::vector<std::string> builds = builds_of(runs, true);
+  if (builds.empty()) builds = builds_of(runs, false);
   return builds.empty() ? "" : builds.front();
 }
 
 std::string build_named(std::span<const StoredRun> runs, const std::string& name, const std::string& place) {
-  return chosen_build(builds_of(runs), name, place);
+  return chosen_build(builds_of(runs, false), name, place);
 }
 
 RunSelection select_runs(const Store& store, std::vector<StoredRun> runs, const std::string& build) {
-  const std::vector<std::string> builds = builds_of(runs);
   const bool is_named = !build.empty() && build != kAllBuilds;
-  const std::string chosen = is_named ? chosen_build(builds, build, "--build") : newest_build(runs);
+  const std::string chosen = is_named ? build_named(runs, build, "--build") : newest_build(runs);
   const RunOrigins origins = run_origins(store, runs);
   const NewestConfigs newest = newest_configs(runs, origins);
   std::map<std::string, std::size_t> other_builds;

@@ -72,8 +72,8 @@ struct RunSelection {
 /// @throws InputError if the store does not contain the plan; the message lists those that it contains
 [[nodiscard]] std::vector<StoredRun> runs_of_plan(const Store& store, const std::string& plan);
 
-/// The build with the latest commit time, or the latest first run where manifests lack it; empty without runs
-/// of Stillpoint.
+/// The build of this odometry, or without its runs that of any system, with the latest commit time, or the
+/// latest first run where manifests lack it; empty without runs.
 [[nodiscard]] std::string newest_build(std::span<const StoredRun> runs);
 
 /// The build with a name or unique prefix. A build with uncommitted changes ("abc123+ff00") is another one

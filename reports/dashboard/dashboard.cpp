@@ -8,7 +8,9 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "bench/analysis/run_groups.h"
 #include "bench/model/metrics.h"
 #include "core/base/error.h"
 #include "reports/dashboard/history_text.h"
@@ -177,6 +179,8 @@ std::string summary_html(const bench::CommitHistory& history, const bench::Histo
       "<li>" + (open == 0 ? "No open regressions" : counted(open, "open regression")) +
       (drifting == 0 ? "" : "; " + counted(drifting, "metric") + " drifting for the worse over commits") +
       ".</li>";
+  if (history.system != bench::kOwnSystem)
+    text += "<li>System: " + escape_html(history.system) + "; its versions take the place of commits.</li>";
   text += fmt::format("<li>{} from {} to {}, {}, {}.</li>", counted(history.commits.size(), "commit"),
                       escape_html(history.commits.front().time), escape_html(history.commits.back().time),
                       fmt::format("{} series", history.series.size()), counted(hosts.size(), "machine type"));
@@ -276,18 +280,22 @@ std::string index_html(const bench::CommitHistory& history, const bench::History
 
 }  // namespace
 
-AnalyzedHistory analyze_history(const bench::Store& store) {
-  AnalyzedHistory analyzed{.history = bench::commit_history(store), .changes = {}};
-  if (analyzed.history.commits.empty())
+AnalyzedHistory analyze_history(const bench::Store& store, const std::string& system) {
+  AnalyzedHistory analyzed{.history = bench::commit_history(store, system), .changes = {}};
+  if (analyzed.history.commits.empty()) {
+    const std::vector<std::string> others = bench::systems_of(store);
     throw InputError(
         store.file().string(),
-        "contains no finished runs of stillpoint; create some with `stillpoint bench PLAN --store FILE`");
+        "contains no finished runs of stillpoint; " +
+            (others.empty() ? "create some with `stillpoint bench PLAN --store FILE`"
+                            : fmt::format("choose a system by --system: {}", fmt::join(others, ", "))));
+  }
   analyzed.changes = bench::history_changes(analyzed.history, store.acceptances());
   return analyzed;
 }
 
-std::vector<bench::OutputFile> dashboard_files(const bench::Store& store) {
-  const auto [history, changes] = analyze_history(store);
+std::vector<bench::OutputFile> dashboard_files(const bench::Store& store, const std::string& system) {
+  const auto [history, changes] = analyze_history(store, system);
   std::vector<bench::OutputFile> files = {{"index.html", index_html(history, changes)},
                                           {"regressions.md", regressions_markdown(history, changes)},
                                           {"regressions.json", regressions_json(history, changes)}};

@@ -17,8 +17,10 @@ struct AnalyzedHistory {
 };
 
 /// Commit history of a store with its change points and drifts.
-/// @throws InputError if the store has no finished runs of Stillpoint
-[[nodiscard]] AnalyzedHistory analyze_history(const bench::Store& store);
+/// @param store of all systems
+/// @param system as of `commit_history`
+/// @throws InputError if the store has no finished runs of the system
+[[nodiscard]] AnalyzedHistory analyze_history(const bench::Store& store, const std::string& system = "");
 
 /// Page of one commit: its change points, and its metrics compared with the previous measurement.
 /// Self-contained, without scripts.
@@ -28,6 +30,7 @@ struct AnalyzedHistory {
 
 /// index.html, regressions.md, regressions.json, and one page per commit in commits/.
 /// @throws InputError as `analyze_history`
-[[nodiscard]] std::vector<bench::OutputFile> dashboard_files(const bench::Store& store);
+[[nodiscard]] std::vector<bench::OutputFile> dashboard_files(const bench::Store& store,
+                                                             const std::string& system = "");
 
 }  // namespace stillpoint::report

@@ -4,8 +4,10 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "bench/analysis/commit_history.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
 #include "bench/record/output_folder.h"
@@ -70,7 +72,20 @@ struct DashboardArguments {
   std::string store;
   std::string out;
   std::string format = "markdown";
+  std::string system;
 };
+
+/// Help of the option --system.
+constexpr const char* kSystemHelp =
+    "System of the runs, over its versions [stillpoint; the only one in a store without it]";
+
+/// Names the systems that are not shown.
+void log_other_systems(const Store& store, const std::string& shown) {
+  std::vector<std::string> others = systems_of(store);
+  std::erase(others, shown);
+  if (!others.empty())
+    spdlog::info("shown: {}; the store also has runs of {}: --system NAME", shown, fmt::join(others, ", "));
+}
 
 int dashboard(const DashboardArguments& arguments) {
   if (arguments.out.empty()) throw InputError("--out", "is required: the output folder of index.html");
@@ -80,7 +95,9 @@ int dashboard(const DashboardArguments& arguments) {
                        .marks = {{"index.html", "regressions.md"}}},
                       {arguments.store});
   require_writable(out);
-  const std::vector<OutputFile> files = report::dashboard_files(Store(arguments.store));
+  const Store store(arguments.store);
+  const std::vector<OutputFile> files = report::dashboard_files(store, arguments.system);
+  log_other_systems(store, commit_history(store, arguments.system).system);
   std::map<fs::path, std::vector<OutputFile>> by_folder;
   for (const OutputFile& file : files) {
     const fs::path path = out / file.name;
@@ -95,7 +112,9 @@ int regressions(const DashboardArguments& arguments) {
   if (arguments.format != "markdown" && arguments.format != "json")
     throw InputError("--format",
                      "unknown format \"" + arguments.format + "\"; expected one of: markdown, json");
-  const auto [history, changes] = report::analyze_history(Store(arguments.store));
+  const Store store(arguments.store);
+  const auto [history, changes] = report::analyze_history(store, arguments.system);
+  log_other_systems(store, history.system);
   std::cout << (arguments.format == "json" ? report::regressions_json(history, changes)
                                            : report::regressions_markdown(history, changes));
   return report::has_findings(history, changes) ? kExitFindings : kExitOk;
@@ -110,7 +129,8 @@ Command dashboard_command() {
           .example = "dashboard build/bench/store.sqlite --out build/dashboard",
           .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
                       {"--out", "Output folder of index.html, commits/ and the list of regressions",
-                       &arguments->out}},
+                       &arguments->out},
+                      {"--system", kSystemHelp, &arguments->system}},
           .action = [arguments] { return dashboard(*arguments); }};
 }
 
@@ -120,7 +140,8 @@ Command regressions_command() {
           .summary = "List open regressions and drifts; exit code 0 = none, 1 = some, 2 = error",
           .example = "regressions build/bench/store.sqlite --format json",
           .options = {{"STORE", "Store with the runs of several commits", &arguments->store},
-                      {"--format", "Output format: markdown or json [markdown]", &arguments->format}},
+                      {"--format", "Output format: markdown or json [markdown]", &arguments->format},
+                      {"--system", kSystemHelp, &arguments->system}},
           .action = [arguments] { return regressions(*arguments); }};
 }
 
@@ -128,12 +149,14 @@ namespace {
 
 struct ServeArguments {
   std::string store;
+  std::string system;
   ServerOptions server;
 };
 
 int serve(const ServeArguments& arguments) {
   block_interrupts();
-  const StaticServer server(report::dashboard_files(Store(arguments.store)), arguments.server);
+  const StaticServer server(report::dashboard_files(Store(arguments.store), arguments.system),
+                            arguments.server);
   spdlog::info("serving http://{}:{}/ (current content of the store); press Ctrl-C to stop",
                arguments.server.address, server.port());
   if (!arguments.server.address.starts_with("127."))
@@ -152,6 +175,7 @@ Command serve_command() {
           .example = "serve build/bench/store.sqlite --port 8035",
           .options =
               {{"STORE", "Store with the runs of several commits", &arguments->store},
+               {"--system", kSystemHelp, &arguments->system},
                {"--port", "Port to listen on; 0 = any free port [8035]", &arguments->server.port, {0, 65535}},
                {"--address",
                 "IPv4 address to listen on; addresses other than loopback give other machines access "

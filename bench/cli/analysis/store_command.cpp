@@ -39,6 +39,7 @@ Command store_subcommand(Command command, const std::shared_ptr<Arguments>& argu
 
 struct AcceptArguments {
   std::string store = "build/bench/store.sqlite";
+  std::string system;
   Acceptance subject;
 };
 
@@ -57,7 +58,7 @@ void require_known(const CommitHistory& history, const std::string& option, cons
 Acceptance resolved(const AcceptArguments& arguments) {
   Acceptance subject = arguments.subject;
   if (subject.metric.empty()) throw InputError("--metric", "is required: the name of the metric or module");
-  const CommitHistory history = commit_history(Store(arguments.store));
+  const CommitHistory history = commit_history(Store(arguments.store), arguments.system);
   subject.commit = history.commits[find_commit(history, subject.commit)].name;
   require_known(history, "--metric", subject.metric,
                 [](const HistorySeries& series) { return series.metric; });
@@ -111,7 +112,8 @@ std::vector<Command> acceptance_commands() {
       {"COMMIT", "Last commit of the range in which the metric changed; may be abbreviated", &subject.commit},
       {"--metric", "Name of the metric or module as printed by `stillpoint regressions`", &subject.metric},
       {"--variant", "Only this variant [all]", &subject.variant},
-      {"--sequence", "Only this sequence [all]", &subject.sequence}};
+      {"--sequence", "Only this sequence [all]", &subject.sequence},
+      {"--system", "System whose commits or versions are meant [stillpoint]", &arguments->system}};
   std::vector<Option> with_reason = subject_options;
   with_reason.push_back({"--reason", "Why the change is accepted", &subject.reason});
   return {store_subcommand(

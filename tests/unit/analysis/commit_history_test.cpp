@@ -138,10 +138,25 @@ TEST(CommitHistory, AssignsRunsOfEarlierCommitsToCurrentPlans) {
   }
 }
 
-TEST(CommitHistory, IgnoresExternalSystems) {
+TEST(CommitHistory, IsThatOfOneSystem) {
+  const TemporaryFolder folder;
+  const Store store(store_of(
+      folder, {{"a", 0.1, ""}, {"1.0", 0.2, "", {.system = "orb"}}, {"1.1", 0.3, "", {.system = "orb"}}}));
+  ASSERT_EQ(commit_history(store).commits.size(), 1u);
+  EXPECT_EQ(commit_history(store).commits[0].name, "a");
+  const CommitHistory orb = commit_history(store, "orb");
+  EXPECT_EQ(orb.system, "orb");
+  ASSERT_EQ(orb.commits.size(), 2u);
+  EXPECT_EQ(orb.commits[1].name, "1.1");
+  expect_input_error([&] { static_cast<void>(commit_history(store, "orbb")); },
+                     {"--system", "\"orbb\"", "orb, stillpoint"});
+}
+
+TEST(CommitHistory, IsThatOfTheOnlySystem) {
   const TemporaryFolder folder;
   const Store store(store_of(folder, {{"1.0", 0.1, "", {.system = "orb"}}}));
-  EXPECT_TRUE(commit_history(store).commits.empty());
+  EXPECT_EQ(commit_history(store).system, "orb");
+  EXPECT_EQ(commit_history(store).commits.size(), 1u);
 }
 
 /// "metric: why", of the open shifts.
