@@ -31,6 +31,20 @@ class PartialStream final : public SensorStream {
     std::erase_if(info_.true_boxes, is_early);
   }
 
+  /// Removes the other frames, and what follows them.
+  void keep_first(std::size_t count) {
+    info_.frame_times.resize(count);
+    const auto remove_after = [last = info_.frame_times.back()](auto& items, double margin_s) {
+      std::erase_if(items, [&](const auto& item) { return item.t > after(last, margin_s); });
+    };
+    constexpr double kAssociation_s = 0.02;  // a true pose may be slightly later than its frame
+    constexpr double kInterpolation_s = 0.1;
+    remove_after(info_.imu, kInterpolation_s);
+    remove_after(info_.ground_truth.trajectory.poses, kAssociation_s);
+    remove_after(info_.detections, kAssociation_s);
+    remove_after(info_.true_boxes, kAssociation_s);
+  }
+
   [[nodiscard]] const SequenceInfo& info() const override { return info_; }
   void note(std::string text) { info_.notes.push_back(std::move(text)); }
 
@@ -79,6 +93,15 @@ std::unique_ptr<SensorStream> every_nth_frame(std::unique_ptr<SensorStream> stre
   const std::size_t all = stream->info().frame_times.size();
   auto part = std::make_unique<PartialStream>(std::move(stream), 0, static_cast<std::size_t>(step));
   part->note(fmt::format("1 of {} frames is played: {} of {}", step, part->info().frame_times.size(), all));
+  return part;
+}
+
+std::unique_ptr<SensorStream> first_frames(std::unique_ptr<SensorStream> stream, std::size_t count) {
+  const std::size_t all = stream->info().frame_times.size();
+  if (count == 0 || count >= all) return stream;
+  auto part = std::make_unique<PartialStream>(std::move(stream), 0, 1);
+  part->keep_first(count);
+  part->note(fmt::format("the first {} of {} frames are played", count, all));
   return part;
 }
 

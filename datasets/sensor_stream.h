@@ -47,6 +47,13 @@ class SensorStream {
 /// @throws InputError if step < 1
 [[nodiscard]] std::unique_ptr<SensorStream> every_nth_frame(std::unique_ptr<SensorStream> stream, int step);
 
+/// Plays the first `count` frames, as if the recording ended there: with the IMU samples until 0.1 s after
+/// the last one, and the true poses and boxes until 0.02 s after it.
+/// @param stream without injected faults
+/// @param count 0, or at least the number of frames: the stream as it is
+[[nodiscard]] std::unique_ptr<SensorStream> first_frames(std::unique_ptr<SensorStream> stream,
+                                                         std::size_t count);
+
 /// Plays a sequence forwards and backwards alternately: an arbitrarily long sequence with continuous motion.
 /// Frames, boxes and ground-truth poses continue without a jump in pose or time; the frame at a turning point
 /// occurs once. IMU samples are dropped: time-reversed accelerometer samples are not physically valid.

@@ -89,6 +89,7 @@ inline constexpr const char* kSysfsRootHelp =
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: result files by scene
 [[nodiscard]] Command bench_command();           ///< `stillpoint bench`: execute a benchmark plan
 [[nodiscard]] Command worker_command();          ///< `stillpoint worker`: execute tasks of a plan
+[[nodiscard]] Command systems_command();         ///< `stillpoint systems`: describe and try other systems
 [[nodiscard]] Command plan_command();            ///< `stillpoint plan`: list plans and their runs
 [[nodiscard]] Command store_command();           ///< `stillpoint store`: inspect and maintain stores
 [[nodiscard]] Command stats_command();           ///< `stillpoint stats`: statistics over runs

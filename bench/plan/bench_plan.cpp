@@ -18,8 +18,9 @@
 #include "bench/config/toml_source.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/run/odometry_run.h"
+#include "bench/systems/external_run.h"
+#include "bench/systems/external_system.h"
 #include "bench/systems/published_table.h"
-#include "bench/systems/slam_system.h"
 #include "datasets/faults/sensor_fault.h"
 #include "eval/protocols/protocol.h"
 
@@ -120,6 +121,11 @@ void require_setting(Setting setting, const std::string& place) {
   static_cast<void>(with_settings(OdometryConfig{}, std::vector{setting}));
 }
 
+/// Whether a sweep varies this odometry: neither the scene nor a parameter of an external system.
+bool is_config_key(const std::string& key) {
+  return !key.starts_with(kSynthPrefix) && !key.starts_with(kParamPrefix);
+}
+
 /// Sweep values are numbers; whole ones are accepted by keys that require an integer.
 SettingValue sweep_value(double value) {
   const bool is_whole = value == std::floor(value) && std::abs(value) <= kMaxWhole;
@@ -133,7 +139,7 @@ void require_settings(const BenchPlan& plan) {
     require_setting(at_place(plan, key, [&] { return parse_assignment(assignment); }), place_of(plan, key));
   }
   for (const SweepAxis& axis : plan.sweep) {
-    if (axis.key.starts_with(kSynthPrefix)) continue;
+    if (!is_config_key(axis.key)) continue;
     for (const double value : axis.values)
       require_setting({.key = axis.key, .value = sweep_value(value)}, place_of(plan, "sweep." + axis.key));
   }
@@ -166,7 +172,7 @@ void require_effects(const BenchPlan& plan) {
   for (const std::string& assignment : plan.config_settings)
     require_effect(plan, assignment.substr(0, assignment.find('=')), "config");
   for (const SweepAxis& axis : plan.sweep) {
-    if (!axis.key.starts_with(kSynthPrefix)) require_effect(plan, axis.key, "sweep");
+    if (is_config_key(axis.key)) require_effect(plan, axis.key, "sweep");
   }
 }
 
@@ -200,19 +206,43 @@ void require_mode(const BenchPlan& plan) {
                                                        plan.mode, fmt::join(kRunModes, "\", \"")));
 }
 
-/// External systems always process whole sequences, and cannot run under callgrind.
-void require_supported_by_systems(const BenchPlan& plan) {
-  if (plan.systems.empty() || (plan.max_frames == 0 && plan.kind != RunKind::kInstructions)) return;
-  throw InputError(place_of(plan, "systems"),
-                   "max_frames and kind = \"instructions\" do not support external systems; remove systems");
+/// The systems of the plan, and what they can do.
+void require_systems(const BenchPlan& plan) {
+  std::vector<ExternalSystem> systems;
+  at_place(plan, "systems", [&] {
+    for (const std::string& name : plan.systems) systems.push_back(load_external_system(name));
+  });
+  if (!systems.empty() && plan.kind == RunKind::kInstructions)
+    throw InputError(place_of(plan, "systems"),
+                     "kind = \"instructions\" does not support external systems; remove systems");
+  const bool is_changed =
+      plan.max_frames > 0 ||
+      std::ranges::any_of(plan.faults, [](const std::string& fault) { return fault != kNoFault; });
+  for (const ExternalSystem& system : systems) {
+    if (is_changed && system.layout == ExportLayout::kAsIs)
+      throw InputError(place_of(plan, plan.max_frames > 0 ? "max_frames" : "faults"),
+                       "system \"" + system.name +
+                           "\" reads the recorded files (layout = \"as_is\"), which are "
+                           "not changed; use layout = \"tum\" or \"euroc\"");
+  }
+  for (const SweepAxis& axis : plan.sweep) {
+    if (!axis.key.starts_with(kParamPrefix)) continue;
+    const std::string name = axis.key.substr(kParamPrefix.size());
+    if (std::ranges::none_of(systems, [&](const ExternalSystem& s) { return s.param.contains(name); }))
+      throw InputError(place_of(plan, "sweep." + axis.key), "no system of the plan has the parameter \"" +
+                                                                name + "\"; add it to its table [param]");
+  }
 }
 
 void require_faults(const BenchPlan& plan) {
   for (const std::string& fault : plan.faults) {
-    if (fault != kNoFault) static_cast<void>(datasets::parse_fault(fault));
+    if (fault == kNoFault) continue;
+    static_cast<void>(datasets::parse_fault(fault));
+    if (!plan.systems.empty() && !reaches_external_systems(fault))
+      throw InputError("\"" + fault +
+                       "\" does not reach external systems: an exported sequence has neither the "
+                       "arrival of frames nor recorded boxes; remove it, or systems");
   }
-  if (!plan.faults.empty() && !plan.systems.empty())
-    throw InputError("faults are injected into runs of this odometry only; remove systems");
 }
 
 void require_expectations(const BenchPlan& plan) {
@@ -266,16 +296,13 @@ void validate_plan(const BenchPlan& plan) {
   require_renderings(plan);
   require_distinct_lists(plan);
   require_mode(plan);
-  require_supported_by_systems(plan);
   at_place(plan, "ablation_base", [&] { require_ablation_base(plan); });
   at_place(plan, "faults", [&] { require_faults(plan); });
   at_place(plan, "expected", [&] { require_expectations(plan); });
   at_place(plan, "protocols", [&] { require_protocols(plan.protocols); });
   at_place(plan, "cores", [&] { static_cast<void>(parse_cpu_list(plan.cores)); });
   at_place(plan, "rendered.sequences", [&] { static_cast<void>(matching_presets(plan.rendered.sequences)); });
-  at_place(plan, "systems", [&] {
-    for (const std::string& system : plan.systems) static_cast<void>(load_external_system(system));
-  });
+  require_systems(plan);
   at_place(plan, "table.published", [&] {
     for (const std::string& table : plan.table.published) static_cast<void>(load_published(table));
   });

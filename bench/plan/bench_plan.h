@@ -68,7 +68,8 @@ void visit_fields(Visitor&& field, Config& config) { field("published", config.p
 
 /// One-dimensional parameter sweep: the values of one key, all other keys unchanged.
 struct SweepAxis {
-  std::string key;  ///< of the config ("detector.simulated.miss_rate") or of the rendering ("synth.walkers")
+  std::string key;  ///< of the config ("detector.simulated.miss_rate"), of the rendering ("synth.walkers"),
+                    ///< or of the external systems that have it ("param.features")
   std::vector<double> values;
 };
 
@@ -84,8 +85,9 @@ struct BenchPlan {
   std::string base = "stillpoint";    ///< config to which the variants are applied
   std::vector<std::string> variants;  ///< of this odometry
   std::string ablation_base;          ///< the variant that the others are compared with; empty: no ablation
-  std::vector<std::string> systems;   ///< external systems: files, see bench/systems/slam_system.h
-  std::vector<int> seeds = {1};       ///< for rendering and for the odometry; see `PlannedRun::later_frames`
+  std::vector<std::string>
+      systems;                   ///< external systems: names, or files; see bench/systems/external_system.h
+  std::vector<int> seeds = {1};  ///< for rendering and for the odometry; see `PlannedRun::later_frames`
   int repetitions = 1;
   int max_frames = 0;  ///< process only the first frames of each sequence; 0 = all
   std::string mode = "sequential";
@@ -105,7 +107,7 @@ struct BenchPlan {
   RenderedGroup rendered;
   RecordedGroup recorded;
   TableLayout table;
-  // The tables [config], [synth] and [sweep], whose keys are those of the config and of the rendering.
+  // The tables [config], [synth] and [sweep], whose keys are those of `SweepAxis`.
   std::vector<std::string> config_settings;  ///< "key=value", applied to every variant
   std::vector<SweepAxis> synth_settings;     ///< one value each, applied to every rendered sequence
   std::vector<SweepAxis> sweep;

@@ -10,6 +10,7 @@
 
 #include "bench/process/child_process.h"
 #include "core/base/content_hash.h"
+#include "core/base/error.h"
 #include "datasets/faults/sensor_fault.h"
 #include "eval/io/text_reader.h"
 
@@ -81,11 +82,21 @@ class PlanExpander {
     for (int repetition = 1; repetition <= matrix_.plan.repetitions; ++repetition) {
       RunIdentity identity = identity_of(seed, repetition, point);
       for (const std::string& fault : matrix_.plan.faults) {
+        if (point.key.starts_with(kParamPrefix)) continue;
         for (const std::string& variant : variants) add_own(identity, variant, fault);
       }
-      const bool is_config_point = !point.key.empty() && !point.key.starts_with(kSynthPrefix);
-      for (std::size_t i = 0; i < matrix_.systems.size() && !is_config_point; ++i) add_external(identity, i);
+      for (std::size_t i = 0; i < matrix_.systems.size(); ++i) {
+        if (!varies_system(point, matrix_.systems[i])) continue;
+        for (const std::string& fault : matrix_.plan.faults) add_external(identity, i, fault);
+      }
     }
+  }
+
+  /// Whether a system has runs at a sweep point: of the scene, or of one of its parameters.
+  [[nodiscard]] static bool varies_system(const SweepAxis& point, const ExternalSystem& system) {
+    if (point.key.empty() || point.key.starts_with(kSynthPrefix)) return true;
+    return point.key.starts_with(kParamPrefix) &&
+           system.param.contains(point.key.substr(kParamPrefix.size()));
   }
 
   [[nodiscard]] RunIdentity identity_of(int seed, int repetition, const SweepAxis& point) const {
@@ -108,13 +119,17 @@ class PlanExpander {
 
   /// A sequence with a fault is a different sequence: it has its own name and id, so that runs with different
   /// faults are neither paired nor averaged.
+  /// @return the injected fault, canonical; empty for none
+  static std::string inject(RunIdentity& identity, const std::string& fault) {
+    if (fault == kNoFault) return "";
+    std::string injected = fault_text(datasets::parse_fault(fault));
+    identity.sequence += " + " + fault;
+    identity.sequence_id += "-" + injected;
+    return injected;
+  }
+
   void add_own(RunIdentity identity, const std::string& variant, const std::string& fault) {
-    std::string injected;
-    if (fault != kNoFault) {
-      injected = fault_text(datasets::parse_fault(fault));
-      identity.sequence += " + " + fault;
-      identity.sequence_id += "-" + injected;
-    }
+    std::string injected = inject(identity, fault);
     std::vector<std::string> settings = matrix_.plan.config_settings;
     settings.push_back(fmt::format("seed={}", identity.seed));
     if (!identity.axis.empty() && !identity.axis.starts_with(kSynthPrefix)) {
@@ -133,17 +148,23 @@ class PlanExpander {
                             .system = 0});
   }
 
-  void add_external(RunIdentity identity, std::size_t system) {
-    identity.system = matrix_.systems[system].name;
+  void add_external(RunIdentity identity, std::size_t index, const std::string& fault) {
+    const ExternalSystem& system = matrix_.systems[index];
+    std::string injected = inject(identity, fault);
+    identity.system = system.name;
     identity.variant = identity.system;
-    identity.build = matrix_.systems[system].version;
-    identity.config_hash = matrix_.systems[system].hash;
+    identity.build = system.version;
+    identity.config_hash = system.hash;
     identity.mode = "external";
+    // The recorded files cannot begin later.
+    const bool is_later = system.layout != ExportLayout::kAsIs;
     matrix_.runs.push_back({.sequence = matrix_.sequences.size() - 1,
                             .identity = std::move(identity),
                             .config = {},
-                            .fault = {},
-                            .system = system});
+                            .max_frames = matrix_.plan.max_frames,
+                            .later_frames = is_later ? later_frames_ : 0,
+                            .fault = std::move(injected),
+                            .system = index});
   }
 
   /// Hash of the config of a run; configs differ only in the seed for all seeds.
@@ -243,24 +264,31 @@ PlanMatrix single_runs(BenchPlan plan) {
   return expand_plan(plan, "", {});
 }
 
-PlanMatrix paired_plan(PlanMatrix runs, const ProgramPair& programs, int pairs) {
+namespace {
+
+/// The two runs of a pair.
+struct RunSides {
+  PlannedRun base;
+  PlannedRun head;
+};
+
+/// Each run of the matrix as `pairs` pairs, in the order base, head, head, base.
+/// @param sides (run, repetition) -> RunSides
+template <class Sides>
+PlanMatrix in_pairs(PlanMatrix runs, int pairs, const Sides& sides) {
   PlanMatrix matrix = std::move(runs);
   matrix.plan.repetitions = pairs;
   const std::vector<PlannedRun> single = std::move(matrix.runs);
-  const std::string base_build = programs.base_build();
-  const std::string head_build = programs.head_build();
   matrix.runs.clear();
   for (auto first = single.begin(); first != single.end();) {
     auto last = first;  // one after the runs on the same sequence
     while (last != single.end() && last->sequence == first->sequence) ++last;
     for (int repetition = 1; repetition <= pairs; ++repetition) {
       for (auto run = first; run != last; ++run) {
-        const PlannedRun planned = repeated(*run, repetition, programs.perturbed);
-        const PlannedRun base = of_program(planned, programs.base, base_build);
-        const PlannedRun head = of_program(planned, programs.head, head_build);
-        const bool base_first = repetition % 2 == 1;
-        matrix.runs.push_back(base_first ? base : head);
-        matrix.runs.push_back(base_first ? head : base);
+        RunSides pair = sides(*run, repetition);
+        if (repetition % 2 == 0) std::swap(pair.base, pair.head);
+        matrix.runs.push_back(std::move(pair.base));
+        matrix.runs.push_back(std::move(pair.head));
       }
     }
     first = last;
@@ -268,6 +296,53 @@ PlanMatrix paired_plan(PlanMatrix runs, const ProgramPair& programs, int pairs) 
   matrix.keys.clear();
   for (const PlannedRun& run : matrix.runs) matrix.keys.push_back(run_key(run.identity));
   return matrix;
+}
+
+}  // namespace
+
+PlanMatrix paired_plan(PlanMatrix runs, const ProgramPair& programs, int pairs) {
+  const std::string base_build = programs.base_build();
+  const std::string head_build = programs.head_build();
+  return in_pairs(std::move(runs), pairs, [&](const PlannedRun& run, int repetition) {
+    const PlannedRun planned = repeated(run, repetition, programs.perturbed);
+    return RunSides{of_program(planned, programs.base, base_build),
+                    of_program(planned, programs.head, head_build)};
+  });
+}
+
+PlanMatrix single_system_runs(BenchPlan plan, const SystemPair& pair) {
+  if (plan.kind == RunKind::kInstructions)
+    throw InputError(place_of(plan, "kind"), "instructions are counted for this odometry only");
+  plan.kind = RunKind::kTiming;
+  plan.repetitions = 1;
+  plan.variants.clear();
+  plan.rendered.variants.clear();
+  plan.recorded.variants.clear();
+  plan.systems = {pair.base, pair.head};
+  PlanMatrix matrix = expand_plan(plan, "", {});
+  std::erase_if(matrix.runs, [](const PlannedRun& run) { return run.system != 0; });
+  return matrix;
+}
+
+PlanMatrix paired_systems(PlanMatrix runs, int pairs) {
+  const std::vector<ExternalSystem> systems = runs.systems;
+  return in_pairs(std::move(runs), pairs, [&](const PlannedRun& run, int repetition) {
+    RunSides sides{run, run};
+    sides.head.system = 1;
+    for (PlannedRun* side : {&sides.base, &sides.head}) {
+      const ExternalSystem& system = systems[side->system];
+      side->identity.system = system.name;
+      side->identity.variant = system.name;
+      side->identity.config_hash = system.hash;
+      side->identity.build = system_build(system, side->system == 0);
+      side->identity.repetition = repetition;
+    }
+    return sides;
+  });
+}
+
+std::string system_build(const ExternalSystem& system, bool is_base) {
+  return (is_base ? "base-" : "head-") + system.hash;
 }
 
 }  // namespace stillpoint::bench

@@ -10,7 +10,7 @@
 #include "bench/model/stored_run.h"
 #include "bench/plan/bench_plan.h"
 #include "bench/plan/plan_sequences.h"
-#include "bench/systems/slam_system.h"
+#include "bench/systems/external_system.h"
 
 namespace stillpoint::bench {
 
@@ -18,8 +18,8 @@ struct PlannedRun {
   std::size_t sequence = 0;  ///< index into `PlanMatrix::sequences`
   RunIdentity identity;
   ConfigRequest config;  ///< of a run of this odometry
-  int max_frames = 0;    ///< of a run of this odometry; 0 = all
-  /// Of a run of this odometry: frames by which it begins later. A recording does not depend on the seed; run
+  int max_frames = 0;    ///< 0 = all
+  /// Frames by which the run begins later. A recording does not depend on the seed; run
   /// k of n seeds begins k - 1 frames later, so that the seeds are replicates: decisions that depend on the
   /// start differ.
   int later_frames = 0;
@@ -71,5 +71,26 @@ struct ProgramPair {
 /// @param runs as from `single_runs`
 /// @param pairs at least 1
 [[nodiscard]] PlanMatrix paired_plan(PlanMatrix runs, const ProgramPair& programs, int pairs);
+
+/// Two external systems, by the files of their descriptions.
+struct SystemPair {
+  std::string base;
+  std::string head;
+};
+
+/// The build under which the runs of one side are stored: its description and the files of its command.
+[[nodiscard]] std::string system_build(const ExternalSystem& system, bool is_base);
+
+/// The runs of the base system alone, without repetitions and without runs of this odometry.
+/// @param plan its sequences, faults and limits
+/// @param pair of which both are in `PlanMatrix::systems`
+/// @throws InputError as `expand_plan`, and if the plan counts instructions
+[[nodiscard]] PlanMatrix single_system_runs(BenchPlan plan, const SystemPair& pair);
+
+/// Repeats each run `pairs` times with both systems, in the order of `paired_plan`. Repetition i is
+/// {repetition} in the command.
+/// @param runs as from `single_system_runs`
+/// @param pairs at least 1
+[[nodiscard]] PlanMatrix paired_systems(PlanMatrix runs, int pairs);
 
 }  // namespace stillpoint::bench

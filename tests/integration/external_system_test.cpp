@@ -2,6 +2,10 @@
 // External programs as benchmark systems: exported sequences, and import of their trajectories and times.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <set>
+
 #include "bench/store/store.h"
 #include "tests/support/program.h"
 #include "tests/support/sequences/rendered_sequence.h"
@@ -13,18 +17,35 @@ namespace fs = std::filesystem;
 
 constexpr const char* kReplay = STILLPOINT_BINARY_DIR "/tests/replay_program";
 
-/// Benchmarks the system of a file in the folder on the rendered sequence.
-ProgramResult bench_system(const TemporaryFolder& folder, const std::string& file) {
-  const fs::path plan = folder.write("plan.toml", "systems = [\"" + (folder.path() / file).string() +
-                                                      "\"]\nprotocols = [\"strict:se3\"]\n" +
-                                                      "[recorded]\nsequences = [\"office\"]\n");
+/// Executes a command that finds the rendered sequence by its name, office.
+ProgramResult run_here(const TemporaryFolder& folder, const std::vector<std::string>& arguments) {
   ProgramOptions options;
   options.environment = {"STILLPOINT_DATA=" + rendered_sequence().parent_path().string(),
                          "STILLPOINT_REGISTRY=" + (folder.path() / "none.json").string(),
                          "STILLPOINT_CACHE=" + (folder.path() / "cache").string()};
-  return run_program({"bench", plan.string(), "--store", (folder.path() / "store.sqlite").string(), "--out",
-                      (folder.path() / "out").string()},
-                     options);
+  return run_program(arguments, options);
+}
+
+std::string store_of(const TemporaryFolder& folder) { return (folder.path() / "store.sqlite").string(); }
+
+/// Benchmarks the system of a file in the folder on the rendered sequence.
+/// @param keys further lines of the plan
+/// @param tables at its end
+ProgramResult bench_system(const TemporaryFolder& folder, const std::string& file,
+                           const std::string& keys = "", const std::string& tables = "") {
+  const fs::path plan = folder.write("plan.toml", "systems = [\"" + (folder.path() / file).string() +
+                                                      "\"]\nprotocols = [\"strict:se3\"]\n" + keys +
+                                                      "[recorded]\nsequences = [\"office\"]\n" + tables);
+  return run_here(folder, {"bench", plan.string(), "--store", store_of(folder), "--out",
+                           (folder.path() / "out").string()});
+}
+
+/// Writes the description of the replay program. @param error of its trajectory [m], or a placeholder
+void write_replay(const TemporaryFolder& folder, const std::string& name, const std::string& error,
+                  const std::string& keys = "") {
+  folder.write(name + ".toml", "name = \"replay\"\ncommand = [\"" + std::string(kReplay) +
+                                   "\", \"--error\", \"" + error +
+                                   "\", \"run\", \"{sequence}\", \"--out\", \"{out}\"]\n" + keys);
 }
 
 /// Benchmarks the replay program. @param keys additional lines of its system file
@@ -85,6 +106,151 @@ TEST(ExternalSystem, IsRejectedWithoutACommand) {
   const ProgramResult result = run_program({"plan", "show", plan.string()});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("s.toml: has no command"), std::string::npos) << result.err;
+}
+
+std::vector<bench::StoredRun> runs_of(const TemporaryFolder& folder) {
+  return bench::Store(store_of(folder)).runs();
+}
+
+// The exported sequence has the fault; poses of the true trajectory are not wrong.
+TEST(ExternalSystem, IsExecutedWithAFault) {
+  const TemporaryFolder folder;
+  write_replay(folder, "replay", "0.001");
+  const ProgramResult result =
+      bench_system(folder, "replay.toml", "faults = [\"none\", \"blank:start=1\"]\n");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::vector<bench::StoredRun> runs = runs_of(folder);
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_FALSE(bench::metric_value(runs[0], "false_confidence"));
+  EXPECT_EQ(*bench::metric_value(runs[1], "false_confidence"), 0.0);
+  std::size_t exports = 0;
+  std::set<std::uintmax_t> sizes;  // of the image 2 s after the first one, which is blank in one of them
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path() / "cache" / "exports")) {
+    ++exports;
+    std::vector<fs::path> images;
+    for (const fs::directory_entry& image : fs::directory_iterator(entry.path() / "office" / "rgb"))
+      images.push_back(image.path());
+    std::ranges::sort(images);
+    sizes.insert(fs::file_size(images.at(45)));
+  }
+  EXPECT_EQ(exports, 2u);
+  EXPECT_EQ(sizes.size(), 2u);
+}
+
+TEST(ExternalSystem, IsExecutedOnTheFirstFrames) {
+  const TemporaryFolder folder;
+  write_replay(folder, "replay", "0.001");
+  EXPECT_EQ(bench_system(folder, "replay.toml", "max_frames = 30\n").exit_code, 0);
+  EXPECT_EQ(*bench::metric_value(run_of(folder), "coverage"), 1.0);
+  std::size_t images = 0;
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(folder.path() / "cache" / "exports"))
+    images += entry.path().parent_path().filename() == "rgb" ? 1 : 0;
+  EXPECT_EQ(images, 30u);
+}
+
+TEST(ExternalSystem, ParametersAreSwept) {
+  const TemporaryFolder folder;
+  write_replay(folder, "replay", "{param.error}", "[param]\nerror = 0.5\n");
+  const ProgramResult result =
+      bench_system(folder, "replay.toml", "repetitions = 2\n", "[sweep]\nparam.error = [0.01, 0.02]\n");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::vector<bench::StoredRun> runs = runs_of(folder);
+  ASSERT_EQ(runs.size(), 4u);
+  for (const bench::StoredRun& run : runs) {
+    EXPECT_EQ(run.identity.axis, "param.error");
+    EXPECT_NEAR(*bench::metric_value(run, "ate_rmse_m"), 0.71 * run.identity.axis_value, 0.001);
+  }
+  const ProgramResult sweep = run_here(folder, {"stats", "sweep", "--store", store_of(folder)});
+  EXPECT_EQ(sweep.exit_code, 0) << sweep.err;
+  EXPECT_NE(sweep.out.find("param.error"), std::string::npos) << sweep.out;
+  const ProgramResult repeat = run_here(folder, {"stats", "repeat", "--store", store_of(folder)});
+  EXPECT_EQ(repeat.exit_code, 0) << repeat.err;
+  EXPECT_NE(repeat.out.find("All repetitions are bit-equal"), std::string::npos) << repeat.out;
+}
+
+/// Compares two descriptions in two pairs.
+ProgramResult compare_systems(const TemporaryFolder& folder, const std::string& base,
+                              const std::string& head) {
+  const fs::path plan = folder.write("plan.toml", "[recorded]\nsequences = [\"office\"]\n");
+  return run_here(folder, {"compare", (folder.path() / base).string(), (folder.path() / head).string(),
+                           "--plan", plan.string(), "--pairs", "2", "--store", store_of(folder)});
+}
+
+TEST(ExternalSystem, TwoDescriptionsAreComparedInPairs) {
+  const TemporaryFolder folder;
+  write_replay(folder, "a", "0.01");
+  write_replay(folder, "b", "0.02");
+  const ProgramResult worse = compare_systems(folder, "a.toml", "b.toml");
+  EXPECT_EQ(worse.exit_code, 1) << worse.out << worse.err;
+  EXPECT_NE(worse.out.find("2 pairs of runs: 2 compared"), std::string::npos) << worse.out;
+  std::vector<std::string> order;
+  for (const bench::StoredRun& run : runs_of(folder)) order.push_back(run.identity.build.substr(0, 4));
+  EXPECT_EQ(order, (std::vector<std::string>{"base", "head", "head", "base"}));
+  fs::remove(store_of(folder));
+  EXPECT_NE(compare_systems(folder, "a.toml", "a.toml").exit_code, 1);
+  const ProgramResult mixed =
+      run_here(folder, {"compare", (folder.path() / "a.toml").string(), store_of(folder)});
+  EXPECT_EQ(mixed.exit_code, 2);
+  EXPECT_NE(mixed.err.find("compare two descriptions"), std::string::npos) << mixed.err;
+}
+
+TEST(ExternalSystem, VersionsHaveADashboardAndAreCompared) {
+  const TemporaryFolder folder;
+  for (const auto& [version, error] : {std::pair("1.0", "0.01"),
+                                       {"1.1", "0.01"},
+                                       {"1.2", "0.01"},
+                                       {"2.0", "0.05"},
+                                       {"2.1", "0.05"},
+                                       {"2.2", "0.05"}}) {
+    write_replay(folder, "replay", error, "version = \"" + std::string(version) + "\"\n");
+    EXPECT_EQ(bench_system(folder, "replay.toml", "repetitions = 2\n").exit_code, 0);
+  }
+  const std::string out = (folder.path() / "dashboard").string();
+  const ProgramResult dashboard =
+      run_here(folder, {"dashboard", store_of(folder), "--out", out, "--system", "replay"});
+  EXPECT_EQ(dashboard.exit_code, 0) << dashboard.err;
+  EXPECT_TRUE(fs::exists(fs::path(out) / "index.html"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(out) / "commits"), {}), 6);
+  const ProgramResult regressions = run_here(folder, {"regressions", store_of(folder)});
+  EXPECT_EQ(regressions.exit_code, 1) << regressions.err;
+  EXPECT_NE(regressions.out.find("2.0"), std::string::npos) << regressions.out;
+  const std::string store = store_of(folder);
+  EXPECT_NE(run_here(folder, {"compare", store + "@1.0", store + "@1.1"}).exit_code, 1);
+  const ProgramResult worse = run_here(folder, {"compare", store + "@1.1", store + "@2.0"});
+  EXPECT_EQ(worse.exit_code, 1) << worse.out << worse.err;
+  EXPECT_EQ(run_here(folder, {"regressions", store, "--system", "orb"}).exit_code, 2);
+}
+
+/// The first block of code that follows `from` in a document.
+std::string code_block(const std::string& document, std::size_t& from) {
+  const std::size_t begin = document.find('\n', document.find("```", from)) + 1;
+  const std::size_t end = document.find("```", begin);
+  from = end + 3;
+  return document.substr(begin, end - begin);
+}
+
+TEST(ExternalSystem, TheToyOfTheManualRuns) {
+  std::ifstream file(STILLPOINT_SOURCE_DIR "/bench/README.md");
+  const std::string manual{std::istreambuf_iterator<char>(file), {}};
+  std::size_t at = manual.find("A toy in another language");
+  ASSERT_NE(at, std::string::npos);
+  const TemporaryFolder folder;
+  folder.write("toy.toml", code_block(manual, at));
+  folder.write("toy.awk", code_block(manual, at));
+  const ProgramResult result = bench_system(folder, "toy.toml");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(run_of(folder).outcome, bench::Outcome::kOk) << run_of(folder).detail;
+  EXPECT_EQ(*bench::metric_value(run_of(folder), "coverage"), 1.0);
+}
+
+TEST(ExternalSystem, MessagesOfTheProgramAreStored) {
+  const TemporaryFolder folder;
+  folder.write("loud.toml", "name = \"loud\"\ncommand = [\"sh\", \"-c\", \"echo to stdout; exit 3\"]\n");
+  EXPECT_EQ(bench_system(folder, "loud.toml").exit_code, 1);
+  const bench::Store store(store_of(folder));
+  EXPECT_EQ(store.attachment(run_of(folder), "log"), "to stdout\n");
+  EXPECT_EQ(run_of(folder).detail, "exited with code 3: to stdout");
 }
 
 TEST(ExternalSystem, BenchRejectsFilesThatAreNotStores) {

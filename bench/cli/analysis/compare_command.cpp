@@ -61,7 +61,7 @@ std::vector<StoredRun> runs_of_build(std::vector<StoredRun> runs, const std::str
                                      const std::string& location) {
   const std::string chosen = build.empty() ? newest_build(runs) : build_named(runs, build, location);
   std::erase_if(runs, [&](const StoredRun& run) { return run.identity.build != chosen; });
-  if (runs.empty()) throw InputError(location, "has no run of stillpoint; see `stillpoint store list`");
+  if (runs.empty()) throw InputError(location, "has no finished run; see `stillpoint store list`");
   return runs;
 }
 
@@ -100,21 +100,33 @@ int default_pairs(const PlanMatrix& runs) {
   return static_cast<int>(pairs_for_plan(identities));
 }
 
-Comparison compare_programs(const CompareArguments& arguments) {
-  ProgramPair programs{fs::canonical(arguments.base), fs::canonical(arguments.head)};
-  programs.perturbed = accept_perturbation(programs);
-  PlanMatrix runs = single_runs(load_plan(arguments.plan.empty() ? "quick" : arguments.plan));
-  const int pairs = arguments.pairs > 0 ? arguments.pairs : default_pairs(runs);
-  const PlanMatrix matrix = paired_plan(std::move(runs), programs, pairs);
+BenchPlan compared_plan(const CompareArguments& arguments) {
+  return load_plan(arguments.plan.empty() ? "quick" : arguments.plan);
+}
+
+int pairs_of(const CompareArguments& arguments, const PlanMatrix& runs) {
+  return arguments.pairs > 0 ? arguments.pairs : default_pairs(runs);
+}
+
+/// Executes the pairs that the store lacks.
+void run_pairs(const PlanMatrix& matrix, const CompareArguments& arguments) {
+  const int pairs = matrix.plan.repetitions;
   spdlog::info("{} pairs of each of {} runs", pairs,
                matrix.runs.size() / (2 * static_cast<std::size_t>(pairs)));
   const PlanHooks hooks{.on_step = [](const std::string& step) { spdlog::debug("{}", step); },
                         .stop_requested = interrupt_requested};
-  {
-    StoreWriter writer(arguments.store);
-    if (run_plan(matrix, writer, {}, hooks).interrupted)
-      throw InputError("compare", "interrupted; run the same command again to continue");
-  }
+  StoreWriter writer(arguments.store);
+  if (run_plan(matrix, writer, {}, hooks).interrupted)
+    throw InputError("compare", "interrupted; run the same command again to continue");
+}
+
+Comparison compare_programs(const CompareArguments& arguments) {
+  ProgramPair programs{fs::canonical(arguments.base), fs::canonical(arguments.head)};
+  programs.perturbed = accept_perturbation(programs);
+  PlanMatrix runs = single_runs(compared_plan(arguments));
+  const int pairs = pairs_of(arguments, runs);
+  const PlanMatrix matrix = paired_plan(std::move(runs), programs, pairs);
+  run_pairs(matrix, arguments);
   const Store store(arguments.store);
   const std::vector<StoredRun> base = planned_runs(store, matrix, programs.base_build());
   const std::vector<StoredRun> head = planned_runs(store, matrix, programs.head_build());
@@ -127,10 +139,37 @@ Comparison compare_programs(const CompareArguments& arguments) {
   return comparison;
 }
 
+/// Two systems of different names are compared as one.
+std::vector<StoredRun> named_as(std::vector<StoredRun> runs, const std::string& system) {
+  for (StoredRun& run : runs) {
+    run.identity.system = system;
+    run.identity.variant = system;
+  }
+  return runs;
+}
+
+Comparison compare_systems(const CompareArguments& arguments) {
+  PlanMatrix runs = single_system_runs(compared_plan(arguments), {arguments.base, arguments.head});
+  const int pairs = pairs_of(arguments, runs);
+  const PlanMatrix matrix = paired_systems(std::move(runs), pairs);
+  run_pairs(matrix, arguments);
+  const Store store(arguments.store);
+  const ExternalSystem& base = matrix.systems[0];
+  const ExternalSystem& head = matrix.systems[1];
+  const std::string name = base.name == head.name ? base.name : base.name + " -> " + head.name;
+  const std::vector<StoredRun> base_runs =
+      named_as(planned_runs(store, matrix, system_build(base, true)), name);
+  const std::vector<StoredRun> head_runs =
+      named_as(planned_runs(store, matrix, system_build(head, false)), name);
+  return with_control(compare_runs(base_runs, head_runs, CompareSource::kPrograms),
+                      control_changes(base_runs));
+}
+
 Comparison compare_stored(const CompareArguments& arguments) {
   if (arguments.pairs > 0 || !arguments.plan.empty()) {
-    throw InputError(arguments.pairs > 0 ? "--pairs" : "--plan",
-                     "applies to two programs; of stores, all runs that both contain are compared");
+    throw InputError(
+        arguments.pairs > 0 ? "--pairs" : "--plan",
+        "applies to two programs or systems; of stores, all runs that both contain are compared");
   }
   const std::vector<StoredRun> base = stored_runs(arguments.base, arguments.store);
   const std::vector<StoredRun> head = stored_runs(arguments.head, arguments.store);
@@ -146,6 +185,22 @@ bool are_programs(const std::string& base, const std::string& head) {
                                executable(base) ? base : head));
 }
 
+/// @throws InputError if only one of them is a description
+bool are_systems(const std::string& base, const std::string& head) {
+  const auto is_description = [](const std::string& file) { return file.ends_with(".toml"); };
+  if (is_description(base) == is_description(head)) return is_description(base);
+  throw InputError(
+      is_description(base) ? head : base,
+      fmt::format("is not the description of a system, but {} is; compare two descriptions (.toml)",
+                  is_description(base) ? base : head));
+}
+
+Comparison comparison_of(const CompareArguments& arguments) {
+  if (are_systems(arguments.base, arguments.head)) return compare_systems(arguments);
+  return are_programs(arguments.base, arguments.head) ? compare_programs(arguments)
+                                                      : compare_stored(arguments);
+}
+
 int exit_code(ChangeClass result) {
   if (result == ChangeClass::kWorse || result == ChangeClass::kMissing) return kExitFindings;
   return result == ChangeClass::kInconclusive ? kExitInconclusive : kExitOk;
@@ -157,8 +212,7 @@ int compare(const CompareArguments& arguments) {
     require_safe_folder(arguments.out, {.names = files, .marks = {files}}, {arguments.base, arguments.head});
   }
   install_interrupt_handlers();
-  Comparison comparison =
-      are_programs(arguments.base, arguments.head) ? compare_programs(arguments) : compare_stored(arguments);
+  Comparison comparison = comparison_of(arguments);
   comparison.missing_allowed = arguments.allow_missing;
   const report::ComparisonTitle title{arguments.base, arguments.head};
   const std::string markdown = report::comparison_markdown(title, comparison);
@@ -189,11 +243,11 @@ Command compare_command() {
       .options =
           {{"BASE",
             "A store or exported store (.json), of which the newest build is used, STORE@COMMIT, a commit in "
-            "--store, or a program to execute",
+            "--store, a program to execute, or the description of a system (.toml)",
             &arguments->base},
            {"HEAD", "As BASE", &arguments->head},
            {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
-           {"--plan", "Plan that the programs execute [quick]", &arguments->plan},
+           {"--plan", "Plan that the programs or systems execute [quick]", &arguments->plan},
            {"--pairs",
             "Number of base-head pairs of each run, executed in the order base, head, head, base [as many as "
             "the "

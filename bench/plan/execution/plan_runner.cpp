@@ -19,6 +19,7 @@
 #include "bench/profile/meters/process_usage.h"
 #include "bench/run/frame_cache.h"
 #include "bench/run/odometry_run.h"
+#include "bench/systems/external_run.h"
 #include "bench/systems/slam_system.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/systems/external_run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/model/json_problem.h"
+#include "bench/record/result_values.h"
+#include "bench/record/run_environment.h"
+#include "bench/run/run_result.h"
+#include "core/base/error.h"
+#include "datasets/cache/cache_space.h"
+#include "datasets/faults/faulty_stream.h"
+#include "datasets/faults/rig_faults.h"
+#include "datasets/open_sequence.h"
+#include "datasets/sequence_export.h"
+#include "eval/io/text_reader.h"
+#include "eval/io/trajectory_file.h"
+#include "eval/trajectory/alignment.h"
+#include "eval/trajectory/association.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::vector<datasets::SensorFault> faults_of(const RunRequest& request) {
+  if (request.fault.empty()) return {};
+  const std::vector<datasets::SensorFault> faults = {datasets::parse_fault(request.fault)};
+  return datasets::expanded_rigs(faults);
+}
+
+std::unique_ptr<datasets::SensorStream> started(const RunRequest& request) {
+  return datasets::start_at(datasets::open_sequence(request.sequence), request.start_s);
+}
+
+bool is_changed(const RunRequest& request) {
+  return request.max_frames > 0 || request.start_s > 0.0 || !request.fault.empty();
+}
+
+/// Folder or bag of the sequence in a layout. The identity of the run contains its fault and its frame limit.
+fs::path exported(const RunRequest& request, ExportLayout layout) {
+  if (layout == ExportLayout::kAsIs) {
+    if (!is_changed(request)) return request.sequence;
+    throw InputError("layout",
+                     "\"as_is\" passes the recorded files, which have no fault, later start or frame "
+                     "limit; use layout = \"tum\" or \"euroc\"");
+  }
+  std::string format;
+  for (const auto& [value, name] : enum_names(layout)) {
+    if (value == layout) format = name;
+  }
+  const std::string start = request.start_s > 0.0 ? fmt::format("-from-{:.6f}", request.start_s) : "";
+  const fs::path folder =
+      datasets::cache_folder() / "exports" / (request.identity.sequence_id + "-" + format + start);
+  const std::string name = request.sequence.filename().string();
+  const bool is_bag = layout == ExportLayout::kBag || layout == ExportLayout::kMcap;
+  const fs::path path = folder / (is_bag ? name + "." + format : name);
+  if (fs::exists(path)) return path;
+  auto stream = datasets::first_frames(started(request), static_cast<std::size_t>(request.max_frames));
+  if (stream->info().format == format && !is_changed(request)) return request.sequence;
+  stream = datasets::with_faults(std::move(stream), faults_of(request));
+  if (is_bag) {
+    fs::create_directories(folder);
+    datasets::export_bag(*stream, path);
+  } else {
+    layout == ExportLayout::kTum ? datasets::export_tum(*stream, path)
+                                 : datasets::export_euroc(*stream, path);
+  }
+  return path;
+}
+
+Placeholders placeholders_of(const ExternalSystem& system, const RunRequest& request,
+                             const fs::path& sequence) {
+  Placeholders values = {{"sequence", fs::absolute(sequence).string()},
+                         {"out", fs::absolute(request.work).string()},
+                         {"here", system.folder},
+                         {"bin", executable_path().parent_path().string()},
+                         {"seed", std::to_string(request.identity.seed)},
+                         {"repetition", std::to_string(request.identity.repetition)}};
+  if (!system.calibration_template.empty())
+    values["calibration"] = (fs::absolute(request.work) / system.calibration_file).string();
+  for (const auto& [name, value] : system.param) values[std::string(kParamPrefix) + name] = value;
+  if (request.identity.axis.starts_with(kParamPrefix))
+    values[request.identity.axis] = fmt::format("{}", request.identity.axis_value);
+  return values;
+}
+
+SensorRates rates_of(const datasets::SequenceInfo& info) {
+  const auto rate = [](std::size_t count, double span_s) {
+    return count > 1 && span_s > 0.0 ? static_cast<double>(count - 1) / span_s : 0.0;
+  };
+  const auto& frames = info.frame_times;
+  const double frames_s = frames.size() > 1 ? seconds_between(frames.front(), frames.back()) : 0.0;
+  const double imu_s = info.imu.size() > 1 ? seconds_between(info.imu.front().t, info.imu.back().t) : 0.0;
+  return {.frames_per_s = rate(frames.size(), frames_s), .imu_hz = rate(info.imu.size(), imu_s)};
+}
+
+void write_calibration(const ExternalSystem& system, const RunRequest& request, Placeholders values) {
+  const fs::path source = fs::path(system.folder) / system.calibration_template;
+  const std::unique_ptr<datasets::SensorStream> stream = played_sequence(request);
+  values.merge(calibration_placeholders(stream->info().rig, rates_of(stream->info())));
+  eval::write_text_file(request.work / system.calibration_file,
+                        expanded(eval::read_text_file(source), values, source.string()));
+}
+
+/// That of this process, with the variables of the system.
+std::vector<std::string> environment_of(const ExternalSystem& system, const Placeholders& values) {
+  std::vector<std::string> environment;
+  for (const std::string& variable : system.environment)
+    environment.push_back(expanded(variable, values, system.path));
+  const std::size_t own = environment.size();
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view inherited = *variable;
+    const std::string_view name = inherited.substr(0, inherited.find('=') + 1);
+    const bool is_replaced = std::any_of(environment.begin(), environment.begin() + static_cast<long>(own),
+                                         [&](const std::string& set) { return set.starts_with(name); });
+    if (!is_replaced) environment.emplace_back(inherited);
+  }
+  return environment;
+}
+
+std::string manifest_text(const ExternalSystem& system, const RunRequest& request) {
+  Json json;
+  json["schema"] = 1;
+  json["system"] = {{"name", system.name}, {"version", system.version}, {"command", system.command}};
+  // What the history of the system uses as its commit; the gate stores other builds.
+  json["build"] = {{"git_commit", system.version}};
+  if (!request.fault.empty()) json["faults"] = {request.fault};
+  json["sequence"] = {{"name", request.identity.sequence}, {"id", request.identity.sequence_id}};
+  json["host"] = host_json(host_info());
+  return json.dump(2) + "\n";
+}
+
+/// The document itself, or its member "timings" as in a result.json.
+Json timings_of(const fs::path& file) {
+  const Json json = Json::parse(eval::read_text_file(file));
+  return json.contains("timings") ? json.at("timings") : json;
+}
+
+RunOutcome failed(Outcome outcome, const std::string& detail) {
+  RunOutcome result;
+  result.outcome = outcome;
+  result.detail = detail;
+  return result;
+}
+
+/// One per frame: located where the system has a pose, lost after its first one where it has none.
+std::vector<eval::ClaimedPose> claims_of(const Trajectory& trajectory, std::span<const Timestamp> frames) {
+  constexpr double kSameStamp_s = 1e-3;  // > rounding of stamps in files with 6 decimals
+  std::vector<eval::ClaimedPose> claims;
+  auto pose = trajectory.poses.begin();
+  for (const Timestamp t : frames) {
+    while (pose != trajectory.poses.end() && pose->t < after(t, -kSameStamp_s)) ++pose;
+    eval::ClaimedPose claim{.t = t, .T_w_c = {}};
+    if (pose != trajectory.poses.end() && pose->t < after(t, kSameStamp_s)) {
+      claim.T_w_c = pose->T_w_f;
+      claim.claim = eval::PoseClaim::kLocated;
+    } else if (!claims.empty() && claims.back().claim != eval::PoseClaim::kNone) {
+      claim.claim = eval::PoseClaim::kLost;
+    }
+    claims.push_back(claim);
+  }
+  return claims;
+}
+
+/// Scale of the positions by Sim(3) alignment with the ground truth; 1 without one.
+double fitted_scale(const datasets::SequenceInfo& info, const Trajectory& estimate) {
+  const Trajectory gt =
+      eval::move_to_frame(info.ground_truth.trajectory, info.ground_truth.T_c_f.inverse(), "camera");
+  const std::vector<eval::MatchedPose> matches =
+      eval::matched_poses(gt, estimate, eval::associate_tum(gt, estimate));
+  const double scale = eval::align(matches, eval::Alignment::kSim3).S_w_v.scale;
+  return matches.empty() || !(scale > 0.0) || !std::isfinite(scale) ? 1.0 : scale;
+}
+
+}  // namespace
+
+std::unique_ptr<datasets::SensorStream> played_sequence(const RunRequest& request) {
+  return datasets::with_faults(started(request), faults_of(request));
+}
+
+bool reaches_external_systems(const std::string& fault) {
+  const datasets::FaultTarget target = descriptor_of(datasets::parse_fault(fault).kind).target;
+  return target != datasets::FaultTarget::kArrival && target != datasets::FaultTarget::kDetections;
+}
+
+SystemTrajectory read_output(const ExternalSystem& system, const fs::path& work,
+                             const datasets::SequenceInfo& info) {
+  eval::TrajectorySource source{.path = work / system.trajectory};
+  std::string text = eval::read_text_file(source.path);
+  eval::LoadedTrajectory loaded;
+  if (system.trajectory_format == OutputFormat::kKitti) {
+    std::string times;
+    for (const Timestamp t : info.frame_times) times += eval::format_stamp(t) + "\n";
+    source.format = eval::TrajectoryFormat::kKitti;
+    source.times = work / "frame_times.txt";
+    eval::write_text_file(source.times, times);
+    loaded = eval::read_trajectory(source);
+  } else if (system.trajectory_format == OutputFormat::kEuroc) {
+    loaded = eval::parse_euroc(text, system.trajectory);
+  } else {
+    loaded = eval::parse_tum(text, system.trajectory);
+  }
+  SystemTrajectory output{.trajectory = std::move(loaded.trajectory), .text = "", .log = ""};
+  for (const std::string& repair : eval::repair_texts(loaded.repairs))
+    output.log += system.trajectory + ": " + repair + "\n";
+  if (system.inverse) {
+    for (StampedPose& pose : output.trajectory.poses) pose.T_w_f = pose.T_w_f.inverse();
+  }
+  if (system.poses == PosedFrame::kBody)
+    output.trajectory = eval::move_to_frame(output.trajectory, info.rig.T_b_c, "camera");
+  output.trajectory.frame = "camera";
+  const bool is_as_written = system.trajectory_format == OutputFormat::kTum && !system.inverse &&
+                             system.poses == PosedFrame::kCamera;
+  output.text = is_as_written ? std::move(text) : eval::format_tum(output.trajectory);
+  return output;
+}
+
+ProcessSpec ExternalRun::command(const RunRequest& request) const {
+  const fs::path sequence = exported(request, system_.layout);
+  fs::create_directories(request.work);
+  const Placeholders values = placeholders_of(system_, request, sequence);
+  if (!system_.calibration_template.empty()) write_calibration(system_, request, values);
+  std::vector<std::string> words;
+  for (const std::string& word : system_.command) words.push_back(expanded(word, values, system_.path));
+  ProcessSpec spec;
+  spec.program = program_of(system_, words.front());
+  spec.arguments.assign(words.begin() + 1, words.end());
+  spec.folder = fs::path(system_.folder) / expanded(system_.working_folder, values, system_.path);
+  spec.environment = environment_of(system_, values);
+  spec.output_in_messages = true;
+  return spec;
+}
+
+namespace {
+
+/// Multiplies the positions of a system without scale. @return what the protocols of its metrics state
+std::string fit_scale(SystemTrajectory& output, const datasets::SequenceInfo& info) {
+  const double scale = fitted_scale(info, output.trajectory);
+  for (StampedPose& pose : output.trajectory.poses) pose.T_w_f.p *= scale;
+  output.text = eval::format_tum(output.trajectory);
+  std::string suffix = ", scale fitted to the ground truth";
+  output.log += fmt::format("positions multiplied by {:.6g}{}\n", scale, suffix);
+  return suffix;
+}
+
+RunOutcome scored(const ExternalSystem& system, const RunRequest& request) {
+  const std::unique_ptr<datasets::SensorStream> stream = played_sequence(request);
+  const datasets::SequenceInfo& info = stream->info();
+  SystemTrajectory output = read_output(system, request.work, info);
+  RunOutcome result;
+  if (output.trajectory.poses.size() < 2) {
+    result = failed(Outcome::kLost, system.trajectory + " has only one pose, which tells no error");
+    if (!output.log.empty()) result.attachments["log"] = output.log;
+    return result;
+  }
+  const bool is_scaled = system.scale == PositionScale::kUnknown;
+  const std::string suffix = is_scaled ? fit_scale(output, info) : "";
+  if (!output.log.empty()) result.attachments["log"] = output.log;
+  OdometryRun run;
+  run.summary.frames = info.frame_times.size();
+  if (request.max_frames > 0)
+    run.summary.frames = std::min(run.summary.frames, static_cast<std::size_t>(request.max_frames));
+  run.claims = claims_of(output.trajectory, std::span(info.frame_times).first(run.summary.frames));
+  run.trajectory = std::move(output.trajectory);
+  const RunResult score = score_run(info, std::move(run), faults_of(request));
+  result.metrics = measured_metrics({.scored = measurements_of(score).scored, .honesty = score.honesty});
+  for (Metric& metric : result.metrics) {
+    if (!metric.protocol.empty()) metric.protocol += suffix;
+  }
+  result.attachments["trajectory"] = std::move(output.text);
+  if (!system.timings.empty()) result.costs = module_costs(timings_of(request.work / system.timings));
+  result.manifest = manifest_text(system, request);
+  return result;
+}
+
+}  // namespace
+
+RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& process) const {
+  if (process.exit_code != 0) {
+    return failed(Outcome::kCrashed, "exited with code " + std::to_string(process.exit_code) + ": " +
+                                         last_line(process.messages));
+  }
+  if (!fs::exists(request.work / system_.trajectory))
+    return failed(Outcome::kLost, "wrote no " + system_.trajectory);
+  try {
+    return scored(system_, request);
+  } catch (const InputError& error) {
+    return failed(Outcome::kCrashed, error.what());
+  } catch (const nlohmann::json::exception& error) {
+    return failed(Outcome::kCrashed, system_.timings + ": " + json_problem(error));
+  }
+}
+
+}  // namespace stillpoint::bench

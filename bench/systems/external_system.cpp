@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/systems/external_system.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/config/config_file.h"
+#include "bench/config/settings.h"
+#include "bench/config/spelling.h"
+#include "bench/config/toml_source.h"
+#include "bench/process/child_process.h"
+#include "core/base/content_hash.h"
+#include "core/base/error.h"
+#include "eval/io/text_reader.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_name_character(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+}
+
+/// Length of the placeholder that begins at the brace, with both braces; 0 if there is none.
+std::size_t placeholder_length(std::string_view text) {
+  const auto end = std::find_if_not(text.begin() + 1, text.end(), is_name_character);
+  const auto length = static_cast<std::size_t>(end - text.begin());
+  const bool is_placeholder = end != text.end() && *end == '}' && length > 1 &&
+                              std::isdigit(static_cast<unsigned char>(text[1])) == 0;
+  return is_placeholder ? length + 1 : 0;
+}
+
+std::string text_of(const Setting& setting) {
+  if (const auto* text = std::get_if<std::string>(&setting.value)) return *text;
+  if (const auto* flag = std::get_if<bool>(&setting.value)) return *flag ? "true" : "false";
+  if (const auto* whole = std::get_if<std::int64_t>(&setting.value)) return fmt::format("{}", *whole);
+  if (const auto* number = std::get_if<double>(&setting.value)) return fmt::format("{}", *number);
+  throw InputError(setting.file, setting.line,
+                   "\"" + setting.key + "\" is a list; a parameter is a number, a string, true or false");
+}
+
+/// Values for the check of placeholders.
+Placeholders placeholder_names(const ExternalSystem& system) {
+  Placeholders names;
+  for (const char* name : {"sequence", "out", "here", "bin", "seed", "repetition"}) names[name] = "";
+  if (!system.calibration_template.empty()) names["calibration"] = "";
+  for (const auto& [name, value] : system.param) names[std::string(kParamPrefix) + name] = value;
+  return names;
+}
+
+void require_placeholders(const ExternalSystem& system, const std::vector<Setting>& settings) {
+  const Placeholders names = placeholder_names(system);
+  for (const Setting& setting : settings) {
+    const std::string place = fmt::format("{}:{}", setting.file, setting.line);
+    const bool has_placeholders = setting.key == "command" || setting.key == "environment" ||
+                                  setting.key == "working_folder" || setting.key == "calibration_template";
+    if (!has_placeholders) continue;
+    if (const auto* text = std::get_if<std::string>(&setting.value))
+      static_cast<void>(expanded(*text, names, place));
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&setting.value)) {
+      for (const std::string& text : *texts) static_cast<void>(expanded(text, names, place));
+    }
+  }
+}
+
+void require_environment(const Setting& setting, const ExternalSystem& system) {
+  for (const std::string& variable : system.environment) {
+    if (variable.find('=') != std::string::npos && variable.front() != '=') continue;
+    throw InputError(setting.file, setting.line,
+                     "\"environment\" contains \"" + variable + "\"; write \"NAME=value\"");
+  }
+}
+
+/// Hash of the contents that determine a run: a rebuilt program or an edited script is another system.
+/// Programs of PATH belong to the machine; a file without {here} or {bin} may be an output.
+std::string hash_of(const ExternalSystem& system, const std::string& text) {
+  std::uint64_t hash = content_hash(text);
+  const auto add_file = [&hash](const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_regular_file(file, ignored)) hash = content_hash(eval::read_text_file(file), hash);
+  };
+  if (!system.calibration_template.empty()) add_file(fs::path(system.folder) / system.calibration_template);
+  for (const std::string& word : system.command) {
+    const bool is_program = &word == &system.command.front();
+    const std::string path = with_folders(system, word);
+    if (is_program && path.find('/') != std::string::npos) add_file(program_of(system, path));
+    if (!is_program && path != word) add_file(path);
+  }
+  return hash_text(hash);
+}
+
+}  // namespace
+
+std::string expanded(std::string_view text, const Placeholders& values, const std::string& place) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t brace = std::min(text.find('{'), text.size());
+    result += text.substr(0, brace);
+    text.remove_prefix(brace);
+    if (text.empty()) break;
+    const std::size_t length = placeholder_length(text);
+    if (length == 0) {
+      result += '{';
+      text.remove_prefix(1);
+      continue;
+    }
+    const std::string name(text.substr(1, length - 2));
+    const auto value = values.find(name);
+    if (value == values.end()) {
+      std::vector<std::string> names;
+      for (const auto& [known, unused] : values) names.push_back(known);
+      const std::string near = suggestion(name, names);
+      const std::string remedy = name == "calibration"        ? "; set calibration_template"
+                                 : name.starts_with("param.") ? "; add it to the table [param]"
+                                 : near.empty() ? fmt::format("; expected one of: {}", fmt::join(names, ", "))
+                                                : near;
+      throw InputError(place, "\"{" + name + "}\" is no placeholder" + remedy);
+    }
+    result += value->second;
+    text.remove_prefix(length);
+  }
+  return result;
+}
+
+ExternalSystem parse_external_system(const std::string& text, const std::string& path) {
+  ExternalSystem system;
+  std::vector<Setting> own_settings;
+  for (const Setting& setting : parse_settings(text, path)) {
+    if (setting.key.starts_with(kParamPrefix)) {
+      system.param[setting.key.substr(kParamPrefix.size())] = text_of(setting);
+    } else {
+      own_settings.push_back(setting);
+    }
+  }
+  system = with_settings(std::move(system), own_settings);
+  if (system.name.empty()) throw InputError(path, "has no name; add name = \"...\"");
+  if (system.command.empty()) throw InputError(path, "has no command; add command = [\"program\", ...]");
+  require_placeholders(system, own_settings);
+  for (const Setting& setting : own_settings) {
+    if (setting.key == "environment") require_environment(setting, system);
+    const bool is_template = setting.key == "calibration_template";
+    const fs::path file = fs::absolute(path).parent_path() / system.calibration_template;
+    if (is_template && !fs::is_regular_file(file))
+      throw InputError(path, setting.line,
+                       "\"calibration_template\": " + file.string() +
+                           " does not exist; write the calibration "
+                           "file of the system there, with placeholders such as {fx}");
+  }
+  system.path = path;
+  system.folder = fs::absolute(path).parent_path().string();
+  system.hash = hash_of(system, text);
+  return system;
+}
+
+ExternalSystem load_external_system(const std::string& name) {
+  const TomlSource source = find_toml(name, TomlKind::kSystem);
+  // An embedded description has no folder; the programs that it names are beside this one.
+  if (!source.embedded) return parse_external_system(source.text, source.path);
+  ExternalSystem system =
+      parse_external_system(source.text, executable_path().parent_path() / fs::path(source.path).filename());
+  system.path = source.path;
+  return system;
+}
+
+std::string description_template(const std::string& name) {
+  return fmt::format(
+      R"(# Description of a SLAM system for stillpoint; manual: bench/README.md, "Any system".
+# Keys that are commented out show their defaults. Try it: stillpoint systems check FILE
+name = {}
+version = "1"                     # of the program; runs of another version are another build
+
+# The program and its arguments; no shell. A program with a slash is relative to this file. Placeholders:
+# {{sequence}} what it reads, {{out}} its empty output folder, {{here}} the folder of this file, {{seed}},
+# {{repetition}}, {{calibration}}, {{param.NAME}}
+command = ["./my_slam", "{{sequence}}", "{{out}}/trajectory.tum"]
+# working_folder = "{{out}}"        # or a folder relative to this file
+# environment = []                # e.g. ["OMP_NUM_THREADS=1"]
+
+# What {{sequence}} is: "tum" (rgb.txt, depth.txt, imu.txt, rig.toml), "euroc" (mav0/cam0, mav0/imu0),
+# "bag" (ROS 1), "mcap" (ROS 2), or "as_is" (the folder of the sequence, whatever its format)
+layout = "tum"
+
+# A text file beside this one, with placeholders such as {{fx}} {{fy}} {{cx}} {{cy}} {{width}} {{height}} {{k1}} {{T_b_c}}
+# {{depth_units_per_m}} {{fps}} {{gyro_noise}}; the result is {{calibration}}, a file in {{out}}
+# calibration_template = "camera.yaml.in"
+# calibration_file = "calibration.yaml"
+
+# What the program writes: a file in {{out}} as "tum" (t x y z qx qy qz qw), "euroc", or "kitti" (one matrix per
+# image); poses of the "camera" or of the "body" (IMU) in the world; inverse = true if they are world in camera
+trajectory = "trajectory.tum"
+# trajectory_format = "tum"
+# poses = "camera"
+# inverse = false
+# scale = "metric"                # "unknown": a monocular system; its scale is fitted to the ground truth
+# timings = ""                    # JSON in {{out}}: milliseconds per module, see bench/README.md
+
+# Values of {{param.NAME}}; a plan varies them by [sweep] param.NAME = [500, 1000]
+[param]
+# features = 1000
+)",
+      toml_quoted(name));
+}
+
+Placeholders calibration_placeholders(const Rig& rig, const SensorRates& rates) {
+  const auto number = [](double value) { return fmt::format("{:.12g}", value); };
+  const auto matrix = [](const Pose& pose) {
+    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = pose.matrix();
+    return fmt::format("{:.12g}", fmt::join(rows.data(), rows.data() + 16, ", "));
+  };
+  const Camera& camera = rig.camera;
+  const bool is_fisheye = camera.model == CameraModel::kKannalaBrandt;
+  Placeholders values = {{"fx", number(camera.fx)},
+                         {"fy", number(camera.fy)},
+                         {"cx", number(camera.cx)},
+                         {"cy", number(camera.cy)},
+                         {"width", fmt::format("{}", camera.width)},
+                         {"height", fmt::format("{}", camera.height)},
+                         {"model", is_fisheye ? "kannala-brandt" : "radial-tangential"},
+                         {"k1", number(camera.distortion[0])},
+                         {"k2", number(camera.distortion[1])},
+                         {"fps", number(rates.frames_per_s)},
+                         {"depth_units_per_m", number(rig.depth_units_per_m)},
+                         {"T_b_c", matrix(rig.T_b_c)},
+                         {"T_c_b", matrix(rig.T_b_c.inverse())},
+                         {"gyro_noise", number(rig.imu_noise.gyro_noise)},
+                         {"accel_noise", number(rig.imu_noise.accel_noise)},
+                         {"gyro_walk", number(rig.imu_noise.gyro_walk)},
+                         {"accel_walk", number(rig.imu_noise.accel_walk)},
+                         {"imu_rate", number(rates.imu_hz)},
+                         {"time_offset_s", number(rig.time_offset_s)}};
+  const std::vector<const char*> others =
+      is_fisheye ? std::vector{"k3", "k4"} : std::vector{"p1", "p2", "k3", "k4", "k5", "k6"};
+  for (std::size_t i = 0; i < others.size(); ++i) values[others[i]] = number(camera.distortion[i + 2]);
+  return values;
+}
+
+std::string with_folders(const ExternalSystem& system, std::string word) {
+  const Placeholders folders = {{"{here}", system.folder},
+                                {"{bin}", executable_path().parent_path().string()}};
+  for (const auto& [placeholder, folder] : folders) {
+    const std::size_t at = word.find(placeholder);
+    if (at != std::string::npos) word.replace(at, placeholder.size(), folder);
+  }
+  return word;
+}
+
+std::string program_of(const ExternalSystem& system, const std::string& word) {
+  const bool is_path = word.find('/') != std::string::npos;
+  return is_path ? (fs::path(system.folder) / word).lexically_normal().string() : word;
+}
+
+std::string find_program(const ExternalSystem& system) {
+  const auto is_executable = [](const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0;
+  };
+  const std::string program = program_of(system, with_folders(system, system.command.front()));
+  if (program.find('/') != std::string::npos) return is_executable(program) ? program : "";
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder) / program;
+    if (is_executable(file)) return file.string();
+  }
+  return "";
+}
+
+}  // namespace stillpoint::bench
