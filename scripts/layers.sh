@@ -102,7 +102,7 @@ row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model
   bench/profile/meters
 row bench/record $common bench/profile/meters core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/config bench/run \
   bench/profile
-row bench/systems core/base datasets datasets/cache datasets/synthetic/sequence eval/io bench/model bench/config bench/process \
+row bench/systems $messages datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/compare eval/io eval/trajectory bench/model bench/config bench/process \
   bench/run bench/profile bench/record
 row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
@@ -113,6 +113,7 @@ row bench/executors core/base eval/io bench/model bench/store bench/store/mainte
   bench/plan bench/plan/execution
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/serve core/base bench/record
+row bench/rivals core/base core/geometry core/types datasets eval/io
 row bench/micro $core tests/support tests/support/simulated
 
 # --- reports ---
@@ -152,12 +153,12 @@ libraries=(
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|reference)/|^core/(loop|calibration)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
-  '<opencv2/core[./]  ^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
-  '<opencv2/imgproc[./]  ^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
-  '<opencv2/calib3d[./]  ^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/monocular_structure\.cpp$'
+  '<opencv2/core[./]  ^bench/rivals/|^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
+  '<opencv2/imgproc[./]  ^bench/rivals/|^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
+  '<opencv2/calib3d[./]  ^bench/rivals/|^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/monocular_structure\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'
   '<opencv2/videoio[./]  ^reports/frames/video_module\.cpp$'
-  '<opencv2/          ^core/(frontend|dynamic|detector|loop)/'
+  '<opencv2/          ^core/(frontend|dynamic|detector|loop)/|^bench/rivals/'
   '<sqlite3           ^bench/store/|^datasets/bags/'
   '<zstd              ^bench/store/|^datasets/bags/bag_chunks\.cpp$'
   '<cairo            ^reports/drawing/pdf_drawing\.cpp$'
