@@ -211,10 +211,11 @@ trajectory = "trajectory.tum"
 }
 
 Placeholders calibration_placeholders(const Rig& rig, const SensorRates& rates) {
-  const auto number = [](double value) { return fmt::format("{:.12g}", value); };
+  // OpenCV's reader of YAML distinguishes reals, which have a decimal point, from integers.
+  const auto number = [](double value) { return fmt::format("{:#}", value); };
   const auto matrix = [](const Pose& pose) {
     const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = pose.matrix();
-    return fmt::format("{:.12g}", fmt::join(rows.data(), rows.data() + 16, ", "));
+    return fmt::format("{:#}", fmt::join(rows.data(), rows.data() + 16, ", "));
   };
   const Camera& camera = rig.camera;
   const bool is_fisheye = camera.model == CameraModel::kKannalaBrandt;
@@ -227,7 +228,7 @@ Placeholders calibration_placeholders(const Rig& rig, const SensorRates& rates) 
                          {"model", is_fisheye ? "kannala-brandt" : "radial-tangential"},
                          {"k1", number(camera.distortion[0])},
                          {"k2", number(camera.distortion[1])},
-                         {"fps", number(rates.frames_per_s)},
+                         {"fps", fmt::format("{:.0f}", rates.frames_per_s)},
                          {"depth_units_per_m", number(rig.depth_units_per_m)},
                          {"T_b_c", matrix(rig.T_b_c)},
                          {"T_c_b", matrix(rig.T_b_c.inverse())},

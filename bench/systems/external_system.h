@@ -139,9 +139,9 @@ struct SensorRates {
 };
 
 /// Placeholders of the template of a calibration: fx, fy, cx, cy [px], width, height, k1, k2, p1, p2, k3
-/// to k6 (radial-tangential; k1 to k4 of Kannala-Brandt), model, fps, depth_units_per_m, T_b_c and T_c_b (16
-/// numbers, row by row, separated by commas), gyro_noise, accel_noise, gyro_walk, accel_walk (continuous-time
-/// densities), imu_rate [Hz], time_offset_s.
+/// to k6 (radial-tangential; k1 to k4 of Kannala-Brandt), model, fps (rounded), depth_units_per_m, T_b_c and
+/// T_c_b (16 numbers, row by row, separated by commas), gyro_noise, accel_noise, gyro_walk, accel_walk
+/// (continuous-time densities), imu_rate [Hz], time_offset_s.
 [[nodiscard]] Placeholders calibration_placeholders(const Rig& rig, const SensorRates& rates);
 
 /// A word of the command with the folders {here} and {bin}; other placeholders remain.

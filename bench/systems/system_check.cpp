@@ -268,10 +268,17 @@ std::string outside_finding(const std::vector<fs::path>& files) {
       fmt::join(shown, ", "), files.size() > kShownFiles ? ", ..." : "");
 }
 
+/// Files whose names differ in digits at most: process ids and times.
 std::vector<fs::path> common_files(const std::vector<fs::path>& a, const std::vector<fs::path>& b) {
+  const auto without_digits = [](const fs::path& file) {
+    std::string name = file.string();
+    std::erase_if(name, [](unsigned char c) { return std::isdigit(c) != 0; });
+    return name;
+  };
   std::vector<fs::path> common;
-  std::ranges::copy_if(a, std::back_inserter(common),
-                       [&](const fs::path& file) { return std::ranges::find(b, file) != b.end(); });
+  std::ranges::copy_if(b, std::back_inserter(common), [&](const fs::path& file) {
+    return std::ranges::find(a, without_digits(file), without_digits) != a.end();
+  });
   return common;
 }
 

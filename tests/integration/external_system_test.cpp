@@ -117,12 +117,25 @@ TEST(ExternalSystem, IsExecutedWithAFault) {
   const TemporaryFolder folder;
   write_replay(folder, "replay", "0.001");
   const ProgramResult result =
-      bench_system(folder, "replay.toml", "faults = [\"none\", \"blank:start=1\"]\n");
+      bench_system(folder, "replay.toml",
+                   "faults = [\"none\", \"blank:start=1\"]\nexpected = [\"survive\", \"survive\"]\n");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const std::vector<bench::StoredRun> runs = runs_of(folder);
   ASSERT_EQ(runs.size(), 2u);
   EXPECT_FALSE(bench::metric_value(runs[0], "false_confidence"));
   EXPECT_EQ(*bench::metric_value(runs[1], "false_confidence"), 0.0);
+  for (const char* report : {"summary", "imperfections"}) {
+    const ProgramResult stats =
+        run_here(folder, {"stats", report, "--plan", "plan", "--store", store_of(folder)});
+    EXPECT_EQ(stats.exit_code, 0) << stats.err;
+    EXPECT_NE(stats.out.find("replay"), std::string::npos) << stats.out;
+  }
+  const ProgramResult matrix = run_here(
+      folder,
+      {"stats", "faults", "--plan", (folder.path() / "plan.toml").string(), "--store", store_of(folder)});
+  EXPECT_EQ(matrix.exit_code, 0) << matrix.err;
+  const std::string page = (folder.path() / "page").string();
+  EXPECT_EQ(run_here(folder, {"report", store_of(folder), "--out", page}).exit_code, 0);
   std::size_t exports = 0;
   std::set<std::uintmax_t> sizes;  // of the image 2 s after the first one, which is blank in one of them
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.path() / "cache" / "exports")) {

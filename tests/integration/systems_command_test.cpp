@@ -201,10 +201,12 @@ TEST(SystemsCheck, NamesAProgramThatWritesOutsideOfItsFolder) {
   expect_finding(FakeSystem(replay("good") + "echo 1 >\"$2/../stray.txt\"\n").check(),
                  {"wrote outside of its folder: ", "stray.txt", "{out}"});
   expect_finding(FakeSystem(replay("good") + "echo 1 >\"$(dirname \"$0\")/map.bin\"\n").check(), {"map.bin"});
-  // In a folder of all programs, it writes the same file each time.
-  const TemporaryFolder shared;
-  const FakeSystem fake(replay("good") + "date +%N >\"$TMPDIR/slam_state\"\n");
-  expect_finding(fake.check({}, {"TMPDIR=" + shared.path().string()}), {"slam_state"});
+  // In a folder of all programs, it writes a file each time.
+  for (const char* name : {"slam_state", "slam_$$.map"}) {
+    const TemporaryFolder shared;
+    const FakeSystem fake(replay("good") + "date +%N >\"$TMPDIR/" + name + "\"\n");
+    expect_finding(fake.check({}, {"TMPDIR=" + shared.path().string()}), {"/slam_"});
+  }
 }
 
 TEST(SystemsCommand, NewWritesADescriptionThatCheckReads) {

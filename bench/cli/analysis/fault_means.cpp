@@ -10,6 +10,7 @@
 
 #include "bench/cli/command_line.h"
 #include "bench/model/metrics.h"
+#include "bench/systems/external_system.h"
 #include "core/base/error.h"
 
 namespace stillpoint::bench {
@@ -126,6 +127,12 @@ int stats_imperfections(const StatsArguments& arguments) {
           selection),
       chosen);
   return kExitOk;
+}
+
+std::vector<std::string> compared_names(const BenchPlan& plan) {
+  std::vector<std::string> names = plan.variants;
+  for (const std::string& system : plan.systems) names.push_back(load_external_system(system).name);
+  return names;
 }
 
 }  // namespace stillpoint::bench

@@ -2,7 +2,11 @@
 /// `stillpoint stats imperfections`: means over sequences of runs with injected faults.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "bench/cli/analysis/stats_table.h"
+#include "bench/plan/bench_plan.h"
 
 namespace stillpoint::bench {
 
@@ -15,5 +19,9 @@ namespace stillpoint::bench {
 /// false confidence, which is scored with faults only.
 /// @throws InputError if no run has a fault
 int stats_imperfections(const StatsArguments& arguments);
+
+/// The variants of a plan, and the names of its external systems.
+/// @throws InputError if a description cannot be read
+[[nodiscard]] std::vector<std::string> compared_names(const BenchPlan& plan);
 
 }  // namespace stillpoint::bench

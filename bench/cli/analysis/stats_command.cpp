@@ -347,7 +347,7 @@ std::string claim_text(const RunGroup& group, const std::string& variant, const 
 class FaultMatrix {
  public:
   FaultMatrix(const BenchPlan& plan, const RunGroup& group)
-      : plan_(plan), group_(group), tallies_(plan.variants.size()) {
+      : plan_(plan), group_(group), variants_(compared_names(plan)), tallies_(variants_.size()) {
     for (const std::string& sequence : plan.rendered.sequences) {
       for (std::size_t i = 0; i < plan.faults.size(); ++i) {
         if (plan.faults[i] != kNoFault) add_row(sequence, plan.faults[i], plan.expected[i]);
@@ -363,12 +363,13 @@ class FaultMatrix {
                                "detected after 0.5 s", "3 sigma, undisturbed"}};
     for (std::size_t v = 0; v < tallies_.size(); ++v) {
       const FaultTally& tally = tallies_[v];
+      if (tally.runs == 0) continue;  // of another group
       const double runs = std::max(1, tally.runs);
-      rows.push_back({plan_.variants[v], fmt::format("{}", tally.runs),
+      rows.push_back({variants_[v], fmt::format("{}", tally.runs),
                       fmt::format("{} ({:.0f} %)", tally.as_expected, 100.0 * tally.as_expected / runs),
                       fmt::format("{:.2f} %", 100.0 * tally.false_confidence / runs),
                       fmt::format("{:.2f} %", 100.0 * tally.missed_availability / runs),
-                      fmt::format("{}", tally.late), claim_text(group_, plan_.variants[v], plan_)});
+                      fmt::format("{}", tally.late), claim_text(group_, variants_[v], plan_)});
     }
     return rows;
   }
@@ -379,8 +380,8 @@ class FaultMatrix {
  private:
   void add_row(const std::string& sequence, const std::string& fault, const std::string& expected) {
     rows_.push_back({sequence, fault, expected});
-    for (std::size_t v = 0; v < plan_.variants.size(); ++v) {
-      const RunIdentity identity{.variant = plan_.variants[v],
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      const RunIdentity identity{.variant = variants_[v],
                                  .sequence = fmt::format("{} + {}", sequence, fault)};
       rows_.back().push_back(cell_of(group_, identity, expected, tallies_[v]));
     }
@@ -388,6 +389,7 @@ class FaultMatrix {
 
   const BenchPlan& plan_;
   const RunGroup& group_;
+  std::vector<std::string> variants_;
   std::vector<FaultTally> tallies_;  ///< per variant
   report::TableRows rows_;
 };
@@ -410,7 +412,8 @@ int stats_faults(const StatsArguments& arguments) {
   const Store store(chosen.store);
   const RunSelection selection = chosen_runs(store, chosen);
   std::vector<std::string> header = {"sequence", "fault", "expected"};
-  header.insert(header.end(), plan.variants.begin(), plan.variants.end());
+  const std::vector<std::string> variants = compared_names(plan);
+  header.insert(header.end(), variants.begin(), variants.end());
   std::vector<GroupRows> groups;
   report::TableRows totals;
   bool all_expected = true;

@@ -8,6 +8,7 @@
 
 #include "bench/plan/plan_matrix.h"
 #include "bench/systems/external_run.h"
+#include "eval/io/text_reader.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -84,11 +85,29 @@ TEST(Placeholders, OfTheCalibration) {
   EXPECT_EQ(values.at("fx"), "500.5");
   EXPECT_EQ(values.at("p1"), "0.003");
   EXPECT_EQ(values.at("k3"), "0.05");
-  EXPECT_EQ(values.at("T_b_c"), "1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1");
+  EXPECT_EQ(values.at("T_b_c"),
+            "1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 2.0, 0.0, 0.0, 1.0, 3.0, 0.0, 0.0, 0.0, 1.0");
+  EXPECT_EQ(values.at("fps"), "30");
+  EXPECT_EQ(values.at("fy"), "501.0");
   rig.camera.model = CameraModel::kKannalaBrandt;
   values = calibration_placeholders(rig, {});
   EXPECT_EQ(values.at("k4"), "0.004");
   EXPECT_FALSE(values.contains("p1"));
+}
+
+TEST(ExternalDescription, ExamplesAreValidWithTheirTemplates) {
+  std::size_t examples = 0;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(STILLPOINT_SOURCE_DIR "/bench/systems/examples")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++examples;
+    const ExternalSystem system = load_external_system(entry.path().string());
+    Placeholders values = calibration_placeholders(Rig{}, {});
+    for (const auto& [name, value] : system.param) values[std::string(kParamPrefix) + name] = value;
+    const fs::path file = fs::path(system.folder) / system.calibration_template;
+    EXPECT_NO_THROW(static_cast<void>(expanded(eval::read_text_file(file), values, file.string())));
+  }
+  EXPECT_GE(examples, 1u);
 }
 
 // Inverse poses of the body, T_b_w: the camera is at T_w_c = T_b_w^-1 T_b_c.
