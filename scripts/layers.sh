@@ -100,6 +100,8 @@ row bench/run $common core/pipeline core/pipeline/runners datasets datasets/cach
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
   bench/profile/meters
+row bench/diagnose/evidence $messages datasets
+row bench/diagnose $common bench/diagnose/evidence datasets eval/metrics eval/trajectory bench/config bench/model bench/run
 row bench/record $common bench/profile/meters core/pipeline/runners datasets/cache datasets/io eval eval/io eval/metrics bench/model bench/config bench/run \
   bench/profile
 row bench/systems $messages datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/compare eval/io eval/trajectory bench/model bench/config bench/process \
@@ -130,7 +132,7 @@ row reports/dashboard $stored bench/record reports/tables reports/page
 # --- the program ---
 row bench/cli core/base eval/io bench/config bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
-row bench/cli/run $execution core/calibration core/config core/geometry core/types core/pipeline/runners datasets datasets/cache datasets/faults eval/io eval/metrics bench/process bench/run bench/profile bench/profile/meters \
+row bench/cli/run $execution core/calibration core/config core/geometry core/types core/pipeline/runners datasets datasets/cache datasets/faults eval/io eval/metrics bench/diagnose bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
@@ -153,7 +155,7 @@ libraries=(
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|reference)/|^core/(loop|calibration)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
-  '<opencv2/core[./]  ^bench/rivals/|^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
+  '<opencv2/core[./]  ^bench/(diagnose|rivals)/|^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
   '<opencv2/imgproc[./]  ^bench/rivals/|^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
   '<opencv2/calib3d[./]  ^bench/rivals/|^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/monocular_structure\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'
@@ -183,6 +185,7 @@ threads=(
   'datasets/synthetic/sequence/render_sequence\.cpp'
   'bench/plan/execution/(sequence_renderer|outcome_scorer)\.(h|cpp)'
   'bench/run/(frame_prefetcher|odometry_run)\.(h|cpp)'
+  'bench/diagnose/trials\.cpp'
   'bench/profile/meters/run_monitor\.(h|cpp)'
   'bench/record/run_environment\.cpp'
   'bench/cli/plan/reproduce_command\.cpp'

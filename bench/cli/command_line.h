@@ -85,6 +85,7 @@ inline constexpr const char* kSysfsRootHelp =
 
 [[nodiscard]] Command run_command();             ///< `stillpoint run`: odometry on one sequence
 [[nodiscard]] Command calibrate_command();       ///< `stillpoint calibrate`: calibration from a recording
+[[nodiscard]] Command diagnose_command();        ///< `stillpoint diagnose`: what limits a recording
 [[nodiscard]] Command eval_command();            ///< `stillpoint eval`: score trajectory files
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: result files by scene
 [[nodiscard]] Command bench_command();           ///< `stillpoint bench`: execute a benchmark plan

@@ -8,7 +8,8 @@ std::vector<Command> all_commands() {
           plan_command(),    store_command(),     stats_command(),     compare_command(),
           profile_command(), report_command(),    dashboard_command(), regressions_command(),
           serve_command(),   reproduce_command(), detect_command(),    config_command(),
-          data_command(),    device_command(),    calibrate_command(), systems_command()};
+          data_command(),    device_command(),    calibrate_command(), systems_command(),
+          diagnose_command()};
 }
 
 }  // namespace stillpoint::bench

@@ -30,6 +30,7 @@
 #include "bench/run/frame_cache.h"
 #include "bench/run/odometry_run.h"
 #include "bench/run/rig_report.h"
+#include "bench/run/run_indicators.h"
 #include "bench/run/run_scores.h"
 #include "core/base/error.h"
 #include "core/config/odometry_config.h"
@@ -237,7 +238,8 @@ std::string score_line(const RunResult& result) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-void print_result(const RunResult& result, const fs::path& folder) {
+/// @param sequence as the user named it
+void print_result(const RunResult& result, const fs::path& folder, const std::string& sequence) {
   const std::vector<SkippedFrame>& skipped = result.run.summary.skipped;
   for (std::size_t i = 0; i < std::min(skipped.size(), kMaxLines); ++i)
     spdlog::warn("frame {} skipped: {}", skipped[i].index, skipped[i].reason);
@@ -249,6 +251,8 @@ void print_result(const RunResult& result, const fs::path& folder) {
                            score_line(result), (folder / "result.json").string());
   const std::vector<RigFinding> rig = rig_report(result.run.calibration);
   if (!rig.empty()) std::cout << fmt::format("  rig: {}\n", rig_report_line(rig));
+  if (const std::vector<std::string> off = run_indicators(result); !off.empty())
+    std::cout << fmt::format("  {}: `stillpoint diagnose {}`\n", fmt::join(off, "; "), sequence);
 }
 
 int exit_code(Outcome outcome) {
@@ -324,7 +328,7 @@ int run(const std::shared_ptr<const RunArguments>& shared) {
     result.start_s = start_s;
     watch.reset();  // removes the progress line
     write_run(configured.folder, result, manifest_of(info, arguments, configured));
-    print_result(result, configured.folder);
+    print_result(result, configured.folder, arguments.sequence);
     code = std::max({code, exit_code(result.outcome), save_map_and_dumps(arguments, result, dumps)});
   }
   return code;

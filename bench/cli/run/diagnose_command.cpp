@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint diagnose`: what limits the accuracy on a recording, with evidence, measured effect and remedy.
+#include <algorithm>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/console.h"
+#include "bench/cli/run/profile_report.h"
+#include "bench/cli/run/sequence_playback.h"
+#include "bench/diagnose/diagnosis.h"
+#include "bench/diagnose/diagnosis_text.h"
+#include "bench/plan/plan_sequences.h"
+#include "bench/plan/sequence_registry.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+struct DiagnoseArguments {
+  std::string sequence, format, rig, base = "stillpoint", variant, budget = "60s";
+  std::vector<std::string> settings, topics, faults;
+  double start_s = 0.0, length_s = 15.0;
+  bool json = false, truth = false;
+};
+
+/// The config of the trials: without an IMU and without boxes where there are none.
+ConfigRequest config_of(const DiagnoseArguments& arguments, const datasets::SequenceInfo& info) {
+  ConfigRequest request{arguments.base, arguments.variant, arguments.settings};
+  if (arguments.variant.empty() && (info.imu.empty() || !info.rig.has_imu)) request.variant = "vo";
+  if (info.detections.empty()) request.settings.emplace_back("detector.kind=none");
+  return request;
+}
+
+/// @param name folder, bag, registered name or preset
+/// @return null if interrupted
+std::unique_ptr<datasets::SensorStream> open_recording(const DiagnoseArguments& arguments,
+                                                       const std::string& name) {
+  auto stream = open_with_progress(resolve_sequence(name),
+                                   {.format = arguments.format,
+                                    .rig_file = arguments.rig,
+                                    .topics = arguments.topics,
+                                    .defer_color = true,
+                                    .frame_cache = logged_frame_cache(arguments.start_s == 0.0, 0)});
+  if (!stream) return nullptr;
+  for (const std::string& note : stream->info().notes) spdlog::info("{}", note);
+  return played(std::move(stream), {.start_s = arguments.start_s, .faults = parsed_faults(arguments.faults)});
+}
+
+DiagnosisOptions options_of(const DiagnoseArguments& arguments, const datasets::SequenceInfo& info) {
+  return {.config = config_of(arguments, info),
+          .budget_s = parse_duration_s(arguments.budget),
+          .length_s = arguments.length_s,
+          .stop_requested = interrupt_requested,
+          .on_step = [](const std::string& step) { spdlog::debug("{}", step); }};
+}
+
+/// --truth: one row per sequence, and what it contradicts. A sequence of several that cannot be read is
+/// reported in its row.
+int check_truths(const DiagnoseArguments& arguments) {
+  std::vector<std::string> names = {arguments.sequence};
+  if (arguments.sequence.empty()) {
+    names.clear();
+    for (const RegisteredSequence& sequence : read_registry(registry_file())) names.push_back(sequence.name);
+    if (names.empty())
+      throw InputError("--truth", "no sequence is registered; name one, or use `stillpoint data add`");
+  }
+  std::cout << truth_table_header();
+  std::string findings;
+  for (const std::string& name : names) {
+    try {
+      const auto stream = open_recording(arguments, name);
+      if (!stream || interrupt_requested()) return kExitInterrupted;
+      const TruthReport report = check_truth(*stream, options_of(arguments, stream->info()));
+      std::cout << truth_table_row(stream->info().name, report, stream->info()) << std::flush;
+      for (const Cause& cause : truth_causes(report, stream->info()))
+        findings +=
+            fmt::format("{}: {}: {}; {}\n", stream->info().name, cause.name, cause.evidence, cause.remedy);
+    } catch (const InputError& error) {
+      if (names.size() == 1) throw;
+      std::cout << fmt::format("{:<24} {}\n", name, error.what());
+    }
+  }
+  std::cout << (findings.empty() ? "nothing that the other sensors contradict\n" : findings);
+  return findings.empty() ? kExitOk : kExitFindings;
+}
+
+int diagnose_sequence(const DiagnoseArguments& arguments) {
+  static_cast<void>(parse_duration_s(arguments.budget));
+  install_interrupt_handlers();
+  if (arguments.truth) return check_truths(arguments);
+  if (arguments.sequence.empty())
+    throw InputError("SEQ", "is missing; only --truth works on all registered sequences");
+  const auto stream = open_recording(arguments, arguments.sequence);
+  if (!stream) return kExitInterrupted;
+  const Diagnosis diagnosis = diagnose(*stream, options_of(arguments, stream->info()));
+  std::cout << (arguments.json ? diagnosis_json(diagnosis) : diagnosis_text(diagnosis));
+  if (diagnosis.interrupted) return kExitInterrupted;
+  return diagnosis.causes.empty() ? kExitOk : kExitFindings;
+}
+
+}  // namespace
+
+Command diagnose_command() {
+  const auto a = std::make_shared<DiagnoseArguments>();
+  return {
+      .name = "diagnose",
+      .summary = "Tell what limits the accuracy on a recording, with measured effects and remedies",
+      .example = "diagnose walking_xyz --budget 30s",
+      .options =
+          {{.name = "SEQ",
+            .help = "Sequence folder, bag or preset name; with --truth [all registered sequences]",
+            .target = &a->sequence,
+            .may_be_omitted = true},
+           {"--budget", "Time for the whole diagnosis, such as 30s or 2m", &a->budget},
+           {"--length", "Length of the part of the recording that is used [15 s]", &a->length_s, {2, 1e4}},
+           {"--start", "Time after the first frame at which that part begins [0 s]", &a->start_s, {0, 1e9}},
+           {"--rig", kRigHelp, &a->rig},
+           {"--config", "Base config: an embedded name or a TOML file", &a->base},
+           {"--variant", "Overlays joined by + [vo without an IMU]", &a->variant},
+           {"--set", "Override a config key: key=value; may be repeated", &a->settings},
+           {"--fault", "Inject a sensor fault, as `run --fault`; may be repeated", &a->faults},
+           {"--format", "Sequence format: " + datasets::sequence_format_names() + " [detected]", &a->format},
+           {"--topics", kTopicsHelp, &a->topics},
+           {"--truth", "Only compare the ground truth with the other sensors", &a->truth},
+           {"--json", "Print JSON with all candidates", &a->json}},
+      .action = [a] { return diagnose_sequence(*a); }};
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What may limit the accuracy on a recording.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/diagnose/correction.h"
+
+namespace stillpoint::bench {
+
+/// A candidate cause with its evidence. Without correction and times its effect cannot be measured.
+struct Cause {
+  std::string id;                          ///< for programs, such as "gyro_unit"
+  std::string name;                        ///< such as "gyroscope in deg/s"
+  std::string evidence;                    ///< one phrase with numbers
+  std::string remedy;                      ///< option or entry of a file
+  double strength = 0.0;                   ///< order of the candidates until their effects are measured
+  std::optional<Correction> correction{};  ///< what undoes it, if that is possible
+  /// Of the frames concerned, where it cannot be undone: the error outside of them is compared with that of
+  /// all.
+  std::vector<Timestamp> times{};
+  double largest_ratio = 0.9;  ///< `error_ratio` up to which the effect counts
+  bool consistent = true;      ///< whether all runs show the effect
+  /// Error with the correction, or outside of the frames, to that as it is.
+  std::optional<double> error_ratio{};
+};
+
+}  // namespace stillpoint::bench

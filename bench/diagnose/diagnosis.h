@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What limits the accuracy on a recording, in order: `stillpoint diagnose`.
+///
+/// Candidate causes come from the data and from a run of the odometry. The effect of each is measured by
+/// repeating the run with the fault undone (`Correction`), or, where it cannot be undone, by the error
+/// outside of the frames concerned. Then the correction with the largest effect is kept, and all is repeated,
+/// so that several faults are found one after the other.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/diagnose/cause.h"
+#include "bench/diagnose/trials.h"
+#include "bench/diagnose/truth_report.h"
+
+namespace stillpoint::bench {
+
+struct DiagnosisOptions {
+  ConfigRequest config;
+  double budget_s = 60.0;  ///< no trial starts that would end later, by the time of those before
+  double length_s = 15.0;  ///< of the part of the recording, from its start
+  std::function<bool()> stop_requested{};
+  std::function<void(const std::string& step)> on_step{};  ///< what is being done; may be empty
+};
+
+struct Diagnosis {
+  std::string sequence;
+  ErrorMeasure measure = ErrorMeasure::kTruth;
+  std::size_t frames = 0;     ///< of the part
+  double seconds = 0.0;       ///< duration of the part
+  double error = 0.0;         ///< as it is
+  double corrected = 0.0;     ///< with all corrections that were kept
+  double least_effect = 0.1;  ///< relative change of the error that counts: 10 %, or what chance causes
+  int trials = 0;
+  bool interrupted = false;
+  std::vector<Cause> causes;    ///< with an effect, worst first
+  std::vector<Cause> harmless;  ///< with evidence, but a smaller effect
+  std::vector<Cause> unmeasured;
+};
+
+/// @throws InputError as `run_odometry`
+[[nodiscard]] Diagnosis diagnose(const datasets::SensorStream& stream, const DiagnosisOptions& options);
+
+/// Only the comparison of the ground truth with the other sensors, by one run without IMU.
+/// @throws InputError for a recording with too few frames
+[[nodiscard]] TruthReport check_truth(const datasets::SensorStream& stream, const DiagnosisOptions& options);
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/diagnose/diagnosis_text.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr std::size_t kMaxCauses = 4;
+
+std::string effect_text(double ratio) { return fmt::format("{:+.0f} %", 100.0 * (ratio - 1.0)); }
+
+std::string error_text(const Diagnosis& diagnosis, double error) {
+  return diagnosis.measure == ErrorMeasure::kTruth ? fmt::format("{:.4f} m", error)
+                                                   : fmt::format("{:.2f}", error);
+}
+
+std::string title(const Diagnosis& diagnosis) {
+  const char* const measure = diagnosis.measure == ErrorMeasure::kTruth
+                                  ? "error (ATE; frames without a pose count with the spread of the truth)"
+                                  : "inconsistency (innovations of images and IMU; no ground truth)";
+  std::string text = fmt::format("{}: {} frames ({:.1f} s), {}: {}", diagnosis.sequence, diagnosis.frames,
+                                 diagnosis.seconds, measure, error_text(diagnosis, diagnosis.error));
+  if (!diagnosis.causes.empty())
+    text += fmt::format(", corrected {}", error_text(diagnosis, diagnosis.corrected));
+  return text + fmt::format("; {} trials\n", diagnosis.trials);
+}
+
+std::string names(const std::vector<Cause>& causes) {
+  std::vector<std::string> parts;
+  for (const Cause& cause : causes) {
+    parts.push_back(cause.name);
+    if (cause.error_ratio) parts.back() += " (" + effect_text(*cause.error_ratio) + ")";
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+nlohmann::ordered_json list(const std::vector<Cause>& causes) {
+  nlohmann::ordered_json entries = nlohmann::ordered_json::array();
+  for (const Cause& cause : causes) {
+    entries.push_back({{"id", cause.id},
+                       {"name", cause.name},
+                       {"evidence", cause.evidence},
+                       {"remedy", cause.remedy},
+                       {"strength", cause.strength}});
+    entries.back()["error_ratio"] = cause.error_ratio ? nlohmann::ordered_json(*cause.error_ratio) : nullptr;
+  }
+  return entries;
+}
+
+}  // namespace
+
+std::string diagnosis_text(const Diagnosis& diagnosis) {
+  std::string text = title(diagnosis);
+  std::size_t number = 0;
+  for (const Cause& cause : diagnosis.causes) {
+    if (++number > kMaxCauses) break;
+    text += fmt::format("{}. {}: error {} {}\n   evidence: {}\n   remedy: {}\n", number, cause.name,
+                        effect_text(*cause.error_ratio),
+                        cause.correction ? "without it" : "outside of the frames concerned", cause.evidence,
+                        cause.remedy);
+  }
+  if (diagnosis.causes.empty())
+    text += fmt::format("nothing found that changes the error by more than {:.0f} %\n",
+                        100.0 * diagnosis.least_effect);
+  if (!diagnosis.harmless.empty()) text += "found, with less effect: " + names(diagnosis.harmless) + "\n";
+  if (!diagnosis.unmeasured.empty())
+    text += "found, effect not measured: " + names(diagnosis.unmeasured) + "\n";
+  return text + (diagnosis.interrupted ? "interrupted\n" : "");
+}
+
+std::string diagnosis_json(const Diagnosis& diagnosis) {
+  const nlohmann::ordered_json json = {
+      {"sequence", diagnosis.sequence},
+      {"measure", diagnosis.measure == ErrorMeasure::kTruth ? "ate" : "inconsistency"},
+      {"frames", diagnosis.frames},
+      {"seconds", diagnosis.seconds},
+      {"error", diagnosis.error},
+      {"corrected_error", diagnosis.corrected},
+      {"least_effect", diagnosis.least_effect},
+      {"trials", diagnosis.trials},
+      {"interrupted", diagnosis.interrupted},
+      {"causes", list(diagnosis.causes)},
+      {"less_effect", list(diagnosis.harmless)},
+      {"not_measured", list(diagnosis.unmeasured)}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace stillpoint::bench

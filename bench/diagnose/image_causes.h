@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Faults of images, depth and stamps.
+#pragma once
+
+#include <vector>
+
+#include "bench/diagnose/cause.h"
+#include "bench/diagnose/evidence/recording_survey.h"
+
+namespace stillpoint::bench {
+
+/// Missing, repeated, uniform, dark, saturated and blurred frames, changes of exposure, missing, repeated and
+/// late depth, gaps and rounding of stamps.
+[[nodiscard]] std::vector<Cause> image_causes(const datasets::SequenceInfo& info,
+                                              const RecordingSurvey& survey);
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/diagnose/inertial_causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/diagnose/evidence/accelerometer_axes.h"
+#include "core/geometry/so3.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr double kGravity = 9.80665;
+constexpr double kLagRange_s = 0.2;
+constexpr double kLeastLag_s =
+    0.005;  ///< the motion between images is that of their brightness, not of points
+constexpr double kSignificant = 4.0;  ///< standard deviations
+constexpr double kOtherAxes = 0.7;    ///< residual without permutation of axes, else they are right
+constexpr double kBetterAxes = 0.6;   ///< residual with it, relative to that without
+constexpr double kMinDegreesRatio = 25.0, kMaxDegreesRatio = 130.0;  ///< see sequence_plausibility.cpp
+constexpr double kLeastRate = 0.02;  ///< of the rotation that tells the unit [rad/s]
+constexpr double kLeastAngle_rad = 1.0 * kDegree;
+constexpr double kAlignmentError_rad = 0.2 * kDegree;  ///< of the motion between images
+constexpr double kMostSigma_rad = 3.0 * kDegree;       ///< of an observed axis
+
+void scale_gyro(datasets::SequenceInfo& info, double factor) {
+  for (ImuSample& sample : info.imu) sample.gyro_b *= factor;
+}
+
+void scale_accel(datasets::SequenceInfo& info, double factor) {
+  for (ImuSample& sample : info.imu) sample.accel_b *= factor;
+}
+
+double mean_accel(const datasets::SequenceInfo& info) {
+  double sum = 0.0;
+  for (const ImuSample& sample : info.imu) sum += sample.accel_b.norm();
+  return sum / static_cast<double>(info.imu.size());
+}
+
+double rms_rate(std::span<const RatePair> pairs) {
+  double squares = 0.0;
+  for (const RatePair& pair : pairs) squares += pair.b.squaredNorm() / static_cast<double>(pairs.size());
+  return std::sqrt(squares);
+}
+
+/// Gyroscope in deg/s, accelerometer in g or mg.
+std::vector<Cause> unit_causes(const datasets::SequenceInfo& info, const RateIntegral& gyro,
+                               std::span<const RateInterval> by_images) {
+  std::vector<Cause> causes;
+  const std::vector<RatePair> pairs = rate_pairs(gyro, by_images, info.rig.time_offset_s);
+  const double ratio = rate_ratio(pairs);
+  if (pairs.size() >= 15 && rms_rate(pairs) > kLeastRate && ratio > kMinDegreesRatio &&
+      ratio < kMaxDegreesRatio) {
+    causes.push_back(
+        {.id = "gyro_unit",
+         .name = "gyroscope in deg/s",
+         .evidence = fmt::format("its rates are {:.1f} times the rotation between images", ratio),
+         .remedy = "convert the angular rates of the file to rad/s (times 0.01745329)",
+         .strength = 1000.0,
+         .correction = Correction{.change = [](auto& changed) { scale_gyro(changed, kDegree); }}});
+  }
+  const double mean = mean_accel(info);
+  for (const auto& [unit, factor] : {std::pair("g", kGravity), std::pair("mg", 0.001 * kGravity)}) {
+    if (std::abs(mean * factor - kGravity) > 0.3 * kGravity) continue;
+    causes.push_back(
+        {.id = "accel_unit",
+         .name = fmt::format("accelerometer in {}", unit),
+         .evidence = fmt::format("the mean acceleration is {:.4g}, gravity {:.4g}", mean, kGravity),
+         .remedy = fmt::format("convert the accelerations of the file to m/s^2 (times {:g})", factor),
+         .strength = 1000.0,
+         .correction =
+             Correction{.change = [factor = factor](auto& changed) { scale_accel(changed, factor); }}});
+  }
+  return causes;
+}
+
+/// Which samples a permutation of axes concerns.
+enum class PermutedSensor { kGyro, kAccel, kBoth };
+
+Cause axes_cause(const Eigen::Matrix3d& P, PermutedSensor sensor, const std::string& evidence) {
+  const bool gyro = sensor != PermutedSensor::kAccel, accel = sensor != PermutedSensor::kGyro;
+  const char* const name = gyro && accel ? "IMU" : gyro ? "gyroscope" : "accelerometer";
+  const char* const id = gyro && accel ? "imu_axes" : gyro ? "gyro_axes" : "accel_axes";
+  return {.id = id,
+          .name = fmt::format("axes of the {} swapped or inverted", name),
+          .evidence = evidence,
+          .remedy = gyro && accel && P.determinant() > 0.0
+                        ? fmt::format("turn T_b_c in [imu] of rig.toml by the axes {}", permutation_text(P))
+                        : fmt::format("reorder the columns of the file: {}", permutation_text(P)),
+          .strength = 500.0,
+          .correction = Correction{.change = [P, gyro, accel](auto& changed) {
+            for (ImuSample& sample : changed.imu) {
+              if (gyro) sample.gyro_b = P * sample.gyro_b;
+              if (accel) sample.accel_b = P * sample.accel_b;
+            }
+          }}};
+}
+
+std::string matrix_text(const Pose& pose) {
+  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = pose.matrix();
+  return fmt::format("[{:.5g}]", fmt::join(rows.data(), rows.data() + 16, ", "));
+}
+
+Cause extrinsics_cause(const std::string& id, const std::string& name, const std::string& evidence,
+                       const Pose& T_b_c) {
+  return {.id = id,
+          .name = name,
+          .evidence = evidence,
+          .remedy = "[imu] T_b_c = " + matrix_text(T_b_c) + " in rig.toml",
+          .strength = 500.0,
+          .correction = Correction{.change = [T_b_c](auto& changed) { changed.rig.T_b_c = T_b_c; }}};
+}
+
+/// Swapped or inverted axes, the inverse of the extrinsics, mirrored images: all that makes the gyroscope
+/// follow the images much better than with the stated calibration.
+std::vector<Cause> axes_causes(const datasets::SequenceInfo& info, std::span<const RatePair> pairs) {
+  const Eigen::Matrix3d R_b_c = info.rig.T_b_c.R();
+  const double stated = relative_residual(pairs, R_b_c);
+  if (stated < kOtherAxes) return {};
+  std::vector<Cause> causes;
+  const auto& permutations = axis_permutations();
+  const auto residual_with = [&](const Eigen::Matrix3d& P) {
+    return relative_residual(pairs, P.transpose() * R_b_c);
+  };
+  const auto best = std::ranges::min_element(permutations, {}, residual_with);
+  const double smallest = residual_with(*best);
+  const auto evidence = [&](double residual) {
+    return fmt::format(
+        "the gyroscope differs from the rotation between images by {:.0f} %, by {:.0f} % with it",
+        100.0 * stated, 100.0 * residual);
+  };
+  if (smallest < kBetterAxes * stated) {
+    causes.push_back(axes_cause(*best, PermutedSensor::kBoth, evidence(smallest)));
+    causes.push_back(axes_cause(*best, PermutedSensor::kGyro, evidence(smallest)));
+  }
+  const double inverse = relative_residual(pairs, R_b_c.transpose());
+  if (inverse < kBetterAxes * stated)
+    causes.push_back(extrinsics_cause("extrinsics_inverse", "inverse of T_b_c stated", evidence(inverse),
+                                      info.rig.T_b_c.inverse()));
+  const double mirrored = relative_residual(pairs, R_b_c * Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal());
+  if (mirrored < kBetterAxes * stated)
+    causes.push_back({.id = "mirrored",
+                      .name = "images mirrored left to right",
+                      .evidence = evidence(mirrored),
+                      .remedy = "record or export the images and depth again without mirroring",
+                      .strength = 500.0,
+                      .correction = Correction{.mirrored = true}});
+  return causes;
+}
+
+/// A rotation of the camera on the body other than the stated one.
+std::vector<Cause> rotation_causes(const datasets::SequenceInfo& info, const std::vector<RatePair>& pairs) {
+  const RotationFit fit = fit_rotation(pairs);
+  const Eigen::Quaterniond stated = info.rig.T_b_c.q;
+  Eigen::Vector3d difference = log_so3(fit.q_a_b * stated.conjugate());
+  if (fit.residual > kOtherAxes || relative_residual(pairs, stated.toRotationMatrix()) < fit.residual)
+    return {};
+  double largest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (fit.sigma_rad[i] > kMostSigma_rad) difference[i] = 0.0;
+    largest = std::max(largest, std::abs(difference[i]) / std::hypot(fit.sigma_rad[i], kAlignmentError_rad));
+  }
+  if (largest < kSignificant || difference.norm() < kLeastAngle_rad) return {};
+  Pose T_b_c = info.rig.T_b_c;
+  T_b_c.q = (exp_so3(difference) * stated).normalized();
+  Cause cause = extrinsics_cause("extrinsics_rotation", "camera rotation on the body",
+                                 fmt::format("by gyroscope and images it is {:.2f} deg off ({:.0f} sigma)",
+                                             difference.norm() / kDegree, largest),
+                                 T_b_c);
+  cause.strength = largest;
+  return {cause};
+}
+
+std::vector<Cause> clock_causes(const datasets::SequenceInfo& info, const LagFit& fit) {
+  const double difference_s = fit.lag_s - info.rig.time_offset_s;
+  const double sigmas = std::abs(difference_s) / fit.sigma_s;
+  if (std::abs(difference_s) < kLeastLag_s || sigmas < kSignificant) return {};
+  const double offset_s = fit.lag_s;
+  return {{.id = "time_offset",
+           .name = "clocks of camera and IMU offset",
+           .evidence = fmt::format("the gyroscope follows the images {:+.1f} +- {:.1f} ms later than stated",
+                                   1e3 * difference_s, 1e3 * fit.sigma_s),
+           .remedy = fmt::format("[imu] time_offset_s = {:.4f} in rig.toml", offset_s),
+           .strength = sigmas,
+           .correction =
+               Correction{.change = [offset_s](auto& changed) { changed.rig.time_offset_s = offset_s; }}}};
+}
+
+/// Number of samples at the largest absolute value of an axis, of the axis with the most.
+std::size_t clipped_samples(std::span<const ImuSample> samples, Eigen::Vector3d ImuSample::*sensor) {
+  std::size_t most = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    double largest = 0.0;
+    for (const ImuSample& sample : samples) largest = std::max(largest, std::abs((sample.*sensor)[axis]));
+    const auto count = std::ranges::count_if(samples, [&](const ImuSample& sample) {
+      return largest > 0.0 && std::abs((sample.*sensor)[axis]) >= largest;
+    });
+    most = std::max(most, static_cast<std::size_t>(count));
+  }
+  return most;
+}
+
+Cause sample_cause(const std::string& id, const std::string& name, const std::string& evidence,
+                   double strength) {
+  return {.id = id,
+          .name = name,
+          .evidence = evidence,
+          .remedy = "record again with another rate or range; `--variant vo` is without IMU",
+          .strength = strength,
+          .correction = Correction{.settings = {"imu.enabled=false"}}};
+}
+
+/// Samples during the frames.
+std::vector<ImuSample> used_samples(const datasets::SequenceInfo& info) {
+  std::vector<ImuSample> used;
+  for (const ImuSample& sample : info.imu) {
+    if (sample.t >= info.frame_times.front() && sample.t <= info.frame_times.back()) used.push_back(sample);
+  }
+  return used;
+}
+
+std::vector<Cause> sample_causes(const datasets::SequenceInfo& info) {
+  constexpr double kGap_s = 0.05, kLeastRate_hz = 80.0, kMostJitter = 0.15;
+  constexpr std::size_t kMostClippedSamples = 8;
+  const std::vector<ImuSample> samples = used_samples(info);
+  std::vector<Cause> causes;
+  if (samples.size() < 100) return causes;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    intervals.push_back(seconds_between(samples[i - 1].t, samples[i].t));
+  std::vector<double> sorted = intervals;
+  std::ranges::sort(sorted);
+  const double typical = sorted[sorted.size() / 2];
+  const auto gaps =
+      std::ranges::count_if(intervals, [&](double x) { return x > std::max(kGap_s, 3.0 * typical); });
+  if (gaps > 0)
+    causes.push_back(sample_cause("imu_gap", "inertial samples missing",
+                                  fmt::format("{} gap(s), the longest {:.3f} s", gaps, sorted.back()),
+                                  100.0));
+  const double rate_hz =
+      static_cast<double>(samples.size()) / seconds_between(samples.front().t, samples.back().t);
+  if (1.0 / typical < kLeastRate_hz)
+    causes.push_back(sample_cause("imu_rate", "few inertial samples",
+                                  fmt::format("{:.0f} per second, 100 to 400 are usual", rate_hz), 50.0));
+  const double spread = sorted[sorted.size() * 9 / 10] - sorted[sorted.size() / 10];
+  if (spread > kMostJitter * typical)
+    causes.push_back(
+        sample_cause("imu_jitter", "stamps of inertial samples are noisy",
+                     fmt::format("80 % of the intervals are within {:.2f} ms, their median is {:.2f} ms",
+                                 1e3 * spread, 1e3 * typical),
+                     spread / typical));
+  for (const auto& [id, name, sensor] :
+       {std::tuple("gyro_saturated", "gyroscope saturated", &ImuSample::gyro_b),
+        std::tuple("accel_saturated", "accelerometer saturated", &ImuSample::accel_b)}) {
+    const std::size_t clipped = clipped_samples(samples, sensor);
+    if (clipped > kMostClippedSamples)
+      causes.push_back(sample_cause(
+          id, name, fmt::format("{} samples have the largest value of their axis", clipped), 100.0));
+  }
+  return causes;
+}
+
+/// The scale of the motion between images, by the accelerometer.
+std::vector<Cause> depth_scale_causes(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
+  constexpr double kLeastDifference = 0.03;  ///< accuracy on recorded motion
+  const std::optional<InertialScale> found = inertial_depth_scale(info, survey);
+  if (!found || std::abs(found->scale - 1.0) < std::max(kLeastDifference, kSignificant * found->sigma))
+    return {};
+  const double scale = found->scale;
+  const bool unit = scale > 3.0 || scale < 1.0 / 3.0;
+  return {{.id = unit ? "depth_unit" : "depth_scale",
+           .name = unit ? "unit of depth" : "scale of depth",
+           .evidence = fmt::format(
+               "the camera moves {:.3f} +- {:.3f} times as far by the accelerometer as by images and depth",
+               scale, found->sigma),
+           .remedy = fmt::format("[depth] scale = {:.4g} in rig.toml", info.rig.depth_units_per_m / scale),
+           .strength = std::abs(scale - 1.0) / found->sigma,
+           .correction = Correction{.depth_factor = scale}}};
+}
+
+}  // namespace
+
+std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
+  if (info.imu.empty()) return {};
+  const RateIntegral gyro(info.imu);
+  const std::vector<RateInterval> by_images = survey.rates();
+  std::vector<Cause> causes = unit_causes(info, gyro, by_images);
+  if (!causes.empty()) return causes;
+  const auto add = [&](const std::vector<Cause>& more) {
+    causes.insert(causes.end(), more.begin(), more.end());
+  };
+  add(sample_causes(info));
+  const std::optional<LagFit> lag = fit_lag(gyro, by_images, kLagRange_s);
+  const std::vector<RatePair> pairs = rate_pairs(gyro, by_images, lag ? lag->lag_s : info.rig.time_offset_s);
+  const std::vector<Cause> axes = axes_causes(info, pairs);
+  add(axes);
+  if (axes.empty()) add(rotation_causes(info, pairs));
+  if (lag) add(clock_causes(info, *lag));
+  add(depth_scale_causes(info, survey));
+  if (const auto found = accelerometer_axes(info, survey)) {
+    add({axes_cause(
+        found->P, PermutedSensor::kAccel,
+        fmt::format("the accelerometer follows the motion between images with a correlation of {:.2f}, "
+                    "{:.2f} with it",
+                    found->stated, found->correlation))});
+  }
+  return causes;
+}
+
+}  // namespace stillpoint::bench

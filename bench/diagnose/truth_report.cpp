@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/diagnose/truth_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+
+#include "core/geometry/so3.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr double kTruthLagRange_s = 0.2;
+constexpr double kMotion_s = 0.5;
+constexpr double kMaxTruthGap_s = 0.1;
+constexpr double kClear = 4.0;              ///< standard deviations
+constexpr double kLeastTruthLag_s = 0.003;  ///< between frames the camera moves by less than its errors
+constexpr double kLeastTurn_rad = 0.035;    ///< 2 degrees
+constexpr double kLeastDistance_m = 0.01;
+constexpr double kLeastScale = 0.02;
+constexpr double kLeastNoise_m = 0.002;
+constexpr double kLeastJump_m = 0.03;
+constexpr double kJumpRatio = 8.0;  ///< to the median difference of neighboring steps
+constexpr double kLeastCoverage = 0.95;
+
+double middle_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The pose at a time; nullopt beyond the ends and in gaps.
+std::optional<Pose> pose_at(const Trajectory& trajectory, Timestamp t) {
+  const auto next = std::ranges::lower_bound(trajectory.poses, t, {}, &StampedPose::t);
+  if (next == trajectory.poses.end()) return std::nullopt;
+  if (next->t == t) return next->T_w_f;
+  if (next == trajectory.poses.begin()) return std::nullopt;
+  const auto last = std::prev(next);
+  const double interval_s = seconds_between(last->t, next->t);
+  if (interval_s > kMaxTruthGap_s) return std::nullopt;
+  return interpolate(last->T_w_f, next->T_w_f, seconds_between(last->t, t) / interval_s);
+}
+
+/// The poses between the first and the last frame, with a margin for a wrong clock.
+Trajectory part_of_truth(const datasets::SequenceInfo& info) {
+  Trajectory part = info.ground_truth.trajectory;
+  const Timestamp first = after(info.frame_times.front(), -kTruthLagRange_s),
+                  last = after(info.frame_times.back(), kTruthLagRange_s);
+  std::erase_if(part.poses, [&](const StampedPose& pose) { return pose.t < first || pose.t > last; });
+  return part;
+}
+
+std::vector<RateInterval> gyro_intervals(const datasets::SequenceInfo& info) {
+  const RateIntegral gyro(info.imu);
+  std::vector<RateInterval> intervals;
+  for (std::size_t i = 1; i < info.frame_times.size(); ++i) {
+    const Timestamp from = info.frame_times[i - 1], to = info.frame_times[i];
+    if (const auto rate = gyro.mean(from, to)) intervals.push_back({from, to, *rate});
+  }
+  return intervals;
+}
+
+double noise_of(const std::vector<StampedPose>& poses) {
+  std::vector<double> differences;
+  for (std::size_t i = 4; i < poses.size(); ++i) {
+    const Eigen::Vector3d fourth = poses[i].T_w_f.p - 4.0 * poses[i - 1].T_w_f.p +
+                                   6.0 * poses[i - 2].T_w_f.p - 4.0 * poses[i - 3].T_w_f.p +
+                                   poses[i - 4].T_w_f.p;
+    for (int axis = 0; axis < 3; ++axis) differences.push_back(std::abs(fourth[axis]));
+  }
+  constexpr double kMedianOfNormal = 0.6745, kSumOfSquares = 70.0;  // 1 + 16 + 36 + 16 + 1
+  return middle_of(differences) / kMedianOfNormal / std::sqrt(kSumOfSquares);
+}
+
+std::vector<Timestamp> jumps_of(const std::vector<StampedPose>& poses) {
+  std::vector<double> excesses;
+  for (std::size_t i = 1; i + 2 < poses.size(); ++i) {
+    const Eigen::Vector3d before = poses[i].T_w_f.p - poses[i - 1].T_w_f.p,
+                          step = poses[i + 1].T_w_f.p - poses[i].T_w_f.p,
+                          behind = poses[i + 2].T_w_f.p - poses[i + 1].T_w_f.p;
+    excesses.push_back((step - 0.5 * (before + behind)).norm());
+  }
+  const double limit_m = std::max(kLeastJump_m, kJumpRatio * middle_of(excesses));
+  std::vector<Timestamp> jumps;
+  for (std::size_t i = 0; i < excesses.size(); ++i) {
+    const bool largest = (i == 0 || excesses[i] >= excesses[i - 1]) &&
+                         (i + 1 == excesses.size() || excesses[i] >= excesses[i + 1]);
+    if (excesses[i] > limit_m && largest) jumps.push_back(poses[i + 2].t);
+  }
+  return jumps;
+}
+
+/// Adds position and scale of the hand-eye calibration.
+void add_hand_eye(const Trajectory& truth, const Trajectory& visual, TruthReport& report) {
+  const Eigen::Quaterniond q_f_c = report.rotation->q_a_b;
+  const double lag_s = report.by_images ? report.by_images->lag_s : 0.0;
+  Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d g = Eigen::Vector4d::Zero();
+  double squares = 0.0, count = 0.0;
+  auto end = visual.poses.begin();
+  for (const StampedPose& begin : visual.poses) {
+    while (end != visual.poses.end() && seconds_between(begin.t, end->t) < kMotion_s) ++end;
+    if (end == visual.poses.end()) break;
+    const auto from = pose_at(truth, after(begin.t, lag_s)), to = pose_at(truth, after(end->t, lag_s));
+    if (!from || !to) continue;
+    const Pose A = from->inverse() * *to, B = begin.T_w_f.inverse() * end->T_w_f;
+    Eigen::Matrix<double, 3, 4> J;
+    J << A.R() - Eigen::Matrix3d::Identity(), -(q_f_c * B.p);
+    H += J.transpose() * J;
+    g += J.transpose() * A.p;
+    squares += A.p.squaredNorm();
+    count += 1.0;
+  }
+  if (count < 30.0) return;
+  const Eigen::Vector4d x = -H.ldlt().solve(g);
+  const double independent = count / (kMotion_s * 30.0) + 1.0;  // overlapping motions repeat their errors
+  const double variance = std::max(0.0, squares + g.dot(x)) / (3.0 * independent);
+  const Eigen::Vector4d sigma = (variance * H.inverse().diagonal().cwiseMax(0.0)).cwiseSqrt();
+  if (!x.allFinite() || !sigma.allFinite()) return;
+  report.position = x.head<3>();
+  report.position_sigma = sigma.head<3>();
+  report.scale = x[3];
+  report.scale_sigma = sigma[3];
+}
+
+Cause truth_cause(const std::string& id, const std::string& name, const std::string& evidence,
+                  const std::string& remedy) {
+  return {.id = id, .name = name, .evidence = evidence, .remedy = remedy, .strength = 20.0};
+}
+
+/// The lag of the truth behind the camera, by the sensor that tells it better.
+std::optional<LagFit> truth_lag(const TruthReport& report, const datasets::SequenceInfo& info) {
+  if (!report.by_gyro || (report.by_images && report.by_images->sigma_s < report.by_gyro->sigma_s))
+    return report.by_images;
+  LagFit lag = *report.by_gyro;
+  lag.lag_s += info.rig.time_offset_s;
+  return lag;
+}
+
+std::vector<Cause> lag_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
+  const std::optional<LagFit> lag = truth_lag(report, info);
+  if (!lag || std::abs(lag->lag_s) < kLeastTruthLag_s || std::abs(lag->lag_s) < kClear * lag->sigma_s)
+    return {};
+  Cause cause =
+      truth_cause("truth_late", "ground truth late",
+                  fmt::format("its rotation is {:.1f} +- {:.1f} ms behind that of the {}", 1e3 * lag->lag_s,
+                              1e3 * lag->sigma_s, report.by_gyro ? "gyroscope" : "images"),
+                  fmt::format("subtract {:.4f} s from the stamps of the ground truth", lag->lag_s));
+  cause.strength = std::abs(lag->lag_s) / lag->sigma_s;
+  cause.correction = Correction{.change = [lag_s = lag->lag_s](auto& changed) {
+    for (StampedPose& pose : changed.ground_truth.trajectory.poses) pose.t = after(pose.t, -lag_s);
+  }};
+  return {cause};
+}
+
+std::vector<Cause> frame_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
+  if (!report.rotation || !report.position) return {};
+  const Pose T_f_c = info.ground_truth.T_c_f.inverse();
+  const Eigen::Vector3d turn = log_so3(report.rotation->q_a_b * T_f_c.q.conjugate());
+  const Eigen::Vector3d shift = *report.position - T_f_c.p;
+  double turned = 0.0, shifted = 0.0;
+  Pose found = T_f_c;
+  if (turn.norm() > kLeastTurn_rad) turned = turn.norm() / report.rotation->sigma_rad.norm();
+  if (shift.norm() > kLeastDistance_m) shifted = shift.norm() / report.position_sigma.norm();
+  if (turned < kClear && shifted < kClear) return {};
+  if (turned >= kClear) found.q = report.rotation->q_a_b;
+  if (shifted >= kClear) found.p = *report.position;
+  Cause cause = truth_cause(
+      "truth_frame", "ground truth of another coordinate frame",
+      fmt::format(
+          "the camera is {:.1f} deg and {:.3f} m from where the calibration says ({:.0f} and {:.0f} sigma)",
+          turn.norm() * 180.0 / M_PI, shift.norm(), turned, shifted),
+      fmt::format("move the ground truth: the camera is at ({:.3f}, {:.3f}, {:.3f}) m in its frame",
+                  found.p.x(), found.p.y(), found.p.z()));
+  cause.strength = std::max(turned, shifted);
+  cause.correction =
+      Correction{.change = [found](auto& changed) { changed.ground_truth.T_c_f = found.inverse(); }};
+  return {cause};
+}
+
+/// The ground truth with positions averaged over 40 ms to both sides.
+void smooth(std::vector<StampedPose>& poses) {
+  constexpr double kHalfWindow_s = 0.04;
+  const std::vector<StampedPose> before = poses;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    std::size_t reach = 0;
+    while (reach < i && i + reach + 1 < before.size() &&
+           seconds_between(before[i - reach - 1].t, before[i].t) <= kHalfWindow_s)
+      ++reach;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t k = i - reach; k <= i + reach; ++k) sum += before[k].T_w_f.p;
+    poses[i].T_w_f.p = sum / static_cast<double>(2 * reach + 1);
+  }
+}
+
+std::vector<Cause> quality_causes(const TruthReport& report) {
+  std::vector<Cause> causes;
+  if (report.noise_m > kLeastNoise_m) {
+    causes.push_back(truth_cause("truth_noise", "ground truth noisy",
+                                 fmt::format("{:.1f} mm per axis, from pose to pose", 1e3 * report.noise_m),
+                                 "smooth the positions of the ground truth"));
+    causes.back().correction =
+        Correction{.change = [](auto& changed) { smooth(changed.ground_truth.trajectory.poses); }};
+  }
+  if (!report.jumps.empty()) {
+    causes.push_back(
+        truth_cause("truth_jump", "ground truth jumps",
+                    fmt::format("{} step(s) that the neighboring ones do not have", report.jumps.size()),
+                    "leave out the ground truth from the jump on"));
+    causes.back().times = report.jumps;
+  }
+  if (report.coverage < kLeastCoverage)
+    causes.push_back(truth_cause("truth_part", "ground truth of a part",
+                                 fmt::format("it covers {:.0f} % of the frames", 100.0 * report.coverage),
+                                 "--start and --length select a part with ground truth"));
+  return causes;
+}
+
+std::vector<Cause> scale_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
+  const double difference = std::log(std::max(1e-3, report.scale));
+  if (!report.position || std::abs(difference) < kLeastScale ||
+      std::abs(report.scale - 1.0) < kClear * report.scale_sigma)
+    return {};
+  const bool unit = report.scale > 3.0 || report.scale < 1.0 / 3.0;
+  Cause cause = truth_cause(
+      unit ? "depth_unit" : "depth_scale", unit ? "unit of depth" : "scale of depth",
+      fmt::format("the camera moves {:.3f} +- {:.3f} times as far by the ground truth as by images and depth",
+                  report.scale, report.scale_sigma),
+      fmt::format("[depth] scale = {:.4g} in rig.toml", info.rig.depth_units_per_m / report.scale));
+  cause.strength = std::abs(report.scale - 1.0) / report.scale_sigma;
+  cause.correction = Correction{.depth_factor = report.scale};
+  return {cause};
+}
+
+}  // namespace
+
+TruthReport truth_report(const datasets::SequenceInfo& info, const RecordingSurvey& survey,
+                         const Trajectory& visual) {
+  TruthReport report;
+  const Trajectory truth = part_of_truth(info);
+  report.poses = truth.poses.size();
+  if (report.poses < 10) return report;
+  double covered = 0.0;
+  for (const Timestamp t : info.frame_times) covered += pose_at(truth, t) ? 1.0 : 0.0;
+  report.coverage = covered / static_cast<double>(info.frame_times.size());
+  report.noise_m = noise_of(truth.poses);
+  report.jumps = jumps_of(truth.poses);
+  const RateIntegral rates(truth);
+  const std::vector<RateInterval> by_images = survey.rates();
+  report.by_images = fit_lag(rates, by_images, kTruthLagRange_s);
+  if (!info.imu.empty()) report.by_gyro = fit_lag(rates, gyro_intervals(info), kTruthLagRange_s);
+  if (!report.by_images) return report;
+  report.rotation = fit_rotation(rate_pairs(rates, by_images, report.by_images->lag_s));
+  add_hand_eye(truth, visual, report);
+  return report;
+}
+
+std::vector<Cause> truth_causes(const TruthReport& report, const datasets::SequenceInfo& info) {
+  std::vector<Cause> causes;
+  if (report.poses == 0) return causes;
+  for (const auto& more : {lag_causes(report, info), frame_causes(report, info), quality_causes(report),
+                           scale_causes(report, info)})
+    causes.insert(causes.end(), more.begin(), more.end());
+  return causes;
+}
+
+std::string truth_table_header() {
+  return fmt::format("{:<24} {:>7} {:>6} {:>16} {:>16} {:>14} {:>14} {:>9} {:>6}\n", "sequence", "covered",
+                     "noise", "late, images", "late, gyroscope", "camera turned", "camera moved", "scale",
+                     "jumps") +
+         fmt::format("{:<24} {:>7} {:>6} {:>16} {:>16} {:>14} {:>14} {:>9} {:>6}\n", "", "%", "mm", "ms",
+                     "ms", "deg", "mm", "%", "");
+}
+
+std::string truth_table_row(const std::string& name, const TruthReport& report,
+                            const datasets::SequenceInfo& info) {
+  if (report.poses == 0) return fmt::format("{:<24} no ground truth\n", name);
+  const auto lag_text = [](const std::optional<LagFit>& lag) {
+    return lag ? fmt::format("{:+.1f} +- {:.1f}", 1e3 * lag->lag_s, 1e3 * lag->sigma_s) : std::string("n/a");
+  };
+  const Pose T_f_c = info.ground_truth.T_c_f.inverse();
+  std::string turned = "n/a", moved = "n/a", scale = "n/a";
+  if (report.rotation)
+    turned = fmt::format("{:.2f} +- {:.2f}", report.rotation->q_a_b.angularDistance(T_f_c.q) * 180.0 / M_PI,
+                         report.rotation->sigma_rad.norm() * 180.0 / M_PI);
+  if (report.position) {
+    moved = fmt::format("{:.0f} +- {:.0f}", 1e3 * (*report.position - T_f_c.p).norm(),
+                        1e3 * report.position_sigma.norm());
+    scale = fmt::format("{:+.1f}", 100.0 * (report.scale - 1.0));
+  }
+  return fmt::format("{:<24} {:>7.1f} {:>6.2f} {:>16} {:>16} {:>14} {:>14} {:>9} {:>6}\n", name,
+                     100.0 * report.coverage, 1e3 * report.noise_m, lag_text(report.by_images),
+                     lag_text(report.by_gyro), turned, moved, scale, report.jumps.size());
+}
+
+}  // namespace stillpoint::bench

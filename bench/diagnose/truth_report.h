@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Compares the ground truth of a recording with its other sensors: clock, coordinate frame, scale, noise,
+/// jumps.
+///
+/// With relative motions A of the truth's frame f and B of the camera over 0.5 s, A X = X B for X = T_f_c
+/// (hand-eye calibration; Tsai and Lenz 1989). R_f_c comes from the angular rates (`fit_rotation`); position
+/// p of the camera in f and scale s of the camera's motion minimize
+///   sum |(R_A - I) p - s R_f_c p_B + p_A|^2.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/diagnose/cause.h"
+#include "bench/diagnose/evidence/recording_survey.h"
+
+namespace stillpoint::bench {
+
+struct TruthReport {
+  std::size_t poses = 0;
+  double coverage = 0.0;                    ///< fraction of the frames between poses at most 0.1 s apart
+  std::optional<LagFit> by_images;          ///< stamp of the truth minus that of the image
+  std::optional<LagFit> by_gyro;            ///< stamp of the truth minus that of the gyroscope
+  std::optional<RotationFit> rotation;      ///< R_f_c
+  std::optional<Eigen::Vector3d> position;  ///< of the camera in f [m]
+  Eigen::Vector3d position_sigma = Eigen::Vector3d::Zero();
+  double scale = 1.0;  ///< true motion to that of the camera
+  double scale_sigma = 1.0;
+  double noise_m = 0.0;          ///< white noise per axis, by fourth differences
+  std::vector<Timestamp> jumps;  ///< steps that the neighboring ones do not have
+};
+
+/// @param visual trajectory of the camera by a run without IMU; may be empty
+/// @return all that can be told; nothing of a truth without poses or orientations
+[[nodiscard]] TruthReport truth_report(const datasets::SequenceInfo& info, const RecordingSurvey& survey,
+                                       const Trajectory& visual);
+
+/// What the report contradicts.
+[[nodiscard]] std::vector<Cause> truth_causes(const TruthReport& report, const datasets::SequenceInfo& info);
+
+/// Header and row of a table.
+[[nodiscard]] std::string truth_table_header();
+[[nodiscard]] std::string truth_table_row(const std::string& name, const TruthReport& report,
+                                          const datasets::SequenceInfo& info);
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint diagnose`: causes in order of their measured effect, silence on a sound sequence, and its
+// errors.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+#include "tests/support/sequences/rendered_sequence.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+ProgramResult diagnosis_of(const fs::path& folder, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {"diagnose", folder.string()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_program(arguments);
+}
+
+std::string first_cause(const ProgramResult& result) {
+  const nlohmann::json document = nlohmann::json::parse(result.out);
+  return document["causes"].empty() ? "" : document["causes"][0]["id"].get<std::string>();
+}
+
+TEST(DiagnoseCommand, IsSilentAboutASoundSequence) {
+  const ProgramResult result = diagnosis_of(rendered_sequence(), {});
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("nothing found that changes the error by more than"), std::string::npos)
+      << result.out;
+}
+
+TEST(DiagnoseCommand, NamesDepthOfAWrongScaleFirst) {
+  const ProgramResult result = diagnosis_of(
+      rendered_sequence(), {"--json", "--fault", "depth_scaled:amount=0.8,start=0,duration=100"});
+  ASSERT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_EQ(first_cause(result), "depth_scale") << result.out;
+}
+
+/// Multiplies the columns after the stamps.
+void scale_columns(const fs::path& file, double factor) {
+  std::ifstream in(file);
+  std::string text, line;
+  while (std::getline(in, line)) {
+    if (!line.starts_with("#")) {
+      std::istringstream row(line);
+      std::string t;
+      double x = 0.0, y = 0.0, z = 0.0;
+      row >> t >> x >> y >> z;
+      std::ostringstream changed;
+      changed.precision(12);
+      changed << t << ' ' << factor * x << ' ' << factor * y << ' ' << factor * z;
+      line = changed.str();
+    }
+    text += line + '\n';
+  }
+  in.close();
+  fs::remove(file);
+  std::ofstream(file) << text;
+}
+
+TEST(DiagnoseCommand, NamesAGyroscopeInDegreesFirst) {
+  const TemporaryFolder folder;
+  const fs::path copy = copy_of_rendered_sequence(folder);
+  scale_columns(copy / "d400_gyroscope.txt", 180.0 / M_PI);
+  const ProgramResult result = diagnosis_of(copy, {});
+  ASSERT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_NE(result.out.find("1. gyroscope in deg/s"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("0.01745329"), std::string::npos) << result.out;
+  EXPECT_LE(std::ranges::count(result.out, '\n'), 15) << result.out;
+}
+
+TEST(DiagnoseCommand, NamesTheProblemOfABudgetWithoutUnit) {
+  const ProgramResult result = diagnosis_of(rendered_sequence(), {"--budget", "60"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("60"), std::string::npos) << result.err;
+}
+
+TEST(DiagnoseCommand, RejectsAPartWithTooFewFrames) {
+  const ProgramResult result = diagnosis_of(rendered_sequence(), {"--start", "2.8"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("frames"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Causes by the data alone, and the corrections that undo them.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "bench/diagnose/image_causes.h"
+#include "bench/diagnose/inertial_causes.h"
+#include "tests/support/sequences/small_stream.h"
+#include "tests/unit/diagnose/turning_rig.h"
+
+namespace stillpoint::bench {
+namespace {
+
+const Cause* cause_named(const std::vector<Cause>& causes, const std::string& id) {
+  const auto found = std::ranges::find(causes, id, &Cause::id);
+  return found == causes.end() ? nullptr : &*found;
+}
+
+TEST(InertialCauses, AreAbsentForARightRig) {
+  const TurningRig rig({.q_b_c = Eigen::Quaterniond(Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitZ()))});
+  EXPECT_TRUE(inertial_causes(rig.info, rig.survey).empty());
+}
+
+TEST(InertialCauses, TellUnitsAndTheCorrectionConvertsThem) {
+  TurningRig rig({});
+  for (ImuSample& sample : rig.info.imu) {
+    sample.gyro_b *= 180.0 / M_PI;
+    sample.accel_b /= 9.80665;
+  }
+  const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
+  const Cause* const gyro = cause_named(causes, "gyro_unit");
+  const Cause* const accel = cause_named(causes, "accel_unit");
+  ASSERT_TRUE(gyro && accel);
+  gyro->correction->change(rig.info);
+  accel->correction->change(rig.info);
+  EXPECT_TRUE(rig.info.imu[500].gyro_b.isApprox(rig.imu[500].gyro_b, 1e-9));
+  EXPECT_TRUE(rig.info.imu[500].accel_b.isApprox(rig.imu[500].accel_b, 1e-9));
+}
+
+TEST(InertialCauses, TellSwappedAxesOfTheGyroscope) {
+  TurningRig rig({});
+  for (ImuSample& sample : rig.info.imu) sample.gyro_b = sample.gyro_b({1, 0, 2}).eval();
+  const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
+  const Cause* const found = cause_named(causes, "gyro_axes");
+  ASSERT_TRUE(found);
+  found->correction->change(rig.info);
+  EXPECT_TRUE(rig.info.imu[500].gyro_b.isApprox(rig.imu[500].gyro_b));
+}
+
+TEST(InertialCauses, TellTheInverseOfTheExtrinsics) {
+  TurningRig rig(
+      {.q_b_c = Eigen::Quaterniond(Eigen::AngleAxisd(2.0, Eigen::Vector3d(1, 1, 1).normalized()))});
+  rig.info.rig.T_b_c = rig.info.rig.T_b_c.inverse();
+  EXPECT_TRUE(cause_named(inertial_causes(rig.info, rig.survey), "extrinsics_inverse"));
+}
+
+TEST(InertialCauses, TellASmallRotationAndALateClock) {
+  TurningRig rig({.lag_s = 0.03});
+  rig.info.rig.T_b_c.q = Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitX());
+  const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
+  ASSERT_TRUE(cause_named(causes, "time_offset"));
+  ASSERT_TRUE(cause_named(causes, "extrinsics_rotation"));
+  for (const Cause& cause : causes) cause.correction->change(rig.info);
+  EXPECT_NEAR(rig.info.rig.time_offset_s, 0.03, 0.001);
+  EXPECT_LT(rig.info.rig.T_b_c.q.angularDistance(Eigen::Quaterniond::Identity()), 0.003);
+}
+
+TEST(InertialCauses, TellGapsAndClippedSamples) {
+  TurningRig rig({});
+  std::erase_if(rig.info.imu, [](const ImuSample& sample) {
+    return sample.t > from_seconds(12.0) && sample.t < from_seconds(12.5);
+  });
+  for (ImuSample& sample : rig.info.imu) sample.gyro_b.x() = std::clamp(sample.gyro_b.x(), -0.3, 0.3);
+  const std::vector<Cause> causes = inertial_causes(rig.info, rig.survey);
+  EXPECT_TRUE(cause_named(causes, "imu_gap"));
+  EXPECT_TRUE(cause_named(causes, "gyro_saturated"));
+}
+
+TEST(ImageCauses, AreAbsentForSoundImages) {
+  const TurningRig rig({});
+  EXPECT_TRUE(image_causes(rig.info, rig.survey).empty());
+}
+
+TEST(ImageCauses, NameTheFramesConcerned) {
+  TurningRig rig({});
+  auto& frames = rig.survey.frames;
+  for (std::size_t i = 20; i < 25; ++i) frames[i].deviation_gray = 0.0;
+  for (std::size_t i = 40; i < 50; ++i) frames[i].same_image = true;
+  for (std::size_t i = 60; i < 70; ++i) frames[i].sharpness = 0.2;
+  for (std::size_t i = 80; i < 90; ++i) frames[i].depth_ratio = 0.0;
+  for (std::size_t i = 100; i < 110; ++i) frames[i].mean_gray = 30.0;
+  const std::vector<Cause> causes = image_causes(rig.info, rig.survey);
+  for (const auto& [id, first, count] :
+       {std::tuple("blank", 20U, 5U), std::tuple("frozen", 40U, 10U), std::tuple("blur", 60U, 10U),
+        std::tuple("depth_missing", 80U, 10U), std::tuple("exposure", 100U, 10U)}) {
+    const Cause* const found = cause_named(causes, id);
+    ASSERT_TRUE(found) << id;
+    EXPECT_EQ(found->times.size(), count) << id;
+    EXPECT_EQ(found->times.front(), frames[first].t) << id;
+  }
+}
+
+TEST(ImageCauses, CountMissingFrames) {
+  TurningRig rig({});
+  rig.info.frame_times.erase(rig.info.frame_times.begin() + 50, rig.info.frame_times.begin() + 60);
+  const std::vector<Cause> causes = image_causes(rig.info, rig.survey);
+  const Cause* const found = cause_named(causes, "dropped");
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->evidence.starts_with("10 of 239 frames")) << found->evidence;
+}
+
+TEST(ImageCauses, ReplaceRoundedStampsByAConstantRate) {
+  TurningRig rig({});
+  for (Timestamp& t : rig.info.frame_times) t.ns = (t.ns + 5'000'000) / 10'000'000 * 10'000'000;
+  const std::vector<Cause> causes = image_causes(rig.info, rig.survey);
+  const Cause* const found = cause_named(causes, "stamps_rounded");
+  ASSERT_TRUE(found);
+  found->correction->change(rig.info);
+  for (std::size_t i = 0; i < rig.info.frame_times.size(); ++i)
+    EXPECT_LT(std::abs(seconds_between(rig.survey.frames[i].t, rig.info.frame_times[i])), 0.006);
+}
+
+TEST(CorrectedPart, CutsMirrorsAndScalesDepth) {
+  datasets::SmallStream stream;
+  stream.info_.detections.push_back(
+      {.t = stream.info_.frame_times[1],
+       .state = DetectionState::kPresent,
+       .detections = {{.class_name = "person", .box = {.x_min = 1, .y_min = 1, .x_max = 3, .y_max = 4}}}});
+  const auto part =
+      corrected_part(stream, {.first = 1, .count = 2}, {{.depth_factor = 0.5}, {.mirrored = true}});
+  ASSERT_EQ(part->info().frame_times.size(), 2U);
+  const Frame frame = part->load_frame(0);
+  EXPECT_EQ(frame.id, 0);
+  EXPECT_EQ(frame.t, stream.info_.frame_times[1]);
+  EXPECT_DOUBLE_EQ(frame.depth_units_per_m, 2000.0);
+  EXPECT_DOUBLE_EQ(part->info().rig.depth_units_per_m, 2000.0);
+  EXPECT_DOUBLE_EQ(part->info().rig.camera.cx, 3.5);
+  EXPECT_EQ(part->info().detections[0].detections[0].box,
+            (Box{.x_min = 4, .y_min = 1, .x_max = 6, .y_max = 4}));
+  EXPECT_EQ(part->info().imu.size(), 2U);
+}
+
+TEST(CorrectedPart, TakesTheDepthOfAnotherFrame) {
+  class Stream : public datasets::SmallStream {
+   public:
+    [[nodiscard]] Frame load_frame(std::size_t index) const override {
+      Frame frame = SmallStream::load_frame(index);
+      frame.depth = cv::Mat(6, 8, CV_16UC1, cv::Scalar(1000.0 * static_cast<double>(index + 1)));
+      return frame;
+    }
+  };
+  const Stream stream;
+  const auto part = corrected_part(stream, {.first = 0, .count = 3}, {{.depth_delay = 1}});
+  EXPECT_EQ(part->load_frame(0).depth.at<std::uint16_t>(0, 0), 2000);
+  EXPECT_EQ(part->load_frame(2).depth.at<std::uint16_t>(0, 0), 3000);
+}
+
+}  // namespace
+}  // namespace stillpoint::bench
