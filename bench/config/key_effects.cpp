@@ -24,10 +24,14 @@ bool has_grid(Config config) { return config.frontend.detector == FeatureDetecto
 bool tracks_patches(Config config) { return config.frontend.tracker == TrackerKind::kPatch; }
 bool tracks_by_opencv(Config config) { return config.frontend.tracker == TrackerKind::kOpenCv; }
 bool is_consistent(Config config) { return config.backend.prior == PriorModel::kConsistent; }
-bool estimates_extrinsics(Config config) { return config.backend.estimate_extrinsics; }
+bool estimates_extrinsics(Config config) {
+  return config.backend.estimate_extrinsics || config.backend.initializer.align_rotations;
+}
 bool estimates_time_offset(Config config) { return config.backend.estimate_time_offset; }
 bool estimates_scale(Config config) { return config.backend.depth.estimate_scale; }
-bool estimates_rig(Config config) { return estimates_extrinsics(config) || estimates_scale(config); }
+bool estimates_rig(Config config) {
+  return estimates_extrinsics(config) || estimates_scale(config) || config.backend.estimate_lens;
+}
 bool uses_depth(Config config) { return config.backend.depth.usage != DepthUsage::kOff; }
 bool weights_depth(Config config) { return config.backend.depth.usage == DepthUsage::kWeighted; }
 bool is_monocular(Config config) { return config.backend.initializer.kind == InitializerKind::kMonocular; }
@@ -39,7 +43,7 @@ constexpr std::string_view kDetector = "a detector: detector.kind and dynamic.ma
 constexpr std::string_view kNetwork = "detector.kind = network";
 constexpr std::string_view kConsistency = "dynamic.moving_consistency = true";
 constexpr std::string_view kConsistentPrior = "backend.prior = consistent";
-constexpr std::string_view kExtrinsics = "backend.estimate_extrinsics = true";
+constexpr std::string_view kExtrinsics = "backend.estimate_extrinsics or backend.initializer.align_rotations";
 constexpr std::string_view kTimeOffset = "backend.estimate_time_offset = true";
 constexpr std::string_view kScale = "backend.depth.estimate_scale = true";
 constexpr std::string_view kDepth = "backend.depth.usage other than off";
@@ -94,7 +98,7 @@ constexpr std::array kConditions = {
     KeyCondition{"backend.extrinsics_", kImu, uses_imu},
     KeyCondition{"backend.extrinsics_", kExtrinsics, estimates_extrinsics},
     KeyCondition{"backend.calibration_agreement_probability",
-                 "backend.estimate_extrinsics or backend.depth.estimate_scale", estimates_rig},
+                 "an estimate of extrinsics, depth scale or lens", estimates_rig},
     KeyCondition{"backend.depth.max_m", kDepth, uses_depth},
     KeyCondition{"backend.depth.inverse_sigma", kDepth, uses_depth},
     KeyCondition{"backend.depth.agreement_probability", kDepth, uses_depth},
@@ -103,7 +107,6 @@ constexpr std::array kConditions = {
     KeyCondition{"backend.depth.estimate_scale", kImu, uses_imu},
     KeyCondition{"backend.depth.scale_", kScale, estimates_scale},
     KeyCondition{"backend.initializer.", kImu, uses_imu},
-    KeyCondition{"backend.initializer.align_rotations", kExtrinsics, estimates_extrinsics},
     KeyCondition{"backend.initializer.max_scale_sigma", "backend.initializer.kind = monocular", is_monocular},
     KeyCondition{"loop.dof", kLoops, closes_loops},
     KeyCondition{"loop.lag_frames", kLoops, closes_loops},

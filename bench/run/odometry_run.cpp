@@ -271,7 +271,9 @@ class RunRecorder {
     calibration.time_offset_at_bound += update.at_bound.time_offset;
     calibration.extrinsics_at_bound += update.at_bound.extrinsics;
     calibration.depth_scale_at_bound += update.at_bound.depth_scale;
+    calibration.aligned_rotation = update.aligned_rotation;
     if (!update.covariance) return;
+    calibration.rig_step = update.rig_step;
     calibration.time_offset_sigma_s = std::sqrt(update.covariance->time_offset);
     calibration.lens_sigma = update.covariance->lens.diagonal().cwiseSqrt();
     calibration.depth_scale_sigma =

@@ -2,15 +2,19 @@
 #include "bench/run/rig_report.h"
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/types/rig_tolerance.h"
+
 namespace stillpoint::bench {
 namespace {
 
-constexpr double kSignificant = 3.0;          // standard deviations
-constexpr double kOffsetTolerance_s = 0.001;  // what a calibration leaves
+constexpr double kSignificant = 3.0;  // standard deviations
+constexpr double kLike = 2.0;         // same: of a value that agrees
 
 /// A parameter with its estimated difference from the rig, in the unit of its name.
 struct Estimate {
@@ -19,16 +23,18 @@ struct Estimate {
   double sigma = 0.0;
   double tolerance = 0.0;  ///< what a calibration leaves
   double observed = 0.0;   ///< largest standard deviation of an observed parameter
+  int axes = 1;            ///< of a vector, whose length the difference is
 };
 
 /// @param agrees whether the data agrees with the group of parameters that this one is of
 RigFinding finding_of(const Estimate& estimate, bool agrees) {
   RigFinding finding{.parameter = estimate.name, .sigma = estimate.sigma};
-  const double doubt = std::hypot(estimate.sigma, estimate.tolerance);
-  if (!agrees && std::abs(estimate.difference) > kSignificant * doubt) {
+  const double deviations = std::abs(estimate.difference) / std::sqrt(estimate.axes) /
+                            std::hypot(estimate.sigma, estimate.tolerance);
+  if (!agrees && deviations > kSignificant) {
     finding.result = RigResult::kDiffers;
     finding.difference = estimate.difference;
-  } else if (estimate.sigma <= estimate.observed) {
+  } else if (estimate.sigma <= estimate.observed && deviations <= kLike) {
     finding.result = RigResult::kAgrees;
   }
   return finding;
@@ -37,40 +43,62 @@ RigFinding finding_of(const Estimate& estimate, bool agrees) {
 /// Corrections of bearings: a stated value is off by their negative.
 void add_lens(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
   if (!calibration.lens_agrees || !calibration.lens_sigma || calibration.lens_sigma->isZero(0.0)) return;
-  const Eigen::Vector4d difference = -calibration.lens, sigma = *calibration.lens_sigma;
-  const double fx = calibration.rig.camera.fx, fy = calibration.rig.camera.fy;
-  const Estimate estimates[] = {{"focal length [%]", 100.0 * difference[0], 100.0 * sigma[0], 0.2, 1.0},
-                                {"k1", difference[1], sigma[1], 0.004, 0.025},
-                                {"center x [px]", fx * difference[2], fx * sigma[2], 0.001 * fx, 0.005 * fx},
-                                {"center y [px]", fy * difference[3], fy * sigma[3], 0.001 * fy, 0.005 * fy}};
-  for (const Estimate& estimate : estimates)
-    findings.push_back(finding_of(estimate, *calibration.lens_agrees));
+  const bool agrees = *calibration.lens_agrees;
+  const Eigen::Vector4d difference = -(agrees ? calibration.rig_step.lens : calibration.lens);
+  const Camera& camera = calibration.rig.camera;
+  const auto add = [&](std::string name, int i, double unit, double observed) {
+    findings.push_back(finding_of({std::move(name), unit * difference[i], unit * (*calibration.lens_sigma)[i],
+                                   unit * rig_tolerance::kLens[static_cast<std::size_t>(i)], unit * observed},
+                                  agrees));
+  };
+  add("focal length [%]", 0, 100.0, 0.01);
+  add("k1", 1, 1.0, 0.025);
+  add("center x [px]", 2, camera.fx, 0.005);
+  add("center y [px]", 3, camera.fy, 0.005);
+}
+
+void add_depth_scale(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
+  if (!calibration.depth_scale_agrees || !calibration.depth_scale_sigma) return;
+  const bool agrees = *calibration.depth_scale_agrees;
+  const double difference = agrees ? -calibration.rig_step.depth_scale : calibration.depth_scale - 1.0;
+  findings.push_back(
+      finding_of({"depth scale [%]", 100.0 * difference, 100.0 * *calibration.depth_scale_sigma,
+                  100.0 * rig_tolerance::kDepthScale, 5.0},
+                 agrees));
+}
+
+void add_time_offset(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
+  if (!calibration.time_offset_sigma_s || *calibration.time_offset_sigma_s <= 0.0) return;
+  const double difference_s = calibration.time_offset_s - calibration.rig.time_offset_s;
+  findings.push_back(
+      finding_of({"time offset [ms]", 1e3 * difference_s, 1e3 * *calibration.time_offset_sigma_s,
+                  1e3 * rig_tolerance::kTimeOffset_s, 5.0},
+                 false));
+}
+
+/// By the extrinsics if they are estimated, else by the alignment at the start.
+void add_rotation(const EstimatedCalibration& calibration, std::vector<RigFinding>& findings) {
+  const std::optional<AlignedRotation>& aligned = calibration.aligned_rotation;
+  const bool estimated = calibration.extrinsics_sigma_rad && *calibration.extrinsics_sigma_rad > 0.0;
+  if (!estimated && !aligned) return;
+  const bool agrees = calibration.extrinsics_agree.value_or(!aligned || aligned->agrees);
+  const double angle =
+      estimated ? calibration.T_b_c.q.angularDistance(calibration.rig.T_b_c.q) : aligned->difference_rad;
+  const double sigma = estimated ? *calibration.extrinsics_sigma_rad : aligned->sigma_rad;
+  constexpr double kDegrees = 180.0 / M_PI;
+  findings.push_back(finding_of({"camera rotation on the body [deg]", kDegrees * angle, kDegrees * sigma,
+                                 kDegrees * rig_tolerance::kRotation_rad, 0.5, 3},
+                                agrees));
 }
 
 }  // namespace
 
 std::vector<RigFinding> rig_report(const EstimatedCalibration& calibration) {
   std::vector<RigFinding> findings;
-  if (calibration.depth_scale_agrees && calibration.depth_scale_sigma) {
-    const double sigma = 100.0 * *calibration.depth_scale_sigma;
-    findings.push_back(
-        finding_of({"depth scale [%]", 100.0 * (calibration.depth_scale - 1.0), sigma, 0.6, 5.0},
-                   *calibration.depth_scale_agrees));
-  }
+  add_depth_scale(calibration, findings);
   add_lens(calibration, findings);
-  if (calibration.time_offset_sigma_s && *calibration.time_offset_sigma_s > 0.0) {
-    const double difference = calibration.time_offset_s - calibration.rig.time_offset_s;
-    findings.push_back(finding_of({"time offset [ms]", 1e3 * difference,
-                                   1e3 * *calibration.time_offset_sigma_s, 1e3 * kOffsetTolerance_s, 5.0},
-                                  false));
-  }
-  if (calibration.extrinsics_agree && calibration.extrinsics_sigma_rad) {
-    const double to_deg = 180.0 / M_PI;
-    const double angle = calibration.T_b_c.q.angularDistance(calibration.rig.T_b_c.q);
-    findings.push_back(finding_of({"camera rotation on the body [deg]", to_deg * angle,
-                                   to_deg * *calibration.extrinsics_sigma_rad, 0.2, 1.0},
-                                  *calibration.extrinsics_agree));
-  }
+  add_time_offset(calibration, findings);
+  add_rotation(calibration, findings);
   return findings;
 }
 

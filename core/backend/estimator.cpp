@@ -241,7 +241,8 @@ void Estimator::solve() {
   if (!solution.covariance) return;
   update_.covariance = solution.covariance->newest;
   monitor_.add_contradiction(window().frames.back().state.t, *update_.covariance);
-  calibration_.compare_with_rig(solution.covariance->rig_step, *update_.covariance, window_.states());
+  update_.rig_step = solution.covariance->rig_step;
+  calibration_.compare_with_rig(update_.rig_step, *update_.covariance, window_.states());
 }
 
 /// The biases were part of a divergence, and are forgotten with it.
@@ -354,6 +355,7 @@ void Estimator::report(const NavState& state) {
   update_.depth_scale = window.depth_scale;
   update_.lens = window.lens;
   update_.agrees_with_rig = window.agrees_with_rig;
+  update_.aligned_rotation = calibration_.aligned_rotation();
   update_.imu_noise = monitor_.imu_noise_factors();
   if (window.gravity_covariance) update_.q_level_w = level_rotation(window.gravity_w);
 }

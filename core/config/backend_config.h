@@ -145,11 +145,11 @@ void visit_fields(Visitor&& field, Config& config) {
         FieldInfo{"Prior standard deviation of the gyroscope bias.", "rad/s", 1e-5, 10.0});
   field("accel_bias_sigma", config.accel_bias_sigma,
         FieldInfo{"Prior standard deviation of the accelerometer bias.", "m/s^2", 1e-5, 10.0});
-  field(
-      "align_rotations", config.align_rotations,
-      FieldInfo{
-          .text = "Whether estimated extrinsics and the time offset are found in the first 3 s by rotations "
-                  "alone."});
+  field("align_rotations", config.align_rotations,
+        FieldInfo{
+            .text =
+                "Whether the rotation of the camera on the body and the time offset are found in the first 3 "
+                "s by rotations alone. Extrinsics that these contradict are estimated from then on."});
   field(
       "max_scale_sigma", config.max_scale_sigma,
       FieldInfo{"Kind monocular: largest relative standard deviation of an accepted scale.", "", 1e-3, 10.0});

@@ -134,7 +134,9 @@ struct OdometryUpdate {
   Eigen::Vector4d lens = Eigen::Vector4d::Zero();
   CalibrationAtBound at_bound;
   AgreesWithRig agrees_with_rig;
-  ImuNoiseFactors imu_noise;  ///< current estimate
+  RigStep rig_step;                                 ///< of the last solve with a covariance
+  std::optional<AlignedRotation> aligned_rotation;  ///< once rotations were aligned
+  ImuNoiseFactors imu_noise;                        ///< current estimate
   /// Rotates the world such that gravity points along -z, by the current estimate of gravity; the identity if
   /// gravity is not estimated (`backend.gravity`) or not yet known.
   Eigen::Quaterniond q_level_w = Eigen::Quaterniond::Identity();

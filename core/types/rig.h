@@ -60,4 +60,21 @@ struct AgreesWithRig {
   [[nodiscard]] bool any() const { return extrinsics || depth_scale || lens; }
 };
 
+/// What the residuals say about calibration that is constant in the solve (AgreesWithRig): the
+/// Gauss-Newton step d of that calibration if it were variable. With its covariance C, d^T C^-1 d is
+/// chi-square distributed if the values of the rig are true (score test, Rao 1948). Zero for calibration that
+/// is variable in the solve.
+struct RigStep {
+  Eigen::Matrix<double, 6, 1> extrinsics = Eigen::Matrix<double, 6, 1>::Zero();
+  double depth_scale = 0.0;  ///< of its inverse
+  Eigen::Vector4d lens = Eigen::Vector4d::Zero();
+};
+
+/// Rotation of the camera on the body by rotations alone, at the start (RotationAligner).
+struct AlignedRotation {
+  double difference_rad = 0.0;  ///< from the rig
+  double sigma_rad = 0.0;       ///< along the least certain axis
+  bool agrees = true;           ///< else the extrinsics are estimated since
+};
+
 }  // namespace stillpoint

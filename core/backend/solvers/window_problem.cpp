@@ -172,7 +172,7 @@ bool uses_depth(const Observation& observation, const BackendConfig& config) {
 VariableGlobals variable_globals(const Window& window, const BackendConfig& config) {
   const bool moving = window.inertial && (config.prior == PriorModel::kConsistent ||
                                           window.frames.back().state.v_w.norm() > kMinSpeedForCalibration);
-  return {.extrinsics = config.estimate_extrinsics && moving,
+  return {.extrinsics = estimates_extrinsics(window, config) && moving,
           .time_offset = config.estimate_time_offset && moving,
           .gravity = window.estimates_gravity(),
           .depth_scale = config.depth.estimate_scale && window.inertial,

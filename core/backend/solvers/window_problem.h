@@ -133,6 +133,11 @@ void unpack(const ParameterBlocks& blocks, Window& window);
 /// Whether the measured depth of an observation is used as a residual.
 [[nodiscard]] bool uses_depth(const Observation& observation, const BackendConfig& config);
 
+/// Whether the extrinsics are estimated: always, or since rotations contradict those of the rig.
+[[nodiscard]] inline bool estimates_extrinsics(const Window& window, const BackendConfig& config) {
+  return config.estimate_extrinsics || window.is_realigned;
+}
+
 /// Whether `PriorModel::kConsistent` applies.
 [[nodiscard]] inline bool has_consistent_prior(const Window& window, const BackendConfig& config) {
   return window.inertial && config.prior == PriorModel::kConsistent;

@@ -24,16 +24,6 @@ struct SolveReport {
   bool usable = true;  ///< false: the solver failed and the window is unchanged
 };
 
-/// What the residuals say about calibration that is constant in the solve (Window::agrees_with_rig): the
-/// Gauss-Newton step d of that calibration if it were variable. With its covariance C, d^T C^-1 d is
-/// chi-square distributed if the values of the rig are true (score test, Rao 1948). Zero for calibration that
-/// is variable in the solve.
-struct RigStep {
-  Eigen::Matrix<double, 6, 1> extrinsics = Eigen::Matrix<double, 6, 1>::Zero();
-  double depth_scale = 0.0;  ///< of its inverse
-  Eigen::Vector4d lens = Eigen::Vector4d::Zero();
-};
-
 struct WindowCovariance {
   StateCovariance newest;
   RigStep rig_step;

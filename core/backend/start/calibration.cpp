@@ -11,22 +11,18 @@
 #include "core/backend/window/landmark_tracks.h"
 #include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
+#include "core/types/rig_tolerance.h"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kAlignedDegreesOfFreedom = 4;  // rotation and time offset
-/// An accelerometer of another scale looks like depth of another scale: data sheets of consumer sensors state
-/// 0.5 to 1 %. The data of another scale factor is doubted until the inertial noise is about known
-/// (InertialNoise): recorded inertial data (V1_03, from 20 and 60 s) contradicted a true scale by up to 5.6
-/// standard deviations in its first second, and by less than 2 later.
-constexpr double kAccelScale = 0.006;
+/// Another depth scale is doubted until the inertial noise is about known (InertialNoise): recorded inertial
+/// data (V1_03, from 20 and 60 s) contradicted a true scale by up to 5.6 standard deviations in its first
+/// second, and by less than 2 later.
 constexpr double kNoiseKnown_s = 1.5;
 /// Squared difference, in variances, below which a scale that differed is again that of the rig.
 constexpr double kLikeRig = 4.0;
-/// What a calibration leaves: relative error of the focal length, of k1, and half a pixel of the center.
-const Eigen::Vector4d kLensTolerance{0.002, 0.004, 0.001, 0.001};
-constexpr double kRigLever_m = 0.01;            // what a calibration leaves of the lever arm
 constexpr double kAveragingHalfWidth_s = 0.02;  // as far as samples are available after the newest exposure
 
 /// Limits `value` to [center - bound, center + bound]. @return whether it was outside
@@ -66,6 +62,7 @@ Window Calibration::calibrated_window() const {
   if (!is_aligned_otherwise()) return window;
   window.T_b_c.q = rotation_alignment_->q_b_c;
   window.time_offset_s = rotation_alignment_->time_offset_s;
+  window.is_realigned = true;
   window.agrees_with_rig.extrinsics = false;
   return window;
 }
@@ -80,13 +77,23 @@ LinearPrior Calibration::prior() const {
 }
 
 bool Calibration::awaits_alignment() const {
-  return config_.initializer.align_rotations && uses_imu_ && config_.estimate_extrinsics &&
-         config_.depth.usage != DepthUsage::kOff && !rotation_alignment_;
+  return config_.initializer.align_rotations && uses_imu_ && config_.depth.usage != DepthUsage::kOff &&
+         !rotation_alignment_;
 }
 
 bool Calibration::align(const RotationAlignment& alignment) {
   rotation_alignment_ = alignment;
-  return is_aligned_otherwise();
+  if (!is_aligned_otherwise()) return false;
+  depth_scale_found_.reset();  // with the rotation of the rig
+  lens_found_.reset();
+  return true;
+}
+
+std::optional<AlignedRotation> Calibration::aligned_rotation() const {
+  if (!rotation_alignment_) return std::nullopt;
+  return AlignedRotation{.difference_rad = rotation_alignment_->q_b_c.angularDistance(rig_.T_b_c.q),
+                         .sigma_rad = largest_sigma(rotation_alignment_->covariance.topLeftCorner<3, 3>()),
+                         .agrees = !is_aligned_otherwise()};
 }
 
 bool Calibration::agrees_with_rig(double contradiction, int degrees_of_freedom) const {
@@ -95,22 +102,27 @@ bool Calibration::agrees_with_rig(double contradiction, int degrees_of_freedom) 
 }
 
 bool Calibration::is_aligned_otherwise() const {
-  return rotation_alignment_ &&
+  return rotation_alignment_ && (rotation_alignment_->is_certain || config_.estimate_extrinsics) &&
          !agrees_with_rig(rotation_alignment_->rig_contradiction, kAlignedDegreesOfFreedom);
 }
 
 double Calibration::depth_scale_contradiction(double difference, double variance, Timestamp now) {
   if (!compared_since_) compared_since_ = now;
   const double early = kNoiseKnown_s / std::max(seconds_between(*compared_since_, now), 1e-3);
-  return difference * difference / (variance * (1.0 + early * early) + kAccelScale * kAccelScale);
+  return difference * difference /
+         (variance * (1.0 + early * early) + rig_tolerance::kDepthScale * rig_tolerance::kDepthScale);
 }
 
-/// d^T (C + S)^-1 d with S what a calibration is good to.
+/// d^T (C + S)^-1 d with S what a calibration is good to. Until rotations are aligned, a camera that is
+/// turned on the body looks like one with another center.
 void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4d& covariance,
                                Window& window) {
   bool& agrees = window.agrees_with_rig.lens;
   const Eigen::Vector4d difference = agrees ? step : window.lens;
-  const Eigen::Matrix4d tolerated = covariance + Eigen::Matrix4d(kLensTolerance.cwiseAbs2().asDiagonal());
+  Eigen::Matrix4d tolerated = covariance;
+  tolerated.diagonal() += Eigen::Vector4d::Map(rig_tolerance::kLens.data()).cwiseAbs2();
+  if (awaits_alignment())
+    tolerated.diagonal().tail<2>().array() += config_.extrinsics_sigma_rad * config_.extrinsics_sigma_rad;
   const double contradiction = difference.dot(tolerated.llt().solve(difference));
   agrees = agrees ? agrees_with_rig(contradiction, local_size(BlockKind::kLens)) : contradiction < kLikeRig;
   if (agrees) set_lens(Eigen::Vector4d::Zero(), window);
@@ -120,8 +132,8 @@ void Calibration::compare_lens(const Eigen::Vector4d& step, const Eigen::Matrix4
 
 void Calibration::compare_extrinsics(const Vector6& step, const Matrix6& covariance, Window& window) const {
   Matrix6 tolerated = covariance;
-  tolerated.diagonal().head<3>().array() += kRigLever_m * kRigLever_m;
-  tolerated.diagonal().tail<3>().array() += kRigRotation_rad * kRigRotation_rad;
+  tolerated.diagonal().head<3>().array() += rig_tolerance::kLever_m * rig_tolerance::kLever_m;
+  tolerated.diagonal().tail<3>().array() += rig_tolerance::kRotation_rad * rig_tolerance::kRotation_rad;
   const double contradiction = step.dot(tolerated.llt().solve(step));
   window.agrees_with_rig.extrinsics &= agrees_with_rig(contradiction, local_size(BlockKind::kExtrinsics));
 }

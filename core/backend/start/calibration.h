@@ -36,6 +36,9 @@ class Calibration {
   /// @return whether it contradicts the rig: windows start with it from now on
   [[nodiscard]] bool align(const RotationAlignment& alignment);
 
+  /// What the alignment says about the rig; absent before it.
+  [[nodiscard]] std::optional<AlignedRotation> aligned_rotation() const;
+
   /// Compares the rig with the residuals of the last solve.
   ///
   /// The inverse depth scale k differs from 1 by d, the step of the score test while it is constant. With its

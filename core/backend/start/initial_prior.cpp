@@ -37,8 +37,8 @@ Eigen::Matrix<double, 6, 6> pose_root_information(double sigma_m, double sigma_r
 }
 
 /// Whether the pose of the first camera fixes the gauge, see initial_prior.
-bool is_fixed_by_camera(const BackendConfig& config) {
-  return config.prior == PriorModel::kConsistent && config.estimate_extrinsics;
+bool is_fixed_by_camera(const Window& window, const BackendConfig& config) {
+  return config.prior == PriorModel::kConsistent && estimates_extrinsics(window, config);
 }
 
 /// Of the camera pose in the body by the body pose and, in the last six columns, the extrinsics (p, theta):
@@ -106,7 +106,7 @@ LinearPrior initial_prior(const Window& window, const BackendConfig& config) {
   prior.blocks.push_back(prior_block(window, BlockKind::kSpeedBias, 0));
   if (!window.gravity_covariance) return prior_of_level_world(std::move(prior), window, config);
   prior = prior_with_gravity(std::move(prior), window, config);
-  return is_fixed_by_camera(config) ? prior_fixed_by_camera(std::move(prior), window) : prior;
+  return is_fixed_by_camera(window, config) ? prior_fixed_by_camera(std::move(prior), window) : prior;
 }
 
 LinearPrior calibration_prior(const Window& window, const BackendConfig& config) {

@@ -11,6 +11,7 @@
 #include "core/geometry/covariance.h"
 #include "core/geometry/so3.h"
 #include "core/imu/propagation.h"
+#include "core/types/rig_tolerance.h"
 
 namespace stillpoint {
 namespace {
@@ -112,12 +113,13 @@ std::optional<RotationAlignment> RotationAligner::align(Timestamp now, ImuBuffer
   Eigen::Vector4d from_rig;
   from_rig << log_so3(q_b_c_.conjugate() * found.q_b_c), found.time_offset_s - time_offset_s_;
   Eigen::Matrix4d tolerated = found.covariance;
-  tolerated.diagonal().head<3>().array() += kRigRotation_rad * kRigRotation_rad;
-  tolerated(3, 3) += kRigOffset_s * kRigOffset_s;
+  tolerated.diagonal().head<3>().array() += rig_tolerance::kRotation_rad * rig_tolerance::kRotation_rad;
+  tolerated(3, 3) += rig_tolerance::kTimeOffset_s * rig_tolerance::kTimeOffset_s;
   found.rig_contradiction = from_rig.dot(tolerated.llt().solve(from_rig));
   const bool certain = largest_sigma(found.covariance.topLeftCorner<3, 3>()) < kCertainRotation_rad &&
                        found.covariance(3, 3) < kCertainOffset_s * kCertainOffset_s;
   if (!certain && span < kMaxSpan_s) return std::nullopt;
+  found.is_certain = certain;
   return found;
 }
 

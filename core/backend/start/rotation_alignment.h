@@ -14,10 +14,6 @@
 
 namespace stillpoint {
 
-/// What a calibration of camera and IMU leaves: 0.2 degrees and 1 ms.
-inline constexpr double kRigRotation_rad = 0.003;
-inline constexpr double kRigOffset_s = 0.001;
-
 /// A calibration that explains why camera and gyroscope turn differently.
 struct RotationAlignment {
   Eigen::Quaterniond q_b_c = Eigen::Quaterniond::Identity();
@@ -28,6 +24,7 @@ struct RotationAlignment {
   /// d^T (C + S)^-1 d of the difference d of q_b_c and time offset from the rig, with S what a calibration
   /// leaves: four degrees of freedom.
   double rig_contradiction = 0.0;
+  bool is_certain = false;  ///< to 0.3 degrees and 1 ms
 };
 
 /// Rotation of the camera from one frame to a later one, by vision alone.

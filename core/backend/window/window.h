@@ -67,6 +67,7 @@ struct Window {
   double depth_scale = 1.0;                        ///< ratio of measured to true depth
   Eigen::Vector4d lens = Eigen::Vector4d::Zero();  ///< correction of the camera, see reprojection_rows.h
   AgreesWithRig agrees_with_rig;
+  bool is_realigned = false;  ///< rotations contradicted the extrinsics of the rig: they are estimated
   Eigen::Vector3d gravity_w = Eigen::Vector3d::Zero();
   /// Covariance of the direction of gravity [rad^2] in its tangent space (see gravity_direction.h) when the
   /// current initial prior was built; absent: gravity is constant.

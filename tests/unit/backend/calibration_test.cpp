@@ -174,5 +174,35 @@ TEST(Calibration, StartsWithAnAlignmentThatContradictsTheRig) {
   EXPECT_EQ(calibration.calibrated_window().time_offset_s, 0.0);
 }
 
+/// Constant extrinsics become variable if rotations contradict those of the rig. What the residuals said
+/// about the lens until then was said with the wrong rotation.
+TEST(Calibration, EstimatesExtrinsicsSinceRotationsContradictThem) {
+  BackendConfig config = estimating_config();
+  config.estimate_extrinsics = false;
+  config.estimate_lens = true;
+  config.initializer.align_rotations = true;
+  Calibration calibration(config, true, {});
+  EXPECT_FALSE(calibration.calibrated_window().is_realigned);
+  RotationAlignment alignment{.q_b_c = exp_so3({0.0, 0.1, 0.0})};
+  alignment.covariance = 1e-6 * Eigen::Matrix4d::Identity();
+  alignment.rig_contradiction = 1.0;
+  EXPECT_FALSE(calibration.align(alignment));
+  EXPECT_FALSE(calibration.calibrated_window().is_realigned);
+  EXPECT_TRUE(calibration.aligned_rotation()->agrees);
+  StateCovariance covariance;
+  covariance.lens = 1e-8 * Eigen::Matrix4d::Identity();
+  Window window = calibration.calibrated_window();
+  window.frames.emplace_back();
+  calibration.compare_with_rig({.lens = {0.0, 0.0, 0.05, 0.0}}, covariance, window);
+  ASSERT_FALSE(calibration.calibrated_window().agrees_with_rig.lens);
+  alignment.rig_contradiction = 100.0;
+  EXPECT_FALSE(calibration.align(alignment));
+  alignment.is_certain = true;
+  EXPECT_TRUE(calibration.align(alignment));
+  EXPECT_TRUE(calibration.calibrated_window().is_realigned);
+  EXPECT_TRUE(calibration.calibrated_window().agrees_with_rig.lens);
+  EXPECT_NEAR(calibration.aligned_rotation()->difference_rad, 0.1, 1e-9);
+}
+
 }  // namespace
 }  // namespace stillpoint

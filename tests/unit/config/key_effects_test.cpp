@@ -30,9 +30,9 @@ TEST(KeyEffects, EachPrefixNamesAKey) {
 }
 
 TEST(KeyEffects, NamesWhatASettingOfTheUserRequires) {
-  EXPECT_EQ(warnings_of("", {"backend.extrinsics_sigma_m=0.05"}),
+  EXPECT_EQ(warnings_of("dynamic_vins", {"backend.extrinsics_sigma_m=0.05"}),
             Messages{"--set: \"backend.extrinsics_sigma_m\" has no effect; it requires "
-                     "backend.estimate_extrinsics = true"});
+                     "backend.estimate_extrinsics or backend.initializer.align_rotations"});
   EXPECT_EQ(warnings_of("vo", {"imu.gyro_noise=0.001"}),
             Messages{"--set: \"imu.gyro_noise\" has no effect; it requires imu.enabled = true"});
   const TemporaryFolder folder;

@@ -37,6 +37,28 @@ TEST(RigReport, NamesTheParameterOfTheLensThatDiffers) {
   EXPECT_EQ(rig_report_line({findings[4]}), "center y [px]: differs by -5 (20 sigma)");
 }
 
+/// The residuals ask for a focal length 2 % shorter, but not with the certainty that contradicts a rig.
+TEST(RigReport, DoesNotCallADoubtedParameterOneThatAgrees) {
+  EstimatedCalibration calibration = observed_calibration();
+  calibration.lens_sigma = Eigen::Vector4d(0.0065, 0.0005, 0.0005, 0.0005);
+  calibration.rig_step.lens[0] = 0.02;
+  EXPECT_EQ(rig_report(calibration)[1].result, RigResult::kNotObserved);
+  calibration.rig_step.lens[0] = 0.005;
+  EXPECT_EQ(rig_report(calibration)[1].result, RigResult::kAgrees);
+}
+
+TEST(RigReport, NamesTheRotationThatContradictsTheRig) {
+  EstimatedCalibration calibration = observed_calibration();
+  calibration.aligned_rotation = {.difference_rad = 0.002, .sigma_rad = 0.002, .agrees = true};
+  EXPECT_EQ(rig_report_line({rig_report(calibration).back()}),
+            "camera rotation on the body [deg]: agrees (to 0.11)");
+  calibration.aligned_rotation->agrees = false;
+  calibration.extrinsics_sigma_rad = 0.002;
+  calibration.T_b_c.q = Eigen::AngleAxisd(0.035, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(rig_report_line({rig_report(calibration).back()}),
+            "camera rotation on the body [deg]: differs by +2.01 (18 sigma)");
+}
+
 TEST(RigReport, SaysWhatWasNotObserved) {
   EstimatedCalibration calibration = observed_calibration();
   calibration.depth_scale_sigma = 0.06;
