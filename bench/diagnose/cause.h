@@ -10,6 +10,9 @@
 
 namespace stillpoint::bench {
 
+/// Strength of wrong units and axes, whose consequences look like other causes.
+inline constexpr double kFundamental = 500.0;
+
 /// A candidate cause with its evidence. Without correction and times its effect cannot be measured.
 struct Cause {
   std::string id;                          ///< for programs, such as "gyro_unit"

@@ -106,6 +106,9 @@ class Diagnoser {
                              run_causes(baseline.run, part->info()), truth_causes(truth, part->info())})
       all.insert(all.end(), more.begin(), more.end());
     std::ranges::stable_sort(all, std::ranges::greater{}, &Cause::strength);
+    // With wrong units or axes, the other differences are their consequences.
+    if (!all.empty() && all.front().strength >= kFundamental)
+      std::erase_if(all, [](const Cause& cause) { return cause.strength < kFundamental; });
     std::vector<Cause> unique;
     for (Cause& cause : all) {
       if (std::ranges::find(unique, cause.id, &Cause::id) == unique.end()) unique.push_back(std::move(cause));
@@ -130,6 +133,7 @@ class Diagnoser {
   void measure(Cause& cause, const Trial& baseline) {
     if (!cause.correction) {
       cause.error_ratio = error_ratio_outside(baseline.result, request_.measure, cause.times);
+      cause.consistent = cause.error_ratio && is_exceptional(cause, baseline.result);
       return;
     }
     if (measured_ && elapsed_s() + trial_s_ > options_.budget_s) return;
@@ -141,6 +145,26 @@ class Diagnoser {
     // Each run with the correction has a smaller error than each one without.
     cause.consistent =
         std::log(*cause.error_ratio) < -0.5 * (std::abs(trial.difference) + std::abs(baseline.difference));
+  }
+
+  /// Whether the errors at the times of a cause are larger than at the same times moved within the recording:
+  /// else another second of it would do as well.
+  [[nodiscard]] bool is_exceptional(const Cause& cause, const RunResult& result) const {
+    constexpr int kShifts = 8;
+    const std::vector<Timestamp>& frames = stream_.info().frame_times;
+    const Timestamp first = frames[request_.part.first];
+    const double length_s = seconds_between(first, frames[request_.part.first + request_.part.count - 1]);
+    for (int shift = 1; shift < kShifts; ++shift) {
+      std::vector<Timestamp> moved;
+      moved.reserve(cause.times.size());
+      for (const Timestamp t : cause.times)
+        moved.push_back(
+            after(first, std::fmod(seconds_between(first, t) + length_s * shift / kShifts, length_s)));
+      std::ranges::sort(moved);
+      if (error_ratio_outside(result, request_.measure, moved).value_or(1.0) <= *cause.error_ratio)
+        return false;
+    }
+    return true;
   }
 
   /// The causes of a round go to the lists of the result, the best correction is kept for the next round.

@@ -128,6 +128,28 @@ std::vector<Cause> depth_causes(const RecordingSurvey& survey) {
   return causes.take();
 }
 
+/// Measured depth that no RGB-D camera has: see ImagePlausibility::depth_unit_finding.
+std::vector<Cause> depth_range_causes(const RecordingSurvey& survey, double units_per_m) {
+  constexpr double kNear_m = 0.3, kFar_m = 12.0, kUnits = 5.0;
+  std::vector<double> depths_m;
+  for (const FrameStatistics& frame : survey.frames) {
+    for (const std::uint16_t raw : frame.depth) {
+      if (raw != 0) depths_m.push_back(raw / units_per_m);
+    }
+  }
+  if (depths_m.empty()) return {};
+  std::ranges::sort(depths_m);
+  const double near_m = depths_m[depths_m.size() / 20], far_m = depths_m[depths_m.size() * 19 / 20];
+  if (near_m >= kNear_m && far_m <= kFar_m) return {};
+  const double factor = far_m > kFar_m ? 1.0 / kUnits : kUnits;
+  return {{.id = "depth_unit",
+           .name = "unit of depth",
+           .evidence = fmt::format("90 % of the measurements are from {:.2f} to {:.2f} m", near_m, far_m),
+           .remedy = fmt::format("[depth] scale = {:g} in rig.toml", units_per_m / factor),
+           .strength = kFundamental,
+           .correction = Correction{.depth_factor = factor}}};
+}
+
 std::vector<double> intervals_of(const std::vector<Timestamp>& times) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(seconds_between(times[i - 1], times[i]));
@@ -187,8 +209,9 @@ std::vector<Cause> rounded_stamps(const std::vector<Timestamp>& times) {
 std::vector<Cause> image_causes(const datasets::SequenceInfo& info, const RecordingSurvey& survey) {
   std::vector<Cause> causes;
   if (survey.frames.size() < 10) return causes;
-  for (const auto& more : {content_causes(survey), depth_causes(survey), dropped_frames(info.frame_times),
-                           rounded_stamps(info.frame_times)})
+  for (const auto& more :
+       {content_causes(survey), depth_causes(survey), depth_range_causes(survey, info.rig.depth_units_per_m),
+        dropped_frames(info.frame_times), rounded_stamps(info.frame_times)})
     causes.insert(causes.end(), more.begin(), more.end());
   return causes;
 }

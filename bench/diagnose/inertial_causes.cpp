@@ -92,7 +92,7 @@ Cause axes_cause(const Eigen::Matrix3d& P, PermutedSensor sensor, const std::str
           .remedy = gyro && accel && P.determinant() > 0.0
                         ? fmt::format("turn T_b_c in [imu] of rig.toml by the axes {}", permutation_text(P))
                         : fmt::format("reorder the columns of the file: {}", permutation_text(P)),
-          .strength = 500.0,
+          .strength = kFundamental,
           .correction = Correction{.change = [P, gyro, accel](auto& changed) {
             for (ImuSample& sample : changed.imu) {
               if (gyro) sample.gyro_b = P * sample.gyro_b;
@@ -112,13 +112,15 @@ Cause extrinsics_cause(const std::string& id, const std::string& name, const std
           .name = name,
           .evidence = evidence,
           .remedy = "[imu] T_b_c = " + matrix_text(T_b_c) + " in rig.toml",
-          .strength = 500.0,
+          .strength = kFundamental,
           .correction = Correction{.change = [T_b_c](auto& changed) { changed.rig.T_b_c = T_b_c; }}};
 }
 
 /// Swapped or inverted axes, the inverse of the extrinsics, mirrored images: all that makes the gyroscope
 /// follow the images much better than with the stated calibration.
-std::vector<Cause> axes_causes(const datasets::SequenceInfo& info, std::span<const RatePair> pairs) {
+/// @param accel_is_right whether the accelerometer follows the images with the stated axes
+std::vector<Cause> axes_causes(const datasets::SequenceInfo& info, std::span<const RatePair> pairs,
+                               bool accel_is_right) {
   const Eigen::Matrix3d R_b_c = info.rig.T_b_c.R();
   const double stated = relative_residual(pairs, R_b_c);
   if (stated < kOtherAxes) return {};
@@ -137,6 +139,8 @@ std::vector<Cause> axes_causes(const datasets::SequenceInfo& info, std::span<con
   if (smallest < kBetterAxes * stated) {
     causes.push_back(axes_cause(*best, PermutedSensor::kBoth, evidence(smallest)));
     causes.push_back(axes_cause(*best, PermutedSensor::kGyro, evidence(smallest)));
+    // The sensor whose axes are right by the accelerometer is tried last.
+    causes[accel_is_right ? 1 : 0].strength += 10.0;
   }
   const double inverse = relative_residual(pairs, R_b_c.transpose());
   if (inverse < kBetterAxes * stated)
@@ -148,7 +152,7 @@ std::vector<Cause> axes_causes(const datasets::SequenceInfo& info, std::span<con
                       .name = "images mirrored left to right",
                       .evidence = evidence(mirrored),
                       .remedy = "record or export the images and depth again without mirroring",
-                      .strength = 500.0,
+                      .strength = kFundamental,
                       .correction = Correction{.mirrored = true}});
   return causes;
 }
@@ -297,7 +301,8 @@ std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const Rec
   add(sample_causes(info));
   const std::optional<LagFit> lag = fit_lag(gyro, by_images, kLagRange_s);
   const std::vector<RatePair> pairs = rate_pairs(gyro, by_images, lag ? lag->lag_s : info.rig.time_offset_s);
-  const std::vector<Cause> axes = axes_causes(info, pairs);
+  const std::optional<AccelerometerAxes> accel_axes = accelerometer_axes(info, survey);
+  const std::vector<Cause> axes = axes_causes(info, pairs, !accel_axes);
   add(axes);
   if (axes.empty()) add(rotation_causes(info, pairs));
   if (lag) add(clock_causes(info, *lag));
@@ -307,7 +312,7 @@ std::vector<Cause> inertial_causes(const datasets::SequenceInfo& info, const Rec
         found->P, PermutedSensor::kAccel,
         fmt::format("the accelerometer follows the motion between images with a correlation of {:.2f}, "
                     "{:.2f} with it",
-                    found->stated, found->correlation))});
+                    accel_axes->stated, accel_axes->correlation))});
   }
   return causes;
 }

@@ -22,6 +22,11 @@ std::string difference_text(const RigFinding& finding) {
                      std::abs(finding.difference) / finding.sigma);
 }
 
+/// Less than that of comparisons without the estimator, which other faults mislead.
+double rig_strength(const RigFinding& finding) {
+  return std::min(100.0, std::abs(finding.difference) / finding.sigma);
+}
+
 /// What a finding of the rig report changes.
 struct RigChange {
   std::string prefix;  ///< of the parameter's name
@@ -68,7 +73,7 @@ Cause depth_scale_cause(const EstimatedCalibration& c, const RigFinding& finding
       .name = "scale of depth",
       .evidence = difference_text(finding) + " %",
       .remedy = fmt::format("[depth] scale = {:.1f} in rig.toml", c.rig.depth_units_per_m * c.depth_scale),
-      .strength = std::abs(finding.difference) / finding.sigma,
+      .strength = rig_strength(finding),
       .correction = Correction{.depth_factor = 1.0 / c.depth_scale}};
 }
 
@@ -89,7 +94,7 @@ std::vector<Cause> rig_causes(const EstimatedCalibration& calibration) {
                .name = change->name,
                .evidence = finding.parameter + ": " + difference_text(finding),
                .remedy = change->entry,
-               .strength = std::abs(finding.difference) / finding.sigma,
+               .strength = rig_strength(finding),
                .correction = Correction{.change = [apply = change->apply](auto& info) { apply(info.rig); }}};
     }
     const auto known = std::ranges::find(causes, cause.id, &Cause::id);

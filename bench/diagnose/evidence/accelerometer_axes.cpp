@@ -14,7 +14,7 @@ constexpr double kBlock_s = 1.5;
 constexpr double kMinCorrelation = 0.7;
 constexpr double kFollows = 0.9;  ///< correlation of a block that determines the scale
 constexpr std::size_t kLeastBlocks = 4;
-constexpr double kMostStated = 0.4;  ///< correlation of axes that are wrong
+constexpr double kBetter = 0.25;  ///< least difference of the correlations of other axes and the stated ones
 
 using Linear = Eigen::Matrix<double, 3, 9>;  ///< from the rows of A to the right side
 
@@ -150,7 +150,7 @@ std::optional<AccelerometerAxes> accelerometer_axes(const datasets::SequenceInfo
     found.correlation = correlation;
     found.P = P;
   }
-  if (found.correlation < kMinCorrelation || found.stated > kMostStated) return std::nullopt;
+  if (found.correlation < kMinCorrelation || found.stated > found.correlation - kBetter) return std::nullopt;
   return found;
 }
 
