@@ -21,6 +21,7 @@
 #include "bench/store/store.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
+#include "reports/tables/tidy_runs.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -139,6 +140,7 @@ struct StoreArguments {
   std::string file;
   std::vector<std::string> equal;
   bool numbers = false;
+  bool tidy = false;
   bool force = false;
 };
 
@@ -255,7 +257,17 @@ int merge(const StoreArguments& arguments) {
   return kExitOk;
 }
 
+int export_tidy(const StoreArguments& arguments) {
+  if (arguments.numbers) throw InputError("--numbers", "has no effect with --tidy, which has no files");
+  const OutputRules rules{
+      .inputs = {arguments.store}, .force = arguments.force, .beginning = report::tidy_header()};
+  require_safe_output(arguments.file, rules);
+  write_output(arguments.file, report::tidy_text(Store(arguments.store).runs()), rules);
+  return kExitOk;
+}
+
 int export_to(const StoreArguments& arguments) {
+  if (arguments.tidy) return export_tidy(arguments);
   const OutputRules rules{
       .inputs = {arguments.store}, .force = arguments.force, .beginning = exported_beginning()};
   require_safe_output(arguments.file, rules);
@@ -331,10 +343,11 @@ std::vector<Command> maintenance_subcommands(const std::shared_ptr<StoreArgument
                         .options = {{"FROM", "The other store", &arguments->file}}},
                        arguments, merge),
       store_subcommand({.name = "export",
-                        .summary = "Write the store as one JSON file",
-                        .example = "store export runs.json",
+                        .summary = "Write the store as one JSON file, or its metrics as a CSV table",
+                        .example = "store export runs.csv --tidy",
                         .options = {{"FILE", "Output file", &arguments->file},
                                     without_blobs,
+                                    {"--tidy", "CSV with a row for each run and metric", &arguments->tidy},
                                     {"--force", "Replace an existing export", &arguments->force}}},
                        arguments, export_to),
       store_subcommand({.name = "import",
