@@ -10,10 +10,15 @@
 
 namespace stillpoint {
 
+/// The stamp lies in the padding at the end of the pose: 64 instead of 80 bytes, as files have 10^7 of them.
 struct StampedPose {
+  StampedPose() = default;
+  StampedPose(Timestamp stamp, const Pose& pose) : T_w_f(pose), t(stamp) {}
+
+  [[no_unique_address]] Pose T_w_f;  ///< pose of frame f (see Trajectory::frame) in the world
   Timestamp t;
-  Pose T_w_f;  ///< pose of frame f (see Trajectory::frame) in the world
 };
+static_assert(sizeof(StampedPose) == sizeof(Pose));
 
 /// Poses in strictly increasing order of time.
 struct Trajectory {

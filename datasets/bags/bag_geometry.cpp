@@ -102,7 +102,7 @@ eval::LoadedTrajectory trajectory_of_topic(const BagFile& bag, const std::string
         frame = pose.child;
         if (pose.pose) {
           repairs.unstamped += pose.header.stamp.ns == 0 ? 1 : 0;
-          poses.push_back({.t = stamp_or(pose.header.stamp, recorded), .T_w_f = *pose.pose});
+          poses.push_back({stamp_or(pose.header.stamp, recorded), *pose.pose});
         } else {
           ++repairs.skipped;
         }
@@ -122,7 +122,7 @@ std::map<Link, std::vector<StampedPose>> read_moving_transforms(const BagFile& b
         for (const PoseMessage& transform : parse_transforms(message)) {
           if (!transform.pose) continue;
           links[{transform.header.frame, transform.child}].push_back(
-              {.t = stamp_or(transform.header.stamp, recorded), .T_w_f = *transform.pose});
+              {stamp_or(transform.header.stamp, recorded), *transform.pose});
         }
       });
   for (auto& [link, poses] : links) poses = sorted_trajectory(std::move(poses), {}).trajectory.poses;
@@ -189,7 +189,7 @@ eval::LoadedTrajectory trajectory_of_frames(const BagFile& bag, const std::strin
         now.push_back({.parent = link.first, .child = link.second, .T_parent_child = *pose});
     }
     if (const std::optional<Pose> pose = find_transform(now, parent, child))
-      poses.push_back({.t = sample.t, .T_w_f = *pose});
+      poses.push_back({sample.t, *pose});
   }
   eval::LoadedTrajectory loaded = sorted_trajectory(std::move(poses), {});
   loaded.trajectory.frame = child;

@@ -82,7 +82,7 @@ SequenceContent read_icl(const std::filesystem::path& folder, FaultLog& faults) 
   if (const std::optional<std::filesystem::path> file = ground_truth_file(folder)) {
     eval::LoadedTrajectory truth = eval::read_tum_ground_truth(*file, "camera", faults);
     for (StampedPose& pose : truth.trajectory.poses)
-      pose = {.t = time_of_index(to_seconds(pose.t)), .T_w_f = mirrored(pose.T_w_f)};
+      pose = {time_of_index(to_seconds(pose.t)), mirrored(pose.T_w_f)};
     content = with_ground_truth(std::move(content), std::move(truth));
   }
   return content;

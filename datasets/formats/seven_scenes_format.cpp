@@ -79,7 +79,7 @@ void add_frame(const NumberedFrame& frame, SequenceContent& content, FaultLog& f
   if (!std::filesystem::exists(pose)) return;
   faults.guard([&] {
     content.info.ground_truth.trajectory.poses.push_back(
-        StampedPose{.t = t, .T_w_f = *eval::read_pose_matrix(pose, eval::PoseCheck::kGroundTruth)});
+        StampedPose{t, *eval::read_pose_matrix(pose, eval::PoseCheck::kGroundTruth)});
   });
 }
 

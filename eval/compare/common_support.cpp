@@ -24,8 +24,7 @@ std::vector<TimeSpan> complement_of(std::vector<TimeSpan> lost, const TimeSpan& 
   return remaining;
 }
 
-std::vector<MatchedPose> matches_within(std::span<const MatchedPose> matches,
-                                        std::span<const TimeSpan> spans) {
+std::vector<MatchedPose> matches_within(MatchView matches, std::span<const TimeSpan> spans) {
   std::vector<MatchedPose> selected;
   auto span = spans.begin();
   for (const MatchedPose& match : matches) {
@@ -36,7 +35,7 @@ std::vector<MatchedPose> matches_within(std::span<const MatchedPose> matches,
   return selected;
 }
 
-std::optional<double> ate_rmse(std::span<const MatchedPose> matches, Alignment alignment) {
+std::optional<double> ate_rmse(MatchView matches, Alignment alignment) {
   const std::optional<Statistics> errors =
       statistics(ate_errors(matches, align(matches, alignment).S_w_v).translation_m);
   if (!errors || errors->count < 3) return std::nullopt;
@@ -51,8 +50,8 @@ bool ranks_before(const ComparedRun& a, const ComparedRun& b) {
 }
 
 /// `run` with its errors over the common spans.
-ComparedRun with_common_errors(ComparedRun run, std::span<const MatchedPose> matches,
-                               std::span<const TimeSpan> common, const CompareOptions& options) {
+ComparedRun with_common_errors(ComparedRun run, MatchView matches, std::span<const TimeSpan> common,
+                               const CompareOptions& options) {
   const std::vector<MatchedPose> shared = matches_within(matches, common);
   run.common_pairs = shared.size();
   run.common_ate_rmse_m = ate_rmse(shared, options.alignment);
@@ -71,10 +70,11 @@ Comparison compare_runs(const Trajectory& gt, std::span<const NamedRun> runs, co
   if (gt.poses.size() < 2) return comparison;
   const TimeSpan whole{gt.poses.front().t, gt.poses.back().t};
   std::vector<TimeSpan> lost_by_any;
-  std::vector<std::vector<MatchedPose>> matches;
+  std::vector<PoseMatches> matches;
+  matches.reserve(runs.size());
   for (const NamedRun& run : runs) {
     const std::vector<TimeSpan> lost = lost_spans(run.est, whole, options.max_hold_s);
-    matches.push_back(matched_poses(gt, run.est, associate_interpolated(gt, run.est, options.max_gap_s)));
+    matches.emplace_back(gt, run.est, associate_interpolated(gt, run.est, options.max_gap_s));
     ComparedRun compared;
     compared.name = run.name;
     compared.coverage = time_coverage(lost, whole).value_or(0.0);

@@ -129,28 +129,8 @@ std::optional<ConventionFinding> stamp_unit(const Trajectory& gt, const Trajecto
   return std::nullopt;
 }
 
-double position_rmse(std::span<const MatchedPose> matches, Alignment kind) {
+double position_rmse(MatchView matches, Alignment kind) {
   return statistics(ate_errors(matches, align(matches, kind).S_w_v).translation_m)->rmse;
-}
-
-std::optional<ConventionFinding> wrong_scale(const Trajectory& gt, const Trajectory& est) {
-  constexpr double kMinDeviation = 0.1;  // of the scale from 1
-  const std::vector<MatchedPose> matches = strict_matches(gt, est);
-  if (matches.size() < kMinMatches) return std::nullopt;
-  const double rigid_m = position_rmse(matches, Alignment::kSe3);
-  const double scaled_m = position_rmse(matches, Alignment::kSim3);
-  const double scale = align(matches, Alignment::kSim3).S_w_v.scale;
-  if (rigid_m < kMinAte || scaled_m * kMinImprovement > rigid_m || scale <= 0.0 ||
-      std::abs(std::log(scale)) < kMinDeviation) {
-    return std::nullopt;
-  }
-  return ConventionFinding{
-      Convention::kScale,
-      format_message(
-          "the estimate is %.4g times as large as the ground truth: scaling it reduces the ATE from %.4f "
-          "to %.4f m; check the factor of the depth images, or use --align sim3 for a system without "
-          "scale",
-          1.0 / scale, rigid_m, scaled_m)};
 }
 
 std::optional<ConventionFinding> mirrored(const Trajectory& gt, const Trajectory& est) {
@@ -218,6 +198,25 @@ std::optional<ConventionFinding> inverted_poses(const Trajectory& gt, const Traj
                      current.ate_m, corrected->ate_m)};
 }
 
+/// Positions in the world with the rotation from the world to the body, as some tools store poses.
+std::optional<ConventionFinding> inverted_rotations(const Trajectory& gt, const Trajectory& est,
+                                                    const Errors& current) {
+  if (current.rpe_deg_per_s < kMinRotation || current.ate_deg < kMinRotation) return std::nullopt;
+  const std::optional<Errors> corrected = errors_of(gt, transformed(est, [](const Pose& pose) {
+                                                      return Pose{pose.q.conjugate(), pose.p};
+                                                    }));
+  if (!corrected || corrected->rpe_deg_per_s * kMinImprovement > current.rpe_deg_per_s ||
+      corrected->ate_deg * kMinImprovement > current.ate_deg) {
+    return std::nullopt;
+  }
+  return ConventionFinding{
+      Convention::kInvertedPoses,
+      format_message(
+          "the orientations seem to be inverted (of the world in the body): inverting them reduces "
+          "the R.RPE from %.2f to %.2f deg/s",
+          current.rpe_deg_per_s, corrected->rpe_deg_per_s)};
+}
+
 /// Another body frame results in rotation errors that are large and nearly constant.
 std::optional<ConventionFinding> body_frame(const Trajectory& gt, const Trajectory& est) {
   constexpr double kMaxSpread = 0.2;  // relative to the mean rotation error
@@ -279,6 +278,26 @@ std::optional<ConventionFinding> swapped_arguments(const Trajectory& gt, const T
 
 }  // namespace
 
+std::optional<ConventionFinding> find_wrong_scale(const Trajectory& gt, const Trajectory& whole) {
+  constexpr double kMinDeviation = 0.1;  // of the scale from 1
+  const std::vector<MatchedPose> matches = strict_matches(gt, thinned(whole));
+  if (matches.size() < kMinMatches) return std::nullopt;
+  const double rigid_m = position_rmse(matches, Alignment::kSe3);
+  const double scaled_m = position_rmse(matches, Alignment::kSim3);
+  const double scale = align(matches, Alignment::kSim3).S_w_v.scale;
+  if (rigid_m < kMinAte || scaled_m * kMinImprovement > rigid_m || scale <= 0.0 ||
+      std::abs(std::log(scale)) < kMinDeviation) {
+    return std::nullopt;
+  }
+  return ConventionFinding{
+      Convention::kScale,
+      format_message(
+          "the estimate is %.4g times as large as the ground truth: scaling it reduces the ATE from %.4f "
+          "to %.4f m; check the factor of the depth images, or use --align sim3 for a system without "
+          "scale",
+          1.0 / scale, rigid_m, scaled_m)};
+}
+
 std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt, const Trajectory& whole) {
   std::vector<ConventionFinding> findings;
   if (gt.poses.size() < 2 || whole.poses.size() < 2) return findings;
@@ -287,12 +306,13 @@ std::vector<ConventionFinding> find_convention_violations(const Trajectory& gt, 
     if (finding) findings.push_back(std::move(*finding));
   };
   add(stamp_unit(gt, whole));
-  add(wrong_scale(gt, est));
+  add(find_wrong_scale(gt, whole));
   add(mirrored(gt, est));
   if (findings.empty()) add(time_offset(gt, whole));
   if (const std::optional<Errors> current = errors_of(gt, est)) {
     add(quaternion_order(gt, est, *current));
     add(inverted_poses(gt, est, *current));
+    if (findings.empty()) add(inverted_rotations(gt, est, *current));
     if (findings.empty()) add(body_frame(gt, est));
   }
   add(swapped_arguments(gt, whole));

@@ -37,7 +37,7 @@ enum class Convention {
   kMirrored,          ///< a left-handed coordinate system
   kTimeOffset,        ///< constant time offset
   kQuaternionOrder,   ///< qw qx qy qz instead of qx qy qz qw
-  kInvertedPoses,     ///< T_f_w instead of T_w_f
+  kInvertedPoses,     ///< T_f_w instead of T_w_f, or only its rotation
   kBodyFrame,         ///< poses of another body frame
   kSwappedArguments,  ///< the ground truth looks like an estimate and vice versa
 };
@@ -46,6 +46,9 @@ struct ConventionFinding {
   Convention convention = Convention::kStampUnit;
   std::string message;  ///< the suspected violation, the evidence, and a remedy
 };
+
+/// A scale of the estimate that is off by 10 % or more and triples the ATE.
+[[nodiscard]] std::optional<ConventionFinding> find_wrong_scale(const Trajectory& gt, const Trajectory& est);
 
 /// Suspected violations in the order of the enum; those of frames and orders are tested on 20,000 poses of
 /// the estimate. The data are not modified.

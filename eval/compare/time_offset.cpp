@@ -41,6 +41,7 @@ double path_seconds(const Trajectory& path) {
 
 double median_interval_s(const Trajectory& path) {
   std::vector<double> intervals;
+  intervals.reserve(path.poses.size());
   for (std::size_t i = 1; i < path.poses.size(); ++i)
     intervals.push_back(seconds_between(path.poses[i - 1].t, path.poses[i].t));
   return percentile(intervals, 0.5).value_or(0.0);
@@ -134,7 +135,7 @@ class OffsetError {
   /// Infinite with fewer than the required matches, which rejects offsets that move the estimate beyond the
   /// ground truth.
   [[nodiscard]] double at(double offset_s, Alignment kind = Alignment::kSim3) const {
-    const std::vector<MatchedPose> matches = matches_at(offset_s);
+    const PoseMatches matches = matches_at(offset_s);
     if (matches.size() < min_matches_) return kInfinity;
     return statistics(ate_errors(matches, align(matches, kind).S_w_v).translation_m)->rmse;
   }
@@ -146,8 +147,8 @@ class OffsetError {
   }
 
  private:
-  [[nodiscard]] std::vector<MatchedPose> matches_at(double offset_s) const {
-    return matched_poses(gt_, est_, associate_interpolated(gt_, est_, max_gap_s_, offset_s));
+  [[nodiscard]] PoseMatches matches_at(double offset_s) const {
+    return {gt_, est_, associate_interpolated(gt_, est_, max_gap_s_, offset_s)};
   }
 
   const Trajectory& gt_;

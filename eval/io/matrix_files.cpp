@@ -115,7 +115,7 @@ LoadedTrajectory parse_kitti(std::string_view poses, const std::string& poses_na
 
 KittiTexts format_kitti(const Trajectory& trajectory) {
   KittiTexts texts;
-  for (const auto& [t, pose] : trajectory.poses) {
+  for (const auto& [pose, t] : trajectory.poses) {
     texts.poses += matrix_rows(pose, ' ');
     texts.times += format_stamp(t) + "\n";
   }
@@ -160,7 +160,7 @@ LoadedTrajectory read_seven_scenes(const fs::path& folder) {
 
 void write_seven_scenes(const Trajectory& trajectory, const fs::path& folder) {
   std::int64_t last = -1;
-  for (const auto& [t, pose] : trajectory.poses) {
+  for (const auto& [pose, t] : trajectory.poses) {
     const std::int64_t number = std::llround(to_seconds(t) * static_cast<double>(kSevenScenesRate));
     if (number <= last) throw InputError(folder.string(), "two poses have the same frame number at 30 Hz");
     last = number;

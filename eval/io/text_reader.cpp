@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/io/text_reader.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -18,6 +19,7 @@ namespace {
 
 constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";        // some editors write it at the start of a file
 constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30U;  // a day of IMU samples at 400 Hz has 3 GB
+constexpr std::size_t kBlockBytes = std::size_t{1} << 20U;
 constexpr int kStampDecimals = 9;
 constexpr int kMaxExponent = 64;
 
@@ -27,6 +29,8 @@ struct Decimal {
   std::string digits;
   int point = 0;
 };
+
+bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
 
 std::string_view without_plus(std::string_view field) {
   return field.size() > 1 && field[0] == '+' && field[1] != '-' ? field.substr(1) : field;
@@ -71,28 +75,85 @@ std::optional<Decimal> parse_decimal(std::string_view field) {
 
 }  // namespace
 
-std::string read_text_file(const std::filesystem::path& file) {
+namespace {
+
+struct OpenFile {
+  std::ifstream stream;
+  std::uint64_t bytes = 0;
+};
+
+/// The file, to be read from its beginning.
+OpenFile open_text(const std::filesystem::path& file) {
   require_regular_file(file);
   errno = 0;
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) {
+  OpenFile opened{std::ifstream(file, std::ios::binary | std::ios::ate)};
+  if (!opened.stream) {
     require_resources(errno, file.string());
     throw InputError(file.string(), "cannot be opened; check the path and the permissions");
   }
-  const auto size = static_cast<std::uint64_t>(stream.tellg());
-  if (size > kMaxBytes) throw InputError(file.string(), "is larger than 4 GB; expected a text file");
-  std::string text(size, '\0');
-  stream.seekg(0);
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream)
-    throw InputError(file.string(), "cannot be read completely; the file or the disk may be damaged");
-  if (text.starts_with("version https://git-lfs"))
-    throw InputError(file.string(), "is a pointer of Git LFS, not the file; run `git lfs pull`");
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    throw InputError(file.string(),
-                     "is UTF-16 text; convert it to UTF-8, e.g. with `iconv -f UTF-16 -t UTF-8`");
-  if (text.starts_with(kUtf8Mark)) text.erase(0, kUtf8Mark.size());
+  opened.bytes = static_cast<std::uint64_t>(opened.stream.tellg());
+  if (opened.bytes > kMaxBytes) throw InputError(file.string(), "is larger than 4 GB; expected a text file");
+  opened.stream.seekg(0);
+  return opened;
+}
+
+/// `text` with the next bytes of the file behind it.
+std::string with_bytes(std::string text, std::ifstream& stream, std::size_t bytes, const std::string& name) {
+  const std::size_t known = text.size();
+  text.resize(known + bytes);
+  stream.read(text.data() + known, static_cast<std::streamsize>(bytes));
+  if (!stream) throw InputError(name, "cannot be read completely; the file or the disk may be damaged");
   return text;
+}
+
+/// Length of the byte order mark at the start of a file.
+/// @throws InputError if it is no UTF-8 text
+std::size_t mark_length(std::string_view start, const std::string& name) {
+  if (start.starts_with("version https://git-lfs"))
+    throw InputError(name, "is a pointer of Git LFS, not the file; run `git lfs pull`");
+  if (start.starts_with("\xFF\xFE") || start.starts_with("\xFE\xFF"))
+    throw InputError(name, "is UTF-16 text; convert it to UTF-8, e.g. with `iconv -f UTF-16 -t UTF-8`");
+  return start.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0;
+}
+
+/// Whether a text contains the header of a table and a row.
+bool has_two_records(std::string_view text) {
+  RowReader rows(text, "");
+  return rows.next() && rows.next();
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& file) {
+  OpenFile opened = open_text(file);
+  std::string text = with_bytes({}, opened.stream, opened.bytes, file.string());
+  text.erase(0, mark_length(text, file.string()));
+  return text;
+}
+
+TextBlocks::TextBlocks(const std::filesystem::path& file) : name_(file.string()) {
+  OpenFile opened = open_text(file);
+  stream_ = std::move(opened.stream);
+  unread_ = opened.bytes;
+  read_more();
+  begin_ = mark_length(buffer_, name_);
+  while (!has_two_records(block()) && unread_ > 0) read_more();
+}
+
+void TextBlocks::read_more() {
+  do {
+    const std::size_t bytes = std::min<std::uint64_t>(unread_, kBlockBytes);
+    buffer_ = with_bytes(std::move(buffer_), stream_, bytes, name_);
+    unread_ -= bytes;
+    const std::size_t last = buffer_.rfind('\n');
+    end_ = unread_ == 0 ? buffer_.size() : last == std::string::npos ? 0 : last + 1;
+  } while (end_ == 0 && unread_ > 0);
+}
+
+void TextBlocks::advance() {
+  buffer_.erase(0, end_);
+  begin_ = end_ = 0;
+  read_more();
 }
 
 void write_text_file(const std::filesystem::path& file, std::string_view text) {
@@ -111,6 +172,10 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
 }
 
 std::optional<std::string_view> LineReader::next() {
+  if (rest_.empty() && blocks_ != nullptr) {
+    blocks_->advance();
+    rest_ = blocks_->block();
+  }
   if (rest_.empty()) return std::nullopt;
   const std::size_t end = rest_.find('\n');
   std::string_view line = rest_.substr(0, end);
@@ -128,7 +193,37 @@ std::optional<double> parse_number(std::string_view field) {
   return value;
 }
 
+namespace {
+
+/// A stamp as files have it: up to 10 digits, below 9e9 s, and up to 9 decimals; nullopt for other text.
+std::optional<Timestamp> parse_common_stamp(std::string_view field) {
+  constexpr std::size_t kMaxDigits = 10;
+  constexpr std::int64_t kMaxSeconds = 9'000'000'000;
+  const bool negative = field.starts_with('-');
+  if (negative) field.remove_prefix(1);
+  const auto is_digit_at = [&](std::size_t i) { return i < field.size() && is_digit(field[i]); };
+  std::int64_t ns = 0;
+  std::size_t i = 0;
+  for (; is_digit_at(i); ++i) {
+    if (i == kMaxDigits) return std::nullopt;
+    ns = 10 * ns + (field[i] - '0');
+  }
+  if (i == 0 || ns > kMaxSeconds) return std::nullopt;
+  if (i < field.size() && field[i] == '.') ++i;
+  int decimals = 0;
+  for (; is_digit_at(i); ++i, ++decimals) {
+    if (decimals == kStampDecimals) return std::nullopt;
+    ns = 10 * ns + (field[i] - '0');
+  }
+  if (i != field.size()) return std::nullopt;
+  for (; decimals < kStampDecimals; ++decimals) ns *= 10;
+  return Timestamp{negative ? -ns : ns};
+}
+
+}  // namespace
+
 std::optional<Timestamp> parse_stamp(std::string_view field) {
+  if (const std::optional<Timestamp> t = parse_common_stamp(field)) return t;
   std::optional<Decimal> decimal = parse_decimal(field);
   if (!decimal) return std::nullopt;
   constexpr std::int64_t kLimit = std::numeric_limits<std::int64_t>::max() / 10 - 1;
@@ -171,24 +266,34 @@ std::string format_stamp(Timestamp t) {
 
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";
 constexpr std::string_view kSeparators = " \t\r,;";
 
 bool is_delimiter(char letter) { return letter == ',' || letter == ';'; }
 
-bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
+bool is_blank(char letter) { return letter == ' ' || letter == '\t' || letter == '\r'; }
 
 /// The fields of a line, appended to `fields`. A delimiter at the end of the line begins no field.
 std::vector<std::string_view> split_fields(std::string_view line, std::vector<std::string_view> fields) {
-  std::size_t begin = line.find_first_not_of(kBlanks);
-  while (begin != std::string_view::npos) {
-    const std::size_t end = line.find_first_of(kSeparators, begin);
+  const auto after_blanks = [line](std::size_t i) {
+    while (i < line.size() && is_blank(line[i])) ++i;
+    return i;
+  };
+  std::size_t begin = after_blanks(0);
+  while (begin < line.size()) {
+    std::size_t end = begin;
+    while (end < line.size() && !is_blank(line[end]) && !is_delimiter(line[end])) ++end;
     fields.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(kBlanks, end);
-    if (begin != std::string_view::npos && is_delimiter(line[begin]))
-      begin = line.find_first_not_of(kBlanks, begin + 1);
+    begin = after_blanks(end);
+    if (begin < line.size() && is_delimiter(line[begin])) begin = after_blanks(begin + 1);
   }
   return fields;
+}
+
+/// Whether text follows a carriage return, as in files of several lines without a line feed.
+bool has_inner_return(std::string_view line) {
+  const std::size_t found = line.find('\r');
+  return found != std::string_view::npos &&
+         line.find_first_not_of(kSeparators, found) != std::string_view::npos;
 }
 
 /// "3,14": digits on both sides of the only comma, and no decimal point.
@@ -275,6 +380,10 @@ std::optional<TextRow> RowReader::next() {
   while (const std::optional<std::string_view> line = lines_.next()) {
     const std::size_t begin = line->find_first_not_of(kSeparators);
     if (begin == std::string_view::npos || (*line)[begin] == '#') continue;
+    if (!file_.empty() && has_inner_return(*line)) {  // where the format is detected, the name is not known
+      throw InputError(std::string(file_), lines_.line_number(),
+                       "lines end with carriage returns only; convert them, e.g. with `tr '\\r' '\\n'`");
+    }
     fields_.clear();
     fields_ = split_fields(*line, std::move(fields_));
     return TextRow{.file = file_, .line = lines_.line_number(), .content = *line, .fields = fields_};

@@ -4,7 +4,9 @@
 /// a value between them enclose an empty field. Errors name file and line.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,10 +26,40 @@ namespace stillpoint::eval {
 /// @throws InputError if the file cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
+/// A text file in blocks of whole lines, so that it needs not fit in memory.
+class TextBlocks {
+ public:
+  /// Reads the first block: at least two records (a header and a row), or the whole file.
+  /// @throws InputError as `read_text_file`
+  explicit TextBlocks(const std::filesystem::path& file);
+
+  /// The current block, which `advance` invalidates; empty behind the end of the file.
+  [[nodiscard]] std::string_view block() const {
+    return std::string_view(buffer_).substr(begin_, end_ - begin_);
+  }
+
+  /// Reads the next block.
+  /// @throws InputError if the file cannot be read
+  void advance();
+
+ private:
+  void read_more();
+
+  std::string name_;
+  std::ifstream stream_;
+  std::uint64_t unread_ = 0;  ///< bytes of the file behind the buffer
+  std::string buffer_;
+  std::size_t begin_ = 0;  ///< of the current block in the buffer
+  std::size_t end_ = 0;
+};
+
 /// Iterates over the lines of a text, which end with "\n" or "\r\n".
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : rest_(text) {}
+
+  /// Reads a file from its current block on; a line is valid until the next one is read.
+  explicit LineReader(TextBlocks& blocks) : blocks_(&blocks), rest_(blocks.block()) {}
 
   /// The next line without its terminator; nullopt after the last one.
   [[nodiscard]] std::optional<std::string_view> next();
@@ -36,6 +68,7 @@ class LineReader {
   [[nodiscard]] long line_number() const { return line_number_; }
 
  private:
+  TextBlocks* blocks_ = nullptr;
   std::string_view rest_;
   long line_number_ = 0;
 };
@@ -80,8 +113,10 @@ class RowReader {
   /// @param text contents of the file
   /// @param file its name, for messages; both arguments must outlive the reader and its rows
   RowReader(std::string_view text, std::string_view file) : lines_(text), file_(file) {}
+  RowReader(TextBlocks& blocks, std::string_view file) : lines_(blocks), file_(file) {}
 
   /// The next record; nullopt after the last one.
+  /// @throws InputError if lines end with carriage returns only
   [[nodiscard]] std::optional<TextRow> next();
 
  private:
@@ -90,13 +125,18 @@ class RowReader {
   std::vector<std::string_view> fields_;  ///< of the current row; the storage is reused
 };
 
-/// Calls `visit(row)` for each record of a text; an InputError that it throws is handled by `faults`.
+/// Calls `visit(row)` for each record; an InputError that it throws is handled by `faults`.
 template <class Visit>
-void for_each_row(std::string_view text, std::string_view file, FaultLog& faults, const Visit& visit) {
-  RowReader rows(text, file);
+void for_each_row(RowReader rows, FaultLog& faults, const Visit& visit) {
   while (const std::optional<TextRow> row = rows.next()) {
     faults.guard([&] { visit(*row); });
   }
+}
+
+/// The same for a text in memory.
+template <class Visit>
+void for_each_row(std::string_view text, std::string_view file, FaultLog& faults, const Visit& visit) {
+  for_each_row(RowReader(text, file), faults, visit);
 }
 
 }  // namespace stillpoint::eval

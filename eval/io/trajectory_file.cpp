@@ -140,7 +140,7 @@ constexpr RowFormat kTum{TimeUnit::kSeconds, QuaternionOrder::kXyzw, "t tx ty tz
 constexpr RowFormat kEuroc{TimeUnit::kNanoseconds, QuaternionOrder::kWxyz, "ns,px,py,pz,qw,qx,qy,qz"};
 constexpr RowFormat kOrbSlam3{TimeUnit::kNanoseconds, QuaternionOrder::kXyzw, "ns tx ty tz qx qy qz qw"};
 
-/// A text and the name of its file.
+/// A text, or the first records of one, and the name of its file.
 struct NamedText {
   std::string_view text;
   const std::string& name;
@@ -166,14 +166,23 @@ TimeUnit named_unit(const NamedText& source, const TableHeader& header, TimeUnit
   return of_format;
 }
 
+/// Whether a unit of a header is a length other than m.
+bool is_other_length(std::string_view unit) {
+  return unit == "mm" || unit == "cm" || unit == "dm" || unit == "km" || unit == "in" || unit == "ft" ||
+         unit.starts_with("milli") || unit.starts_with("centi") || unit.starts_with("kilo");
+}
+
 /// By the header, else by the format.
-/// @throws InputError if a header that is no comment does not name the columns of a pose
+/// @throws InputError if a header that is no comment does not name the columns of a pose, or states another
+/// unit of positions than m
 RowLayout layout_of(const NamedText& source, const RowFormat& format) {
   const TableHeader header = find_header(source.text);
   const std::optional<std::size_t> time = time_column(header);
   const std::vector<std::size_t> p = columns_of(header, Quantity::kPosition);
   const std::vector<std::size_t> q = columns_of(header, Quantity::kQuaternion);
   RowLayout layout{.pose = consecutive_columns(1, format.order), .unit = format.unit};
+  if (const std::string unit = unit_of(header, Quantity::kPosition); is_other_length(unit))
+    throw InputError(source.name, header.line, "the positions are in " + unit + "; convert them to m");
   if (time && !p.empty() && !q.empty() && fits_rows(header, source.text)) {
     layout = {.time = *time, .unit = named_unit(source, header, format.unit), .is_named = true};
     std::copy(q.begin(), q.end(), std::copy(p.begin(), p.end(), layout.pose.begin()));
@@ -187,24 +196,40 @@ RowLayout layout_of(const NamedText& source, const RowFormat& format) {
   return layout;
 }
 
-LoadedTrajectory parse_rows(const NamedText& source, const RowFormat& format, PoseCheck check,
-                            FaultLog& faults) {
-  const RowLayout layout = layout_of(source, format);
+/// How the rows of a file are read.
+struct RowRules {
+  const RowFormat& format;
+  PoseCheck check = PoseCheck::kEstimate;
+};
+
+/// @param start the first records, by which the layout is found
+/// @param all the records of the whole file
+LoadedTrajectory parse_rows(const NamedText& start, RowReader all, const RowRules& rules, FaultLog& faults) {
+  const RowLayout layout = layout_of(start, rules.format);
   TrajectoryBuilder builder;
-  for_each_row(source.text, source.name, faults, [&](const TextRow& row) {
+  for_each_row(std::move(all), faults, [&](const TextRow& row) {
     if (row.line == layout.header_line) return;
     if (row.fields.size() < 8 && !layout.is_named) {
       throw row.error("a pose needs 8 numbers, found " + std::to_string(row.fields.size()) + "; expected \"" +
-                      format.columns + "\"");
+                      rules.format.columns + "\"");
     }
     const Timestamp t = row.time(layout.time, layout.unit);
-    builder.add(row, t, parse_pose(row, layout.pose, check));
+    builder.add(row, t, parse_pose(row, layout.pose, rules.check));
   });
-  faults.guard([&] { builder.require_poses(source.name); });
+  faults.guard([&] { builder.require_poses(start.name); });
   LoadedTrajectory loaded = builder.release();
-  loaded.order = layout.is_named ? QuaternionOrder::kXyzw : format.order;
+  loaded.order = layout.is_named ? QuaternionOrder::kXyzw : rules.format.order;
   loaded.order_source = layout.is_named ? OrderSource::kNamed : OrderSource::kFormat;
   return loaded;
+}
+
+LoadedTrajectory parse_text(const NamedText& source, const RowRules& rules, FaultLog& faults) {
+  return parse_rows(source, RowReader(source.text, source.name), rules, faults);
+}
+
+LoadedTrajectory parse_file(TextBlocks& file, const std::string& name, const RowRules& rules,
+                            FaultLog& faults) {
+  return parse_rows({file.block(), name}, RowReader(file, name), rules, faults);
 }
 
 /// A ground-truth file.
@@ -215,9 +240,9 @@ struct TruthFile {
 };
 
 LoadedTrajectory read_ground_truth(const TruthFile& file, FaultLog& faults) {
-  const std::string text = read_text_file(file.path);
-  const std::string name = file.path.string();
-  LoadedTrajectory loaded = parse_rows({text, name}, file.format, PoseCheck::kGroundTruth, faults);
+  TextBlocks blocks(file.path);
+  LoadedTrajectory loaded =
+      parse_file(blocks, file.path.string(), {file.format, PoseCheck::kGroundTruth}, faults);
   loaded.trajectory.frame = file.frame;
   return loaded;
 }
@@ -225,19 +250,23 @@ LoadedTrajectory read_ground_truth(const TruthFile& file, FaultLog& faults) {
 }  // namespace
 
 LoadedTrajectory read_tum(const std::filesystem::path& file, const std::string& frame) {
-  return parse_tum(read_text_file(file), file.string(), frame);
+  TextBlocks blocks(file);
+  FaultLog strict;
+  LoadedTrajectory loaded = parse_file(blocks, file.string(), {kTum}, strict);
+  loaded.trajectory.frame = frame;
+  return loaded;
 }
 
 LoadedTrajectory parse_tum(std::string_view text, const std::string& name, const std::string& frame) {
   FaultLog strict;
-  LoadedTrajectory loaded = parse_rows({text, name}, kTum, PoseCheck::kEstimate, strict);
+  LoadedTrajectory loaded = parse_text({text, name}, {kTum}, strict);
   loaded.trajectory.frame = frame;
   return loaded;
 }
 
 LoadedTrajectory parse_euroc(std::string_view text, const std::string& name) {
   FaultLog strict;
-  return parse_rows({text, name}, kEuroc, PoseCheck::kEstimate, strict);
+  return parse_text({text, name}, {kEuroc}, strict);
 }
 
 LoadedTrajectory read_tum_ground_truth(const std::filesystem::path& file, const std::string& frame,
@@ -258,7 +287,7 @@ std::string format_tum(const Trajectory& trajectory) {
   std::string text = "# timestamp tx ty tz qx qy qz qw\n";
   text.reserve(text.size() + 110 * trajectory.poses.size());
   char row[320];
-  for (const auto& [t, pose] : trajectory.poses) {
+  for (const auto& [pose, t] : trajectory.poses) {
     const int length = std::snprintf(row, sizeof row, " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", pose.p.x(),
                                      pose.p.y(), pose.p.z(), pose.q.x(), pose.q.y(), pose.q.z(), pose.q.w());
     STILLPOINT_CHECK(length > 0 && length < static_cast<int>(sizeof row));
@@ -272,7 +301,7 @@ std::string format_euroc(const Trajectory& trajectory) {
   std::string text =
       "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
   char row[360];
-  for (const auto& [t, pose] : trajectory.poses) {
+  for (const auto& [pose, t] : trajectory.poses) {
     std::snprintf(row, sizeof row, "%lld,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n", static_cast<long long>(t.ns),
                   pose.p.x(), pose.p.y(), pose.p.z(), pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z());
     text += row;
@@ -338,13 +367,12 @@ namespace {
 
 /// Rows with stamps in nanoseconds that were recognized by these. Without names of the columns, the separator
 /// tells which program wrote them.
-LoadedTrajectory parse_detected_nanoseconds(std::string_view text, const std::string& name) {
-  RowReader rows(text, name);
+LoadedTrajectory parse_detected_nanoseconds(TextBlocks& file, const std::string& name) {
+  RowReader rows(file.block(), name);
   const std::optional<TextRow> first = rows.next();
   const bool has_commas = first && first->content.find(',') != std::string_view::npos;
   FaultLog strict;
-  LoadedTrajectory loaded =
-      parse_rows({text, name}, has_commas ? kEuroc : kOrbSlam3, PoseCheck::kEstimate, strict);
+  LoadedTrajectory loaded = parse_file(file, name, {has_commas ? kEuroc : kOrbSlam3}, strict);
   if (loaded.order_source == OrderSource::kFormat) loaded.order_source = OrderSource::kAssumed;
   return loaded;
 }
@@ -360,22 +388,26 @@ LoadedTrajectory read_trajectory(const TrajectorySource& source) {
   if (source.format == TrajectoryFormat::kSevenScenes || (!source.format && is_folder)) {
     return read_seven_scenes(source.path);
   }
-  const std::string text = read_text_file(source.path);
+  TextBlocks file(source.path);
   const std::string name = source.path.string();
-  switch (source.format.value_or(detect_format(text, name))) {
+  const TrajectoryFormat format = source.format ? *source.format : detect_format(file.block(), name);
+  FaultLog strict;
+  switch (format) {
+    case TrajectoryFormat::kTum:
+      return parse_file(file, name, {kTum}, strict);
     case TrajectoryFormat::kEuroc:
-      return source.format ? parse_euroc(text, name) : parse_detected_nanoseconds(text, name);
-    case TrajectoryFormat::kOpenloris:
-      return one_sequence(parse_openloris(text, name), source);
+      return source.format ? parse_file(file, name, {kEuroc}, strict)
+                           : parse_detected_nanoseconds(file, name);
     case TrajectoryFormat::kKitti:
       if (source.times.empty()) {
         throw InputError(name, "KITTI poses have no time stamps; specify their file with --times");
       }
-      return parse_kitti(text, name, read_text_file(source.times), source.times.string());
-    case TrajectoryFormat::kNmea:
-      return parse_nmea(text, name);
+      return parse_kitti(read_text_file(source.path), name, read_text_file(source.times),
+                         source.times.string());
+    case TrajectoryFormat::kOpenloris:
+      return one_sequence(parse_openloris(read_text_file(source.path), name), source);
     default:
-      return parse_tum(text, name);
+      return parse_nmea(read_text_file(source.path), name);
   }
 }
 

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/base/error.h"
-#include "eval/trajectory/orientations.h"
 
 namespace stillpoint::eval {
 
@@ -14,7 +13,7 @@ double rotation_angle(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.vec().norm(), std::abs(q.w()));
 }
 
-AteErrors ate_errors(std::span<const MatchedPose> matches, const Similarity& S_w_v) {
+AteErrors ate_errors(MatchView matches, const Similarity& S_w_v) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
   AteErrors errors;
   errors.translation_m.reserve(matches.size());
@@ -27,12 +26,18 @@ AteErrors ate_errors(std::span<const MatchedPose> matches, const Similarity& S_w
   return errors;
 }
 
+AteErrors ate_errors(MatchView matches, const Similarity& S_w_v, const CompletedAlignment& completed) {
+  AteErrors errors = ate_errors(matches, S_w_v);
+  if (completed.source != RotationSource::kPositions)
+    errors.rotation_deg = ate_errors(matches, completed.S_w_v).rotation_deg;
+  return errors;
+}
+
 std::optional<AteResult> ate(const Trajectory& gt, const Trajectory& est, const AssociationOptions& options) {
-  const std::vector<MatchedPose> matches = matched_poses(gt, est, associate_tum(gt, est, options));
+  const PoseMatches matches(gt, est, associate_tum(gt, est, options));
   if (matches.size() < 2) return std::nullopt;
   const AlignmentResult alignment = align(matches, Alignment::kSe3);
-  AteErrors errors = ate_errors(matches, alignment.S_w_v);
-  errors.rotation_deg = ate_errors(matches, complete_rotation(matches, alignment.S_w_v).S_w_v).rotation_deg;
+  const AteErrors errors = ate_errors(matches, alignment.S_w_v, complete_rotation(matches, alignment.S_w_v));
   return AteResult{.translation_m = *statistics(errors.translation_m),
                    .rotation_deg = *statistics(errors.rotation_deg),
                    .alignment = alignment,
@@ -44,6 +49,7 @@ namespace {
 /// Median interval of increasing stamps [s]; 0 for fewer than two.
 double median_interval_s(std::span<const Timestamp> stamps) {
   std::vector<double> intervals;
+  intervals.reserve(stamps.size());
   for (std::size_t i = 1; i < stamps.size(); ++i)
     intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
   return percentile(intervals, 0.5).value_or(0.0);
@@ -92,7 +98,7 @@ std::optional<double> time_coverage(std::span<const TimeSpan> lost, const TimeSp
   return 1.0 - lost_s / duration_s;
 }
 
-double correct_seconds(std::span<const MatchedPose> matches, const AteErrors& errors, Timestamp end,
+double correct_seconds(MatchView matches, const AteErrors& errors, Timestamp end,
                        const CorrectRateOptions& options) {
   STILLPOINT_CHECK(errors.translation_m.size() == matches.size() &&
                    errors.rotation_deg.size() == matches.size());
@@ -100,25 +106,38 @@ double correct_seconds(std::span<const MatchedPose> matches, const AteErrors& er
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const bool correct = errors.translation_m[i] <= options.max_translation_m &&
                          errors.rotation_deg[i] <= options.max_rotation_deg;
-    const Timestamp until = i + 1 < matches.size() ? matches[i + 1].t : end;
-    if (correct) seconds += std::clamp(seconds_between(matches[i].t, until), 0.0, options.max_hold_s);
+    const Timestamp until = i + 1 < matches.size() ? matches.time(i + 1) : end;
+    if (correct) seconds += std::clamp(seconds_between(matches.time(i), until), 0.0, options.max_hold_s);
   }
   return seconds;
 }
 
+namespace {
+
+/// Whether two poses lie between the first and the last of the ground truth.
+bool is_covered(const Trajectory& gt, const Trajectory& est, double offset_s) {
+  return std::ranges::count_if(est.poses, [&](const StampedPose& pose) {
+           const Timestamp t = after(pose.t, offset_s);
+           return gt.poses.front().t <= t && t <= gt.poses.back().t;
+         }) >= 2;
+}
+
+}  // namespace
+
 std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
                                    const CorrectRateOptions& options, double offset_s) {
-  constexpr double kMaxGap = 0.5;  // [s], to each neighbor; value of the OpenLORIS tools
   if (gt.poses.size() < 2) return std::nullopt;
-  std::vector<MatchedPose> matches =
-      matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
-  if (matches.size() < 2) return 0.0;
-  for (MatchedPose& match : matches) match.t = after(match.t, offset_s);
+  PoseMatches matches(gt, est, associate_interpolated(gt, est, kCorrectRateGap_s, offset_s));
+  if (matches.size() < 2) return is_covered(gt, est, offset_s) ? std::nullopt : std::optional(0.0);
+  matches.shift(offset_s);
   const Similarity S_w_v = align(matches, Alignment::kSe3).S_w_v;
   const CompletedAlignment completed = complete_rotation(matches, S_w_v);
   if (!completed.determined && std::isfinite(options.max_rotation_deg)) return std::nullopt;
-  AteErrors errors = ate_errors(matches, S_w_v);
-  errors.rotation_deg = ate_errors(matches, completed.S_w_v).rotation_deg;
+  return correct_rate(matches, ate_errors(matches, S_w_v, completed), gt, options);
+}
+
+double correct_rate(MatchView matches, const AteErrors& errors, const Trajectory& gt,
+                    const CorrectRateOptions& options) {
   const double correct = correct_seconds(matches, errors, gt.poses.back().t, options);
   return correct / seconds_between(gt.poses.front().t, gt.poses.back().t);
 }

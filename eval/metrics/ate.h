@@ -27,7 +27,8 @@
 
 #include "eval/metrics/statistics.h"
 #include "eval/trajectory/alignment.h"
-#include "eval/trajectory/association.h"
+#include "eval/trajectory/orientations.h"
+#include "eval/trajectory/pose_matches.h"
 
 namespace stillpoint::eval {
 
@@ -37,7 +38,11 @@ struct AteErrors {
   std::vector<double> rotation_deg;   ///< theta_k, in [0, 180]
 };
 
-[[nodiscard]] AteErrors ate_errors(std::span<const MatchedPose> matches, const Similarity& S_w_v);
+[[nodiscard]] AteErrors ate_errors(MatchView matches, const Similarity& S_w_v);
+
+/// The same with rotations after the completed alignment, see orientations.h.
+[[nodiscard]] AteErrors ate_errors(MatchView matches, const Similarity& S_w_v,
+                                   const CompletedAlignment& completed);
 
 struct AteResult {
   Statistics translation_m;
@@ -90,21 +95,33 @@ struct CorrectRateOptions {
   double max_hold_s = 1.0;  ///< a pose is valid until the next one, at most this long
 };
 
+/// Largest distance in time of a pose from both neighbors in the ground truth, for the correct rate; value of
+/// the OpenLORIS tools.
+inline constexpr double kCorrectRateGap_s = 0.5;
+
 /// Correct rate as defined above, after SE(3) alignment over all matches. Ground truth is interpolated
 /// between neighbors that are both less than 0.5 s away.
-/// @return 0 if fewer than two poses match, as one is aligned without an error; nullopt if the ground truth
-/// has fewer than two poses, or if neither positions nor orientations determine the rotation of the
+/// @return 0 if fewer than two poses match, as one is aligned without an error; nullopt if they do not match
+/// because the ground truth at their time is too sparse, if the ground truth has fewer than two poses, or if neither positions nor orientations determine the rotation of the
 /// alignment, unless `max_rotation_deg` is infinite
 [[nodiscard]] std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
                                                  const CorrectRateOptions& options = {},
                                                  double offset_s = 0.0);
+
+/// Correct rate of matched poses.
+/// @param matches in order of time, of neighbors in the ground truth at most `kCorrectRateGap_s` away
+/// @param errors of `matches`, after SE(3) alignment over all of them
+/// @param gt two poses or more
+/// @param options thresholds of e_k and theta_k; how long a pose is valid
+[[nodiscard]] double correct_rate(MatchView matches, const AteErrors& errors, const Trajectory& gt,
+                                  const CorrectRateOptions& options);
 
 /// Numerator of the correct rate [s].
 /// @param matches in order of time
 /// @param errors e_k and theta_k of `matches`
 /// @param end end of the validity of the last pose, if `max_hold_s` does not end it before
 /// @param options thresholds of e_k and theta_k; how long a pose is valid
-[[nodiscard]] double correct_seconds(std::span<const MatchedPose> matches, const AteErrors& errors,
-                                     Timestamp end, const CorrectRateOptions& options);
+[[nodiscard]] double correct_seconds(MatchView matches, const AteErrors& errors, Timestamp end,
+                                     const CorrectRateOptions& options);
 
 }  // namespace stillpoint::eval

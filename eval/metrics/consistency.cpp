@@ -245,7 +245,7 @@ ClaimedErrors claimed_errors(const Trajectory& gt, std::span<const ClaimedPose> 
   std::vector<const ClaimedPose*> sources;
   for (const ClaimedPose& claim : claims) {
     if (claim.claim != PoseClaim::kLocated || claim.segment != 0) continue;
-    located.poses.push_back({.t = claim.t, .T_w_f = claim.T_w_c});
+    located.poses.push_back({claim.t, claim.T_w_c});
     sources.push_back(&claim);
   }
   const std::vector<InterpolatedPair> pairs = associate_interpolated(gt, located, kMaxTruthGap_s);

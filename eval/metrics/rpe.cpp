@@ -20,6 +20,10 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// Yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
 double yaw_of(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
 
+PosePair pair_of(std::size_t from, std::size_t to) {
+  return {static_cast<PoseIndex>(from), static_cast<PoseIndex>(to)};
+}
+
 /// First index >= `begin` with the path length of `index`; several poses have it where the camera rests.
 std::size_t first_with_length(std::span<const double> lengths_m, std::size_t begin, std::size_t index) {
   const auto first = lengths_m.begin();
@@ -33,20 +37,22 @@ std::size_t first_with_length(std::span<const double> lengths_m, std::size_t beg
 std::vector<PosePair> pairs_over_frames(std::size_t poses, std::size_t step, bool every_start) {
   STILLPOINT_CHECK(step > 0);
   std::vector<PosePair> pairs;
-  for (std::size_t i = 0; i + step < poses; i += every_start ? 1 : step) pairs.push_back({i, i + step});
+  for (std::size_t i = 0; i + step < poses; i += every_start ? 1 : step)
+    pairs.push_back(pair_of(i, i + step));
   return pairs;
 }
 
-PosePairs pairs_over_seconds(std::span<const MatchedPose> matches, double delta_s, double tolerance_s) {
+PosePairs pairs_over_seconds(MatchView matches, double delta_s, double tolerance_s) {
   PosePairs result;
+  result.pairs.reserve(matches.size());
   std::size_t j = 0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Timestamp target = after(matches[i].t, delta_s);
-    const auto difference = [&](std::size_t k) { return std::abs(seconds_between(target, matches[k].t)); };
+    const Timestamp target = after(matches.time(i), delta_s);
+    const auto difference = [&](std::size_t k) { return std::abs(seconds_between(target, matches.time(k))); };
     j = std::max(j, i);
     while (j + 1 < matches.size() && difference(j + 1) < difference(j)) ++j;
     if (j > i && difference(j) <= tolerance_s) {
-      result.pairs.push_back({i, j});
+      result.pairs.push_back(pair_of(i, j));
     } else {
       ++result.dropped;
     }
@@ -54,21 +60,21 @@ PosePairs pairs_over_seconds(std::span<const MatchedPose> matches, double delta_
   return result;
 }
 
-std::vector<double> path_lengths(std::span<const MatchedPose> matches, PathOf of) {
-  const auto position = [of](const MatchedPose& match) -> const Eigen::Vector3d& {
-    return of == PathOf::kGroundTruth ? match.gt.p : match.est.p;
-  };
+std::vector<double> path_lengths(MatchView matches, PathOf of) {
   std::vector<double> lengths;
   lengths.reserve(matches.size());
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    lengths.push_back(i == 0 ? 0.0
-                             : lengths.back() + (position(matches[i]) - position(matches[i - 1])).norm());
+  Eigen::Vector3d previous = Eigen::Vector3d::Zero();
+  for (const MatchedPose& match : matches) {
+    const Eigen::Vector3d& p = of == PathOf::kGroundTruth ? match.gt.p : match.est.p;
+    lengths.push_back(lengths.empty() ? 0.0 : lengths.back() + (p - previous).norm());
+    previous = p;
   }
   return lengths;
 }
 
 PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, double tolerance_m) {
   PosePairs result;
+  result.pairs.reserve(lengths_m.size());
   std::size_t j = 0;
   for (std::size_t i = 0; i + 1 < lengths_m.size(); ++i) {
     const auto difference = [&](std::size_t k) { return std::abs(lengths_m[k] - lengths_m[i] - delta_m); };
@@ -82,7 +88,7 @@ PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, d
       best = first_with_length(lengths_m, i + 1, j - 1);
     }
     if (difference(best) <= tolerance_m) {
-      result.pairs.push_back({i, best});
+      result.pairs.push_back(pair_of(i, best));
     } else {
       ++result.dropped;
     }
@@ -90,15 +96,21 @@ PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, d
   return result;
 }
 
-RelativeErrors relative_errors(std::span<const MatchedPose> matches, std::span<const PosePair> pairs) {
+RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs, bool with_yaw) {
   RelativeErrors errors;
-  for (const auto& [from, to] : pairs) {
-    const Pose gt_motion = matches[from].gt.inverse() * matches[to].gt;
-    const Pose est_motion = matches[from].est.inverse() * matches[to].est;
+  errors.translation_m.reserve(pairs.size());
+  errors.rotation_deg.reserve(pairs.size());
+  if (with_yaw) errors.yaw_deg.reserve(pairs.size());
+  for (const auto& [begin, end] : pairs) {
+    const MatchedPose from = matches[begin];
+    const MatchedPose to = matches[end];
+    const Pose gt_motion = from.gt.inverse() * to.gt;
+    const Pose est_motion = from.est.inverse() * to.est;
     const Pose error = gt_motion.inverse() * est_motion;
-    const Eigen::Matrix3d R_w_e = matches[to].est.R();
     errors.translation_m.push_back(error.p.norm());
     errors.rotation_deg.push_back(kDegrees * rotation_angle(error.q));
+    if (!with_yaw) continue;
+    const Eigen::Matrix3d R_w_e = to.est.R();
     errors.yaw_deg.push_back(kDegrees * std::abs(yaw_of(R_w_e * error.R() * R_w_e.transpose())));
   }
   return errors;
@@ -138,7 +150,16 @@ std::size_t nearest_by_bisection(std::span<const double> stamps, double t) {
 
 double median_interval(std::span<const double> stamps) {
   std::vector<double> intervals;
+  intervals.reserve(stamps.size());
   for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(stamps[i] - stamps[i - 1]);
+  return percentile(intervals, 0.5).value_or(0.0);
+}
+
+double median_interval(MatchView matches) {
+  std::vector<double> intervals;
+  intervals.reserve(matches.size());
+  for (std::size_t i = 1; i < matches.size(); ++i)
+    intervals.push_back(seconds_between(matches.time(i - 1), matches.time(i)));
   return percentile(intervals, 0.5).value_or(0.0);
 }
 
@@ -156,16 +177,18 @@ std::vector<double> axis_of(const Trajectory& est, RpeUnit unit) {
   return axis;
 }
 
+constexpr PoseIndex kNoPose = static_cast<PoseIndex>(-1);
+
 /// Nearest-neighbor lookup of ground-truth stamps; the limit is that of the TUM tools.
 class GroundTruthLookup {
  public:
   explicit GroundTruthLookup(const Trajectory& gt)
       : stamps_(stamps_of(gt)), max_difference_s_(2.0 * median_interval(stamps_)) {}
 
-  [[nodiscard]] std::optional<std::size_t> nearest(double t) const {
+  /// `kNoPose` without a stamp close enough.
+  [[nodiscard]] PoseIndex nearest(double t) const {
     const std::size_t index = nearest_by_bisection(stamps_, t);
-    if (std::abs(stamps_[index] - t) > max_difference_s_) return std::nullopt;
-    return index;
+    return std::abs(stamps_[index] - t) > max_difference_s_ ? kNoPose : static_cast<PoseIndex>(index);
   }
 
  private:
@@ -183,18 +206,23 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
   RpeResult result;
   std::vector<double> translation_m;
   std::vector<double> rotation_deg;
+  translation_m.reserve(axis.size());
+  rotation_deg.reserve(axis.size());
+  std::vector<PoseIndex> nearest;  // of each estimated pose; kNoPose without ground truth
+  nearest.reserve(stamps.size());
+  for (const double t : stamps) nearest.push_back(lookup.nearest(t + options.offset_s));
   for (std::size_t i = 0; i < axis.size(); ++i) {
     const std::size_t j = nearest_by_bisection(axis, axis[i] + options.delta);
     if (j + 1 == axis.size()) continue;
-    const std::optional<std::size_t> gt_i = lookup.nearest(stamps[i] + options.offset_s);
-    const std::optional<std::size_t> gt_j = lookup.nearest(stamps[j] + options.offset_s);
-    if (!gt_i || !gt_j) {
+    const PoseIndex gt_i = nearest[i];
+    const PoseIndex gt_j = nearest[j];
+    if (gt_i == kNoPose || gt_j == kNoPose) {
       ++result.dropped_gt;
       continue;
     }
     if (i == j) ++result.self_pairs;
     const Pose est_motion = est.poses[j].T_w_f.inverse() * est.poses[i].T_w_f;
-    const Pose gt_motion = gt.poses[*gt_j].T_w_f.inverse() * gt.poses[*gt_i].T_w_f;
+    const Pose gt_motion = gt.poses[gt_j].T_w_f.inverse() * gt.poses[gt_i].T_w_f;
     const Pose error = est_motion.inverse() * gt_motion;
     translation_m.push_back(error.p.norm());
     rotation_deg.push_back(rotation_angle(error.q) * 180.0 / std::numbers::pi);
@@ -205,16 +233,12 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
   return result;
 }
 
-StrictRpeResult strict_rpe(std::span<const MatchedPose> matches, double delta_s) {
+StrictRpeResult strict_rpe(MatchView matches, double delta_s) {
   constexpr double kMaxDeltaFraction = 0.1;
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < matches.size(); ++i) {
-    intervals.push_back(seconds_between(matches[i - 1].t, matches[i].t));
-  }
   StrictRpeResult result;
-  result.tolerance_s = std::min(0.5 * percentile(intervals, 0.5).value_or(0.0), kMaxDeltaFraction * delta_s);
+  result.tolerance_s = std::min(0.5 * median_interval(matches), kMaxDeltaFraction * delta_s);
   const PosePairs found = pairs_over_seconds(matches, delta_s, result.tolerance_s);
-  const RelativeErrors errors = relative_errors(matches, found.pairs);
+  const RelativeErrors errors = relative_errors(matches, found.pairs, false);
   result.dropped = found.dropped;
   if (!found.pairs.empty()) {
     result.errors = StrictRpe{*statistics(errors.translation_m), *statistics(errors.rotation_deg)};
@@ -241,15 +265,14 @@ std::vector<double> lengths_for(std::span<const double> path_m, const SegmentOpt
 
 }  // namespace
 
-std::vector<SegmentErrors> segment_errors(std::span<const MatchedPose> matches,
-                                          const SegmentOptions& options) {
+std::vector<SegmentErrors> segment_errors(MatchView matches, const SegmentOptions& options) {
   const std::vector<double> path_m = path_lengths(matches, PathOf::kGroundTruth);
   std::vector<SegmentErrors> segments;
   for (const double length_m : lengths_for(path_m, options)) {
     PosePairs found = pairs_over_meters(path_m, length_m, options.tolerance * length_m);
     if (found.pairs.empty()) continue;
     if (options.shift_starts) {
-      for (std::size_t k = 0; k < found.pairs.size(); ++k) found.pairs[k].from = k;
+      for (std::size_t k = 0; k < found.pairs.size(); ++k) found.pairs[k].from = static_cast<PoseIndex>(k);
     }
     const RelativeErrors errors = relative_errors(matches, found.pairs);
     segments.push_back({.length_m = length_m,

@@ -40,7 +40,7 @@
 
 #include "core/base/fields.h"
 #include "eval/metrics/statistics.h"
-#include "eval/trajectory/association.h"
+#include "eval/trajectory/pose_matches.h"
 
 namespace stillpoint::eval {
 
@@ -49,8 +49,8 @@ inline constexpr std::size_t kFewRpePairs = 10;
 
 /// Start and end of a relative motion, as indices of matches.
 struct PosePair {
-  std::size_t from = 0;
-  std::size_t to = 0;
+  PoseIndex from = 0;
+  PoseIndex to = 0;
 
   friend bool operator==(const PosePair&, const PosePair&) = default;
 };
@@ -66,12 +66,11 @@ struct PosePairs {
 
 /// Pairs every match with the one whose time is closest to `delta_s` later. Pairs that miss `delta_s` by more
 /// than `tolerance_s` are dropped, so a gap does not distort the error and no pose is paired with itself.
-[[nodiscard]] PosePairs pairs_over_seconds(std::span<const MatchedPose> matches, double delta_s,
-                                           double tolerance_s);
+[[nodiscard]] PosePairs pairs_over_seconds(MatchView matches, double delta_s, double tolerance_s);
 
 /// Path length from the first match to each [m].
 enum class PathOf { kGroundTruth, kEstimate };
-[[nodiscard]] std::vector<double> path_lengths(std::span<const MatchedPose> matches, PathOf of);
+[[nodiscard]] std::vector<double> path_lengths(MatchView matches, PathOf of);
 
 /// Pairs every match with the later one whose path length from it is closest to `delta_m`, the first of
 /// equally close ones. Pairs that miss `delta_m` by more than `tolerance_m` are dropped. Same pairs as evo's
@@ -91,8 +90,9 @@ struct RelativeErrors {
 
 /// @param matches aligned, if the yaw error shall refer to the vertical axis of the ground truth
 /// @param pairs indices into `matches`
-[[nodiscard]] RelativeErrors relative_errors(std::span<const MatchedPose> matches,
-                                             std::span<const PosePair> pairs);
+/// @param with_yaw compute `yaw_deg`, which else is empty
+[[nodiscard]] RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs,
+                                             bool with_yaw = true);
 
 enum class RpeUnit { kSeconds, kFrames, kMeters };
 constexpr auto enum_names(RpeUnit) {
@@ -134,7 +134,7 @@ struct StrictRpeResult {
 
 /// Strict RPE as defined above. A run with one pose per 2.5 s has no pair for delta_s = 1. Starts less than
 /// delta_s before the last match count as dropped, too.
-[[nodiscard]] StrictRpeResult strict_rpe(std::span<const MatchedPose> matches, double delta_s);
+[[nodiscard]] StrictRpeResult strict_rpe(MatchView matches, double delta_s);
 
 /// Matches for the strict protocols: ground truth interpolated at the stamp of each estimated pose, between
 /// neighbors that are both less than 0.11 s away (one interval at 10 Hz, plus jitter).
@@ -163,8 +163,7 @@ struct SegmentOptions {
 /// @param matches aligned
 /// @param options lengths of the segments and how their ends are found
 /// @return one entry per length that has at least one segment
-[[nodiscard]] std::vector<SegmentErrors> segment_errors(std::span<const MatchedPose> matches,
-                                                        const SegmentOptions& options);
+[[nodiscard]] std::vector<SegmentErrors> segment_errors(MatchView matches, const SegmentOptions& options);
 
 /// Drift: mean over all segments of |p(F_km)| / d, in percent.
 [[nodiscard]] std::optional<double> drift_percent(std::span<const SegmentErrors> segments);

@@ -41,8 +41,8 @@ std::vector<double> select(std::span<const double> values, const std::vector<boo
   return result;
 }
 
-std::vector<TrackedSpan> spans_of(std::span<const MatchedPose> matches, const std::vector<bool>& correct,
-                                  const Trajectory& gt, double max_hold_s) {
+std::vector<TrackedSpan> spans_of(MatchView matches, const std::vector<bool>& correct, const Trajectory& gt,
+                                  double max_hold_s) {
   const Timestamp start = gt.poses.front().t;
   const Timestamp end = std::max(gt.poses.back().t, matches.back().t);
   std::vector<TrackedSpan> spans;
@@ -69,8 +69,8 @@ OpenlorisSequenceScore score_openloris_sequence(const Trajectory& gt, const Traj
   score.poses = est.poses.size();
   const Timestamp start = gt.poses.front().t;
   score.gt_duration_s = seconds_between(start, gt.poses.back().t);
-  const std::vector<MatchedPose> matches =
-      matched_poses(gt, est, associate_interpolated(gt, est, options.max_gap_s));
+  const PoseMatches pairs(gt, est, associate_interpolated(gt, est, options.max_gap_s));
+  const MatchView matches = pairs;
   score.matches = matches.size();
   if (matches.empty()) return score;
 
@@ -100,9 +100,9 @@ Similarity align_openloris(const std::map<int, Trajectory>& gt, const std::map<i
   for (const auto& [number, trajectory] : est) {
     const auto truth = gt.find(number);
     if (truth == gt.end()) continue;
-    const std::vector<MatchedPose> matches = matched_poses(
-        truth->second, trajectory, associate_interpolated(truth->second, trajectory, options.max_gap_s));
-    if (!matches.empty()) return align(matches, options.scale ? Alignment::kSim3 : Alignment::kSe3).S_w_v;
+    const PoseMatches matches(truth->second, trajectory,
+                              associate_interpolated(truth->second, trajectory, options.max_gap_s));
+    if (matches.size() > 0) return align(matches, options.scale ? Alignment::kSim3 : Alignment::kSe3).S_w_v;
   }
   return {};
 }

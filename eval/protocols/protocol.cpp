@@ -28,32 +28,31 @@ struct RpeEvaluation {
 
 /// Matches, and an alignment that was fitted to the first of them.
 struct AlignedMatches {
-  std::span<const MatchedPose> matches;
+  MatchView matches;
   AlignmentResult alignment;
   CompletedAlignment completed;
 };
 
-AlignedMatches aligned(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n) {
+AlignedMatches aligned(MatchView matches, Alignment kind, std::size_t first_n) {
   const std::size_t count = first_n == 0 ? matches.size() : std::min(first_n, matches.size());
   AlignedMatches result{matches, align(matches, kind, first_n), {}};
   result.completed = complete_rotation(matches.first(count), result.alignment.S_w_v, kind);
   return result;
 }
 
-/// An evaluation with the alignment, the ATE and the errors per pose; the other fields are empty.
-Evaluation ate_evaluation(const AlignedMatches& aligned) {
+/// An evaluation with the alignment, the ATE and the errors per pose, if the options ask for these; the other
+/// fields are empty.
+Evaluation ate_evaluation(const AlignedMatches& aligned, const AteErrors& errors,
+                          const ProtocolOptions& options) {
   Evaluation evaluation;
   evaluation.pairs = aligned.matches.size();
   evaluation.alignment = aligned.alignment;
   evaluation.rotation_source = aligned.completed.source;
   evaluation.rotation_determined = aligned.completed.determined;
-  AteErrors errors = ate_errors(aligned.matches, aligned.alignment.S_w_v);
-  if (aligned.completed.source != RotationSource::kPositions) {
-    evaluation.alignment.determined = false;
-    errors.rotation_deg = ate_errors(aligned.matches, aligned.completed.S_w_v).rotation_deg;
-  }
+  if (aligned.completed.source != RotationSource::kPositions) evaluation.alignment.determined = false;
   evaluation.ate_m = statistics(errors.translation_m);
   if (aligned.completed.determined) evaluation.ate_deg = statistics(errors.rotation_deg);
+  if (!options.per_pose) return evaluation;
   evaluation.per_pose.reserve(aligned.matches.size());
   for (std::size_t i = 0; i < aligned.matches.size(); ++i) {
     evaluation.per_pose.push_back({aligned.matches[i].t, errors.translation_m[i],
@@ -62,9 +61,14 @@ Evaluation ate_evaluation(const AlignedMatches& aligned) {
   return evaluation;
 }
 
+Evaluation ate_evaluation(const AlignedMatches& aligned, const ProtocolOptions& options) {
+  return ate_evaluation(aligned, ate_errors(aligned.matches, aligned.alignment.S_w_v, aligned.completed),
+                        options);
+}
+
 constexpr std::size_t kMinMatchedPoses = 2;  // one is aligned without an error, whatever it is
 
-Evaluation without_errors(std::span<const MatchedPose> matches) {
+Evaluation without_errors(MatchView matches) {
   Evaluation evaluation;
   evaluation.pairs = matches.size();
   return evaluation;
@@ -80,13 +84,13 @@ Evaluation with_rpe(Evaluation evaluation, const RpeEvaluation& rpe) {
 }
 
 /// The alignment of a tool, SE(3) unless the options override it, over the matches.
-AlignedMatches aligned(std::span<const MatchedPose> matches, const ProtocolOptions& options) {
+AlignedMatches aligned(MatchView matches, const ProtocolOptions& options) {
   return aligned(matches, options.alignment.value_or(Alignment::kSe3), options.align_first_n);
 }
 
 /// `aligned`, for tools that reject positions that do not determine the alignment.
 /// @throws InputError with the name of the protocol
-AlignedMatches aligned_or_throw(std::span<const MatchedPose> matches, const ProtocolOptions& options,
+AlignedMatches aligned_or_throw(MatchView matches, const ProtocolOptions& options,
                                 const std::string& protocol) {
   AlignedMatches result = aligned(matches, options);
   if (result.alignment.determined) return result;
@@ -107,7 +111,7 @@ AssociationOptions tool_association(const ProtocolOptions& options, double max_d
           .arithmetic = StampArithmetic::kDouble};
 }
 
-RpeEvaluation evo_rpe(std::span<const MatchedPose> matches, const ProtocolOptions& options) {
+RpeEvaluation evo_rpe(MatchView matches, const ProtocolOptions& options) {
   RpeEvaluation result;
   std::vector<PosePair> pairs;
   if (options.rpe_unit == RpeUnit::kMeters) {
@@ -155,19 +159,22 @@ RpeEvaluation tum_rpe(const EvaluationInput& input) {
 
 Evaluation evaluate_compat_tum(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
-  const std::vector<MatchedPose> matches = matched_poses(
-      input.gt, input.est, associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
-  Evaluation evaluation =
-      matches.size() < kMinMatchedPoses ? without_errors(matches) : ate_evaluation(aligned(matches, options));
-  return with_rpe(std::move(evaluation), tum_rpe(input));
+  const auto absolute = [&] {
+    const PoseMatches matches(
+        input.gt, input.est,
+        associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
+    return matches.size() < kMinMatchedPoses ? without_errors(matches)
+                                             : ate_evaluation(aligned(matches, options), options);
+  };
+  return with_rpe(absolute(), tum_rpe(input));
 }
 
 Evaluation evaluate_compat_evo(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
-  const std::vector<MatchedPose> matches = matched_poses(
-      input.gt, input.est, associate_evo(input.gt, input.est, tool_association(options, kEvoMaxDifference)));
+  const PoseMatches matches(input.gt, input.est,
+                            associate_evo(input.gt, input.est, tool_association(options, kEvoMaxDifference)));
   if (matches.size() < kMinMatchedPoses) return without_errors(matches);
-  return with_rpe(ate_evaluation(aligned_or_throw(matches, options, "compat:evo")),
+  return with_rpe(ate_evaluation(aligned_or_throw(matches, options, "compat:evo"), options),
                   evo_rpe(matches, options));
 }
 
@@ -179,11 +186,11 @@ void note_missing_rpe(Evaluation& evaluation, const ProtocolOptions& options) {
 
 Evaluation evaluate_compat_rpg(const EvaluationInput& input) {
   const ProtocolOptions& options = input.options;
-  std::vector<MatchedPose> matches = matched_poses(
-      input.gt, input.est, associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
+  PoseMatches matches(input.gt, input.est,
+                      associate_tum(input.gt, input.est, tool_association(options, kTumMaxDifference)));
   if (matches.size() < kMinMatchedPoses) return without_errors(matches);
-  Evaluation evaluation = ate_evaluation(aligned_or_throw(matches, options, "compat:rpg"));
-  for (MatchedPose& match : matches) match.est = evaluation.alignment.S_w_v * match.est;
+  Evaluation evaluation = ate_evaluation(aligned_or_throw(matches, options, "compat:rpg"), options);
+  matches.align(evaluation.alignment.S_w_v);
   evaluation.segments = segment_errors(
       matches, {.lengths_m = options.segment_lengths_m, .tolerance = kRpgTolerance, .shift_starts = true});
   evaluation.drift_percent = drift_percent(evaluation.segments);
@@ -204,10 +211,11 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
   if (input.gt.poses.empty()) return {};
   const OpenlorisOptions metric{
       .correct = {}, .max_gap_s = options.max_difference_s.value_or(0.5), .scale = false};
-  const std::vector<MatchedPose> matches = matched_poses(
-      input.gt, input.est, associate_interpolated(input.gt, input.est, metric.max_gap_s, options.offset_s));
-  Evaluation evaluation =
-      matches.size() < kMinMatchedPoses ? without_errors(matches) : ate_evaluation(aligned(matches, options));
+  const PoseMatches matches(input.gt, input.est,
+                            associate_interpolated(input.gt, input.est, metric.max_gap_s, options.offset_s));
+  Evaluation evaluation = matches.size() < kMinMatchedPoses
+                              ? without_errors(matches)
+                              : ate_evaluation(aligned(matches, options), options);
   const OpenlorisSequenceScore score = score_openloris_sequence(
       input.gt, shifted(input.est, options.offset_s), evaluation.alignment.S_w_v, metric);
   evaluation.correct_rate = score.correct_rate;
@@ -223,6 +231,7 @@ constexpr double kStrictMaxGap = 0.11;      // [s], to each neighbor in the grou
 /// Median interval of the ground truth [s]; 0 for fewer than two poses.
 double gt_interval_s(const Trajectory& trajectory) {
   std::vector<double> intervals;
+  intervals.reserve(trajectory.poses.size());
   for (std::size_t i = 1; i < trajectory.poses.size(); ++i)
     intervals.push_back(seconds_between(trajectory.poses[i - 1].t, trajectory.poses[i].t));
   return percentile(intervals, 0.5).value_or(0.0);
@@ -255,7 +264,7 @@ std::vector<std::string> association_notes(const EvaluationInput& input, std::si
   return notes;
 }
 
-RpeEvaluation strict_rpe_evaluation(std::span<const MatchedPose> matches, const ProtocolOptions& options) {
+RpeEvaluation strict_rpe_evaluation(MatchView matches, const ProtocolOptions& options) {
   if (options.rpe_unit == RpeUnit::kFrames) {
     throw InputError("--rpe-unit f",
                      "frame deltas are not comparable across runs; strict protocols support s and m");
@@ -288,14 +297,19 @@ RpeEvaluation strict_rpe_evaluation(std::span<const MatchedPose> matches, const 
 }
 
 /// RMS of e_(i-1) - 2 e_i + e_(i+1), e: aligned position error. A smooth drift contributes little to it.
-std::optional<double> jitter_of(std::span<const MatchedPose> matches, const Similarity& S_w_v) {
+std::optional<double> jitter_of(MatchView matches, const Similarity& S_w_v) {
   if (matches.size() < 3) return std::nullopt;
   const auto error = [&](std::size_t i) -> Eigen::Vector3d {
-    return S_w_v * matches[i].est.p - matches[i].gt.p;
+    const MatchedPose match = matches[i];
+    return S_w_v * match.est.p - match.gt.p;
   };
+  Eigen::Vector3d previous = error(0);
+  Eigen::Vector3d current = error(1);
   double sum = 0.0;
   for (std::size_t i = 1; i + 1 < matches.size(); ++i) {
-    sum += (error(i - 1) - 2.0 * error(i) + error(i + 1)).squaredNorm();
+    const Eigen::Vector3d next = error(i + 1);
+    sum += (previous - 2.0 * current + next).squaredNorm();
+    previous = std::exchange(current, next);
   }
   return std::sqrt(sum / static_cast<double>(matches.size() - 2));
 }
@@ -303,7 +317,7 @@ std::optional<double> jitter_of(std::span<const MatchedPose> matches, const Simi
 /// The alignment, with the rotation of `complete_rotation` where it was fitted to a part of the matches,
 /// since it decides the position errors of the others.
 /// @throws InputError if position errors depend on what the matches do not determine
-AlignedMatches strictly_aligned(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n) {
+AlignedMatches strictly_aligned(MatchView matches, Alignment kind, std::size_t first_n) {
   AlignedMatches result = aligned(matches, kind, first_n);
   const CompletedAlignment& completed = result.completed;
   const bool no_scale = kind == Alignment::kSim3 && completed.source == RotationSource::kStanding;
@@ -318,6 +332,31 @@ AlignedMatches strictly_aligned(std::span<const MatchedPose> matches, Alignment 
   return result;
 }
 
+/// Whether the matches and their SE(3) alignment are those of the correct rate.
+bool has_errors_of_correct_rate(const EvaluationInput& input, MatchView matches, Alignment kind) {
+  if (kind != Alignment::kSe3 || input.options.align_first_n > 0 ||
+      input.options.max_difference_s.value_or(kStrictMaxGap) > kCorrectRateGap_s)
+    return false;
+  return associate_interpolated(input.gt, input.est, kCorrectRateGap_s).size() == matches.size();
+}
+
+/// An evaluation with the absolute errors and the correct rate.
+Evaluation strict_errors(const EvaluationInput& input, MatchView matches, Alignment kind) {
+  const ProtocolOptions& options = input.options;
+  Evaluation evaluation = without_errors(matches);
+  if (matches.size() >= kMinMatchedPoses) {
+    const AlignedMatches aligned = strictly_aligned(matches, kind, options.align_first_n);
+    const AteErrors errors = ate_errors(matches, aligned.alignment.S_w_v, aligned.completed);
+    evaluation = ate_evaluation(aligned, errors, options);
+    if (aligned.completed.determined && has_errors_of_correct_rate(input, matches, kind)) {
+      evaluation.correct_rate = correct_rate(matches, errors, input.gt, options.correct);
+      return evaluation;
+    }
+  }
+  evaluation.correct_rate = correct_rate(input.gt, input.est, options.correct);
+  return evaluation;
+}
+
 /// @param alignment used unless the options override it
 /// @throws InputError if the matches do not determine the alignment, or for an RPE over frames
 Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
@@ -328,13 +367,10 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
     return evaluate_strict({input.gt, shifted(input.est, options.offset_s), without_offset}, alignment);
   }
   const Trajectory& est = input.est;
-  const std::optional<double> correct = correct_rate(input.gt, est, options.correct);
   const Alignment kind = options.alignment.value_or(alignment);
-  std::vector<MatchedPose> matches = matched_poses(
+  PoseMatches matches(
       input.gt, est, associate_interpolated(input.gt, est, options.max_difference_s.value_or(kStrictMaxGap)));
-  Evaluation evaluation = matches.size() < kMinMatchedPoses
-                              ? without_errors(matches)
-                              : ate_evaluation(strictly_aligned(matches, kind, options.align_first_n));
+  Evaluation evaluation = strict_errors(input, matches, kind);
   if (!input.gt.poses.empty()) {
     const TimeSpan whole{input.gt.poses.front().t, input.gt.poses.back().t};
     evaluation.lost = lost_spans(est, whole, kMaxHold);
@@ -343,13 +379,12 @@ Evaluation evaluate_strict(const EvaluationInput& input, Alignment alignment) {
   }
   const std::vector<std::string> association = association_notes(input, matches.size());
   evaluation.notes.insert(evaluation.notes.end(), association.begin(), association.end());
-  evaluation.correct_rate = correct;
   if (evaluation.correct_rate && (kind != Alignment::kSe3 || options.align_first_n > 0))
     evaluation.notes.emplace_back("CR is that after SE(3) alignment over all matches, whatever --align");
   if (matches.size() < kMinMatchedPoses) return evaluation;
   const Similarity S_w_v = evaluation.alignment.S_w_v;
   evaluation.jitter_m = jitter_of(matches, S_w_v);
-  for (MatchedPose& match : matches) match.est = S_w_v * match.est;
+  matches.align(S_w_v);
   evaluation = with_rpe(std::move(evaluation), strict_rpe_evaluation(matches, options));
   evaluation.segments =
       segment_errors(matches, {.lengths_m = options.segment_lengths_m, .tolerance = kSegmentTolerance});

@@ -32,6 +32,7 @@ struct ProtocolOptions {
   std::optional<Eigen::Quaterniond> q_level_w{};
   CorrectRateOptions correct{.max_translation_m = 1.0, .max_rotation_deg = 30.0};
   std::vector<double> segment_lengths_m;  ///< empty: 10 to 50 % of the path length
+  bool per_pose = true;                   ///< fill `Evaluation::per_pose`, 24 bytes per pair
 };
 
 struct PoseError {
@@ -63,10 +64,10 @@ struct Evaluation {
   std::optional<double> correct_rate;
   std::optional<double> coverage;  ///< fraction of the ground truth's duration with a valid pose
   std::optional<double> first_pose_s;
-  std::optional<double> jitter_m;  ///< RMS of the second difference of the aligned position error
-  std::vector<TimeSpan> lost;      ///< intervals without a valid pose
-  std::vector<std::string> notes;  ///< warnings about dropped data and limitations of the metrics
-  std::vector<PoseError> per_pose;
+  std::optional<double> jitter_m;   ///< RMS of the second difference of the aligned position error
+  std::vector<TimeSpan> lost;       ///< intervals without a valid pose
+  std::vector<std::string> notes;   ///< warnings about dropped data and limitations of the metrics
+  std::vector<PoseError> per_pose;  ///< empty unless `ProtocolOptions::per_pose`
 };
 
 struct EvaluationInput {

@@ -18,7 +18,7 @@ struct Moments {
   double variance_est = 0.0;                              ///< sigma_e^2 [m^2]
 };
 
-Moments moments_of(std::span<const MatchedPose> matches) {
+Moments moments_of(MatchView matches) {
   Moments moments;
   const double count = static_cast<double>(matches.size());
   for (const MatchedPose& match : matches) {
@@ -67,7 +67,7 @@ AlignmentResult fit_yaw(const Moments& moments) {
 
 }  // namespace
 
-AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind, std::size_t first_n) {
+AlignmentResult align(MatchView matches, Alignment kind, std::size_t first_n) {
   if (kind == Alignment::kNone) return {Similarity{}, true};
   if (matches.empty()) return {};
   if (kind == Alignment::kFirstPose) {

@@ -17,26 +17,12 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string_view>
 
 #include "core/base/fields.h"
-#include "eval/trajectory/association.h"
+#include "eval/trajectory/pose_matches.h"
 
 namespace stillpoint::eval {
-
-/// x_w = scale * R_w_v * x_v + p_w_v: from the world v of the estimate to the world w of the ground truth.
-struct Similarity {
-  Pose T_w_v;
-  double scale = 1.0;
-
-  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& x_v) const {
-    return T_w_v.q * (scale * x_v) + T_w_v.p;
-  }
-  [[nodiscard]] Pose operator*(const Pose& T_v_f) const {
-    return Pose{(T_w_v.q * T_v_f.q).normalized(), *this * T_v_f.p};
-  }
-};
 
 enum class Alignment {
   kNone,       ///< identity
@@ -64,8 +50,7 @@ struct AlignmentResult {
 /// @param matches positions e_i and g_i
 /// @param kind which of s, R and t are estimated
 /// @param first_n use the first n matches only; 0 = all
-[[nodiscard]] AlignmentResult align(std::span<const MatchedPose> matches, Alignment kind,
-                                    std::size_t first_n = 0);
+[[nodiscard]] AlignmentResult align(MatchView matches, Alignment kind, std::size_t first_n = 0);
 
 /// Change of the body frame: T_w_g = T_w_f T_f_g for every pose; f and g are rigidly connected.
 /// @param trajectory poses T_w_f

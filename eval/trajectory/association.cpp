@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <queue>
+#include <utility>
 
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
@@ -12,51 +14,54 @@
 namespace stillpoint::eval {
 namespace {
 
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-std::vector<Timestamp> timestamps_of(const Trajectory& trajectory) {
-  std::vector<Timestamp> stamps;
-  stamps.reserve(trajectory.poses.size());
-  for (const StampedPose& pose : trajectory.poses) stamps.push_back(pose.t);
-  return stamps;
-}
+constexpr PoseIndex kNone = static_cast<PoseIndex>(-1);
 
 /// A stamp of either list on the common time axis. Unmatched ones form a doubly linked list.
 struct Event {
-  std::size_t index;
-  bool is_gt;
-  std::size_t previous;
-  std::size_t next;
-  bool matched = false;
+  PoseIndex index;
+  PoseIndex previous;
+  PoseIndex next;
 };
 
 /// Neighbors on the time axis, one of each list.
 struct Candidate {
   double difference_s;
-  std::size_t left;  ///< event indices
-  std::size_t right;
+  PoseIndex left;  ///< event indices
+  PoseIndex right;
+
+  /// Order of matching: the smallest difference first; among equal ones the earliest pair.
+  [[nodiscard]] bool precedes(const Candidate& other) const {
+    if (difference_s != other.difference_s) return difference_s < other.difference_s;
+    return left < other.left;
+  }
 };
 
 /// Greedy matching by time difference. The closest unmatched pair always consists of neighbors on the time
-/// axis, because anything between them would be closer to one of the two. A heap of neighbors therefore
-/// suffices, and removing a pair creates at most one new pair of neighbors.
+/// axis, because anything between them would be closer to one of the two. The sorted pairs of neighbors and a
+/// heap of those that become neighbors therefore suffice, and removing a pair creates at most one new pair of
+/// neighbors.
+/// @tparam Stamps a list of stamps with `size()` and `operator[]`
+template <class Stamps>
 class GreedyMatcher {
  public:
-  GreedyMatcher(std::span<const Timestamp> gt, std::span<const Timestamp> est,
-                const AssociationOptions& options)
+  GreedyMatcher(const Stamps& gt, const Stamps& est, const AssociationOptions& options)
       : gt_(gt), est_(est), options_(options) {
     merge();
-    for (std::size_t i = 0; i + 1 < events_.size(); ++i) add_candidate(i, i + 1);
+    candidates_.reserve(events_.empty() ? 0 : events_.size() - 1);
+    for (PoseIndex i = 0; i + 1 < events_.size(); ++i) {
+      if (const std::optional<Candidate> found = candidate(i, i + 1)) candidates_.push_back(*found);
+    }
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.precedes(b); });
   }
 
   [[nodiscard]] std::vector<IndexPair> run() {
     std::vector<IndexPair> pairs;
-    while (!heap_.empty()) {
-      const Candidate best = heap_.top();
-      heap_.pop();
-      if (events_[best.left].matched || events_[best.right].matched) continue;
-      pairs.push_back(pair_of(best.left, best.right));
-      remove(best);
+    pairs.reserve(std::min(gt_.size(), est_.size()));
+    while (const std::optional<Candidate> best = take_best()) {
+      if (is_matched_[best->left] || is_matched_[best->right]) continue;
+      pairs.push_back(pair_of(best->left, best->right));
+      remove(*best);
     }
     std::sort(pairs.begin(), pairs.end(),
               [](const IndexPair& a, const IndexPair& b) { return a.est < b.est; });
@@ -64,57 +69,83 @@ class GreedyMatcher {
   }
 
  private:
-  [[nodiscard]] double difference(std::size_t gt, std::size_t est) const {
+  [[nodiscard]] double difference(PoseIndex gt, PoseIndex est) const {
     return std::abs(stamp_difference(gt_[gt], est_[est], options_.offset_s, options_.arithmetic));
   }
 
   void merge() {
-    events_.reserve(gt_.size() + est_.size());
-    std::size_t g = 0;
-    std::size_t e = 0;
+    const std::size_t count = gt_.size() + est_.size();
+    STILLPOINT_CHECK(count < kNone);
+    events_.reserve(count);
+    is_gt_.reserve(count);
+    is_matched_.assign(count, false);
+    PoseIndex g = 0;
+    PoseIndex e = 0;
     while (g < gt_.size() || e < est_.size()) {
       const bool gt_first =
           e == est_.size() || (g < gt_.size() && gt_[g] <= after(est_[e], options_.offset_s));
-      const std::size_t index = events_.size();
-      events_.push_back({gt_first ? g++ : e++, gt_first, index == 0 ? kNone : index - 1, index + 1});
+      const auto index = static_cast<PoseIndex>(events_.size());
+      events_.push_back({gt_first ? g++ : e++, index == 0 ? kNone : index - 1, index + 1});
+      is_gt_.push_back(gt_first);
     }
     if (!events_.empty()) events_.back().next = kNone;
   }
 
-  [[nodiscard]] IndexPair pair_of(std::size_t left, std::size_t right) const {
-    return events_[left].is_gt ? IndexPair{events_[left].index, events_[right].index}
-                               : IndexPair{events_[right].index, events_[left].index};
+  [[nodiscard]] IndexPair pair_of(PoseIndex left, PoseIndex right) const {
+    return is_gt_[left] ? IndexPair{events_[left].index, events_[right].index}
+                        : IndexPair{events_[right].index, events_[left].index};
   }
 
-  void add_candidate(std::size_t left, std::size_t right) {
-    if (events_[left].is_gt == events_[right].is_gt) return;
+  [[nodiscard]] std::optional<Candidate> candidate(PoseIndex left, PoseIndex right) const {
+    if (is_gt_[left] == is_gt_[right]) return std::nullopt;
     const IndexPair pair = pair_of(left, right);
     const double difference_s = difference(pair.gt, pair.est);
-    if (difference_s < options_.max_difference_s) heap_.push({difference_s, left, right});
+    if (!(difference_s < options_.max_difference_s)) return std::nullopt;
+    return Candidate{difference_s, left, right};
+  }
+
+  /// The first candidate in the order of matching; nullopt if none is left.
+  [[nodiscard]] std::optional<Candidate> take_best() {
+    const bool has_candidate = next_candidate_ < candidates_.size();
+    if (!has_candidate && heap_.empty()) return std::nullopt;
+    if (heap_.empty() || (has_candidate && !heap_.top().precedes(candidates_[next_candidate_])))
+      return candidates_[next_candidate_++];
+    const Candidate best = heap_.top();
+    heap_.pop();
+    return best;
   }
 
   void remove(const Candidate& pair) {
-    events_[pair.left].matched = events_[pair.right].matched = true;
-    const std::size_t previous = events_[pair.left].previous;
-    const std::size_t next = events_[pair.right].next;
+    is_matched_[pair.left] = is_matched_[pair.right] = true;
+    const PoseIndex previous = events_[pair.left].previous;
+    const PoseIndex next = events_[pair.right].next;
     if (previous != kNone) events_[previous].next = next;
     if (next != kNone) events_[next].previous = previous;
-    if (previous != kNone && next != kNone) add_candidate(previous, next);
+    if (previous == kNone || next == kNone) return;
+    if (const std::optional<Candidate> found = candidate(previous, next)) heap_.push(*found);
   }
 
-  /// Heap order: the smallest difference is on top; among equal ones the earliest pair.
   struct LowerPriority {
-    bool operator()(const Candidate& a, const Candidate& b) const {
-      if (a.difference_s != b.difference_s) return a.difference_s > b.difference_s;
-      return a.left > b.left;
-    }
+    bool operator()(const Candidate& a, const Candidate& b) const { return b.precedes(a); }
   };
 
-  std::span<const Timestamp> gt_;
-  std::span<const Timestamp> est_;
+  const Stamps& gt_;
+  const Stamps& est_;
   const AssociationOptions& options_;
   std::vector<Event> events_;
-  std::priority_queue<Candidate, std::vector<Candidate>, LowerPriority> heap_;
+  std::vector<bool> is_gt_;  ///< of each event
+  std::vector<bool> is_matched_;
+  std::vector<Candidate> candidates_;  ///< neighbors at the start, in the order of matching
+  std::size_t next_candidate_ = 0;
+  std::priority_queue<Candidate, std::vector<Candidate>, LowerPriority> heap_;  ///< later neighbors
+};
+
+/// The stamps of a trajectory as a list.
+struct TrajectoryStamps {
+  const std::vector<StampedPose>& poses;
+
+  [[nodiscard]] std::size_t size() const { return poses.size(); }
+  [[nodiscard]] Timestamp operator[](std::size_t i) const { return poses[i].t; }
 };
 
 }  // namespace
@@ -126,15 +157,15 @@ std::vector<IndexPair> associate_tum(std::span<const Timestamp> gt, std::span<co
 
 std::vector<IndexPair> associate_tum(const Trajectory& gt, const Trajectory& est,
                                      const AssociationOptions& options) {
-  return associate_tum(timestamps_of(gt), timestamps_of(est), options);
+  return GreedyMatcher(TrajectoryStamps{gt.poses}, TrajectoryStamps{est.poses}, options).run();
 }
 
 std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est,
                                      const AssociationOptions& options) {
   const bool gt_is_longer = gt.poses.size() >= est.poses.size();
-  const std::size_t shorter = std::min(gt.poses.size(), est.poses.size());
-  const std::size_t longer = std::max(gt.poses.size(), est.poses.size());
-  const auto pair_of = [&](std::size_t s, std::size_t l) {
+  const auto shorter = static_cast<PoseIndex>(std::min(gt.poses.size(), est.poses.size()));
+  const auto longer = static_cast<PoseIndex>(std::max(gt.poses.size(), est.poses.size()));
+  const auto pair_of = [&](PoseIndex s, PoseIndex l) {
     return gt_is_longer ? IndexPair{l, s} : IndexPair{s, l};
   };
   const auto difference = [&](const IndexPair& pair) {
@@ -142,8 +173,9 @@ std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est
         stamp_difference(gt.poses[pair.gt].t, est.poses[pair.est].t, options.offset_s, options.arithmetic));
   };
   std::vector<IndexPair> pairs;
-  std::size_t l = 0;
-  for (std::size_t s = 0; s < shorter; ++s) {
+  pairs.reserve(shorter);
+  PoseIndex l = 0;
+  for (PoseIndex s = 0; s < shorter; ++s) {
     while (l + 1 < longer && difference(pair_of(s, l + 1)) < difference(pair_of(s, l))) ++l;
     if (difference(pair_of(s, l)) <= options.max_difference_s) pairs.push_back(pair_of(s, l));
   }
@@ -152,17 +184,27 @@ std::vector<IndexPair> associate_evo(const Trajectory& gt, const Trajectory& est
 
 namespace {
 
-/// The last pose at or before t, not before `from`; `from` if there is none. Doubles the step, so that the
-/// next pose costs as little as that of an estimate with a millionth of the poses.
-std::size_t last_until(const std::vector<StampedPose>& poses, std::size_t from, Timestamp t) {
+/// The last pose at or before t, not before `from`; `from` if there is none. Searches around a guess with
+/// doubled steps, so that the next pose costs as little as that of an estimate with a millionth of the poses.
+/// @param guess >= from
+std::size_t last_until(const std::vector<StampedPose>& poses, std::size_t from, Timestamp t,
+                       std::size_t guess) {
+  const auto is_until = [&](std::size_t i) { return i < poses.size() && poses[i].t <= t; };
+  std::size_t low = from;
+  std::size_t high = guess;  // behind the last one
   std::size_t step = 1;
-  while (from + step < poses.size() && poses[from + step].t <= t) step *= 2;
-  const auto begin = poses.begin() + static_cast<std::ptrdiff_t>(from + step / 2);
-  const auto end = poses.begin() + static_cast<std::ptrdiff_t>(std::min(from + step, poses.size()));
-  const auto after_t = std::upper_bound(
-      begin, end, t, [](Timestamp value, const StampedPose& pose) { return value < pose.t; });
-  return std::max(from, static_cast<std::size_t>(after_t - poses.begin()) -
-                            (after_t == poses.begin() ? std::size_t{0} : std::size_t{1}));
+  if (is_until(guess)) {
+    for (low = guess; is_until(low + step); step *= 2) low += step;
+    high = low + step;
+  } else {
+    for (; high > from + step && !is_until(high - step); step *= 2) high -= step;
+    low = high > from + step ? high - step : from;
+  }
+  while (low + 1 < high) {
+    const std::size_t middle = low + (high - low) / 2;
+    (is_until(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 }  // namespace
@@ -171,46 +213,27 @@ std::vector<InterpolatedPair> associate_interpolated(const Trajectory& gt, const
                                                      double max_gap_s, double offset_s) {
   std::vector<InterpolatedPair> pairs;
   if (gt.poses.empty()) return pairs;
+  pairs.reserve(est.poses.size());
   std::size_t g = 0;
+  std::size_t step = 0;
   for (std::size_t e = 0; e < est.poses.size(); ++e) {
     const Timestamp t = after(est.poses[e].t, offset_s);
-    g = last_until(gt.poses, g, t);
+    const std::size_t next = last_until(gt.poses, g, t, g + step);
+    step = next - std::exchange(g, next);
     if (t < gt.poses[g].t) continue;
     if (t == gt.poses[g].t) {
-      pairs.push_back({g, e, 0.0});
+      pairs.push_back({static_cast<PoseIndex>(g), static_cast<PoseIndex>(e), 0.0});
       continue;
     }
     if (g + 1 == gt.poses.size()) break;
     const double to_previous = seconds_between(gt.poses[g].t, t);
     const double to_next = seconds_between(t, gt.poses[g + 1].t);
     if (std::max(to_previous, to_next) < max_gap_s) {
-      pairs.push_back({g, e, to_previous / (to_previous + to_next)});
+      pairs.push_back(
+          {static_cast<PoseIndex>(g), static_cast<PoseIndex>(e), to_previous / (to_previous + to_next)});
     }
   }
   return pairs;
-}
-
-std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,
-                                       std::span<const IndexPair> pairs) {
-  std::vector<MatchedPose> matches;
-  matches.reserve(pairs.size());
-  for (const IndexPair& pair : pairs) {
-    matches.push_back({est.poses[pair.est].t, gt.poses[pair.gt].T_w_f, est.poses[pair.est].T_w_f});
-  }
-  return matches;
-}
-
-std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,
-                                       std::span<const InterpolatedPair> pairs) {
-  std::vector<MatchedPose> matches;
-  matches.reserve(pairs.size());
-  for (const InterpolatedPair& pair : pairs) {
-    const Pose& from = gt.poses[pair.gt].T_w_f;
-    const Pose interpolated =
-        pair.fraction > 0.0 ? interpolate(from, gt.poses[pair.gt + 1].T_w_f, pair.fraction) : from;
-    matches.push_back({est.poses[pair.est].t, interpolated, est.poses[pair.est].T_w_f});
-  }
-  return matches;
 }
 
 double stamp_as_double(Timestamp t) {

@@ -3,7 +3,7 @@
 /// time.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,10 +12,13 @@
 
 namespace stillpoint::eval {
 
+/// Index of a pose or a stamp: a text file of 4 GB has fewer rows.
+using PoseIndex = std::uint32_t;
+
 /// Indices into the ground truth and the estimate.
 struct IndexPair {
-  std::size_t gt = 0;
-  std::size_t est = 0;
+  PoseIndex gt = 0;
+  PoseIndex est = 0;
 
   friend bool operator==(const IndexPair&, const IndexPair&) = default;
 };
@@ -50,8 +53,8 @@ struct AssociationOptions {
 
 /// A pair whose ground truth is interpolated between the poses `gt` and `gt + 1`.
 struct InterpolatedPair {
-  std::size_t gt = 0;
-  std::size_t est = 0;
+  PoseIndex gt = 0;
+  PoseIndex est = 0;
   double fraction = 0.0;  ///< 0 at pose `gt`, 1 at pose `gt + 1`; in [0, 1)
 };
 
@@ -60,21 +63,6 @@ struct InterpolatedPair {
 [[nodiscard]] std::vector<InterpolatedPair> associate_interpolated(const Trajectory& gt,
                                                                    const Trajectory& est, double max_gap_s,
                                                                    double offset_s = 0.0);
-
-/// Ground truth and estimate at the stamp of the estimate.
-struct MatchedPose {
-  Timestamp t;  ///< of the estimate, as written in its file
-  Pose gt;      ///< T_w_f, w the world of the ground truth
-  Pose est;     ///< T_v_f, v the world of the estimate
-};
-
-/// The poses of the pairs.
-[[nodiscard]] std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,
-                                                     std::span<const IndexPair> pairs);
-
-/// The poses of the pairs; ground truth by slerp of the rotation and linear interpolation of the position.
-[[nodiscard]] std::vector<MatchedPose> matched_poses(const Trajectory& gt, const Trajectory& est,
-                                                     std::span<const InterpolatedPair> pairs);
 
 /// The stamp in seconds, rounded as when its decimal text is parsed to a double.
 [[nodiscard]] double stamp_as_double(Timestamp t);

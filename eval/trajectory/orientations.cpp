@@ -46,7 +46,7 @@ struct PathMoments {
   double correlation = 0.0;  ///< of the aligned positions
 };
 
-PathMoments moments_of(std::span<const MatchedPose> matches, const Similarity& S_w_v) {
+PathMoments moments_of(MatchView matches, const Similarity& S_w_v) {
   PathMoments moments;
   const double count = static_cast<double>(matches.size());
   Eigen::Vector3d mean_gt = Eigen::Vector3d::Zero();
@@ -116,8 +116,7 @@ FittedRotation fit_freely(const Eigen::Matrix3d& mean) {
 
 }  // namespace
 
-CompletedAlignment complete_rotation(std::span<const MatchedPose> matches, const Similarity& S_w_v,
-                                     Alignment kind) {
+CompletedAlignment complete_rotation(MatchView matches, const Similarity& S_w_v, Alignment kind) {
   CompletedAlignment completed{S_w_v};
   if (matches.empty() || kind == Alignment::kNone || kind == Alignment::kFirstPose) return completed;
   const bool yaw = kind == Alignment::kYaw;
@@ -159,8 +158,8 @@ double turn_deg(const Trajectory& trajectory) {
 /// RMS of the rotations between aligned poses [deg]; 0 without matches.
 double difference_deg_of(const Trajectory& gt, const Trajectory& est, double offset_s) {
   constexpr double kMaxGap = 0.5;  // [s], to each neighbor
-  const std::vector<MatchedPose> matches =
-      matched_poses(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
+  const PoseMatches pairs(gt, est, associate_interpolated(gt, est, kMaxGap, offset_s));
+  const MatchView matches = pairs;
   if (matches.size() < 2) return 0.0;
   const Similarity S_w_v = complete_rotation(matches, align(matches, Alignment::kSe3).S_w_v).S_w_v;
   double squared = 0.0;

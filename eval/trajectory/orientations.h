@@ -42,8 +42,8 @@ struct CompletedAlignment {
 /// @param S_w_v an alignment of the positions
 /// @param kind of that alignment: yaw is determined by a path that is no vertical line; kNone and kFirstPose
 /// have no fitted rotation and remain
-[[nodiscard]] CompletedAlignment complete_rotation(std::span<const MatchedPose> matches,
-                                                   const Similarity& S_w_v, Alignment kind = Alignment::kSe3);
+[[nodiscard]] CompletedAlignment complete_rotation(MatchView matches, const Similarity& S_w_v,
+                                                   Alignment kind = Alignment::kSe3);
 
 /// Why rotation errors and relative errors, which depend on orientations, mean nothing: the orientations of
 /// one trajectory are all equal (a system or receiver without orientations), while the other turns by more

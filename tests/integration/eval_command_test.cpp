@@ -65,7 +65,7 @@ TEST(EvalCommand, WritesAPlotAndTheErrorsOfAllPoses) {
 std::string nanosecond_rows(const Trajectory& path, char separator, bool w_first) {
   std::string text;
   char row[320];
-  for (const auto& [t, pose] : path.poses) {
+  for (const auto& [pose, t] : path.poses) {
     const Eigen::Vector4d q = w_first ? Eigen::Vector4d(pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z())
                                       : Eigen::Vector4d(pose.q.coeffs());
     std::snprintf(row, sizeof row, "%lld %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",

@@ -137,8 +137,8 @@ std::vector<IndexPair> associate_by_sorting(const Trajectory& gt, const Trajecto
     IndexPair pair;
   };
   std::vector<Candidate> candidates;
-  for (std::size_t g = 0; g < gt.poses.size(); ++g) {
-    for (std::size_t e = 0; e < est.poses.size(); ++e) {
+  for (PoseIndex g = 0; g < gt.poses.size(); ++g) {
+    for (PoseIndex e = 0; e < est.poses.size(); ++e) {
       const std::int64_t difference = std::abs(gt.poses[g].t.ns - est.poses[e].t.ns);
       if (static_cast<double>(difference) / 1e9 < max_difference_s)
         candidates.push_back({difference, {g, e}});

@@ -72,6 +72,7 @@ eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   options.rpe_delta = arguments.rpe_delta;
   options.rpe_unit = enum_of<eval::RpeUnit>("--rpe-unit", arguments.rpe_unit);
   options.offset_s = arguments.offset_s;
+  options.per_pose = !arguments.plot.empty() || !arguments.map.empty() || !arguments.per_pose.empty();
   return options;
 }
 

@@ -91,6 +91,12 @@ TEST(Conventions, DetectInvertedPoses) {
   EXPECT_EQ(violations(kGt, est), std::vector{Convention::kInvertedPoses});
 }
 
+TEST(Conventions, DetectInvertedRotationsBesideRightPositions) {
+  Trajectory est = kEst;
+  for (StampedPose& pose : est.poses) pose.T_w_f.q = pose.T_w_f.q.conjugate();
+  EXPECT_EQ(violations(kGt, est), std::vector{Convention::kInvertedPoses});
+}
+
 TEST(Conventions, DetectAnotherBodyFrame) {
   const Pose T_b_c{exp_so3({0.0, 1.57, 0.0}), {0.02, 0.01, 0.0}};
   EXPECT_EQ(violations(kGt, move_to_frame(kEst, T_b_c, "camera")), std::vector{Convention::kBodyFrame});

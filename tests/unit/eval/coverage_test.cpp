@@ -64,6 +64,13 @@ TEST(CorrectRate, CountsAPoseAsValidForOneSecondAtMost) {
 
 TEST(CorrectRate, IsZeroForARunWithoutPoses) { EXPECT_EQ(correct_rate(curved_path(0, 10, 0.1), {}), 0.0); }
 
+TEST(CorrectRate, IsNotAvailableIfTheGroundTruthIsTooSparseToTell) {
+  // One true pose per 1.2 s: no estimated pose has both neighbors within 0.5 s.
+  const Trajectory gt = curved_path(0, 12, 1.2);
+  EXPECT_FALSE(correct_rate(gt, curved_path(0.05, 11, 0.1)));
+  EXPECT_EQ(correct_rate(gt, curved_path(20, 30, 0.1)), 0.0);  // after its end, as if there were no pose
+}
+
 TEST(CorrectRate, ExcludesPosesBeyondTheThreshold) {
   const Trajectory gt = curved_path(0, 10, 0.1);
   Trajectory est = gt;

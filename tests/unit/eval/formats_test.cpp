@@ -78,7 +78,7 @@ TEST(Formats, AreDetectedFromTheContent) {
 std::string named_columns(const std::string& header, const std::vector<std::string>& columns,
                           bool nanoseconds) {
   std::string text = header + "\n";
-  for (const auto& [t, pose] : kPath.poses) {
+  for (const auto& [pose, t] : kPath.poses) {
     const std::map<std::string, double> values{{"x", pose.p.x()},  {"y", pose.p.y()},  {"z", pose.p.z()},
                                                {"qx", pose.q.x()}, {"qy", pose.q.y()}, {"qz", pose.q.z()},
                                                {"qw", pose.q.w()}, {"-", 7.5}};

@@ -174,5 +174,56 @@ TEST(WriteTum, ThrowsIfTheFileCannotBeWritten) {
   EXPECT_THROW(write_tum({}, "/no/such/folder/a.txt"), InputError);
 }
 
+/// Rows at 100 Hz with a position that tells the row.
+std::string many_rows(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i)
+    text += format_stamp({i * 10'000'000LL}) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
+  return text;
+}
+
+TEST(ReadTum, AFileOfSeveralBlocksIsReadAsTheText) {
+  // Blocks have 1 MB; the comment alone is longer than one, and a row crosses each border.
+  const TemporaryFolder folder;
+  const std::string text =
+      "# " + std::string(3 << 20, 'x') + "\n# t tx ty tz qx qy qz qw\n" + many_rows(100000);
+  const LoadedTrajectory read = read_tum(folder.write("long.txt", text));
+  const LoadedTrajectory parsed = parse_tum(text, "long.txt");
+  ASSERT_EQ(read.trajectory.poses.size(), 100000U);
+  EXPECT_EQ(read.order_source, OrderSource::kNamed);
+  for (std::size_t i = 0; i < 100000; ++i) {
+    ASSERT_EQ(read.trajectory.poses[i].t, parsed.trajectory.poses[i].t);
+    ASSERT_EQ(read.trajectory.poses[i].T_w_f.p.x(), static_cast<double>(i));
+  }
+}
+
+TEST(ReadTum, AnErrorInALaterBlockNamesItsLine) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("long.txt", many_rows(100000) + "1000.5 1 0 0 0 0 zero 1\n");
+  expect_input_error([&] { static_cast<void>(read_tum(file)); },
+                     {"long.txt:100001", "\"zero\" is not a number"});
+}
+
+TEST(ReadTum, ALineLongerThanABlockAndNoLineFeedAtTheEndAreRead) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.write("wide.txt", "1 2 3 4 0 0 0 1 " + std::string(3 << 20, '7') + "\n2 2 3 4 0 0 0 1");
+  EXPECT_EQ(read_tum(file).trajectory.poses.size(), 2U);
+}
+
+TEST(ParseTum, AUnitOfPositionsOtherThanMetersIsAnError) {
+  EXPECT_NE(
+      message_of("t [s],x [mm],y [mm],z [mm],qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n").find("the positions are in mm"),
+      std::string::npos);
+  EXPECT_EQ(message_of("t [s],x [m],y [m],z [m],qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n"), "no error");
+}
+
+TEST(ParseTum, LinesThatEndWithCarriageReturnsOnlyAreAnError) {
+  EXPECT_NE(
+      message_of("1 2 3 4 0 0 0 1\r2 2 3 4 0 0 0 1\r").find("a.txt:1: lines end with carriage returns only"),
+      std::string::npos);
+  EXPECT_EQ(message_of("1 2 3 4 0 0 0 1\r\r\n2 2 3 4 0 0 0 1\r\n"), "no error");
+}
+
 }  // namespace
 }  // namespace stillpoint::eval

@@ -9,7 +9,7 @@ namespace {
 Trajectory line_along_x(double length_m) {
   Trajectory line;
   for (int i = 0; i <= 10; ++i) {
-    StampedPose pose{.t = from_seconds(0.1 * i), .T_w_f = {}};
+    StampedPose pose{from_seconds(0.1 * i), {}};
     pose.T_w_f.p = Eigen::Vector3d(0.1 * i * length_m, 0.0, 0.0);
     line.poses.push_back(pose);
   }
