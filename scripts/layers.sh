@@ -95,7 +95,7 @@ row bench/config core/base core/config bench/model
 row bench/store core/base core/types eval/io bench/model
 row bench/store/maintenance core/base eval/io bench/model bench/store
 row bench/process core/base bench/model
-row bench/run $common core/pipeline core/pipeline/runners datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/metrics eval/trajectory \
+row bench/run $common core/pipeline core/pipeline/runners datasets datasets/cache datasets/faults datasets/synthetic/sequence eval eval/compare eval/metrics eval/trajectory \
   bench/model bench/config
 row bench/profile/meters core/base bench/model
 row bench/profile $common core/pipeline/runners eval/io eval/metrics bench/model bench/config bench/process bench/run \
@@ -108,7 +108,7 @@ row bench/systems $messages datasets datasets/cache datasets/faults datasets/syn
   bench/run bench/profile bench/record
 row bench/plan core/base datasets datasets/catalogue datasets/faults datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/record bench/systems
-row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/trajectory \
+row bench/plan/execution core/base datasets datasets/synthetic/sequence eval/io eval/metrics eval/protocols eval/statistics eval/trajectory \
   bench/model bench/config bench/store bench/process bench/run bench/profile/meters bench/record bench/systems bench/plan
 row bench/fetch $common core/detector datasets datasets/bags datasets/io datasets/catalogue datasets/download eval/io bench/model bench/config bench/process bench/record bench/plan
 row bench/executors core/base eval/io bench/model bench/store bench/store/maintenance bench/process bench/record bench/systems \

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eval/metrics/statistics.h"
+#include "eval/statistics/modes.h"
 
 namespace stillpoint::eval {
 
@@ -72,7 +73,8 @@ std::optional<Spread> spread(std::span<const double> values, double confidence) 
                 .median = *percentile(values, 0.5),
                 .quartiles = {.low = *percentile(values, 0.25), .high = *percentile(values, 0.75)},
                 .worst = *std::max_element(values.begin(), values.end()),
-                .median_interval = median_interval(values, confidence)};
+                .median_interval = median_interval(values, confidence),
+                .modes = mode_count(values)};
 }
 
 std::optional<RankSum> rank_sum(std::span<const double> before, std::span<const double> after,

@@ -107,6 +107,7 @@ struct Spread {
   Interval quartiles;
   double worst = 0.0;                       ///< the largest
   std::optional<Interval> median_interval;  ///< nullopt if there are too few values
+  std::optional<std::size_t> modes;         ///< see modes.h
 };
 
 /// @param values finite

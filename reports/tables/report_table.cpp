@@ -30,7 +30,9 @@ std::string spread_text(const TableCell& cell, int decimals) {
   const std::string interval = cell.interval ? fmt::format(", {:.{}f} to {:.{}f}", cell.interval->low,
                                                            decimals, cell.interval->high, decimals)
                                              : ", no interval";
-  return count + interval + (cell.worst ? fmt::format(", worst {:.{}f}", *cell.worst, decimals) : "");
+  const std::string worst = cell.worst ? fmt::format(", worst {:.{}f}", *cell.worst, decimals) : "";
+  return count + interval + worst +
+         (cell.modes.value_or(1) > 1 ? fmt::format(", {} modes", *cell.modes) : "");
 }
 
 std::string number_text(const TableColumn& column, const TableCell& cell) {

@@ -39,6 +39,7 @@ struct TableCell {
   std::size_t count = 0;           ///< number of runs; 0 for published numbers
   std::optional<eval::Interval> interval;  ///< of the median; absent if `count` is too small for one
   std::optional<double> worst;             ///< of the runs, if there are several
+  std::optional<std::size_t> modes;        ///< of the runs, see eval/statistics/modes.h
   std::vector<std::string> run_keys;       ///< keys of these runs
   std::string protocol;                    ///< evaluation protocol of the number
 };
@@ -67,8 +68,8 @@ enum class TableDetail {
 /// "n = 3", or "n = 1 to 3" if the numbers of a table have different counts.
 [[nodiscard]] std::string count_text(std::size_t least, std::size_t most);
 
-/// A cell's number of runs and its interval, printed with `decimals`: "n = 8, 0.0400 to 0.0500, worst 0.0700"
-/// or "n = 1, no interval".
+/// A cell's number of runs and its interval, printed with `decimals`: "n = 8, 0.0400 to 0.0500, worst 0.0700,
+/// 2 modes" or "n = 1, no interval".
 [[nodiscard]] std::string spread_text(const TableCell& cell, int decimals);
 
 /// A cell's number as printed in every format; "failed" or "-" without a number.

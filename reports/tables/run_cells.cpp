@@ -111,6 +111,7 @@ TableCell metric_cell(const std::vector<const bench::StoredRun*>& runs, std::str
     cell.number = spread->median;
     cell.count = spread->count;
     cell.interval = spread->median_interval;
+    cell.modes = spread->modes;
     if (spread->count > 1) cell.worst = spread->worst;
   }
   cell = with_note(std::move(cell), bench::scatter_note(runs, metric));

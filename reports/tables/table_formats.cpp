@@ -272,6 +272,7 @@ Json cell_json(const TableColumn& column, const TableCell& cell) {
   json["exact"] = cell.number ? Json(*cell.number) : Json(nullptr);
   json["n"] = cell.count;
   if (cell.worst) json["worst"] = *cell.worst;
+  if (cell.modes) json["modes"] = *cell.modes;
   json["interval"] = cell.interval ? Json({cell.interval->low, cell.interval->high}) : Json(nullptr);
   json["best"] = cell.is_best;
   if (cell.is_suspicious) json["suspicious"] = true;

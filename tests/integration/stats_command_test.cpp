@@ -84,8 +84,9 @@ TEST_F(StatsCommand, ShowsAllBuildsInSeparateRows) {
   fill(6);
   const ProgramResult result = stats({"summary", "--build", "all", "--csv"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(result.out.substr(0, result.out.find('\n')),
-            "build,machine,mode,sequence,variant,sweep,runs,failed,n,median,median 95 %,quartiles,worst");
+  EXPECT_EQ(
+      result.out.substr(0, result.out.find('\n')),
+      "build,machine,mode,sequence,variant,sweep,runs,failed,n,median,median 95 %,quartiles,worst,modes");
   EXPECT_NE(result.out.find("0.0101 to 0.0106"), std::string::npos) << result.out;  // all six values
   EXPECT_NE(result.out.find("0.1001 to 0.1006"), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find("Left out"), std::string::npos);

@@ -449,9 +449,10 @@ std::vector<std::string> summary_cells(const RunSpread& row) {
   if (row.spread) {
     cells.insert(cells.end(),
                  {number_cell(row.spread->median), interval_cell(row.spread->median_interval, count),
-                  interval_cell(row.spread->quartiles, count), number_cell(row.spread->worst)});
+                  interval_cell(row.spread->quartiles, count), number_cell(row.spread->worst),
+                  row.spread->modes ? fmt::format("{}", *row.spread->modes) : "n/a"});
   } else {
-    cells.insert(cells.end(), 4, "n/a");
+    cells.insert(cells.end(), 5, "n/a");
   }
   return cells;
 }
@@ -495,9 +496,9 @@ int summary(const StatsArguments& arguments) {
                                     interval_note(kMedianTest, rows.counts)};
   if (rows.copies > 0) notes.push_back(copies_note(rows.copies, "runs"));
   if (rows.without_value > 0) notes.push_back(without_value_note(rows.without_value, "succeeded runs"));
-  print_groups(
-      {"sequence", "variant", "sweep", "runs", "failed", "n", "median", "median 95 %", "quartiles", "worst"},
-      rows.groups, with_left_out(with_doubts(std::move(notes), rows.doubts), selection), arguments);
+  print_groups({"sequence", "variant", "sweep", "runs", "failed", "n", "median", "median 95 %", "quartiles",
+                "worst", "modes"},
+               rows.groups, with_left_out(with_doubts(std::move(notes), rows.doubts), selection), arguments);
   return kExitOk;
 }
 

@@ -2,6 +2,7 @@
 #include "bench/plan/execution/bench_table.h"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 #include <unordered_map>
 
@@ -12,6 +13,7 @@
 #include "bench/model/metrics.h"
 #include "bench/record/result_values.h"
 #include "eval/metrics/statistics.h"
+#include "eval/statistics/modes.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -96,10 +98,12 @@ BenchRow row_of(const Group& group, const std::string& unavailable_reason) {
     if (const std::optional<double> median = median_of(succeeded, metric->id))
       row.metrics[std::string(metric->id)] = *median;
   }
+  std::set<double> values;  // equal ones are copies of one result
   for (const StoredRun* run : succeeded) {
-    const std::optional<double> value = metric_value(*run, headline_metric().id);
-    if (value) row.worst = std::max(row.worst.value_or(*value), *value);
+    if (const auto value = metric_value(*run, headline_metric().id)) values.insert(*value);
   }
+  if (!values.empty()) row.worst = *values.rbegin();
+  row.modes = eval::mode_count(std::vector<double>(values.begin(), values.end()));
   for (std::size_t i = 0; i < kModuleCount; ++i) {
     row.mean_ms[i] = median_cost(succeeded, module_name(static_cast<Module>(i)));
   }
@@ -179,6 +183,10 @@ Columns columns_of(std::span<const BenchRow> rows) {
   return columns;
 }
 
+std::string modes_cell(const std::optional<std::size_t>& modes) {
+  return modes ? fmt::format("{}", *modes) : "n/a";
+}
+
 Cells header(const Columns& columns) {
   Cells cells = {"sequence", "variant"};
   if (columns.sweep) cells.emplace_back("sweep");
@@ -187,8 +195,10 @@ Cells header(const Columns& columns) {
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory)) {
     cells.push_back(fmt::format("{}{}{}", metric->label, metric->unit.empty() ? "" : " ", metric->unit));
   }
-  if (columns.runs)
+  if (columns.runs) {
     cells.push_back(fmt::format("worst {} {}", headline_metric().label, headline_metric().unit));
+    cells.emplace_back("modes");
+  }
   for (const TimedColumn& column : columns.timed) cells.push_back(std::string(column.title) + " ms");
   return cells;
 }
@@ -200,7 +210,10 @@ Cells cells_of(const BenchRow& row, const Columns& columns) {
   if (columns.runs) cells.push_back(fmt::format("{} of {}", row.succeeded_runs, row.runs));
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory))
     cells.push_back(cell(metric_of(row, *metric), metric->decimals));
-  if (columns.runs) cells.push_back(cell(row.worst, headline_metric().decimals));
+  if (columns.runs) {
+    cells.push_back(cell(row.worst, headline_metric().decimals));
+    cells.push_back(modes_cell(row.modes));
+  }
   for (const TimedColumn& column : columns.timed) {
     cells.push_back(cell(row.mean_ms[static_cast<std::size_t>(column.module)], 2));
   }
@@ -240,6 +253,7 @@ Json row_json(const BenchRow& row) {
   for (const MetricDescriptor* metric : metrics_of(MetricSource::kTrajectory))
     json[std::string(metric->id)] = number_or_null(metric_of(row, *metric));
   json["worst_" + std::string(headline_metric().id)] = number_or_null(row.worst);
+  json["modes_" + std::string(headline_metric().id)] = row.modes ? Json(*row.modes) : Json(nullptr);
   json["mean_ms"] = timings;
   if (!timings.empty()) json["mean_ms_note"] = time_source_note(row.time_source);
   return json;

@@ -30,6 +30,7 @@ struct BenchRow {
   std::size_t succeeded_runs = 0;  ///< executed with outcome "ok"
   std::map<std::string, double, std::less<>> metrics;  ///< by id, of `MetricSource::kTrajectory`
   std::optional<double> worst;                         ///< of the headline metric, over the succeeded runs
+  std::optional<std::size_t> modes;                    ///< of the same, see eval/statistics/modes.h
   std::array<std::optional<double>, kModuleCount> mean_ms;
   TimeSource time_source = TimeSource::kUndisturbed;  ///< of `mean_ms`: the worst among the runs
 };

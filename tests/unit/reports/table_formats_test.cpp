@@ -75,6 +75,17 @@ TEST(TableFormats, SpreadIsShownOnRequest) {
   EXPECT_EQ(table_markdown(small_table()).find("(n ="), std::string::npos);
 }
 
+TEST(TableFormats, SeveralModesAreShownWithTheSpread) {
+  ReportTable table = small_table();
+  TableCell& cell = table.rows.front().cells.front();
+  cell.worst = 0.07;
+  cell.modes = 2;
+  EXPECT_NE(table_html(table).find("worst 0.0700, 2 modes</span>"), std::string::npos);
+  EXPECT_EQ(table_json(table)["rows"][0]["cells"][0]["modes"], 2);
+  cell.modes = 1;
+  EXPECT_EQ(table_html(table).find("mode"), std::string::npos);
+}
+
 TEST(TableFormats, AMissingIntervalIsStatedWithTheNumberOfRuns) {
   ReportTable table = small_table();
   TableCell& cell = table.rows.front().cells.front();
