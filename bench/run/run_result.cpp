@@ -9,6 +9,7 @@
 
 #include "bench/run/run_scores.h"
 #include "datasets/faults/faulty_stream.h"
+#include "eval/compare/conventions.h"
 #include "eval/trajectory/alignment.h"
 
 namespace stillpoint::bench {
@@ -181,6 +182,8 @@ RunResult score_run(const datasets::SequenceInfo& info, OdometryRun run,
   result.notes = info.notes;
   result.warnings = warnings_of(info, run);
   result.gt = camera_truth(info, options.expected_times);
+  if (const auto scale = eval::find_wrong_scale(result.gt, run.trajectory))
+    result.warnings.push_back("trajectory: " + scale->message);
   result.score = eval::score(result.gt, run.trajectory, options);
   if (run.imu_rate) result.imu_rate = score_imu_rate(result.gt, *run.imu_rate, run.trajectory);
   if (run.loops) result.loops = score_loops(result.gt, run.trajectory, *run.loops);

@@ -53,6 +53,19 @@ TEST(RunResult, IsScoredAgainstTheGroundTruthOfTheCamera) {
   EXPECT_NEAR(result.score.correct_rate.value(), 1.0, 1e-9);
 }
 
+TEST(RunResult, WarnsOfAWrongScale) {
+  const datasets::SequenceInfo info = straight_sequence();
+  OdometryRun run = perfect_run(info, kFrames);
+  EXPECT_TRUE(score_run(info, run).warnings.empty());
+  for (StampedPose& pose : run.trajectory.poses) pose.T_w_f.p *= 0.2;
+  const RunResult result = score_run(info, std::move(run));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(
+      result.warnings.front().find("trajectory: the estimate is 0.2 times as large as the ground truth"),
+      std::string::npos)
+      << result.warnings.front();
+}
+
 TEST(RunResult, OfAnInterruptedRunIsMarkedAndScoredOnProcessedFrames) {
   const datasets::SequenceInfo info = straight_sequence();
   OdometryRun run = perfect_run(info, 30);
