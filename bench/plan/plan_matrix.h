@@ -19,9 +19,9 @@ struct PlannedRun {
   RunIdentity identity;
   ConfigRequest config;  ///< of a run of this odometry
   int max_frames = 0;    ///< 0 = all
-  /// Frames by which the run begins later. A recording does not depend on the seed; run
-  /// k of n seeds begins k - 1 frames later, so that the seeds are replicates: decisions that depend on the
-  /// start differ.
+  /// Frames by which the run begins later, and seed of the noise of its gray images (of this odometry). A
+  /// recording does not depend on the seed; run k of n seeds begins k - 1 frames later with other noise, so
+  /// that the seeds are replicates: decisions that depend on the start and on the pixels differ.
   int later_frames = 0;
   std::string fault;              ///< injected sensor fault, canonical; empty = none
   std::size_t system = 0;         ///< index into `PlanMatrix::systems`, of a run of an external system

@@ -105,6 +105,8 @@ ProcessSpec OwnOdometry::command(const RunRequest& request) const {
   if (request.start_s > 0.0) {
     spec.arguments.insert(spec.arguments.end(), {"--start", fmt::format("{:.6f}", request.start_s)});
   }
+  if (request.gray_noise > 0)
+    spec.arguments.insert(spec.arguments.end(), {"--gray-noise", std::to_string(request.gray_noise)});
   if (!request.fault.empty()) spec.arguments.insert(spec.arguments.end(), {"--fault", request.fault});
   for (const std::string& setting : config.settings) {
     spec.arguments.insert(spec.arguments.end(), {"--set", setting});

@@ -19,6 +19,7 @@ struct RunRequest {
   ConfigRequest config;            ///< of this odometry
   int max_frames = 0;              ///< 0 = all
   double start_s = 0.0;            ///< time after the first frame at which the run begins
+  int gray_noise = 0;              ///< of this odometry: seed, see datasets/faults/gray_noise.h; 0 = none
   std::string fault;               ///< sensor fault to inject; empty = none
   std::filesystem::path program;   ///< executable of this odometry; empty = the current executable
   std::filesystem::path sequence;  ///< folder

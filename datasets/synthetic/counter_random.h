@@ -22,6 +22,7 @@ enum class RandomStream : std::uint64_t {
   kPeople,
   kDetector,
   kFaults,
+  kGrayNoise,
 };
 
 /// Key of one stream of one seed; `index` selects a substream (a frame, a person, a texture).

@@ -168,7 +168,9 @@ int incomplete_code(const PlanMatrix& matrix, const PlanReport& report) {
 
 /// Empty, or ", from frame 3 on": how the seeds of a recording differ.
 std::string later_text(const PlannedRun& run) {
-  return run.later_frames == 0 ? "" : fmt::format(", from frame {} on", run.later_frames);
+  if (run.later_frames == 0) return "";
+  const char* noise = run.identity.mode == "external" ? "" : ", with noise";
+  return fmt::format(", from frame {} on{}", run.later_frames, noise);
 }
 
 /// Prints the state of each run of the plan. Executes nothing and does not create the store.
@@ -241,8 +243,11 @@ int run_bench(const BenchArguments& arguments) {
     throw InputError("--filter", "matches no run of the plan; see `stillpoint plan show`");
   const auto last = std::ranges::max_element(matrix.runs, {}, &PlannedRun::later_frames);
   if (last != matrix.runs.end() && last->later_frames > 0)
-    spdlog::info("seeds of recorded sequences begin later, by 0 to {} frames: they are replicates",
-                 last->later_frames);
+    spdlog::info(
+        "seeds of recorded sequences begin later, by 0 to {} frames, those of this odometry with noise of a "
+        "gray level: they "
+        "are replicates",
+        last->later_frames);
   if (arguments.workers > 0 && !arguments.estimate) throw InputError("--workers", "requires --estimate");
   if (arguments.dry_run) return dry_run(matrix, arguments.store);
   if (arguments.estimate) {

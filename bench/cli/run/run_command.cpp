@@ -90,7 +90,7 @@ struct RunArguments {
   std::string sequence, base = "stillpoint", mode = "sequential";
   std::vector<std::string> variants, settings, faults, topics, dumps;
   std::string out, format, rig, heartbeat, sequence_id, video, sysfs_root = "/";
-  int max_frames = 0, every = 1, passes = 1, images = 0;
+  int max_frames = 0, every = 1, passes = 1, images = 0, gray_noise = 0;
   bool deterministic_counts = false, no_frame_cache = false, imu_rate = false;
   double speed = 1.0, start_s = 0.0;
   MapOptions map;
@@ -250,7 +250,8 @@ void print_result(const RunResult& result, const fs::path& folder, const std::st
                            status_name(result.outcome), result.run.summary.frames, result.run.frames_planned,
                            score_line(result), (folder / "result.json").string());
   const std::vector<RigFinding> rig = rig_report(result.run.calibration);
-  if (!rig.empty()) std::cout << fmt::format("  rig: {}\n", rig_report_line(rig));
+  if (!rig.empty() && !result.run.trajectory.poses.empty())
+    std::cout << fmt::format("  rig: {}\n", rig_report_line(rig));
   if (const std::vector<std::string> off = run_indicators(result); !off.empty())
     std::cout << fmt::format("  {}: `stillpoint diagnose {}`\n", fmt::join(off, "; "), sequence);
 }
@@ -276,8 +277,11 @@ std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
                           .defer_color = std::ranges::none_of(runs, needs_color, &ConfiguredRun::spec),
                           .frame_cache = logged_frame_cache(cached, frames)});
   if (!stream) return nullptr;
-  return played(std::move(stream),
-                {arguments.start_s, arguments.every, arguments.passes, runs.front().faults});
+  return played(std::move(stream), {.start_s = arguments.start_s,
+                                    .every = arguments.every,
+                                    .passes = arguments.passes,
+                                    .faults = runs.front().faults,
+                                    .gray_noise = arguments.gray_noise});
 }
 
 RunControl control_of(RunWatch& watch, RunDumps& dumps) {
@@ -366,6 +370,10 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
       {"--sequence-id", "Identifier for the manifest [a checksum]", &arguments->sequence_id},
       {"--heartbeat", "File that receives the id of the last processed frame", &arguments->heartbeat},
       {"--start", "Time after the first frame at which the run begins [0 s]", &arguments->start_s, {0, 1e9}},
+      {"--gray-noise",
+       "Seed of normal noise of a gray level in the gray images, for replicates of a recording; 0 = none [0]",
+       &arguments->gray_noise,
+       {0, 1e9}},
       {"--every",
        "Play the first frame from --start on and every N-th after it, with all IMU samples [1]",
        &arguments->every,

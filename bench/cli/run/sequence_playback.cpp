@@ -9,6 +9,7 @@
 #include "bench/run/frame_cache.h"
 #include "bench/run/sequence_source.h"
 #include "datasets/faults/faulty_stream.h"
+#include "datasets/faults/gray_noise.h"
 #include "datasets/faults/rig_faults.h"
 
 namespace stillpoint::bench {
@@ -31,6 +32,7 @@ std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorS
   stream = datasets::start_at(std::move(stream), playback.start_s);
   stream = datasets::every_nth_frame(std::move(stream), playback.every);
   if (playback.passes > 1) stream = datasets::ping_pong_playback(std::move(stream), playback.passes);
+  stream = datasets::with_gray_noise(std::move(stream), playback.gray_noise);
   return datasets::with_faults(std::move(stream), playback.faults);
 }
 

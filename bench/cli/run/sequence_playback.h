@@ -24,9 +24,11 @@ struct Playback {
   double start_s = 0.0;  ///< see datasets/sensor_stream.h, as the next two
   int every = 1, passes = 1;
   std::vector<datasets::SensorFault> faults;
+  int gray_noise = 0;  ///< seed, see datasets/faults/gray_noise.h
 };
 
-/// The stream from the start on, every n-th frame of it, in passes, with faults relative to the start.
+/// The stream from the start on, every n-th frame of it, in passes, with noise, and with faults relative to
+/// the start.
 /// @param stream with at least one frame
 /// @throws InputError as `start_at`, `every_nth_frame`, `ping_pong_playback` and `with_faults`
 [[nodiscard]] std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,

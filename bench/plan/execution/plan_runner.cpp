@@ -305,6 +305,7 @@ class PlanRunner {
             .config = planned.config,
             .max_frames = planned.max_frames,
             .start_s = time_of_frame(folder, planned.later_frames),
+            .gray_noise = planned.later_frames,
             .fault = planned.fault,
             .program = planned.program,
             .sequence = folder,
