@@ -17,10 +17,11 @@
 namespace stillpoint::bench {
 namespace {
 
-constexpr double kLeastEffect = 0.1;   ///< reduction of the error that counts
-constexpr double kChance = 2.5;        ///< standard deviations of the logarithm of an error by chance
-constexpr double kLargeEffect = 0.5;   ///< ratio of errors that is an effect if all runs show it
-constexpr std::size_t kMaxRounds = 3;  ///< number of faults at once
+constexpr double kLeastEffect = 0.1;     ///< reduction of the error that counts
+constexpr double kChance = 2.5;          ///< standard deviations of the logarithm of an error by chance
+constexpr double kLargeEffect = 0.5;     ///< ratio of errors that is an effect if all runs show it
+constexpr double kTrialsPerRound = 3.0;  ///< at least: without changes, without IMU, with one correction
+constexpr std::size_t kMaxRounds = 3;    ///< number of faults at once
 
 constexpr std::size_t kLeastFrames = 30;
 
@@ -118,6 +119,10 @@ class Diagnoser {
 
   /// Measures the effects of all candidates. @return whether a correction was kept
   bool find_next(std::size_t round) {
+    if (round > 0 && elapsed_s() + kTrialsPerRound * trial_s_ > options_.budget_s) {
+      diagnosis_.out_of_budget = true;
+      return false;
+    }
     announce(fmt::format("running on {} frames", request_.part.count));
     const Trial baseline = trial_with(kept_);
     if (round == 0) diagnosis_.error = baseline.error;
@@ -180,6 +185,7 @@ class Diagnoser {
     const auto best = std::ranges::min_element(found, {}, ratio);
     if (best != found.end() && ratio(*best) < 1.0) {
       kept_.push_back(*best->correction);
+      diagnosis_.corrected *= *best->error_ratio;
       diagnosis_.causes.push_back(std::move(*best));
       return true;
     }

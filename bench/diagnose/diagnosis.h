@@ -35,6 +35,7 @@ struct Diagnosis {
   double least_effect = 0.1;  ///< relative change of the error that counts: 10 %, or what chance causes
   int trials = 0;
   bool interrupted = false;
+  bool out_of_budget = false;   ///< further causes were not looked for
   std::vector<Cause> causes;    ///< with an effect, worst first
   std::vector<Cause> harmless;  ///< with evidence, but a smaller effect
   std::vector<Cause> unmeasured;

@@ -25,7 +25,7 @@ std::string title(const Diagnosis& diagnosis) {
                                   : "inconsistency (innovations of images and IMU; no ground truth)";
   std::string text = fmt::format("{}: {} frames ({:.1f} s), {}: {}", diagnosis.sequence, diagnosis.frames,
                                  diagnosis.seconds, measure, error_text(diagnosis, diagnosis.error));
-  if (!diagnosis.causes.empty())
+  if (diagnosis.corrected != diagnosis.error)
     text += fmt::format(", corrected {}", error_text(diagnosis, diagnosis.corrected));
   return text + fmt::format("; {} trials\n", diagnosis.trials);
 }
@@ -70,6 +70,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   if (!diagnosis.harmless.empty()) text += "found, with less effect: " + names(diagnosis.harmless) + "\n";
   if (!diagnosis.unmeasured.empty())
     text += "found, effect not measured: " + names(diagnosis.unmeasured) + "\n";
+  if (diagnosis.out_of_budget) text += "the budget is spent: more of it may find further causes\n";
   return text + (diagnosis.interrupted ? "interrupted\n" : "");
 }
 
@@ -84,6 +85,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
       {"least_effect", diagnosis.least_effect},
       {"trials", diagnosis.trials},
       {"interrupted", diagnosis.interrupted},
+      {"out_of_budget", diagnosis.out_of_budget},
       {"causes", list(diagnosis.causes)},
       {"less_effect", list(diagnosis.harmless)},
       {"not_measured", list(diagnosis.unmeasured)}};

@@ -21,6 +21,7 @@ constexpr double kLeastLag_s =
     0.005;  ///< the motion between images is that of their brightness, not of points
 constexpr double kSignificant = 4.0;  ///< standard deviations
 constexpr double kOtherAxes = 0.7;    ///< residual without permutation of axes, else they are right
+constexpr double kRightAxes = 0.2;    ///< residual of axes that are right, up to a few degrees
 constexpr double kBetterAxes = 0.6;   ///< residual with it, relative to that without
 constexpr double kMinDegreesRatio = 25.0, kMaxDegreesRatio = 130.0;  ///< see sequence_plausibility.cpp
 constexpr double kLeastRate = 0.02;  ///< of the rotation that tells the unit [rad/s]
@@ -123,7 +124,7 @@ std::vector<Cause> axes_causes(const datasets::SequenceInfo& info, std::span<con
                                bool accel_is_right) {
   const Eigen::Matrix3d R_b_c = info.rig.T_b_c.R();
   const double stated = relative_residual(pairs, R_b_c);
-  if (stated < kOtherAxes) return {};
+  if (stated < kRightAxes) return {};
   std::vector<Cause> causes;
   const auto& permutations = axis_permutations();
   const auto residual_with = [&](const Eigen::Matrix3d& P) {
