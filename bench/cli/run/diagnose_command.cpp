@@ -57,7 +57,7 @@ std::unique_ptr<datasets::SensorStream> open_recording(const DiagnoseArguments& 
 
 DiagnosisOptions options_of(const DiagnoseArguments& arguments, const datasets::SequenceInfo& info) {
   return {.config = config_of(arguments, info),
-          .budget_s = parse_duration_s(arguments.budget),
+          .budget_s = parse_duration_s(arguments.budget, "--budget"),
           .length_s = arguments.length_s,
           .stop_requested = interrupt_requested,
           .on_step = [](const std::string& step) { spdlog::debug("{}", step); }};
@@ -94,7 +94,7 @@ int check_truths(const DiagnoseArguments& arguments) {
 }
 
 int diagnose_sequence(const DiagnoseArguments& arguments) {
-  static_cast<void>(parse_duration_s(arguments.budget));
+  static_cast<void>(parse_duration_s(arguments.budget, "--budget"));
   install_interrupt_handlers();
   if (arguments.truth) return check_truths(arguments);
   if (arguments.sequence.empty())

@@ -351,7 +351,7 @@ Profile measure(const datasets::SensorStream& stream, const ProfileArguments& ar
 /// Repeats the run for --duration. @return the last repetition, with the drift over all
 Profile measure_drift(const datasets::SensorStream& stream, const ProfileArguments& arguments,
                       const std::optional<double>& idle_w) {
-  const double duration_s = parse_duration_s(arguments.duration);
+  const double duration_s = parse_duration_s(arguments.duration, "--duration");
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   std::vector<DriftRow> drift;
@@ -398,7 +398,7 @@ DeviceRequest device_request(const ProfileArguments& arguments, const fs::path& 
 
 /// @throws InputError for options that are invalid whatever the sequence is
 void require_valid(const ProfileArguments& arguments) {
-  if (!arguments.duration.empty()) static_cast<void>(parse_duration_s(arguments.duration));
+  if (!arguments.duration.empty()) static_cast<void>(parse_duration_s(arguments.duration, "--duration"));
   if (arguments.tegrastats.empty()) return;
   require_regular_file(arguments.tegrastats);
   if (!std::ifstream(arguments.tegrastats))

@@ -123,7 +123,7 @@ void print_machine(const Profile& profile) {
 
 }  // namespace
 
-double parse_duration_s(std::string_view text) {
+double parse_duration_s(std::string_view text, const std::string& option) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
@@ -131,7 +131,7 @@ double parse_duration_s(std::string_view text) {
   constexpr double kLongestS = 1e6;
   const double seconds = value * unit_s;
   if (error != std::errc{} || !(seconds > 0.0) || seconds > kLongestS)
-    throw InputError("--duration", "\"" + std::string(text) + "\" is not a duration; write 90s, 10m or 1h");
+    throw InputError(option, "\"" + std::string(text) + "\" is not a duration; write 90s, 10m or 1h");
   return seconds;
 }
 

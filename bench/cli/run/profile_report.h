@@ -27,8 +27,10 @@ struct DriftRow {
 };
 
 /// "90s", "10m" or "1h", with an optional fraction [s].
+/// @param text   value of an option
+/// @param option its name, in messages
 /// @throws InputError unless the text is a positive number with one of these units
-[[nodiscard]] double parse_duration_s(std::string_view text);
+[[nodiscard]] double parse_duration_s(std::string_view text, const std::string& option);
 
 /// Null for values that are not available.
 [[nodiscard]] nlohmann::ordered_json drift_json(const std::vector<DriftRow>& rows);
