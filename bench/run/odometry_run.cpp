@@ -189,6 +189,10 @@ class RunRecorder {
       run_.loops->has_map = spec.map != nullptr;
     }
     run_.frames_planned = frames_to_run(stream.info(), spec.max_frames);
+    const Rig& rig = stream.info().rig;
+    run_.calibration.rig = rig;
+    run_.calibration.T_b_c = rig.T_b_c;
+    run_.calibration.time_offset_s = rig.time_offset_s;
   }
 
   [[nodiscard]] std::size_t frames_planned() const { return run_.frames_planned; }
@@ -209,7 +213,6 @@ class RunRecorder {
   [[nodiscard]] OdometryRun finish(RunSummary summary, double wall_s, const FramePrefetcher& prefetcher) {
     run_.summary = std::move(summary);
     run_.wall_s = wall_s;
-    run_.calibration.rig = stream_.info().rig;
     if (imu_rate_) run_.imu_rate = imu_rate_->take();
     if (run_.loops && run_.summary.loops) {
       run_.loops->report = std::move(*run_.summary.loops);
@@ -256,8 +259,13 @@ class RunRecorder {
     if (update.segment == 0) run_.trajectory.poses.push_back({t, update.T_w_c});
   }
 
+  /// That of the newest located frame: a window that does not fit says nothing about the rig.
   void record_calibration(const OdometryUpdate& update) {
     EstimatedCalibration& calibration = run_.calibration;
+    calibration.time_offset_at_bound += update.at_bound.time_offset;
+    calibration.extrinsics_at_bound += update.at_bound.extrinsics;
+    calibration.depth_scale_at_bound += update.at_bound.depth_scale;
+    if (!is_located(update.status)) return;
     calibration.time_offset_s = update.time_offset_s;
     calibration.depth_scale = update.depth_scale;
     calibration.lens = update.lens;
@@ -268,9 +276,6 @@ class RunRecorder {
       calibration.depth_scale_agrees = update.agrees_with_rig.depth_scale;
     if (update.agrees_with_rig.lens || calibration.lens_agrees)
       calibration.lens_agrees = update.agrees_with_rig.lens;
-    calibration.time_offset_at_bound += update.at_bound.time_offset;
-    calibration.extrinsics_at_bound += update.at_bound.extrinsics;
-    calibration.depth_scale_at_bound += update.at_bound.depth_scale;
     calibration.aligned_rotation = update.aligned_rotation;
     if (!update.covariance) return;
     calibration.rig_step = update.rig_step;

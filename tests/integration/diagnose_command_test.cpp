@@ -76,10 +76,24 @@ TEST(DiagnoseCommand, NamesAGyroscopeInDegreesFirst) {
   EXPECT_LE(std::ranges::count(result.out, '\n'), 15) << result.out;
 }
 
+/// A window that does not fit once claimed that the focal length is 80 % off.
+TEST(DiagnoseCommand, TheLineOfARunWithoutPosesSaysNothingAboutTheRig) {
+  const TemporaryFolder folder;
+  const fs::path copy = copy_of_rendered_sequence(folder);
+  scale_columns(copy / "d400_gyroscope.txt", 180.0 / M_PI);
+  const fs::path out = folder.path() / "out";
+  const ProgramResult result = run_program({"run", copy.string(), "--out", out.string()});
+  ASSERT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_NE(result.out.find("100 % of the frames have no pose: `stillpoint diagnose"), std::string::npos)
+      << result.out;
+  EXPECT_EQ(result.out.find("differs"), std::string::npos) << result.out;
+  EXPECT_TRUE(nlohmann::json::parse(std::ifstream(out / "result.json")).at("rig_report").empty());
+}
+
 TEST(DiagnoseCommand, NamesTheProblemOfABudgetWithoutUnit) {
   const ProgramResult result = diagnosis_of(rendered_sequence(), {"--budget", "60"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("60"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("--budget: \"60\""), std::string::npos) << result.err;
 }
 
 TEST(DiagnoseCommand, RejectsAPartWithTooFewFrames) {

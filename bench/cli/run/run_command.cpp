@@ -250,8 +250,7 @@ void print_result(const RunResult& result, const fs::path& folder, const std::st
                            status_name(result.outcome), result.run.summary.frames, result.run.frames_planned,
                            score_line(result), (folder / "result.json").string());
   const std::vector<RigFinding> rig = rig_report(result.run.calibration);
-  if (!rig.empty() && !result.run.trajectory.poses.empty())
-    std::cout << fmt::format("  rig: {}\n", rig_report_line(rig));
+  if (!rig.empty()) std::cout << fmt::format("  rig: {}\n", rig_report_line(rig));
   if (const std::vector<std::string> off = run_indicators(result); !off.empty())
     std::cout << fmt::format("  {}: `stillpoint diagnose {}`\n", fmt::join(off, "; "), sequence);
 }
