@@ -114,6 +114,7 @@ row bench/fetch $common core/detector datasets datasets/bags datasets/io dataset
 row bench/executors core/base eval/io bench/model bench/store bench/store/maintenance bench/process bench/record bench/systems \
   bench/plan bench/plan/execution
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
+row bench/analysis/search core/base eval/statistics bench/model bench/analysis
 row bench/serve core/base bench/record
 row bench/rivals core/base core/geometry core/types datasets eval/io
 row bench/micro $core tests/support tests/support/simulated
@@ -138,7 +139,7 @@ row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalo
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/text reports/page
 row bench/cli/analysis $execution datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan \
-  bench/plan/execution bench/analysis \
+  bench/plan/execution bench/analysis bench/analysis/search \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 
 # The minimal build: its commands, and the functions that it does not have.

@@ -70,6 +70,10 @@ inline constexpr const char* kRigHelp =
     "Calibration that overrides that of the sequence: rig.toml, or YAML of Kalibr, OpenCV, ROS, ORB-SLAM, "
     "VINS";
 
+/// Help of the option --builds.
+inline constexpr const char* kBuildsHelp =
+    "Folder of work trees and builds of commits, which are kept [builds/ in the cache folder]";
+
 /// Help of the option --topics, of which the values are passed to `OpenOptions::topics`.
 inline constexpr const char* kTopicsHelp =
     "Topic of a bag: ROLE=TOPIC, with a role color, depth, imu, gyro, accel or truth; may be repeated [by "
@@ -95,6 +99,8 @@ inline constexpr const char* kSysfsRootHelp =
 [[nodiscard]] Command store_command();           ///< `stillpoint store`: inspect and maintain stores
 [[nodiscard]] Command stats_command();           ///< `stillpoint stats`: statistics over runs
 [[nodiscard]] Command compare_command();         ///< `stillpoint compare`: regression gate
+[[nodiscard]] Command history_command();         ///< `stillpoint history`: measure a range of commits
+[[nodiscard]] Command bisect_command();          ///< `stillpoint bisect`: the commit that changed a metric
 [[nodiscard]] Command profile_command();         ///< `stillpoint profile`: profile one run
 [[nodiscard]] Command report_command();          ///< `stillpoint report`: HTML report of a store
 [[nodiscard]] Command dashboard_command();       ///< `stillpoint dashboard`: metrics over commits as HTML

@@ -266,6 +266,12 @@ PlanMatrix single_runs(BenchPlan plan) {
 
 namespace {
 
+PlanMatrix with_keys(PlanMatrix matrix) {
+  matrix.keys.clear();
+  for (const PlannedRun& run : matrix.runs) matrix.keys.push_back(run_key(run.identity));
+  return matrix;
+}
+
 /// The two runs of a pair.
 struct RunSides {
   PlannedRun base;
@@ -293,9 +299,7 @@ PlanMatrix in_pairs(PlanMatrix runs, int pairs, const Sides& sides) {
     }
     first = last;
   }
-  matrix.keys.clear();
-  for (const PlannedRun& run : matrix.runs) matrix.keys.push_back(run_key(run.identity));
-  return matrix;
+  return with_keys(std::move(matrix));
 }
 
 }  // namespace
@@ -310,27 +314,49 @@ PlanMatrix paired_plan(PlanMatrix runs, const ProgramPair& programs, int pairs) 
   });
 }
 
-PlanMatrix single_system_runs(BenchPlan plan, const SystemPair& pair) {
+BenchPlan plan_of_system(BenchPlan plan, const std::string& system) {
   if (plan.kind == RunKind::kInstructions)
     throw InputError(place_of(plan, "kind"), "instructions are counted for this odometry only");
-  plan.kind = RunKind::kTiming;
-  plan.repetitions = 1;
   plan.variants.clear();
   plan.rendered.variants.clear();
   plan.recorded.variants.clear();
-  plan.systems = {pair.base, pair.head};
-  PlanMatrix matrix = expand_plan(plan, "", {});
-  std::erase_if(matrix.runs, [](const PlannedRun& run) { return run.system != 0; });
-  return matrix;
+  plan.systems = {system};
+  return plan;
 }
 
-PlanMatrix paired_systems(PlanMatrix runs, int pairs) {
-  const std::vector<ExternalSystem> systems = runs.systems;
+PlanMatrix with_version(PlanMatrix runs, const ExternalSystem& version, const std::string& commit_time) {
+  runs.systems = {version};
+  for (PlannedRun& run : runs.runs) {
+    run.identity.build = version.version;
+    run.identity.config_hash = version.hash;
+    run.commit_time = commit_time;
+  }
+  return with_keys(std::move(runs));
+}
+
+PlanMatrix with_program(PlanMatrix runs, const BuiltProgram& built) {
+  for (PlannedRun& run : runs.runs) {
+    run.program = built.program;
+    run.identity.build = built.commit;
+    run.commit_time = built.commit_time;
+  }
+  return with_keys(std::move(runs));
+}
+
+PlanMatrix single_system_runs(BenchPlan plan, const std::string& system) {
+  plan = plan_of_system(std::move(plan), system);
+  plan.kind = RunKind::kTiming;
+  plan.repetitions = 1;
+  return expand_plan(plan, "", {});
+}
+
+PlanMatrix paired_systems(PlanMatrix runs, const SystemPair& systems, int pairs) {
+  runs.systems = {systems.base, systems.head};
   return in_pairs(std::move(runs), pairs, [&](const PlannedRun& run, int repetition) {
     RunSides sides{run, run};
     sides.head.system = 1;
     for (PlannedRun* side : {&sides.base, &sides.head}) {
-      const ExternalSystem& system = systems[side->system];
+      const ExternalSystem& system = side->system == 0 ? systems.base : systems.head;
       side->identity.system = system.name;
       side->identity.variant = system.name;
       side->identity.config_hash = system.hash;

@@ -26,6 +26,7 @@ struct PlannedRun {
   std::string fault;              ///< injected sensor fault, canonical; empty = none
   std::size_t system = 0;         ///< index into `PlanMatrix::systems`, of a run of an external system
   std::filesystem::path program;  ///< executable of this odometry; empty = the current executable
+  std::string commit_time;        ///< UTC, of a program that was built from a commit; empty = unknown
 };
 
 struct PlanMatrix {
@@ -46,6 +47,27 @@ struct PlanMatrix {
 /// One-line description of a run: sequence, variant, and seed, repetition and sweep point if the plan varies
 /// them.
 [[nodiscard]] std::string run_label(const BenchPlan& plan, const RunIdentity& identity);
+
+/// The plan without this odometry, and with one external system.
+/// @param system name or file of its description
+[[nodiscard]] BenchPlan plan_of_system(BenchPlan plan, const std::string& system);
+
+/// The runs with the only external system replaced by one of its versions.
+/// @param runs of `plan_of_system`
+/// @param version with its build, see bench/systems/source_builds.h
+/// @param commit_time UTC
+[[nodiscard]] PlanMatrix with_version(PlanMatrix runs, const ExternalSystem& version,
+                                      const std::string& commit_time);
+
+/// A program of this odometry that was built from a commit.
+struct BuiltProgram {
+  std::filesystem::path program;
+  std::string commit;
+  std::string commit_time;  ///< UTC
+};
+
+/// The runs of this odometry by another program.
+[[nodiscard]] PlanMatrix with_program(PlanMatrix runs, const BuiltProgram& built);
 
 /// Two builds of the program, and the build names under which their runs are stored.
 struct ProgramPair {
@@ -72,25 +94,25 @@ struct ProgramPair {
 /// @param pairs at least 1
 [[nodiscard]] PlanMatrix paired_plan(PlanMatrix runs, const ProgramPair& programs, int pairs);
 
-/// Two external systems, by the files of their descriptions.
+/// Two external systems, or two versions of one.
 struct SystemPair {
-  std::string base;
-  std::string head;
+  ExternalSystem base;
+  ExternalSystem head;
 };
 
 /// The build under which the runs of one side are stored: its description and the files of its command.
 [[nodiscard]] std::string system_build(const ExternalSystem& system, bool is_base);
 
-/// The runs of the base system alone, without repetitions and without runs of this odometry.
+/// The runs of an external system alone, without repetitions and without runs of this odometry.
 /// @param plan its sequences, faults and limits
-/// @param pair of which both are in `PlanMatrix::systems`
+/// @param system name or file of its description
 /// @throws InputError as `expand_plan`, and if the plan counts instructions
-[[nodiscard]] PlanMatrix single_system_runs(BenchPlan plan, const SystemPair& pair);
+[[nodiscard]] PlanMatrix single_system_runs(BenchPlan plan, const std::string& system);
 
 /// Repeats each run `pairs` times with both systems, in the order of `paired_plan`. Repetition i is
 /// {repetition} in the command.
-/// @param runs as from `single_system_runs`
+/// @param runs as from `single_system_runs`, of any of the two
 /// @param pairs at least 1
-[[nodiscard]] PlanMatrix paired_systems(PlanMatrix runs, int pairs);
+[[nodiscard]] PlanMatrix paired_systems(PlanMatrix runs, const SystemPair& systems, int pairs);
 
 }  // namespace stillpoint::bench

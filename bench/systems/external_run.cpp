@@ -79,12 +79,11 @@ fs::path exported(const RunRequest& request, ExportLayout layout) {
 
 Placeholders placeholders_of(const ExternalSystem& system, const RunRequest& request,
                              const fs::path& sequence) {
-  Placeholders values = {{"sequence", fs::absolute(sequence).string()},
-                         {"out", fs::absolute(request.work).string()},
-                         {"here", system.folder},
-                         {"bin", executable_path().parent_path().string()},
-                         {"seed", std::to_string(request.identity.seed)},
-                         {"repetition", std::to_string(request.identity.repetition)}};
+  Placeholders values = folder_placeholders(system);
+  values["sequence"] = fs::absolute(sequence).string();
+  values["out"] = fs::absolute(request.work).string();
+  values["seed"] = std::to_string(request.identity.seed);
+  values["repetition"] = std::to_string(request.identity.repetition);
   if (!system.calibration_template.empty())
     values["calibration"] = (fs::absolute(request.work) / system.calibration_file).string();
   for (const auto& [name, value] : system.param) values[std::string(kParamPrefix) + name] = value;
@@ -125,18 +124,6 @@ std::vector<std::string> environment_of(const ExternalSystem& system, const Plac
     if (!is_replaced) environment.emplace_back(inherited);
   }
   return environment;
-}
-
-std::string manifest_text(const ExternalSystem& system, const RunRequest& request) {
-  Json json;
-  json["schema"] = 1;
-  json["system"] = {{"name", system.name}, {"version", system.version}, {"command", system.command}};
-  // What the history of the system uses as its commit; the gate stores other builds.
-  json["build"] = {{"git_commit", system.version}};
-  if (!request.fault.empty()) json["faults"] = {request.fault};
-  json["sequence"] = {{"name", request.identity.sequence}, {"id", request.identity.sequence_id}};
-  json["host"] = host_json(host_info());
-  return json.dump(2) + "\n";
 }
 
 /// The document itself, or its member "timings" as in a result.json.
@@ -278,11 +265,23 @@ RunOutcome scored(const ExternalSystem& system, const RunRequest& request) {
   }
   result.attachments["trajectory"] = std::move(output.text);
   if (!system.timings.empty()) result.costs = module_costs(timings_of(request.work / system.timings));
-  result.manifest = manifest_text(system, request);
   return result;
 }
 
 }  // namespace
+
+std::string ExternalRun::manifest(const RunRequest& request) const {
+  Json json;
+  json["schema"] = 1;
+  json["system"] = {{"name", system_.name}, {"version", system_.version}, {"command", system_.command}};
+  // What the history of the system uses as its commit; the gate stores other builds.
+  json["build"] = {{"git_commit", system_.version}};
+  if (!request.commit_time.empty()) json["build"]["git_time"] = request.commit_time;
+  if (!request.fault.empty()) json["faults"] = {request.fault};
+  json["sequence"] = {{"name", request.identity.sequence}, {"id", request.identity.sequence_id}};
+  json["host"] = host_json(host_info());
+  return json.dump(2) + "\n";
+}
 
 RunOutcome ExternalRun::outcome(const RunRequest& request, const ProcessResult& process) const {
   if (process.exit_code != 0) {

@@ -46,6 +46,9 @@ class ExternalRun : public SlamSystem {
   /// are cached.
   [[nodiscard]] ProcessSpec command(const RunRequest& request) const override;
 
+  /// Version, command, sequence and machine.
+  [[nodiscard]] std::string manifest(const RunRequest& request) const override;
+
   /// Evaluates the trajectory written by the system.
   [[nodiscard]] RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const override;
 

@@ -53,6 +53,7 @@ Placeholders placeholder_names(const ExternalSystem& system) {
   Placeholders names;
   for (const char* name : {"sequence", "out", "here", "bin", "seed", "repetition"}) names[name] = "";
   if (!system.calibration_template.empty()) names["calibration"] = "";
+  if (!system.source.binary.empty()) names["source"] = names["binary"] = "";
   for (const auto& [name, value] : system.param) names[std::string(kParamPrefix) + name] = value;
   return names;
 }
@@ -78,6 +79,18 @@ void require_environment(const Setting& setting, const ExternalSystem& system) {
     throw InputError(setting.file, setting.line,
                      "\"environment\" contains \"" + variable + "\"; write \"NAME=value\"");
   }
+}
+
+void require_source(const SystemSource& source, const Setting& setting) {
+  if (!setting.key.starts_with("source.")) return;
+  if (source.binary.empty())
+    throw InputError(setting.file, setting.line,
+                     "[source] has no binary; add binary = \"PATH\" of the program below the work tree");
+  if (fs::path(source.binary).is_absolute())
+    throw InputError(setting.file, setting.line, "\"source.binary\" is absolute; it is below the work tree");
+  if (source.git.find("://") != std::string::npos)
+    throw InputError(setting.file, setting.line,
+                     "\"source.git\" is an address; clone it, and state the folder of the clone");
 }
 
 /// Hash of the contents that determine a run: a rebuilt program or an edited script is another system.
@@ -121,6 +134,8 @@ std::string expanded(std::string_view text, const Placeholders& values, const st
       const std::string near = suggestion(name, names);
       const std::string remedy = name == "calibration"        ? "; set calibration_template"
                                  : name.starts_with("param.") ? "; add it to the table [param]"
+                                 : name == "source" || name == "binary"
+                                     ? "; add the table [source] with the key binary"
                                  : near.empty() ? fmt::format("; expected one of: {}", fmt::join(names, ", "))
                                                 : near;
       throw InputError(place, "\"{" + name + "}\" is no placeholder" + remedy);
@@ -147,6 +162,7 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
   require_placeholders(system, own_settings);
   for (const Setting& setting : own_settings) {
     if (setting.key == "environment") require_environment(setting, system);
+    require_source(system.source, setting);
     const bool is_template = setting.key == "calibration_template";
     const fs::path file = fs::absolute(path).parent_path() / system.calibration_template;
     if (is_template && !fs::is_regular_file(file))
@@ -157,6 +173,9 @@ ExternalSystem parse_external_system(const std::string& text, const std::string&
   }
   system.path = path;
   system.folder = fs::absolute(path).parent_path().string();
+  system.hash_without_source = hash_of(system, text);
+  if (!system.source.binary.empty())
+    system.source_folder = (fs::path(system.folder) / system.source.git).lexically_normal().string();
   system.hash = hash_of(system, text);
   return system;
 }
@@ -203,6 +222,13 @@ trajectory = "trajectory.tum"
 # scale = "metric"                # "unknown": a monocular system; its scale is fitted to the ground truth
 # timings = ""                    # JSON in {{out}}: milliseconds per module, see bench/README.md
 
+# For `stillpoint history`, `bisect` and `compare FILE@COMMIT`: the repository of the program, the command that
+# builds a commit in its work tree, and the result, which is {{binary}} in the command; {{source}} is the work tree
+# [source]
+# git = "."
+# build = ["sh", "-c", "cmake -B build && cmake --build build"]
+# binary = "build/my_slam"
+
 # Values of {{param.NAME}}; a plan varies them by [sweep] param.NAME = [500, 1000]
 [param]
 # features = 1000
@@ -244,10 +270,18 @@ Placeholders calibration_placeholders(const Rig& rig, const SensorRates& rates) 
   return values;
 }
 
+Placeholders folder_placeholders(const ExternalSystem& system) {
+  Placeholders folders = {{"here", system.folder}, {"bin", executable_path().parent_path().string()}};
+  if (!system.source_folder.empty()) {
+    folders["source"] = system.source_folder;
+    folders["binary"] = (fs::path(system.source_folder) / system.source.binary).string();
+  }
+  return folders;
+}
+
 std::string with_folders(const ExternalSystem& system, std::string word) {
-  const Placeholders folders = {{"{here}", system.folder},
-                                {"{bin}", executable_path().parent_path().string()}};
-  for (const auto& [placeholder, folder] : folders) {
+  for (const auto& [name, folder] : folder_placeholders(system)) {
+    const std::string placeholder = "{" + name + "}";
     const std::size_t at = word.find(placeholder);
     if (at != std::string::npos) word.replace(at, placeholder.size(), folder);
   }

@@ -54,6 +54,20 @@ constexpr auto enum_names(PositionScale) {
       {{PositionScale::kMetric, "metric"}, {PositionScale::kUnknown, "unknown"}}};
 }
 
+/// Where the program of a system is built from: the table [source] of a description.
+struct SystemSource {
+  std::string git = ".";           ///< folder of a repository, relative to {here}
+  std::vector<std::string> build;  ///< program and arguments, executed in the work tree of a commit; no shell
+  std::string binary;              ///< the built program, relative to the work tree; empty: no source
+};
+template <class Visitor, class Config>
+requires std::is_same_v<std::remove_const_t<Config>, SystemSource>
+void visit_fields(Visitor&& field, Config& config) {
+  field("git", config.git);
+  field("build", config.build);
+  field("binary", config.binary);
+}
+
 /// Contents of a description. Placeholders in `command`, `environment`, `working_folder` and the template of
 /// the calibration:
 ///
@@ -62,6 +76,8 @@ constexpr auto enum_names(PositionScale) {
 ///   {calibration}  the file written from `calibration_template`
 ///   {here}         folder of the description
 ///   {bin}          folder of the program `stillpoint`
+///   {source}       with [source]: the work tree of the commit that is measured, else the repository itself
+///   {binary}       with [source]: the built program in {source}
 ///   {seed}, {repetition}  of the run
 ///   {param.NAME}   value of NAME in the table [param], or of the sweep
 ///
@@ -81,12 +97,15 @@ struct ExternalSystem {
   bool inverse = false;  ///< the poses are T_c_w or T_b_w
   PositionScale scale = PositionScale::kMetric;
   std::string timings;  ///< in {out}: JSON with modules and threads as "timings" in result.json; may be empty
+  SystemSource source;  ///< the table [source]
   std::map<std::string, std::string> param;  ///< the table [param]: values of {param.NAME}
   // Set by load_external_system.
-  std::string path;    ///< of the file, as shown in messages
-  std::string folder;  ///< {here}
+  std::string path;           ///< of the file, as shown in messages
+  std::string folder;         ///< {here}
+  std::string source_folder;  ///< {source}; empty without [source]
   std::string hash;  ///< of the description, its template, its program, and files of the command with {here}
                      ///< or {bin}
+  std::string hash_without_source;  ///< the same without the files of {source}, which its commit determines
 };
 template <class Visitor, class Config>
 requires std::is_same_v<std::remove_const_t<Config>, ExternalSystem>
@@ -105,6 +124,7 @@ void visit_fields(Visitor&& field, Config& config) {
   field("inverse", config.inverse);
   field("scale", config.scale);
   field("timings", config.timings);
+  field("source", config.source);
 }
 
 /// Beginning of the keys of parameters, in descriptions and in sweeps of plans.
@@ -144,7 +164,10 @@ struct SensorRates {
 /// (continuous-time densities), imu_rate [Hz], time_offset_s.
 [[nodiscard]] Placeholders calibration_placeholders(const Rig& rig, const SensorRates& rates);
 
-/// A word of the command with the folders {here} and {bin}; other placeholders remain.
+/// The paths of {here}, {bin} and, with [source], {source} and {binary}.
+[[nodiscard]] Placeholders folder_placeholders(const ExternalSystem& system);
+
+/// A word of the command with these paths; other placeholders remain.
 [[nodiscard]] std::string with_folders(const ExternalSystem& system, std::string word);
 
 /// The program that a word names: a path with a slash is relative to the description.

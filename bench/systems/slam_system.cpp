@@ -118,6 +118,15 @@ ProcessSpec OwnOdometry::command(const RunRequest& request) const {
   return under_callgrind(std::move(spec), request.work);
 }
 
+std::string OwnOdometry::manifest(const RunRequest& request) const {
+  if (request.commit_time.empty()) return "";
+  Json json;
+  json["schema"] = 1;
+  json["build"] = {{"git_commit", request.identity.build}, {"git_time", request.commit_time}};
+  json["host"] = host_json(host_info());
+  return json.dump(2) + "\n";
+}
+
 RunOutcome OwnOdometry::outcome(const RunRequest& request, const ProcessResult& process) const {
   const fs::path result_file = request.work / "result.json";
   if (!fs::exists(result_file)) return without_result(process);

@@ -22,6 +22,7 @@ struct RunRequest {
   int gray_noise = 0;              ///< of this odometry: seed, see datasets/faults/gray_noise.h; 0 = none
   std::string fault;               ///< sensor fault to inject; empty = none
   std::filesystem::path program;   ///< executable of this odometry; empty = the current executable
+  std::string commit_time;         ///< UTC, of a program that was built from a commit; empty = unknown
   std::filesystem::path sequence;  ///< folder
   std::filesystem::path work;      ///< exclusive output folder of the run
   int images = 0;                  ///< number of annotated images of its worst frames
@@ -36,6 +37,9 @@ class SlamSystem {
   /// @throws InputError if the sequence cannot be exported to the layout of the system
   [[nodiscard]] virtual ProcessSpec command(const RunRequest& request) const = 0;
 
+  /// What is known of a run without its result, as JSON: the manifest of a run that does not write one.
+  [[nodiscard]] virtual std::string manifest(const RunRequest& request) const = 0;
+
   /// Result of a run after its process exited or was killed by a signal. The caller adds the process costs
   /// and checks the resource limits.
   [[nodiscard]] virtual RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const = 0;
@@ -45,6 +49,8 @@ class SlamSystem {
 class OwnOdometry : public SlamSystem {
  public:
   [[nodiscard]] ProcessSpec command(const RunRequest& request) const override;
+  /// Commit and machine of a program that was built from a commit; else empty.
+  [[nodiscard]] std::string manifest(const RunRequest& request) const override;
   [[nodiscard]] RunOutcome outcome(const RunRequest& request, const ProcessResult& process) const override;
 };
 

@@ -2,7 +2,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
-#include <set>
+#include <optional>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,14 +11,15 @@
 #include "bench/analysis/comparison.h"
 #include "bench/analysis/metric_change.h"
 #include "bench/analysis/run_groups.h"
+#include "bench/cli/analysis/paired_execution.h"
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
 #include "bench/model/stored_run.h"
-#include "bench/plan/execution/plan_runner.h"
 #include "bench/plan/plan_matrix.h"
 #include "bench/record/output_folder.h"
 #include "bench/store/maintenance/store_export.h"
 #include "bench/store/store.h"
+#include "bench/systems/source_builds.h"
 #include "core/base/error.h"
 #include "eval/io/text_reader.h"
 #include "reports/text/comparison_report.h"
@@ -34,6 +35,7 @@ struct CompareArguments {
   std::string store = "build/bench/store.sqlite";
   std::string plan;  ///< empty: "quick"
   int pairs = 0;     ///< 0: as many as the plan needs
+  std::string builds;
   std::string out;
   bool allow_missing = false;
 };
@@ -84,14 +86,6 @@ std::vector<StoredRun> stored_runs(const std::string& location, const std::strin
   return runs_of_build(Store(default_store).runs(), location, location);
 }
 
-/// The runs of a build that belong to a plan; the store may contain those of other comparisons.
-std::vector<StoredRun> planned_runs(const Store& store, const PlanMatrix& matrix, const std::string& build) {
-  const std::set<std::string> keys(matrix.keys.begin(), matrix.keys.end());
-  std::vector<StoredRun> runs = store.runs({.build = build});
-  std::erase_if(runs, [&](const StoredRun& run) { return !keys.contains(run.key); });
-  return runs;
-}
-
 int default_pairs(const PlanMatrix& runs) {
   std::vector<RunIdentity> identities;
   for (const PlannedRun& run : runs.runs) {
@@ -108,37 +102,6 @@ int pairs_of(const CompareArguments& arguments, const PlanMatrix& runs) {
   return arguments.pairs > 0 ? arguments.pairs : default_pairs(runs);
 }
 
-/// Executes the pairs that the store lacks.
-void run_pairs(const PlanMatrix& matrix, const CompareArguments& arguments) {
-  const int pairs = matrix.plan.repetitions;
-  spdlog::info("{} pairs of each of {} runs", pairs,
-               matrix.runs.size() / (2 * static_cast<std::size_t>(pairs)));
-  const PlanHooks hooks{.on_step = [](const std::string& step) { spdlog::debug("{}", step); },
-                        .stop_requested = interrupt_requested};
-  StoreWriter writer(arguments.store);
-  if (run_plan(matrix, writer, {}, hooks).interrupted)
-    throw InputError("compare", "interrupted; run the same command again to continue");
-}
-
-Comparison compare_programs(const CompareArguments& arguments) {
-  ProgramPair programs{fs::canonical(arguments.base), fs::canonical(arguments.head)};
-  programs.perturbed = accept_perturbation(programs);
-  PlanMatrix runs = single_runs(compared_plan(arguments));
-  const int pairs = pairs_of(arguments, runs);
-  const PlanMatrix matrix = paired_plan(std::move(runs), programs, pairs);
-  run_pairs(matrix, arguments);
-  const Store store(arguments.store);
-  const std::vector<StoredRun> base = planned_runs(store, matrix, programs.base_build());
-  const std::vector<StoredRun> head = planned_runs(store, matrix, programs.head_build());
-  Comparison comparison =
-      with_control(compare_runs(base, head, CompareSource::kPrograms), control_changes(base));
-  if (!programs.perturbed)
-    comparison.notes.push_back(
-        fmt::format("a program does not accept {}: repetitions of a deterministic program are one replicate",
-                    kPerturbationKey));
-  return comparison;
-}
-
 /// Two systems of different names are compared as one.
 std::vector<StoredRun> named_as(std::vector<StoredRun> runs, const std::string& system) {
   for (StoredRun& run : runs) {
@@ -148,20 +111,62 @@ std::vector<StoredRun> named_as(std::vector<StoredRun> runs, const std::string& 
   return runs;
 }
 
-Comparison compare_systems(const CompareArguments& arguments) {
-  PlanMatrix runs = single_system_runs(compared_plan(arguments), {arguments.base, arguments.head});
+Comparison compare_programs(const CompareArguments& arguments) {
+  ProgramPair programs{fs::canonical(arguments.base), fs::canonical(arguments.head)};
+  programs.perturbed = accept_perturbation(programs);
+  PlanMatrix runs = single_runs(compared_plan(arguments));
   const int pairs = pairs_of(arguments, runs);
-  const PlanMatrix matrix = paired_systems(std::move(runs), pairs);
-  run_pairs(matrix, arguments);
-  const Store store(arguments.store);
-  const ExternalSystem& base = matrix.systems[0];
-  const ExternalSystem& head = matrix.systems[1];
-  const std::string name = base.name == head.name ? base.name : base.name + " -> " + head.name;
-  const std::vector<StoredRun> base_runs =
-      named_as(planned_runs(store, matrix, system_build(base, true)), name);
-  const std::vector<StoredRun> head_runs =
-      named_as(planned_runs(store, matrix, system_build(head, false)), name);
-  return with_control(compare_runs(base_runs, head_runs, CompareSource::kPrograms),
+  const ExecutedPairs executed = execute_pairs(paired_plan(std::move(runs), programs, pairs), arguments.store,
+                                               {programs.base_build(), programs.head_build()});
+  Comparison comparison = with_control(compare_runs(executed.base, executed.head, CompareSource::kPrograms),
+                                       control_changes(executed.base));
+  if (!programs.perturbed)
+    comparison.notes.push_back(
+        fmt::format("a program does not accept {}: repetitions of a deterministic program are one replicate",
+                    kPerturbationKey));
+  return comparison;
+}
+
+/// A description, or that of a commit: FILE@COMMIT.
+struct SystemLocation {
+  std::string file;
+  std::string commit;  ///< empty: the program as it is
+};
+
+std::optional<SystemLocation> system_location(const std::string& location) {
+  const std::size_t at = location.rfind(".toml@");
+  if (location.ends_with(".toml")) return SystemLocation{location, ""};
+  if (at == std::string::npos) return std::nullopt;
+  return SystemLocation{location.substr(0, at + 5), location.substr(at + 6)};
+}
+
+/// The system, of a commit with its program built.
+/// @throws InputError if there is no such commit, or it cannot be built
+ExternalSystem system_at(const SystemLocation& location, const std::string& builds) {
+  ExternalSystem system = load_external_system(location.file);
+  if (location.commit.empty()) return system;
+  const SourceBuilds source(system, builds, interrupt_requested);
+  const SourceCommit commit = source.commit(location.commit);
+  spdlog::info("build {} {}", commit.short_hash(), commit.subject);
+  const SourceBuild build = source.build(commit);
+  if (!build.failure.empty()) throw InputError(location.file + "@" + location.commit, build.failure);
+  return built_system(std::move(system), commit, build);
+}
+
+Comparison compare_systems(const CompareArguments& arguments) {
+  const SystemLocation base = *system_location(arguments.base);
+  const SystemPair systems{system_at(base, arguments.builds),
+                           system_at(*system_location(arguments.head), arguments.builds)};
+  PlanMatrix runs = single_system_runs(compared_plan(arguments), base.file);
+  const int pairs = pairs_of(arguments, runs);
+  const ExecutedPairs executed =
+      execute_pairs(paired_systems(std::move(runs), systems, pairs), arguments.store,
+                    {system_build(systems.base, true), system_build(systems.head, false)});
+  const std::string name = systems.base.name == systems.head.name
+                               ? systems.base.name
+                               : systems.base.name + " -> " + systems.head.name;
+  const std::vector<StoredRun> base_runs = named_as(executed.base, name);
+  return with_control(compare_runs(base_runs, named_as(executed.head, name), CompareSource::kPrograms),
                       control_changes(base_runs));
 }
 
@@ -187,7 +192,7 @@ bool are_programs(const std::string& base, const std::string& head) {
 
 /// @throws InputError if only one of them is a description
 bool are_systems(const std::string& base, const std::string& head) {
-  const auto is_description = [](const std::string& file) { return file.ends_with(".toml"); };
+  const auto is_description = [](const std::string& file) { return system_location(file).has_value(); };
   if (is_description(base) == is_description(head)) return is_description(base);
   throw InputError(
       is_description(base) ? head : base,
@@ -243,7 +248,9 @@ Command compare_command() {
       .options =
           {{"BASE",
             "A store or exported store (.json), of which the newest build is used, STORE@COMMIT, a commit in "
-            "--store, a program to execute, or the description of a system (.toml)",
+            "--store, a program to execute, or the description of a system (FILE.toml, or FILE.toml@COMMIT, "
+            "which "
+            "is built)",
             &arguments->base},
            {"HEAD", "As BASE", &arguments->head},
            {"--store", "Database of runs [build/bench/store.sqlite]", &arguments->store},
@@ -254,6 +261,7 @@ Command compare_command() {
             "tests of the plan need; 8 for the rendered sequences of quick]",
             &arguments->pairs,
             {1, 1000}},
+           {"--builds", kBuildsHelp, &arguments->builds},
            {"--allow-missing",
             "What base has and HEAD lacks (a sequence, variant, metric or module) is listed, but no finding",
             &arguments->allow_missing},

@@ -112,6 +112,7 @@ RunOutcome outcome_of_run(const SlamSystem& system, const RunRequest& request, c
                           const BenchPlan& plan) {
   const std::optional<RunOutcome> terminated = termination_outcome(request, end, plan);
   RunOutcome outcome = terminated ? *terminated : reported_outcome(system, request, end);
+  if (outcome.manifest.empty()) outcome.manifest = system.manifest(request);
   if (!end.messages.empty()) outcome.attachments["log"].insert(0, end.messages);
   outcome = with_ground_truth(std::move(outcome), request, plan);
   // Under valgrind, time and memory of the process are not those of the odometry.

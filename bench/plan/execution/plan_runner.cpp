@@ -308,6 +308,7 @@ class PlanRunner {
             .gray_noise = planned.later_frames,
             .fault = planned.fault,
             .program = planned.program,
+            .commit_time = planned.commit_time,
             .sequence = folder,
             .work = writer_.work_folder(identity_of(run)),
             // Drawing the annotated images would distort the measured times.

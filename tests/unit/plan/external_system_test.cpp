@@ -40,6 +40,11 @@ TEST(ExternalDescription, NamesTheLineOfAFault) {
   expect_bad_description("name = \"s\"\ncommand = [\"s\", \"{param.a}\"]", {"s.toml:2: ", "[param]"});
   expect_bad_description("name = \"s\"\ncommand = [\"s\", \"{calibration}\"]",
                          {"s.toml:2: ", "calibration_template"});
+  expect_bad_description(begin + "[source]\ngit = \".\"", {"s.toml:4: [source] has no binary"});
+  expect_bad_description(begin + "[source]\nbinary = \"/bin/s\"", {"s.toml:4: ", "is absolute"});
+  expect_bad_description(begin + "[source]\ngit = \"https://a.org/s\"\nbinary = \"s\"",
+                         {"s.toml:4: ", "clone it"});
+  expect_bad_description("name = \"s\"\ncommand = [\"{binary}\"]", {"s.toml:2: ", "[source]"});
   expect_bad_description("command = [\"s\"]", {"s.toml: has no name"});
   expect_bad_description("name = \"s\"", {"s.toml: has no command"});
 }

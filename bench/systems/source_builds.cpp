@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/systems/source_builds.h"
+
+#include <algorithm>
+#include <ctime>
+#include <sstream>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "bench/process/child_process.h"
+#include "bench/process/file_lock.h"
+#include "core/base/content_hash.h"
+#include "core/base/error.h"
+#include "datasets/cache/cache_space.h"
+#include "eval/io/text_reader.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kFieldEnd = '\x1f';
+
+/// Folder of the builds of a source: another repository or build command has another one.
+fs::path source_folder(const SystemSource& source, const fs::path& repository, const fs::path& builds) {
+  std::string identity = repository.string() + kFieldEnd + source.binary;
+  for (const std::string& word : source.build) identity += kFieldEnd + word;
+  const fs::path parent = builds.empty() ? datasets::cache_folder() / "builds" : fs::absolute(builds);
+  return parent / (repository.filename().string() + "-" + hash_text(content_hash(identity)));
+}
+
+const SystemSource& required_source(const ExternalSystem& system) {
+  if (system.source.binary.empty())
+    throw InputError(system.path, "has no table [source]; add git, build and binary");
+  return system.source;
+}
+
+}  // namespace
+
+SystemSource own_source() {
+  return {.git = ".",
+          .build = {"sh", "-c", "cmake --preset release && cmake --build build/release --target stillpoint"},
+          .binary = "build/release/stillpoint"};
+}
+
+SourceBuilds::SourceBuilds(SystemSource source, const fs::path& repository, const fs::path& folder,
+                           std::function<bool()> stop_requested)
+    : source_(std::move(source)), stop_requested_(std::move(stop_requested)) {
+  std::error_code error;
+  repository_ = fs::canonical(repository, error);
+  if (error || !fs::is_directory(repository_))
+    throw InputError(repository.string(), "is no folder; state that of a git repository");
+  if (source_.build.empty())
+    throw InputError("source.build", "is empty; add the command that builds the program to [source]");
+  folder_ = source_folder(source_, repository_, folder);
+  fs::create_directories(folder_);
+}
+
+SourceBuilds::SourceBuilds(const ExternalSystem& system, const fs::path& folder,
+                           std::function<bool()> stop_requested)
+    : SourceBuilds(required_source(system), system.source_folder, folder, std::move(stop_requested)) {}
+
+std::string SourceBuilds::git(const std::vector<std::string>& arguments) const {
+  const fs::path output = folder_ / fmt::format("git-{}.out", getpid());
+  ProcessSpec spec{.program = "git", .arguments = {"-C", repository_.string()}, .output = output};
+  spec.arguments.insert(spec.arguments.end(), arguments.begin(), arguments.end());
+  const ProcessResult result = run_process(spec);
+  const std::string text = fs::exists(output) ? eval::read_text_file(output) : "";
+  fs::remove(output);
+  if (result.exit_code != 0 || result.signal != 0)
+    throw InputError(repository_.string(), "git: " + last_line(result.messages));
+  return text;
+}
+
+/// Of `git log`, in its order.
+std::vector<SourceCommit> SourceBuilds::log(const std::vector<std::string>& arguments) const {
+  std::vector<std::string> all = {"-c", "log.showSignature=false", "log", "--format=%H%x1f%ct%x1f%s"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  std::istringstream lines(git(all));
+  std::vector<SourceCommit> commits;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    SourceCommit& commit = commits.emplace_back();
+    std::string seconds;
+    std::getline(fields, commit.hash, kFieldEnd);
+    std::getline(fields, seconds, kFieldEnd);
+    std::getline(fields, commit.subject);
+    commit.time = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time_t{std::stoll(seconds)}));
+  }
+  return commits;
+}
+
+std::vector<SourceCommit> SourceBuilds::commits(const std::string& range) const {
+  std::vector<SourceCommit> commits = log({"--first-parent", "--reverse", "--end-of-options", range, "--"});
+  if (commits.empty()) throw InputError(range, "contains no commit; write OLD..NEW");
+  std::stable_sort(commits.begin(), commits.end(),
+                   [](const SourceCommit& a, const SourceCommit& b) { return a.time > b.time; });
+  return commits;
+}
+
+SourceCommit SourceBuilds::commit(const std::string& revision) const {
+  return log({"--max-count=1", "--end-of-options", revision, "--"}).at(0);
+}
+
+std::vector<SourceCommit> SourceBuilds::between(const SourceCommit& good, const SourceCommit& bad) const {
+  std::vector<SourceCommit> commits = log({"--first-parent", "--reverse", good.hash + ".." + bad.hash, "--"});
+  if (git({"merge-base", good.hash, bad.hash}).substr(0, good.hash.size()) != good.hash || commits.empty())
+    throw InputError(good.short_hash() + ".." + bad.short_hash(),
+                     "the first commit is no ancestor of the second one; write GOOD..BAD");
+  return commits;
+}
+
+void SourceBuilds::add_tree(const SourceCommit& commit, const fs::path& tree) const {
+  fs::remove_all(tree);  // of a build that was interrupted
+  static_cast<void>(git({"worktree", "prune"}));
+  static_cast<void>(git({"worktree", "add", "--force", "--detach", tree.string(), commit.hash}));
+}
+
+SourceBuild SourceBuilds::build(const SourceCommit& commit) const {
+  const FileLock lock(folder_ / "lock", LockKind::kExclusive);
+  const fs::path tree = folder_ / commit.hash;
+  const fs::path mark = folder_ / (commit.hash + ".built");
+  SourceBuild build{.tree = tree, .program = tree / source_.binary, .failure = {}};
+  build.cached = fs::exists(mark) && fs::exists(build.program);
+  if (build.cached) return build;
+  fs::remove(mark);
+  add_tree(commit, tree);
+  ProcessSpec spec{.program = source_.build.front(), .folder = tree, .output_in_messages = true};
+  spec.arguments.assign(source_.build.begin() + 1, source_.build.end());
+  if (spec.program.string().find('/') != std::string::npos) spec.program = tree / spec.program;
+  ProcessPool pool(stop_requested_);
+  pool.start(0, spec);
+  const ProcessResult result = pool.wait_next()->second;
+  const fs::path log = folder_ / (commit.hash + ".log");
+  eval::write_text_file(log, result.messages);
+  if (result.exit_code != 0 || result.signal != 0) {
+    build.failure = fmt::format("the build failed: {}; see {}", last_line(result.messages), log.string());
+  } else if (!fs::is_regular_file(build.program)) {
+    build.failure = "the build wrote no " + source_.binary + "; correct source.binary; see " + log.string();
+  } else {
+    eval::write_text_file(mark, "");
+  }
+  return build;
+}
+
+ExternalSystem built_system(ExternalSystem system, const SourceCommit& commit, const SourceBuild& build) {
+  system.version = commit.hash;
+  system.source_folder = build.tree.string();
+  system.hash = hash_text(content_hash(system.hash_without_source + commit.hash));
+  return system;
+}
+
+}  // namespace stillpoint::bench

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint history`, `bisect` and `compare FILE@COMMIT` on a made-up project of another author.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "bench/analysis/commit_history.h"
+#include "bench/store/store.h"
+#include "tests/support/made_up_project.h"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> history_arguments(const MadeUpProject& project, const std::string& store) {
+  return {"history",  "HEAD",
+          "--system", project.file("slam.toml"),
+          "--plan",   project.file("plan.toml"),
+          "--store",  project.file(store)};
+}
+
+/// The command line of a shell that executes the program. @param before words before it
+std::string shell_command(const MadeUpProject& project, const std::string& before,
+                          const std::vector<std::string>& arguments) {
+  std::string command = before + " env";
+  for (const std::string& setting : project.environment()) command += " '" + setting + "'";
+  command += " '" STILLPOINT_BINARY_DIR "/stillpoint'";
+  for (const std::string& argument : arguments) command += " '" + argument + "'";
+  return command + " >'" + project.file("log") + "' 2>&1";
+}
+
+/// One for the tests that do not count all builds.
+const MadeUpProject& shared_project() {
+  static const MadeUpProject project;
+  return project;
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+/// Build and outcome of each run, in the order of their start.
+std::vector<std::string> builds_in(const std::string& store) {
+  std::vector<std::string> builds;
+  for (const bench::StoredRun& run : bench::Store(store).runs()) builds.push_back(run.identity.build);
+  return builds;
+}
+
+// Interrupted by the user, killed, and continued.
+TEST(History, FillsAStoreAndContinues) {
+  const MadeUpProject project;
+  const std::vector<std::string> arguments = history_arguments(project, "runs.sqlite");
+  const ProgramResult interrupted = project.run(arguments, {.interrupt_after = "commit 3 of 12"});
+  EXPECT_EQ(interrupted.exit_code, 130) << interrupted.out << interrupted.err;
+  EXPECT_NE(interrupted.out.find("run the same command again"), std::string::npos) << interrupted.out;
+  EXPECT_NE(interrupted.err.find("11 commits left, about "), std::string::npos) << interrupted.err;
+
+  EXPECT_NE(std::system(shell_command(project, "timeout -s KILL 0.6", arguments).c_str()), 0);
+
+  const ProgramResult result = project.run(arguments);
+  EXPECT_EQ(result.exit_code, 1) << result.out << result.err;  // one commit is not built
+  EXPECT_NE(result.out.find("12 commits: "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("1 not built; 0 failed runs"), std::string::npos) << result.out;
+  EXPECT_NE(result.err.find("the build failed: error: no such header"), std::string::npos) << result.err;
+  const std::vector<std::string> builds = builds_in(project.file("runs.sqlite"));
+  EXPECT_EQ(builds.size(), 22u);
+  EXPECT_EQ(std::set<std::string>(builds.begin(), builds.end()).size(), 11u);
+  EXPECT_EQ(builds.front(), project.commit(12));  // the newest one
+  EXPECT_EQ(builds.back(), project.commit(1));
+
+  const ProgramResult again = project.run(arguments);
+  EXPECT_NE(again.out.find("0 executed, 11 stored before, 1 not built"), std::string::npos) << again.out;
+  EXPECT_EQ(count_of(again.err, "commit 1 of 1: "), 1u) << again.err;
+
+  // Commits of equal time keep their order.
+  std::vector<std::string> measured;
+  for (const bench::Commit& commit : bench::commit_history(bench::Store(project.file("runs.sqlite"))).commits)
+    measured.push_back(commit.name);
+  std::vector<std::string> expected;
+  for (const std::size_t number : {1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 12})
+    expected.push_back(project.commit(number));
+  EXPECT_EQ(measured, expected);
+}
+
+// A repository with the presets of this project, whose program is the replay system.
+TEST(History, OfThisOdometryBuildsItsPreset) {
+  const MadeUpProject& project = shared_project();
+  project.folder().write("own/CMakeLists.txt", R"(cmake_minimum_required(VERSION 3.25)
+project(own NONE)
+add_custom_target(stillpoint COMMAND ${CMAKE_COMMAND} -E copy ")" STILLPOINT_BINARY_DIR
+                                               R"(/tests/replay_program" stillpoint)
+)");
+  project.folder().write("own/CMakePresets.json", R"({"version": 6, "configurePresets": [
+    {"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/release"}]})");
+  project.folder().write("own.toml",
+                         "variants = [\"vo\"]\nimages = 0\n[recorded]\nsequences = [\"freiburg1_a\"]\n");
+  const std::string git = "GIT_CONFIG_GLOBAL=/dev/null git -C '" + project.file("own") +
+                          "' -c user.name=t -c user.email=t@example.org ";
+  ASSERT_EQ(std::system((git + "init -q && " + git + "add . && " + git + "commit -qm 1").c_str()), 0);
+  const std::string store = project.file("own.sqlite");
+  const std::string history =
+      shell_command(project, "cd '" + project.file("own") + "' &&",
+                    {"history", "HEAD", "--plan", project.file("own.toml"), "--store", store});
+  EXPECT_EQ(std::system(history.c_str()), 0) << std::ifstream(project.file("log")).rdbuf();
+  const std::vector<bench::StoredRun> runs = bench::Store(store).runs();
+  ASSERT_EQ(runs.size(), 1u);
+  EXPECT_EQ(runs[0].identity.system, "stillpoint");
+  EXPECT_EQ(runs[0].identity.build.size(), 40u);
+  EXPECT_EQ(runs[0].outcome, bench::Outcome::kOk) << runs[0].detail;
+}
+
+TEST(History, ReportsWhatIsMissing) {
+  const MadeUpProject& project = shared_project();
+  const auto history = [&](const std::string& range, const std::string& system) {
+    return project.run({"history", range, "--system", project.file(system), "--plan",
+                        project.file("plan.toml"), "--store", project.file("runs.sqlite")});
+  };
+  const ProgramResult range = history("v1..v2", "slam.toml");
+  EXPECT_EQ(range.exit_code, 2);
+  EXPECT_NE(range.err.find("git: "), std::string::npos) << range.err;
+  EXPECT_EQ(history("HEAD..HEAD", "slam.toml").exit_code, 2);
+  project.folder().write("other.toml", "name = \"other\"\ncommand = [\"true\"]\n");
+  const ProgramResult source = history("HEAD", "other.toml");
+  EXPECT_EQ(source.exit_code, 2);
+  EXPECT_NE(source.err.find("has no table [source]"), std::string::npos) << source.err;
+  project.folder().write("other.toml", "name = \"other\"\ncommand = [\"{binary}\"]\n");
+  EXPECT_NE(history("HEAD", "other.toml").err.find("add the table [source]"), std::string::npos);
+  EXPECT_FALSE(fs::exists(project.file("runs.sqlite")));
+}
+
+struct Planted {
+  std::string metric;
+  std::size_t commit;
+};
+
+TEST(Bisect, FindsEachPlantedCommitInFiveBuilds) {
+  const MadeUpProject& project = shared_project();
+  for (const Planted& planted :
+       {Planted{"ate_rmse_m", 7}, Planted{"tracking", 4}, Planted{"failed_runs", 10}}) {
+    const ProgramResult result = project.run(
+        {"bisect", planted.metric, project.commit(1) + "..main", "--system", project.file("slam.toml"),
+         "--plan", project.file("plan.toml"), "--out", project.file("bisect-" + planted.metric), "--builds",
+         project.file("builds-" + planted.metric)});
+    EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+    EXPECT_NE(result.out.find("first commit with the change: " + project.commit(planted.commit)),
+              std::string::npos)
+        << planted.metric << "\n"
+        << result.out;
+    EXPECT_NE(
+        result.out.find("\nconfirmed by its runs and those of its parent; 5 of 12 commits used, 5 built "
+                        "now\n"),
+        std::string::npos)
+        << result.out;
+  }
+}
+
+TEST(Bisect, SaysThatNothingChanged) {
+  const MadeUpProject& project = shared_project();
+  const auto bisect = [&](const std::string& range) {
+    return project.run({"bisect", "ate_rmse_m", range, "--system", project.file("slam.toml"), "--plan",
+                        project.file("plan.toml"), "--out", project.file("bisect"), "--max-pairs", "8"});
+  };
+  const ProgramResult same = bisect(project.commit(1) + ".." + project.commit(3));
+  EXPECT_EQ(same.exit_code, 3) << same.out << same.err;
+  EXPECT_NE(same.out.find("ate_rmse_m did not change"), std::string::npos) << same.out;
+  const ProgramResult reversed = bisect(project.commit(3) + ".." + project.commit(1));
+  EXPECT_EQ(reversed.exit_code, 2);
+  EXPECT_NE(reversed.err.find("no ancestor"), std::string::npos) << reversed.err;
+  EXPECT_EQ(bisect(project.commit(3)).exit_code, 2);
+  const ProgramResult unbuilt = bisect(project.commit(1) + ".." + project.commit(8));
+  EXPECT_EQ(unbuilt.exit_code, 2);
+  EXPECT_NE(unbuilt.err.find("cannot be built"), std::string::npos) << unbuilt.err;
+}
+
+TEST(CompareSystems, OfCommitsAreBuiltAndCompared) {
+  const MadeUpProject& project = shared_project();
+  const auto compare = [&](std::size_t base, std::size_t head) {
+    return project.run({"compare", project.file("slam.toml@") + project.commit(base),
+                        project.file("slam.toml@") + project.commit(head), "--plan",
+                        project.file("plan.toml"), "--pairs", "8", "--store", project.file("gate.sqlite")});
+  };
+  const ProgramResult worse = compare(6, 7);
+  EXPECT_EQ(worse.exit_code, 1) << worse.out << worse.err;
+  EXPECT_NE(worse.out.find("| ate_rmse_m"), std::string::npos) << worse.out;
+  EXPECT_NE(compare(5, 6).exit_code, 1);  // the same base build name must not reuse the runs of commit 6
+  const ProgramResult unbuilt = compare(7, 8);
+  EXPECT_EQ(unbuilt.exit_code, 2);
+  EXPECT_NE(unbuilt.err.find("the build failed"), std::string::npos) << unbuilt.err;
+}
+
+}  // namespace
+}  // namespace stillpoint
