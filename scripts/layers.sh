@@ -190,6 +190,7 @@ threads=(
   'bench/profile/meters/run_monitor\.(h|cpp)'
   'bench/record/run_environment\.cpp'
   'bench/cli/plan/reproduce_command\.cpp'
+  'bench/cli/analysis/pose_files\.cpp'
 )
 libraries+=("<(thread|future|execution)> ^($(IFS='|' && echo "${threads[*]}"))\$")
 

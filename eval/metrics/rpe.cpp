@@ -17,8 +17,11 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// Yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
-double yaw_of(const Eigen::Matrix3d& R) { return std::atan2(R(1, 0), R(0, 0)); }
+/// Yaw of R_w_e E R_w_e^T, where yaw is that of Rz(yaw) Ry(pitch) Rx(roll).
+double yaw_in_world(const Eigen::Matrix3d& R_w_e, const Eigen::Quaterniond& E) {
+  const Eigen::Vector3d column = E * R_w_e.row(0).transpose();
+  return std::atan2(R_w_e.row(1).dot(column), R_w_e.row(0).dot(column));
+}
 
 PosePair pair_of(std::size_t from, std::size_t to) {
   return {static_cast<PoseIndex>(from), static_cast<PoseIndex>(to)};
@@ -96,8 +99,12 @@ PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, d
   return result;
 }
 
-RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs, bool with_yaw) {
-  RelativeErrors errors;
+RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs, bool with_yaw,
+                               RelativeErrors recycled) {
+  RelativeErrors errors = std::move(recycled);
+  errors.translation_m.clear();
+  errors.rotation_deg.clear();
+  errors.yaw_deg.clear();
   errors.translation_m.reserve(pairs.size());
   errors.rotation_deg.reserve(pairs.size());
   if (with_yaw) errors.yaw_deg.reserve(pairs.size());
@@ -109,9 +116,7 @@ RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pair
     const Pose error = gt_motion.inverse() * est_motion;
     errors.translation_m.push_back(error.p.norm());
     errors.rotation_deg.push_back(kDegrees * rotation_angle(error.q));
-    if (!with_yaw) continue;
-    const Eigen::Matrix3d R_w_e = to.est.R();
-    errors.yaw_deg.push_back(kDegrees * std::abs(yaw_of(R_w_e * error.R() * R_w_e.transpose())));
+    if (with_yaw) errors.yaw_deg.push_back(kDegrees * std::abs(yaw_in_world(to.est.R(), error.q)));
   }
   return errors;
 }
@@ -228,8 +233,8 @@ std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est, const 
     rotation_deg.push_back(rotation_angle(error.q) * 180.0 / std::numbers::pi);
   }
   if (translation_m.size() == result.self_pairs) return std::nullopt;
-  result.translation_m = *statistics(translation_m);
-  result.rotation_deg = *statistics(rotation_deg);
+  result.translation_m = *reordering_statistics(translation_m);
+  result.rotation_deg = *reordering_statistics(rotation_deg);
   return result;
 }
 
@@ -238,10 +243,11 @@ StrictRpeResult strict_rpe(MatchView matches, double delta_s) {
   StrictRpeResult result;
   result.tolerance_s = std::min(0.5 * median_interval(matches), kMaxDeltaFraction * delta_s);
   const PosePairs found = pairs_over_seconds(matches, delta_s, result.tolerance_s);
-  const RelativeErrors errors = relative_errors(matches, found.pairs, false);
+  RelativeErrors errors = relative_errors(matches, found.pairs, false);
   result.dropped = found.dropped;
   if (!found.pairs.empty()) {
-    result.errors = StrictRpe{*statistics(errors.translation_m), *statistics(errors.rotation_deg)};
+    result.errors =
+        StrictRpe{*reordering_statistics(errors.translation_m), *reordering_statistics(errors.rotation_deg)};
   }
   return result;
 }
@@ -268,19 +274,20 @@ std::vector<double> lengths_for(std::span<const double> path_m, const SegmentOpt
 std::vector<SegmentErrors> segment_errors(MatchView matches, const SegmentOptions& options) {
   const std::vector<double> path_m = path_lengths(matches, PathOf::kGroundTruth);
   std::vector<SegmentErrors> segments;
+  RelativeErrors errors;
   for (const double length_m : lengths_for(path_m, options)) {
     PosePairs found = pairs_over_meters(path_m, length_m, options.tolerance * length_m);
     if (found.pairs.empty()) continue;
     if (options.shift_starts) {
       for (std::size_t k = 0; k < found.pairs.size(); ++k) found.pairs[k].from = static_cast<PoseIndex>(k);
     }
-    const RelativeErrors errors = relative_errors(matches, found.pairs);
+    errors = relative_errors(matches, found.pairs, true, std::move(errors));
     segments.push_back({.length_m = length_m,
-                        .translation_m = *statistics(errors.translation_m),
-                        .rotation_deg = *statistics(errors.rotation_deg),
-                        .yaw_deg = *statistics(errors.yaw_deg),
-                        .translation_lower_quartile_m = *percentile(errors.translation_m, 0.25),
-                        .translation_upper_quartile_m = *percentile(errors.translation_m, 0.75),
+                        .translation_m = *reordering_statistics(errors.translation_m),
+                        .rotation_deg = *reordering_statistics(errors.rotation_deg),
+                        .yaw_deg = *reordering_statistics(errors.yaw_deg),
+                        .translation_lower_quartile_m = *reordering_percentile(errors.translation_m, 0.25),
+                        .translation_upper_quartile_m = *reordering_percentile(errors.translation_m, 0.75),
                         .dropped = found.dropped});
   }
   return segments;

@@ -91,8 +91,9 @@ struct RelativeErrors {
 /// @param matches aligned, if the yaw error shall refer to the vertical axis of the ground truth
 /// @param pairs indices into `matches`
 /// @param with_yaw compute `yaw_deg`, which else is empty
+/// @param recycled a result that is no longer needed; its memory is reused
 [[nodiscard]] RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs,
-                                             bool with_yaw = true);
+                                             bool with_yaw = true, RelativeErrors recycled = {});
 
 enum class RpeUnit { kSeconds, kFrames, kMeters };
 constexpr auto enum_names(RpeUnit) {

@@ -2,7 +2,6 @@
 // `stillpoint eval`: evaluates trajectory files.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <span>
@@ -13,6 +12,7 @@
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/analysis/pose_files.h"
 #include "bench/cli/command_line.h"
 #include "bench/model/metrics.h"
 #include "bench/model/stored_run.h"
@@ -38,8 +38,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kPlotPixelsPerUnit = 1.5;  // of PNG files
 
 struct EvalArguments {
-  std::string ground_truth;
-  std::vector<std::string> estimates;
+  PoseFilePaths files;
   std::vector<std::string> protocols;
   std::string alignment;
   int align_first = 0;
@@ -47,9 +46,6 @@ struct EvalArguments {
   std::string rpe_unit = "s";
   double offset_s = 0.0;
   double max_difference_s = 0.0;
-  std::vector<std::string> formats;
-  std::string times;
-  int sequence = 0;
   std::string level;
   bool find_offset = false;
   bool explain = false;
@@ -59,7 +55,6 @@ struct EvalArguments {
   std::string plot;
   std::string map;
   std::string per_pose;
-  std::string covariance;
   bool force = false;
 };
 
@@ -74,72 +69,6 @@ eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   options.offset_s = arguments.offset_s;
   options.per_pose = !arguments.plot.empty() || !arguments.map.empty() || !arguments.per_pose.empty();
   return options;
-}
-
-/// A file of poses, and its path as the user wrote it.
-struct PoseFile {
-  std::string path;
-  eval::LoadedTrajectory loaded;
-  std::optional<eval::CovarianceTable> covariances = std::nullopt;  ///< of an estimate
-};
-
-enum class FileRole { kTruth, kEstimate };
-
-/// The format of --format for the files of a role: "nmea" for all, "gt=nmea" and "est=tum" for one.
-std::optional<eval::TrajectoryFormat> format_of(const EvalArguments& arguments, FileRole role) {
-  std::optional<eval::TrajectoryFormat> format;
-  for (const std::string& text : arguments.formats) {
-    const std::size_t equals = text.find('=');
-    const std::string which = equals == std::string::npos ? "" : text.substr(0, equals);
-    if (!which.empty() && which != "gt" && which != "est")
-      throw InputError("--format " + text, "expected FORMAT, gt=FORMAT or est=FORMAT");
-    const auto value = enum_of<eval::TrajectoryFormat>("--format", text.substr(equals + 1));
-    if (which.empty() || (which == "gt") == (role == FileRole::kTruth)) format = value;
-  }
-  return format;
-}
-
-/// Reads a trajectory; its skipped and sorted rows are logged.
-PoseFile load(const EvalArguments& arguments, const std::string& path, FileRole role) {
-  eval::TrajectorySource source{.path = path, .times = arguments.times, .sequence = arguments.sequence};
-  source.format = format_of(arguments, role);
-  const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path);
-  eval::LoadedTrajectory loaded = bag ? datasets::read_bag_trajectory(*bag) : eval::read_trajectory(source);
-  for (const std::string& repair : eval::repair_texts(loaded.repairs)) spdlog::warn("{}: {}", path, repair);
-  return {.path = path, .loaded = std::move(loaded)};
-}
-
-/// Whether the rows of a file have columns after the pose: most have none, and are not read twice.
-bool has_further_columns(const std::string& path) {
-  constexpr std::size_t kPoseColumns = 8;
-  std::string text(8192, '\0');
-  std::ifstream in(path, std::ios::binary);
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  eval::RowReader rows(text, path);
-  std::optional<eval::TextRow> row = rows.next();
-  if (row && !eval::parse_number(row->fields.front())) row = rows.next();  // names of the columns
-  return row && row->fields.size() > kPoseColumns;
-}
-
-/// The covariances of an estimate: of --covariance, of the messages of a bag, or of further columns.
-std::optional<eval::CovarianceTable> covariances_of(const EvalArguments& arguments, const PoseFile& file) {
-  if (!arguments.covariance.empty())
-    return eval::parse_covariances(eval::read_text_file(arguments.covariance), arguments.covariance);
-  if (const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(file.path)) {
-    eval::CovarianceTable table{.rows = datasets::read_bag_covariances(*bag), .columns = 36};
-    const auto is_given = [](const eval::StampedCovariance& row) { return !row.position.isZero(0.0); };
-    if (std::ranges::none_of(table.rows, is_given)) return std::nullopt;
-    return table;
-  }
-  if (!has_further_columns(file.path)) return std::nullopt;
-  std::optional<eval::CovarianceTable> table =
-      eval::find_covariances(eval::read_text_file(file.path), file.path);
-  if (table) {
-    spdlog::info("{}: the {} columns after the pose are covariances ({})", file.path, table->columns,
-                 table->columns == 12 ? "rotation, position" : "position, rotation");
-  }
-  return table;
 }
 
 /// The poses with their covariances; nullopt without any.
@@ -166,57 +95,6 @@ std::optional<eval::CovarianceScore> covariance_score_of(const EvalArguments& ar
         file.path);
   }
   return score;
-}
-
-const char* order_text(eval::QuaternionOrder order) {
-  return order == eval::QuaternionOrder::kXyzw ? "qx qy qz qw" : "qw qx qy qz";
-}
-
-eval::QuaternionOrder other(eval::QuaternionOrder order) {
-  return order == eval::QuaternionOrder::kXyzw ? eval::QuaternionOrder::kWxyz : eval::QuaternionOrder::kXyzw;
-}
-
-/// The file read in the other order of quaternions.
-/// @throws InputError if its header or format states the order in which it was read
-PoseFile in_other_order(PoseFile file, const eval::OrderFinding& finding) {
-  const eval::QuaternionOrder found = other(file.loaded.order);
-  const std::string reason = fmt::format(
-      "the quaternions are consistent with those of the other file in the order {}: R.RPE {:.3f} "
-      "instead of {:.3f} deg/s",
-      order_text(found), finding.corrected_rpe_deg_per_s, finding.rpe_deg_per_s);
-  if (file.loaded.order_source != eval::OrderSource::kAssumed) {
-    throw InputError(
-        file.path,
-        fmt::format("{}, but {} states {}; reorder the columns, or name them in a first "
-                    "line such as \"# t tx ty tz {}\"",
-                    reason,
-                    file.loaded.order_source == eval::OrderSource::kNamed ? "the header" : "the format",
-                    order_text(file.loaded.order), order_text(found)));
-  }
-  spdlog::warn("{}: {}; read so", file.path, reason);
-  file.loaded.trajectory = eval::with_other_order(file.loaded.trajectory, file.loaded.order);
-  file.loaded.order = found;
-  file.loaded.order_source = eval::OrderSource::kFormat;
-  return file;
-}
-
-/// The files, ground truth first, with their quaternions in the order in which they are consistent.
-/// @throws InputError if that contradicts the format or the header of one, or another estimate
-std::vector<PoseFile> with_consistent_orders(std::vector<PoseFile> files, double offset_s) {
-  PoseFile& truth = files.front();
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const auto finding = eval::find_quaternion_order(truth.loaded, files[i].loaded, offset_s);
-    if (!finding) continue;
-    if (finding->gt && i > 1) truth.loaded.order_source = eval::OrderSource::kFormat;  // the first one agrees
-    if (finding->gt) truth = in_other_order(std::move(truth), *finding);
-    if (finding->est) files[i] = in_other_order(std::move(files[i]), *finding);
-  }
-  for (const PoseFile& file : files) {
-    if (file.loaded.order_source != eval::OrderSource::kAssumed) continue;
-    spdlog::warn("{}: no header names the columns; the quaternions were read in the order {}", file.path,
-                 order_text(file.loaded.order));
-  }
-  return files;
 }
 
 /// With one pose, a run has failed: after alignment it has no error, whatever it is.
@@ -276,11 +154,11 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, s
   std::vector<report::EvaluatedRun> runs;
   for (PoseFile& file : files.subspan(1)) {
     const std::string& path = file.path;
-    report::EvaluatedRun run{.name = display_name(path, arguments.estimates),
+    report::EvaluatedRun run{.name = display_name(path, arguments.files.estimates),
                              .covariance = covariance_score_of(arguments, gt, file)};
     run.est = std::move(file.loaded.trajectory);
     run.repairs = file.loaded.repairs;
-    if (has_failed(run) && arguments.estimates.size() == 1)
+    if (has_failed(run) && arguments.files.estimates.size() == 1)
       throw InputError(path, "has one pose: a failed run, of which no error can be computed");
     const bool comparable = !arguments.find_offset && !has_failed(run);
     if (comparable) eval::require_overlap(gt, run.est, arguments.offset_s, path);
@@ -477,10 +355,10 @@ std::vector<report::PlottedRun> plotted_runs(const std::vector<report::Evaluated
 
 /// What --plot and --per-pose must not overwrite.
 OutputRules output_rules(const EvalArguments& arguments) {
-  OutputRules rules{.inputs = {arguments.ground_truth, arguments.times, arguments.covariance},
+  OutputRules rules{.inputs = {arguments.files.ground_truth, arguments.files.times, arguments.files.covariance},
                     .force = arguments.force,
                     .beginning = report::per_pose_header()};
-  rules.inputs.insert(rules.inputs.end(), arguments.estimates.begin(), arguments.estimates.end());
+  rules.inputs.insert(rules.inputs.end(), arguments.files.estimates.begin(), arguments.files.estimates.end());
   return rules;
 }
 
@@ -496,21 +374,14 @@ void print_offsets(const Trajectory& gt, const std::vector<report::EvaluatedRun>
 }
 
 int evaluate_files(const EvalArguments& arguments) {
-  if (arguments.ground_truth.empty() || arguments.estimates.empty()) {
+  if (arguments.files.ground_truth.empty() || arguments.files.estimates.empty()) {
     throw InputError("command line", "eval requires a ground truth and an estimate; try --help");
   }
   const OutputRules rules = output_rules(arguments);
   if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules);
   if (!arguments.map.empty()) report::require_drawing_file(arguments.map, rules);
   if (!arguments.per_pose.empty()) require_safe_output(arguments.per_pose, rules);
-  std::vector<PoseFile> files{load(arguments, arguments.ground_truth, FileRole::kTruth)};
-  if (!arguments.covariance.empty() && arguments.estimates.size() > 1)
-    throw InputError("--covariance", "is that of one estimate, but several are given");
-  for (const std::string& path : arguments.estimates) {
-    files.push_back(load(arguments, path, FileRole::kEstimate));
-    files.back().covariances = covariances_of(arguments, files.back());
-  }
-  files = with_consistent_orders(std::move(files), arguments.offset_s);
+  std::vector<PoseFile> files = with_consistent_orders(read_pose_files(arguments.files), arguments.offset_s);
   const eval::LoadedTrajectory& truth = files.front().loaded;
   const Trajectory& gt = truth.trajectory;
   const std::vector<report::EvaluatedRun> runs = evaluate_all(arguments, files);
@@ -536,8 +407,8 @@ std::vector<Option> options_of(EvalArguments& a) {
       {"GT",
        "Ground-truth trajectory: a file, or BAG:/TOPIC of a bag (poses; /tf:PARENT.CHILD for a chain of "
        "transforms)",
-       &a.ground_truth},
-      {"EST", "Estimated trajectories of the same body frame", &a.estimates},
+       &a.files.ground_truth},
+      {"EST", "Estimated trajectories of the same body frame", &a.files.estimates},
       {"--protocol",
        "Evaluation protocol: compat:tum, compat:evo, compat:rpg, compat:openloris, strict:se3 ...; may be "
        "repeated",
@@ -558,14 +429,14 @@ std::vector<Option> options_of(EvalArguments& a) {
       {"--format",
        "Trajectory format: " + enum_list<eval::TrajectoryFormat>() +
            "; of one file: gt=FORMAT, est=FORMAT [detected]",
-       &a.formats},
-      {"--times", "File of time stamps of a KITTI trajectory", &a.times},
-      {"--seq", "Sequence number in an OpenLORIS file", &a.sequence, {0, 1e9}},
+       &a.files.formats},
+      {"--times", "File of time stamps of a KITTI trajectory", &a.files.times},
+      {"--seq", "Sequence number in an OpenLORIS file", &a.files.sequence, {0, 1e9}},
       {"--covariance",
        "File with the covariances of the estimate: stamp and 6 (variances), 21 (upper triangle) or 36 "
        "numbers of "
        "position and rotation [further columns of EST, or its messages]",
-       &a.covariance},
+       &a.files.covariance},
       {"--explain", "Print a description of each protocol", &a.explain},
       {"--json", "Print JSON with full precision", &a.json},
       {"--csv", "Print CSV", &a.csv},

@@ -245,8 +245,7 @@ int run_bench(const BenchArguments& arguments) {
   if (last != matrix.runs.end() && last->later_frames > 0)
     spdlog::info(
         "seeds of recorded sequences begin later, by 0 to {} frames, those of this odometry with noise of a "
-        "gray level: they "
-        "are replicates",
+        "gray level: they are replicates",
         last->later_frames);
   if (arguments.workers > 0 && !arguments.estimate) throw InputError("--workers", "requires --estimate");
   if (arguments.dry_run) return dry_run(matrix, arguments.store);
