@@ -116,6 +116,7 @@ row bench/executors core/base eval/io bench/model bench/store bench/store/mainte
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/analysis/search core/base eval/statistics bench/model bench/analysis
 row bench/serve core/base bench/record
+row bench/python $messages $eval
 row bench/rivals core/base core/geometry core/types datasets eval/io
 row bench/micro $core tests/support tests/support/simulated
 
@@ -162,6 +163,7 @@ libraries=(
   '<opencv2/dnn[./]   ^core/detector/'
   '<opencv2/videoio[./]  ^reports/frames/video_module\.cpp$'
   '<opencv2/          ^core/(frontend|dynamic|detector|loop)/|^bench/rivals/'
+  '<pybind11/         ^bench/python/'
   '<sqlite3           ^bench/store/|^datasets/bags/'
   '<zstd              ^bench/store/|^datasets/bags/bag_chunks\.cpp$'
   '<cairo            ^reports/drawing/pdf_drawing\.cpp$'

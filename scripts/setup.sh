@@ -8,6 +8,7 @@
 #   scripts/setup.sh --oracles also the ROS 1 bag library of Debian, which tests compare the own reader with
 #   scripts/setup.sh --cluster also Slurm, sshd, GNU parallel and rsync, for the tests of `bench --executor`; the packages
 #                            start their services under systemd, which the tests do not use
+#   scripts/setup.sh --python also what the Python package is built from, tested with and shown with; it is left out without
 #   scripts/setup.sh --minimal only what the preset "minimal" needs, e.g. on a device; with --list its names
 #   scripts/setup.sh --list  only prints the names of the packages that building, testing and running need
 #   scripts/setup.sh --all   all of these, as CI does: no test is skipped for want of a package
@@ -37,6 +38,7 @@ pages=(chromium texlive-latex-recommended)
 { command -v node && command -v npm; } >/dev/null || pages+=(nodejs npm)
 docs=(doxygen graphviz)
 oracles=(python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-tf2-msgs)
+python=(pybind11-dev python3-dev python3-numpy python3-pytest python3-pandas python3-matplotlib)
 cluster=(munge slurm-wlm openssh-server parallel rsync zstd)
 if [[ "${1:-}" == --minimal ]]; then
   packages=("${minimal[@]}")
@@ -49,9 +51,10 @@ case "${1:-}" in
   --pages) packages+=("${pages[@]}") ;;
   --docs) packages+=("${docs[@]}") ;;
   --oracles) packages+=("${oracles[@]}") ;;
+  --python) packages+=("${python[@]}") ;;
   --cluster) packages+=("${cluster[@]}") ;;
-  --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}" "${oracles[@]}" "${cluster[@]}") ;;
-  *) echo "setup: error: unknown option \"$1\"; the options are --minimal, --dev, --pages, --docs, --oracles, --cluster, --list and --all" >&2; exit 2 ;;
+  --all) packages+=("${dev[@]}" "${pages[@]}" "${docs[@]}" "${oracles[@]}" "${cluster[@]}" "${python[@]}") ;;
+  *) echo "setup: error: unknown option \"$1\"; the options are --minimal, --dev, --pages, --docs, --oracles, --cluster, --python, --list and --all" >&2; exit 2 ;;
 esac
 
 is_installed() { [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }

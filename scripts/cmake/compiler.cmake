@@ -60,6 +60,13 @@ if(STILLPOINT_SANITIZE)
   endif()
 endif()
 
+# stillpoint_position_independent(): the libraries of this folder can be linked into shared objects as well, e.g. into the
+# modules of Python. Functions cannot be replaced at run time, so they are inlined as in other libraries.
+macro(stillpoint_position_independent)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+  add_compile_options(-fno-semantic-interposition)
+endmacro()
+
 # stillpoint_library(NAME [SOURCES a.cpp ...] [EXCLUDE regex] [HEADERS set] [PUBLIC libs...] [PRIVATE libs...]): one module.
 # Without SOURCES: every .cpp file below the current folder whose path does not match EXCLUDE.
 # HEADERS: the set of precompiled headers (default: core), see precompiled.cmake.

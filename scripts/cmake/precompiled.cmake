@@ -25,23 +25,29 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(--param=ggc-min-heapsize=1048576)
 endif()
 
-# stillpoint_precompile(TARGET SET): uses the headers of SET (core, bench or test), which are compiled once for
-# all targets with the same options, and the options of SET.
-function(stillpoint_precompile target set)
-  target_compile_options(${target} PRIVATE ${stillpoint_options_${set}})
-  if(NOT STILLPOINT_PRECOMPILE)
+# stillpoint_precompiled_headers(SET): compiles the headers of SET (core, bench or test) in this folder, unless another one did.
+function(stillpoint_precompiled_headers set)
+  set(host stillpoint_precompiled_${set})
+  if(NOT STILLPOINT_PRECOMPILE OR TARGET ${host})
     return()
   endif()
-  set(host stillpoint_precompiled_${set})
-  if(NOT TARGET ${host})
-    set(source ${PROJECT_BINARY_DIR}/${host}.cpp)
-    file(CONFIGURE OUTPUT ${source} CONTENT "// Holds the precompiled headers.\n")
-    add_library(${host} OBJECT ${source})
-    target_link_libraries(${host} PRIVATE stillpoint_options stillpoint_warnings ${stillpoint_libraries_${set}})
-    target_compile_options(${host} PRIVATE ${stillpoint_options_${set}})
-    target_precompile_headers(${host} PRIVATE ${stillpoint_headers_${set}})
+  set(source ${PROJECT_BINARY_DIR}/${host}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "// Holds the precompiled headers.\n")
+  add_library(${host} OBJECT ${source})
+  target_link_libraries(${host} PRIVATE stillpoint_options stillpoint_warnings ${stillpoint_libraries_${set}})
+  target_compile_options(${host} PRIVATE ${stillpoint_options_${set}})
+  target_precompile_headers(${host} PRIVATE ${stillpoint_headers_${set}})
+endfunction()
+
+# stillpoint_precompile(TARGET SET): uses the headers of SET, which are compiled once for all targets with the same options,
+# and the options of SET. The few position-independent libraries, whose options differ, are compiled without.
+function(stillpoint_precompile target set)
+  target_compile_options(${target} PRIVATE ${stillpoint_options_${set}})
+  if(NOT STILLPOINT_PRECOMPILE OR CMAKE_POSITION_INDEPENDENT_CODE)
+    return()
   endif()
-  target_precompile_headers(${target} REUSE_FROM ${host})
+  stillpoint_precompiled_headers(${set})
+  target_precompile_headers(${target} REUSE_FROM stillpoint_precompiled_${set})
 endfunction()
 
 # stillpoint_group(TARGET [ACROSS_FOLDERS] [EXCEPT regex]): compiles the sources of TARGET in groups, of one folder or of
