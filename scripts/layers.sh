@@ -66,7 +66,8 @@ eval="eval eval/io eval/trajectory eval/metrics eval/statistics eval/compare eva
 trajectories="eval/io eval/trajectory"
 row datasets/io $messages $trajectories
 row datasets/calibration $messages eval/io datasets/io
-row datasets/bags $messages $trajectories datasets/io datasets/calibration
+row datasets/foxglove $messages datasets/io
+row datasets/bags $messages $trajectories datasets/io datasets/calibration datasets/foxglove
 row datasets/formats $messages $trajectories datasets/io datasets/calibration datasets/bags
 row datasets/cache $messages datasets/io datasets/calibration datasets/formats
 row datasets $messages $trajectories datasets/io datasets/calibration datasets/bags datasets/formats datasets/cache
@@ -125,7 +126,7 @@ stored="core/base bench/model bench/store bench/analysis"
 row reports/tables $stored bench/config eval/metrics eval/statistics bench/systems
 row reports/drawing core/base core/types datasets/io eval/io eval/openloris eval/protocols eval/statistics bench/run bench/record \
   reports/tables
-row reports/frames core/base core/types core/pipeline/runners datasets datasets/io eval/metrics eval/trajectory
+row reports/frames core/base core/types core/pipeline/runners bench/run datasets datasets/bags datasets/foxglove datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
 row reports/page $stored core/types datasets/faults eval/io eval/metrics eval/openloris eval/protocols bench/config bench/profile bench/record bench/systems bench/plan reports/tables \
   reports/drawing
@@ -144,7 +145,8 @@ row bench/cli/analysis $execution datasets/bags eval/io eval/metrics eval/trajec
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 
 # The minimal build: its commands, and the functions that it does not have.
-row bench/minimal core/base bench/config bench/cli bench/plan bench/run datasets datasets/synthetic/sequence reports/drawing
+row bench/minimal core/base bench/config bench/cli bench/plan bench/run datasets datasets/synthetic/sequence reports/drawing \
+  reports/frames
 
 # header prefix (extended regex) -> the files that may include it (extended regex); the first match decides
 libraries=(

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the commands of the minimal build (STILLPOINT_MINIMAL) could call, but which it does not have: the
-// renderer and the registry of sequences, PDF files, and the files of pages.
+// renderer and the registry of sequences, PDF files, the files of pages, and recordings for viewers.
 #include "bench/config/toml_source.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
 #include "reports/drawing/drawing.h"
+#include "reports/frames/run_recording.h"
 
 namespace stillpoint {
 
@@ -29,5 +30,19 @@ std::span<const bench::EmbeddedFile> bench::web_files() { return {}; }
 std::string report::pdf_text(const Drawing&) {
   throw InputError("PDF", "this build writes none (STILLPOINT_MINIMAL); write .svg, or use a full build");
 }
+
+struct report::RunRecording::Impl {};
+
+report::RunRecording::RunRecording(const std::filesystem::path& file, const datasets::SequenceInfo&,
+                                   RecordedImages) {
+  throw InputError(file.string(), "this build writes no MCAP files (STILLPOINT_MINIMAL); use a full build");
+}
+
+report::RunRecording::~RunRecording() = default;
+report::RunRecording::RunRecording(RunRecording&&) noexcept = default;
+
+/// Never reached: there is no recording.
+void report::RunRecording::add(const FrameReport&) {}
+void report::RunRecording::finish(const bench::LoopRun*) {}
 
 }  // namespace stillpoint

@@ -20,8 +20,9 @@
 
 namespace stillpoint::datasets {
 
-/// Serialization of messages: ROS 1, or the Common Data Representation of OMG (ROS 2).
-enum class WireFormat { kRos1, kCdr };
+/// Serialization of messages: ROS 1, the Common Data Representation of OMG (ROS 2), or Protocol Buffers, of
+/// which only poses are read (datasets/foxglove).
+enum class WireFormat { kRos1, kCdr, kProtobuf };
 
 /// Messages of one publisher on one topic. A topic may have several connections.
 struct BagConnection {

@@ -87,11 +87,10 @@ eval::LoadedTrajectory trajectory_of_topic(const BagFile& bag, const std::string
   for_each_message(
       bag, topic, [&](const BagConnection& connection, const SerializedMessage& message, Timestamp recorded) {
         if (!is_trajectory_type(connection.type))
-          throw InputError(
-              bag.path().string() + ":" + topic,
-              "has the type " + connection.type +
-                  ", which contains no pose; expected PoseStamped, Odometry, TransformStamped or "
-                  "NavSatFix, or /tf:PARENT.CHILD");
+          throw InputError(bag.path().string() + ":" + topic,
+                           "has the type " + connection.type +
+                               ", which contains no pose; expected PoseStamped, Odometry, TransformStamped, "
+                               "PoseInFrame or NavSatFix, or /tf:PARENT.CHILD");
         PoseMessage pose;
         if (connection.type == kNavSatFix) {
           const NavSatFixMessage fix = parse_nav_sat_fix(message);

@@ -31,8 +31,8 @@ struct BagTopic {
 /// Whether `read_bag_trajectory` reads a topic of this type.
 [[nodiscard]] bool is_trajectory_type(std::string_view type);
 
-/// The poses of a topic of type PoseStamped, PoseWithCovarianceStamped, TransformStamped or Odometry; the
-/// positions of a NavSatFix, as those of `eval::parse_nmea`; or, with the topic "/tf:PARENT.CHILD" (the
+/// The poses of a topic of type PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry or (MCAP)
+/// foxglove.PoseInFrame; the positions of a NavSatFix, as those of `eval::parse_nmea`; or, with the topic "/tf:PARENT.CHILD" (the
 /// notation of evo), of the frame CHILD in PARENT along the chain of transforms in /tf and /tf_static. The
 /// times are those of the transform of the chain with the most messages; the others are interpolated. Stamps
 /// that are 0 are replaced by the time of recording. Poses without a rotation, repeated and unordered ones

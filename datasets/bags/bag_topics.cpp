@@ -15,7 +15,7 @@
 
 #include "core/base/error.h"
 #include "datasets/bags/bag_geometry.h"
-#include "datasets/bags/byte_stream.h"
+#include "datasets/io/byte_stream.h"
 #include "datasets/io/image_io.h"
 
 namespace stillpoint::datasets {

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "datasets/bags/messages.h"
+#include "datasets/foxglove/messages.h"
 
 namespace stillpoint::datasets {
 namespace {
@@ -27,6 +28,7 @@ enum Opcode : std::uint8_t {
   kMessageIndex = 7,
   kChunkIndex = 8,
   kStatistics = 11,
+  kSummaryOffset = 14,
   kDataEnd = 15,
 };
 
@@ -159,12 +161,15 @@ class McapIndexer {
     const std::string_view encoding = reader.text();
     BagConnection& connection = index_.connections[connection_index(id)];
     known_.insert(id);
-    if (!connection.topic.empty() || (encoding != "ros1" && encoding != "cdr")) return;
     const Schema& schema = schemas_[schema_id];
+    const bool is_pose = encoding == "protobuf" && schema.name == kPoseInFrameType;
+    if (!connection.topic.empty() || (encoding != "ros1" && encoding != "cdr" && !is_pose)) return;
     connection = {.topic = std::string(topic),
                   .type = schema.name,
                   .definition = schema.definition,
-                  .format = encoding == "cdr" ? WireFormat::kCdr : WireFormat::kRos1};
+                  .format = is_pose             ? WireFormat::kProtobuf
+                            : encoding == "cdr" ? WireFormat::kCdr
+                                                : WireFormat::kRos1};
   }
 
   std::uint32_t connection_index(std::uint16_t id) {
@@ -318,24 +323,30 @@ std::string ros2_type(std::string_view type) {
 
 }  // namespace
 
-McapWriter::McapWriter(const std::filesystem::path& path, ChunkCompression compression)
+McapWriter::McapWriter(const std::filesystem::path& path, ChunkCompression compression,
+                       std::string_view profile)
     : file_(path), compression_(compression) {
   file_.append(mcap::kMagic);
-  file_.append(record(mcap::kHeader, ByteWriter().text("ros2").text("stillpoint").bytes()));
+  file_.append(record(mcap::kHeader, ByteWriter().text(profile).text("stillpoint").bytes()));
 }
 
 std::uint32_t McapWriter::add_connection(std::string_view topic, std::string_view type) {
+  return add_channel({.topic = std::string(topic),
+                      .message_encoding = "cdr",
+                      .type = ros2_type(type),
+                      .schema_encoding = "ros2msg",
+                      .schema = definition_of(type, WireFormat::kCdr).text});
+}
+
+std::uint32_t McapWriter::add_channel(const McapChannel& channel) {
   const auto id = static_cast<std::uint16_t>(connections_.size());
   const auto schema = static_cast<std::uint16_t>(id + 1);  // 0 means none
   ByteWriter schema_fields;
-  schema_fields.number(schema)
-      .text(ros2_type(type))
-      .text("ros2msg")
-      .block(definition_of(type, WireFormat::kCdr).text);
+  schema_fields.number(schema).text(channel.type).text(channel.schema_encoding).block(channel.schema);
   ByteWriter channel_fields;
-  channel_fields.number(id).number(schema).text(topic).text("cdr").block("");
-  connections_.push_back(record(mcap::kSchema, schema_fields.bytes()) +
-                         record(mcap::kChannel, channel_fields.bytes()));
+  channel_fields.number(id).number(schema).text(channel.topic).text(channel.message_encoding).block("");
+  connections_.push_back({.schema = record(mcap::kSchema, schema_fields.bytes()),
+                          .channel = record(mcap::kChannel, channel_fields.bytes())});
   written_.push_back(false);
   counts_.push_back(0);
   return id;
@@ -343,7 +354,7 @@ std::uint32_t McapWriter::add_connection(std::string_view topic, std::string_vie
 
 void McapWriter::write(std::uint32_t connection, Timestamp t, std::string_view bytes) {
   if (!written_[connection]) {
-    chunk_ += connections_[connection];
+    chunk_ += connections_[connection].schema + connections_[connection].channel;
     written_[connection] = true;
   }
   if (index_.empty()) chunk_first_ = chunk_last_ = t;
@@ -382,6 +393,7 @@ void McapWriter::finish_chunk() {
   first_ = chunk_indexes_.empty() ? chunk_first_ : std::min(first_, chunk_first_);
   last_ = chunk_indexes_.empty() ? chunk_last_ : std::max(last_, chunk_last_);
   chunk_indexes_.push_back(record(mcap::kChunkIndex, index.bytes()));
+  file_.flush();
   chunk_.clear();
   index_.clear();
 }
@@ -400,16 +412,43 @@ std::string McapWriter::statistics_record() const {
   return record(mcap::kStatistics, fields.block(counts.bytes()).bytes());
 }
 
+std::string McapWriter::summary(std::uint64_t position) const {
+  std::string records;
+  ByteWriter offsets;
+  const auto end_group = [&](mcap::Opcode opcode, std::size_t begin) {
+    if (records.size() == begin) return;
+    const std::uint64_t length = records.size() - begin;
+    offsets.append(record(mcap::kSummaryOffset, ByteWriter()
+                                                    .number(static_cast<std::uint8_t>(opcode))
+                                                    .number(position + begin)
+                                                    .number(length)
+                                                    .bytes()));
+  };
+  for (const Connection& connection : connections_) records += connection.schema;
+  end_group(mcap::kSchema, 0);
+  std::size_t begin = records.size();
+  for (const Connection& connection : connections_) records += connection.channel;
+  end_group(mcap::kChannel, begin);
+  begin = records.size();
+  records += statistics_record();
+  end_group(mcap::kStatistics, begin);
+  begin = records.size();
+  for (const std::string& index : chunk_indexes_) records += index;
+  end_group(mcap::kChunkIndex, begin);
+  const std::uint64_t offset_start = position + records.size();
+  records += offsets.bytes();
+  // The checksum covers the summary and the footer up to the checksum itself.
+  ByteWriter footer;
+  footer.number(static_cast<std::uint8_t>(mcap::kFooter)).number(std::uint64_t{20});
+  footer.number(position).number(offset_start);
+  records += footer.bytes();
+  return records + ByteWriter().number(crc32_of(records)).bytes();
+}
+
 void McapWriter::finish() {
   finish_chunk();
   file_.append(record(mcap::kDataEnd, ByteWriter().number(std::uint32_t{0}).bytes()));
-  const std::uint64_t summary = file_.position();
-  for (const std::string& connection : connections_) file_.append(connection);
-  file_.append(statistics_record());
-  for (const std::string& index : chunk_indexes_) file_.append(index);
-  // No summary offsets, no checksum of the summary.
-  file_.append(record(
-      mcap::kFooter, ByteWriter().number(summary).number(std::uint64_t{0}).number(std::uint32_t{0}).bytes()));
+  file_.append(summary(file_.position()));
   file_.append(mcap::kMagic);
   file_.finish();
 }

@@ -4,13 +4,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/bags/byte_stream.h"
+#include "datasets/foxglove/messages.h"
+#include "datasets/io/byte_stream.h"
 
 namespace stillpoint::datasets {
 namespace {
 
 constexpr std::size_t kEncapsulationBytes = 4;  ///< identifier (big endian) and options
 constexpr std::size_t kMinTransformBytes = 68;  ///< of an empty header, empty names and 7 numbers
+
+/// @return nullopt if the rotation has no direction, or a number is not finite
+std::optional<Pose> valid_pose(const Eigen::Vector3d& p, Eigen::Quaterniond rotation) {
+  const double norm = rotation.coeffs().norm();
+  if (!p.allFinite() || !std::isfinite(norm) || norm < 1e-3) return std::nullopt;
+  // Normalizing again would change the last bits of a normalized quaternion.
+  if (std::abs(norm - 1.0) > 1e-14) rotation.normalize();
+  return Pose{rotation, p};
+}
 
 /// Reads the fields of one message in their order.
 class FieldReader {
@@ -59,12 +69,7 @@ class FieldReader {
   std::optional<Pose> pose() {
     const Eigen::Vector3d p = vector();
     const std::array<double, 4> q = numbers<4>();
-    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!p.allFinite() || !std::isfinite(norm) || norm < 1e-3) return std::nullopt;
-    Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
-    // Normalizing again would change the last bits of a normalized quaternion.
-    if (std::abs(norm - 1.0) > 1e-14) rotation.normalize();
-    return Pose{rotation, p};
+    return valid_pose(p, Eigen::Quaterniond(q[3], q[0], q[1], q[2]));
   }
 
  private:
@@ -188,13 +193,19 @@ NavSatFixMessage parse_nav_sat_fix(const SerializedMessage& message) {
 }
 
 bool is_pose_type(std::string_view type) {
-  constexpr std::array<std::string_view, 4> kTypes{"geometry_msgs/PoseStamped",
-                                                   "geometry_msgs/PoseWithCovarianceStamped",
-                                                   "geometry_msgs/TransformStamped", "nav_msgs/Odometry"};
+  constexpr std::array<std::string_view, 5> kTypes{
+      "geometry_msgs/PoseStamped", "geometry_msgs/PoseWithCovarianceStamped",
+      "geometry_msgs/TransformStamped", "nav_msgs/Odometry", kPoseInFrameType};
   return std::ranges::find(kTypes, type) != kTypes.end();
 }
 
 PoseMessage parse_pose(const SerializedMessage& message, std::string_view type) {
+  if (type == kPoseInFrameType) {
+    const PoseInFrameMessage pose = decode_pose_in_frame(message.bytes, message.place);
+    return {.header = {.stamp = pose.t, .frame = pose.frame},
+            .child = {},
+            .pose = valid_pose(pose.position, pose.orientation)};
+  }
   FieldReader fields(message);
   PoseMessage result;
   result.header = fields.header();

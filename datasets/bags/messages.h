@@ -137,7 +137,7 @@ struct NavSatFixMessage {
 [[nodiscard]] std::string serialize(const NavSatFixMessage& message, WireFormat format);
 
 /// @param message with a pose
-/// @param type for which `is_pose_type` is true; a covariance that is not set and velocities are 0
+/// @param type of ROS for which `is_pose_type` is true; a covariance that is not set and velocities are 0
 [[nodiscard]] std::string serialize_pose(const PoseMessage& message, std::string_view type,
                                          WireFormat format);
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "datasets/bags/bag_chunks.h"
-#include "datasets/bags/byte_stream.h"
+#include "datasets/io/byte_stream.h"
 
 namespace stillpoint::datasets {
 

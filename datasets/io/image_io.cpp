@@ -310,8 +310,9 @@ cv::Mat with_8_bits(const cv::Mat& image) { return image.depth() == CV_16U ? upp
 using Bytes = std::vector<unsigned char>;
 
 /// By libjpeg-turbo: runs write annotated images, for which OpenImageIO is not loaded.
-/// @return nullopt if the encoder fails, e.g. for an image of more than 65500 rows
-std::optional<Bytes> encode_jpeg(const cv::Mat& image, int quality) {
+/// @param place for errors
+/// @throws InputError if the encoder fails
+Bytes jpeg_bytes(const cv::Mat& image, int quality, const std::string& place) {
   STILLPOINT_CHECK(!image.empty() && image.depth() == CV_8U &&
                    (image.channels() == 1 || image.channels() == 3));
   const bool is_gray = image.channels() == 1;
@@ -319,14 +320,15 @@ std::optional<Bytes> encode_jpeg(const cv::Mat& image, int quality) {
   const int subsampling = is_gray ? TJSAMP_GRAY : TJSAMP_420;
   const std::unique_ptr<void, int (*)(void*)> encoder(tjInitCompress(), tjDestroy);
   const unsigned long capacity = tjBufSize(image.cols, image.rows, subsampling);
-  if (!encoder || capacity == static_cast<unsigned long>(-1)) return std::nullopt;
+  const InputError failure(place, "cannot be encoded; JPEG images have at most 65500 rows and columns");
+  if (!encoder || capacity == static_cast<unsigned long>(-1)) throw failure;
   Bytes bytes(capacity);
   unsigned char* data = bytes.data();
   unsigned long size = capacity;
   const int failed =
       tjCompress2(encoder.get(), image.data, image.cols, static_cast<int>(image.step[0]), image.rows,
                   is_gray ? TJPF_GRAY : TJPF_RGB, &data, &size, subsampling, quality, TJFLAG_NOREALLOC);
-  if (failed != 0) return std::nullopt;
+  if (failed != 0) throw failure;
   bytes.resize(size);
   return bytes;
 }
@@ -416,10 +418,12 @@ void write_png(const std::filesystem::path& file, const cv::Mat& image) {
 }
 
 void write_jpeg(const std::filesystem::path& file, const cv::Mat& image, int quality) {
-  const std::optional<Bytes> bytes = encode_jpeg(image, quality);
-  if (!bytes)
-    throw InputError(file.string(), "cannot be encoded; JPEG images have at most 65500 rows and columns");
-  write_atomically(file, *bytes);
+  write_atomically(file, jpeg_bytes(image, quality, file.string()));
+}
+
+std::string encode_jpeg(const cv::Mat& image, int quality) {
+  const Bytes bytes = jpeg_bytes(image, quality, "image");
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace stillpoint::datasets

@@ -83,4 +83,8 @@ void write_png(const std::filesystem::path& file, const cv::Mat& image);
 /// @throws InputError as `write_png`
 void write_jpeg(const std::filesystem::path& file, const cv::Mat& image, int quality = 90);
 
+/// The bytes that `write_jpeg` writes.
+/// @throws InputError if the image has more than 65500 rows or columns
+[[nodiscard]] std::string encode_jpeg(const cv::Mat& image, int quality = 90);
+
 }  // namespace stillpoint::datasets

@@ -96,6 +96,18 @@ bool is_same(const Pose& a, const Pose& b) { return a.p == b.p && a.q.coeffs() =
 
 }  // namespace
 
+cv::Scalar label_color(std::optional<LabelClass> label) {
+  if (!label) return kUnlabeled;
+  switch (*label) {
+    case LabelClass::kDynamicObject:
+      return kObject;
+    case LabelClass::kDynamicMotion:
+      return kMotion;
+    default:
+      return kStable;
+  }
+}
+
 AnnotationStyle annotation_style(const FrontendConfig& frontend) {
   return {.stable_radius_px = frontend.circular_mask ? frontend.min_distance_px : 0,
           .unstable_radius_px = frontend.circular_mask ? frontend.unstable_radius_px : 0};
@@ -147,10 +159,7 @@ cv::Mat FrameAnnotator::annotate(const FrameReport& report) {
   draw_circles(now, canvas);
   draw_boxes(report.dynamic.boxes, canvas);
   for (const auto& [id, track] : now) {
-    const cv::Scalar& color = !track.has_label                            ? kUnlabeled
-                              : track.label == LabelClass::kDynamicObject ? kObject
-                              : track.label == LabelClass::kDynamicMotion ? kMotion
-                                                                          : kStable;
+    const cv::Scalar color = label_color(track.has_label ? std::optional(track.label) : std::nullopt);
     std::vector<cv::Point> points;
     for (const cv::Point2d& pixel : track.pixels) points.push_back(fixed(pixel));
     cv::polylines(canvas, points, false, color, 1, cv::LINE_AA, kFractionBits);

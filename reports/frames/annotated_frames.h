@@ -28,6 +28,10 @@ struct AnnotationStyle {
 /// Radii of the circular masks that a tracker with this configuration uses.
 [[nodiscard]] AnnotationStyle annotation_style(const FrontendConfig& frontend);
 
+/// Color (R, G, B) of a feature: green stable, red on a dynamic object, magenta moving, white without a
+/// label.
+[[nodiscard]] cv::Scalar label_color(std::optional<LabelClass> label);
+
 /// Draws odometry results onto a frame: detections, semantic mask, circular masks, features and their tracks.
 /// Call it for every frame in order: tracks and lost features are derived from the preceding frames.
 ///

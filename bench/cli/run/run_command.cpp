@@ -89,9 +89,9 @@ void save_map(const MapOptions& options, const LoopReport& report) {
 struct RunArguments {
   std::string sequence, base = "stillpoint", mode = "sequential";
   std::vector<std::string> variants, settings, faults, topics, dumps;
-  std::string out, format, rig, heartbeat, sequence_id, video, sysfs_root = "/";
+  std::string out, format, rig, heartbeat, sequence_id, video, mcap, sysfs_root = "/";
   int max_frames = 0, every = 1, passes = 1, images = 0, gray_noise = 0;
-  bool deterministic_counts = false, no_frame_cache = false, imu_rate = false;
+  bool deterministic_counts = false, no_frame_cache = false, imu_rate = false, mcap_images = false;
   double speed = 1.0, start_s = 0.0;
   MapOptions map;
 };
@@ -123,7 +123,7 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
                              .speed = arguments.speed,
                              .max_frames = static_cast<std::size_t>(arguments.max_frames),
                              .map = map,
-                             .decode_color = !arguments.video.empty(),
+                             .decode_color = !arguments.video.empty() || arguments.mcap_images,
                              .keep_spans = true,
                              .deterministic_counts = arguments.deterministic_counts},
                     .faults = faults,
@@ -134,12 +134,25 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   return runs;
 }
 
+/// Checks --mcap before the work begins. @throws InputError for several runs, and if the file exists
+void require_recording_options(const RunArguments& arguments, std::size_t runs,
+                               const std::vector<fs::path>& inputs) {
+  if (arguments.mcap.empty()) {
+    if (arguments.mcap_images)
+      throw InputError("--mcap-images", "requires --mcap FILE, the recording that contains the images");
+    return;
+  }
+  if (runs > 1) throw InputError("--mcap", "requires a single run; pass one --variant");
+  require_safe_output(arguments.mcap, {.inputs = inputs});
+}
+
 /// Sets the output folder of each run: --out for a single run, else a subfolder. Checks that it is writable.
 std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const RunArguments& arguments,
                                         const datasets::SequenceInfo& info) {
   const fs::path root = arguments.out.empty() ? fs::path("build/runs") / info.name : fs::path(arguments.out);
   const bool shared_root = arguments.out.empty() || runs.size() > 1;
   const std::vector<fs::path> inputs = {info.folder, arguments.rig};
+  require_recording_options(arguments, runs.size(), inputs);
   for (ConfiguredRun& run : runs) {
     if (!run.video.empty() && runs.size() > 1) run.video /= folder_name(run.variant);
     run.folder = shared_root ? root / folder_name(run.variant) : root;
@@ -169,7 +182,9 @@ DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& con
           .labels = requested("labels"),
           .cost = requested("cost"),
           .video = configured.video,
-          .images = static_cast<std::size_t>(arguments.images)};
+          .images = static_cast<std::size_t>(arguments.images),
+          .mcap = arguments.mcap,
+          .mcap_images = arguments.mcap_images};
 }
 
 /// Log, progress line, heartbeat, and the meters of the machine during a run.
@@ -361,6 +376,11 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
        &arguments->dumps},
       {"--passes", "Passes, forward and backward in turn, without IMU [1]", &arguments->passes, {1, 1000}},
       {"--video", "Write annotated frames and video.mp4 into this folder", &arguments->video},
+      {"--mcap",
+       "Record poses, features, boxes, status, timings and IMU in this file for Foxglove or rerun, while "
+       "running",
+       &arguments->mcap},
+      {"--mcap-images", "Also record color (JPEG) and depth images", &arguments->mcap_images},
       {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
       {"--map", "Map of an earlier run, in which this one is located", &arguments->map.load},
       {"--save-map", "Write a map for later runs, with --map an extended one", &arguments->map.save},

@@ -56,6 +56,11 @@ RunDumps::RunDumps(DumpRequest request, const datasets::SequenceInfo& info, cons
   if (!request_.video.empty()) video_.emplace(request_.video, style, report::mean_rate_hz(info.frame_times));
   if (request_.images > 0)
     worst_frames_.emplace(request_.folder / kImagesFolder, request_.images, style, info);
+  if (!request_.mcap.empty()) {
+    recording_.emplace(
+        request_.mcap, info,
+        request_.mcap_images ? report::RecordedImages::kColorAndDepth : report::RecordedImages::kNone);
+  }
 }
 
 template <class Action>
@@ -73,19 +78,19 @@ void RunDumps::add(const FrameReport& report) {
   if (request_.labels) labels_.add(report);
   if (video_ && !attempt("--video", [&] { video_->add(report); })) video_.reset();
   if (worst_frames_ && !attempt("--images", [&] { worst_frames_->add(report); })) worst_frames_.reset();
+  if (recording_ && !attempt("--mcap", [&] { recording_->add(report); })) recording_.reset();
 }
 
-std::vector<std::string> RunDumps::finish(const OdometryRun* cost_run) {
+std::vector<std::string> RunDumps::finish(const OdometryRun* run) {
+  const LoopRun* const loops = run != nullptr && run->loops ? &*run->loops : nullptr;
   if (video_) attempt("--video", [&] { video_->finish(); });
+  if (recording_) attempt("--mcap", [&] { recording_->finish(loops); });
   if (request_.labels)
     attempt("--dump labels", [&] { write_files(request_.folder, {{kLabelsFile, labels_.text()}}); });
-  if (request_.cost && cost_run != nullptr)
-    attempt("--dump cost", [&] { write_files(request_.folder, {{kCostFile, cost_svg(*cost_run)}}); });
-  if (request_.cost && cost_run != nullptr && cost_run->loops) {
-    attempt("--dump cost", [&] {
-      write_files(request_.folder, {{kLoopCostFile, loop_cost_svg(*cost_run->loops)}});
-    });
-  }
+  if (request_.cost && run != nullptr)
+    attempt("--dump cost", [&] { write_files(request_.folder, {{kCostFile, cost_svg(*run)}}); });
+  if (request_.cost && loops != nullptr)
+    attempt("--dump cost", [&] { write_files(request_.folder, {{kLoopCostFile, loop_cost_svg(*loops)}}); });
   return failures_;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Optional outputs of a run: dynamic labels of all features, plots of its cost, annotated images and a
-/// video. None of their failures affects the run or its result.
+/// Optional outputs of a run: dynamic labels of all features, plots of its cost, annotated images, a video
+/// and a recording for viewers. None of their failures affects the run or its result.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include "core/pipeline/runners/runner.h"
 #include "datasets/sensor_stream.h"
 #include "reports/frames/annotated_frames.h"
+#include "reports/frames/run_recording.h"
 
 namespace stillpoint::bench {
 
@@ -37,6 +38,8 @@ struct DumpRequest {
   bool cost = false;
   std::filesystem::path video;  ///< folder; empty = none
   std::size_t images = 0;       ///< number of annotated images of the worst frames
+  std::filesystem::path mcap;   ///< recording for viewers; empty = none
+  bool mcap_images = false;     ///< the recording contains color and depth images
 };
 
 /// Values of --dump. @throws InputError for a name that is not one of them
@@ -45,20 +48,20 @@ void require_known_dumps(const std::vector<std::string>& names);
 /// The outputs of one run.
 class RunDumps {
  public:
-  /// Creates the folders, so that unusable ones are reported before the run.
-  /// @throws InputError if a folder cannot be created
+  /// Creates the folders and the recording, so that unusable ones are reported before the run.
+  /// @throws InputError if one of them cannot be created
   RunDumps(DumpRequest request, const datasets::SequenceInfo& info, const FrontendConfig& frontend);
 
   /// Whether `add` has to be called with the frames.
-  [[nodiscard]] bool needs_frames() const { return request_.labels || video_ || worst_frames_; }
+  [[nodiscard]] bool needs_frames() const { return request_.labels || video_ || worst_frames_ || recording_; }
 
   /// Frames in order. An output that cannot be written ends; the others continue.
   void add(const FrameReport& report);
 
   /// Writes what is written at the end of the run. Call it after the result was written.
-  /// @param cost_run the run, for its processing times; null to omit them
+  /// @param run for its processing times and loops; null to omit them
   /// @return failures of all outputs, one sentence each
-  [[nodiscard]] std::vector<std::string> finish(const OdometryRun* cost_run);
+  [[nodiscard]] std::vector<std::string> finish(const OdometryRun* run);
 
  private:
   /// Calls `action`. @return whether it succeeded
@@ -69,6 +72,7 @@ class RunDumps {
   LabelDump labels_;
   std::optional<report::RunVideo> video_;
   std::optional<report::WorstFrames> worst_frames_;
+  std::optional<report::RunRecording> recording_;
   std::vector<std::string> failures_;
 };
 

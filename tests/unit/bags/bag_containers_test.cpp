@@ -10,7 +10,7 @@
 
 #include "datasets/bags/bag_chunks.h"
 #include "datasets/bags/bag_file.h"
-#include "datasets/bags/byte_stream.h"
+#include "datasets/io/byte_stream.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "datasets/bags/byte_stream.h"
+#include "datasets/io/byte_stream.h"
 
 #include <system_error>
 

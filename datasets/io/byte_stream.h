@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bytes of bags: a reader of numbers and texts whose every access is checked, its inverse, and a file that
-/// gets its name when it is complete.
+/// Bytes of binary files: a reader of numbers and texts whose every access is checked, its inverse, and a
+/// file that gets its name when it is complete.
 #pragma once
 
 #include <algorithm>
@@ -152,6 +152,9 @@ class OutputFile {
 
   /// Replaces bytes that were written before.
   void overwrite(std::uint64_t position, std::string_view bytes);
+
+  /// Gives all bytes to the system, so that they survive the end of this process.
+  void flush() { out_.flush(); }
 
   /// Renames the file.
   /// @throws InputError if it could not be written completely

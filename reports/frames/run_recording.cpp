@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/frames/run_recording.h"
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "datasets/bags/mcap.h"
+#include "datasets/foxglove/message_types.h"
+#include "datasets/foxglove/messages.h"
+#include "datasets/foxglove/protobuf.h"
+#include "datasets/io/image_io.h"
+#include "eval/metrics/rpe.h"
+#include "eval/trajectory/alignment.h"
+#include "reports/frames/annotated_frames.h"
+
+namespace stillpoint::report {
+namespace {
+
+using datasets::FoxgloveHeader;
+using datasets::ProtobufWriter;
+
+constexpr const char* kMapFrame = "map";
+constexpr const char* kBodyFrame = "body";
+constexpr const char* kCameraFrame = "camera";
+constexpr const char* kTruthFrame = "truth";
+constexpr datasets::MessageColor kDetectedBox = {.r = 255, .g = 230, .b = 0};
+constexpr datasets::MessageColor kCompensatedBox = {.r = 60, .g = 140, .b = 255};
+constexpr double kMillimeters = 1000.0;  ///< per meter
+
+std::string world_frame(int segment) { return segment == 0 ? "world" : "world_" + std::to_string(segment); }
+
+datasets::MessageColor color_of(std::optional<LabelClass> label) {
+  const cv::Scalar rgb = label_color(label);
+  return {.r = static_cast<std::uint8_t>(rgb[0]),
+          .g = static_cast<std::uint8_t>(rgb[1]),
+          .b = static_cast<std::uint8_t>(rgb[2])};
+}
+
+std::vector<Pose> poses_of(const Trajectory& trajectory) {
+  std::vector<Pose> poses;
+  for (const StampedPose& pose : trajectory.poses) poses.push_back(pose.T_w_f);
+  return poses;
+}
+
+/// Calls `action` with each feature and its label, if it has one. Both lists are sorted by id.
+template <class Action>
+void for_each_label(const FrameReport& report, const Action& action) {
+  auto label = report.dynamic.labels.begin();
+  for (const TrackedFeature& feature : report.tracked.features) {
+    while (label != report.dynamic.labels.end() && label->id < feature.id) ++label;
+    const bool found = label != report.dynamic.labels.end() && label->id == feature.id;
+    action(feature, found ? std::optional(label->label) : std::nullopt);
+  }
+}
+
+std::string status_message(const FrameReport& report) {
+  const OdometryUpdate& update = report.update;
+  const OdometryCounters& counters = update.counters;
+  return ProtobufWriter()
+      .bytes(1, datasets::encode_timestamp(report.frame.t))
+      .integer(2, update.frame_id)
+      .bytes(3, status_name(update.status))
+      .bytes(4, reason_name(update.reason))
+      .integer(5, update.segment)
+      .integer(6, counters.tracked_features)
+      .integer(7, counters.window_landmarks)
+      .integer(8, counters.depth_landmarks)
+      .integer(9, counters.dynamic_features)
+      .integer(10, counters.solver_iterations)
+      .integer(11, counters.keyframe ? 1 : 0)
+      .integer(12, counters.reset ? 1 : 0)
+      .take();
+}
+
+/// The covariance of position and rotation, both in the axes of the world; row-major.
+std::vector<double> pose_covariance(const OdometryUpdate& update) {
+  Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Identity();
+  J.bottomRightCorner<3, 3>() = update.state.T_w_b.R();
+  const Eigen::Matrix<double, 6, 6, Eigen::RowMajor> covariance =
+      J * update.covariance->pose() * J.transpose();
+  return {covariance.data(), covariance.data() + covariance.size()};
+}
+
+std::string state_message(const FrameReport& report) {
+  const OdometryUpdate& update = report.update;
+  ProtobufWriter message;
+  message.bytes(1, datasets::encode_timestamp(report.frame.t))
+      .bytes(2, world_frame(update.segment))
+      .bytes(3, datasets::encode_pose(update.state.T_w_b));
+  if (update.inertial) {
+    message.bytes(4, datasets::encode_vector(update.state.v_w))
+        .bytes(5, datasets::encode_vector(update.state.gyro_bias))
+        .bytes(6, datasets::encode_vector(update.state.accel_bias));
+  }
+  message.number(7, update.time_offset_s).number(8, update.depth_scale);
+  if (update.covariance) message.numbers(9, pose_covariance(update));
+  return message.take();
+}
+
+std::string timings_message(const FrameReport& report) {
+  ProtobufWriter message;
+  message.bytes(1, datasets::encode_timestamp(report.frame.t)).integer(2, report.update.frame_id);
+  for (std::size_t i = 0; i < kModuleCount; ++i) {
+    const auto module = static_cast<Module>(i);
+    const ModuleTime& time = report.update.timings[module];
+    if (time.calls == 0) continue;
+    message.bytes(3, ProtobufWriter()
+                         .bytes(1, module_name(module))
+                         .number(2, static_cast<double>(time.ns) * 1e-6)
+                         .integer(3, time.calls)
+                         .take());
+  }
+  return message.take();
+}
+
+std::string imu_message(const ImuSample& sample) {
+  return ProtobufWriter()
+      .bytes(1, datasets::encode_timestamp(sample.t))
+      .bytes(2, datasets::encode_vector(sample.gyro_b))
+      .bytes(3, datasets::encode_vector(sample.accel_b))
+      .take();
+}
+
+std::string loop_message(const LoopRecord& loop) {
+  return ProtobufWriter()
+      .bytes(1, datasets::encode_timestamp(loop.query_t))
+      .integer(2, loop.query_frame)
+      .bytes(3, datasets::encode_timestamp(loop.match_t))
+      .integer(4, loop.match_frame)
+      .integer(5, loop.votes)
+      .integer(6, loop.matches)
+      .integer(7, loop.inliers)
+      .number(8, loop.residual_px)
+      .bytes(9, outcome_name(loop.outcome))
+      .integer(10, loop.in_map ? 1 : 0)
+      .bytes(11, datasets::encode_pose(loop.T_match_query))
+      .take();
+}
+
+std::string annotations_message(const FrameReport& report) {
+  std::map<std::optional<LabelClass>, datasets::AnnotatedPoints> groups;
+  for_each_label(report, [&](const TrackedFeature& feature, std::optional<LabelClass> label) {
+    groups[label].pixels.push_back(feature.pixel);
+  });
+  std::vector<datasets::AnnotatedPoints> annotations;
+  for (auto& [label, points] : groups) {
+    points.color = color_of(label);
+    annotations.push_back(std::move(points));
+  }
+  for (const TrackedBox& tracked : report.dynamic.boxes) {
+    const Box& box = tracked.box;
+    annotations.push_back({.pixels = {{box.x_min, box.y_min},
+                                      {box.x_max, box.y_min},
+                                      {box.x_max, box.y_max},
+                                      {box.x_min, box.y_max}},
+                           .color = tracked.compensated ? kCompensatedBox : kDetectedBox,
+                           .closed_line = true,
+                           .text = tracked.class_name + (tracked.compensated ? " (compensated)" : "")});
+  }
+  return datasets::encode_annotations(report.frame.t, annotations);
+}
+
+std::string landmarks_message(const FrameReport& report) {
+  std::vector<datasets::ColoredPoint> points;
+  for_each_label(report, [&](const TrackedFeature& feature, std::optional<LabelClass> label) {
+    if (feature.depth <= 0.0) return;
+    const Eigen::Vector3d p_c = feature.depth * feature.bearing.homogeneous();
+    points.push_back({.p = p_c.cast<float>(), .color = color_of(label)});
+  });
+  return datasets::encode_point_cloud({report.frame.t, kCameraFrame}, points);
+}
+
+std::string depth_message(const Frame& frame) {
+  cv::Mat millimeters;
+  frame.depth.convertTo(millimeters, CV_16UC1, kMillimeters / frame.depth_units_per_m);
+  return datasets::encode_deep_image({frame.t, kCameraFrame}, millimeters.cols,
+                                     {millimeters.ptr<std::uint16_t>(), millimeters.total()});
+}
+
+}  // namespace
+
+struct RunRecording::Impl {
+  Impl(const std::filesystem::path& file, const datasets::SequenceInfo& sequence, RecordedImages recorded)
+      : info(sequence),
+        images(recorded),
+        truth(eval::move_to_frame(sequence.ground_truth.trajectory, sequence.ground_truth.T_c_f.inverse(),
+                                  "camera")),
+        writer(file, datasets::ChunkCompression::kZstd, "") {}
+
+  /// Writes a message; the channel is added with the first one.
+  void write(const std::string& topic, std::string_view type, Timestamp t, std::string_view message) {
+    auto channel = channels.find(topic);
+    if (channel == channels.end()) {
+      const std::uint32_t added = writer.add_channel({.topic = topic,
+                                                      .message_encoding = "protobuf",
+                                                      .type = std::string(type),
+                                                      .schema_encoding = "protobuf",
+                                                      .schema = datasets::protobuf_schema(type)});
+      channel = channels.emplace(topic, added).first;
+    }
+    writer.write(channel->second, t, message);
+  }
+
+  void write_pose(const std::string& topic, const FoxgloveHeader& header, const Pose& pose) {
+    write(topic, "foxglove.PoseInFrame", header.t, datasets::encode_pose_in_frame(header, pose));
+  }
+
+  void write_path(const std::string& topic, std::string_view frame, const Trajectory& trajectory) {
+    if (trajectory.poses.empty()) return;
+    const FoxgloveHeader header{info.frame_times.front(), frame};
+    write(topic, "foxglove.PosesInFrame", header.t, datasets::encode_path(header, poses_of(trajectory)));
+  }
+
+  void write_transform(const FoxgloveHeader& header, std::string_view child, const Pose& pose) {
+    write("/tf", "foxglove.FrameTransform", header.t, datasets::encode_transform(header, child, pose));
+  }
+
+  /// IMU samples and true poses up to a frame.
+  void write_references(Timestamp t) {
+    for (; next_imu < info.imu.size() && info.imu[next_imu].t <= t; ++next_imu) {
+      const ImuSample& sample = info.imu[next_imu];
+      if (sample.t.ns >= 0) write("/imu", "stillpoint.Imu", sample.t, imu_message(sample));
+    }
+    for (; next_truth < truth.poses.size() && truth.poses[next_truth].t <= t; ++next_truth) {
+      const auto& [T_w_c, stamp] = truth.poses[next_truth];
+      if (stamp.ns >= 0) write_pose("/truth", {stamp, kTruthFrame}, T_w_c);
+    }
+  }
+
+  void write_estimate(const OdometryUpdate& update, Timestamp t) {
+    const std::string world = world_frame(update.segment);
+    const std::string suffix = update.segment == 0 ? "" : "/segment_" + std::to_string(update.segment);
+    write_pose("/estimate" + suffix, {t, world}, update.T_w_c);
+    write_transform({t, world}, kBodyFrame, update.state.T_w_b);
+    write_transform({t, kBodyFrame}, kCameraFrame, update.state.T_w_b.inverse() * update.T_w_c);
+    if (update.segment != 0) return;
+    estimate.poses.push_back({t, update.T_w_c});
+    if (aligned) return;
+    const auto matches = eval::strict_matches(truth, {.frame = "camera", .poses = {{t, update.T_w_c}}});
+    if (matches.empty()) return;
+    write_transform({t, world}, kTruthFrame, matches.front().est * matches.front().gt.inverse());
+    aligned = true;
+  }
+
+  /// The pose of a world in the map, when it has changed.
+  void write_map(const OdometryUpdate& update, Timestamp t) {
+    const auto known = T_m_w.find(update.segment);
+    const bool same = known != T_m_w.end() && known->second.p == update.T_m_w.p &&
+                      known->second.q.coeffs() == update.T_m_w.q.coeffs();
+    if (!update.in_map || same) return;
+    T_m_w[update.segment] = update.T_m_w;
+    write_transform({t, kMapFrame}, world_frame(update.segment), update.T_m_w);
+  }
+
+  void write_images(const Frame& frame) {
+    const cv::Mat color = color_image(frame);
+    write("/camera/image", "foxglove.CompressedImage", frame.t,
+          datasets::encode_jpeg_message({frame.t, kCameraFrame},
+                                        datasets::encode_jpeg(color.empty() ? frame.gray : color)));
+    if (!frame.depth.empty()) write("/camera/depth", "foxglove.RawImage", frame.t, depth_message(frame));
+  }
+
+  const datasets::SequenceInfo& info;
+  RecordedImages images;
+  Trajectory truth;  ///< of the camera
+  datasets::McapWriter writer;
+  std::map<std::string, std::uint32_t> channels;
+  Trajectory estimate;         ///< of segment 0
+  std::size_t next_imu = 0;    ///< first sample that is not written yet
+  std::size_t next_truth = 0;  ///< first true pose that is not written yet
+  bool aligned = false;        ///< the pose of the ground truth in the world was written
+  std::map<int, Pose> T_m_w;   ///< as written, by segment
+};
+
+RunRecording::RunRecording(const std::filesystem::path& file, const datasets::SequenceInfo& info,
+                           RecordedImages images) {
+  if (info.frame_times.empty() || info.frame_times.front().ns < 0)
+    throw InputError(
+        info.folder.string(),
+        "has no frames, or frames at negative times, which MCAP files do not have; run it without --mcap");
+  impl_ = std::make_unique<Impl>(file, info, images);
+  const FoxgloveHeader camera{info.frame_times.front(), kCameraFrame};
+  impl_->write("/camera/calibration", "foxglove.CameraCalibration", camera.t,
+               datasets::encode_camera(camera, info.rig.camera));
+  impl_->write_path("/truth/path", kTruthFrame, impl_->truth);
+}
+
+RunRecording::~RunRecording() = default;
+RunRecording::RunRecording(RunRecording&&) noexcept = default;
+
+void RunRecording::add(const FrameReport& report) {
+  const Timestamp t = report.frame.t;
+  impl_->write_references(t);
+  impl_->write_map(report.update, t);
+  if (is_located(report.update.status)) {
+    impl_->write_estimate(report.update, t);
+    impl_->write("/state", "stillpoint.State", t, state_message(report));
+  }
+  impl_->write("/status", "stillpoint.Status", t, status_message(report));
+  impl_->write("/timings", "stillpoint.Timings", t, timings_message(report));
+  impl_->write("/camera/annotations", "foxglove.ImageAnnotations", t, annotations_message(report));
+  impl_->write("/landmarks", "foxglove.PointCloud", t, landmarks_message(report));
+  if (impl_->images == RecordedImages::kColorAndDepth) impl_->write_images(report.frame);
+}
+
+void RunRecording::finish(const bench::LoopRun* loops) {
+  impl_->write_path("/estimate/path", world_frame(0), impl_->estimate);
+  if (loops != nullptr) {
+    impl_->write_path("/estimate/optimized", kMapFrame, loops->optimized);
+    for (const LoopRecord& loop : loops->report.loops)
+      impl_->write("/loops", "stillpoint.Loop", loop.query_t, loop_message(loop));
+  }
+  impl_->writer.finish();
+}
+
+}  // namespace stillpoint::report
