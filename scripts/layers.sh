@@ -117,7 +117,7 @@ row bench/executors core/base eval/io bench/model bench/store bench/store/mainte
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/analysis/search core/base eval/statistics bench/model bench/analysis
 row bench/serve core/base bench/record
-row bench/python $messages $eval
+row bench/python $messages $eval bench/model bench/store bench/analysis
 row bench/rivals core/base core/geometry core/types datasets eval/io
 row bench/micro $core tests/support tests/support/simulated
 

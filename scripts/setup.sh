@@ -38,7 +38,7 @@ pages=(chromium texlive-latex-recommended)
 { command -v node && command -v npm; } >/dev/null || pages+=(nodejs npm)
 docs=(doxygen graphviz)
 oracles=(python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-tf2-msgs)
-python=(pybind11-dev python3-dev python3-numpy python3-pytest python3-pandas python3-matplotlib)
+python=(pybind11-dev python3-dev python3-venv python3-numpy python3-pytest python3-pandas python3-matplotlib)
 cluster=(munge slurm-wlm openssh-server parallel rsync zstd)
 if [[ "${1:-}" == --minimal ]]; then
   packages=("${minimal[@]}")

@@ -6,8 +6,9 @@
 PYBIND11_MODULE(_eval, module) {
   module.doc() = "Trajectory evaluation; the public names are those of stillpoint.eval.";
   // A translator of one module serves all that share pybind11's internals.
-  pybind11::register_exception<stillpoint::InputError>(module, "InputError", PyExc_ValueError)
-      .attr("__module__") = "stillpoint";
+  auto& error = pybind11::register_exception<stillpoint::InputError>(module, "InputError", PyExc_ValueError);
+  error.attr("__module__") = "stillpoint";
+  error.attr("__doc__") = "Invalid input: the message has place, problem and remedy, as that of the program.";
   stillpoint::python::bind_trajectories(module);
   stillpoint::python::bind_metrics(module);
   stillpoint::python::bind_consistency(module);

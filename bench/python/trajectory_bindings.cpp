@@ -411,7 +411,7 @@ void bind_similarity(py::module_& m) {
            }),
            py::arg("translation") = std::vector<double>{0, 0, 0},
            py::arg("quaternion_xyzw") = std::vector<double>{0, 0, 0, 1}, py::arg("scale") = 1.0)
-      .def_readonly("scale", &Similarity::scale)
+      .def_readonly("scale", &Similarity::scale, "1 unless it was estimated.")
       .def_property_readonly(
           "translation", [](const Similarity& S) { return vector_array(S.T_w_v.p); }, "p_w_v, [3], m.")
       .def_property_readonly(

@@ -82,3 +82,34 @@ def gt(folder):
 @pytest.fixture(scope="session")
 def est(folder):
     return sp.read_trajectory(folder / "a.tum")
+
+
+PLAN = """
+title = "Python test"
+variants = ["stillpoint", "vo"]
+seeds = [1, 2]
+ablation_base = "stillpoint"
+[recorded]
+sequences = ["walk"]
+"""
+
+
+@pytest.fixture(scope="session")
+def sequence(tmp_path_factory):
+    """A rendered sequence of 45 frames with a walking person."""
+    path = tmp_path_factory.mktemp("data") / "walk"
+    done = run_program("data", "synth", "walking_xyz", "--seconds", 1.5, "--width", 320, "--height", 240, "--focal", 260,
+                       "--people", 1, "--out", path)
+    assert done.returncode == 0, done.stderr
+    return path
+
+
+@pytest.fixture(scope="session")
+def store_file(tmp_path_factory, sequence):
+    """A store with four runs of the odometry."""
+    folder = tmp_path_factory.mktemp("store")
+    (folder / "plan.toml").write_text(PLAN)
+    done = subprocess.run([PROGRAM, "bench", folder / "plan.toml", "--store", folder / "runs.sqlite", "--out", folder / "out"],
+                          capture_output=True, text=True, check=False, env={**os.environ, "STILLPOINT_DATA": str(sequence.parent)})
+    assert done.returncode == 0, done.stderr
+    return folder / "runs.sqlite"

@@ -39,8 +39,6 @@ def statistics_of(values):
 @pytest.mark.parametrize("estimate", ["a.tum", "b.tum"])
 @pytest.mark.parametrize("protocol", PROTOCOLS)
 def test_evaluation_is_that_of_the_program(folder, gt, protocol, estimate, options):
-    if options == "delta" and protocol == "compat:openloris":
-        pytest.skip("the protocol has a delta of its own")
     expected = evaluations(folder, estimate, options)[protocol]
     result = sp.evaluate(protocol, gt, sp.read_trajectory(folder / estimate), **OPTIONS[options][0])
     for field in ("ate_m", "ate_deg", "rpe_m", "rpe_deg"):
