@@ -308,8 +308,14 @@ Json document(const EvalArguments& arguments, const eval::LoadedTrajectory& trut
     if (run.covariance) json["covariance"] = report::covariance_json(*run.covariance);
     list.push_back(std::move(json));
   }
-  if (list.size() == 1) return list.front();
-  return {{"runs", list}, {"comparison", comparison_document(arguments, gt, runs)}};
+  Json json{{"schema", 1}};
+  if (list.size() == 1) {
+    json.update(list.front());
+  } else {
+    json["runs"] = std::move(list);
+    json["comparison"] = comparison_document(arguments, gt, runs);
+  }
+  return json;
 }
 
 void print_tables(const EvalArguments& arguments, const Trajectory& gt,

@@ -58,7 +58,9 @@ int show_device(const DeviceArguments& arguments) {
     throw InputError(arguments.sysfs_root, "is not a folder; give one that contains sys, proc and etc");
   const DeviceInfo device = device_info(arguments.sysfs_root);
   if (arguments.json) {
-    std::cout << device_json(device).dump(2) << '\n';
+    nlohmann::ordered_json json = {{"schema", 1}};
+    json.update(device_json(device));
+    std::cout << json.dump(2) << '\n';
   } else {
     print_device(device, arguments.sysfs_root);
   }
