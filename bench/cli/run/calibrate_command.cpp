@@ -23,6 +23,7 @@
 #include "core/base/error.h"
 #include "core/calibration/calibrate.h"
 #include "core/calibration/calibration_recording.h"
+#include "datasets/calibration/rig_yaml_text.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -32,7 +33,7 @@ constexpr double kMostKeyframes = 300.0;
 constexpr std::size_t kIterationsPerRound = 25;
 
 struct CalibrateArguments {
-  std::string sequence, out, rig, format, base = "stillpoint", variant;
+  std::string sequence, out, out_format, rig, format, base = "stillpoint", variant;
   std::vector<std::string> settings, topics, faults, keep;
   double start_s = 0.0;
   int max_frames = 0;
@@ -159,8 +160,22 @@ CalibrationResult estimate(const CalibrateArguments& arguments, const Calibratio
   return calibrate(input, options);
 }
 
+datasets::RigFormat out_format_of(const CalibrateArguments& arguments) {
+  if (arguments.out_format.empty()) return datasets::RigFormat::kStillpoint;
+  if (arguments.out.empty()) throw InputError("--out-format", "is that of --out, which is missing");
+  return enum_of<datasets::RigFormat>("--out-format", arguments.out_format);
+}
+
+/// The file of --out: a rig.toml has the deviations, too.
+std::string calibration_file(const CalibrationSubject& subject, const CalibrationResult& result,
+                             datasets::RigFormat format) {
+  return format == datasets::RigFormat::kStillpoint ? calibrated_rig_text(subject, result)
+                                                    : datasets::rig_text(result.calibration.rig, format);
+}
+
 int calibrate_sequence(const CalibrateArguments& arguments) {
   static_cast<void>(switches_of(arguments));
+  const datasets::RigFormat format = out_format_of(arguments);
   if (!arguments.out.empty()) require_safe_output(arguments.out, rules_of(arguments));
   install_interrupt_handlers();
   const std::unique_ptr<datasets::SensorStream> stream = open_stream(arguments, false);
@@ -174,7 +189,7 @@ int calibrate_sequence(const CalibrateArguments& arguments) {
                                    .has_depth_camera = !input->depth_is_registered};
   std::cout << (arguments.json ? calibration_json(subject, result) : calibration_table(subject, result));
   if (!arguments.out.empty())
-    write_output(arguments.out, calibrated_rig_text(subject, result), rules_of(arguments));
+    write_output(arguments.out, calibration_file(subject, result, format), rules_of(arguments));
   if (result.interrupted) return kExitInterrupted;
   return result.usable ? kExitOk : kExitInconclusive;
 }
@@ -185,11 +200,13 @@ Command calibrate_command() {
   const auto a = std::make_shared<CalibrateArguments>();
   return {
       .name = "calibrate",
-      .summary = "Estimate the calibration from a recording, without a target; write rig.toml",
+      .summary = "Estimate the calibration from a recording, without a target; write a rig file",
       .example = "calibrate walking_xyz --out rig.toml",
       .options =
           {{"SEQ", "Sequence folder, bag or preset name", &a->sequence},
            {"--out", "Rig file to write; an existing file is not replaced", &a->out},
+           {"--out-format", "Program that is to read --out: " + enum_list<datasets::RigFormat>() + " [toml]",
+            &a->out_format},
            {"--keep", "Keep a parameter as stated: " + switch_names() + "; may be repeated", &a->keep},
            {"--depth-camera",
             "Depth images are those of another camera, not registered: estimate its intrinsics and pose",

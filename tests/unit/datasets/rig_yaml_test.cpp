@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/calibration/rig_file.h"
+#include "datasets/calibration/rig_yaml_text.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -206,6 +207,56 @@ TEST(RigYaml, WhatCannotBeReadIsRefusedWithItsKey) {
                  {"camera_matrix", "skew"});
   expect_refused("sequence: kitchen\n", {"rig.yaml", "camera_matrix", "rig.toml"});
   expect_refused("cam0: [\n", {"rig.yaml:", "not valid YAML"});
+}
+
+Rig rig_with(CameraModel model) {
+  Rig rig{.camera = {.width = 848,
+                     .height = 480,
+                     .fx = 424.1,
+                     .fy = 423.9,
+                     .cx = 420.3,
+                     .cy = 241.7,
+                     .model = model,
+                     .distortion = {0.05, -0.06, 0.001, -0.002}},
+          .depth_units_per_m = 5000.0,
+          .has_imu = true};
+  rig.T_b_c = {Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), Eigen::Vector3d(0.01, -0.02, 0.03)};
+  rig.imu_noise = {.gyro_noise = 0.001, .accel_noise = 0.01, .gyro_walk = 1e-5, .accel_walk = 2e-4};
+  rig.time_offset_s = 0.0037;
+  return rig;
+}
+
+TEST(RigYaml, WhatIsWrittenForAProgramIsReadBack) {
+  for (const CameraModel model : {CameraModel::kRadialTangential, CameraModel::kKannalaBrandt}) {
+    const Rig rig = rig_with(model);
+    for (const auto& [format, name] : enum_names(RigFormat{})) {
+      const bool is_yaml = format != RigFormat::kStillpoint;
+      const OverriddenRig read = rig_of(rig_text(rig, format), is_yaml ? "rig.yaml" : "rig.toml");
+      EXPECT_EQ(read.rig.camera.width, rig.camera.width) << name;
+      EXPECT_EQ(read.rig.camera.model, model) << name;
+      EXPECT_EQ(read.rig.camera.fx, rig.camera.fx) << name;
+      EXPECT_EQ(read.rig.camera.cy, rig.camera.cy) << name;
+      EXPECT_EQ(read.rig.camera.distortion, rig.camera.distortion) << name;
+      if (format == RigFormat::kOpencv) continue;  // the camera alone
+      EXPECT_TRUE(read.has_extrinsic) << name;
+      EXPECT_TRUE((read.rig.T_b_c.inverse() * rig.T_b_c).matrix().isIdentity(1e-12)) << name;
+      const bool has_noise = format != RigFormat::kVins;
+      EXPECT_EQ(read.rig.imu_noise, has_noise ? rig.imu_noise : ImuNoise{}) << name;
+      const bool has_offset = format != RigFormat::kOrbSlam;
+      EXPECT_EQ(read.rig.time_offset_s, has_offset ? rig.time_offset_s : 0.0) << name;
+    }
+  }
+}
+
+TEST(RigYaml, WhatAFormatDoesNotHaveIsACommentOrRefused) {
+  Rig rig = rig_with(CameraModel::kRadialTangential);
+  rig.rolling_shutter_s = 0.02;
+  EXPECT_NE(rig_text(rig, RigFormat::kKalibr).find("# not in this format: rolling_shutter_s = 0.02"),
+            std::string::npos);
+  rig.camera.distortion[5] = 0.3;  // k4, of the denominator
+  EXPECT_EQ(rig_of(rig_text(rig, RigFormat::kOrbSlam)).rig.camera.distortion, rig.camera.distortion);
+  expect_input_error([&] { static_cast<void>(rig_text(rig, RigFormat::kVins)); },
+                     {"--out-format vins", "four coefficients", "opencv"});
 }
 
 }  // namespace

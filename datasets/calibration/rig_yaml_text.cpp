@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "datasets/calibration/rig_yaml_text.h"
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "datasets/calibration/rig_file.h"
+
+namespace stillpoint::datasets {
+namespace {
+
+constexpr std::size_t kRadialTangentialCount = 4;  ///< k1 k2 p1 p2, which all formats have
+
+bool is_fisheye(const Camera& camera) { return camera.model == CameraModel::kKannalaBrandt; }
+
+std::string numbers(std::span<const double> values) {
+  return fmt::format("[{:.17g}]", fmt::join(values, ", "));
+}
+
+/// The four coefficients of a format that has no more.
+/// @throws InputError if the camera has others
+std::span<const double> four_coefficients(const Camera& camera, std::string_view format) {
+  const std::span<const double> all(camera.distortion);
+  if (std::ranges::any_of(all.subspan(kRadialTangentialCount), [](double value) { return value != 0.0; }))
+    throw InputError("--out-format " + std::string(format),
+                     "has no distortion with more than four coefficients; use opencv, orb_slam or toml");
+  return all.first(kRadialTangentialCount);
+}
+
+/// A 4x4 matrix as a list of rows.
+std::string matrix_rows(const std::string& key, const Pose& pose) {
+  const Eigen::Matrix4d matrix = pose.matrix();
+  std::string text = key + ":\n";
+  for (int row = 0; row < 4; ++row)
+    text += fmt::format("  - [{:.17g}, {:.17g}, {:.17g}, {:.17g}]\n", matrix(row, 0), matrix(row, 1),
+                        matrix(row, 2), matrix(row, 3));
+  return text;
+}
+
+/// A matrix as OpenCV's FileStorage has it.
+template <class Matrix>
+std::string opencv_matrix(const std::string& key, const Matrix& matrix) {
+  std::vector<double> values;
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (Eigen::Index column = 0; column < matrix.cols(); ++column) values.push_back(matrix(row, column));
+  }
+  return fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: {}\n", key,
+                     matrix.rows(), matrix.cols(), numbers(values));
+}
+
+/// The values that a format does not have, as comments.
+std::string comments(const std::vector<std::pair<std::string_view, double>>& values) {
+  std::string text;
+  for (const auto& [name, value] : values)
+    text += fmt::format("# not in this format: {} = {:.17g}\n", name, value);
+  return text;
+}
+
+std::string kalibr_text(const Rig& rig, bool openvins) {
+  const Camera& camera = rig.camera;
+  std::string text =
+      comments({{"depth_units_per_m", rig.depth_units_per_m}, {"rolling_shutter_s", rig.rolling_shutter_s}});
+  text += "cam0:\n";
+  if (rig.has_imu)
+    text +=
+        openvins ? matrix_rows("  T_imu_cam", rig.T_b_c) : matrix_rows("  T_cam_imu", rig.T_b_c.inverse());
+  text += fmt::format(
+      "  camera_model: pinhole\n  intrinsics: {}\n  distortion_model: {}\n  distortion_coeffs: {}\n"
+      "  resolution: [{}, {}]\n",
+      numbers(std::vector{camera.fx, camera.fy, camera.cx, camera.cy}),
+      is_fisheye(camera) ? "equidistant" : "radtan",
+      numbers(four_coefficients(camera, openvins ? "openvins" : "kalibr")), camera.width, camera.height);
+  if (!rig.has_imu) return text;
+  return text + fmt::format(
+                    "  timeshift_cam_imu: {:.17g}\nimu0:\n  gyroscope_noise_density: {:.17g}\n"
+                    "  gyroscope_random_walk: {:.17g}\n  accelerometer_noise_density: {:.17g}\n"
+                    "  accelerometer_random_walk: {:.17g}\n",
+                    rig.time_offset_s, rig.imu_noise.gyro_noise, rig.imu_noise.gyro_walk,
+                    rig.imu_noise.accel_noise, rig.imu_noise.accel_walk);
+}
+
+std::string opencv_text(const Rig& rig) {
+  const Camera& camera = rig.camera;
+  const std::span<const double> used =
+      is_fisheye(camera) ? four_coefficients(camera, "opencv") : camera.coefficients();
+  const Eigen::Matrix3d K{{camera.fx, 0.0, camera.cx}, {0.0, camera.fy, camera.cy}, {0.0, 0.0, 1.0}};
+  return fmt::format("image_width: {}\nimage_height: {}\n", camera.width, camera.height) +
+         opencv_matrix("camera_matrix", K) +
+         opencv_matrix("distortion_coefficients", Eigen::Map<const Eigen::VectorXd>(
+                                                      used.data(), static_cast<Eigen::Index>(used.size()))) +
+         fmt::format("fisheye_model: {}\n", is_fisheye(camera) ? 1 : 0) +
+         comments(
+             {{"depth_units_per_m", rig.depth_units_per_m}, {"rolling_shutter_s", rig.rolling_shutter_s}}) +
+         (rig.has_imu ? "# not in this format: the IMU\n" : "");
+}
+
+std::string orb_slam_text(const Rig& rig) {
+  const Camera& camera = rig.camera;
+  std::string text = fmt::format(
+      "Camera.type: \"{}\"\nCamera.width: {}\nCamera.height: {}\nCamera1.fx: {:.17g}\nCamera1.fy: {:.17g}\n"
+      "Camera1.cx: {:.17g}\nCamera1.cy: {:.17g}\n",
+      is_fisheye(camera) ? "KannalaBrandt8" : "PinHole", camera.width, camera.height, camera.fx, camera.fy,
+      camera.cx, camera.cy);
+  const std::vector<std::string_view> names =
+      is_fisheye(camera) ? std::vector<std::string_view>{"k1", "k2", "k3", "k4"}
+                         : std::vector<std::string_view>{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  const std::size_t count = is_fisheye(camera) ? names.size() : camera.coefficients().size();
+  for (std::size_t i = 0; i < count; ++i)
+    text += fmt::format("Camera1.{}: {:.17g}\n", names[i], camera.distortion[i]);
+  text += fmt::format("RGBD.DepthMapFactor: {:.17g}\n", rig.depth_units_per_m) +
+          comments({{"rolling_shutter_s", rig.rolling_shutter_s}, {"time_offset_s", rig.time_offset_s}});
+  if (!rig.has_imu) return text;
+  const ImuNoise& noise = rig.imu_noise;
+  return text + opencv_matrix("IMU.T_b_c1", rig.T_b_c.matrix()) +
+         fmt::format(
+             "IMU.NoiseGyro: {:.17g}\nIMU.NoiseAcc: {:.17g}\nIMU.GyroWalk: {:.17g}\nIMU.AccWalk: {:.17g}\n",
+             noise.gyro_noise, noise.accel_noise, noise.gyro_walk, noise.accel_walk);
+}
+
+std::string vins_text(const Rig& rig) {
+  const Camera& camera = rig.camera;
+  const std::span<const double> k = four_coefficients(camera, "vins");
+  std::string text = fmt::format("image_width: {}\nimage_height: {}\n", camera.width, camera.height);
+  if (is_fisheye(camera)) {
+    text += fmt::format(
+        "model_type: KANNALA_BRANDT\nprojection_parameters:\n   k2: {:.17g}\n   k3: {:.17g}\n   k4: {:.17g}\n"
+        "   k5: {:.17g}\n   mu: {:.17g}\n   mv: {:.17g}\n   u0: {:.17g}\n   v0: {:.17g}\n",
+        k[0], k[1], k[2], k[3], camera.fx, camera.fy, camera.cx, camera.cy);
+  } else {
+    text += fmt::format(
+        "model_type: PINHOLE\ndistortion_parameters:\n   k1: {:.17g}\n   k2: {:.17g}\n   p1: {:.17g}\n"
+        "   p2: {:.17g}\nprojection_parameters:\n   fx: {:.17g}\n   fy: {:.17g}\n   cx: {:.17g}\n   cy: "
+        "{:.17g}\n",
+        k[0], k[1], k[2], k[3], camera.fx, camera.fy, camera.cx, camera.cy);
+  }
+  if (rig.rolling_shutter_s > 0.0)
+    text += fmt::format("rolling_shutter: 1\nrolling_shutter_tr: {:.17g}\n", rig.rolling_shutter_s);
+  text += comments({{"depth_units_per_m", rig.depth_units_per_m}});
+  if (!rig.has_imu) return text;
+  const ImuNoise& noise = rig.imu_noise;
+  return text + fmt::format("td: {:.17g}\n", rig.time_offset_s) +
+         opencv_matrix("body_T_cam0", rig.T_b_c.matrix()) +
+         opencv_matrix("extrinsicRotation", rig.T_b_c.R()) +
+         opencv_matrix("extrinsicTranslation", rig.T_b_c.p) +
+         "# acc_n, gyr_n, acc_w and gyr_w are noises of a sample, by the rate of the IMU from these "
+         "densities:\n" +
+         comments({{"gyro_noise", noise.gyro_noise},
+                   {"accel_noise", noise.accel_noise},
+                   {"gyro_walk", noise.gyro_walk},
+                   {"accel_walk", noise.accel_walk}});
+}
+
+}  // namespace
+
+std::string rig_text(const Rig& rig, RigFormat format) {
+  constexpr std::string_view kYaml = "%YAML:1.0\n---\n";  // what OpenCV's FileStorage requires
+  const std::string head(kYaml);
+  switch (format) {
+    case RigFormat::kStillpoint:
+      return rig_file_text(rig);
+    case RigFormat::kKalibr:
+      return kalibr_text(rig, false);
+    case RigFormat::kOpenvins:
+      return head + kalibr_text(rig, true);
+    case RigFormat::kOpencv:
+      return head + opencv_text(rig);
+    case RigFormat::kOrbSlam:
+      return head + orb_slam_text(rig);
+    case RigFormat::kVins:
+      return head + vins_text(rig);
+  }
+  STILLPOINT_CHECK(false && "a format without writer");
+  return {};
+}
+
+}  // namespace stillpoint::datasets
