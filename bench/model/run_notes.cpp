@@ -137,6 +137,30 @@ std::string scatter_note(std::span<const StoredRun* const> runs, std::string_vie
                      value_text(*descriptor, widest.first), value_text(*descriptor, widest.second), factor);
 }
 
+std::vector<std::string> innovation_doubts(std::optional<double> nis_reprojection,
+                                           std::optional<double> nis_inertial) {
+  constexpr double kMostReprojection = 4.0;
+  constexpr double kMostInertial = 3.0;
+  std::vector<std::string> doubts;
+  if (nis_inertial.value_or(0.0) > kMostInertial)
+    doubts.push_back(fmt::format("NIS inertial {:.1f}: the IMU is noisier than stated", *nis_inertial));
+  if (nis_reprojection.value_or(0.0) > kMostReprojection)
+    doubts.push_back(
+        fmt::format("NIS reprojection {:.1f}: images contradict the prediction", *nis_reprojection));
+  return doubts;
+}
+
+std::string innovation_note(std::span<const StoredRun* const> runs) {
+  std::vector<std::string> most;
+  for (const StoredRun* run : runs) {
+    if (run->outcome != Outcome::kOk) continue;
+    std::vector<std::string> doubts =
+        innovation_doubts(metric_value(*run, "nis_reprojection"), metric_value(*run, "nis_inertial"));
+    if (doubts.size() > most.size()) most = std::move(doubts);
+  }
+  return most.empty() ? "" : fmt::format("{}; see `stillpoint diagnose`", fmt::join(most, "; "));
+}
+
 TimeSource time_source(const StoredRun& run) {
   if (run.identity.kind != "timing") return TimeSource::kShared;
   return metric_value(run, metric_id::kQuiet) == 0.0 ? TimeSource::kBusy : TimeSource::kUndisturbed;

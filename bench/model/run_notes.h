@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Footnotes of tables on what makes runs incomparable: frames without recorded boxes, a metric whose value
-/// depends on the evaluation protocol, and times that were measured while other processes used the machine.
+/// Footnotes of tables on what makes runs incomparable or doubtful: frames without recorded boxes, a metric
+/// whose value depends on the evaluation protocol, data that contradicts what is stated about it, and times
+/// that were measured while other processes used the machine.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +41,16 @@ namespace stillpoint::bench {
 /// @param runs of one variant on one sequence; failed ones are ignored
 /// @param metric id, e.g. "ate_rmse_m"
 [[nodiscard]] std::string scatter_note(std::span<const StoredRun* const> runs, std::string_view metric);
+
+/// What the innovations of a run say about its data: one phrase for a mean NIS of the images above 4, and one
+/// for that of the IMU above 3 (metrics `nis_reprojection`, `nis_inertial`; 1 is consistent).
+[[nodiscard]] std::vector<std::string> innovation_doubts(std::optional<double> nis_reprojection,
+                                                         std::optional<double> nis_inertial);
+
+/// Footnote with these phrases about the run with the most of them: "NIS inertial 10.2: the IMU is noisier
+/// than stated; see `stillpoint diagnose`". Failed runs are ignored.
+/// @param runs of one variant on one sequence
+[[nodiscard]] std::string innovation_note(std::span<const StoredRun* const> runs);
 
 /// How far the times of a run are its own; the best first.
 enum class TimeSource {

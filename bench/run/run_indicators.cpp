@@ -5,13 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "bench/model/run_notes.h"
 #include "bench/run/rig_report.h"
 
 namespace stillpoint::bench {
 namespace {
 
-constexpr double kMostReprojection = 4.0;
-constexpr double kMostInertial = 3.0;
 constexpr double kMostNoiseFactor = 5.0;
 constexpr double kMostLost = 0.1;
 constexpr double kStartup_s = 1.0;
@@ -30,13 +29,8 @@ double fraction_lost(const OdometryRun& run) {
 }  // namespace
 
 std::vector<std::string> run_indicators(const RunResult& result) {
-  std::vector<std::string> off;
   const RunCounts counts = measurements_of(result).counts.value_or(RunCounts{});
-  if (counts.nis_inertial.value_or(0.0) > kMostInertial)
-    off.push_back(fmt::format("NIS inertial {:.1f}: the IMU is noisier than stated", *counts.nis_inertial));
-  if (counts.nis_reprojection.value_or(0.0) > kMostReprojection)
-    off.push_back(
-        fmt::format("NIS reprojection {:.1f}: images contradict the prediction", *counts.nis_reprojection));
+  std::vector<std::string> off = innovation_doubts(counts.nis_reprojection, counts.nis_inertial);
   const ImuNoiseFactors& factors = result.run.imu_noise;
   if (std::max(factors.gyro, factors.accel) > kMostNoiseFactor)
     off.push_back(

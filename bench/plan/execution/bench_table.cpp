@@ -79,6 +79,7 @@ BenchRow row_with_outcome(const std::vector<const StoredRun*>& runs, const std::
   if (row.reason.empty()) row.reason = protocol_difference_note(runs, headline_metric().id);
   if (row.reason.empty()) row.reason = scatter_note(runs, headline_metric().id);
   if (row.reason.empty()) row.reason = few_rpe_pairs_note(runs, metric_id::kRpeTranslation);
+  if (row.reason.empty()) row.reason = innovation_note(runs);
   return row;
 }
 

@@ -90,6 +90,28 @@ TEST(Scatter, OfRunsOnTheSameDataIsNotedFromAFactorOfTwoOn) {
   EXPECT_EQ(note({}), "");
 }
 
+TEST(Innovations, AreNotedForTheRunThatContradictsItsDataMost) {
+  const auto run_with = [](double reprojection, double inertial) {
+    StoredRun run;
+    run.metrics = {{"nis_reprojection", "", "", reprojection}, {"nis_inertial", "", "", inertial}};
+    return run;
+  };
+  const auto note = [](const std::vector<StoredRun>& runs) {
+    std::vector<const StoredRun*> pointers;
+    for (const StoredRun& run : runs) pointers.push_back(&run);
+    return innovation_note(pointers);
+  };
+  EXPECT_EQ(note({run_with(1.0, 0.3), run_with(4.0, 3.0), StoredRun{}}), "");
+  EXPECT_EQ(note({run_with(1.0, 0.3), run_with(1.0, 10.24)}),
+            "NIS inertial 10.2: the IMU is noisier than stated; see `stillpoint diagnose`");
+  EXPECT_EQ(note({run_with(1.0, 5.0), run_with(6.0, 3.5)}),
+            "NIS inertial 3.5: the IMU is noisier than stated; NIS reprojection 6.0: images contradict the "
+            "prediction; see `stillpoint diagnose`");
+  StoredRun failed = run_with(9.0, 9.0);
+  failed.outcome = Outcome::kLost;
+  EXPECT_EQ(note({failed}), "");
+}
+
 TEST(TimeSource, DependsOnTheKindOfTheRunAndOnOtherLoad) {
   StoredRun run;
   EXPECT_EQ(time_source(run), TimeSource::kShared);
