@@ -16,8 +16,6 @@ constexpr double kMaxTilt =
     0.5;  ///< cosine of the angle between "up" and the mean specific force: 60 degrees
 constexpr int kMaxShift_px = 48;           ///< between two frames
 constexpr int kDepthStep_px = 16;          ///< every 16th pixel of both directions is sampled
-constexpr double kMinDepth_m = 0.3;        ///< RealSense and Kinect measure from 0.3 m on
-constexpr double kMaxDepth_m = 12.0;       ///< and at most to about 10 m
 constexpr double kMaxClockOffset_s = 0.5;  ///< searched range
 constexpr double kClockStep_s = 0.005;
 constexpr double kMinClockFinding_s = 0.03;
@@ -118,10 +116,8 @@ double percentile(std::vector<float> values, double fraction) {
 constexpr double kMinMeanAccel = 7.0;   ///< [m/s^2] range of the mean |a| of a hand-held or wheeled IMU;
 constexpr double kMaxMeanAccel = 13.0;  ///< a mean near 1 indicates the unit g, near 1000 the unit mg
 constexpr double kRateInterval_s = 0.1;
-constexpr double kMinRate = 0.02;          ///< [rad/s], RMS of the true rate that tells the unit
-constexpr double kMaxMedianRate = 5.0;     ///< [rad/s]
-constexpr double kMinDegreesRatio = 25.0;  ///< of the rates; 57.3 with degrees, less with noise
-constexpr double kMaxDegreesRatio = 130.0;
+constexpr double kMinRate = 0.02;       ///< [rad/s], RMS of the true rate that tells the unit
+constexpr double kMaxMedianRate = 5.0;  ///< [rad/s]
 constexpr double kMinUnitMotions = 15;
 constexpr double kMinUnitCorrelation = 0.6;
 constexpr double kScaleInterval_s = 0.2;
@@ -186,7 +182,7 @@ std::vector<std::string> imu_unit_findings(const SequenceInfo& info) {
         fmt::format("the mean acceleration is {:.3f}, expected about 9.8 (gravity); is it in m/s^2?", mean));
   }
   const std::optional<double> ratio = rate_ratio(info);
-  if (ratio && *ratio > kMinDegreesRatio && *ratio < kMaxDegreesRatio) {
+  if (ratio && is_degrees_ratio(*ratio)) {
     findings.push_back(fmt::format(
         "the angular rates are {:.1f} times those of the ground truth; are they in deg/s instead of rad/s?",
         *ratio));
@@ -234,8 +230,8 @@ std::optional<std::string> ImagePlausibility::depth_unit_finding() const {
   if (depths_m_.empty()) return std::nullopt;
   const double near_m = percentile(depths_m_, 0.05);
   const double far_m = percentile(depths_m_, 0.95);
-  if (near_m >= kMinDepth_m && far_m <= kMaxDepth_m) return std::nullopt;
-  const double factor = far_m > kMaxDepth_m ? 5.0 : 0.2;
+  if (near_m >= kLeastDepth_m && far_m <= kLargestDepth_m) return std::nullopt;
+  const double factor = far_m > kLargestDepth_m ? 5.0 : 0.2;
   return fmt::format(
       "90 % of the measurements are from {:.2f} to {:.2f} m with {:g} units per meter; is the unit another "
       "one? With "
@@ -370,9 +366,7 @@ std::optional<std::string> ImagePlausibility::gyro_unit_finding() const {
   const double count = static_cast<double>(by_images.size());
   if (count < kMinUnitMotions || squares < count * kMinRate * kMinRate) return std::nullopt;
   const double ratio = product / squares;
-  if (ratio < kMinDegreesRatio || ratio > kMaxDegreesRatio ||
-      correlation(by_images, by_gyro) < kMinUnitCorrelation)
-    return std::nullopt;
+  if (!is_degrees_ratio(ratio) || correlation(by_images, by_gyro) < kMinUnitCorrelation) return std::nullopt;
   return fmt::format(
       "the angular rates are {:.1f} times the rotation in the images; are they in deg/s instead of rad/s?",
       ratio);

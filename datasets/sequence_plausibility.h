@@ -16,6 +16,12 @@
 
 namespace stillpoint::datasets {
 
+inline constexpr double kLeastDepth_m = 0.3;     ///< RealSense and Kinect measure from 0.3 m on
+inline constexpr double kLargestDepth_m = 12.0;  ///< and at most to about 10 m
+
+/// Whether the ratio of two rates of rotation is that of deg/s to rad/s: 57.3, or less with noise.
+[[nodiscard]] constexpr bool is_degrees_ratio(double ratio) { return ratio > 25.0 && ratio < 130.0; }
+
 /// Units of the inertial samples, where they can be told: a mean acceleration that is not about gravity, and
 /// angular rates that are 180 / pi times those of the ground truth (by the rotation between poses 0.1 s
 /// apart), or of which half exceed 5 rad/s.
@@ -35,7 +41,7 @@ class ImagePlausibility {
   /// @param frame the next one; a frame that cannot be decoded is left out
   void add(const Frame& frame);
 
-  /// Depth whose smallest values (5 %) are below 0.2 m, or whose largest (5 %) are beyond 12 m, is not that
+  /// Depth whose smallest values (5 %) are below 0.3 m, or whose largest (5 %) are beyond 12 m, is not that
   /// of an RGB-D camera: millimeters that are read as 1/5000 m, or the other way round.
   [[nodiscard]] std::optional<std::string> depth_unit_finding() const;
 

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "datasets/sequence_plausibility.h"
+
 namespace stillpoint::bench {
 namespace {
 
@@ -130,7 +132,7 @@ std::vector<Cause> depth_causes(const RecordingSurvey& survey) {
 
 /// Measured depth that no RGB-D camera has: see ImagePlausibility::depth_unit_finding.
 std::vector<Cause> depth_range_causes(const RecordingSurvey& survey, double units_per_m) {
-  constexpr double kNear_m = 0.3, kFar_m = 12.0, kUnits = 5.0;
+  constexpr double kUnits = 5.0;
   std::vector<double> depths_m;
   for (const FrameStatistics& frame : survey.frames) {
     for (const std::uint16_t raw : frame.depth) {
@@ -140,8 +142,8 @@ std::vector<Cause> depth_range_causes(const RecordingSurvey& survey, double unit
   if (depths_m.empty()) return {};
   std::ranges::sort(depths_m);
   const double near_m = depths_m[depths_m.size() / 20], far_m = depths_m[depths_m.size() * 19 / 20];
-  if (near_m >= kNear_m && far_m <= kFar_m) return {};
-  const double factor = far_m > kFar_m ? 1.0 / kUnits : kUnits;
+  if (near_m >= datasets::kLeastDepth_m && far_m <= datasets::kLargestDepth_m) return {};
+  const double factor = far_m > datasets::kLargestDepth_m ? 1.0 / kUnits : kUnits;
   return {{.id = "depth_unit",
            .name = "unit of depth",
            .evidence = fmt::format("90 % of the measurements are from {:.2f} to {:.2f} m", near_m, far_m),

@@ -10,6 +10,7 @@
 
 #include "bench/diagnose/evidence/accelerometer_axes.h"
 #include "core/geometry/so3.h"
+#include "datasets/sequence_plausibility.h"
 
 namespace stillpoint::bench {
 namespace {
@@ -23,8 +24,7 @@ constexpr double kSignificant = 4.0;  ///< standard deviations
 constexpr double kOtherAxes = 0.7;    ///< residual without permutation of axes, else they are right
 constexpr double kRightAxes = 0.2;    ///< residual of axes that are right, up to a few degrees
 constexpr double kBetterAxes = 0.6;   ///< residual with it, relative to that without
-constexpr double kMinDegreesRatio = 25.0, kMaxDegreesRatio = 130.0;  ///< see sequence_plausibility.cpp
-constexpr double kLeastRate = 0.02;  ///< of the rotation that tells the unit [rad/s]
+constexpr double kLeastRate = 0.02;   ///< of the rotation that tells the unit [rad/s]
 constexpr double kLeastAngle_rad = 1.0 * kDegree;
 constexpr double kAlignmentError_rad = 0.2 * kDegree;  ///< of the motion between images
 constexpr double kMostSigma_rad = 3.0 * kDegree;       ///< of an observed axis
@@ -55,8 +55,7 @@ std::vector<Cause> unit_causes(const datasets::SequenceInfo& info, const RateInt
   std::vector<Cause> causes;
   const std::vector<RatePair> pairs = rate_pairs(gyro, by_images, info.rig.time_offset_s);
   const double ratio = rate_ratio(pairs);
-  if (pairs.size() >= 15 && rms_rate(pairs) > kLeastRate && ratio > kMinDegreesRatio &&
-      ratio < kMaxDegreesRatio) {
+  if (pairs.size() >= 15 && rms_rate(pairs) > kLeastRate && datasets::is_degrees_ratio(ratio)) {
     causes.push_back(
         {.id = "gyro_unit",
          .name = "gyroscope in deg/s",
