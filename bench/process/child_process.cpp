@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <string_view>
 #include <system_error>
 
 namespace stillpoint::bench {
@@ -24,6 +25,9 @@ namespace {
 constexpr int kExecFailed = 127;
 constexpr std::size_t kMaxMessageBytes = 65'536;
 constexpr std::int64_t kMaxBytesPerPoll = std::int64_t{1} << 20;  // a child may print faster than it is read
+constexpr std::int64_t kForkTolerance = std::int64_t{1} << 21;    // pages that fork itself touches
+constexpr std::int64_t kSmallestProcess = 200'000;  // bytes; less is measured while exec replaces the memory
+constexpr std::chrono::milliseconds kMeasurementInterval{50};
 constexpr int kPollIntervalMs = 100;    // longest delay until an exceeded limit is detected
 constexpr int kExitPollIntervalMs = 2;  // a child that closed stderr is about to exit
 
@@ -96,21 +100,33 @@ std::vector<pid_t> children_of(pid_t pid) {
   return children;
 }
 
-/// Of a process and its descendants: a system may be started by a script.
-std::int64_t resident_bytes(pid_t pid) {
-  std::int64_t pages = 0;
-  for (std::vector<pid_t> processes = {pid}; !processes.empty();) {
-    const pid_t process = processes.back();
-    processes.pop_back();
-    std::ifstream file("/proc/" + std::to_string(process) + "/statm");
-    std::int64_t total_pages = 0;
-    std::int64_t resident_pages = 0;
-    file >> total_pages >> resident_pages;
-    pages += resident_pages;
-    const std::vector<pid_t> children = children_of(process);
-    processes.insert(processes.end(), children.begin(), children.end());
+/// A process and its descendants, itself first: a system may be started by a script.
+std::vector<pid_t> family_of(pid_t pid) {
+  std::vector<pid_t> family = {pid};
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    const std::vector<pid_t> children = children_of(family[i]);
+    family.insert(family.end(), children.begin(), children.end());
   }
-  return pages * sysconf(_SC_PAGESIZE);
+  return family;
+}
+
+/// Of one process.
+std::int64_t resident_bytes(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/statm");
+  std::int64_t total_pages = 0;
+  std::int64_t resident_pages = 0;
+  file >> total_pages >> resident_pages;
+  return resident_pages * sysconf(_SC_PAGESIZE);
+}
+
+/// Largest resident size of one process since it was executed; 0 if it has ended.
+std::int64_t peak_resident_bytes(pid_t pid) {
+  constexpr std::string_view kField = "VmHWM:";
+  std::ifstream file("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(kField)) return std::strtoll(line.c_str() + kField.size(), nullptr, 10) * 1024;
+  }
+  return 0;
 }
 
 double cpu_seconds(const timeval& time) {
@@ -165,6 +181,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) : spec_(spec), start_(std::c
                       .pinned = !spec.cores.empty(),
                       .processors = processor_set(spec.cores),
                       .fixed_addresses = spec.fixed_addresses};
+  resident_at_fork_ = resident_bytes(getpid());
   pid_ = fork();
   if (pid_ == 0) exec_child(launch);
   close(ends[1]);
@@ -213,10 +230,31 @@ bool ChildProcess::has_exited() const {
          info.si_pid == pid_;
 }
 
+void ChildProcess::measure_memory() {
+  const auto now = std::chrono::steady_clock::now();
+  // A child that prints is polled more often; at first, it may not be executed yet.
+  if (now - std::max(measured_, start_) < kMeasurementInterval) return;
+  measured_ = now;
+  resident_ = 0;
+  for (const pid_t process : family_of(pid_)) {
+    resident_ += resident_bytes(process);
+    const std::int64_t peak = peak_resident_bytes(process);
+    if (peak < kSmallestProcess) continue;
+    if (process == pid_) peak_ = peak;  // replaced: of the program executed last
+    if (process != pid_) peak_of_descendants_ = std::max(peak_of_descendants_, peak);
+  }
+}
+
+std::int64_t ChildProcess::peak_memory_bytes(std::int64_t counted_by_kernel) const {
+  const std::int64_t measured = std::max(peak_, peak_of_descendants_);
+  const bool is_of_fork = counted_by_kernel <= resident_at_fork_ + kForkTolerance;
+  return is_of_fork && measured > 0 ? std::min(measured, counted_by_kernel) : counted_by_kernel;
+}
+
 void ChildProcess::enforce_limits() {
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const bool late = spec_.time_limit_s && elapsed_s > *spec_.time_limit_s;
-  const bool large = spec_.memory_limit_bytes && resident_bytes(pid_) > *spec_.memory_limit_bytes;
+  const bool large = spec_.memory_limit_bytes && resident_ > *spec_.memory_limit_bytes;
   const bool loud = spec_.message_limit_bytes && message_bytes_ > *spec_.message_limit_bytes;
   const bool is_killed = result_.timed_out || result_.out_of_memory || result_.too_many_messages;
   if ((!late && !large && !loud) || is_killed) return;
@@ -230,11 +268,15 @@ void ChildProcess::enforce_limits() {
 bool ChildProcess::poll_once() {
   read_messages();
   if (has_exited()) return false;
+  measure_memory();
   enforce_limits();
   return true;
 }
 
-int ChildProcess::poll_timeout_ms() const { return pipe_ >= 0 ? kPollIntervalMs : kExitPollIntervalMs; }
+int ChildProcess::poll_timeout_ms() const {
+  if (pipe_ < 0) return kExitPollIntervalMs;
+  return peak_ > 0 ? kPollIntervalMs : static_cast<int>(kMeasurementInterval.count());
+}
 
 void ChildProcess::terminate() const { kill(pid_, SIGTERM); }
 
@@ -252,7 +294,7 @@ ProcessResult ChildProcess::wait() {
   result_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
   result_.user_s = cpu_seconds(usage.ru_utime);
   result_.system_s = cpu_seconds(usage.ru_stime);
-  result_.peak_memory_bytes = std::int64_t{usage.ru_maxrss} * 1024;
+  result_.peak_memory_bytes = peak_memory_bytes(std::int64_t{usage.ru_maxrss} * 1024);
   return result_;
 }
 

@@ -43,6 +43,9 @@ struct ProcessResult {
   double wall_s = 0.0;
   double user_s = 0.0;
   double system_s = 0.0;
+  /// Of the largest of the process and its descendants. The kernel counts the copy of this process that fork
+  /// makes; a smaller child is therefore measured every 0.1 s while it runs, and one that ends within 0.05 s
+  /// has the size of this process.
   std::int64_t peak_memory_bytes = 0;
 };
 
@@ -85,12 +88,19 @@ class ChildProcess {
   void read_messages();
   void close_pipe();
   [[nodiscard]] bool has_exited() const;
+  void measure_memory();
+  [[nodiscard]] std::int64_t peak_memory_bytes(std::int64_t counted_by_kernel) const;
   void enforce_limits();
 
   ProcessSpec spec_;
   pid_t pid_ = -1;
   int pipe_ = -1;
-  std::int64_t message_bytes_ = 0;  ///< read so far
+  std::int64_t message_bytes_ = 0;                  ///< read so far
+  std::chrono::steady_clock::time_point measured_;  ///< the memory
+  std::int64_t resident_at_fork_ = 0;               ///< of this process [byte]
+  std::int64_t resident_ = 0;                       ///< of the child and its descendants, together [byte]
+  std::int64_t peak_ = 0;                           ///< of the child [byte]
+  std::int64_t peak_of_descendants_ = 0;            ///< of the largest [byte]
   std::chrono::steady_clock::time_point start_;
   ProcessResult result_;
 };

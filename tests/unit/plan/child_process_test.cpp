@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <vector>
 
 #include "bench/profile/meters/process_usage.h"
 
@@ -93,6 +94,19 @@ TEST(ChildProcess, MeasuresProcessorTimeAndMemory) {
   const ProcessResult end = run_process(shell("i=0; while [ $i -lt 20000 ]; do i=$((i+1)); done"));
   EXPECT_GT(end.user_s + end.system_s, 0.0);
   EXPECT_GT(end.peak_memory_bytes, 100'000);
+}
+
+/// The kernel counts the copy that fork makes of this process.
+TEST(ChildProcess, MemoryIsThatOfTheChildAndNotOfThisProcess) {
+  std::vector<char> large(300'000'000, 'x');
+  const ProcessResult small = run_process({.program = "/bin/sleep", .arguments = {"0.5"}});
+  EXPECT_LT(small.peak_memory_bytes, 50'000'000);
+  EXPECT_GT(small.peak_memory_bytes, 100'000);
+  const ProcessResult script = run_process(
+      shell("awk 'BEGIN { s = \"x\"; while (length(s) < 60000000) s = s s; system(\"sleep 0.3\") }'; :"));
+  EXPECT_GT(script.peak_memory_bytes, 60'000'000);
+  EXPECT_LT(script.peak_memory_bytes, 290'000'000);
+  EXPECT_EQ(large.back(), 'x');
 }
 
 TEST(ProcessPool, ReturnsEveryResultWithItsTag) {
