@@ -17,7 +17,8 @@ namespace stillpoint {
 /// depth scale and lens have the values of the rig until the data contradicts those with
 /// `calibration_agreement_probability`. Then a window starts with what was found so far: rotation and time
 /// offset by a RotationAlignment, depth scale and lens by the window before. The lever arm is estimated by
-/// the window itself. Extrinsics that are not to be estimated are, once a certain alignment contradicts them.
+/// the window itself. Extrinsics that the configuration keeps constant become variable, too, when a certain
+/// alignment contradicts them.
 class Calibration {
  public:
   Calibration(const BackendConfig& config, bool uses_imu, const Rig& rig);
@@ -48,9 +49,9 @@ class Calibration {
   ///
   /// is compared with the quantile of one degree of freedom; the term with t_n = 1.5 s doubts the inertial
   /// noise of the start. Below 4 the scale is that of the rig again: the prior of the window holds for any.
-  /// The lens likewise, with what a calibration leaves in place of s_a, and from the start, but its center
-  /// once rotations are aligned; the extrinsics too, once they are (until then it is not known which value is
-  /// wrong), and for good.
+  /// The lens likewise, with what a calibration leaves in place of s_a, and from the start. Its center and the
+  /// extrinsics are compared after the rotations were aligned, since before it is not known which value is
+  /// wrong; extrinsics that were found to contradict the rig stay variable.
   /// @param step of the last solve
   /// @param covariance of its newest state
   /// @param window calibration that contradicts the rig becomes variable in it
