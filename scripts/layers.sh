@@ -124,7 +124,7 @@ row bench/micro $core tests/support tests/support/simulated
 # --- reports ---
 stored="core/base bench/model bench/store bench/analysis"
 row reports/tables $stored bench/config eval/metrics eval/statistics bench/systems
-row reports/drawing core/base core/types datasets/io eval/io eval/openloris eval/protocols eval/statistics bench/run bench/record \
+row reports/drawing core/base core/geometry core/types datasets/io eval/io eval/metrics eval/openloris eval/protocols eval/statistics eval/trajectory bench/run bench/record \
   reports/tables
 row reports/frames core/base core/types core/pipeline/runners bench/run datasets datasets/bags datasets/foxglove datasets/io eval/metrics eval/trajectory
 row reports/text $stored eval/io eval/metrics eval/compare eval/openloris eval/protocols bench/systems reports/tables
@@ -140,7 +140,7 @@ row bench/cli/run $execution core/calibration core/config core/geometry core/typ
 row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/text reports/page
-row bench/cli/analysis $execution datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan \
+row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan \
   bench/plan/execution bench/analysis bench/analysis/search \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
 
@@ -160,7 +160,7 @@ libraries=(
   '<ceres/            ^core/backend/(factors|reference)/|^core/(loop|calibration)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
   '<opencv2/core[./]  ^bench/(diagnose|rivals)/|^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
-  '<opencv2/imgproc[./]  ^bench/rivals/|^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/(frames/|drawing/raster_drawing\.cpp$)'
+  '<opencv2/imgproc[./]  ^bench/rivals/|^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/frames/'
   '<opencv2/calib3d[./]  ^bench/rivals/|^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/monocular_structure\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'
   '<opencv2/videoio[./]  ^reports/frames/video_module\.cpp$'
@@ -168,7 +168,7 @@ libraries=(
   '<pybind11/         ^bench/python/'
   '<sqlite3           ^bench/store/|^datasets/bags/'
   '<zstd              ^bench/store/|^datasets/bags/bag_chunks\.cpp$'
-  '<cairo            ^reports/drawing/pdf_drawing\.cpp$'
+  '<(cairo|pango/)   ^reports/drawing/drawing_module\.cpp$'
   '<microhttpd        ^bench/serve/'
   '<CLI/              ^bench/cli/command_line\.cpp$'
   '<spdlog/           ^bench/cli/'

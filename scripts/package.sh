@@ -39,7 +39,7 @@ build_packages() {
     -DCMAKE_INSTALL_PREFIX=/usr --log-level=WARNING >"$(log_file "configure-package-$architecture")" 2>&1 ||
     show_failure "configure-package-$architecture"
   "${inside[@]}" cmake --build "$build" --parallel "$jobs" --target stillpoint stillpoint_module_imageio \
-    stillpoint_module_video stillpoint_component_geometry stillpoint_component_core stillpoint_component_eval \
+    stillpoint_module_drawing stillpoint_module_video stillpoint_component_geometry stillpoint_component_core stillpoint_component_eval \
     stillpoint_component_datasets
   "${inside[@]}" "$sources/scripts/package/documents.sh" "$build/stillpoint" "$build/package_documents" "$contact"
   "${inside[@]}" bash -c 'cd "$1" && rm -f *.deb && cpack -G DEB' - "$build" >"$(log_file "cpack-$architecture")" 2>&1 ||

@@ -28,7 +28,7 @@ packages=(
   make ccache
   openimageio-tools libbz2-dev liblz4-dev
   libembree-dev libtbb-dev
-  libsqlite3-dev libzstd-dev libmicrohttpd-dev libcairo2-dev
+  libsqlite3-dev libzstd-dev libmicrohttpd-dev libpango1.0-dev fonts-liberation
   libcurl4-openssl-dev libarchive-dev libssl-dev
   libgtest-dev libbenchmark-dev
   universal-ctags

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the commands of the minimal build (STILLPOINT_MINIMAL) could call, but which it does not have: the
-// renderer and the registry of sequences, PDF files, the files of pages, and recordings for viewers.
+// renderer and the registry of sequences, PDF and PNG files, the files of pages, and recordings for viewers.
 #include "bench/config/toml_source.h"
 #include "bench/plan/plan_sequences.h"
 #include "bench/run/sequence_source.h"
 #include "core/base/error.h"
 #include "datasets/open_sequence.h"
-#include "reports/drawing/drawing.h"
+#include "reports/drawing/drawing_module.h"
 #include "reports/frames/run_recording.h"
 
 namespace stillpoint {
@@ -27,9 +27,7 @@ std::unique_ptr<datasets::SensorStream> bench::find_sequence(const std::string& 
 
 std::span<const bench::EmbeddedFile> bench::web_files() { return {}; }
 
-std::string report::pdf_text(const Drawing&) {
-  throw InputError("PDF", "this build writes none (STILLPOINT_MINIMAL); write .svg, or use a full build");
-}
+const report::DrawingModule* report::drawing_module() { return nullptr; }
 
 struct report::RunRecording::Impl {};
 

@@ -8,11 +8,12 @@ list(FILTER minimal_sources EXCLUDE REGEX "/run/sequence_source.cpp$")
 set(more_sources
   bench/minimal/absent_parts bench/profile/timeline bench/profile/meters/allocation_watch
   bench/profile/meters/allocations_uncounted bench/profile/meters/device_info bench/profile/meters/process_usage
-  bench/profile/meters/run_monitor reports/drawing/cost_plots reports/drawing/drawing reports/drawing/openloris_figure
-  reports/drawing/raster_drawing reports/drawing/trajectory_plot reports/frames/annotated_frames
+  bench/profile/meters/run_monitor reports/drawing/chart reports/drawing/cost_plots reports/drawing/curves reports/drawing/drawing
+  reports/drawing/figures reports/drawing/openloris_figure reports/drawing/path_figure reports/frames/annotated_frames
   reports/tables/text_format reports/text/evaluation_report)
 set(program_sources
   bench/cli/command_line bench/cli/console bench/cli/main bench/cli/analysis/eval_command
+  bench/cli/analysis/eval_figures bench/cli/analysis/eval_results bench/cli/analysis/pose_files
   bench/cli/analysis/eval_openloris_command bench/cli/data/inspect_commands
   bench/cli/run/config_command bench/cli/run/device_command bench/cli/run/run_command bench/cli/run/run_dumps bench/cli/run/sequence_playback
   bench/minimal/commands)

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "reports/drawing/theme.h"
 
 namespace stillpoint::report {
 namespace {
@@ -56,7 +57,7 @@ std::vector<FrameCost> window_medians(std::span<const FrameCost> costs, double w
 }
 
 Label label(double x, double y, const std::string& text, Anchor anchor) {
-  return {{x, y}, text, 16.0, anchor, kBlack};
+  return {{x, y}, text, 16.0, anchor, theme::kBlack};
 }
 
 }  // namespace
@@ -102,27 +103,27 @@ CostTrend cost_trend(std::span<const FrameCost> costs, double window_s) {
 }
 
 Drawing cost_plot(const CostTrend& trend) {
-  Drawing drawing{kPlotWidth, kHeight, {}};
-  const double bottom = kHeight - kPlotMargin;
+  Drawing drawing{theme::kPlotWidth, kHeight, {}};
+  const double bottom = kHeight - theme::kPlotMargin;
   const double end_s = trend.medians.back().t_s;
   double highest_ms = 0.0;
   for (const FrameCost& one : trend.medians) highest_ms = std::max(highest_ms, one.ms);
   const auto place = [&](double t_s, double ms) {
-    return Point2{kPlotMargin + (kPlotWidth - 2.0 * kPlotMargin) * t_s / end_s,
-                  bottom - (bottom - kPlotMargin) * ms / std::max(highest_ms, 1e-6)};
+    return Point2{theme::kPlotMargin + (theme::kPlotWidth - 2.0 * theme::kPlotMargin) * t_s / end_s,
+                  bottom - (bottom - theme::kPlotMargin) * ms / std::max(highest_ms, 1e-6)};
   };
-  drawing.marks.push_back(Polyline{{place(0.0, 0.0), place(end_s, 0.0)}, kGray, 1.5});
+  drawing.marks.push_back(Polyline{{place(0.0, 0.0), place(end_s, 0.0)}, theme::kGray, 1.5});
   for (const FrameCost& one : trend.medians) {
-    drawing.marks.push_back(Disc{place(one.t_s, one.ms), 3.0, kBlue});
+    drawing.marks.push_back(Disc{place(one.t_s, one.ms), 3.0, theme::kBlue});
   }
   const double end_ms = trend.start_ms + trend.slope_ms_per_min * end_s / kSecondsPerMinute;
-  drawing.marks.push_back(Polyline{{place(0.0, trend.start_ms), place(end_s, end_ms)}, kRed, 2.0});
+  drawing.marks.push_back(Polyline{{place(0.0, trend.start_ms), place(end_s, end_ms)}, theme::kRed, 2.0});
   drawing.marks.push_back(label(
-      kPlotMargin, bottom + 24.0,
+      theme::kPlotMargin, bottom + 24.0,
       fmt::format("tracking and optimization time per frame over {:.0f} s, medians of 10 s, 0 to {:.2f} ms",
                   end_s, highest_ms),
       Anchor::kLeft));
-  drawing.marks.push_back(label(kPlotMargin, 30.0,
+  drawing.marks.push_back(label(theme::kPlotMargin, 30.0,
                                 fmt::format("slope {:+.4f} ms per minute, n = {}, {}", trend.slope_ms_per_min,
                                             trend.medians.size(), interval_line(trend.slope_interval)),
                                 Anchor::kLeft));
@@ -153,39 +154,39 @@ std::vector<Mark> texts(std::span<const MapKeyframe> keyframes, double highest_m
       keyframes, {}, [](const MapKeyframe& keyframe) { return keyframe.cost.processing_ms; });
   const double added_kb = 1e3 * (megabytes(keyframes.back()) - megabytes(keyframes.front()));
   const auto text = [](double y, std::string content, Color color) {
-    return Label{{kPlotMargin, y}, std::move(content), 16.0, Anchor::kLeft, color};
+    return Label{{theme::kPlotMargin, y}, std::move(content), 16.0, Anchor::kLeft, color};
   };
   return {text(28.0,
                fmt::format("loop closure per keyframe, medians of {:g} s: 0 to {:.1f} ms; longest {:.0f} ms",
                            window_s, highest_ms, longest->cost.processing_ms),
-               kBlue),
+               theme::kBlue),
           text(50.0,
                fmt::format("its memory: 0 to {:.1f} MB; {:.1f} kB per keyframe", megabytes(keyframes.back()),
                            added_kb / static_cast<double>(keyframes.size() - 1)),
-               kRed),
-          text(kHeight - kPlotMargin + 24.0,
+               theme::kRed),
+          text(kHeight - theme::kPlotMargin + 24.0,
                fmt::format("{} keyframes over {:.0f} s", keyframes.size(),
                            seconds_between(keyframes.front().t, keyframes.back().t)),
-               kBlack)};
+               theme::kBlack)};
 }
 
 }  // namespace
 
 Drawing loop_cost_plot(std::span<const MapKeyframe> keyframes, double window_s) {
   const std::vector<FrameCost> medians = cost_trend(times_of(keyframes), window_s).medians;
-  const double bottom = kHeight - kPlotMargin;
+  const double bottom = kHeight - theme::kPlotMargin;
   const double end_s = medians.back().t_s;
   const double highest_ms = std::ranges::max(medians, {}, &FrameCost::ms).ms;
   const double highest_mb = megabytes(keyframes.back());
   const auto place = [&](double t_s, double value, double highest) {
-    return Point2{kPlotMargin + (kPlotWidth - 2.0 * kPlotMargin) * t_s / end_s,
-                  bottom - (bottom - kPlotMargin) * value / std::max(highest, 1e-6)};
+    return Point2{theme::kPlotMargin + (theme::kPlotWidth - 2.0 * theme::kPlotMargin) * t_s / end_s,
+                  bottom - (bottom - theme::kPlotMargin) * value / std::max(highest, 1e-6)};
   };
-  Drawing drawing{kPlotWidth, kHeight, texts(keyframes, highest_ms, window_s)};
-  drawing.marks.push_back(Polyline{{place(0.0, 0.0, 1.0), place(end_s, 0.0, 1.0)}, kGray, 1.5});
-  Polyline memory{{}, kRed, 2.0};
+  Drawing drawing{theme::kPlotWidth, kHeight, texts(keyframes, highest_ms, window_s)};
+  drawing.marks.push_back(Polyline{{place(0.0, 0.0, 1.0), place(end_s, 0.0, 1.0)}, theme::kGray, 1.5});
+  Polyline memory{{}, theme::kRed, 2.0};
   for (const FrameCost& one : medians) {
-    drawing.marks.push_back(Disc{place(one.t_s, one.ms, highest_ms), 3.0, kBlue});
+    drawing.marks.push_back(Disc{place(one.t_s, one.ms, highest_ms), 3.0, theme::kBlue});
     memory.points.push_back(place(one.t_s, memory_at(keyframes, one.t_s), highest_mb));
   }
   drawing.marks.push_back(std::move(memory));

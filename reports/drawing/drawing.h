@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Vector drawing as a list of marks, written as SVG, PDF or PNG, also to a file whose extension selects the
+/// Vector drawing as a list of marks, written as SVG, HTML, PDF or PNG to a file whose extension selects the
 /// format.
 #pragma once
 
-#include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -30,6 +30,13 @@ struct Polyline {
   std::vector<Point2> points;
   Color color;
   double width = 1.0;
+  std::vector<double> dashes = {};  ///< lengths of dashes and spaces in turn; empty: solid
+};
+
+/// A filled polygon.
+struct Polygon {
+  std::vector<Point2> points;
+  Color color;
 };
 
 struct Disc {
@@ -43,51 +50,59 @@ enum class Anchor { kLeft, kMiddle, kRight };
 /// One line of text; `at` is on its baseline.
 struct Label {
   Point2 at;
-  std::string text;    ///< ASCII
+  std::string text;    ///< UTF-8
   double size = 10.0;  ///< height of the font
   Anchor anchor = Anchor::kLeft;
   Color color;
+  bool upwards = false;  ///< from bottom to top
 };
 
-using Mark = std::variant<Polyline, Disc, Label>;
+using Mark = std::variant<Polyline, Polygon, Disc, Label>;
 
 /// White background; later marks are drawn over earlier ones.
 struct Drawing {
   double width = 100.0;
   double height = 100.0;
   std::vector<Mark> marks;
+  std::string title = {};        ///< empty: none
+  bool unit_is_a_point = false;  ///< in SVG one unit is 1/72 inch, as in PDF; else a pixel
 };
 
-/// A self-contained SVG 1.1 document. Coordinates have 2 decimals, so that equal drawings give equal bytes.
+/// A self-contained SVG 1.1 document, texts as text. Coordinates have 2 decimals, so that equal drawings give
+/// equal bytes.
 [[nodiscard]] std::string svg_text(const Drawing& drawing);
 
-/// A PDF document of one page; one unit of the drawing is 1/72 inch. Equal drawings give equal bytes.
-[[nodiscard]] std::string pdf_text(const Drawing& drawing);
+/// A self-contained page with one SVG element per drawing.
+[[nodiscard]] std::string html_text(std::span<const Drawing> drawings);
 
-/// Writes a PNG of `scale` pixels per unit of the drawing, antialiased.
-/// @throws InputError if the file cannot be written
-void write_drawing_png(const std::filesystem::path& file, const Drawing& drawing, double scale);
+/// A PDF document of one page per drawing with embedded fonts; one unit of the drawing is 1/72 inch. Equal
+/// drawings give equal bytes.
+/// @throws InputError if this build has no cairo
+[[nodiscard]] std::string pdf_text(std::span<const Drawing> drawings);
 
-// Size and colors that plots have in common.
-inline constexpr double kPlotWidth = 800.0;
-inline constexpr double kPlotMargin = 60.0;
-inline constexpr Color kBlack{20, 20, 20};
-inline constexpr Color kGray{200, 200, 200};
-inline constexpr Color kBlue{30, 90, 200};
-inline constexpr Color kRed{190, 30, 40};
-/// Of the lines of a plot, in their order.
-inline constexpr std::array<Color, 6> kLineColors{
-    {kBlue, {220, 110, 20}, {40, 150, 60}, {170, 50, 160}, kRed, {100, 100, 100}}};
+/// The bytes of a PNG of `scale` pixels per unit of the drawing, antialiased.
+/// @throws InputError if this build has no cairo, or for more than 32767 rows or columns
+[[nodiscard]] std::string png_bytes(const Drawing& drawing, double scale);
+
+/// Width of a text [units of the drawing]; an estimate in a build without pango.
+[[nodiscard]] double text_width(const std::string& text, double size);
+
+/// The drawings below each other.
+[[nodiscard]] Drawing stacked(std::span<const Drawing> drawings);
 
 /// Checks a file name before the work begins: its extension, and what it would replace.
 /// @param rules without `beginning`, which the format determines
-/// @throws InputError if the extension is not .svg, .pdf or .png, or as bench::require_safe_output
+/// @throws InputError if the extension is not .svg, .pdf, .png or .html, or as bench::require_safe_output
 void require_drawing_file(const std::filesystem::path& file, bench::OutputRules rules);
 
-/// Checks as `require_drawing_file`, and writes an SVG or PDF, or a PNG of `scale` pixels per unit of the
-/// drawing.
+/// Checks as `require_drawing_file`, and writes a PDF with a page per drawing, a page of HTML, or an SVG or
+/// PNG with the drawings below each other.
+/// @param file path with the extension of its format
+/// @param drawings at least one
+/// @param scale pixels per unit, for PNG
+/// @param rules as for `require_drawing_file`
 /// @throws InputError in addition if the file cannot be written
-void write_drawing(const std::filesystem::path& file, const Drawing& drawing, double scale,
-                   bench::OutputRules rules);
+void write_drawings(const std::filesystem::path& file, std::span<const Drawing> drawings, double scale,
+                    bench::OutputRules rules);
 
 }  // namespace stillpoint::report

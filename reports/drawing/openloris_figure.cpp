@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "reports/drawing/drawing.h"
+#include "reports/drawing/theme.h"
 
 namespace stillpoint::report {
 namespace {
@@ -111,10 +112,10 @@ void draw_header(Drawing& drawing, const Panel& panel, const std::string& scene)
                                 fmt::format("{} ({:.0f} s)", scene, panel.duration_s),
                                 kFontSize * 1.1,
                                 Anchor::kMiddle,
-                                kBlack});
-  drawing.marks.push_back(Polyline{{{panel.left, y}, {panel.left + panel.width, y}}, kBlack, 2.0});
+                                theme::kBlack});
+  drawing.marks.push_back(Polyline{{{panel.left, y}, {panel.left + panel.width, y}}, theme::kBlack, 2.0});
   for (const auto& [sequence, begin_s] : panel.begins_s) {
-    drawing.marks.push_back(Disc{{panel.x(begin_s), y}, 6.0, kBlack});
+    drawing.marks.push_back(Disc{{panel.x(begin_s), y}, 6.0, theme::kBlack});
   }
 }
 
@@ -139,22 +140,23 @@ void draw_numbers(Drawing& drawing, const Panel& panel, const eval::OpenlorisSce
                                 fmt::format("{:.1f}%", 100.0 * score.figure_correct_rate),
                                 kFontSize,
                                 Anchor::kLeft,
-                                kBlack});
-  drawing.marks.push_back(
-      Label{{right, y - 10.0}, or_dash(score.weighted_ate_rmse_m, 3), kFontSize, Anchor::kRight, kBlack});
+                                theme::kBlack});
+  drawing.marks.push_back(Label{
+      {right, y - 10.0}, or_dash(score.weighted_ate_rmse_m, 3), kFontSize, Anchor::kRight, theme::kBlack});
   drawing.marks.push_back(
       Label{{right, y + 26.0},
             or_dash(score.rpe.trans_rmse_m_per_s, 3) + "  " + or_dash(score.rpe.rot_rmse_deg_per_s, 2),
             kFontSize,
             Anchor::kRight,
-            kBlack});
+            theme::kBlack});
 }
 
 void draw_name(Drawing& drawing, const std::string& system, double y) {
   const DisplayName name = display_name(system);
-  drawing.marks.push_back(Label{{6.0, y - 4.0}, std::string(name.first), kFontSize, Anchor::kLeft, kBlack});
   drawing.marks.push_back(
-      Label{{6.0, y + 22.0}, std::string(name.second), kFontSize * 0.9, Anchor::kLeft, kBlack});
+      Label{{6.0, y - 4.0}, std::string(name.first), kFontSize, Anchor::kLeft, theme::kBlack});
+  drawing.marks.push_back(
+      Label{{6.0, y + 22.0}, std::string(name.second), kFontSize * 0.9, Anchor::kLeft, theme::kBlack});
 }
 
 }  // namespace
@@ -187,7 +189,7 @@ Drawing openloris_figure(const eval::OpenlorisBenchmark& benchmark) {
             "above: correct rate, ATE [m]; below: strict T.RPE [m/s], R.RPE [deg/s]; -: no data",
             kFontSize * 0.9,
             Anchor::kLeft,
-            kBlack});
+            theme::kBlack});
   return drawing;
 }
 

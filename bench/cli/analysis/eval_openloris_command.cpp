@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `stillpoint eval openloris`: evaluates result files of the OpenLORIS-Scene benchmark by scene.
+#include <array>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -33,9 +34,9 @@ struct OpenlorisArguments {
 };
 
 void write_figure(const OpenlorisArguments& arguments, const eval::OpenlorisBenchmark& benchmark) {
-  const report::Drawing drawing = report::openloris_figure(benchmark);
+  const std::array drawing{report::openloris_figure(benchmark)};
   for (const char* extension : kFigureExtensions)
-    report::write_drawing(arguments.figure + extension, drawing, 1.0, {.force = arguments.force});
+    report::write_drawings(arguments.figure + extension, drawing, 1.0, {.force = arguments.force});
 }
 
 int evaluate_folder(const OpenlorisArguments& arguments) {

@@ -18,8 +18,6 @@
 namespace stillpoint::bench {
 namespace {
 
-enum class FileRole { kTruth, kEstimate };
-
 /// The format of --format for the files of a role: "nmea" for all, "gt=nmea" and "est=tum" for one.
 std::optional<eval::TrajectoryFormat> format_of(const PoseFilePaths& paths, FileRole role) {
   std::optional<eval::TrajectoryFormat> format;
@@ -84,7 +82,19 @@ std::vector<PoseFile> load_estimates(const PoseFilePaths& paths) {
   return files;
 }
 
+void log_repairs(const PoseFile& file) {
+  for (const std::string& repair : eval::repair_texts(file.loaded.repairs))
+    spdlog::warn("{}: {}", file.path, repair);
+}
+
 }  // namespace
+
+PoseFile read_pose_file(const PoseFilePaths& paths, const std::string& path, FileRole role) {
+  PoseFile file = load(paths, path, role);
+  if (role == FileRole::kEstimate) file.covariances = covariances_of(paths, file);
+  log_repairs(file);
+  return file;
+}
 
 std::vector<PoseFile> read_pose_files(const PoseFilePaths& paths) {
   if (!paths.covariance.empty() && paths.estimates.size() > 1)
@@ -93,10 +103,7 @@ std::vector<PoseFile> read_pose_files(const PoseFilePaths& paths) {
       std::async(std::launch::async, [&] { return load_estimates(paths); });
   std::vector<PoseFile> files{load(paths, paths.ground_truth, FileRole::kTruth)};
   std::ranges::move(estimates.get(), std::back_inserter(files));
-  for (const PoseFile& file : files) {
-    for (const std::string& repair : eval::repair_texts(file.loaded.repairs))
-      spdlog::warn("{}: {}", file.path, repair);
-  }
+  for (const PoseFile& file : files) log_repairs(file);
   return files;
 }
 

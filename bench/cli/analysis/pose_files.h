@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The files that `stillpoint eval` compares: their formats, covariances and orders of quaternions.
+/// The files that `stillpoint eval` and `trajectory` read: their formats, covariances and orders of quaternions.
 #pragma once
 
 #include <optional>
@@ -34,6 +34,12 @@ struct PoseFile {
 /// @return the ground truth first
 /// @throws InputError of the first file with a problem, or for one covariance file and several estimates
 [[nodiscard]] std::vector<PoseFile> read_pose_files(const PoseFilePaths& paths);
+
+enum class FileRole { kTruth, kEstimate };
+
+/// Reads one file; an estimate with its covariances. Skipped and sorted rows are logged.
+/// @throws InputError for unreadable or malformed input
+[[nodiscard]] PoseFile read_pose_file(const PoseFilePaths& paths, const std::string& path, FileRole role);
 
 /// The files, ground truth first, with their quaternions in the order in which they are consistent.
 /// @throws InputError if that contradicts the format or the header of one, or another estimate

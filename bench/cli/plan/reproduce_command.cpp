@@ -2,6 +2,7 @@
 // `stillpoint reproduce`: executes the plans of the paper's tables and of the datasets, and writes their
 // tables.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <filesystem>
@@ -119,8 +120,8 @@ std::string openloris_scene_table(const PlanMatrix& matrix, const Store& store, 
   if (truths == 0 || write_results(matrix, store, folder / "results") == 0) return "";
   const eval::OpenlorisEvaluation evaluation =
       eval::evaluate_openloris(folder / "results", folder / "ground_truth");
-  report::write_drawing(out / "openloris_figure.svg", report::openloris_figure(evaluation.benchmark), 1.0,
-                        {.force = true});
+  const std::array figure{report::openloris_figure(evaluation.benchmark)};
+  report::write_drawings(out / "openloris_figure.svg", figure, 1.0, {.force = true});
   return report::openloris_table(evaluation.benchmark, report::TableStyle::kMarkdown);
 }
 

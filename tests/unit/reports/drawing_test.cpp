@@ -3,6 +3,7 @@
 
 #include "datasets/io/image_io.h"
 #include "reports/drawing/drawing.h"
+#include "tests/support/expect_input_error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stillpoint::report {
@@ -23,25 +24,63 @@ TEST(SvgText, ContainsEveryMarkAndEscapesText) {
   EXPECT_NE(svg.find("text-anchor=\"middle\" fill=\"#000000\">a &lt; b &amp; c</text>"), std::string::npos);
 }
 
-TEST(PdfText, IsOnePageOfTheSizeOfTheDrawing) {
-  const std::string pdf = pdf_text(kDrawing);
+TEST(SvgText, HasDashesAndTextThatRunsUpwards) {
+  const Drawing drawing{.width = 10.0,
+                        .height = 10.0,
+                        .marks = {Polyline{{{0.0, 0.0}, {9.0, 9.0}}, {}, 1.0, {3.5, 2.0}},
+                                  Label{{2.0, 5.0}, "up", 4.0, Anchor::kMiddle, {}, true}}};
+  const std::string svg = svg_text(drawing);
+  EXPECT_NE(svg.find("stroke-dasharray=\"3.5 2\""), std::string::npos);
+  EXPECT_NE(svg.find("transform=\"rotate(-90 2.00 5.00)\">up</text>"), std::string::npos);
+}
+
+TEST(PdfText, HasAPageOfTheSizeOfEachDrawing) {
+  const std::vector<Drawing> drawings{kDrawing, {.width = 30.0, .height = 50.0, .marks = {}}};
+  const std::string pdf = pdf_text(drawings);
   EXPECT_TRUE(pdf.starts_with("%PDF-"));
   EXPECT_TRUE(pdf.ends_with("%%EOF\n"));
   EXPECT_NE(pdf.find("/MediaBox [ 0 0 40 20 ]"), std::string::npos);
-  EXPECT_NE(pdf.find("/Count 1"), std::string::npos);
-  EXPECT_EQ(pdf, pdf_text(kDrawing));
+  EXPECT_NE(pdf.find("/MediaBox [ 0 0 30 50 ]"), std::string::npos);
+  EXPECT_NE(pdf.find("/Count 2"), std::string::npos);
+  EXPECT_EQ(pdf, pdf_text(drawings));
 }
 
-TEST(WriteDrawingPng, DrawsMarksAtTheirPositions) {
+TEST(PdfText, EmbedsItsFonts) {
+  const std::string pdf = pdf_text({{kDrawing}});
+  EXPECT_NE(pdf.find("/FontDescriptor"), std::string::npos);
+  EXPECT_NE(pdf.find("/FontFile"), std::string::npos);
+}
+
+TEST(PngBytes, DrawsMarksAtTheirPositions) {
   const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "drawing.png";
-  write_drawing_png(file, kDrawing, 2.0);
-  const cv::Mat image = datasets::read_image(file);
+  const cv::Mat image = datasets::read_image(folder.write("drawing.png", png_bytes(kDrawing, 2.0)));
   ASSERT_EQ(image.cols, 80);  // 40 units at 2 px
   ASSERT_EQ(image.rows, 40);
   EXPECT_EQ(image.at<cv::Vec3b>(20, 40), cv::Vec3b(0, 0, 255));      // the disc is drawn over the line
   EXPECT_EQ(image.at<cv::Vec3b>(20, 70), cv::Vec3b(255, 0, 0));      // the line next to the disc
   EXPECT_EQ(image.at<cv::Vec3b>(38, 70), cv::Vec3b(255, 255, 255));  // background
+}
+
+TEST(PngBytes, RefusesAnImageThatIsTooLarge) {
+  expect_input_error([] { static_cast<void>(png_bytes(kDrawing, 1000.0)); }, {"PNG", "40000 x 20000 pixels"});
+}
+
+TEST(TextWidth, GrowsWithTheTextAndTheSize) {
+  EXPECT_GT(text_width("0.25", 8.0), text_width("0.2", 8.0));
+  EXPECT_NEAR(text_width("0.25", 16.0), 2.0 * text_width("0.25", 8.0), 0.1);
+}
+
+TEST(HtmlText, HasAnSvgPerDrawing) {
+  const std::string html = html_text(std::vector<Drawing>{kDrawing, kDrawing});
+  EXPECT_TRUE(html.starts_with("<!doctype html>"));
+  const std::size_t first = html.find("<svg");
+  EXPECT_NE(html.find("<svg", first + 1), std::string::npos);
+}
+
+TEST(Stacked, PutsDrawingsBelowEachOther) {
+  const Drawing all = stacked(std::vector<Drawing>{kDrawing, kDrawing});
+  EXPECT_EQ(all.height, 40.0);
+  EXPECT_EQ(std::get<Disc>(all.marks.at(4)).center.y, 30.0);  // 10 in the second drawing
 }
 
 }  // namespace

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Figures of `stillpoint eval`.
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "bench/cli/analysis/eval_results.h"
+#include "bench/cli/command_line.h"
+#include "core/base/error.h"
+#include "eval/io/text_reader.h"
+#include "reports/drawing/figures.h"
+
+namespace stillpoint::bench {
+namespace {
+
+constexpr double kPixelsPerPoint = report::theme::kPixelsPerInch / 72.0;
+
+/// "column", "page", or a length in millimeters: "85mm".
+double width_mm(const std::string& text) {
+  if (text == "column") return report::theme::kColumnWidthMm;
+  if (text == "page") return report::theme::kPageWidthMm;
+  constexpr std::string_view kUnit = "mm";
+  constexpr double kLeast = 40.0;
+  constexpr double kMost = 1000.0;
+  const std::string_view view = text;
+  const auto number =
+      view.ends_with(kUnit) ? eval::parse_number(view.substr(0, view.size() - kUnit.size())) : std::nullopt;
+  if (!number || !(*number >= kLeast && *number <= kMost)) {
+    throw InputError("--width " + text,
+                     fmt::format("expected column, page, or a length from {:g}mm to {:g}mm", kLeast, kMost));
+  }
+  return *number;
+}
+
+/// The kinds of --figure, "all" being all; without any, path and errors.
+std::vector<report::FigureKind> figure_kinds(const EvalArguments& arguments) {
+  std::vector<report::FigureKind> kinds;
+  for (const std::string& name : arguments.figures) {
+    if (name == "all") {
+      for (const auto& [kind, known] : enum_names(report::FigureKind{})) kinds.push_back(kind);
+    } else {
+      kinds.push_back(enum_of<report::FigureKind>("--figure", name));
+    }
+  }
+  if (kinds.empty()) kinds = {report::FigureKind::kPath, report::FigureKind::kError};
+  return kinds;
+}
+
+/// A figure, or nullopt with a warning if it has no data and was not named.
+std::optional<report::Drawing> figure_if_any(report::FigureKind kind, const report::FigureInput& input,
+                                             const report::FigureSize& size, bool was_named) {
+  try {
+    return report::figure(kind, input, size);
+  } catch (const InputError& error) {
+    if (was_named) throw;
+    spdlog::warn("figure omitted: {}", error.what());
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+void require_figures(const EvalArguments& arguments, const OutputRules& rules) {
+  if (!arguments.labels.empty() && arguments.labels.size() != arguments.files.estimates.size()) {
+    throw InputError("--label", fmt::format("{} names for {} estimates; give one for each, in their order",
+                                            arguments.labels.size(), arguments.files.estimates.size()));
+  }
+  static_cast<void>(figure_kinds(arguments));
+  static_cast<void>(width_mm(arguments.width));
+  if (!arguments.figures.empty() && arguments.plot.empty())
+    throw InputError("--figure", "needs a file: --plot FILE.pdf");
+  if (!arguments.plot.empty()) report::require_drawing_file(arguments.plot, rules);
+  if (!arguments.map.empty()) report::require_drawing_file(arguments.map, rules);
+}
+
+void write_figures(const EvalArguments& arguments, const Trajectory& gt,
+                   const std::vector<report::EvaluatedRun>& runs, const OutputRules& rules) {
+  std::vector<report::PlottedRun> plotted;
+  for (const report::EvaluatedRun& run : runs)
+    plotted.push_back({run.name, &run.est, &run.evaluations.front()});
+  report::FigureInput input{.gt = gt, .runs = plotted, .offset_s = arguments.offset_s};
+  if (arguments.max_difference_s > 0.0) input.max_gap_s = arguments.max_difference_s;
+  const report::FigureSize size{width_mm(arguments.width), arguments.font_size_pt};
+  if (!arguments.plot.empty()) {
+    const bool all = std::ranges::find(arguments.figures, "all") != arguments.figures.end();
+    std::vector<report::Drawing> drawings;
+    for (const report::FigureKind kind : figure_kinds(arguments)) {
+      if (auto drawing = figure_if_any(kind, input, size, !all)) drawings.push_back(std::move(*drawing));
+    }
+    report::write_drawings(arguments.plot, drawings, kPixelsPerPoint, rules);
+  }
+  if (!arguments.map.empty()) {
+    const std::array<report::Drawing, 1> map{report::plan_map(input, size)};
+    report::write_drawings(arguments.map, map, kPixelsPerPoint, rules);
+  }
+}
+
+}  // namespace stillpoint::bench

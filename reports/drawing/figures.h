@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Figures of an evaluation for publications: paths, coordinates, rotations, errors and speeds of several
+/// estimates with the ground truth, which is dashed and drawn above them. Where poses are missing, lines have
+/// gaps.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/fields.h"
+#include "core/types/trajectory.h"
+#include "eval/protocols/protocol.h"
+#include "reports/drawing/chart.h"
+#include "reports/drawing/curves.h"
+
+namespace stillpoint::report {
+
+enum class FigureKind { kPath, kAxes, kRotation, kError, kRpe, kBox, kCdf, kSpeed };
+constexpr auto enum_names(FigureKind) {
+  return EnumNames<FigureKind, 8>{{{FigureKind::kPath, "path"},
+                                   {FigureKind::kAxes, "axes"},
+                                   {FigureKind::kRotation, "rotation"},
+                                   {FigureKind::kError, "error"},
+                                   {FigureKind::kRpe, "rpe"},
+                                   {FigureKind::kBox, "box"},
+                                   {FigureKind::kCdf, "cdf"},
+                                   {FigureKind::kSpeed, "speed"}}};
+}
+
+/// One estimated trajectory and its evaluation.
+struct PlottedRun {
+  std::string name;
+  const Trajectory* est = nullptr;
+  const eval::Evaluation* evaluation = nullptr;  ///< with errors per pose
+};
+
+struct FigureInput {
+  const Trajectory& gt;  ///< not empty
+  std::span<const PlottedRun> runs;
+  double offset_s = 0.0;    ///< added to the stamps of the estimates
+  double max_gap_s = 0.11;  ///< of ground truth that is interpolated for relative errors, to each neighbor
+};
+
+/// path: plan and side view, to scale; a single estimate is colored by its error. axes: x, y, z over time.
+/// rotation: roll, pitch, yaw (R = Rz(yaw) Ry(pitch) Rx(roll)) over time. error: over time and distance. rpe:
+/// relative errors over segments of 10 to 50 % of the path. box, cdf: distribution of the errors. speed:
+/// linear and angular, over 0.2 s. Legends have the numbers of the evaluations.
+/// @throws InputError naming the figure if no estimate has data for it
+[[nodiscard]] Drawing figure(FigureKind kind, const FigureInput& input, const FigureSize& size);
+
+/// x of the ground truth to the right and y up, to scale, with an arrow: east and north if the ground truth
+/// is that of a GNSS receiver (eval/io/nmea_file.h).
+[[nodiscard]] Drawing plan_map(const FigureInput& input, const FigureSize& size);
+
+/// Rows of the legend: the ground truth, and each estimate with the statistics of an error.
+[[nodiscard]] std::vector<LegendRow> legend_rows(const FigureInput& input,
+                                                 std::optional<eval::Statistics> eval::Evaluation::*error);
+
+/// Position errors of a run with their times [s] since the first pose of the ground truth.
+[[nodiscard]] std::vector<CurvePoint> error_points(const FigureInput& input, const PlottedRun& run);
+
+/// The chart of `FigureKind::kPath`.
+/// @param input must outlive the chart, as its panels refer to it
+/// @param font of texts in the panels
+[[nodiscard]] Chart path_chart(const FigureInput& input, double font);
+
+}  // namespace stillpoint::report

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reports/drawing/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "eval/io/nmea_file.h"
+#include "reports/drawing/curves.h"
+#include "tests/support/expect_input_error.h"
+
+namespace stillpoint::report {
+namespace {
+
+/// A circle of 2 m radius in 20 s, at 10 Hz, looking along its tangent.
+Trajectory circle() {
+  Trajectory path;
+  for (int i = 0; i <= 200; ++i) {
+    const double angle = 0.02 * std::numbers::pi * i / 2.0;
+    path.poses.emplace_back(
+        from_seconds(0.1 * i),
+        Pose{Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ())),
+             {2.0 * std::sin(angle), -2.0 * std::cos(angle), 0.1 * std::sin(3.0 * angle)}});
+  }
+  return path;
+}
+
+/// `circle` with an error that grows with time, and without the poses of [8 s, 12 s].
+Trajectory estimate(double error_m) {
+  Trajectory path = circle();
+  for (std::size_t i = 0; i < path.poses.size(); ++i)
+    path.poses[i].T_w_f.p.x() += error_m * static_cast<double>(i) / 200.0;
+  std::erase_if(path.poses, [](const StampedPose& pose) {
+    return pose.t > from_seconds(8.0) && pose.t < from_seconds(12.0);
+  });
+  return path;
+}
+
+/// Two estimates of a circle and their evaluations.
+struct CircleRuns {
+  Trajectory gt = circle();
+  Trajectory near = estimate(0.1);
+  Trajectory far = estimate(0.4);
+  eval::ProtocolOptions options;
+  eval::Evaluation near_errors = eval::evaluate("strict:se3", {gt, near, options});
+  eval::Evaluation far_errors = eval::evaluate("strict:se3", {gt, far, options});
+  std::vector<PlottedRun> runs{{"near", &near, &near_errors}, {"far", &far, &far_errors}};
+
+  [[nodiscard]] FigureInput both() const { return {.gt = gt, .runs = runs}; }
+  [[nodiscard]] FigureInput one() const { return {.gt = gt, .runs = std::span(runs).first(1)}; }
+};
+
+std::vector<Polyline> lines_of(const Drawing& drawing, const Color& color, double width) {
+  std::vector<Polyline> lines;
+  for (const Mark& mark : drawing.marks) {
+    const auto* const line = std::get_if<Polyline>(&mark);
+    if (line == nullptr || line->width != width || line->points.size() < 3) continue;
+    if (line->color.red == color.red && line->color.green == color.green && line->color.blue == color.blue)
+      lines.push_back(*line);
+  }
+  return lines;
+}
+
+TEST(NiceTicks, AreFewRoundNumbersInTheRange) {
+  const Ticks ticks = nice_ticks({-0.13, 0.87}, 6);
+  EXPECT_DOUBLE_EQ(ticks.step, 0.2);
+  ASSERT_EQ(ticks.values.size(), 5U);  // 0, 0.2, ..., 0.8
+  EXPECT_NEAR(ticks.values.front(), 0.0, 1e-12);
+  EXPECT_NEAR(ticks.values.back(), 0.8, 1e-12);
+  EXPECT_EQ(nice_ticks({0.0, 10.0}, 11).values.size(), 11U);  // the ends of the range are in it
+  EXPECT_EQ(nice_ticks({0.0, 10.0}, 10).step, 2.0);
+}
+
+TEST(TickText, HasTheDecimalsOfTheStep) {
+  EXPECT_EQ(tick_text(0.4, 0.2), "0.4");
+  EXPECT_EQ(tick_text(1.0, 0.05), "1.00");
+  EXPECT_EQ(tick_text(-20.0, 10.0), "\u221220");
+  EXPECT_EQ(tick_text(-1e-17, 0.2), "0.0");
+}
+
+TEST(ShortNumber, HasThreeSignificantDigits) {
+  EXPECT_EQ(short_number(0.01234), "0.0123");
+  EXPECT_EQ(short_number(12.34), "12.3");
+  EXPECT_EQ(short_number(1234.5), "1234");
+  EXPECT_EQ(short_number(0.0), "0");
+}
+
+TEST(ScaleBar, HasARoundLength) {
+  EXPECT_DOUBLE_EQ(scale_bar_m(100.0), 20.0);
+  EXPECT_DOUBLE_EQ(scale_bar_m(160.0), 50.0);
+  EXPECT_DOUBLE_EQ(scale_bar_m(4.0), 1.0);
+  EXPECT_DOUBLE_EQ(scale_bar_m(0.5), 0.1);
+}
+
+TEST(SplitAtGaps, SplitsWherePosesAreMissing) {
+  std::vector<CurvePoint> points;
+  for (const double t : {0.0, 0.1, 0.2, 0.9, 1.5, 1.6}) points.push_back({t, {t, t}});
+  // The median interval is 0.1 s; 0.7 and 0.6 s are more than five of these.
+  const Curve curve = split_at_gaps(points);
+  ASSERT_EQ(curve.size(), 3U);
+  EXPECT_EQ(curve[1].size(), 1U);
+}
+
+TEST(SplitAtGaps, SplitsAtJumpsAndLeavesOutWhatIsNotDetermined) {
+  const std::vector<CurvePoint> points{
+      {0.0, {0.0, 179.0}}, {1.0, {1.0, -179.0}}, {2.0, {2.0, std::nan("")}}, {3.0, {3.0, 0.0}}};
+  const Curve curve = split_at_gaps(points, 180.0);
+  ASSERT_EQ(curve.size(), 3U);
+  EXPECT_EQ(curve[2].front().t_s, 3.0);
+}
+
+TEST(Thinned, KeepsPeaksOfAColumn) {
+  std::vector<Point2> line;
+  for (int i = 0; i < 1000; ++i) line.push_back({1e-4 * i, i == 500 ? 9.0 : 0.0});
+  const std::vector<Point2> kept = thinned(line);
+  EXPECT_LE(kept.size(), 4U);
+  EXPECT_TRUE(std::ranges::any_of(kept, [](const Point2& p) { return p.y == 9.0; }));
+}
+
+TEST(PathFigure, HasEqualScalesAndGaps) {
+  const CircleRuns circles;
+  const Drawing drawing = figure(FigureKind::kPath, circles.both(), {});
+  const std::vector<Polyline> truth = lines_of(drawing, theme::kBlack, theme::kTruthWidth);
+  ASSERT_EQ(truth.size(), 2U);  // plan and side view
+  const auto [left, right] = std::ranges::minmax(truth[0].points, {}, &Point2::x);
+  const auto [top, bottom] = std::ranges::minmax(truth[0].points, {}, &Point2::y);
+  EXPECT_NEAR(right.x - left.x, bottom.y - top.y, 0.3);  // a circle is round
+  // Two parts in each view.
+  EXPECT_EQ(lines_of(drawing, theme::kEstimates[0].color, theme::kEstimateWidth).size(), 4U);
+}
+
+TEST(PathFigure, DrawsTheTruthDashedAboveTheEstimates) {
+  const CircleRuns circles;
+  const Drawing drawing = figure(FigureKind::kPath, circles.both(), {});
+  long estimates = 0;  // in the plan view, before the truth
+  for (const Mark& mark : drawing.marks) {
+    const auto* const line = std::get_if<Polyline>(&mark);
+    if (line == nullptr || line->points.size() < 20) continue;
+    if (line->width == theme::kEstimateWidth) ++estimates;
+    if (line->width != theme::kTruthWidth) continue;
+    EXPECT_FALSE(line->dashes.empty());
+    break;
+  }
+  EXPECT_EQ(estimates, 4);  // two of each
+}
+
+TEST(PathFigure, ColorsASingleEstimateByItsError) {
+  const CircleRuns circles;
+  const Drawing drawing = figure(FigureKind::kPath, circles.one(), {});
+  std::vector<int> reds;
+  for (const Mark& mark : drawing.marks) {
+    const auto* const line = std::get_if<Polyline>(&mark);
+    if (line != nullptr && line->width == theme::kColoredWidth)
+      reds.push_back(line->color.red * 256 + line->color.blue);
+  }
+  std::ranges::sort(reds);
+  reds.erase(std::unique(reds.begin(), reds.end()), reds.end());
+  EXPECT_GT(reds.size(), 10U);
+  EXPECT_NE(svg_text(drawing).find(">position error [m]</text>"), std::string::npos);  // of the color bar
+}
+
+TEST(Figures, HaveTheWidthAndTheFontThatAreAskedFor) {
+  const CircleRuns circles;
+  for (const auto& [kind, name] : enum_names(FigureKind{})) {
+    const Drawing drawing = figure(kind, circles.both(), {.width_mm = 85.0, .font_size_pt = 7.0});
+    EXPECT_NEAR(drawing.width, 240.94, 0.01) << name;  // 85 mm in points
+    EXPECT_NE(svg_text(drawing).find("font-size=\"7.00\""), std::string::npos) << name;
+    EXPECT_NE(svg_text(drawing).find("width=\"240.94pt\""), std::string::npos) << name;
+  }
+}
+
+TEST(Figures, StayWithinTheirBorders) {
+  const CircleRuns circles;
+  for (const auto& [kind, name] : enum_names(FigureKind{})) {
+    const Drawing drawing = figure(kind, circles.both(), {});
+    for (const Mark& mark : drawing.marks) {
+      const auto* const line = std::get_if<Polyline>(&mark);
+      if (line == nullptr) continue;
+      for (const Point2& p : line->points) {
+        EXPECT_TRUE(p.x >= 0.0 && p.x <= drawing.width && p.y >= 0.0 && p.y <= drawing.height) << name;
+      }
+    }
+    for (const Mark& mark : drawing.marks) {
+      const auto* const label = std::get_if<Label>(&mark);
+      if (label == nullptr || label->upwards) continue;
+      const double width = text_width(label->text, label->size);
+      const double left = label->at.x - (label->anchor == Anchor::kLeft     ? 0.0
+                                         : label->anchor == Anchor::kMiddle ? 0.5 * width
+                                                                            : width);
+      EXPECT_GE(left, -0.5) << name << ": " << label->text;
+      EXPECT_LE(left + width, drawing.width + 0.5) << name << ": " << label->text;
+    }
+  }
+}
+
+TEST(Figures, HaveNumbersInTheLegend) {
+  const CircleRuns circles;
+  const std::string svg = svg_text(figure(FigureKind::kError, circles.both(), {}));
+  EXPECT_NE(svg.find(">RMSE [m]</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">" + short_number(circles.far_errors.ate_m->rmse) + "</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">" + std::to_string(circles.far_errors.pairs) + "</text>"), std::string::npos);
+  EXPECT_EQ(svg.find("ground truth"), std::string::npos);  // it has no error
+}
+
+TEST(Figures, NameTheirAxes) {
+  const CircleRuns circles;
+  const auto has = [&](FigureKind kind, const char* text) {
+    return svg_text(figure(kind, circles.both(), {})).find(std::string(">") + text + "</text>") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(has(FigureKind::kAxes, "z [m]"));
+  EXPECT_TRUE(has(FigureKind::kRotation, "yaw [deg]"));
+  EXPECT_TRUE(has(FigureKind::kError, "distance traveled [m]"));
+  EXPECT_TRUE(has(FigureKind::kRpe, "length of the segments [m]"));
+  EXPECT_TRUE(has(FigureKind::kBox, "position error [m]"));
+  EXPECT_TRUE(has(FigureKind::kCdf, "fraction of poses"));
+  EXPECT_TRUE(has(FigureKind::kSpeed, "rotation rate [deg/s]"));
+}
+
+TEST(Figures, RefuseRotationsThatCannotBeCompared) {
+  CircleRuns circles;
+  for (StampedPose& pose : circles.near.poses) pose.T_w_f.q.setIdentity();
+  circles.near_errors = eval::evaluate("strict:se3", {circles.gt, circles.near, circles.options});
+  expect_input_error([&] { static_cast<void>(figure(FigureKind::kRotation, circles.one(), {})); },
+                     {"--figure rotation"});
+  EXPECT_EQ(svg_text(figure(FigureKind::kError, circles.one(), {})).find("rotation error"),
+            std::string::npos);
+}
+
+TEST(PlanMap, PointsToTheNorthOfAReceiver) {
+  CircleRuns circles;
+  EXPECT_EQ(svg_text(plan_map(circles.both(), {})).find(">N<"), std::string::npos);
+  circles.gt.frame = eval::kGnssFrame;
+  const std::string svg = svg_text(plan_map(circles.both(), {}));
+  EXPECT_NE(svg.find(">N<"), std::string::npos);
+  EXPECT_NE(svg.find(">north [m]<"), std::string::npos);
+  EXPECT_NE(svg.find(">1 m<"), std::string::npos);  // the scale bar of a circle of 4 m
+}
+
+}  // namespace
+}  // namespace stillpoint::report
