@@ -92,6 +92,7 @@ inline constexpr const char* kSysfsRootHelp =
 [[nodiscard]] Command diagnose_command();        ///< `stillpoint diagnose`: what limits a recording
 [[nodiscard]] Command eval_command();            ///< `stillpoint eval`: score trajectory files
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: result files by scene
+[[nodiscard]] Command trajectory_command();      ///< `stillpoint trajectory`: convert and change files
 [[nodiscard]] Command bench_command();           ///< `stillpoint bench`: execute a benchmark plan
 [[nodiscard]] Command worker_command();          ///< `stillpoint worker`: execute tasks of a plan
 [[nodiscard]] Command systems_command();         ///< `stillpoint systems`: describe and try other systems

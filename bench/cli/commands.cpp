@@ -9,7 +9,7 @@ std::vector<Command> all_commands() {
           profile_command(),  report_command(),    dashboard_command(), regressions_command(),
           serve_command(),    reproduce_command(), detect_command(),    config_command(),
           data_command(),     device_command(),    calibrate_command(), systems_command(),
-          diagnose_command(), history_command(),   bisect_command()};
+          diagnose_command(), history_command(),   bisect_command(),    trajectory_command()};
 }
 
 }  // namespace stillpoint::bench

@@ -126,9 +126,10 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, s
 
 /// What --plot and --per-pose must not overwrite.
 OutputRules output_rules(const EvalArguments& arguments) {
-  OutputRules rules{.inputs = {arguments.files.ground_truth, arguments.files.times, arguments.files.covariance},
-                    .force = arguments.force,
-                    .beginning = report::per_pose_header()};
+  OutputRules rules{
+      .inputs = {arguments.files.ground_truth, arguments.files.times, arguments.files.covariance},
+      .force = arguments.force,
+      .beginning = report::per_pose_header()};
   rules.inputs.insert(rules.inputs.end(), arguments.files.estimates.begin(), arguments.files.estimates.end());
   return rules;
 }

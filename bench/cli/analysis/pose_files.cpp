@@ -36,8 +36,7 @@ PoseFile load(const PoseFilePaths& paths, const std::string& path, FileRole role
   eval::TrajectorySource source{.path = path, .times = paths.times, .sequence = paths.sequence};
   source.format = format_of(paths, role);
   const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path);
-  return {.path = path,
-          .loaded = bag ? datasets::read_bag_trajectory(*bag) : eval::read_trajectory(source)};
+  return {.path = path, .loaded = bag ? datasets::read_bag_trajectory(*bag) : eval::read_trajectory(source)};
 }
 
 /// Whether the rows of a file have columns after the pose: most have none, and are not read twice.
