@@ -16,6 +16,7 @@ namespace stillpoint::datasets {
 /// How to open a folder; empty fields are detected automatically.
 struct OpenOptions {
   std::string format;               ///< one of `sequence_format_names`
+  std::string id;                   ///< identity of the content if the caller knows it
   std::filesystem::path rig_file;   ///< a rig.toml that overrides the calibration of the format
   std::vector<std::string> topics;  ///< of a bag: "ROLE=TOPIC", see `select_topics`
   bool raw_depth = false;           ///< do not register depth images of another camera; without a frame cache

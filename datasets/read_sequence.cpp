@@ -199,6 +199,7 @@ SequenceContent read_sequence(const std::filesystem::path& folder, const OpenOpt
       options.topics.empty() ? format.read(root, faults) : read_bag_sequence(root, options.topics, faults));
   require_utf8("sequence name", content.info.name);
   content.info.format = format.name;
+  content.info.id = options.id;
   content.info.detections = read_optional_boxes(companion_file(root, "detections.txt"), faults);
   content.info.true_boxes = read_optional_boxes(companion_file(root, "true_boxes.txt"), faults);
   override_rig(content, options.rig_file);

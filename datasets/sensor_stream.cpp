@@ -154,6 +154,7 @@ class PingPongStream final : public SensorStream {
     info_ = {.name = source.name + "_ping_pong",
              .folder = source.folder,
              .format = source.format,
+             .id = source.id,
              .rig = source.rig,
              .frame_times = {},
              .imu = {},

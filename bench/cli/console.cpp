@@ -14,6 +14,7 @@ namespace stillpoint::bench {
 namespace {
 
 constexpr std::chrono::milliseconds kRedrawInterval{100};
+constexpr std::chrono::seconds kLineInterval{10};  // without a terminal
 constexpr const char* kClearLine = "\r\033[K";
 
 // A global, as a signal handler has no other state. The only one of the program.
@@ -57,7 +58,8 @@ ProgressLine::ProgressLine(std::string label, std::size_t total, std::string uni
       total_(total),
       unit_(std::move(unit)),
       visible_(isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()) {}
+      start_(std::chrono::steady_clock::now()),
+      drawn_(start_) {}
 
 ProgressLine::~ProgressLine() { clear(); }
 
@@ -65,13 +67,16 @@ void ProgressLine::clear() const {
   if (visible_) fmt::print(stderr, "{}", kClearLine);
 }
 
-void ProgressLine::draw() const {
-  if (!visible_) return;
+std::string ProgressLine::text() const {
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double rate = elapsed_s > 0.0 ? static_cast<double>(done_) / elapsed_s : 0.0;
   const std::string remaining = rate > 0.0 ? duration_text(static_cast<double>(total_ - done_) / rate) : "?";
-  fmt::print(stderr, "{}{}: {} of {} {}, {:.3g}/s, {} left", kClearLine, label_, done_, total_, unit_, rate,
-             remaining);
+  return fmt::format("{}: {} of {} {}, {:.3g}/s, {} left", label_, done_, total_, unit_, rate, remaining);
+}
+
+void ProgressLine::draw() const {
+  if (!visible_) return;
+  fmt::print(stderr, "{}{}", kClearLine, text());
   std::fflush(stderr);
 }
 
@@ -83,8 +88,9 @@ void ProgressLine::update(std::size_t done, std::string label) {
 void ProgressLine::update(std::size_t done) {
   done_ = done;
   const auto now = std::chrono::steady_clock::now();
-  if (now - drawn_ < kRedrawInterval) return;
+  if (now - drawn_ < (visible_ ? std::chrono::nanoseconds(kRedrawInterval) : kLineInterval)) return;
   drawn_ = now;
+  if (!visible_) fmt::print(stderr, "{}\n", text());
   draw();
 }
 

@@ -21,7 +21,8 @@ void block_interrupts();
 /// Waits for SIGINT or SIGTERM, which must be blocked (`block_interrupts`).
 void wait_for_interrupt();
 
-/// Progress line on stderr with rate and estimated remaining time; no output if stderr is not a terminal.
+/// Progress line on stderr with rate and estimated remaining time. If stderr is not a terminal, a new line
+/// every 10 s.
 class ProgressLine {
  public:
   /// @param unit of the counts, e.g. "frames"
@@ -31,16 +32,18 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Redraws at most 10 times per second.
+  /// Redraws at most 10 times per second on a terminal.
   void update(std::size_t done);
   /// The same with another label.
   void update(std::size_t done, std::string label);
 
-  /// Clears the line, so that other output can be printed; `draw` restores it.
+  /// Clears the line of a terminal, so that other output can be printed; `draw` restores it.
   void clear() const;
   void draw() const;
 
  private:
+  [[nodiscard]] std::string text() const;
+
   std::string label_;
   std::size_t total_;
   std::string unit_;

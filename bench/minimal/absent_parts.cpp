@@ -21,7 +21,7 @@ std::string bench::resolve_sequence(const std::string& given) {
 
 std::unique_ptr<datasets::SensorStream> bench::find_sequence(const std::string& name,
                                                              const datasets::OpenOptions& options,
-                                                             const synth::RenderControl&) {
+                                                             const synth::RenderControl&, const PresetPart&) {
   return datasets::open_sequence(name, options);
 }
 

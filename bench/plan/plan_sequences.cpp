@@ -229,7 +229,7 @@ PlanSequence rendered_sequence(const BenchPlan& plan, const std::string& preset,
   if (!axis.key.empty())
     request = with_number(request, axis.key.substr(kSynthPrefix.size()), axis.values.front());
   return {.name = preset,
-          .id = "synth-" + synth::request_key(request),
+          .id = synth::sequence_id(request),
           .rendering = request,
           .folder = {},
           .unavailable_reason = "",

@@ -89,7 +89,7 @@ bool has_set_at(const std::vector<DetectionSet>& sets, Timestamp t, double toler
 
 void require_recorded_boxes(const OdometryConfig& config, const datasets::SequenceInfo& info) {
   if (used_detector(config) != DetectorKind::kRecorded) return;
-  require_recorded_boxes(config, info.folder);
+  if (info.detections.empty()) require_recorded_boxes(config, info.folder);
   const bool any = std::any_of(info.frame_times.begin(), info.frame_times.end(), [&](Timestamp t) {
     return has_set_at(info.detections, t, kMaxDetectionOffset_s);
   });

@@ -2,6 +2,8 @@
 #include "bench/run/sequence_source.h"
 
 #include <algorithm>
+#include <mutex>
+#include <vector>
 
 #include "bench/config/spelling.h"
 #include "core/base/error.h"
@@ -9,34 +11,109 @@
 #include "datasets/read_sequence.h"
 
 namespace stillpoint::bench {
+namespace {
 
-std::filesystem::path rendered_sequence(const synth::SynthRequest& request, synth::RenderControl control,
-                                        const std::optional<datasets::FrameCacheOptions>& frame_cache) {
+namespace fs = std::filesystem;
+
+/// A sequence of the cache that is not complete: `load_frame` renders what is missing.
+class RenderedStream final : public datasets::SensorStream {
+ public:
+  RenderedStream(const synth::SynthRequest& request, const fs::path& folder,
+                 const datasets::OpenOptions& options)
+      : rendering_(request, folder),
+        stream_(datasets::open_sequence(folder, options)),
+        info_(stream_->info()),
+        has_boxes_(info_.frame_times.size()) {
+    STILLPOINT_CHECK(rendering_.frame_count() == info_.frame_times.size());
+    std::vector<DetectionSet> sets;
+    for (const Timestamp t : info_.frame_times)
+      sets.push_back({.t = t, .state = DetectionState::kNone, .detections = {}});
+    info_.detections = sets;
+    info_.true_boxes = std::move(sets);
+  }
+
+  /// Renders the first `count` frames. @return false if stopped
+  [[nodiscard]] bool render(std::size_t count, const synth::RenderControl& control) {
+    if (!synth::render_frames(rendering_, count, control)) return false;
+    for (std::size_t i = 0; i < count; ++i) set_boxes(i);
+    return true;
+  }
+
+  [[nodiscard]] const datasets::SequenceInfo& info() const override { return info_; }
+  [[nodiscard]] Frame load_frame(std::size_t index) const override {
+    rendering_.render_until(index);
+    set_boxes(index);
+    return stream_->load_frame(index);
+  }
+  [[nodiscard]] bool frames_are_cached() const override { return stream_->frames_are_cached(); }
+  [[nodiscard]] std::optional<datasets::MotionLabels> load_labels(std::size_t index) const override {
+    return stream_->load_labels(index);
+  }
+
+ private:
+  /// Sets the boxes of a frame when it is loaded for the first time. The times of the sets are not changed,
+  /// so that the sets of earlier frames can be searched meanwhile.
+  void set_boxes(std::size_t index) const {
+    const std::scoped_lock lock(mutex_);
+    if (has_boxes_[index]) return;
+    synth::FrameBoxes boxes = rendering_.boxes(index);
+    const auto set = [](DetectionSet& to, DetectionSet& from) {
+      to.state = from.state;
+      to.detections = std::move(from.detections);
+    };
+    set(info_.detections[index], boxes.detections);
+    set(info_.true_boxes[index], boxes.truth);
+    has_boxes_[index] = true;
+  }
+
+  mutable synth::SequenceRendering rendering_;
+  std::unique_ptr<datasets::SensorStream> stream_;
+  mutable std::mutex mutex_;
+  mutable datasets::SequenceInfo info_;
+  mutable std::vector<bool> has_boxes_;
+};
+
+}  // namespace
+
+fs::path rendered_sequence(const synth::SynthRequest& request, synth::RenderControl control,
+                           const std::optional<datasets::FrameCacheOptions>& frame_cache) {
   if (!frame_cache) return synth::cached_sequence(request, control);
   datasets::FrameCacheFill fill(*frame_cache, request.preset + "_" + std::to_string(request.seed));
   control.on_images = [&fill](std::size_t index, const cv::Mat& color, const cv::Mat& depth) {
     fill.add(index, color, depth);
   };
-  std::filesystem::path folder = synth::cached_sequence(request, control);
-  if (!folder.empty() && fill.has_frames()) {
-    FaultLog strict;
-    fill.finish(datasets::read_sequence(folder, {}, strict));
-  }
+  fs::path folder = synth::cached_sequence(request, control);
+  if (folder.empty() || fill.frames() == 0) return folder;
+  FaultLog strict;
+  const datasets::SequenceContent content = datasets::read_sequence(folder, {}, strict);
+  // Otherwise an earlier rendering was continued, and the first run decodes the images.
+  if (fill.frames() == content.frame_files.size()) fill.finish(content);
   return folder;
 }
 
 std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
                                                       const datasets::OpenOptions& options,
-                                                      const synth::RenderControl& control) {
+                                                      const synth::RenderControl& control,
+                                                      const PresetPart& part) {
   if (datasets::is_sequence_path(name)) return datasets::open_sequence(name, options);
   const std::vector<std::string> presets = synth::preset_names();
   if (std::find(presets.begin(), presets.end(), name) == presets.end()) {
     throw InputError("sequence \"" + name + "\"",
                      "is neither a folder nor a preset" + suggestion(name, presets));
   }
-  const std::filesystem::path folder =
-      rendered_sequence(synth::preset_request(name), control, options.frame_cache);
-  return folder.empty() ? nullptr : datasets::open_sequence(folder, options);
+  const synth::SynthRequest request = synth::preset_request(name);
+  const fs::path folder = synth::sequence_cache_folder(request);
+  datasets::OpenOptions identified = options;
+  identified.id = synth::sequence_id(request);
+  if (!synth::is_complete_sequence(folder)) {
+    if (part.when_loaded || part.frames) {
+      auto stream = std::make_unique<RenderedStream>(request, folder, identified);
+      const std::size_t count = part.when_loaded ? 0 : part.frames(stream->info().frame_times);
+      return stream->render(count, control) ? std::move(stream) : nullptr;
+    }
+    if (rendered_sequence(request, control, options.frame_cache).empty()) return nullptr;
+  }
+  return datasets::open_sequence(folder, identified);
 }
 
 }  // namespace stillpoint::bench

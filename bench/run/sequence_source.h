@@ -3,11 +3,15 @@
 /// cache and the frame cache.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "core/base/timestamp.h"
 #include "datasets/cache/frame_cache_options.h"
 #include "datasets/open_sequence.h"
 #include "datasets/synthetic/sequence/render_sequence.h"
@@ -22,13 +26,26 @@ namespace stillpoint::bench {
     const synth::SynthRequest& request, synth::RenderControl control,
     const std::optional<datasets::FrameCacheOptions>& frame_cache);
 
-/// Opens a folder, or a preset with its default settings; a preset is rendered unless it is in the cache.
+/// Which frames of a preset are rendered, and when.
+struct PresetPart {
+  /// Number of frames, from the first one on, that will be loaded; empty: all.
+  std::function<std::size_t(std::span<const Timestamp> frame_times)> frames = {};
+  /// Render each frame when it is loaded. Its boxes are in `SensorStream::info` from then on; until then its
+  /// sets have the state `kNone`. Only for frames that are loaded in order, from a stream of which no part is
+  /// copied. Otherwise the part is rendered before the stream is returned.
+  bool when_loaded = false;
+};
+
+/// Opens a folder, or a preset with its default settings; frames of a preset that are not in the cache are
+/// rendered, and kept there.
 /// @param name    path of a sequence folder, or a preset, e.g. "walking_xyz"
-/// @param control of the rendering, if one is necessary
+/// @param control of the rendering before the stream is returned, if that is necessary
+/// @param part    of a preset
 /// @return null if the rendering was stopped
 /// @throws InputError if the name is neither, and errors of opening and rendering
 [[nodiscard]] std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
                                                                     const datasets::OpenOptions& options,
-                                                                    const synth::RenderControl& control);
+                                                                    const synth::RenderControl& control,
+                                                                    const PresetPart& part = {});
 
 }  // namespace stillpoint::bench

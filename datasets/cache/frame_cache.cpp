@@ -20,8 +20,14 @@ namespace fs = std::filesystem;
 constexpr int kMaxDigestedFiles = 16;
 
 std::size_t frames_to_cache(const SequenceContent& content, const FrameCacheOptions& options) {
-  const std::size_t all = content.frame_files.size();
-  return options.max_frames == 0 ? all : std::min(all, options.max_frames);
+  const std::vector<Timestamp>& times = content.info.frame_times;
+  std::size_t frames = content.frame_files.size();
+  if (options.max_frames > 0) frames = std::min(frames, options.max_frames);
+  if (options.max_seconds > 0.0 && frames > 0) {
+    const auto end = std::ranges::lower_bound(times, after(times.front(), options.max_seconds));
+    frames = std::min(frames, static_cast<std::size_t>(end - times.begin()));
+  }
+  return frames;
 }
 
 bool has_expected_images(const Frame& frame, const Camera& camera) {
@@ -316,9 +322,9 @@ void FrameCacheFill::write(std::size_t index, cv::Size size, const PackedFrame& 
   }
 }
 
-bool FrameCacheFill::has_frames() const {
+std::size_t FrameCacheFill::frames() const {
   const std::scoped_lock lock(mutex_);
-  return writer_ != nullptr;
+  return writer_ ? writer_->frames() : 0;
 }
 
 void FrameCacheFill::finish(const SequenceContent& content) {

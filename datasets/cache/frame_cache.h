@@ -93,8 +93,8 @@ class FrameCacheFill {
   /// @param depth CV_16UC1, registered
   void add(std::size_t index, const cv::Mat& color, const cv::Mat& depth);
 
-  /// Whether frames were added and written.
-  [[nodiscard]] bool has_frames() const;
+  /// Number of frames that were written.
+  [[nodiscard]] std::size_t frames() const;
 
   /// Completes the file with the digests of the image files, which are read but not decoded.
   /// @param content the sequence as it was read back

@@ -37,8 +37,11 @@ Detection parse_detection(const eval::TextRow& row) {
 }  // namespace
 
 std::vector<DetectionSet> read_detections(const std::filesystem::path& file, FaultLog& faults) {
-  const std::string text = eval::read_text_file(file);
-  const std::string name = file.string();
+  return parse_detections(eval::read_text_file(file), file.string(), faults);
+}
+
+std::vector<DetectionSet> parse_detections(const std::string& text, const std::string& name,
+                                           FaultLog& faults) {
   std::vector<DetectionSet> sets;
   eval::for_each_row(text, name, faults, [&](const eval::TextRow& row) {
     const Timestamp t = row.time(0, eval::TimeUnit::kSeconds);

@@ -21,6 +21,10 @@ namespace stillpoint::datasets {
 /// range
 [[nodiscard]] std::vector<DetectionSet> read_detections(const std::filesystem::path& file, FaultLog& faults);
 
+/// `read_detections` of the text of a file. @param name of the file, for errors
+[[nodiscard]] std::vector<DetectionSet> parse_detections(const std::string& text, const std::string& name,
+                                                         FaultLog& faults);
+
 /// First line of `detections_text`.
 [[nodiscard]] std::string detections_header();
 

@@ -3,6 +3,7 @@
 
 #include <libdeflate.h>
 #include <turbojpeg.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -333,9 +334,9 @@ Bytes jpeg_bytes(const cv::Mat& image, int quality, const std::string& place) {
   return bytes;
 }
 
-/// Writes to a temporary name, then renames, so that no partial file remains.
+/// Writes to a temporary name of this process, then renames, so that no partial file remains.
 void write_atomically(const std::filesystem::path& file, const Bytes& bytes) {
-  const std::filesystem::path unfinished = file.string() + ".part";
+  const std::filesystem::path unfinished = file.string() + "." + std::to_string(::getpid()) + ".part";
   std::ofstream out(unfinished, std::ios::binary);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   out.close();

@@ -33,6 +33,7 @@ struct SequenceInfo {
   std::string name;  ///< the folder's name
   std::filesystem::path folder;
   std::string format;  ///< name of its format, see datasets/formats/formats.h
+  std::string id;      ///< identity of the content if the caller of `open_sequence` knew it; else empty
   Rig rig;
   std::optional<DepthCamera> depth_camera;  ///< of the depth images; absent: they are registered
   std::vector<Timestamp> frame_times;       ///< one per frame, strictly increasing

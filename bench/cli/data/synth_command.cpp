@@ -3,8 +3,10 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "bench/cli/command_line.h"
 #include "bench/cli/console.h"
@@ -78,20 +80,29 @@ synth::SynthRequest request_of(const SynthArguments& arguments) {
 int render(const SynthArguments& arguments) {
   const synth::SynthRequest request = request_of(arguments);
   install_interrupt_handlers();
-  const auto frames = static_cast<std::size_t>(request.seconds * request.frames_per_s);
-  ProgressLine line("rendering " + request.preset, frames, "frames");
-  const synth::RenderControl control{
-      .progress = [&](int done, int) { line.update(static_cast<std::size_t>(done)); },
-      .stop_requested = interrupt_requested,
-      .threads = arguments.threads};
+  std::optional<ProgressLine> line;
+  const synth::RenderControl control{.progress =
+                                         [&](int done, int total) {
+                                           if (!line)
+                                             line.emplace("rendering " + request.preset,
+                                                          static_cast<std::size_t>(total), "frames");
+                                           line->update(static_cast<std::size_t>(done));
+                                         },
+                                     .stop_requested = interrupt_requested,
+                                     .threads = arguments.threads};
   std::filesystem::path folder = arguments.out;
   if (arguments.out.empty()) {
     folder = synth::cached_sequence(request, control);
   } else if (!synth::render_sequence(request, folder, control)) {
     folder.clear();
   }
-  if (folder.empty())
-    throw InputError(request.preset, "rendering was interrupted; partial output was removed");
+  line.reset();  // removes the progress line
+  if (folder.empty()) {
+    spdlog::warn("{}: the rendering was interrupted; {}", request.preset,
+                 arguments.out.empty() ? "the cache keeps the rendered frames, and the same command continues"
+                                       : "its output was removed");
+    return kExitInterrupted;
+  }
   std::cout << folder.string() << '\n';
   return kExitOk;
 }

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -92,7 +93,7 @@ struct RunArguments {
   std::string out, format, rig, heartbeat, sequence_id, video, mcap, sysfs_root = "/";
   int max_frames = 0, every = 1, passes = 1, images = 0, gray_noise = 0;
   bool deterministic_counts = false, no_frame_cache = false, imu_rate = false, mcap_images = false;
-  double speed = 1.0, start_s = 0.0;
+  double speed = 1.0, start_s = 0.0, seconds = 0.0;
   MapOptions map;
 };
 
@@ -121,7 +122,6 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
                     .spec = {.config = load_config(request),
                              .mode = arguments.mode,
                              .speed = arguments.speed,
-                             .max_frames = static_cast<std::size_t>(arguments.max_frames),
                              .map = map,
                              .decode_color = !arguments.video.empty() || arguments.mcap_images,
                              .keep_spans = true,
@@ -146,7 +146,18 @@ void require_recording_options(const RunArguments& arguments, std::size_t runs,
   require_safe_output(arguments.mcap, {.inputs = inputs});
 }
 
-/// Sets the output folder of each run: --out for a single run, else a subfolder. Checks that it is writable.
+Playback playback_of(const RunArguments& arguments, const std::vector<datasets::SensorFault>& faults) {
+  return {.start_s = arguments.start_s,
+          .every = arguments.every,
+          .passes = arguments.passes,
+          .faults = faults,
+          .gray_noise = arguments.gray_noise,
+          .frames = static_cast<std::size_t>(arguments.max_frames),
+          .seconds = arguments.seconds};
+}
+
+/// Sets the number of frames and the output folder of each run: --out for a single run, else a subfolder.
+/// Checks that it is writable.
 std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const RunArguments& arguments,
                                         const datasets::SequenceInfo& info) {
   const fs::path root = arguments.out.empty() ? fs::path("build/runs") / info.name : fs::path(arguments.out);
@@ -154,6 +165,7 @@ std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const R
   const std::vector<fs::path> inputs = {info.folder, arguments.rig};
   require_recording_options(arguments, runs.size(), inputs);
   for (ConfiguredRun& run : runs) {
+    run.spec.max_frames = frames_to_play(info.frame_times, playback_of(arguments, run.faults));
     if (!run.video.empty() && runs.size() > 1) run.video /= folder_name(run.variant);
     run.folder = shared_root ? root / folder_name(run.variant) : root;
     require_safe_folder(run.folder, run_layout(), inputs);
@@ -190,10 +202,10 @@ DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& con
 /// Log, progress line, heartbeat, and the meters of the machine during a run.
 class RunWatch {
  public:
-  RunWatch(const datasets::SequenceInfo& info, const RunArguments& arguments, const std::string& variant)
+  RunWatch(const datasets::SequenceInfo& info, const RunArguments& arguments, const ConfiguredRun& run)
       : heartbeat_(arguments.heartbeat.empty() ? std::nullopt
                                                : std::make_optional<Heartbeat>(arguments.heartbeat)),
-        progress_(info.name + " " + variant, info.frame_times.size(), "frames"),
+        progress_(info.name + " " + run.variant, run.spec.max_frames, "frames"),
         monitor_(arguments.deterministic_counts ? "" : arguments.sysfs_root) {}
 
   void frame_done(const OdometryUpdate& update) {
@@ -217,11 +229,11 @@ class RunWatch {
   std::size_t resets_ = 0;
 };
 
-/// --sequence-id, or the checksum of the sequence.
+/// --sequence-id, the identity of a preset, or the checksum of the sequence.
 std::string id_of(const datasets::SequenceInfo& info, const RunArguments& arguments) {
   if (interrupt_requested()) return "";
-  return arguments.sequence_id.empty() ? remembered_checksum(info.folder, checksum_folder())
-                                       : arguments.sequence_id;
+  if (!arguments.sequence_id.empty()) return arguments.sequence_id;
+  return info.id.empty() ? remembered_checksum(info.folder, checksum_folder()) : info.id;
 }
 
 RunManifest manifest_of(const datasets::SequenceInfo& info, const RunArguments& arguments,
@@ -275,27 +287,34 @@ int exit_code(Outcome outcome) {
   return outcome == Outcome::kLost ? kExitFindings : kExitOk;
 }
 
-/// Opens the sequence; renders it first if necessary. @return null if interrupted
+/// Whether each frame is loaded once, in order, and without haste, so that it can be rendered then.
+bool loads_in_order(const RunArguments& arguments) {
+  return arguments.start_s == 0.0 && arguments.every == 1 && arguments.passes == 1 &&
+         arguments.faults.empty() && arguments.gray_noise == 0 && arguments.mode != "realtime" &&
+         !arguments.deterministic_counts;
+}
+
+/// Opens the sequence. A preset that is not in the cache is rendered while it is played, or before.
+/// @return null if interrupted
 std::unique_ptr<datasets::SensorStream> open(const RunArguments& arguments,
                                              const std::vector<ConfiguredRun>& runs) {
   // Instruction counts must not depend on earlier runs, the cache contains consecutive frames from frame 0
   // on, passes use all frames.
   const bool cached = !arguments.no_frame_cache && !arguments.deterministic_counts &&
                       arguments.start_s == 0.0 && arguments.every == 1;
-  const int frames = arguments.passes == 1 ? arguments.max_frames : 0;
+  auto frame_cache = logged_frame_cache(cached, arguments.passes == 1 ? arguments.max_frames : 0);
+  if (frame_cache && arguments.passes == 1) frame_cache->max_seconds = arguments.seconds;
+  const Playback playback = playback_of(arguments, runs.front().faults);
+  const auto frames = [&](std::span<const Timestamp> times) { return frames_to_load(times, playback); };
   auto stream =
       open_with_progress(resolve_sequence(arguments.sequence),
                          {.format = arguments.format,
                           .rig_file = arguments.rig,
                           .topics = arguments.topics,
                           .defer_color = std::ranges::none_of(runs, needs_color, &ConfiguredRun::spec),
-                          .frame_cache = logged_frame_cache(cached, frames)});
-  if (!stream) return nullptr;
-  return played(std::move(stream), {.start_s = arguments.start_s,
-                                    .every = arguments.every,
-                                    .passes = arguments.passes,
-                                    .faults = runs.front().faults,
-                                    .gray_noise = arguments.gray_noise});
+                          .frame_cache = frame_cache},
+                         {.frames = frames, .when_loaded = loads_in_order(arguments)});
+  return stream ? played(std::move(stream), playback) : nullptr;
 }
 
 RunControl control_of(RunWatch& watch, RunDumps& dumps) {
@@ -338,7 +357,7 @@ int run(const std::shared_ptr<const RunArguments>& shared) {
   for (const ConfiguredRun& configured : with_folders(runs, arguments, info)) {
     if (interrupt_requested()) return kExitInterrupted;
     RunDumps dumps(dump_request(arguments, configured), info, configured.spec.config.frontend);
-    std::optional<RunWatch> watch(std::in_place, info, arguments, configured.variant);
+    std::optional<RunWatch> watch(std::in_place, info, arguments, configured);
     const double start_s = process_age_s();
     OdometryRun executed = run_odometry(*stream, configured.spec, control_of(*watch, dumps));
     executed.device = watch->finish();
@@ -398,6 +417,7 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
        &arguments->every,
        {1, 1e6}},
       {"--max-frames", "Maximum number of played frames; 0 = all", &arguments->max_frames, {0, 1e9}},
+      {"--seconds", "Play the frames of this time; 0 = all [0 s]", &arguments->seconds, {0, 1e9}},
       {"--sysfs-root", kSysfsRootHelp, &arguments->sysfs_root},
       {"--no-frame-cache", "Decode all images again, and do not keep them", &arguments->no_frame_cache},
       {"--deterministic-counts", "One thread with a separate heap, for reproducible instruction counts",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/cli/run/sequence_playback.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -15,7 +16,8 @@
 namespace stillpoint::bench {
 
 std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& name,
-                                                           const datasets::OpenOptions& options) {
+                                                           const datasets::OpenOptions& options,
+                                                           const PresetPart& part) {
   std::unique_ptr<ProgressLine> progress;
   const auto on_rendered = [&](int done, int total) {
     if (!progress) {
@@ -24,7 +26,36 @@ std::unique_ptr<datasets::SensorStream> open_with_progress(const std::string& na
     }
     progress->update(static_cast<std::size_t>(done));
   };
-  return find_sequence(name, options, {.progress = on_rendered, .stop_requested = interrupt_requested});
+  return find_sequence(name, options, {.progress = on_rendered, .stop_requested = interrupt_requested}, part);
+}
+
+namespace {
+
+/// Index of the first frame that is not earlier than `seconds` after the frame `first`.
+std::size_t frame_at(std::span<const Timestamp> times, std::size_t first, double seconds) {
+  const auto found = std::ranges::lower_bound(times, after(times[first], seconds));
+  return static_cast<std::size_t>(found - times.begin());
+}
+
+}  // namespace
+
+std::size_t frames_to_load(std::span<const Timestamp> frame_times, const Playback& playback) {
+  if (frame_times.empty() || playback.passes > 1 || !playback.faults.empty()) return frame_times.size();
+  const std::size_t first = frame_at(frame_times, 0, playback.start_s);
+  if (first == frame_times.size()) return 0;  // `start_at` reports it
+  std::size_t end = frame_times.size();
+  if (playback.frames > 0)
+    end = std::min(end, first + (playback.frames - 1) * static_cast<std::size_t>(playback.every) + 1);
+  if (playback.seconds > 0.0) end = std::min(end, frame_at(frame_times, first, playback.seconds));
+  return end;
+}
+
+std::size_t frames_to_play(std::span<const Timestamp> frame_times, const Playback& playback) {
+  std::size_t frames = frame_times.size();
+  if (playback.frames > 0) frames = std::min(frames, playback.frames);
+  if (playback.seconds > 0.0 && frames > 0)
+    frames = std::min(frames, frame_at(frame_times, 0, playback.seconds));
+  return frames;
 }
 
 std::unique_ptr<datasets::SensorStream> played(std::unique_ptr<datasets::SensorStream> stream,

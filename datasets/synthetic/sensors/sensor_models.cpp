@@ -169,24 +169,6 @@ Detection false_detection(const cv::Size& image, RandomSequence& random) {
   return {"person", random.uniform(0.3, 0.5), {x, y, x + width - 1.0, y + height - 1.0}};
 }
 
-/// Markov chain of the miss state of each object.
-class MissChain {
- public:
-  explicit MissChain(const DetectorModel& model)
-      : start_probability_(model.miss_rate / (1.0 - model.miss_rate) / model.burst_frames),
-        stop_probability_(1.0 / model.burst_frames) {}
-
-  [[nodiscard]] bool misses(int object, RandomSequence& random) {
-    bool& missing = missing_[object];
-    if (random.chance(missing ? stop_probability_ : start_probability_)) missing = !missing;
-    return missing;
-  }
-
- private:
-  double start_probability_, stop_probability_;
-  std::map<int, bool> missing_;
-};
-
 }  // namespace
 
 std::vector<VisibleObject> visible_objects(const RenderedFrame& frame) {
@@ -210,34 +192,36 @@ std::vector<VisibleObject> visible_objects(const RenderedFrame& frame) {
   return objects;
 }
 
-std::vector<Detection> true_detections(std::span<const VisibleObject> visible,
-                                       std::span<const Actor> actors) {
+std::vector<Detection> true_detections(std::span<const VisibleObject> visible, const ObjectClasses& classes) {
   std::vector<Detection> boxes;
   for (const VisibleObject& one : visible) {
-    const auto actor =
-        std::find_if(actors.begin(), actors.end(), [&](const Actor& a) { return a.object == one.object; });
-    if (actor != actors.end()) boxes.push_back({actor->class_name, 1.0, one.box});
+    const auto found = classes.find(one.object);
+    if (found != classes.end()) boxes.push_back({found->second, 1.0, one.box});
   }
   return boxes;
 }
 
-std::vector<std::vector<Detection>> simulate_detector(std::span<const std::vector<VisibleObject>> frames,
-                                                      const DetectorModel& model, const cv::Size& image,
-                                                      std::uint64_t seed) {
-  RandomSequence random(random_key(seed, RandomStream::kDetector));
-  MissChain chain(model);
-  std::vector<std::vector<Detection>> reports;
-  for (const std::vector<VisibleObject>& visible : frames) {
-    std::vector<Detection>& report = reports.emplace_back();
-    for (const VisibleObject& one : visible) {
-      const bool detectable = one.object < datasets::kFirstUndetectableObject;
-      if (!detectable || one.box.y_max - one.box.y_min < model.min_height_px) continue;
-      if (chain.misses(one.object, random)) continue;
-      report.push_back({"person", random.uniform(0.5, 0.95), jittered(one.box, model, image, random)});
-    }
-    if (random.chance(model.false_positive_rate)) report.push_back(false_detection(image, random));
+SimulatedPersonDetector::SimulatedPersonDetector(const DetectorModel& model, const cv::Size& image,
+                                                 std::uint64_t seed)
+    : model_(model), image_(image), random_(random_key(seed, RandomStream::kDetector)) {}
+
+std::vector<Detection> SimulatedPersonDetector::detect(std::span<const VisibleObject> visible) {
+  std::vector<Detection> report;
+  for (const VisibleObject& one : visible) {
+    const bool detectable = one.object < datasets::kFirstUndetectableObject;
+    if (!detectable || one.box.y_max - one.box.y_min < model_.min_height_px) continue;
+    if (misses(one.object)) continue;
+    report.push_back({"person", random_.uniform(0.5, 0.95), jittered(one.box, model_, image_, random_)});
   }
-  return reports;
+  if (random_.chance(model_.false_positive_rate)) report.push_back(false_detection(image_, random_));
+  return report;
+}
+
+bool SimulatedPersonDetector::misses(int object) {
+  const double start_probability = model_.miss_rate / (1.0 - model_.miss_rate) / model_.burst_frames;
+  bool& missing = missing_[object];
+  if (random_.chance(missing ? 1.0 / model_.burst_frames : start_probability)) missing = !missing;
+  return missing;
 }
 
 }  // namespace stillpoint::synth

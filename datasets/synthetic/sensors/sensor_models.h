@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
@@ -13,6 +15,7 @@
 #include "core/geometry/camera.h"
 #include "core/types/detection.h"
 #include "datasets/synthetic/actors/actor.h"
+#include "datasets/synthetic/counter_random.h"
 #include "datasets/synthetic/render/frame_renderer.h"
 
 namespace stillpoint::synth {
@@ -99,14 +102,28 @@ struct VisibleObject {
 /// All objects with at least one pixel, ordered by instance number.
 [[nodiscard]] std::vector<VisibleObject> visible_objects(const RenderedFrame& frame);
 
-/// True boxes as detections of score 1 with the actors' class names.
-[[nodiscard]] std::vector<Detection> true_detections(std::span<const VisibleObject> visible,
-                                                     std::span<const Actor> actors);
+/// Class name of each moving object by its instance number.
+using ObjectClasses = std::map<int, std::string>;
 
-/// Output of a simulated person detector over a whole sequence.
-/// @param frames visible objects of each frame
-[[nodiscard]] std::vector<std::vector<Detection>> simulate_detector(
-    std::span<const std::vector<VisibleObject>> frames, const DetectorModel& model, const cv::Size& image,
-    std::uint64_t seed);
+/// True boxes as detections of score 1.
+[[nodiscard]] std::vector<Detection> true_detections(std::span<const VisibleObject> visible,
+                                                     const ObjectClasses& classes);
+
+/// Output of a person detector with the errors of a model, frame by frame.
+class SimulatedPersonDetector {
+ public:
+  SimulatedPersonDetector(const DetectorModel& model, const cv::Size& image, std::uint64_t seed);
+
+  /// @param visible objects of the next frame
+  [[nodiscard]] std::vector<Detection> detect(std::span<const VisibleObject> visible);
+
+ private:
+  [[nodiscard]] bool misses(int object);
+
+  DetectorModel model_;
+  cv::Size image_;
+  RandomSequence random_;
+  std::map<int, bool> missing_;  ///< state of each object in the Markov chain
+};
 
 }  // namespace stillpoint::synth

@@ -290,4 +290,6 @@ std::string request_key(const SynthRequest& request) {
   return fmt::format("{:016x}", hash);
 }
 
+std::string sequence_id(const SynthRequest& request) { return "synth-" + request_key(request); }
+
 }  // namespace stillpoint::synth

@@ -189,4 +189,7 @@ inline constexpr int kRendererVersion = 7;
 /// @throws InputError if one of those files cannot be read
 [[nodiscard]] std::string request_key(const SynthRequest& request);
 
+/// Identity of the sequence in records of runs: "synth-" and the key. @throws InputError as `request_key`
+[[nodiscard]] std::string sequence_id(const SynthRequest& request);
+
 }  // namespace stillpoint::synth

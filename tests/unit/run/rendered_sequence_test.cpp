@@ -59,7 +59,17 @@ TEST_F(RenderedSequence, ASequenceThatIsThereIsNotWrittenAgain) {
   EXPECT_TRUE(datasets::list_cache(options().folder).empty());
 }
 
-TEST_F(RenderedSequence, AStoppedRenderingLeavesNothing) {
+TEST_F(RenderedSequence, ARenderingThatIsContinuedIsDecodedByItsFirstRun) {
+  int rendered = 0;
+  const synth::RenderControl one{.progress = [&](int, int) { ++rendered; },
+                                 .stop_requested = [&] { return rendered == 1; },
+                                 .threads = 1};
+  EXPECT_TRUE(rendered_sequence(small_request(), one, options()).empty());
+  const fs::path folder = rendered_sequence(small_request(), {}, options());
+  EXPECT_FALSE(datasets::open_sequence(folder, {.frame_cache = options()})->frames_are_cached());
+}
+
+TEST_F(RenderedSequence, AStoppedRenderingLeavesNoFrameCache) {
   EXPECT_TRUE(rendered_sequence(small_request(), {.stop_requested = [] { return true; }}, options()).empty());
   EXPECT_EQ(datasets::cache_bytes(options().folder), 0U);
 }

@@ -29,10 +29,18 @@ std::vector<std::vector<VisibleObject>> one_person(int frames, int object) {
   return {static_cast<std::size_t>(frames), {{object, 5000, {100.0, 50.0, 180.0, 250.0}}}};
 }
 
+std::vector<std::vector<Detection>> simulate_detector(const std::vector<std::vector<VisibleObject>>& frames,
+                                                      const DetectorModel& model) {
+  SimulatedPersonDetector detector(model, {640, 480}, 9);
+  std::vector<std::vector<Detection>> reports;
+  for (const std::vector<VisibleObject>& visible : frames) reports.push_back(detector.detect(visible));
+  return reports;
+}
+
 TEST(SimulatedDetector, MissesTheConfiguredFractionInBursts) {
   const DetectorModel model{.miss_rate = 0.15, .burst_frames = 4.0, .false_positive_rate = 0.0};
   constexpr int kFrames = 40000;
-  const auto reports = simulate_detector(one_person(kFrames, 1), model, {640, 480}, 9);
+  const auto reports = simulate_detector(one_person(kFrames, 1), model);
   int missed = 0, bursts = 0;
   bool before = false;
   for (const auto& report : reports) {
@@ -47,7 +55,7 @@ TEST(SimulatedDetector, MissesTheConfiguredFractionInBursts) {
 
 TEST(SimulatedDetector, EdgeJitterScalesWithTheBoxSize) {
   const DetectorModel model{.miss_rate = 0.0, .jitter_ratio = 0.02, .false_positive_rate = 0.0};
-  const auto reports = simulate_detector(one_person(5000, 1), model, {640, 480}, 9);
+  const auto reports = simulate_detector(one_person(5000, 1), model);
   double squares = 0.0;
   for (const auto& report : reports) squares += std::pow(report.front().box.y_min - 50.0, 2);
   EXPECT_NEAR(std::sqrt(squares / 5000.0), 0.02 * 200.0, 0.15);  // 1 % standard error
@@ -55,8 +63,7 @@ TEST(SimulatedDetector, EdgeJitterScalesWithTheBoxSize) {
 
 TEST(SimulatedDetector, NeverReportsUnknownClasses) {
   const DetectorModel model{.miss_rate = 0.0, .false_positive_rate = 0.0};
-  for (const auto& report :
-       simulate_detector(one_person(50, datasets::kFirstUndetectableObject), model, {640, 480}, 9)) {
+  for (const auto& report : simulate_detector(one_person(50, datasets::kFirstUndetectableObject), model)) {
     EXPECT_TRUE(report.empty());
   }
 }
@@ -65,7 +72,7 @@ TEST(SimulatedDetector, ReportsFalsePositivesAtTheConfiguredRate) {
   const DetectorModel model{.false_positive_rate = 0.1};
   const std::vector<std::vector<VisibleObject>> empty(10000);
   std::size_t boxes = 0;
-  for (const auto& report : simulate_detector(empty, model, {640, 480}, 9)) boxes += report.size();
+  for (const auto& report : simulate_detector(empty, model)) boxes += report.size();
   EXPECT_NEAR(static_cast<double>(boxes), 1000.0, 100.0);  // binomial: sigma 30
 }
 

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
-#include <map>
 #include <opencv2/core.hpp>
 #include <sstream>
 #include <string>
@@ -14,6 +12,7 @@
 #include "core/base/error.h"
 #include "datasets/io/image_io.h"
 #include "datasets/open_sequence.h"
+#include "tests/support/folder_contents.h"
 
 namespace stillpoint::synth {
 namespace {
@@ -36,21 +35,11 @@ fs::path fresh_folder(const std::string& name) {
   return folder;
 }
 
-std::map<std::string, std::string> contents(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    std::ifstream in(entry.path(), std::ios::binary);
-    files[fs::relative(entry.path(), folder).string()] = {std::istreambuf_iterator<char>(in), {}};
-  }
-  return files;
-}
-
 TEST(RenderSequence, OutputIsIdenticalOnOneAndTwoThreads) {
   const fs::path one = fresh_folder("one_thread"), two = fresh_folder("two_threads");
   ASSERT_TRUE(render_sequence(small_request("walking_rpy"), one, {.threads = 1}));
   ASSERT_TRUE(render_sequence(small_request("walking_rpy"), two, {.threads = 2}));
-  EXPECT_EQ(contents(one), contents(two));
+  EXPECT_EQ(folder_contents(one), folder_contents(two));
 }
 
 TEST(RenderSequence, DifferentSeedsGiveDifferentImages) {
@@ -60,7 +49,7 @@ TEST(RenderSequence, DifferentSeedsGiveDifferentImages) {
   request.seed = 2;
   ASSERT_TRUE(render_sequence(request, two));
   const std::string first = "color/1700000000.050000.png";
-  EXPECT_NE(contents(one).at(first), contents(two).at(first));
+  EXPECT_NE(folder_contents(one).at(first), folder_contents(two).at(first));
 }
 
 TEST(RenderSequence, OpenLorisFoldersCanBeOpened) {
