@@ -7,8 +7,6 @@
 namespace stillpoint::synth {
 namespace {
 
-constexpr int kQuantiles = 4096;
-
 /// Upper-tail probability of the standard normal distribution.
 double normal_tail(double x) { return 0.5 * std::erfc(x / std::numbers::sqrt2); }
 
@@ -22,26 +20,28 @@ double normal_quantile(double probability) {
   return 0.5 * (low + high);
 }
 
-std::array<float, kQuantiles> make_quantiles() {
-  std::array<float, kQuantiles> table{};
+std::array<float, kNormalQuantiles> make_quantiles() {
+  std::array<float, kNormalQuantiles> table{};
   double sum_of_squares = 0.0;
-  for (int i = 0; i < kQuantiles / 2; ++i) {
-    const double value = normal_quantile((i + 0.5) / kQuantiles);
+  for (int i = 0; i < kNormalQuantiles / 2; ++i) {
+    const double value = normal_quantile((i + 0.5) / kNormalQuantiles);
     table[static_cast<std::size_t>(i)] = static_cast<float>(-value);
-    table[static_cast<std::size_t>(kQuantiles - 1 - i)] = static_cast<float>(value);
+    table[static_cast<std::size_t>(kNormalQuantiles - 1 - i)] = static_cast<float>(value);
     sum_of_squares += 2.0 * value * value;
   }
-  const auto unit_variance = static_cast<float>(std::sqrt(kQuantiles / sum_of_squares));
+  const auto unit_variance = static_cast<float>(std::sqrt(kNormalQuantiles / sum_of_squares));
   for (float& value : table) value *= unit_variance;
   return table;
 }
 
 }  // namespace
 
-float normal_from_bits(std::uint64_t bits) {
-  static const std::array<float, kQuantiles> quantiles = make_quantiles();
-  return quantiles[bits & (kQuantiles - 1)];
+const std::array<float, kNormalQuantiles>& normal_quantiles() {
+  static const std::array<float, kNormalQuantiles> quantiles = make_quantiles();
+  return quantiles;
 }
+
+float normal_from_bits(std::uint64_t bits) { return normal_quantiles()[bits & (kNormalQuantiles - 1)]; }
 
 double RandomSequence::normal() {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));

@@ -31,6 +31,12 @@ enum class RandomStream : std::uint64_t {
   return mix_bits(mix_bits(seed ^ (static_cast<std::uint64_t>(stream) << 56)) + index);
 }
 
+/// Number of equal-probability cells of the standard normal distribution.
+inline constexpr int kNormalQuantiles = 4096;
+
+/// The quantiles at the centers of the cells, scaled to unit variance.
+[[nodiscard]] const std::array<float, kNormalQuantiles>& normal_quantiles();
+
 /// Standard normal deviate from the low 12 bits: the quantile at the center of one of 4096 equal-probability
 /// cells. The tails are cut at 3.7 sigma.
 [[nodiscard]] float normal_from_bits(std::uint64_t bits);

@@ -51,18 +51,27 @@ void add_noise(cv::Mat& canvas, double amplitude, const cv::Size& cell, RandomSe
   const int columns = std::max(1, canvas.cols / cell.width), rows = std::max(1, canvas.rows / cell.height);
   std::vector<double> lattice(static_cast<std::size_t>(columns * rows));
   for (double& node : lattice) node = random.uniform(-amplitude, amplitude);
-  const auto node = [&](int row, int column) {
-    return lattice[static_cast<std::size_t>(std::ptrdiff_t{row % rows} * columns + column % columns)];
+  /// Nodes on both sides of a pixel, and the weight of the second.
+  struct Between {
+    int first, second;
+    double weight;
   };
+  const auto between = [](int pixel, int cell_px, int nodes) {
+    const double fraction = static_cast<double>(pixel % cell_px) / cell_px;
+    return Between{(pixel / cell_px) % nodes, (pixel / cell_px + 1) % nodes, smooth_step(fraction)};
+  };
+  std::vector<Between> across;
+  for (int x = 0; x < canvas.cols; ++x) across.push_back(between(x, cell.width, columns));
   for (int y = 0; y < canvas.rows; ++y) {
-    const int row = y / cell.height;
-    const double weight_y = smooth_step(static_cast<double>(y % cell.height) / cell.height);
+    const Between down = between(y, cell.height, rows);
+    const double* const upper = lattice.data() + std::ptrdiff_t{down.first} * columns;
+    const double* const lower = lattice.data() + std::ptrdiff_t{down.second} * columns;
+    auto* const pixels = canvas.ptr<cv::Vec3b>(y);
     for (int x = 0; x < canvas.cols; ++x) {
-      const int column = x / cell.width;
-      const double weight_x = smooth_step(static_cast<double>(x % cell.width) / cell.width);
-      const double top = std::lerp(node(row, column), node(row, column + 1), weight_x);
-      const double bottom = std::lerp(node(row + 1, column), node(row + 1, column + 1), weight_x);
-      add_to_pixel(canvas.at<cv::Vec3b>(y, x), std::lerp(top, bottom, weight_y));
+      const auto& [left, right, weight] = across[static_cast<std::size_t>(x)];
+      const double top = std::lerp(upper[left], upper[right], weight);
+      const double bottom = std::lerp(lower[left], lower[right], weight);
+      add_to_pixel(pixels[x], std::lerp(top, bottom, down.weight));
     }
   }
 }

@@ -14,11 +14,6 @@ std::uint32_t pack(const cv::Vec3b& rgb) {
   return static_cast<std::uint32_t>(rgb[0] | rgb[1] << 8 | rgb[2] << 16);
 }
 
-Float4 unpack(std::uint32_t texel) {
-  using Bytes = std::uint8_t __attribute__((vector_size(4)));
-  return __builtin_convertvector(std::bit_cast<Bytes>(texel), Float4);
-}
-
 cv::Vec3b average(const cv::Mat& rgb, int row, int column) {
   cv::Vec3i sum(2, 2, 2);  // rounds to nearest
   for (int dy = 0; dy < 2; ++dy) {
@@ -54,25 +49,6 @@ Texture::Texture(const cv::Mat& rgb) {
     }
     if (level.cols == 1 && level.rows == 1) break;
   }
-}
-
-Float4 Texture::sample(float s, float t, float level) const {
-  const auto highest = static_cast<int>(levels_.size()) - 1;
-  const Level& mip = levels_[static_cast<std::size_t>(std::clamp(static_cast<int>(level), 0, highest))];
-  const float x = s * static_cast<float>(mip.width) - 0.5F;
-  const float y = t * static_cast<float>(mip.height) - 0.5F;
-  const float floor_x = std::floor(x), floor_y = std::floor(y);
-  const float weight_x = x - floor_x, weight_y = y - floor_y;
-  const int column = static_cast<int>(floor_x) & (mip.width - 1),
-            row = static_cast<int>(floor_y) & (mip.height - 1);
-  const int next_column = (column + 1) & (mip.width - 1), next_row = (row + 1) & (mip.height - 1);
-  const std::uint32_t* upper = texels_.data() + mip.first + static_cast<std::size_t>(row * mip.width);
-  const std::uint32_t* lower = texels_.data() + mip.first + static_cast<std::size_t>(next_row * mip.width);
-  const Float4 a = unpack(upper[column]), b = unpack(upper[next_column]);
-  const Float4 c = unpack(lower[column]), d = unpack(lower[next_column]);
-  const Float4 top = a + (b - a) * weight_x;
-  const Float4 bottom = c + (d - c) * weight_x;
-  return (top + (bottom - top) * weight_y) * (1.0F / 255.0F);
 }
 
 }  // namespace stillpoint::synth

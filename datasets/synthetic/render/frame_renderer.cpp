@@ -56,6 +56,12 @@ struct FrameRenderer::Block {
   [[nodiscard]] int column_of(int lane) const { return column + lane % kBlockColumns; }
 };
 
+/// Where a ray hits: texels, and irradiance.
+struct FrameRenderer::SurfacePoint {
+  Texture::Cell texels;
+  float light;
+};
+
 struct FrameRenderer::Job {
   const Exposure* exposure;
   const MoverFrame* mover_frame;
@@ -136,20 +142,71 @@ RayPacket FrameRenderer::aim(const Job& job, const Block& block, int sample) con
   return packet;
 }
 
+inline FrameRenderer::SurfacePoint FrameRenderer::surface_at(const Job& job, const RayPacket& packet,
+                                                             int lane, int sample) const {
+  const Eigen::Vector3f direction(packet.direction_x[lane], packet.direction_y[lane],
+                                  packet.direction_z[lane]);
+  const float u = packet.u[lane], v = packet.v[lane];
+  const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
+  // Footprint of half a pixel at the hit, stretched by the slant of the surface (geometric mean).
+  const float pixel_m = packet.far[lane] / static_cast<float>(camera_.fx);
+  const auto level_of = [&](float texels_per_m, const Eigen::Vector3f& normal) {
+    const float cosine = std::max(std::abs(normal.dot(direction)) / direction.norm(), 0.05F);
+    const float level =
+        approximate_log2(pixel_m * texels_per_m) - 0.5F * approximate_log2(cosine) + kLevelBias;
+    return std::max(0.0F, level + kLevelDither[static_cast<std::size_t>(sample)]);
+  };
+  if (!packet.moving[lane]) {
+    const Quad& quad = world_.quads[primitive];
+    return {
+        world_.textures[static_cast<std::size_t>(quad.texture)].cell_at(
+            quad.s + u * quad.s_per_u, quad.t + v * quad.t_per_v, level_of(quad.texels_per_m, quad.normal)),
+        baked_light(world_, quad, u, v)};
+  }
+  const MoverTriangle& appearance = job.mover_frame->appearance[primitive];
+  const std::array<std::uint32_t, 3>& corners = job.mover_frame->mesh.triangles[primitive];
+  const float w = 1.0F - u - v;
+  const auto blend = [&](const auto& values) {
+    using Value = std::decay_t<decltype(values[0])>;
+    return Value(w * values[corners[0]] + u * values[corners[1]] + v * values[corners[2]]);
+  };
+  const Eigen::Vector3f normal = blend(job.mover_frame->normals).normalized();
+  const Eigen::Vector2f st = w * appearance.uv[0] + u * appearance.uv[1] + v * appearance.uv[2];
+  return {world_.textures[static_cast<std::size_t>(appearance.texture)].cell_at(
+              st.x(), st.y(), level_of(appearance.texels_per_m, normal)),
+          blend(job.vertex_light)};
+}
+
 void FrameRenderer::render_block(const Job& job, int block_row, int block_column,
                                  RenderedFrame& frame) const {
   const Block block{block_row, block_column};
   const bool may_move = job.movers != nullptr && job.tiles->is_marked(block_row, block_column);
-  std::array<Float4, kPacket> light{};
+  // All texels are requested from memory before the first one is used.
+  std::array<std::array<SurfacePoint, kPacket>, kLightSamples> points;
+  std::array<std::uint32_t, kLightSamples> hits{};
   for (int sample = 0; sample < kLightSamples; ++sample) {
     RayPacket packet = aim(job, block, sample);
     tracer_.trace(packet);
     if (may_move) job.movers->trace(packet);
+    const auto at = static_cast<std::size_t>(sample);
     for (int lane = 0; lane < kPacket; ++lane) {
       if (packet.primitive[lane] < 0) continue;
-      light[static_cast<std::size_t>(lane)] += shade(job, packet, lane, sample) * (1.0F / kLightSamples);
+      hits[at] |= 1U << lane;
+      SurfacePoint& point = points[at][static_cast<std::size_t>(lane)];
+      point = surface_at(job, packet, lane, sample);
+      __builtin_prefetch(point.texels.upper + point.texels.column);
+      __builtin_prefetch(point.texels.lower + point.texels.column);
     }
     if (sample == 0) record_geometry(job, block, packet, frame);
+  }
+  std::array<Float4, kPacket> light{};
+  for (std::size_t sample = 0; sample < kLightSamples; ++sample) {
+    for (std::size_t lane = 0; lane < kPacket; ++lane) {
+      if ((hits[sample] >> lane & 1U) == 0) continue;
+      const SurfacePoint& point = points[sample][lane];
+      const Float4 root = point.texels.value();
+      light[lane] += root * root * point.light * (1.0F / kLightSamples);
+    }
   }
   for (int lane = 0; lane < kPacket; ++lane) {
     const int row = block.row_of(lane), column = block.column_of(lane);
@@ -171,39 +228,6 @@ void FrameRenderer::record_geometry(const Job& job, const Block& block, const Ra
     frame.object[pixel] = static_cast<std::uint16_t>(job.mover_frame->appearance[primitive].object);
     frame.speed_m_per_s[pixel] = displacement_m(job.mover_frame->mesh, primitive) / job.exposure->span_s;
   }
-}
-
-Float4 FrameRenderer::shade(const Job& job, const RayPacket& packet, int lane, int sample) const {
-  const Eigen::Vector3f direction(packet.direction_x[lane], packet.direction_y[lane],
-                                  packet.direction_z[lane]);
-  const float u = packet.u[lane], v = packet.v[lane];
-  const auto primitive = static_cast<std::size_t>(packet.primitive[lane]);
-  // Footprint of half a pixel at the hit, stretched by the slant of the surface (geometric mean).
-  const float pixel_m = packet.far[lane] / static_cast<float>(camera_.fx);
-  const auto level_of = [&](float texels_per_m, const Eigen::Vector3f& normal) {
-    const float cosine = std::max(std::abs(normal.dot(direction)) / direction.norm(), 0.05F);
-    const float level =
-        approximate_log2(pixel_m * texels_per_m) - 0.5F * approximate_log2(cosine) + kLevelBias;
-    return std::max(0.0F, level + kLevelDither[static_cast<std::size_t>(sample)]);
-  };
-  if (!packet.moving[lane]) {
-    const Quad& quad = world_.quads[primitive];
-    const Float4 root = world_.textures[static_cast<std::size_t>(quad.texture)].sample(
-        quad.s + u * quad.s_per_u, quad.t + v * quad.t_per_v, level_of(quad.texels_per_m, quad.normal));
-    return root * root * baked_light(world_, quad, u, v);
-  }
-  const MoverTriangle& appearance = job.mover_frame->appearance[primitive];
-  const std::array<std::uint32_t, 3>& corners = job.mover_frame->mesh.triangles[primitive];
-  const float w = 1.0F - u - v;
-  const auto blend = [&](const auto& values) {
-    using Value = std::decay_t<decltype(values[0])>;
-    return Value(w * values[corners[0]] + u * values[corners[1]] + v * values[corners[2]]);
-  };
-  const Eigen::Vector3f normal = blend(job.mover_frame->normals).normalized();
-  const Eigen::Vector2f st = w * appearance.uv[0] + u * appearance.uv[1] + v * appearance.uv[2];
-  const Float4 root = world_.textures[static_cast<std::size_t>(appearance.texture)].sample(
-      st.x(), st.y(), level_of(appearance.texels_per_m, normal));
-  return root * root * blend(job.vertex_light);
 }
 
 }  // namespace stillpoint::synth

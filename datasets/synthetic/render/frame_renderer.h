@@ -66,11 +66,12 @@ class FrameRenderer {
  private:
   struct Block;
   struct Job;
+  struct SurfacePoint;
   void record_geometry(const Job& job, const Block& block, const RayPacket& packet,
                        RenderedFrame& frame) const;
   void render_block(const Job& job, int block_row, int block_column, RenderedFrame& frame) const;
   [[nodiscard]] RayPacket aim(const Job& job, const Block& block, int sample) const;
-  [[nodiscard]] Float4 shade(const Job& job, const RayPacket& packet, int lane, int sample) const;
+  [[nodiscard]] SurfacePoint surface_at(const Job& job, const RayPacket& packet, int lane, int sample) const;
 
   const World& world_;
   const RayTracer& tracer_;

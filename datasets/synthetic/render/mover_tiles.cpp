@@ -11,12 +11,27 @@ namespace {
 constexpr float kMargin_px = 6.0F;   // allowance for non-linear image motion between the views
 constexpr float kNearest_m = 0.05F;  // triangles with closer points mark all tiles
 
+/// Bits of the sides of the image (left, right, top, bottom) on whose plane's far side a point is. A triangle
+/// whose corners are all beyond one side is not visible, also if it crosses the plane of the camera.
+unsigned sides_beyond(const Eigen::Vector3f& p_c, const Camera& camera) {
+  const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+  const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
+  const auto width = static_cast<float>(camera.width), height = static_cast<float>(camera.height);
+  const float x = fx * p_c.x(), y = fy * p_c.y(), z = p_c.z();
+  return static_cast<unsigned>(x + (cx + kMargin_px) * z < 0.0F) |
+         static_cast<unsigned>(x + (cx - width - kMargin_px) * z > 0.0F) << 1U |
+         static_cast<unsigned>(y + (cy + kMargin_px) * z < 0.0F) << 2U |
+         static_cast<unsigned>(y + (cy - height - kMargin_px) * z > 0.0F) << 3U;
+}
+
 struct Bounds {
   float x_min = 1e9F, x_max = -1e9F, y_min = 1e9F, y_max = -1e9F;
   bool near = false, ahead = false;
+  unsigned beyond = 0b1111;  ///< sides of the image beyond which all points are
 
   void add(const Eigen::Vector3f& p_c, const Camera& camera) {
     ahead = ahead || p_c.z() > 0.0F;
+    beyond &= sides_beyond(p_c, camera);
     if (p_c.z() < kNearest_m) {
       near = true;
       return;
@@ -29,6 +44,7 @@ struct Bounds {
     x_min = std::min(x_min, other.x_min), x_max = std::max(x_max, other.x_max);
     y_min = std::min(y_min, other.y_min), y_max = std::max(y_max, other.y_max);
     near = near || other.near, ahead = ahead || other.ahead;
+    beyond &= other.beyond;
   }
 };
 
@@ -62,6 +78,7 @@ MoverTiles::MoverTiles(const MovingMesh& mesh, const Camera& camera, std::span<c
     triangle.add(vertices[corners[1]]);
     triangle.add(vertices[corners[2]]);
     if (!triangle.ahead) continue;
+    if (triangle.near && triangle.beyond != 0) continue;
     if (triangle.near) triangle = {-1e9F, 1e9F, -1e9F, 1e9F, true, true};
     const bool outside = triangle.x_max < -kMargin_px || triangle.y_max < -kMargin_px ||
                          triangle.x_min > static_cast<float>(camera.width) + kMargin_px ||

@@ -2,6 +2,7 @@
 #include "datasets/synthetic/sensors/sensor_models.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -26,27 +27,51 @@ double exposure_gain(const ColorSensor& sensor, double t_s) {
   return std::exp2(sensor.exposure_swing * std::sin(2.0 * std::numbers::pi * t_s / sensor.exposure_period_s));
 }
 
+namespace {
+
+/// `std::round` of a value in [0, 2^31), in instructions that process several values.
+int rounded(float value) {
+  const int whole = static_cast<int>(value);
+  return whole + (value - static_cast<float>(whole) >= 0.5F ? 1 : 0);
+}
+
+}  // namespace
+
 cv::Mat simulate_color(const RenderedFrame& frame, const Camera& camera, const ColorSensor& sensor,
                        const FrameExposure& exposure) {
   const auto& [gain, noise_key] = exposure;
   cv::Mat image(frame.height, frame.width, CV_8UC3);
   const auto read_variance = static_cast<float>(sensor.read_noise * sensor.read_noise);
   const auto shot_variance = static_cast<float>(sensor.shot_noise);
-  std::size_t pixel = 0;
+  const auto frame_gain = static_cast<float>(gain);
+  const std::array<float, kNormalQuantiles>& normal = normal_quantiles();
+  constexpr std::uint64_t kLast = kNormalQuantiles - 1;
+  const auto width = static_cast<std::size_t>(frame.width);
+  // One row at a time, of four lanes per pixel: each loop is executed in SIMD instructions.
+  std::vector<float> scale(width);
+  std::vector<Float4> noise(width), signal(width);
+  std::vector<std::uint8_t> values(4 * width);
   for (int row = 0; row < frame.height; ++row) {
-    auto* out = image.ptr<cv::Vec3b>(row);
-    for (int column = 0; column < frame.width; ++column, ++pixel) {
-      const float scale =
-          static_cast<float>(gain) * lens_transmission(camera, sensor.vignetting, row, column);
-      const Float4 light = frame.radiance[pixel] * scale;
-      std::uint64_t bits = mix_bits(noise_key + pixel);
-      for (int channel = 0; channel < 3; ++channel, bits >>= 12) {
-        const float signal = std::min(light[channel], 1.0F);  // the pixel saturates before read-out
-        const float sigma = std::sqrt(read_variance + shot_variance * signal);
-        const float value = std::clamp(signal + sigma * normal_from_bits(bits), 0.0F, 1.0F);
-        out[column][channel] = static_cast<std::uint8_t>(std::lround(255.0F * std::sqrt(value)));
-      }
+    const std::size_t first = static_cast<std::size_t>(row) * width;
+    for (int column = 0; column < frame.width; ++column) {
+      scale[static_cast<std::size_t>(column)] =
+          frame_gain * lens_transmission(camera, sensor.vignetting, row, column);
     }
+    for (std::size_t i = 0; i < width; ++i) {
+      const std::uint64_t bits = mix_bits(noise_key + first + i);
+      noise[i] = Float4{normal[bits & kLast], normal[bits >> 12 & kLast], normal[bits >> 24 & kLast], 0.0F};
+      signal[i] = frame.radiance[first + i] * scale[i];
+    }
+    const float* const light = &signal[0][0];
+    const float* const deviate = &noise[0][0];
+    for (std::size_t i = 0; i < 4 * width; ++i) {
+      const float saturated = std::min(light[i], 1.0F);  // the pixel saturates before read-out
+      const float sigma = std::sqrt(read_variance + shot_variance * saturated);
+      const float value = std::clamp(saturated + sigma * deviate[i], 0.0F, 1.0F);
+      values[i] = static_cast<std::uint8_t>(rounded(255.0F * std::sqrt(value)));
+    }
+    auto* out = image.ptr<cv::Vec3b>(row);
+    for (std::size_t i = 0; i < width; ++i) out[i] = {values[4 * i], values[4 * i + 1], values[4 * i + 2]};
   }
   return image;
 }
@@ -60,25 +85,44 @@ constexpr std::uint64_t kDropoutOffset = 1ULL << 41;
 /// Correlated noise of unit variance: bilinear interpolation of white noise on a lattice.
 class SmoothNoise {
  public:
-  SmoothNoise(int cell_px, std::uint64_t key) : cell_(cell_px), key_(key) {}
+  SmoothNoise(int cell_px, const cv::Size& image, std::uint64_t key)
+      : cell_(cell_px), columns_(image.width / cell_px + 2) {
+    const int rows = image.height / cell_px + 2;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        nodes_.push_back(normal_from_bits(
+            mix_bits(key + kLatticeOffset + static_cast<std::uint64_t>(row * 65536 + column))));
+      }
+    }
+    for (int row = 0; row < cell_; ++row) {
+      for (int column = 0; column < cell_; ++column) {
+        const float x = fraction(column), y = fraction(row);
+        const float variance = ((1.0F - x) * (1.0F - x) + x * x) * ((1.0F - y) * (1.0F - y) + y * y);
+        deviations_.push_back(std::sqrt(variance));
+      }
+    }
+  }
 
   [[nodiscard]] float at(int row, int column) const {
-    const float x = static_cast<float>(column % cell_) / static_cast<float>(cell_);
-    const float y = static_cast<float>(row % cell_) / static_cast<float>(cell_);
-    const int left = column / cell_, top = row / cell_;
-    const float upper = node(top, left) * (1.0F - x) + node(top, left + 1) * x;
-    const float lower = node(top + 1, left) * (1.0F - x) + node(top + 1, left + 1) * x;
-    const float variance = ((1.0F - x) * (1.0F - x) + x * x) * ((1.0F - y) * (1.0F - y) + y * y);
-    return (upper * (1.0F - y) + lower * y) / std::sqrt(variance);
+    const int row_in_cell = row % cell_, column_in_cell = column % cell_;
+    const float x = fraction(column_in_cell), y = fraction(row_in_cell);
+    const float* const top = nodes_.data() + std::ptrdiff_t{row / cell_} * columns_ + column / cell_;
+    const float* const bottom = top + columns_;
+    const float upper = top[0] * (1.0F - x) + top[1] * x;
+    const float lower = bottom[0] * (1.0F - x) + bottom[1] * x;
+    return (upper * (1.0F - y) + lower * y) /
+           deviations_[static_cast<std::size_t>(row_in_cell * cell_ + column_in_cell)];
   }
 
  private:
-  [[nodiscard]] float node(int row, int column) const {
-    return normal_from_bits(
-        mix_bits(key_ + kLatticeOffset + static_cast<std::uint64_t>(row * 65536 + column)));
+  [[nodiscard]] float fraction(int in_cell) const {
+    return static_cast<float>(in_cell) / static_cast<float>(cell_);
   }
+
   int cell_;
-  std::uint64_t key_;
+  int columns_;
+  std::vector<float> nodes_;       ///< row by row
+  std::vector<float> deviations_;  ///< of the interpolated value, at the pixels of a cell
 };
 
 bool differs(float a, float b) { return std::abs(a - b) > kJump * std::min(a, b); }
@@ -96,55 +140,80 @@ bool at_edge(const TrueDepth& image, int row, int column) {
          (row + 1 < height && differs(depth(row + 1, column), here));
 }
 
-/// Pixels of one row that are occluded in the second imager: a closer surface projects to the same column of
-/// its image, at column - fb / z.
-std::vector<bool> stereo_shadow(const float* depth_m, int width, double focal_baseline) {
-  std::vector<bool> hidden(static_cast<std::size_t>(width));
-  double nearest_column = std::numeric_limits<double>::infinity();
-  for (int column = width - 1; column >= 0; --column) {
-    if (depth_m[column] <= 0.0F) continue;
-    const double column_in_second = column - focal_baseline / static_cast<double>(depth_m[column]);
-    hidden[static_cast<std::size_t>(column)] = nearest_column <= column_in_second - 1.0;
-    nearest_column = std::min(nearest_column, column_in_second);
-  }
-  return hidden;
+/// `std::round` of a value below 2^52, in instructions that process several values.
+double rounded(double value) {
+  const double whole = std::trunc(value);
+  return whole + std::copysign(std::abs(value - whole) >= 0.5 ? 1.0 : 0.0, value);
 }
 
-std::uint16_t depth_reading(double depth_m, double noise, const DepthSensor& sensor) {
-  double disparity = sensor.focal_baseline_px_m / depth_m;
-  disparity += noise * sensor.noise_per_m * sensor.focal_baseline_px_m;
-  if (sensor.disparity_step_px > 0.0) {
-    disparity = std::round(disparity / sensor.disparity_step_px) * sensor.disparity_step_px;
+/// Row of a depth image. The members are buffers.
+class DepthRow {
+ public:
+  explicit DepthRow(std::size_t width) : disparity_(width), hidden_(width) {}
+
+  /// @param depth_m true depths
+  /// @param noise   of unit variance; NaN where there is no measurement
+  void simulate(std::span<const float> depth_m, std::span<const double> noise, const DepthSensor& sensor,
+                std::uint16_t* out) {
+    const double focal_baseline = sensor.focal_baseline_px_m;
+    const double step_px = sensor.disparity_step_px;
+    for (std::size_t i = 0; i < depth_m.size(); ++i)
+      disparity_[i] = focal_baseline / static_cast<double>(depth_m[i]);
+    if (sensor.edge_dropout > 0.0) mark_hidden(depth_m);
+    for (std::size_t i = 0; i < depth_m.size(); ++i) {
+      double disparity = disparity_[i] + noise[i] * sensor.noise_per_m * focal_baseline;
+      if (step_px > 0.0) disparity = rounded(disparity / step_px) * step_px;
+      const double z = focal_baseline / disparity;
+      const bool valid =
+          depth_m[i] > 0.0F && hidden_[i] == 0 && disparity > 0.0 && z >= sensor.min_m && z <= sensor.max_m;
+      const double units = valid ? std::min(rounded(z * sensor.units_per_m), 65535.0) : 0.0;
+      out[i] = static_cast<std::uint16_t>(static_cast<int>(units));
+    }
   }
-  if (disparity <= 0.0) return 0;
-  const double z = sensor.focal_baseline_px_m / disparity;
-  if (z < sensor.min_m || z > sensor.max_m) return 0;
-  return static_cast<std::uint16_t>(std::min(std::lround(z * sensor.units_per_m), 65535L));
-}
+
+ private:
+  /// Pixels that are occluded in the second imager: a closer surface projects to the same column of its
+  /// image, at column - fb / z.
+  void mark_hidden(std::span<const float> depth_m) {
+    double nearest_column = std::numeric_limits<double>::infinity();
+    for (std::size_t i = depth_m.size(); i-- > 0;) {
+      hidden_[i] = 0;
+      if (depth_m[i] <= 0.0F) continue;
+      const double column_in_second = static_cast<double>(i) - disparity_[i];
+      hidden_[i] = nearest_column <= column_in_second - 1.0 ? 1 : 0;
+      nearest_column = std::min(nearest_column, column_in_second);
+    }
+  }
+
+  std::vector<double> disparity_;
+  std::vector<std::uint8_t> hidden_;
+};
 
 }  // namespace
 
 cv::Mat simulate_depth(const TrueDepth& depth, const DepthSensor& sensor, std::uint64_t noise_key) {
   const auto& [depth_m, width, height] = depth;
-  cv::Mat image = cv::Mat::zeros(height, width, CV_16UC1);
-  const SmoothNoise smooth(sensor.correlation_px, noise_key);
+  cv::Mat image(height, width, CV_16UC1);
+  const SmoothNoise smooth(sensor.correlation_px, {width, height}, noise_key);
   const auto smooth_weight = static_cast<float>(sensor.correlated_fraction);
   const float white_weight = std::sqrt(std::max(0.0F, 1.0F - smooth_weight * smooth_weight));
+  const auto columns = static_cast<std::size_t>(width);
+  DepthRow simulated(columns);
+  std::vector<double> noise(columns);
   std::size_t pixel = 0;
   for (int row = 0; row < height; ++row) {
-    const std::vector<bool> hidden =
-        stereo_shadow(depth_m.data() + std::ptrdiff_t{row} * width, width,
-                      sensor.edge_dropout > 0.0 ? sensor.focal_baseline_px_m : 0.0);
+    const std::span<const float> row_m = depth_m.subspan(pixel, columns);
     for (int column = 0; column < width; ++column, ++pixel) {
-      if (depth_m[pixel] <= 0.0F || hidden[static_cast<std::size_t>(column)]) continue;
-      const std::uint64_t bits = mix_bits(noise_key + pixel);
+      const float white = normal_from_bits(mix_bits(noise_key + pixel));
+      noise[static_cast<std::size_t>(column)] =
+          static_cast<double>(white_weight * white + smooth_weight * smooth.at(row, column));
+      if (!(sensor.edge_dropout > 0.0) || !at_edge(depth, row, column)) continue;
       const double chance =
           static_cast<double>(mix_bits(noise_key + kDropoutOffset + pixel) >> 11) * 0x1.0p-53;
-      if (chance < sensor.edge_dropout && at_edge(depth, row, column)) continue;
-      const float noise = smooth_weight * smooth.at(row, column) + white_weight * normal_from_bits(bits);
-      image.at<std::uint16_t>(row, column) =
-          depth_reading(static_cast<double>(depth_m[pixel]), static_cast<double>(noise), sensor);
+      if (chance < sensor.edge_dropout)
+        noise[static_cast<std::size_t>(column)] = std::numeric_limits<double>::quiet_NaN();
     }
+    simulated.simulate(row_m, noise, sensor, image.ptr<std::uint16_t>(row));
   }
   return image;
 }
