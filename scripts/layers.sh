@@ -71,6 +71,7 @@ row datasets/bags $messages $trajectories datasets/io datasets/calibration datas
 row datasets/formats $messages $trajectories datasets/io datasets/calibration datasets/bags
 row datasets/cache $messages datasets/io datasets/calibration datasets/formats
 row datasets $messages $trajectories datasets/io datasets/calibration datasets/bags datasets/formats datasets/cache
+row datasets/mapping $messages eval/io
 row datasets/minimal core/base eval/io datasets/bags datasets/formats
 row datasets/synthetic core/base core/geometry
 row datasets/synthetic/materials core/base datasets/synthetic
@@ -135,9 +136,9 @@ row reports/dashboard $stored bench/record reports/tables reports/page
 # --- the program ---
 row bench/cli core/base eval/io bench/config bench/record
 execution="core/base bench/cli bench/model bench/config bench/record"
-row bench/cli/run $execution core/calibration core/config core/geometry core/types core/pipeline/runners datasets datasets/cache datasets/calibration datasets/faults eval/io eval/metrics bench/diagnose bench/process bench/run bench/profile bench/profile/meters \
+row bench/cli/run $execution core/calibration core/config core/geometry core/types core/pipeline/runners datasets datasets/cache datasets/calibration datasets/faults datasets/mapping eval/io eval/metrics bench/diagnose bench/process bench/run bench/profile bench/profile/meters \
   bench/plan reports/tables reports/drawing reports/frames
-row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/synthetic/sequence bench/run bench/plan reports/tables
+row bench/cli/data $execution core/detector bench/fetch datasets datasets/catalogue datasets/download datasets/cache datasets/faults datasets/io datasets/mapping datasets/synthetic/sequence eval/io eval/metrics eval/trajectory bench/run bench/plan reports/tables
 row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catalogue datasets/io eval/io eval/openloris eval/trajectory reports/drawing bench/store bench/process bench/systems bench/plan bench/plan/execution bench/executors reports/tables \
   reports/text reports/page
 row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan \

@@ -93,6 +93,7 @@ inline constexpr const char* kSysfsRootHelp =
 [[nodiscard]] Command eval_command();            ///< `stillpoint eval`: score trajectory files
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: result files by scene
 [[nodiscard]] Command trajectory_command();      ///< `stillpoint trajectory`: convert and change files
+[[nodiscard]] Command eval_cloud_command();      ///< `stillpoint eval cloud`: compare point clouds
 [[nodiscard]] Command bench_command();           ///< `stillpoint bench`: execute a benchmark plan
 [[nodiscard]] Command worker_command();          ///< `stillpoint worker`: execute tasks of a plan
 [[nodiscard]] Command systems_command();         ///< `stillpoint systems`: describe and try other systems
@@ -114,6 +115,7 @@ inline constexpr const char* kSysfsRootHelp =
 [[nodiscard]] Command get_command();        ///< `stillpoint data get`: download sequences
 [[nodiscard]] Command verify_command();     ///< `stillpoint data verify`: compare files with their digests
 [[nodiscard]] Command cache_command();      ///< `stillpoint data cache`: decoded frames on disk
+[[nodiscard]] Command cloud_command();      ///< `stillpoint data cloud`: point cloud by the ground truth
 [[nodiscard]] Command check_command();      ///< `stillpoint data check`: validate a sequence
 [[nodiscard]] Command faults_command();     ///< `stillpoint data faults`: list injectable sensor faults
 [[nodiscard]] Command export_command();     ///< `stillpoint data export`: write other layouts

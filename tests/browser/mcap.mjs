@@ -219,6 +219,14 @@ if (IMAGES) {
     assert.deepEqual([width, height, step, encoding, data.length], [320, 240, 640, "16UC1", 320 * 240 * 2]);
   assert.equal(count("/camera/depth"), claims.length);
   assert.equal(topics["/estimate/optimized"][0].poses.length, trajectory.length);
+  // The layout names topics and fields of this recording.
+  const layout = await readFile(new URL("../../bench/viewers/foxglove.json", import.meta.url), "utf8");
+  const names = [...layout.matchAll(/"(\/[a-z_/]+)(?:\.([a-z_]+))?/g)];
+  assert.ok(names.length >= 10);
+  for (const [, topic, field] of names) {
+    assert.ok(count(topic) > 0, `${topic} of the layout`);
+    if (field) assert.ok(field in topics[topic][0], `${topic}.${field} of the layout`);
+  }
 } else {
   assert.equal(count("/camera/image") + count("/camera/depth"), 0);
 }

@@ -240,12 +240,12 @@ Command list_command() {
 }  // namespace
 
 Command data_command() {
-  return {
-      .name = "data",
-      .summary = "Download, create and inspect sequences",
-      .example = "data synth walking_xyz --out build/walking_xyz",
-      .subcommands = {catalogue_command(), get_command(), verify_command(), list_command(), add_command(),
-                      check_command(), synth_command(), export_command(), cache_command(), faults_command()}};
+  return {.name = "data",
+          .summary = "Download, create and inspect sequences",
+          .example = "data synth walking_xyz --out build/walking_xyz",
+          .subcommands = {catalogue_command(), get_command(), verify_command(), list_command(), add_command(),
+                          check_command(), synth_command(), export_command(), cache_command(),
+                          cloud_command(), faults_command()}};
 }
 
 }  // namespace stillpoint::bench

@@ -90,10 +90,10 @@ void save_map(const MapOptions& options, const LoopReport& report) {
 struct RunArguments {
   std::string sequence, base = "stillpoint", mode = "sequential";
   std::vector<std::string> variants, settings, faults, topics, dumps;
-  std::string out, format, rig, heartbeat, sequence_id, video, mcap, sysfs_root = "/";
+  std::string out, format, rig, heartbeat, sequence_id, video, mcap, map_cloud, sysfs_root = "/";
   int max_frames = 0, every = 1, passes = 1, images = 0, gray_noise = 0;
   bool deterministic_counts = false, no_frame_cache = false, imu_rate = false, mcap_images = false;
-  double speed = 1.0, start_s = 0.0, seconds = 0.0;
+  double speed = 1.0, start_s = 0.0, seconds = 0.0, map_voxel_m = 0.02;
   MapOptions map;
 };
 
@@ -123,7 +123,8 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
                              .mode = arguments.mode,
                              .speed = arguments.speed,
                              .map = map,
-                             .decode_color = !arguments.video.empty() || arguments.mcap_images,
+                             .decode_color = !arguments.video.empty() || arguments.mcap_images ||
+                                             !arguments.map_cloud.empty(),
                              .keep_spans = true,
                              .deterministic_counts = arguments.deterministic_counts},
                     .faults = faults,
@@ -134,16 +135,18 @@ std::vector<ConfiguredRun> plan_runs(const RunArguments& arguments) {
   return runs;
 }
 
-/// Checks --mcap before the work begins. @throws InputError for several runs, and if the file exists
-void require_recording_options(const RunArguments& arguments, std::size_t runs,
-                               const std::vector<fs::path>& inputs) {
-  if (arguments.mcap.empty()) {
-    if (arguments.mcap_images)
-      throw InputError("--mcap-images", "requires --mcap FILE, the recording that contains the images");
-    return;
+/// Checks --mcap and --map-cloud before the work begins.
+/// @throws InputError for several runs, and if a file exists
+void require_file_options(const RunArguments& arguments, std::size_t runs,
+                          const std::vector<fs::path>& inputs) {
+  if (arguments.mcap.empty() && arguments.mcap_images)
+    throw InputError("--mcap-images", "requires --mcap FILE, the recording that contains the images");
+  for (const auto& [option, file] :
+       {std::pair("--mcap", arguments.mcap), std::pair("--map-cloud", arguments.map_cloud)}) {
+    if (file.empty()) continue;
+    if (runs > 1) throw InputError(option, "requires a single run; pass one --variant");
+    require_safe_output(file, {.inputs = inputs});
   }
-  if (runs > 1) throw InputError("--mcap", "requires a single run; pass one --variant");
-  require_safe_output(arguments.mcap, {.inputs = inputs});
 }
 
 Playback playback_of(const RunArguments& arguments, const std::vector<datasets::SensorFault>& faults) {
@@ -163,7 +166,7 @@ std::vector<ConfiguredRun> with_folders(std::vector<ConfiguredRun> runs, const R
   const fs::path root = arguments.out.empty() ? fs::path("build/runs") / info.name : fs::path(arguments.out);
   const bool shared_root = arguments.out.empty() || runs.size() > 1;
   const std::vector<fs::path> inputs = {info.folder, arguments.rig};
-  require_recording_options(arguments, runs.size(), inputs);
+  require_file_options(arguments, runs.size(), inputs);
   for (ConfiguredRun& run : runs) {
     run.spec.max_frames = frames_to_play(info.frame_times, playback_of(arguments, run.faults));
     if (!run.video.empty() && runs.size() > 1) run.video /= folder_name(run.variant);
@@ -196,7 +199,9 @@ DumpRequest dump_request(const RunArguments& arguments, const ConfiguredRun& con
           .video = configured.video,
           .images = static_cast<std::size_t>(arguments.images),
           .mcap = arguments.mcap,
-          .mcap_images = arguments.mcap_images};
+          .mcap_images = arguments.mcap_images,
+          .map_cloud = arguments.map_cloud,
+          .map_voxel_m = arguments.map_voxel_m};
 }
 
 /// Log, progress line, heartbeat, and the meters of the machine during a run.
@@ -400,6 +405,12 @@ std::vector<Option> run_options(const std::shared_ptr<RunArguments>& arguments) 
        "running",
        &arguments->mcap},
       {"--mcap-images", "Also record color (JPEG) and depth images", &arguments->mcap_images},
+      {"--map-cloud", "Write the static surfaces as a colored point cloud (.ply), without people",
+       &arguments->map_cloud},
+      {"--map-voxel",
+       "Side of the voxels of --map-cloud, one point each [0.02 m]",
+       &arguments->map_voxel_m,
+       {1e-3, 10.0}},
       {"--imu-rate", "Write and score the pose at each IMU sample as known then", &arguments->imu_rate},
       {"--map", "Map of an earlier run, in which this one is located", &arguments->map.load},
       {"--save-map", "Write a map for later runs, with --map an extended one", &arguments->map.save},

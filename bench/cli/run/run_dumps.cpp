@@ -7,6 +7,7 @@
 
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
+#include "eval/io/ply_file.h"
 #include "reports/drawing/cost_plots.h"
 #include "reports/drawing/drawing.h"
 
@@ -41,6 +42,15 @@ std::string loop_cost_svg(const LoopRun& loops) {
   return report::svg_text(report::loop_cost_plot(loops.report.keyframes));
 }
 
+void write_cloud(const std::filesystem::path& file, const std::vector<eval::CloudPoint>& cloud) {
+  if (cloud.empty())
+    throw InputError(
+        file.string(),
+        "is not written: no surface was measured in four located frames; the sequence lacks depth "
+        "images, or was not tracked");
+  write_output(file, eval::ply_bytes(cloud), {});
+}
+
 }  // namespace
 
 void require_known_dumps(const std::vector<std::string>& names) {
@@ -56,6 +66,8 @@ RunDumps::RunDumps(DumpRequest request, const datasets::SequenceInfo& info, cons
   if (!request_.video.empty()) video_.emplace(request_.video, style, report::mean_rate_hz(info.frame_times));
   if (request_.images > 0)
     worst_frames_.emplace(request_.folder / kImagesFolder, request_.images, style, info);
+  if (!request_.map_cloud.empty())
+    map_.emplace(info.rig.camera, datasets::VoxelMapOptions{.voxel_m = request_.map_voxel_m});
   if (!request_.mcap.empty()) {
     recording_.emplace(
         request_.mcap, info,
@@ -74,17 +86,31 @@ bool RunDumps::attempt(const char* name, const Action& action) {
   }
 }
 
+void RunDumps::add_to_map(const FrameReport& report) {
+  constexpr double kInterval_s = 0.095;  // 10 Hz, with jitter
+  const OdometryUpdate& update = report.update;
+  if (!is_located(update.status) || update.segment != 0 || report.dynamic.labels.empty()) return;
+  if (map_t_ && seconds_between(*map_t_, report.frame.t) < kInterval_s) return;
+  map_t_ = report.frame.t;
+  const SemanticMask& mask = report.dynamic.mask;
+  map_->add(report.frame, update.T_w_c, [&mask](int column, int row, double depth_m) {
+    return depth_m < mask.threshold_at(Eigen::Vector2d(column, row));
+  });
+}
+
 void RunDumps::add(const FrameReport& report) {
   if (request_.labels) labels_.add(report);
   if (video_ && !attempt("--video", [&] { video_->add(report); })) video_.reset();
   if (worst_frames_ && !attempt("--images", [&] { worst_frames_->add(report); })) worst_frames_.reset();
   if (recording_ && !attempt("--mcap", [&] { recording_->add(report); })) recording_.reset();
+  if (map_ && !attempt("--map-cloud", [&] { add_to_map(report); })) map_.reset();
 }
 
 std::vector<std::string> RunDumps::finish(const OdometryRun* run) {
   const LoopRun* const loops = run != nullptr && run->loops ? &*run->loops : nullptr;
   if (video_) attempt("--video", [&] { video_->finish(); });
   if (recording_) attempt("--mcap", [&] { recording_->finish(loops); });
+  if (map_) attempt("--map-cloud", [&] { write_cloud(request_.map_cloud, map_->cloud()); });
   if (request_.labels)
     attempt("--dump labels", [&] { write_files(request_.folder, {{kLabelsFile, labels_.text()}}); });
   if (request_.cost && run != nullptr)

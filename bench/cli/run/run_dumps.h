@@ -11,6 +11,7 @@
 #include "bench/run/odometry_run.h"
 #include "core/config/frontend_config.h"
 #include "core/pipeline/runners/runner.h"
+#include "datasets/mapping/voxel_map.h"
 #include "datasets/sensor_stream.h"
 #include "reports/frames/annotated_frames.h"
 #include "reports/frames/run_recording.h"
@@ -36,10 +37,12 @@ struct DumpRequest {
   std::filesystem::path folder;  ///< of the run: labels.csv, cost.svg, loop_cost.svg, images/
   bool labels = false;
   bool cost = false;
-  std::filesystem::path video;  ///< folder; empty = none
-  std::size_t images = 0;       ///< number of annotated images of the worst frames
-  std::filesystem::path mcap;   ///< recording for viewers; empty = none
-  bool mcap_images = false;     ///< the recording contains color and depth images
+  std::filesystem::path video;      ///< folder; empty = none
+  std::size_t images = 0;           ///< number of annotated images of the worst frames
+  std::filesystem::path mcap;       ///< recording for viewers; empty = none
+  bool mcap_images = false;         ///< the recording contains color and depth images
+  std::filesystem::path map_cloud;  ///< point cloud of static surfaces; empty = none
+  double map_voxel_m = 0.02;        ///< side of its voxels
 };
 
 /// Values of --dump. @throws InputError for a name that is not one of them
@@ -53,7 +56,9 @@ class RunDumps {
   RunDumps(DumpRequest request, const datasets::SequenceInfo& info, const FrontendConfig& frontend);
 
   /// Whether `add` has to be called with the frames.
-  [[nodiscard]] bool needs_frames() const { return request_.labels || video_ || worst_frames_ || recording_; }
+  [[nodiscard]] bool needs_frames() const {
+    return request_.labels || video_ || worst_frames_ || recording_ || map_;
+  }
 
   /// Frames in order. An output that cannot be written ends; the others continue.
   void add(const FrameReport& report);
@@ -64,6 +69,10 @@ class RunDumps {
   [[nodiscard]] std::vector<std::string> finish(const OdometryRun* run);
 
  private:
+  /// Adds a frame that entered the window and is located in the first world to the map, up to ten per second,
+  /// without the pixels in the semantic mask.
+  void add_to_map(const FrameReport& report);
+
   /// Calls `action`. @return whether it succeeded
   template <class Action>
   bool attempt(const char* name, const Action& action);
@@ -73,6 +82,8 @@ class RunDumps {
   std::optional<report::RunVideo> video_;
   std::optional<report::WorstFrames> worst_frames_;
   std::optional<report::RunRecording> recording_;
+  std::optional<datasets::VoxelMap> map_;
+  std::optional<Timestamp> map_t_;  ///< of the last frame in the map
   std::vector<std::string> failures_;
 };
 

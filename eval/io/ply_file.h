@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Point clouds with colors in PLY files: binary little endian or ASCII, with the vertex properties x, y, z
+/// and, optionally, red, green, blue. Further scalar properties are skipped, as are elements after the
+/// vertices.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace stillpoint::eval {
+
+struct CloudPoint {
+  Eigen::Vector3f p = Eigen::Vector3f::Zero();  ///< [m]
+  std::array<std::uint8_t, 3> rgb{};
+};
+
+/// The first bytes of each file that `ply_bytes` writes.
+inline constexpr const char* kPlyMagic = "ply\n";
+
+/// A binary file with the properties float x, y, z and uchar red, green, blue.
+[[nodiscard]] std::string ply_bytes(const std::vector<CloudPoint>& cloud);
+
+/// @throws InputError if the file cannot be read, is no PLY file, has no points or lists in front of them,
+/// ends early, or contains numbers that are not finite
+[[nodiscard]] std::vector<CloudPoint> read_ply(const std::filesystem::path& file);
+
+}  // namespace stillpoint::eval
