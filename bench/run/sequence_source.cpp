@@ -108,9 +108,11 @@ std::unique_ptr<datasets::SensorStream> find_sequence(const std::string& name,
   if (!synth::is_complete_sequence(folder)) {
     if (part.when_loaded || part.frames) {
       auto stream = std::make_unique<RenderedStream>(request, folder, identified);
-      const std::size_t count = part.when_loaded ? 0 : part.frames(stream->info().frame_times);
-      return stream->render(count, control) ? std::move(stream) : nullptr;
+      const std::vector<Timestamp>& times = stream->info().frame_times;
+      const std::size_t count = part.when_loaded ? 0 : part.frames(times);
+      if (count < times.size()) return stream->render(count, control) ? std::move(stream) : nullptr;
     }
+    // All frames: also into the frame cache, so that a run in real time decodes nothing.
     if (rendered_sequence(request, control, options.frame_cache).empty()) return nullptr;
   }
   return datasets::open_sequence(folder, identified);
