@@ -118,7 +118,7 @@ row bench/executors core/base eval/io bench/model bench/store bench/store/mainte
 row bench/analysis core/base eval/metrics eval/statistics bench/model bench/store
 row bench/analysis/search core/base eval/statistics bench/model bench/analysis
 row bench/serve core/base bench/record
-row bench/python $messages $eval bench/model bench/store bench/analysis
+row bench/python $common $eval core/detector core/pipeline core/pipeline/stages datasets datasets/bags bench/model bench/store bench/analysis
 row bench/rivals core/base core/geometry core/types datasets eval/io
 row bench/micro $core tests/support tests/support/simulated
 
@@ -160,7 +160,7 @@ libraries=(
   '<hwy/              ^core/frontend/(detect/fast_kernel|patch/patch_kernel)\.cpp$'
   '<ceres/            ^core/backend/(factors|reference)/|^core/(loop|calibration)/'
   '<(cholmod|suitesparse/|SuiteSparse)  ^core/backend/solvers/|^core/loop/'
-  '<opencv2/core[./]  ^bench/(diagnose|rivals)/|^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
+  '<opencv2/core[./]  ^bench/(diagnose|rivals|python)/|^core/(types|calibration|frontend|dynamic|detector|loop|examples)/|^datasets/|^bench/micro/|^reports/frames/'
   '<opencv2/imgproc[./]  ^bench/rivals/|^core/(frontend|dynamic|detector|loop)/|^datasets/(synthetic|faults)/|^bench/micro/|^reports/frames/'
   '<opencv2/calib3d[./]  ^bench/rivals/|^core/(frontend/outliers|dynamic|loop)/|^core/backend/start/monocular_structure\.cpp$'
   '<opencv2/dnn[./]   ^core/detector/'

@@ -64,6 +64,7 @@ endif()
 # modules of Python. Functions cannot be replaced at run time, so they are inlined as in other libraries.
 macro(stillpoint_position_independent)
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+  set(stillpoint_pic_suffix _pic) # of their precompiled headers
   add_compile_options(-fno-semantic-interposition)
 endmacro()
 

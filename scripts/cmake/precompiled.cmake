@@ -26,8 +26,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 # stillpoint_precompiled_headers(SET): compiles the headers of SET (core, bench or test) in this folder, unless another one did.
+# Position-independent code has precompiled headers of its own: stillpoint_precompiled_SET_pic.
 function(stillpoint_precompiled_headers set)
-  set(host stillpoint_precompiled_${set})
+  set(host stillpoint_precompiled_${set}${stillpoint_pic_suffix})
   if(NOT STILLPOINT_PRECOMPILE OR TARGET ${host})
     return()
   endif()
@@ -40,14 +41,14 @@ function(stillpoint_precompiled_headers set)
 endfunction()
 
 # stillpoint_precompile(TARGET SET): uses the headers of SET, which are compiled once for all targets with the same options,
-# and the options of SET. The few position-independent libraries, whose options differ, are compiled without.
+# and the options of SET. The few position-independent libraries of bench are compiled without.
 function(stillpoint_precompile target set)
   target_compile_options(${target} PRIVATE ${stillpoint_options_${set}})
-  if(NOT STILLPOINT_PRECOMPILE OR CMAKE_POSITION_INDEPENDENT_CODE)
+  if(NOT STILLPOINT_PRECOMPILE OR (set STREQUAL "bench" AND stillpoint_pic_suffix))
     return()
   endif()
   stillpoint_precompiled_headers(${set})
-  target_precompile_headers(${target} REUSE_FROM stillpoint_precompiled_${set})
+  target_precompile_headers(${target} REUSE_FROM stillpoint_precompiled_${set}${stillpoint_pic_suffix})
 endfunction()
 
 # stillpoint_group(TARGET [ACROSS_FOLDERS] [EXCEPT regex]): compiles the sources of TARGET in groups, of one folder or of

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import stillpoint
 
-MODULES = ["eval", "store"]
+MODULES = ["datasets", "eval", "odometry", "store"]
 FOLDER = Path(stillpoint.__file__).parent
 
 

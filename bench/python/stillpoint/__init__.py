@@ -4,6 +4,8 @@
 The modules are loaded when they are first used:
   stillpoint.eval      trajectories, association, alignment, metrics and protocols
   stillpoint.store     stores of results, their statistics and comparisons
+  stillpoint.datasets  sequences of any format: frames, inertial samples and truth as arrays
+  stillpoint.Odometry  the odometry, fed by a loop of yours
   stillpoint.run       a run of the odometry by the program
 """
 
@@ -11,9 +13,10 @@ import importlib.util
 
 from ._eval import InputError
 
-__all__ = ["InputError", "DataWarning", "eval", "run", "store"]
+_MODULES = ("datasets", "eval", "store")
+_FUNCTIONS = {"Odometry": "odometry", "RecordedDetector": "odometry", "load_config": "odometry", "run": "runs"}
 
-_MODULES = ("eval", "store")
+__all__ = ["InputError", "DataWarning", *_MODULES, *_FUNCTIONS]
 
 
 class DataWarning(UserWarning):
@@ -21,13 +24,13 @@ class DataWarning(UserWarning):
 
 
 def __getattr__(name):
-    if name == "run":
-        return importlib.import_module(".runs", __name__).run
-    if name in _MODULES and importlib.util.find_spec(f"{__name__}._{name}"):
-        return importlib.import_module("." + name, __name__)
-    if name in _MODULES:
+    module = _FUNCTIONS.get(name, name if name in _MODULES else None)
+    if module is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if module != "runs" and importlib.util.find_spec(f"{__name__}._{module}") is None:
         raise AttributeError(f"stillpoint.{name} is not part of this installation; install python3-stillpoint")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    loaded = importlib.import_module("." + module, __name__)
+    return getattr(loaded, name) if name in _FUNCTIONS else loaded
 
 
 def __dir__():

@@ -5,6 +5,7 @@ Poses are T_w_f, from the body frame f to a world w; lengths are in m, angles in
 int64 nanoseconds, quaternions are (x, y, z, w). A function that has no result for its data returns None.
 """
 
+import importlib.util
 import warnings
 
 from . import DataWarning, InputError, _eval
@@ -12,12 +13,20 @@ from ._eval import *  # noqa: F401,F403
 from ._eval import ProtocolOptions, Trajectory, evaluate_protocol, load_trajectory, require_overlap
 
 
+def _load_bag_topic(path):
+    """What BAG:/TOPIC has; None for other paths, and without stillpoint.datasets, which reads bags."""
+    if ":" not in path or importlib.util.find_spec("stillpoint._datasets") is None:
+        return None
+    return importlib.import_module("stillpoint._datasets").load_bag_trajectory(path)
+
+
 def read_trajectory(path, format=None, times="", sequence=0):
-    """Reads a trajectory of any format of `load_trajectory`, and warns of rows that were skipped or sorted.
+    """Reads a trajectory of any format of `load_trajectory`, or the topic of a bag ("run.bag:/odom"), and warns of rows that were
+    skipped or sorted.
 
     Raises InputError for malformed input.
     """
-    loaded = load_trajectory(path, format, times, sequence)
+    loaded = _load_bag_topic(str(path)) or load_trajectory(path, format, times, sequence)
     for repair in loaded.repairs:
         warnings.warn(f"{path}: {repair}", DataWarning, stacklevel=2)
     if loaded.order_is_assumed:

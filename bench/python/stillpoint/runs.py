@@ -42,6 +42,17 @@ def _text(value):
     return json.dumps(value) if isinstance(value, (list, tuple)) else str(value)
 
 
+def overriding(overrides):
+    """The arguments that override config keys."""
+    return [text for key, value in (overrides or {}).items() for text in ("--set", f"{key}={_text(value)}")]
+
+
+def error_of(output):
+    """The message of the program that failed."""
+    errors = [line[len(_ERROR) :] for line in output.splitlines() if line.startswith(_ERROR)]
+    return errors[-1] if errors else output.strip()
+
+
 def run(sequence, config=None, overrides=None, *, out=None, options=()):
     """Runs the odometry on a sequence folder, bag or preset, and returns a Run.
 
@@ -53,14 +64,12 @@ def run(sequence, config=None, overrides=None, *, out=None, options=()):
         folder = Path(out) if out is not None else Path(scratch) / "run"
         command = [program_path(), "run", str(sequence), "--out", str(folder), *map(str, options)]
         command += ["--config", str(config)] if config is not None else []
-        for key, value in (overrides or {}).items():
-            command += ["--set", f"{key}={_text(value)}"]
+        command += overriding(overrides)
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
         if done.returncode == 130:
             raise KeyboardInterrupt
         if done.returncode == 2:
-            errors = [line[len(_ERROR) :] for line in done.stderr.splitlines() if line.startswith(_ERROR)]
-            raise InputError(errors[-1] if errors else done.stderr.strip())
+            raise InputError(error_of(done.stderr))
         path = folder / "result.json"
         if not path.exists():
             raise RuntimeError(f"{' '.join(command)}: exit status {done.returncode}: {done.stderr.strip()}")
