@@ -75,6 +75,18 @@ std::vector<double> path_lengths(MatchView matches, PathOf of) {
   return lengths;
 }
 
+std::vector<double> path_angles_deg(MatchView matches) {
+  std::vector<double> angles;
+  angles.reserve(matches.size());
+  Eigen::Quaterniond previous = Eigen::Quaterniond::Identity();
+  for (const MatchedPose& match : matches) {
+    const double step = kDegrees * rotation_angle(previous.conjugate() * match.gt.q);
+    angles.push_back(angles.empty() ? 0.0 : angles.back() + step);
+    previous = match.gt.q;
+  }
+  return angles;
+}
+
 PosePairs pairs_over_meters(std::span<const double> lengths_m, double delta_m, double tolerance_m) {
   PosePairs result;
   result.pairs.reserve(lengths_m.size());
@@ -168,16 +180,20 @@ double median_interval(MatchView matches) {
   return percentile(intervals, 0.5).value_or(0.0);
 }
 
+/// Length of a step between consecutive poses in a unit that is not the time.
+double step_of(const Pose& from, const Pose& to, RpeUnit unit) {
+  if (unit == RpeUnit::kFrames) return 1.0;
+  if (unit == RpeUnit::kMeters) return (to.p - from.p).norm();
+  return kDegrees * rotation_angle(from.q.conjugate() * to.q);
+}
+
 /// Per pose, the coordinate in which delta is measured.
 std::vector<double> axis_of(const Trajectory& est, RpeUnit unit) {
   if (unit == RpeUnit::kSeconds) return stamps_of(est);
   std::vector<double> axis;
   axis.reserve(est.poses.size());
   for (std::size_t i = 0; i < est.poses.size(); ++i) {
-    const double step = i == 0                     ? 0.0
-                        : unit == RpeUnit::kFrames ? 1.0
-                                                   : (est.poses[i].T_w_f.p - est.poses[i - 1].T_w_f.p).norm();
-    axis.push_back(i == 0 ? 0.0 : axis.back() + step);
+    axis.push_back(i == 0 ? 0.0 : axis.back() + step_of(est.poses[i - 1].T_w_f, est.poses[i].T_w_f, unit));
   }
   return axis;
 }

@@ -72,9 +72,12 @@ struct PosePairs {
 enum class PathOf { kGroundTruth, kEstimate };
 [[nodiscard]] std::vector<double> path_lengths(MatchView matches, PathOf of);
 
+/// Rotation angle of the ground truth from the first match to each, summed over consecutive ones [deg].
+[[nodiscard]] std::vector<double> path_angles_deg(MatchView matches);
+
 /// Pairs every match with the later one whose path length from it is closest to `delta_m`, the first of
-/// equally close ones. Pairs that miss `delta_m` by more than `tolerance_m` are dropped. Same pairs as evo's
-/// all_pairs in meters, which has a tolerance of 10 %.
+/// equally close ones. Also for angles, in degrees. Pairs that miss `delta_m` by more than `tolerance_m` are
+/// dropped. Same pairs as evo's all_pairs in meters, which has a tolerance of 10 %.
 /// @param lengths_m non-decreasing, as from `path_lengths`
 /// @param delta_m desired path length between the matches of a pair
 /// @param tolerance_m inclusive
@@ -95,9 +98,12 @@ struct RelativeErrors {
 [[nodiscard]] RelativeErrors relative_errors(MatchView matches, std::span<const PosePair> pairs,
                                              bool with_yaw = true, RelativeErrors recycled = {});
 
-enum class RpeUnit { kSeconds, kFrames, kMeters };
+enum class RpeUnit { kSeconds, kFrames, kMeters, kDegrees };
 constexpr auto enum_names(RpeUnit) {
-  return EnumNames<RpeUnit, 3>{{{RpeUnit::kSeconds, "s"}, {RpeUnit::kFrames, "f"}, {RpeUnit::kMeters, "m"}}};
+  return EnumNames<RpeUnit, 4>{{{RpeUnit::kSeconds, "s"},
+                                {RpeUnit::kFrames, "f"},
+                                {RpeUnit::kMeters, "m"},
+                                {RpeUnit::kDegrees, "deg"}}};
 }
 
 struct RpeOptions {
@@ -113,10 +119,10 @@ struct RpeResult {
   std::size_t dropped_gt = 0;  ///< pairs without ground truth within twice its median interval
 };
 
-/// RPE of the TUM tools, see above; t is the time, the index or the path length of a pose, depending on the
-/// unit. As in the tool there is no limit on |t_j - (t_i + delta)|, and a pair is dropped if j is the last
-/// pose. Alignment does not affect the result. Uses all pairs; the tool samples 10000 of them at random if
-/// there are more.
+/// RPE of the TUM tools, see above; t is the time, the index, the path length or the summed rotation angle of
+/// a pose, depending on the unit. As in the tool there is no limit on |t_j - (t_i + delta)|, and a pair is
+/// dropped if j is the last pose. Alignment does not affect the result. Uses all pairs; the tool samples
+/// 10000 of them at random if there are more.
 /// @return nullopt if no pair of two poses is left
 [[nodiscard]] std::optional<RpeResult> rpe(const Trajectory& gt, const Trajectory& est,
                                            const RpeOptions& options = {});

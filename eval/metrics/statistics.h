@@ -2,11 +2,15 @@
 /// Summary statistics of a list of errors, with the definitions of the TUM tools and evo.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 
 namespace stillpoint::eval {
+
+/// Percentiles that `Statistics` has, above the median and rising.
+inline constexpr std::array<int, 4> kPercentiles{75, 90, 95, 99};
 
 /// In the unit of the values; `sse` in its square.
 struct Statistics {
@@ -17,7 +21,8 @@ struct Statistics {
   double std = 0.0;     ///< of the population: sqrt(1/n sum (x - mean)^2)
   double min = 0.0;
   double max = 0.0;
-  double sse = 0.0;  ///< sum of squares
+  double sse = 0.0;                                       ///< sum of squares
+  std::array<double, kPercentiles.size()> percentiles{};  ///< those of `kPercentiles`, see `percentile`
 };
 
 /// @return nullopt for an empty list, which is reported as "n/a", never as 0

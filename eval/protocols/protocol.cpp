@@ -126,7 +126,7 @@ RpeEvaluation evo_rpe(MatchView matches, const ProtocolOptions& options) {
     if (options.rpe_delta < 1.0) throw InputError("--rpe-delta", "must be 1 frame or more");
     pairs = pairs_over_frames(matches.size(), static_cast<std::size_t>(options.rpe_delta), false);
   } else {
-    result.notes.emplace_back("evo has no RPE over seconds; use --rpe-unit f or m");
+    result.notes.emplace_back("compat:evo has no RPE over seconds or degrees; use --rpe-unit f or m");
   }
   const RelativeErrors errors = relative_errors(matches, pairs);
   result.pairs = pairs.size();
@@ -225,6 +225,7 @@ Evaluation evaluate_compat_openloris(const EvaluationInput& input) {
 }
 
 constexpr double kSegmentTolerance = 0.02;  // relative to the length of the segment, or to delta in meters
+constexpr double kAngleTolerance = 0.1;     // relative to delta in degrees
 constexpr double kMaxHold = 1.0;            // [s], validity of a pose
 constexpr double kStrictMaxGap = 0.11;      // [s], to each neighbor in the ground truth
 
@@ -267,7 +268,7 @@ std::vector<std::string> association_notes(const EvaluationInput& input, std::si
 RpeEvaluation strict_rpe_evaluation(MatchView matches, const ProtocolOptions& options) {
   if (options.rpe_unit == RpeUnit::kFrames) {
     throw InputError("--rpe-unit f",
-                     "frame deltas are not comparable across runs; strict protocols support s and m");
+                     "frame deltas are not comparable across runs; strict protocols support s, m and deg");
   }
   RpeEvaluation rpe;
   std::size_t dropped = 0;
@@ -280,9 +281,11 @@ RpeEvaluation strict_rpe_evaluation(MatchView matches, const ProtocolOptions& op
       rpe.pairs = result.errors->translation_m.count;
     }
   } else {
-    const std::vector<double> lengths = path_lengths(matches, PathOf::kGroundTruth);
-    const PosePairs found =
-        pairs_over_meters(lengths, options.rpe_delta, kSegmentTolerance * options.rpe_delta);
+    const bool by_angle = options.rpe_unit == RpeUnit::kDegrees;
+    const std::vector<double> lengths =
+        by_angle ? path_angles_deg(matches) : path_lengths(matches, PathOf::kGroundTruth);
+    const double tolerance = by_angle ? kAngleTolerance : kSegmentTolerance;
+    const PosePairs found = pairs_over_meters(lengths, options.rpe_delta, tolerance * options.rpe_delta);
     const RelativeErrors errors = relative_errors(matches, found.pairs);
     dropped = found.dropped;
     rpe.pairs = found.pairs.size();

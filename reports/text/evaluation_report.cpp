@@ -31,7 +31,8 @@ std::optional<double> rmse(const std::optional<eval::Statistics>& values) {
 std::string unit_of(const eval::Evaluation& evaluation) {
   const char* const unit = evaluation.rpe_unit == eval::RpeUnit::kSeconds  ? "s"
                            : evaluation.rpe_unit == eval::RpeUnit::kFrames ? "frames"
-                                                                           : "m";
+                           : evaluation.rpe_unit == eval::RpeUnit::kMeters ? "m"
+                                                                           : "deg";
   return fmt::format("{:g} {}", evaluation.rpe_delta, unit);
 }
 
@@ -77,6 +78,30 @@ std::string evaluation_table(const std::vector<EvaluatedRun>& runs, TableStyle s
     }
   }
   return format_table(rows, style) + few.note();
+}
+
+std::string statistics_table(const std::vector<EvaluatedRun>& runs, TableStyle style) {
+  TableRows rows{{"estimate", "protocol", "error", "n", "RMSE", "mean", "std", "median"}};
+  for (const int percent : eval::kPercentiles) rows.front().push_back(fmt::format("{} %", percent));
+  rows.front().emplace_back("max");
+  for (const EvaluatedRun& run : runs) {
+    for (const eval::Evaluation& e : run.evaluations) {
+      const auto add = [&](const std::string& name, const std::optional<eval::Statistics>& values) {
+        if (!values) return;
+        std::vector<std::string> row{run.name, e.protocol, name, std::to_string(values->count)};
+        for (const double value : {values->rmse, values->mean, values->std, values->median})
+          row.push_back(cell(value, 6));
+        for (const double value : values->percentiles) row.push_back(cell(value, 6));
+        row.push_back(cell(values->max, 6));
+        rows.push_back(std::move(row));
+      };
+      add("ATE [m]", e.ate_m);
+      add("ATE [deg]", e.ate_deg);
+      add(fmt::format("RPE over {} [m]", unit_of(e)), e.rpe_m);
+      add(fmt::format("RPE over {} [deg]", unit_of(e)), e.rpe_deg);
+    }
+  }
+  return format_table(rows, style);
 }
 
 std::string covariance_table(const std::vector<EvaluatedRun>& runs, TableStyle style) {
@@ -180,9 +205,12 @@ Json number(const std::optional<double>& value) { return value ? Json(*value) : 
 
 Json statistics_json(const std::optional<eval::Statistics>& values) {
   if (!values) return nullptr;
-  return {{"count", values->count},   {"rmse", values->rmse}, {"mean", values->mean},
-          {"median", values->median}, {"std", values->std},   {"min", values->min},
-          {"max", values->max},       {"sse", values->sse}};
+  Json json{{"count", values->count},   {"rmse", values->rmse}, {"mean", values->mean},
+            {"median", values->median}, {"std", values->std},   {"min", values->min},
+            {"max", values->max},       {"sse", values->sse}};
+  for (std::size_t i = 0; i < eval::kPercentiles.size(); ++i)
+    json[fmt::format("percentile_{}", eval::kPercentiles[i])] = values->percentiles[i];
+  return json;
 }
 
 std::optional<double> rmse_per(const std::optional<eval::Statistics>& values, double delta) {
@@ -266,6 +294,27 @@ Json covariance_json(const eval::CovarianceScore& score) {
   return {{"poses", score.poses},
           {"position", quality_json(score.position)},
           {"rotation", quality_json(score.rotation)}};
+}
+
+std::string hand_eye_text(const eval::HandEye& found) {
+  const auto& [q, p] = found.T_f_g;
+  return fmt::format(
+      "hand-eye calibration, applied: body of the ground truth at "
+      "{:.6f},{:.6f},{:.6f},{:.8f},{:.8f},{:.8f},{:.8f} in that "
+      "of the estimate, time offset {:+.5f} s; left are {:.4g} m and {:.3g} deg. The errors above are "
+      "smaller by what "
+      "was fitted",
+      p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), found.offset_s, found.position_rmse_m,
+      found.rotation_rmse_deg);
+}
+
+Json hand_eye_json(const eval::HandEye& found) {
+  const auto& [q, p] = found.T_f_g;
+  return {{"body_translation_m", {p.x(), p.y(), p.z()}},
+          {"body_quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+          {"offset_s", found.offset_s},
+          {"position_rmse_m", found.position_rmse_m},
+          {"rotation_rmse_deg", found.rotation_rmse_deg}};
 }
 
 Json evaluation_json(const eval::Evaluation& evaluation) {

@@ -10,6 +10,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "eval/compare/common_support.h"
+#include "eval/compare/hand_eye.h"
 #include "eval/io/trajectory_file.h"
 #include "eval/metrics/consistency.h"
 #include "eval/openloris/benchmark.h"
@@ -25,16 +26,24 @@ struct EvaluatedRun {
   eval::RowRepairs repairs = {};  ///< of the file of the estimate
   std::vector<eval::Evaluation> evaluations;
   std::optional<eval::CovarianceScore> covariance = std::nullopt;  ///< of estimates that bring covariances
+  std::optional<eval::HandEye> hand_eye = std::nullopt;            ///< applied to `est`
 };
 
 /// One row per estimate and protocol; "n/a" without data. Coverage precedes the errors. An RPE of few pairs
 /// has an asterisk and a line below the table, but in CSV, whose column "RPE pairs" tells it.
 [[nodiscard]] std::string evaluation_table(const std::vector<EvaluatedRun>& runs, TableStyle style);
 
+/// Statistics of the errors of each evaluation: RMSE, mean, standard deviation, median, percentiles, maximum.
+[[nodiscard]] std::string statistics_table(const std::vector<EvaluatedRun>& runs, TableStyle style);
+
 /// Two rows per estimate with covariances, the most consistent position first; empty without one.
 [[nodiscard]] std::string covariance_table(const std::vector<EvaluatedRun>& runs, TableStyle style);
 
 [[nodiscard]] nlohmann::ordered_json covariance_json(const eval::CovarianceScore& score);
+
+/// Body transform and time offset, and the errors that they leave.
+[[nodiscard]] std::string hand_eye_text(const eval::HandEye& found);
+[[nodiscard]] nlohmann::ordered_json hand_eye_json(const eval::HandEye& found);
 
 /// The ranking on the common support; few RPE pairs are marked as in `evaluation_table`.
 [[nodiscard]] std::string comparison_table(const eval::Comparison& comparison, TableStyle style);

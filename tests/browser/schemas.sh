@@ -39,6 +39,7 @@ evaluate() {
 evaluate one "$estimate"
 evaluate several "$estimate" "$work/realtime/trajectory.tum" --protocol compat:tum --protocol strict:se3 --protocol compat:rpg
 evaluate meters "$estimate" --rpe-unit m --rpe-delta 0.1 --align yaw
+evaluate intervals "$estimate" --rpe-delta 0.2 --rpe-delta 5deg --rpe-delta 0.1m
 head -n 3 "$estimate" >"$work/short.tum"
 evaluate short "$work/short.tum"
 

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/geometry/so3.h"
 #include "eval/io/openloris_file.h"
 #include "eval/io/trajectory_file.h"
 #include "tests/support/program.h"
@@ -303,6 +304,53 @@ TEST(EvalCommand, TheComparisonFollowsTheOptionsOrNamesThem) {
       nlohmann::json({"--rpe-delta 1 --rpe-unit m", "--align-first 50", "the association of compat:tum"}));
   const ProgramResult text = run_program({"eval", gt, scaled, rigid, "--align-first", "50"});
   EXPECT_NE(text.out.find("; not followed: --align-first 50"), std::string::npos) << text.out;
+}
+
+TEST(EvalCommand, EvaluatesEveryIntervalOfRelativeErrors) {
+  const PathFiles files;
+  const auto evaluations =
+      eval_json({files.gt, files.est}, {"--protocol", "strict:se3", "--rpe-delta", "1", "--rpe-delta", "0.5m",
+                                        "--rpe-delta", "5deg", "--protocol", "compat:tum"})
+          .at("evaluations");
+  ASSERT_EQ(evaluations.size(), 6U);
+  const char* const units[] = {"s", "m", "deg"};
+  for (std::size_t i = 0; i < evaluations.size(); ++i) {
+    EXPECT_EQ(evaluations.at(i).at("rpe_unit"), units[i % 3]);
+    EXPECT_GT(evaluations.at(i).at("rpe_pairs"), 10);
+  }
+}
+
+TEST(EvalCommand, PrintsStatisticsOfTheErrors) {
+  const PathFiles files;
+  const ProgramResult result =
+      run_program({"eval", files.gt, files.est, "--statistics", "--protocol", "strict:se3", "--csv"});
+  EXPECT_NE(result.out.find("estimate,protocol,error,n,RMSE,mean,std,median,75 %,90 %,95 %,99 %,max"),
+            std::string::npos)
+      << result.out << result.err;
+  EXPECT_NE(result.out.find("RPE over 1 s [deg]"), std::string::npos);
+}
+
+TEST(EvalCommand, SolvesForBodyFrameAndClock) {
+  const TemporaryFolder folder;
+  const auto pose_at = [](double t) {
+    return Pose{exp_so3({0.4 * std::sin(1.3 * t), 0.3 * std::cos(0.9 * t), 0.5 * std::sin(0.4 * t)}),
+                {2.0 * std::sin(0.5 * t), 1.5 * std::cos(0.7 * t), 0.3 * std::sin(t)}};
+  };
+  const Pose T_f_g{exp_so3({0.0, 0.0, 0.7}), {0.1, 0.0, -0.2}};
+  Trajectory gt;
+  Trajectory est;
+  for (int i = 0; i <= 2000; ++i)
+    gt.poses.emplace_back(from_seconds(0.01 * i + 0.05), pose_at(0.01 * i) * T_f_g);
+  for (int i = 20; i < 380; ++i) est.poses.emplace_back(from_seconds(0.05 * i), pose_at(0.05 * i));
+  const std::string truth = folder.write("gt.txt", eval::format_tum(gt)).string();
+  const std::string estimate = folder.write("est.txt", eval::format_tum(est)).string();
+  const auto json = eval_json({truth, estimate}, {"--align", "hand-eye"});
+  EXPECT_NEAR(json.at("hand_eye").at("offset_s").get<double>(), 0.05, 1e-3);
+  EXPECT_NEAR(json.at("hand_eye").at("body_translation_m").at(2).get<double>(), -0.2, 1e-3);
+  EXPECT_LT(json.at("ate_rmse_m"), 1e-3);
+  EXPECT_GT(eval_json({truth, estimate}, {"--align", "se3"}).at("ate_rmse_m"), 0.02);
+  EXPECT_EQ(eval_json({truth, estimate}, {"--align", "posyaw"}).at("ate_rmse_m"),
+            eval_json({truth, estimate}, {"--align", "yaw"}).at("ate_rmse_m"));
 }
 
 TEST(EvalCommand, AnOffsetThatIsAppliedIsNoWarning) {

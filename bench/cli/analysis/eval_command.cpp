@@ -16,8 +16,10 @@
 #include "bench/cli/command_line.h"
 #include "bench/record/result_values.h"
 #include "core/base/error.h"
+#include "eval/compare/hand_eye.h"
 #include "eval/compare/time_offset.h"
 #include "eval/protocols/protocol.h"
+#include "eval/trajectory/alignment.h"
 #include "eval/trajectory/association.h"
 #include "reports/drawing/figures.h"
 
@@ -74,13 +76,36 @@ std::string display_name(const std::string& path, const std::vector<std::string>
   return same > 1 || name_of(path).empty() ? path : name_of(path).string();
 }
 
+/// Evaluates with a protocol and each interval of relative errors. Those after the first only have the notes
+/// that the first one does not have.
+std::vector<eval::Evaluation> evaluate_over_deltas(const std::string& protocol,
+                                                   const eval::EvaluationInput& input,
+                                                   const std::vector<RpeDelta>& deltas) {
+  std::vector<eval::Evaluation> evaluations;
+  for (const RpeDelta& delta : deltas) {
+    eval::ProtocolOptions options = input.options;
+    options.rpe_delta = delta.value;
+    options.rpe_unit = delta.unit;
+    options.per_pose = options.per_pose && evaluations.empty();
+    eval::Evaluation evaluation = eval::evaluate(protocol, {input.gt, input.est, options});
+    if (!evaluations.empty()) {
+      const std::vector<std::string>& known = evaluations.front().notes;
+      std::erase_if(evaluation.notes,
+                    [&](const std::string& note) { return std::ranges::find(known, note) != known.end(); });
+    }
+    evaluations.push_back(std::move(evaluation));
+  }
+  return evaluations;
+}
+
 /// Evaluates with compat:tum and strict:se3. Where the strict protocol rejects the data, it is omitted, as it
 /// was not requested explicitly.
-std::vector<eval::Evaluation> evaluate_by_default(const eval::EvaluationInput& input,
-                                                  const std::string& name) {
-  std::vector<eval::Evaluation> evaluations{eval::evaluate("compat:tum", input)};
+std::vector<eval::Evaluation> evaluate_by_default(const eval::EvaluationInput& input, const std::string& name,
+                                                  const std::vector<RpeDelta>& deltas) {
+  std::vector<eval::Evaluation> evaluations = evaluate_over_deltas("compat:tum", input, deltas);
   try {
-    evaluations.push_back(eval::evaluate("strict:se3", input));
+    for (eval::Evaluation& evaluation : evaluate_over_deltas("strict:se3", input, deltas))
+      evaluations.push_back(std::move(evaluation));
   } catch (const InputError& error) {
     spdlog::warn("{}: omitted: {}", name, error.what());
   }
@@ -97,10 +122,24 @@ std::optional<Eigen::Quaterniond> leveling_rotation(const EvalArguments& argumen
   return std::filesystem::exists(result) ? read_leveling_rotation(result) : std::nullopt;
 }
 
+/// The estimate with the body frame and clock of the ground truth.
+/// @throws InputError if the motion does not determine them
+report::EvaluatedRun hand_eye_calibrated(const EvalArguments& arguments, const Trajectory& gt,
+                                         report::EvaluatedRun run) {
+  if (arguments.offset_s != 0.0) throw InputError("--align hand-eye", "solves for the offset; omit --offset");
+  const eval::HandEye found = eval::hand_eye(gt, run.est);
+  if (!found.undetermined.empty()) throw InputError(run.name, "hand-eye calibration: " + found.undetermined);
+  run.est = eval::move_to_frame(run.est, found.T_f_g, gt.frame);
+  for (StampedPose& pose : run.est.poses) pose.t = after(pose.t, found.offset_s);
+  run.hand_eye = found;
+  return run;
+}
+
 /// @param files ground truth and estimates, whose poses move to the result
 std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, std::span<PoseFile> files) {
   const Trajectory& gt = files.front().loaded.trajectory;
   eval::ProtocolOptions options = protocol_options(arguments);
+  const std::vector<RpeDelta> deltas = rpe_deltas(arguments);
   std::vector<report::EvaluatedRun> runs;
   for (PoseFile& file : files.subspan(1)) {
     const std::string& path = file.path;
@@ -109,15 +148,18 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, s
                              .covariance = covariance_score_of(arguments, gt, file)};
     run.est = std::move(file.loaded.trajectory);
     run.repairs = file.loaded.repairs;
+    if (arguments.alignment == kHandEyeAlignment) run = hand_eye_calibrated(arguments, gt, std::move(run));
     if (has_failed(run) && arguments.files.estimates.size() == 1)
       throw InputError(path, "has one pose: a failed run, of which no error can be computed");
     const bool comparable = !arguments.find_offset && !has_failed(run);
     if (comparable) eval::require_overlap(gt, run.est, arguments.offset_s, path);
     options.q_level_w = leveling_rotation(arguments, path);
     const eval::EvaluationInput input{gt, run.est, options};
-    for (const std::string& protocol : arguments.protocols)
-      run.evaluations.push_back(eval::evaluate(protocol, input));
-    if (arguments.protocols.empty()) run.evaluations = evaluate_by_default(input, run.name);
+    for (const std::string& protocol : arguments.protocols) {
+      for (eval::Evaluation& evaluation : evaluate_over_deltas(protocol, input, deltas))
+        run.evaluations.push_back(std::move(evaluation));
+    }
+    if (arguments.protocols.empty()) run.evaluations = evaluate_by_default(input, run.name, deltas);
     if (comparable) require_matches(gt, run);
     runs.push_back(std::move(run));
   }
@@ -150,6 +192,7 @@ int evaluate_files(const EvalArguments& arguments) {
     throw InputError("command line", "eval requires a ground truth and an estimate; try --help");
   }
   const OutputRules rules = output_rules(arguments);
+  static_cast<void>(protocol_options(arguments));  // refuses options before the files are read
   require_figures(arguments, rules);
   if (!arguments.per_pose.empty()) require_safe_output(arguments.per_pose, rules);
   std::vector<PoseFile> files = with_consistent_orders(read_pose_files(arguments.files), arguments.offset_s);
@@ -181,11 +224,17 @@ std::vector<Option> options_of(EvalArguments& a) {
        &a.protocols,
        {},
        "--recipe"},
-      {"--align", "Override the alignment of the protocol: " + enum_list<eval::Alignment>(), &a.alignment},
+      {"--align",
+       "Override the alignment of the protocol: " + enum_list<eval::Alignment>() +
+           ", posyaw (yaw), origin (first_pose), hand-eye (body frame and time offset are solved, then se3)",
+       &a.alignment},
       {"--align-first", "Align with the first N matches only", &a.align_first, {1, 1e9}},
       {"--level", "File with leveling_rotation_xyzw, for alignment yaw [result.json beside EST]", &a.level},
-      {"--rpe-delta", "RPE interval, in units of --rpe-unit", &a.rpe_delta, {1e-6, 1e6}},
-      {"--rpe-unit", "Unit of the RPE interval: s, f (frames) or m", &a.rpe_unit},
+      {"--rpe-delta", "RPE interval: 1 (in --rpe-unit), 1s, 10f, 5m, 30deg; may be repeated [1]",
+       &a.rpe_deltas},
+      {"--rpe-unit", "Unit of RPE intervals without one: s, f (frames), m or deg", &a.rpe_unit},
+      {"--statistics", "Print mean, standard deviation, median, percentiles and maximum of the errors",
+       &a.statistics},
       {"--offset", "Offset to add to the time stamps of the estimate [s]", &a.offset_s, {-1e9, 1e9}},
       {"--find-offset", "Estimate the time offset and print it, without applying it", &a.find_offset},
       {"--max-difference",

@@ -42,9 +42,15 @@ std::vector<report::FigureKind> figure_kinds(const EvalArguments& arguments) {
   for (const std::string& name : arguments.figures) {
     if (name == "all") {
       for (const auto& [kind, known] : enum_names(report::FigureKind{})) kinds.push_back(kind);
-    } else {
-      kinds.push_back(enum_of<report::FigureKind>("--figure", name));
+      continue;
     }
+    const auto names = enum_names(report::FigureKind{});
+    const auto found = std::ranges::find(names, name, [](const auto& entry) { return entry.second; });
+    if (found == names.end()) {
+      throw InputError("--figure", fmt::format("unknown value \"{}\"; expected one of: {}, all", name,
+                                               enum_list<report::FigureKind>()));
+    }
+    kinds.push_back(found->first);
   }
   if (kinds.empty()) kinds = {report::FigureKind::kPath, report::FigureKind::kError};
   return kinds;

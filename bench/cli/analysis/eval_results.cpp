@@ -14,19 +14,50 @@
 #include "bench/model/metrics.h"
 #include "bench/model/stored_run.h"
 #include "bench/record/result_values.h"
+#include "core/base/error.h"
 #include "eval/compare/common_support.h"
 #include "eval/compare/conventions.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::bench {
+
+std::vector<RpeDelta> rpe_deltas(const EvalArguments& arguments) {
+  const auto default_unit = enum_of<eval::RpeUnit>("--rpe-unit", arguments.rpe_unit);
+  std::vector<RpeDelta> deltas;
+  for (const std::string& text : arguments.rpe_deltas) {
+    const std::size_t end = std::min(text.find_first_not_of("0123456789.eE+-"), text.size());
+    const std::string option = "--rpe-delta " + text;
+    const auto value = eval::parse_number(std::string_view(text).substr(0, end));
+    if (!value || !(*value >= 1e-6 && *value <= 1e6))
+      throw InputError(option,
+                       "must be from 1e-06 to 1e+06, not " + text + "; a unit s, f, m or deg may follow");
+    deltas.push_back(
+        {*value, end == text.size() ? default_unit : enum_of<eval::RpeUnit>(option, text.substr(end))});
+  }
+  if (deltas.empty()) deltas.push_back({.unit = default_unit});
+  return deltas;
+}
+
+namespace {
+
+/// Other names of alignments: posyaw of rpg_trajectory_evaluation, origin of evo.
+std::string alignment_text(const EvalArguments& arguments) {
+  if (arguments.alignment == "posyaw") return "yaw";
+  if (arguments.alignment == "origin") return "first_pose";
+  return arguments.alignment == kHandEyeAlignment ? "se3" : arguments.alignment;
+}
+
+}  // namespace
 
 eval::ProtocolOptions protocol_options(const EvalArguments& arguments) {
   eval::ProtocolOptions options;
   if (!arguments.alignment.empty())
-    options.alignment = enum_of<eval::Alignment>("--align", arguments.alignment);
+    options.alignment = enum_of<eval::Alignment>("--align", alignment_text(arguments));
   options.align_first_n = static_cast<std::size_t>(arguments.align_first);
   if (arguments.max_difference_s > 0.0) options.max_difference_s = arguments.max_difference_s;
-  options.rpe_delta = arguments.rpe_delta;
-  options.rpe_unit = enum_of<eval::RpeUnit>("--rpe-unit", arguments.rpe_unit);
+  const RpeDelta first = rpe_deltas(arguments).front();
+  options.rpe_delta = first.value;
+  options.rpe_unit = first.unit;
   options.offset_s = arguments.offset_s;
   options.per_pose = !arguments.plot.empty() || !arguments.map.empty() || !arguments.per_pose.empty();
   return options;
@@ -56,6 +87,14 @@ std::vector<std::string> warnings_about(const EvalArguments& arguments, const Tr
   return warnings;
 }
 
+template <class Enum>
+std::string_view name_of(Enum value) {
+  for (const auto& [known, name] : enum_names(value)) {
+    if (known == value) return name;
+  }
+  return "?";
+}
+
 /// How the comparison follows the options, and which of them it cannot follow.
 struct ComparisonSetup {
   eval::CompareOptions options;
@@ -77,11 +116,12 @@ ComparisonSetup comparison_setup(const EvalArguments& arguments) {
   ComparisonSetup setup;
   setup.options.alignment = comparison_alignment(arguments);
   if (arguments.max_difference_s > 0.0) setup.options.max_gap_s = arguments.max_difference_s;
-  if (arguments.rpe_unit == "s") {
-    setup.options.rpe_delta_s = arguments.rpe_delta;
-  } else {
+  const std::vector<RpeDelta> deltas = rpe_deltas(arguments);
+  if (deltas.front().unit == eval::RpeUnit::kSeconds) setup.options.rpe_delta_s = deltas.front().value;
+  for (std::size_t k = 0; k < deltas.size(); ++k) {
+    if (k == 0 && deltas[k].unit == eval::RpeUnit::kSeconds) continue;
     setup.ignored.push_back(
-        fmt::format("--rpe-delta {:g} --rpe-unit {}", arguments.rpe_delta, arguments.rpe_unit));
+        fmt::format("--rpe-delta {:g} --rpe-unit {}", deltas[k].value, name_of(deltas[k].unit)));
   }
   if (arguments.align_first > 0)
     setup.ignored.push_back(fmt::format("--align-first {}", arguments.align_first));
@@ -99,19 +139,12 @@ eval::Comparison compare(const EvalArguments& arguments, const Trajectory& gt,
   return eval::compare_runs(gt, named, comparison_setup(arguments).options);
 }
 
-std::string_view alignment_name(eval::Alignment alignment) {
-  for (const auto& [kind, name] : enum_names(alignment)) {
-    if (kind == alignment) return name;
-  }
-  return "?";
-}
-
 std::string comparison_heading(const ComparisonSetup& setup, double common_s) {
   return fmt::format(
       "\nComparison over {:.2f} s for which all successful runs have poses (ground truth interpolated "
       "between "
       "neighbors less than {:g} s away, alignment {}, relative errors over {:g} s{}{}):\n",
-      common_s, setup.options.max_gap_s, alignment_name(setup.options.alignment), setup.options.rpe_delta_s,
+      common_s, setup.options.max_gap_s, name_of(setup.options.alignment), setup.options.rpe_delta_s,
       setup.ignored.empty() ? "" : "; not followed: ", fmt::join(setup.ignored, ", "));
 }
 
@@ -120,7 +153,7 @@ Json comparison_document(const EvalArguments& arguments, const Trajectory& gt,
   const ComparisonSetup setup = comparison_setup(arguments);
   Json json = report::comparison_json(compare(arguments, gt, runs));
   json["max_difference_s"] = setup.options.max_gap_s;
-  json["alignment"] = alignment_name(setup.options.alignment);
+  json["alignment"] = name_of(setup.options.alignment);
   json["rpe_delta_s"] = setup.options.rpe_delta_s;
   json["not_followed"] = setup.ignored;
   return json;
@@ -147,7 +180,8 @@ Json top_level_metrics(const EvalArguments& arguments, const Trajectory& gt,
   json[std::string(metric_id::kRpePairs)] = first.rpe_pairs;
   const std::string text = fmt::format("{}: {}", first.protocol, first.text);
   json["protocols"]["ate"] = text;
-  json["protocols"]["rpe"] = fmt::format("{} RPE over {:g} {}.", text, first.rpe_delta, arguments.rpe_unit);
+  json["protocols"]["rpe"] =
+      fmt::format("{} RPE over {:g} {}.", text, first.rpe_delta, name_of(first.rpe_unit));
   for (const std::string_view id : {metric_id::kCorrectRate, metric_id::kCoverage, metric_id::kFirstPose}) {
     const std::string key(id);
     if (evaluation.at(key).is_null()) continue;
@@ -172,10 +206,11 @@ nlohmann::ordered_json evaluation_document(const EvalArguments& arguments,
     json["warnings"] = warnings_about(arguments, gt, run);
     for (const eval::Evaluation& evaluation : run.evaluations)
       json["evaluations"].push_back(report::evaluation_json(evaluation));
+    if (run.hand_eye) json["hand_eye"] = report::hand_eye_json(*run.hand_eye);
     if (run.covariance) json["covariance"] = report::covariance_json(*run.covariance);
     list.push_back(std::move(json));
   }
-  Json json{{"schema", 1}};
+  Json json{{"schema", 2}};
   if (list.size() == 1) {
     json.update(list.front());
   } else {
@@ -191,6 +226,10 @@ void print_evaluations(const EvalArguments& arguments, const Trajectory& gt,
                                    : arguments.markdown ? report::TableStyle::kMarkdown
                                                         : report::TableStyle::kText;
   std::cout << report::evaluation_table(runs, style);
+  if (arguments.statistics) std::cout << '\n' << report::statistics_table(runs, style);
+  for (const report::EvaluatedRun& run : runs) {
+    if (run.hand_eye) spdlog::info("{}: {}", run.name, report::hand_eye_text(*run.hand_eye));
+  }
   if (const std::string table = report::covariance_table(runs, style); !table.empty()) {
     if (style != report::TableStyle::kCsv) {
       std::cout << fmt::format("\nCovariances from 3 s on ({}):\n", arguments.alignment == "none"

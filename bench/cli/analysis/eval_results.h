@@ -21,12 +21,13 @@ struct EvalArguments {
   std::vector<std::string> protocols;
   std::string alignment;
   int align_first = 0;
-  double rpe_delta = 1.0;
+  std::vector<std::string> rpe_deltas;
   std::string rpe_unit = "s";
   double offset_s = 0.0;
   double max_difference_s = 0.0;
   std::string level;
   bool find_offset = false;
+  bool statistics = false;
   bool explain = false;
   bool json = false;
   bool csv = false;
@@ -41,6 +42,19 @@ struct EvalArguments {
   bool force = false;
 };
 
+/// Interval of relative errors.
+struct RpeDelta {
+  double value = 1.0;
+  eval::RpeUnit unit = eval::RpeUnit::kSeconds;
+};
+
+/// The intervals of --rpe-delta, at least one: "1", in --rpe-unit, or with a unit: "5m", "10f", "30deg".
+/// @throws InputError for an unknown unit, or what is not a number from 1e-6 to 1e6
+[[nodiscard]] std::vector<RpeDelta> rpe_deltas(const EvalArguments& arguments);
+
+inline constexpr const char* kHandEyeAlignment = "hand-eye";
+
+/// The options, with the first of `rpe_deltas`. Hand-eye calibration is followed by an SE(3) alignment.
 [[nodiscard]] eval::ProtocolOptions protocol_options(const EvalArguments& arguments);
 
 /// With one pose, a run has failed: after alignment it has no error, whatever it is.

@@ -13,6 +13,28 @@
 namespace stillpoint::eval {
 namespace {
 
+TEST(Statistics, HasPercentilesWithLinearInterpolation) {
+  // 0 .. 100: the p-th percentile is p; of 0, 1: 0.25, 0.75, ...
+  std::vector<double> values;
+  for (int i = 100; i >= 0; --i) values.push_back(i);
+  const Statistics result = *statistics(values);
+  for (std::size_t i = 0; i < kPercentiles.size(); ++i)
+    EXPECT_NEAR(result.percentiles[i], kPercentiles[i], 1e-9);
+  EXPECT_NEAR(statistics(std::vector<double>{1.0, 0.0})->percentiles[2], 0.95, 1e-12);
+  EXPECT_EQ(result.median, 50.0);
+}
+
+TEST(PathAngles, SumTheRotationOfTheGroundTruth) {
+  std::vector<MatchedPose> matches;
+  for (const double angle_deg : {0.0, 10.0, 5.0, 35.0}) {
+    const Eigen::AngleAxisd turn(angle_deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX());
+    matches.push_back({.t = {}, .gt = {Eigen::Quaterniond(turn), {}}, .est = {}});
+  }
+  const std::vector<double> angles = path_angles_deg(matches);
+  EXPECT_NEAR(angles[1], 10.0, 1e-9);
+  EXPECT_NEAR(angles[3], 45.0, 1e-9);  // there and back
+}
+
 /// 10 s of a curved path with rotation, at 10 Hz.
 Trajectory curved_path() {
   Trajectory path;
