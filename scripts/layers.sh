@@ -144,6 +144,7 @@ row bench/cli/plan $execution bench/cli/data bench/fetch datasets datasets/catal
 row bench/cli/analysis $execution core/types datasets/bags eval/io eval/metrics eval/trajectory eval/compare eval/openloris eval/protocols bench/store bench/store/maintenance bench/systems bench/plan \
   bench/plan/execution bench/analysis bench/analysis/search \
   bench/serve reports/tables reports/text reports/drawing reports/page reports/dashboard
+row bench/cli/analysis/search $execution bench/systems bench/plan bench/analysis bench/analysis/search bench/cli/analysis
 
 # The minimal build: its commands, and the functions that it does not have.
 row bench/minimal core/base bench/config bench/cli bench/plan bench/run datasets datasets/synthetic/sequence reports/drawing \

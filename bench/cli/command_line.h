@@ -94,9 +94,11 @@ inline constexpr const char* kSysfsRootHelp =
 [[nodiscard]] Command eval_openloris_command();  ///< `stillpoint eval openloris`: result files by scene
 [[nodiscard]] Command trajectory_command();      ///< `stillpoint trajectory`: convert and change files
 [[nodiscard]] Command eval_cloud_command();      ///< `stillpoint eval cloud`: compare point clouds
+[[nodiscard]] Command find_protocol_command();   ///< `stillpoint eval find-protocol`: of a published number
 [[nodiscard]] Command bench_command();           ///< `stillpoint bench`: execute a benchmark plan
 [[nodiscard]] Command worker_command();          ///< `stillpoint worker`: execute tasks of a plan
 [[nodiscard]] Command systems_command();         ///< `stillpoint systems`: describe and try other systems
+[[nodiscard]] Command system_run_command();      ///< `stillpoint systems run`: a system on one sequence
 [[nodiscard]] Command plan_command();            ///< `stillpoint plan`: list plans and their runs
 [[nodiscard]] Command store_command();           ///< `stillpoint store`: inspect and maintain stores
 [[nodiscard]] Command stats_command();           ///< `stillpoint stats`: statistics over runs

@@ -13,7 +13,8 @@ set(more_sources
   reports/tables/text_format reports/text/evaluation_report)
 set(program_sources
   bench/cli/command_line bench/cli/console bench/cli/main bench/cli/analysis/eval_command
-  bench/cli/analysis/eval_cloud_command bench/cli/analysis/eval_figures bench/cli/analysis/eval_results bench/cli/analysis/pose_files
+  bench/cli/analysis/eval_cloud_command bench/cli/analysis/eval_figures bench/cli/analysis/eval_results bench/cli/analysis/find_protocol_command
+  bench/cli/analysis/pose_files
   bench/cli/analysis/eval_openloris_command bench/cli/data/inspect_commands
   bench/cli/run/config_command bench/cli/run/device_command bench/cli/run/run_command bench/cli/run/run_dumps bench/cli/run/sequence_playback
   bench/minimal/commands)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "bench/analysis/commit_history.h"
 #include "bench/store/store.h"
@@ -174,6 +175,37 @@ TEST(Bisect, SaysThatNothingChanged) {
   const ProgramResult unbuilt = bisect(project.commit(1) + ".." + project.commit(8));
   EXPECT_EQ(unbuilt.exit_code, 2);
   EXPECT_NE(unbuilt.err.find("cannot be built"), std::string::npos) << unbuilt.err;
+}
+
+TEST(SystemsRun, ExecutesTheProgramOfTheRepository) {
+  const MadeUpProject& project = shared_project();
+  const auto run = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"systems",
+                                          "run",
+                                          project.file("slam.toml"),
+                                          project.file("freiburg1_a"),
+                                          "--out",
+                                          project.file("single")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return project.run(arguments);
+  };
+  const ProgramResult missing = run({});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_NE(missing.out.find("cannot be started"), std::string::npos) << missing.out << missing.err;
+  ASSERT_EQ(std::system(("cd '" + project.file("repository") + "' && sh build.sh").c_str()), 0);
+  const ProgramResult result = run({});
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("freiburg1_a slam: ok"), std::string::npos) << result.out;
+  std::ostringstream json;
+  json << std::ifstream(project.file("single/result.json")).rdbuf();
+  EXPECT_NE(json.str().find("\"ate_rmse_m\": 0.0"), std::string::npos) << json.str();
+  EXPECT_NE(json.str().find("\"peak_memory_mb\""), std::string::npos);
+  EXPECT_TRUE(fs::exists(project.file("single/trajectory.tum")));
+  EXPECT_NE(json.str().find("\"tracking\""), std::string::npos);
+  const ProgramResult parameter = run({"--set", "param.features=5"});
+  EXPECT_EQ(parameter.exit_code, 2);
+  EXPECT_NE(parameter.err.find("sets no parameter of slam"), std::string::npos) << parameter.err;
+  EXPECT_EQ(run({"--fault", "detector_late"}).exit_code, 2);
 }
 
 TEST(CompareSystems, OfCommitsAreBuiltAndCompared) {

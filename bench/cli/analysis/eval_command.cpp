@@ -281,7 +281,7 @@ Command eval_command() {
       .example = "eval groundtruth.txt trajectory.tum --protocol compat:tum --protocol strict:se3 --explain",
       .options = options_of(*arguments),
       .action = [arguments] { return evaluate_files(*arguments); },
-      .subcommands = {eval_openloris_command(), eval_cloud_command()}};
+      .subcommands = {eval_openloris_command(), eval_cloud_command(), find_protocol_command()}};
 }
 
 }  // namespace stillpoint::bench

@@ -95,6 +95,7 @@ Command systems_command() {
                            .options = {{"--file", "A description of your own; may be repeated", files.get()}},
                            .action = [files] { return list_systems(*files); }},
                           check_system_command(),
+                          system_run_command(),
                           {.name = "new",
                            .summary = "Write a commented description of a system",
                            .example = "systems new my_slam",

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `stillpoint systems run` executes another system on one sequence, without a store.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/command_line.h"
+#include "bench/cli/console.h"
+#include "bench/model/metrics.h"
+#include "bench/plan/execution/outcome_scorer.h"
+#include "bench/plan/plan_matrix.h"
+#include "bench/process/child_process.h"
+#include "bench/record/output_folder.h"
+#include "bench/systems/external_run.h"
+#include "core/base/error.h"
+
+namespace stillpoint::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct SystemRunArguments {
+  std::string system;
+  std::string sequence;
+  std::string out;
+  std::string fault;
+  std::vector<std::string> settings;
+  int max_frames = 0;  ///< 0 = all
+  double time_limit_s = 3600.0;
+  int memory_limit_mb = 0;  ///< 0 = none
+};
+
+bool is_preset(const std::string& name) {
+  try {
+    return !matching_presets({name}).empty();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// A plan of one run.
+BenchPlan single_run_plan(const SystemRunArguments& arguments) {
+  BenchPlan plan;
+  plan.name = "systems run";
+  if (is_preset(arguments.sequence)) {
+    plan.rendered.sequences = {arguments.sequence};
+    plan.rendered.seconds = 0.0;
+  } else {
+    const bool is_here = fs::exists(arguments.sequence) && arguments.sequence.find('/') == std::string::npos;
+    plan.recorded.sequences = {is_here ? "./" + arguments.sequence : arguments.sequence};
+  }
+  if (!arguments.fault.empty()) {
+    if (!reaches_external_systems(arguments.fault))
+      throw InputError("--fault", "\"" + arguments.fault + "\" does not reach another program");
+    plan.faults = {arguments.fault};
+  }
+  plan.max_frames = arguments.max_frames;
+  plan.time_limit_s = arguments.time_limit_s;
+  plan.memory_limit_mb = arguments.memory_limit_mb;
+  return plan_of_system(std::move(plan), arguments.system);
+}
+
+/// The system with the values of --set param.NAME=VALUE.
+ExternalSystem with_parameters(ExternalSystem system, const std::vector<std::string>& settings) {
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    const std::string key = setting.substr(0, equals);
+    const bool is_known = equals != std::string::npos && key.starts_with(kParamPrefix) &&
+                          system.param.contains(key.substr(kParamPrefix.size()));
+    if (!is_known) {
+      std::vector<std::string> names;
+      for (const auto& [name, value] : system.param) names.push_back(name);
+      throw InputError(
+          "--set", fmt::format("\"{}\" sets no parameter of {}; write param.NAME=VALUE; it has: {}", setting,
+                               system.name, fmt::join(names, ", ")));
+    }
+    system.param[key.substr(kParamPrefix.size())] = setting.substr(equals + 1);
+  }
+  return system;
+}
+
+ProcessResult execute_limited(ProcessSpec spec, const BenchPlan& plan) {
+  spec.time_limit_s = plan.time_limit_s;
+  if (plan.memory_limit_mb > 0) spec.memory_limit_bytes = std::int64_t{plan.memory_limit_mb} << 20;
+  ProcessPool pool(interrupt_requested);
+  pool.start(0, spec);
+  return pool.wait_next()->second;
+}
+
+std::string result_text(const RunIdentity& identity, const RunOutcome& outcome) {
+  Json json = {{"system", identity.system},
+               {"version", identity.build},
+               {"sequence", identity.sequence},
+               {"status", status_name(outcome.outcome)},
+               {"failure", outcome.detail.empty() ? Json(nullptr) : Json(outcome.detail)}};
+  json["protocols"] = Json::object();
+  for (const Metric& metric : outcome.metrics) {
+    json[metric.name] = metric.value;
+    if (!metric.protocol.empty()) json["protocols"][metric.name] = metric.protocol;
+  }
+  for (const ModuleCost& cost : outcome.costs)
+    json["timings"][cost.per == "frame" ? "threads" : "modules"][cost.module] = {{"calls", cost.calls},
+                                                                                 {"mean", cost.mean_ms},
+                                                                                 {"median", cost.median_ms},
+                                                                                 {"p95", cost.p95_ms},
+                                                                                 {"max", cost.max_ms}};
+  return json.dump(2) + "\n";
+}
+
+/// "ATE 0.0123 m, ..."
+std::string metrics_line(const RunOutcome& outcome) {
+  std::vector<std::string> parts;
+  for (const Metric& metric : outcome.metrics) {
+    const MetricDescriptor* descriptor = find_metric(metric.name);
+    if (descriptor != nullptr) parts.push_back(value_text(*descriptor, metric.value));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+int run_system(const SystemRunArguments& arguments) {
+  install_interrupt_handlers();
+  const BenchPlan plan = single_run_plan(arguments);
+  const PlanMatrix matrix = expand_plan(plan, "", {});
+  const PlannedRun& planned = matrix.runs.at(0);
+  const ExternalRun external(with_parameters(matrix.systems.front(), arguments.settings));
+  const fs::path folder = arguments.out.empty() ? fs::path("build/runs") / matrix.sequences.front().name /
+                                                      folder_name(planned.identity.system)
+                                                : fs::path(arguments.out);
+  require_safe_folder(folder,
+                      {.names = {"result.json", "manifest.json", "program.log", "trajectory.tum", "out"},
+                       .marks = {{"result.json", "manifest.json"}}},
+                      {matrix.sequences.front().folder, matrix.systems.front().folder});
+  require_writable(folder);
+  const fs::path sequence =
+      sequence_folder(matrix.sequences.front(), {.stop_requested = interrupt_requested});
+  if (interrupt_requested()) return kExitInterrupted;
+  const RunRequest request{.identity = planned.identity,
+                           .max_frames = planned.max_frames,
+                           .fault = planned.fault,
+                           .sequence = sequence,
+                           .work = folder / "out"};
+  fs::remove_all(request.work);
+  const ProcessResult process = execute_limited(external.command(request), plan);
+  if (interrupt_requested()) return kExitInterrupted;
+  RunOutcome outcome = outcome_of_run(external, request, process, plan);
+  std::vector<OutputFile> files = {{"result.json", result_text(planned.identity, outcome)},
+                                   {"manifest.json", outcome.manifest},
+                                   {"program.log", outcome.attachments["log"]}};
+  if (outcome.attachments.contains("trajectory"))
+    files.push_back({"trajectory.tum", outcome.attachments["trajectory"]});
+  write_files(folder, files);
+  std::cout << fmt::format(
+      "{} {}: {}{}{}\n  {}\n", planned.identity.sequence, planned.identity.system,
+      status_name(outcome.outcome), outcome.detail.empty() ? "" : ", ", outcome.detail,
+      outcome.outcome == Outcome::kOk ? metrics_line(outcome) : (folder / "program.log").string());
+  if (outcome.outcome == Outcome::kOk) std::cout << "  " << (folder / "result.json").string() << '\n';
+  return outcome.outcome == Outcome::kOk ? kExitOk : kExitFindings;
+}
+
+}  // namespace
+
+Command system_run_command() {
+  const auto arguments = std::make_shared<SystemRunArguments>();
+  return {
+      .name = "run",
+      .summary = "Run a system on one sequence; write trajectory, scores, messages and manifest",
+      .example = "systems run my_slam.toml walking_xyz --set param.features=500 --out /tmp/run",
+      .options = {{"SYSTEM", "Name of a shipped description, or a TOML file", &arguments->system},
+                  {"SEQ", "Sequence folder, registered name or preset name", &arguments->sequence},
+                  {"--set", "Override a parameter: param.NAME=VALUE; may be repeated", &arguments->settings},
+                  {"--fault", "Inject a sensor fault, as for run", &arguments->fault},
+                  {"--max-frames", "Only the first frames; 0 = all", &arguments->max_frames, {0, 1e9}},
+                  {"--time-limit",
+                   "Seconds after which it is terminated [3600]",
+                   &arguments->time_limit_s,
+                   {0.1, 1e6}},
+                  {"--memory-limit",
+                   "Limit in megabytes for it and its children; 0 = none",
+                   &arguments->memory_limit_mb,
+                   {0, 10000000}},
+                  {"--out", "Output folder [build/runs/SEQ/SYSTEM]", &arguments->out}},
+      .action = [arguments] { return run_system(*arguments); }};
+}
+
+}  // namespace stillpoint::bench
