@@ -117,9 +117,9 @@ struct EstimatedCalibration {
   std::optional<bool> extrinsics_agree, depth_scale_agrees, lens_agrees;
   RigStep rig_step;                                 ///< what the last solve asked for where it agrees
   std::optional<AlignedRotation> aligned_rotation;  ///< at the start
-  int time_offset_at_bound = 0;  ///< number of frames in which the value was at its bound
-  int extrinsics_at_bound = 0;   ///< same
-  int depth_scale_at_bound = 0;  ///< same
+  int time_offset_at_bound = 0;                     ///< number of frames in which the value was at its bound
+  int extrinsics_at_bound = 0;                      ///< same
+  int depth_scale_at_bound = 0;                     ///< same
 };
 
 /// Recorded output of a run.

@@ -32,11 +32,11 @@ struct BagTopic {
 [[nodiscard]] bool is_trajectory_type(std::string_view type);
 
 /// The poses of a topic of type PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry or (MCAP)
-/// foxglove.PoseInFrame; the positions of a NavSatFix, as those of `eval::parse_nmea`; or, with the topic "/tf:PARENT.CHILD" (the
-/// notation of evo), of the frame CHILD in PARENT along the chain of transforms in /tf and /tf_static. The
-/// times are those of the transform of the chain with the most messages; the others are interpolated. Stamps
-/// that are 0 are replaced by the time of recording. Poses without a rotation, repeated and unordered ones
-/// are skipped or sorted, and counted.
+/// foxglove.PoseInFrame; the positions of a NavSatFix, as those of `eval::parse_nmea`; or, with the topic
+/// "/tf:PARENT.CHILD" (the notation of evo), of the frame CHILD in PARENT along the chain of transforms in
+/// /tf and /tf_static. The times are those of the transform of the chain with the most messages; the others
+/// are interpolated. Stamps that are 0 are replaced by the time of recording. Poses without a rotation,
+/// repeated and unordered ones are skipped or sorted, and counted.
 /// @throws InputError if there is no such topic, it has no poses, or the frames are not connected
 [[nodiscard]] eval::LoadedTrajectory read_bag_trajectory(const BagFile& bag, const std::string& topic);
 

@@ -102,8 +102,9 @@ inline constexpr double kCorrectRateGap_s = 0.5;
 /// Correct rate as defined above, after SE(3) alignment over all matches. Ground truth is interpolated
 /// between neighbors that are both less than 0.5 s away.
 /// @return 0 if fewer than two poses match, as one is aligned without an error; nullopt if they do not match
-/// because the ground truth at their time is too sparse, if the ground truth has fewer than two poses, or if neither positions nor orientations determine the rotation of the
-/// alignment, unless `max_rotation_deg` is infinite
+/// because the ground truth at their time is too sparse, if the ground truth has fewer than two poses, or if
+/// neither positions nor orientations determine the rotation of the alignment, unless `max_rotation_deg` is
+/// infinite
 [[nodiscard]] std::optional<double> correct_rate(const Trajectory& gt, const Trajectory& est,
                                                  const CorrectRateOptions& options = {},
                                                  double offset_s = 0.0);

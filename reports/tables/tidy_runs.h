@@ -12,11 +12,11 @@ namespace stillpoint::report {
 /// The columns, separated by commas.
 [[nodiscard]] std::string tidy_header();
 
-/// CSV (RFC 4180) with the columns of `tidy_header`: what identifies the run, its outcome, and one metric with
-/// its unit, the protocol that it was measured by, whether smaller or larger is better ("smaller", "larger" or
-/// empty), and its value with all digits ("inf" and "nan" for values that are none). Each run has the metric
-/// "succeeded", 1 or 0, so that a failed run, which may have no other, is not missing from the table; and the
-/// mean, median, 95th percentile and maximum of each timed module, as "median_ms/MODULE".
+/// CSV (RFC 4180) with the columns of `tidy_header`: what identifies the run, its outcome, and one metric
+/// with its unit, the protocol that it was measured by, whether smaller or larger is better ("smaller",
+/// "larger" or empty), and its value with all digits ("inf" and "nan" for values that are none). Each run has
+/// the metric "succeeded", 1 or 0, so that a failed run, which may have no other, is not missing from the
+/// table; and the mean, median, 95th percentile and maximum of each timed module, as "median_ms/MODULE".
 [[nodiscard]] std::string tidy_text(std::span<const bench::StoredRun> runs);
 
 }  // namespace stillpoint::report

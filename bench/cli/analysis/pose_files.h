@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The files that `stillpoint eval` and `trajectory` read: their formats, covariances and orders of quaternions.
+/// The files that `stillpoint eval` and `trajectory` read: their formats, covariances and orders of
+/// quaternions.
 #pragma once
 
 #include <optional>
