@@ -29,15 +29,10 @@ std::span<const bench::EmbeddedFile> bench::web_files() { return {}; }
 
 const report::DrawingModule* report::drawing_module() { return nullptr; }
 
-struct report::RunRecording::Impl {};
-
 report::RunRecording::RunRecording(const std::filesystem::path& file, const datasets::SequenceInfo&,
                                    RecordedImages) {
   throw InputError(file.string(), "this build writes no MCAP files (STILLPOINT_MINIMAL); use a full build");
 }
-
-report::RunRecording::~RunRecording() = default;
-report::RunRecording::RunRecording(RunRecording&&) noexcept = default;
 
 /// Never reached: there is no recording.
 void report::RunRecording::add(const FrameReport&) {}

@@ -282,15 +282,12 @@ RunRecording::RunRecording(const std::filesystem::path& file, const datasets::Se
     throw InputError(
         info.folder.string(),
         "has no frames, or frames at negative times, which MCAP files do not have; run it without --mcap");
-  impl_ = std::make_unique<Impl>(file, info, images);
+  impl_ = std::make_shared<Impl>(file, info, images);
   const FoxgloveHeader camera{info.frame_times.front(), kCameraFrame};
   impl_->write("/camera/calibration", "foxglove.CameraCalibration", camera.t,
                datasets::encode_camera(camera, info.rig.camera));
   impl_->write_path("/truth/path", kTruthFrame, impl_->truth);
 }
-
-RunRecording::~RunRecording() = default;
-RunRecording::RunRecording(RunRecording&&) noexcept = default;
 
 void RunRecording::add(const FrameReport& report) {
   const Timestamp t = report.frame.t;

@@ -46,9 +46,6 @@ class RunRecording {
   /// @throws InputError if the file cannot be created, or the first frame has a negative time, which MCAP
   /// files do not have
   RunRecording(const std::filesystem::path& file, const datasets::SequenceInfo& info, RecordedImages images);
-  ~RunRecording();
-  RunRecording(RunRecording&&) noexcept;
-  RunRecording& operator=(RunRecording&&) = delete;
 
   /// Frames in order.
   void add(const FrameReport& report);
@@ -60,7 +57,7 @@ class RunRecording {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;  ///< shared by copies; builds without MCAP files do not define it
 };
 
 }  // namespace stillpoint::report
