@@ -32,7 +32,9 @@ struct DefinedNumber {
 
 /// All definitions that can be applied, those that agree first, then by their distance to the number. Of
 /// several with the same metric, value and number of pairs, only the first is listed.
-/// @param est of the same body frame as gt
+/// @param gt of the body frame of the estimate
+/// @param est which the publication evaluates
+/// @param number as published
 [[nodiscard]] std::vector<DefinedNumber> search_protocols(const Trajectory& gt, const Trajectory& est,
                                                           const PublishedNumber& number);
 

@@ -24,6 +24,7 @@ struct CovariantTrajectory {
 [[nodiscard]] CovariantTrajectory cropped(CovariantTrajectory path, Timestamp begin, Timestamp end);
 
 /// The parts after each other in order of time. Covariances remain if every part has them.
+/// @param parts in any order
 /// @param names of the parts, for messages
 /// @throws InputError if two parts overlap in time
 [[nodiscard]] CovariantTrajectory merged(std::vector<CovariantTrajectory> parts,
@@ -34,6 +35,7 @@ struct CovariantTrajectory {
 [[nodiscard]] CovariantTrajectory in_world(CovariantTrajectory path, const Similarity& S_w_v);
 
 /// Interpolated poses at the given times: slerp of the rotation, linear in the position; without covariances.
+/// @param path in order of time
 /// @param times strictly increasing
 /// @param max_gap_s longest interval that is interpolated across; times in longer ones, and outside of the
 /// trajectory, have no pose
