@@ -28,8 +28,9 @@ using ReleaseGil = py::call_guard<py::gil_scoped_release>;
 
 void bind_summary(py::module_& m) {
   using eval::Statistics;
-  Record<Statistics>(m, "Statistics", "Summary of a list of errors, in their unit; `sse` in its square.")
-      .field("count", &Statistics::count, "Number of values.")
+  Record<Statistics> record(m, "Statistics",
+                            "Summary of a list of errors, in their unit; `sse` in its square.");
+  record.field("count", &Statistics::count, "Number of values.")
       .field("rmse", &Statistics::rmse, "Root mean square.")
       .field("mean", &Statistics::mean, "Mean.")
       .field("median", &Statistics::median, "Mean of the two middle values if the count is even.")
@@ -37,6 +38,12 @@ void bind_summary(py::module_& m) {
       .field("min", &Statistics::min, "Smallest value.")
       .field("max", &Statistics::max, "Largest value.")
       .field("sse", &Statistics::sse, "Sum of squares.");
+  for (std::size_t i = 0; i < eval::kPercentiles.size(); ++i) {
+    const std::string name = "percentile_" + std::to_string(eval::kPercentiles[i]);
+    record.field(
+        name.c_str(), [i](const Statistics& values) { return values.percentiles[i]; },
+        "Percentile with linear interpolation between the closest ranks.");
+  }
   m.def(
       "statistics", [](const Doubles& values) { return eval::statistics(span_of(values)); },
       py::arg("values"), "Statistics of a list of numbers; None for an empty list.");

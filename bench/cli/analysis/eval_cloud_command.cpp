@@ -45,8 +45,9 @@ std::vector<Eigen::Vector3f> points_of(const std::string& file, const Pose& T) {
 }
 
 int evaluate_cloud(const EvalCloudArguments& arguments) {
-  const eval::CloudScore score = eval::score_cloud(points_of(arguments.estimate, world_alignment(arguments)),
-                                                   points_of(arguments.truth, {}), arguments.threshold_m);
+  const std::vector<Eigen::Vector3f> estimate = points_of(arguments.estimate, world_alignment(arguments));
+  const std::vector<Eigen::Vector3f> truth = points_of(arguments.truth, {});
+  const eval::CloudScore score = eval::score_cloud(estimate, truth, arguments.threshold_m);
   if (arguments.json) {
     const nlohmann::ordered_json json = {{"schema", 1},
                                          {"threshold_m", arguments.threshold_m},

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -203,8 +204,10 @@ TEST(ImageIo, AJpegNamedPngIsReadByItsContent) {
 TEST(ImageIo, AFullDiskIsAnErrorAndLeavesNoFile) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "/dev/full does not exist";
   const TemporaryFolder folder;
-  // write_png first writes to the name with the suffix ".part"; a link to /dev/full simulates a full disk.
-  std::filesystem::create_symlink("/dev/full", folder.path() / "a.png.part");
+  // write_png first writes to a name with the process and the suffix ".part"; a link to /dev/full simulates a
+  // full disk.
+  std::filesystem::create_symlink("/dev/full",
+                                  folder.path() / ("a.png." + std::to_string(::getpid()) + ".part"));
   expect_input_error([&] { write_png(folder.path() / "a.png", noise_image(CV_8UC3)); },
                      {"a.png", "disk is not full"});
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
