@@ -62,7 +62,7 @@ fs::path exported(const RunRequest& request, ExportLayout layout) {
       datasets::cache_folder() / "exports" / (request.identity.sequence_id + "-" + format + start);
   const std::string name = request.sequence.filename().string();
   const bool is_bag = layout == ExportLayout::kBag || layout == ExportLayout::kMcap;
-  const fs::path path = folder / (is_bag ? name + "." + format : name);
+  fs::path path = folder / (is_bag ? name + "." + format : name);
   if (fs::exists(path)) return path;
   auto stream = datasets::first_frames(started(request), static_cast<std::size_t>(request.max_frames));
   if (stream->info().format == format && !is_changed(request)) return request.sequence;

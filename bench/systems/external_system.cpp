@@ -138,7 +138,7 @@ std::string expanded(std::string_view text, const Placeholders& values, const st
                                      ? "; add the table [source] with the key binary"
                                  : near.empty() ? fmt::format("; expected one of: {}", fmt::join(names, ", "))
                                                 : near;
-      throw InputError(place, "\"{" + name + "}\" is no placeholder" + remedy);
+      throw InputError(place, fmt::format("\"{{{}}}\" is no placeholder{}", name, remedy));
     }
     result += value->second;
     text.remove_prefix(length);

@@ -68,7 +68,7 @@ std::string SourceBuilds::git(const std::vector<std::string>& arguments) const {
   ProcessSpec spec{.program = "git", .arguments = {"-C", repository_.string()}, .output = output};
   spec.arguments.insert(spec.arguments.end(), arguments.begin(), arguments.end());
   const ProcessResult result = run_process(spec);
-  const std::string text = fs::exists(output) ? eval::read_text_file(output) : "";
+  std::string text = fs::exists(output) ? eval::read_text_file(output) : "";
   fs::remove(output);
   if (result.exit_code != 0 || result.signal != 0)
     throw InputError(repository_.string(), "git: " + last_line(result.messages));

@@ -86,6 +86,7 @@ void require_figures(const EvalArguments& arguments, const OutputRules& rules) {
 void write_figures(const EvalArguments& arguments, const Trajectory& gt,
                    const std::vector<report::EvaluatedRun>& runs, const OutputRules& rules) {
   std::vector<report::PlottedRun> plotted;
+  plotted.reserve(runs.size());
   for (const report::EvaluatedRun& run : runs)
     plotted.push_back({run.name, &run.est, &run.evaluations.front()});
   report::FigureInput input{.gt = gt, .runs = plotted, .offset_s = arguments.offset_s};

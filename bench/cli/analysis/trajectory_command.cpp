@@ -108,7 +108,7 @@ std::vector<double> upper_triangle(const eval::StampedCovariance& covariance) {
 
 /// TUM rows, with the covariances behind the poses.
 std::string tum_text(const eval::CovariantTrajectory& path) {
-  const std::string poses = eval::format_tum(path.trajectory);
+  std::string poses = eval::format_tum(path.trajectory);
   if (path.covariances.empty()) return poses;
   std::string text;
   eval::LineReader lines(poses);
@@ -134,7 +134,7 @@ std::string csv_text(const eval::CovariantTrajectory& path) {
   return header + rows;
 }
 
-void write_kitti(const PoseOutput& output, const Trajectory& trajectory, OutputRules rules) {
+void write_kitti(const PoseOutput& output, const Trajectory& trajectory, const OutputRules& rules) {
   const eval::KittiTexts texts = eval::format_kitti(trajectory);
   write_output(output.path, texts.poses, rules);
   write_output(times_path(output.path), texts.times, rules);

@@ -141,7 +141,7 @@ std::optional<FollowedChange> find_change(VersionComparer& versions, const Bisec
                                           std::size_t base, std::size_t head) {
   for (const int pairs : versions.numbers_of_pairs()) {
     const Comparison comparison = versions.compare(base, head, pairs);
-    const std::optional<FollowedChange> change = followed_change(comparison, arguments.metric);
+    std::optional<FollowedChange> change = followed_change(comparison, arguments.metric);
     if (!change) continue;
     std::cout << fmt::format("{}: {}\n", arguments.metric, change_text(comparison, *change));
     return change;
