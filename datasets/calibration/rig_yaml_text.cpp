@@ -29,7 +29,7 @@ std::span<const double> four_coefficients(const Camera& camera, std::string_view
   const std::span<const double> all(camera.distortion);
   if (std::ranges::any_of(all.subspan(kRadialTangentialCount), [](double value) { return value != 0.0; }))
     throw InputError("--out-format " + std::string(format),
-                     "has no distortion with more than four coefficients; use opencv, orb_slam or toml");
+                     "has no distortion with more than four coefficients; use opencv or toml");
   return all.first(kRadialTangentialCount);
 }
 
@@ -38,20 +38,21 @@ std::string matrix_rows(const std::string& key, const Pose& pose) {
   const Eigen::Matrix4d matrix = pose.matrix();
   std::string text = key + ":\n";
   for (int row = 0; row < 4; ++row)
-    text += fmt::format("  - [{:.17g}, {:.17g}, {:.17g}, {:.17g}]\n", matrix(row, 0), matrix(row, 1),
+    text += fmt::format("    - [{:.17g}, {:.17g}, {:.17g}, {:.17g}]\n", matrix(row, 0), matrix(row, 1),
                         matrix(row, 2), matrix(row, 3));
   return text;
 }
 
 /// A matrix as OpenCV's FileStorage has it.
+/// @param type of its elements: d (double) or f (float)
 template <class Matrix>
-std::string opencv_matrix(const std::string& key, const Matrix& matrix) {
+std::string opencv_matrix(const std::string& key, const Matrix& matrix, char type = 'd') {
   std::vector<double> values;
   for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
     for (Eigen::Index column = 0; column < matrix.cols(); ++column) values.push_back(matrix(row, column));
   }
-  return fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: {}\n", key,
-                     matrix.rows(), matrix.cols(), numbers(values));
+  return fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: {}\n   data: {}\n", key,
+                     matrix.rows(), matrix.cols(), type, numbers(values));
 }
 
 /// The values that a format does not have, as comments.
@@ -100,26 +101,30 @@ std::string opencv_text(const Rig& rig) {
          (rig.has_imu ? "# not in this format: the IMU\n" : "");
 }
 
+/// Its reader requires real numbers with a decimal point, and a matrix of floats.
 std::string orb_slam_text(const Rig& rig) {
   const Camera& camera = rig.camera;
+  if (!is_fisheye(camera) && camera.has_denominator())
+    throw InputError("--out-format orb_slam", "has no k4 to k6; use opencv or toml");
   std::string text = fmt::format(
-      "Camera.type: \"{}\"\nCamera.width: {}\nCamera.height: {}\nCamera1.fx: {:.17g}\nCamera1.fy: {:.17g}\n"
-      "Camera1.cx: {:.17g}\nCamera1.cy: {:.17g}\n",
+      "File.version: \"1.0\"\n# not in a calibration, but required: Camera.fps, Camera.RGB, IMU.Frequency\n"
+      "Camera.type: \"{}\"\nCamera.width: {}\nCamera.height: {}\nCamera1.fx: {:#.17g}\nCamera1.fy: {:#.17g}\n"
+      "Camera1.cx: {:#.17g}\nCamera1.cy: {:#.17g}\n",
       is_fisheye(camera) ? "KannalaBrandt8" : "PinHole", camera.width, camera.height, camera.fx, camera.fy,
       camera.cx, camera.cy);
   const std::vector<std::string_view> names =
       is_fisheye(camera) ? std::vector<std::string_view>{"k1", "k2", "k3", "k4"}
-                         : std::vector<std::string_view>{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
-  const std::size_t count = is_fisheye(camera) ? names.size() : camera.coefficients().size();
-  for (std::size_t i = 0; i < count; ++i)
-    text += fmt::format("Camera1.{}: {:.17g}\n", names[i], camera.distortion[i]);
-  text += fmt::format("RGBD.DepthMapFactor: {:.17g}\n", rig.depth_units_per_m) +
+                         : std::vector<std::string_view>{"k1", "k2", "p1", "p2", "k3"};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += fmt::format("Camera1.{}: {:#.17g}\n", names[i], camera.distortion[i]);
+  text += fmt::format("RGBD.DepthMapFactor: {:#.17g}\n", rig.depth_units_per_m) +
           comments({{"rolling_shutter_s", rig.rolling_shutter_s}, {"time_offset_s", rig.time_offset_s}});
   if (!rig.has_imu) return text;
   const ImuNoise& noise = rig.imu_noise;
-  return text + opencv_matrix("IMU.T_b_c1", rig.T_b_c.matrix()) +
+  return text + opencv_matrix("IMU.T_b_c1", rig.T_b_c.matrix(), 'f') +
          fmt::format(
-             "IMU.NoiseGyro: {:.17g}\nIMU.NoiseAcc: {:.17g}\nIMU.GyroWalk: {:.17g}\nIMU.AccWalk: {:.17g}\n",
+             "IMU.NoiseGyro: {:#.17g}\nIMU.NoiseAcc: {:#.17g}\nIMU.GyroWalk: {:#.17g}\nIMU.AccWalk: "
+             "{:#.17g}\n",
              noise.gyro_noise, noise.accel_noise, noise.gyro_walk, noise.accel_walk);
 }
 

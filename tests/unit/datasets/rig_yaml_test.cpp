@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <opencv2/core.hpp>
+
 #include "datasets/calibration/rig_file.h"
 #include "datasets/calibration/rig_yaml_text.h"
 #include "tests/support/expect_input_error.h"
@@ -254,9 +256,31 @@ TEST(RigYaml, WhatAFormatDoesNotHaveIsACommentOrRefused) {
   EXPECT_NE(rig_text(rig, RigFormat::kKalibr).find("# not in this format: rolling_shutter_s = 0.02"),
             std::string::npos);
   rig.camera.distortion[5] = 0.3;  // k4, of the denominator
-  EXPECT_EQ(rig_of(rig_text(rig, RigFormat::kOrbSlam)).rig.camera.distortion, rig.camera.distortion);
+  EXPECT_EQ(rig_of(rig_text(rig, RigFormat::kOpencv)).rig.camera.distortion, rig.camera.distortion);
   expect_input_error([&] { static_cast<void>(rig_text(rig, RigFormat::kVins)); },
                      {"--out-format vins", "four coefficients", "opencv"});
+  expect_input_error([&] { static_cast<void>(rig_text(rig, RigFormat::kOrbSlam)); },
+                     {"--out-format orb_slam", "k4 to k6", "opencv"});
+}
+
+/// Their parser is OpenCV's, which distinguishes integers from real numbers, and requires that the rows of a
+/// matrix are indented more than its key.
+TEST(RigYaml, ProgramsThatReadByOpenCvFindNumbersAndMatrices) {
+  const TemporaryFolder folder;
+  const Rig rig = rig_with(CameraModel::kRadialTangential);
+  const auto open = [&](RigFormat format) {
+    return cv::FileStorage(folder.write("rig.yaml", rig_text(rig, format)).string(), cv::FileStorage::READ);
+  };
+  const cv::FileStorage orb_slam = open(RigFormat::kOrbSlam);
+  for (const char* const key : {"Camera1.fx", "Camera1.k3", "RGBD.DepthMapFactor", "IMU.GyroWalk"})
+    EXPECT_TRUE(orb_slam[key].isReal()) << key;
+  EXPECT_EQ(orb_slam["IMU.T_b_c1"].mat().type(), CV_32F);
+  EXPECT_EQ(std::string(orb_slam["File.version"]), "1.0");
+  const cv::FileStorage openvins = open(RigFormat::kOpenvins);
+  EXPECT_EQ(static_cast<double>(openvins["cam0"]["T_imu_cam"][1][3]), rig.T_b_c.p.y());
+  EXPECT_EQ(static_cast<double>(open(RigFormat::kVins)["body_T_cam0"].mat().at<double>(2, 3)),
+            rig.T_b_c.p.z());
+  EXPECT_EQ(open(RigFormat::kOpencv)["camera_matrix"].mat().at<double>(1, 2), rig.camera.cy);
 }
 
 }  // namespace
