@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes a wheel of the Python package with the evaluation only (stillpoint.eval; Eigen and BSD code, no other library), for the
+# Makes a wheel of the Python package with the evaluation only (stillpoint.eval; code of this project and Eigen, no other library), for the
 # Python of this system and any amd64 or arm64 processor.
 #   scripts/wheel.sh           builds it for the baseline of the architecture; the wheel is in build/wheel/wheels
 #   scripts/wheel.sh BUILD     packs what the build folder BUILD has, with its instruction set, into BUILD/wheels

@@ -17,6 +17,7 @@
 
 #include "core/base/error.h"
 #include "core/base/timestamp.h"
+#include "core/geometry/pose.h"
 #include "core/types/trajectory.h"
 
 namespace stillpoint::python {
@@ -25,6 +26,8 @@ namespace py = pybind11;
 
 /// Arrays as arguments: numbers are converted, other memory layouts are copied.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Integers =
+    py::array_t<std::int64_t, py::array::c_style>;  // floating-point numbers are no indices or stamps
 using Shape = std::vector<py::ssize_t>;
 
 /// "(4, 3)"
@@ -44,6 +47,18 @@ inline void require_shape(const py::array& array, const std::string& name, const
   for (const py::ssize_t size : expected)
     text += (text.empty() ? "" : ", ") + (size < 0 ? std::string("n") : std::to_string(size));
   throw InputError(name, "has the shape " + shape_text(array) + "; expected (" + text + ")");
+}
+
+/// A rigid transform.
+/// @param name of the argument, for the message
+/// @throws InputError for an array of another shape, or whose upper left part is no rotation
+inline Pose rigid_of(const Doubles& T, const std::string& name) {
+  require_shape(T, name, {4, 4});
+  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(T.data());
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  if (!matrix.allFinite() || !R.isUnitary(1e-3) || R.determinant() < 0.0)
+    throw InputError(name, "is no rigid transform; its upper left part is not a rotation");
+  return Pose::from_matrix(matrix);
 }
 
 /// A read-only view of memory that belongs to `owner`.

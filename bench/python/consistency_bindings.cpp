@@ -141,7 +141,7 @@ std::vector<ClaimedPose> claims_of(const Trajectory& est, const ClaimArrays& arr
   return claims;
 }
 
-std::vector<eval::TimeSpan> spans_of(const py::array_t<std::int64_t>& spans) {
+std::vector<eval::TimeSpan> spans_of(const Integers& spans) {
   require_shape(spans, "faults_ns", {-1, 2});
   std::vector<eval::TimeSpan> result;
   for (py::ssize_t i = 0; i < spans.shape(0); ++i)
@@ -163,7 +163,7 @@ void bind_honesty(py::module_& m) {
       "honesty",
       [](const Trajectory& gt, const Trajectory& est, const std::vector<std::string>& claims,
          const Doubles& sigma_m, const Doubles& sigma_rad, const std::vector<int>& segments,
-         const py::array_t<std::int64_t>& faults_ns) {
+         const Integers& faults_ns) {
         return eval::honesty(gt, claims_of(est, {claims, sigma_m, sigma_rad, segments}), spans_of(faults_ns));
       },
       py::arg("gt"), py::arg("est"), py::arg("claims"), py::arg("sigma_m"), py::arg("sigma_rad"),
@@ -175,12 +175,9 @@ void bind_honesty(py::module_& m) {
 }
 
 eval::ReportedLoop loop_of(const std::tuple<std::int64_t, std::int64_t, Doubles, bool>& loop) {
-  const Doubles& T = std::get<2>(loop);
-  require_shape(T, "loops: T_match_query", {4, 4});
-  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(T.data());
   return {.query_t = Timestamp{std::get<0>(loop)},
           .match_t = Timestamp{std::get<1>(loop)},
-          .T_match_query = Pose::from_matrix(matrix),
+          .T_match_query = rigid_of(std::get<2>(loop), "loops: T_match_query"),
           .accepted = std::get<3>(loop)};
 }
 

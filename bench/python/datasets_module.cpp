@@ -44,8 +44,9 @@ cv::Mat image_of(const py::object& object, const char* name, int type) {
   const auto array = py::array::ensure(object, py::array::c_style);
   const bool deep = type == CV_16UC1;
   const py::ssize_t dimensions = type == CV_8UC3 ? 3 : 2;
-  if (!array || !array.dtype().is(deep ? py::dtype::of<std::uint16_t>() : py::dtype::of<std::uint8_t>()) ||
-      array.ndim() != dimensions || (dimensions == 3 && array.shape(2) != 3)) {
+  const bool has_type = array && (deep ? py::isinstance<py::array_t<std::uint16_t>>(array)
+                                       : py::isinstance<py::array_t<std::uint8_t>>(array));
+  if (!has_type || array.ndim() != dimensions || (dimensions == 3 && array.shape(2) != 3)) {
     throw InputError(name, std::string("is no array ") +
                                (dimensions == 3 ? "[height, width, 3]" : "[height, width]") + " of " +
                                (deep ? "uint16" : "uint8"));
@@ -109,11 +110,7 @@ void bind_rig(py::module_& m) {
       .field("has_imu", &Rig::has_imu, "Whether there is an IMU.")
       .property("T_b_c",
                 std::pair([](const Rig& rig) { return matrix_array(rig.T_b_c.matrix()); },
-                          [](Rig& rig, const Doubles& T) {
-                            require_shape(T, "T_b_c", {4, 4});
-                            rig.T_b_c = Pose::from_matrix(
-                                Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(T.data()));
-                          }),
+                          [](Rig& rig, const Doubles& T) { rig.T_b_c = rigid_of(T, "T_b_c"); }),
                 "Pose of the camera in the body (IMU), [4, 4].")
       .field("imu_noise", &Rig::imu_noise, "ImuNoise.")
       .field("time_offset_s", &Rig::time_offset_s, "IMU time of an exposure minus its stamp, s.")

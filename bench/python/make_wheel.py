@@ -16,7 +16,7 @@ METADATA = """Metadata-Version: 2.1
 Name: stillpoint
 Version: {version}
 Summary: Evaluation of trajectories of SLAM systems: association, alignment, metrics and protocols
-License: BSD-3-Clause
+License: BSD-3-Clause AND MPL-2.0
 Requires-Python: >={python}
 Requires-Dist: numpy
 """

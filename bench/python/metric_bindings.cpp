@@ -128,7 +128,7 @@ eval::RpeOptions rpe_options(double delta, const std::string& unit, double offse
   return {.delta = delta, .unit = value_of<eval::RpeUnit>("unit", unit), .offset_s = offset_s};
 }
 
-std::vector<eval::PosePair> pose_pairs(const py::array_t<std::int64_t>& pairs, std::size_t matches) {
+std::vector<eval::PosePair> pose_pairs(const Integers& pairs, std::size_t matches) {
   require_shape(pairs, "pairs", {-1, 2});
   std::vector<eval::PosePair> result;
   for (py::ssize_t i = 0; i < pairs.shape(0); ++i) {
@@ -160,7 +160,8 @@ void bind_rpe(py::module_& m) {
       [](const Trajectory& gt, const Trajectory& est, double delta, const std::string& unit,
          double offset_s) { return eval::rpe(gt, est, rpe_options(delta, unit, offset_s)); },
       py::arg("gt"), py::arg("est"), py::arg("delta") = 1.0, py::arg("unit") = "s", py::arg("offset_s") = 0.0,
-      "RPE as evaluate_rpe.py of the TUM benchmark computes it over `delta` s, f (frames) or m; None without "
+      "RPE as evaluate_rpe.py of the TUM benchmark computes it over `delta` s, f (frames), m or deg; None "
+      "without "
       "a pair.",
       ReleaseGil());
   using eval::StrictRpeResult;
@@ -208,7 +209,7 @@ void bind_pairs(py::module_& m) {
       py::arg("matches"), "Path length of the ground truth from the first match to each, [n], m.");
   m.def(
       "relative_errors",
-      [](const PoseMatches& matches, const py::array_t<std::int64_t>& pairs) {
+      [](const PoseMatches& matches, const Integers& pairs) {
         eval::RelativeErrors errors = eval::relative_errors(matches, pose_pairs(pairs, matches.size()));
         return py::make_tuple(array_of(std::move(errors.translation_m)),
                               array_of(std::move(errors.rotation_deg)), array_of(std::move(errors.yaw_deg)));
@@ -282,7 +283,7 @@ void bind_protocol_options(py::module_& m) {
       .field("max_difference_s", &ProtocolOptions::max_difference_s,
              "Of associated stamps, s; None: of the protocol.")
       .number("rpe_delta", &ProtocolOptions::rpe_delta, "In `rpe_unit`.")
-      .choice("rpe_unit", &ProtocolOptions::rpe_unit, "s, f (frames) or m.")
+      .choice("rpe_unit", &ProtocolOptions::rpe_unit, "s, f (frames), m or deg.")
       .field("offset_s", &ProtocolOptions::offset_s, "Added to the stamps of the estimate, s.")
       .property("leveling_rotation_xyzw",
                 std::pair(
@@ -330,7 +331,7 @@ void bind_evaluation(py::module_& m) {
           .field("ate_m", &Evaluation::ate_m, "Statistics, m.")
           .field("ate_deg", &Evaluation::ate_deg, "Statistics, deg.")
           .field("rpe_delta", &Evaluation::rpe_delta, "In `rpe_unit`.")
-          .choice("rpe_unit", &Evaluation::rpe_unit, "s, f (frames) or m.")
+          .choice("rpe_unit", &Evaluation::rpe_unit, "s, f (frames), m or deg.")
           .field("rpe_m", &Evaluation::rpe_m, "Statistics over `rpe_delta`, m.")
           .field("rpe_deg", &Evaluation::rpe_deg, "Statistics over `rpe_delta`, deg.")
           .field("rpe_pairs", &Evaluation::rpe_pairs, "Pairs of two poses.")
@@ -405,7 +406,11 @@ void bind_comparison(py::module_& m) {
       [](const Trajectory& gt, const std::map<std::string, const Trajectory*>& runs,
          const std::string& alignment) {
         std::vector<eval::NamedRun> named;
-        for (const auto& [name, est] : runs) named.push_back({name, *est});
+        for (const auto& [name, est] : runs) {
+          if (est == nullptr)
+            throw InputError("runs: " + name, "is None; leave out runs without a trajectory");
+          named.push_back({name, *est});
+        }
         return eval::compare_runs(gt, named,
                                   {.alignment = value_of<eval::Alignment>("alignment", alignment)});
       },

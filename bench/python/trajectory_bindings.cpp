@@ -301,7 +301,7 @@ eval::PoseIndex checked_index(std::int64_t index, std::size_t size, std::size_t 
   return static_cast<eval::PoseIndex>(index);
 }
 
-PoseMatches matches_of(const Trajectory& gt, const Trajectory& est, const py::array_t<std::int64_t>& pairs,
+PoseMatches matches_of(const Trajectory& gt, const Trajectory& est, const Integers& pairs,
                        const std::optional<Doubles>& fractions) {
   require_shape(pairs, "pairs", {-1, 2});
   const auto count = static_cast<std::size_t>(pairs.shape(0));
@@ -452,12 +452,7 @@ void bind_alignment(py::module_& m) {
   m.def(
       "move_to_frame",
       [](const Trajectory& trajectory, const Doubles& T_f_g, const std::string& frame) {
-        require_shape(T_f_g, "T_f_g", {4, 4});
-        const Eigen::Matrix4d matrix =
-            Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(T_f_g.data());
-        if (!matrix.allFinite() || !matrix.topLeftCorner<3, 3>().isUnitary(1e-3))
-          throw InputError("T_f_g", "is no rigid transform; its upper left part is not a rotation");
-        return eval::move_to_frame(trajectory, Pose::from_matrix(matrix), frame);
+        return eval::move_to_frame(trajectory, rigid_of(T_f_g, "T_f_g"), frame);
       },
       py::arg("trajectory"), py::arg("T_f_g"), py::arg("frame") = "",
       "The poses T_w_g = T_w_f T_f_g of the frame g; T_f_g: [4, 4].");

@@ -12,13 +12,11 @@ def stream(sequence):
     return datasets.open_sequence(sequence)
 
 
-def numbers(path):
-    return np.array([[float(x) for x in line.split()] for line in path.read_text().splitlines() if line[0] not in "#"])
-
-
-def test_frames_are_those_of_the_lists(stream, sequence):
-    assert len(stream) == 45 and len(list(stream)) == 45
+def test_frames_are_those_of_the_list(stream, sequence):
+    listed = [line.split()[0] for line in (sequence / "color.txt").read_text().splitlines()]
+    assert [f"{t_ns / 10**9:.6f}" for t_ns in stream.frame_times_ns.tolist()] == listed
     assert [frame.t_ns for frame in stream] == stream.frame_times_ns.tolist()
+    assert len(stream) == len(list(stream)) == 45
     assert stream[-1].id == 44 and stream[0].id == 0
 
 

@@ -126,12 +126,23 @@ def test_comparison_is_that_of_the_program(folder, gt):
     comparison = sp.compare_runs(gt, runs)
     expected = result["comparison"]
     assert comparison.common_s == expected["common_s"]
-    for run, of_program in zip(comparison.ranking, expected["ranking"]):
+    for run, of_program in zip(comparison.ranking, expected["ranking"], strict=True):
         assert run.name == of_program["estimate"]
         assert run.common_ate_rmse_m == of_program["common_ate_rmse_m"]
         assert run.common_pairs == of_program["common_pairs"]
 
 
 def test_time_offset_is_found(gt, est):
-    offset = sp.find_time_offset(gt, est)
-    assert not offset.undetermined and abs(offset.offset_s + 0.004) < 0.01
+    late = sp.Trajectory(est.times_ns + 10**8, est.positions, est.quaternions_xyzw)
+    offset = sp.find_time_offset(gt, late)
+    assert not offset.undetermined and abs(offset.offset_s + 0.104) < 0.01
+
+
+def test_runs_without_a_trajectory_are_errors(gt, est):
+    with pytest.raises(InputError, match="runs: lost: is None"):
+        sp.compare_runs(gt, {"found": est, "lost": None})
+
+
+def test_reflections_are_no_transforms(est):
+    with pytest.raises(InputError, match="not a rotation"):
+        sp.move_to_frame(est, np.diag([1.0, 1.0, -1.0, 1.0]))

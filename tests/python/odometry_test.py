@@ -58,7 +58,7 @@ def test_updates_have_covariance_and_state(updates):
     assert last.to_dict()["tracked_features"] == last.tracked_features > 50
 
 
-def test_features_have_labels_on_the_walking_person(stream):
+def test_features_have_labels(stream):
     _, features = track_all(stream, stillpoint.Odometry(stream.rig))
     count = len(features["id"])
     assert features["pixel"].shape == (count, 2) and len(features["label"]) == count

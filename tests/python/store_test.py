@@ -68,7 +68,7 @@ def test_series_have_one_value_per_frame(results):
     assert counters["tracked_features"].dtype == np.int64 and counters["keyframe"].dtype == bool
     timings = results.timing_samples(run)
     assert {"frame", "module", "ns", "calls"} == set(timings) and (timings["ns"] >= 0).all()
-    assert set(timings["module"]) >= {cost.module for cost in run.costs if cost.per == "call"} & set(timings["module"])
+    assert len(timings["ns"]) > 0 and set(timings["module"]) <= {cost.module for cost in run.costs}
 
 
 def test_attachments_are_read(results):

@@ -28,7 +28,7 @@ def __getattr__(name):
     if module is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     if module != "runs" and importlib.util.find_spec(f"{__name__}._{module}") is None:
-        raise AttributeError(f"stillpoint.{name} is not part of this installation; install python3-stillpoint")
+        raise AttributeError(f"stillpoint.{name} is not part of this installation; build it, see bench/python/README.md")
     loaded = importlib.import_module("." + module, __name__)
     return getattr(loaded, name) if name in _FUNCTIONS else loaded
 

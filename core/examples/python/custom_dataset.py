@@ -55,6 +55,8 @@ def main(arguments):
         sys.exit(__doc__)
     truth = write_sequence(Path(arguments[0]))
     run = stillpoint.run(arguments[0], "vo", {"detector.kind": "none"})
+    if run.trajectory is None:
+        sys.exit("custom_dataset: error: no frame was located")
     error = sp.evaluate("strict:se3", truth, run.trajectory).ate_m
     print(f"{len(run.trajectory)} of {FRAMES} frames located, ATE {error.rmse:.4f} m")
 

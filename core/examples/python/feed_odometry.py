@@ -34,7 +34,7 @@ def main(arguments):
         dynamic = sum(label.startswith("dynamic") for label in labels)
         x, y, z = update.position
         print(f"{update.status}  ({x:+.3f}, {y:+.3f}, {z:+.3f}) m{sigma}  {dynamic} of {len(labels)} features dynamic")
-    if len(arguments) == 2:
+    if len(arguments) == 2 and poses:
         times_ns, positions, quaternions = map(np.array, zip(*poses))
         sp.write_tum(sp.Trajectory(times_ns, positions, quaternions, "camera"), arguments[1])
 

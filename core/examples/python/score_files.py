@@ -15,6 +15,8 @@ def main(arguments):
     gt = sp.read_trajectory(arguments[0])
     for file in arguments[1:]:
         result = sp.evaluate("strict:se3", gt, sp.read_trajectory(file))
+        if result.ate_m is None:
+            sys.exit(f"score_files: error: {file}: no pose has a counterpart in the ground truth")
         worst = result.errors_m.argmax()
         seconds = (result.error_times_ns[worst] - gt.times_ns[0]) * 1e-9
         rpe = f"{result.rpe_m.rmse:.4f} m" if result.rpe_m else "n/a"
