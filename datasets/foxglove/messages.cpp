@@ -186,13 +186,17 @@ std::array<double, N> decode_doubles(std::string_view bytes, std::string_view pl
 }
 
 Timestamp decode_timestamp(std::string_view bytes, std::string_view place) {
-  Timestamp t;
+  constexpr std::uint64_t kMaxSeconds = 9'000'000'000;
+  std::uint64_t seconds = 0;
+  std::uint64_t nanoseconds = 0;
   ProtobufReader reader(bytes, place);
   while (const auto field = reader.next()) {
-    if (field->number == 1) t.ns += static_cast<std::int64_t>(field->value) * kSecond_ns;
-    if (field->number == 2) t.ns += static_cast<std::int64_t>(field->value);
+    if (field->number == 1) seconds = field->value;
+    if (field->number == 2) nanoseconds = field->value;
   }
-  return t;
+  if (seconds > kMaxSeconds || nanoseconds >= static_cast<std::uint64_t>(kSecond_ns))
+    throw InputError(std::string(place), "has a time out of range; the file is damaged");
+  return Timestamp{static_cast<std::int64_t>(seconds) * kSecond_ns + static_cast<std::int64_t>(nanoseconds)};
 }
 
 }  // namespace

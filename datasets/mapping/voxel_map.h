@@ -5,7 +5,8 @@
 /// A measurement at distance z has the weight 1 / z^4, as the deviation of stereo depth grows with z^2.
 /// Pixels at depth edges are left out: they mix two surfaces. Of images with more than 480 columns, every
 /// second (third ...) row and column is used. A voxel counts the images in which it was measured, n, and
-/// those in which it was seen through, m: the depth at its pixel exceeds its distance by more than a margin.
+/// those in which it was seen through or left out (a person), m. Seen through: the depth at its pixel exceeds
+/// its distance by more than a margin.
 /// It is a point of the cloud if n >= min_images and n > 2 m: surfaces that moved are removed once what is
 /// behind them was seen.
 #pragma once

@@ -136,7 +136,8 @@ std::vector<CloudPoint> read_ply(const std::filesystem::path& file) {
     for (const PlyProperty& property : header.properties) {
       double number = 0.0;
       if (header.ascii) {
-        if (!(words >> number)) throw early;
+        if (!(words >> number) && words.eof()) throw early;
+        if (!words) throw InputError(place, "contains a text that is no finite number; remove its point");
       } else {
         number = property.type->read(next);
         next += property.type->bytes;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "eval/io/text_reader.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -157,7 +159,7 @@ void TextBlocks::advance() {
 }
 
 void write_text_file(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path partial = file.string() + ".partial";
+  const std::filesystem::path partial = file.string() + ".partial-" + std::to_string(::getpid());
   std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
   if (!stream) throw InputError(file.string(), "cannot be created; check the path and the permissions");
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));

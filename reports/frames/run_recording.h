@@ -9,17 +9,17 @@
 /// | /estimate/path | foxglove.PosesInFrame | all poses of /estimate, written at the end |
 /// | /estimate/optimized | same | with all corrections by loop closure, written at the end |
 /// | /truth, /truth/path | foxglove.PoseInFrame, PosesInFrame | ground truth of the camera |
-/// | /tf | foxglove.FrameTransform | world to body, body to camera; once world to truth |
+/// | /tf | foxglove.FrameTransform | map to world, world to body, body to camera; world to truth |
 /// | /status | stillpoint.Status | of each frame, with the reason and counters |
 /// | /state | stillpoint.State | pose with covariance, velocity, biases, calibration |
 /// | /timings | stillpoint.Timings | of each frame |
 /// | /imu | stillpoint.Imu | all samples up to the last frame |
 /// | /camera/calibration | foxglove.CameraCalibration | as stated by the sequence |
-/// | /camera/annotations | foxglove.ImageAnnotations | features, colored by label, and boxes with their class
-/// | | /camera/image | foxglove.CompressedImage | optional: JPEG | | /camera/depth | foxglove.RawImage |
-/// optional: 16 bits, in millimeters | | /landmarks | foxglove.PointCloud | features with measured depth, in
-/// the frame of the camera, colored by label | | /loops | stillpoint.Loop | recognized places with their
-/// outcome, written at the end |
+/// | /camera/annotations | foxglove.ImageAnnotations | features, colored by label, and boxes |
+/// | /camera/image | foxglove.CompressedImage | optional: JPEG |
+/// | /camera/depth | foxglove.RawImage | optional: 16 bits, in millimeters |
+/// | /landmarks | foxglove.PointCloud | features with measured depth, in the frame of the camera |
+/// | /loops | stillpoint.Loop | recognized places with their outcome, written at the end |
 ///
 /// Coordinate frames: `world`, after a loss `world_N`; `body` (IMU), `camera`; `truth`, which the pose at the
 /// first located frame aligns with `world`. The log time of a message is the stamp of its sensor data, of a

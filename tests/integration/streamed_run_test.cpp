@@ -49,7 +49,7 @@ class StreamedRun : public ::testing::Test {
 TEST_F(StreamedRun, GivesTheBitsOfTheCachedAndTheCompleteSequence) {
   const ProgramResult streamed = run("streamed", {"run", kPreset, "--max-frames", "40"});
   ASSERT_EQ(streamed.exit_code, 0) << streamed.err;
-  // Frames ahead of the odometry may be rendered, but not the whole sequence of 1080 frames.
+  // No frame more than is played, of 1080.
   EXPECT_EQ(rendered_images(), 40);
   ASSERT_EQ(run("cached", {"run", kPreset, "--max-frames", "40"}).exit_code, 0);
   ASSERT_EQ(run("pipelined", {"run", kPreset, "--seconds", "1.33", "--mode", "pipelined"}).exit_code, 0);

@@ -62,7 +62,8 @@ int write_true_cloud(const CloudArguments& arguments) {
   require_safe_output(arguments.out, rules);
   const auto stream =
       find_sequence(resolve_sequence(arguments.sequence),
-                    {.format = arguments.format, .rig_file = arguments.rig, .topics = arguments.topics}, {});
+                    {.format = arguments.format, .rig_file = arguments.rig, .topics = arguments.topics},
+                    {.stop_requested = interrupt_requested});
   if (!stream) return kExitInterrupted;
   const std::vector<eval::CloudPoint> cloud = true_cloud(*stream, arguments);
   if (interrupt_requested()) return kExitInterrupted;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Optional outputs of a run: dynamic labels of all features, plots of its cost, annotated images, a video
-/// and a recording for viewers. None of their failures affects the run or its result.
+/// Optional outputs of a run: dynamic labels of all features, plots of its cost, annotated images, a
+/// video, a recording for viewers and a point cloud. None of their failures affects the run or its result.
 #pragma once
 
 #include <filesystem>

@@ -16,6 +16,7 @@
 #include "datasets/io/detections_file.h"
 #include "datasets/synthetic/counter_random.h"
 #include "datasets/synthetic/sequence/scene_setup.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::synth {
 namespace {
@@ -188,9 +189,10 @@ void SequenceRendering::begin() {
   classes_ = classes_of(setup.actors);
   frames_.resize(times.color.size());
   const fs::path unfinished = folder_ / (std::string(kLogFile) + "." + std::to_string(::getpid()));
-  std::ofstream(unfinished) << log_header(frames_.size(), classes_);
+  eval::write_text_file(unfinished, log_header(frames_.size(), classes_));
   std::error_code exists_already;  // written by another process: the same header
   fs::create_hard_link(unfinished, folder_ / kLogFile, exists_already);
+  if (!fs::exists(folder_ / kLogFile)) fs::rename(unfinished, folder_ / kLogFile);  // no hard links here
   fs::remove(unfinished);
 }
 
@@ -258,8 +260,8 @@ void SequenceRendering::render_claimed(std::size_t index, const ImageCallback& o
   }
   const std::scoped_lock lock(mutex_);
   frames_[index] = std::move(frame);
-  if (++rendered_ == frames_.size()) write_boxes();
   changed_.notify_all();
+  if (++rendered_ == frames_.size()) write_boxes();
 }
 
 /// Requires the lock.

@@ -37,7 +37,7 @@ struct FrameBoxes {
 /// row to `rendering.txt`, the log by which another object continues: the frame's time and visible objects.
 /// With the last frame the files of boxes are written, `detections.txt` last, and the log is removed. Images
 /// and boxes of a frame do not depend on which frames are rendered, nor on their order, so that several
-/// processes may render into the same folder: they write the same bits.
+/// processes may render into the same folder: they write the same bits. One object per folder and process.
 ///
 /// Thread-safe.
 class SequenceRendering {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/synthetic/sequence/sequence_writer.h"
 
-#include <unistd.h>
-
-#include <fstream>
-
 #include <fmt/format.h>
 
 #include "core/base/error.h"
 #include "datasets/io/detections_file.h"
 #include "datasets/io/image_io.h"
+#include "eval/io/text_reader.h"
 
 namespace stillpoint::synth {
 namespace {
@@ -87,15 +84,7 @@ SequenceWriter::SequenceWriter(const fs::path& folder, SequenceLayout layout, bo
 }
 
 void SequenceWriter::write_text(const std::string& name, const std::string& text) const {
-  const fs::path file = folder_ / name;
-  const fs::path unfinished = file.string() + "." + std::to_string(::getpid());
-  std::ofstream out(unfinished, std::ios::binary);
-  out << text;
-  out.close();
-  std::error_code error;
-  if (out) fs::rename(unfinished, file, error);
-  if (!out || error)
-    throw InputError(file.string(), "cannot be written; check free disk space and folder permissions");
+  eval::write_text_file(folder_ / name, text);
 }
 
 void SequenceWriter::write_images(const ImageStamps& stamps, const cv::Mat& color,

@@ -116,7 +116,7 @@ TEST(PlyFile, DefectiveFilesAreErrors) {
       {"hello", "no PLY file"},
       {good.substr(0, good.size() - 1), "ends before its last point"},
       {head + "element vertex 99999999999\n" + xyz + "end_header\n1 2 3\n", "ends before its last point"},
-      {head + "element vertex 1\n" + xyz + "end_header\n1 nan 3\n", "ends before its last point"},
+      {head + "element vertex 1\n" + xyz + "end_header\n1 nan 3\n", "no finite number"},
       {head + "element vertex 1\nproperty float x\nend_header\n1\n", "x, y and z"},
       {head + "element vertex 0\n" + xyz + "end_header\n", "no points"},
       {head + "element vertex 1\nproperty list uchar int x\nend_header\n1\n", "no lists"},
