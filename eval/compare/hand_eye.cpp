@@ -155,6 +155,10 @@ HandEye hand_eye(const Trajectory& gt, const Trajectory& whole) {
   }
   result.offset_s = 0.5 * (low + high);
   const Solution solution = solution_at(gt, est, result.offset_s);
+  if (std::isinf(solution.error)) {
+    result.undetermined = "beside the best offset, too few poses match or the rotation is too small";
+    return result;
+  }
   result.T_f_g = solution.T_f_g;
   result.position_rmse_m = solution.position_rmse_m;
   result.rotation_rmse_deg = solution.rotation_rmse * 180.0 / std::numbers::pi;

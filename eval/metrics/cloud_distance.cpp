@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/base/error.h"
@@ -79,14 +78,14 @@ CloudScore score_cloud(std::span<const Eigen::Vector3f> estimate, std::span<cons
                        double threshold_m) {
   STILLPOINT_CHECK(!estimate.empty() && !truth.empty() && threshold_m > 0.0);
   const std::vector<double> of_estimate = distances_to(estimate, truth);
+  const Statistics distances = *statistics(of_estimate);
   const double precision = fraction_below(of_estimate, threshold_m);
   const double completeness = fraction_below(distances_to(truth, estimate), threshold_m);
   const double sum = precision + completeness;
   return {.estimate_points = estimate.size(),
           .truth_points = truth.size(),
-          .accuracy_m = std::accumulate(of_estimate.begin(), of_estimate.end(), 0.0) /
-                        static_cast<double>(of_estimate.size()),
-          .accuracy_median_m = percentile(of_estimate, 0.5).value(),
+          .accuracy_m = distances.mean,
+          .accuracy_median_m = distances.median,
           .precision = precision,
           .completeness = completeness,
           .f_score = sum > 0.0 ? 2.0 * precision * completeness / sum : 0.0};

@@ -66,8 +66,16 @@ ValueRange from_zero(const ValueRange& range) {
   return {0.0, range.empty() || range.high <= 0.0 ? 1.0 : 1.05 * range.high};
 }
 
+/// From the first pose of the truth; estimates may begin earlier and end later.
 ValueRange duration(const FigureInput& input) {
-  return {0.0, std::max(seconds_between(input.gt.poses.front().t, input.gt.poses.back().t), 1e-3)};
+  const Timestamp start = input.gt.poses.front().t;
+  ValueRange range{0.0, std::max(seconds_between(start, input.gt.poses.back().t), 1e-3)};
+  for (const PlottedRun& run : input.runs) {
+    if (run.est->poses.empty()) continue;
+    range.add(seconds_between(start, run.est->poses.front().t) + input.offset_s);
+    range.add(seconds_between(start, run.est->poses.back().t) + input.offset_s);
+  }
+  return range;
 }
 
 /// Rows of the estimates first, the truth last: above them.
@@ -228,9 +236,10 @@ constexpr const char* kBoxNote =
     "Boxes: quartiles and median; whiskers: 5th and 95th percentile; dots: RMSE.";
 
 /// @param values not empty
-BoxValues box_values(std::span<const double> values) {
-  const auto at = [&](double fraction) { return *eval::percentile(values, fraction); };
-  return {at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), eval::statistics(values)->rmse};
+BoxValues box_values(std::vector<double> values) {
+  const double rmse = eval::reordering_statistics(values)->rmse;
+  const auto at = [&](double fraction) { return *eval::reordering_percentile(values, fraction); };
+  return {at(0.05), at(0.25), at(0.5), at(0.75), at(0.95), rmse};
 }
 
 /// A box across the axis of the values, at `place` of the other axis.
@@ -375,7 +384,7 @@ Chart rpe_chart(const FigureInput& input, const FigureSize& size) {
     for (int k = 1; k <= kLengths; ++k) {
       const double length_m = k * step_m;
       const auto pairs = eval::pairs_over_meters(lengths_m, length_m, kTolerance * length_m).pairs;
-      if (pairs.empty()) continue;
+      if (pairs.size() < eval::kFewRpePairs) continue;  // too few for quartiles
       const eval::RelativeErrors errors = eval::relative_errors(matches, pairs, false);
       const double place = k + 0.8 * ((static_cast<double>(i) + 0.5) / count - 0.5);
       const Color color = chart.legend[i + 1].style.color;
@@ -385,7 +394,8 @@ Chart rpe_chart(const FigureInput& input, const FigureSize& size) {
     }
   }
   if (boxes[0].empty())
-    throw InputError("--figure rpe", "no estimate has segments with ground truth at both ends");
+    throw InputError("--figure rpe",
+                     "no estimate has 10 segments of one length with ground truth at both ends");
   ChartAxis lengths{{0.5, kLengths + 0.5}, "length of the segments [m]"};
   for (int k = 1; k <= kLengths; ++k) lengths.named_ticks.emplace_back(k, tick_text(k * step_m, step_m));
   const double height = 1.4 * panel_height(size);

@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/analysis/pose_files.h"
 #include "bench/cli/command_line.h"
 #include "core/base/error.h"
 #include "eval/io/ply_file.h"
-#include "eval/io/trajectory_file.h"
 #include "eval/metrics/cloud_distance.h"
 #include "eval/metrics/rpe.h"
 
@@ -29,9 +29,10 @@ Pose world_alignment(const EvalCloudArguments& arguments) {
   if (arguments.trajectory.empty() != arguments.true_trajectory.empty())
     throw InputError("--trajectory", "requires --truth-trajectory, and the reverse");
   if (arguments.trajectory.empty()) return {};
-  const Trajectory est = eval::read_trajectory({.path = arguments.trajectory}).trajectory;
-  const Trajectory gt = eval::read_trajectory({.path = arguments.true_trajectory}).trajectory;
-  const std::vector<eval::MatchedPose> matches = eval::strict_matches(gt, est);
+  const std::vector<PoseFile> files = with_consistent_orders(
+      read_pose_files({.ground_truth = arguments.true_trajectory, .estimates = {arguments.trajectory}}), 0.0);
+  const std::vector<eval::MatchedPose> matches =
+      eval::strict_matches(files[0].loaded.trajectory, files[1].loaded.trajectory);
   if (matches.empty())
     throw InputError(arguments.trajectory, "has no poses at times of " + arguments.true_trajectory);
   return eval::align_worlds(matches);

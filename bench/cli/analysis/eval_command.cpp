@@ -30,6 +30,12 @@ namespace {
 std::optional<eval::CovarianceScore> covariance_score_of(const EvalArguments& arguments, const Trajectory& gt,
                                                          const PoseFile& file) {
   if (!file.covariances) return std::nullopt;
+  if (arguments.alignment == kHandEyeAlignment) {
+    spdlog::warn(
+        "{}: covariances are of the body frame before the hand-eye calibration and were not evaluated",
+        file.path);
+    return std::nullopt;
+  }
   const Trajectory& est = file.loaded.trajectory;
   const std::vector<eval::StampedCovariance> rows = eval::at_poses(est, *file.covariances);
   std::vector<eval::ClaimedPose> claims;
@@ -148,9 +154,10 @@ std::vector<report::EvaluatedRun> evaluate_all(const EvalArguments& arguments, s
                              .covariance = covariance_score_of(arguments, gt, file)};
     run.est = std::move(file.loaded.trajectory);
     run.repairs = file.loaded.repairs;
-    if (arguments.alignment == kHandEyeAlignment) run = hand_eye_calibrated(arguments, gt, std::move(run));
     if (has_failed(run) && arguments.files.estimates.size() == 1)
       throw InputError(path, "has one pose: a failed run, of which no error can be computed");
+    if (arguments.alignment == kHandEyeAlignment && !has_failed(run))
+      run = hand_eye_calibrated(arguments, gt, std::move(run));
     const bool comparable = !arguments.find_offset && !has_failed(run);
     if (comparable) eval::require_overlap(gt, run.est, arguments.offset_s, path);
     options.q_level_w = leveling_rotation(arguments, path);

@@ -86,12 +86,23 @@ void log_repairs(const PoseFile& file) {
     spdlog::warn("{}: {}", file.path, repair);
 }
 
+const char* order_text(eval::QuaternionOrder order) {
+  return order == eval::QuaternionOrder::kXyzw ? "qx qy qz qw" : "qw qx qy qz";
+}
+
+void warn_of_assumed_order(const PoseFile& file) {
+  if (file.loaded.order_source != eval::OrderSource::kAssumed) return;
+  spdlog::warn("{}: no header names the columns; the quaternions were read in the order {}", file.path,
+               order_text(file.loaded.order));
+}
+
 }  // namespace
 
 PoseFile read_pose_file(const PoseFilePaths& paths, const std::string& path, FileRole role) {
   PoseFile file = load(paths, path, role);
   if (role == FileRole::kEstimate) file.covariances = covariances_of(paths, file);
   log_repairs(file);
+  warn_of_assumed_order(file);
   return file;
 }
 
@@ -107,10 +118,6 @@ std::vector<PoseFile> read_pose_files(const PoseFilePaths& paths) {
 }
 
 namespace {
-
-const char* order_text(eval::QuaternionOrder order) {
-  return order == eval::QuaternionOrder::kXyzw ? "qx qy qz qw" : "qw qx qy qz";
-}
 
 eval::QuaternionOrder other(eval::QuaternionOrder order) {
   return order == eval::QuaternionOrder::kXyzw ? eval::QuaternionOrder::kWxyz : eval::QuaternionOrder::kXyzw;
@@ -151,11 +158,7 @@ std::vector<PoseFile> with_consistent_orders(std::vector<PoseFile> files, double
     if (finding->gt) truth = in_other_order(std::move(truth), *finding);
     if (finding->est) files[i] = in_other_order(std::move(files[i]), *finding);
   }
-  for (const PoseFile& file : files) {
-    if (file.loaded.order_source != eval::OrderSource::kAssumed) continue;
-    spdlog::warn("{}: no header names the columns; the quaternions were read in the order {}", file.path,
-                 order_text(file.loaded.order));
-  }
+  for (const PoseFile& file : files) warn_of_assumed_order(file);
   return files;
 }
 

@@ -38,7 +38,8 @@ struct PoseFile {
 
 enum class FileRole { kTruth, kEstimate };
 
-/// Reads one file; an estimate with its covariances. Skipped and sorted rows are logged.
+/// Reads one file; an estimate with its covariances. Skipped and sorted rows, and an order of quaternions
+/// that nothing states, are logged.
 /// @throws InputError for unreadable or malformed input
 [[nodiscard]] PoseFile read_pose_file(const PoseFilePaths& paths, const std::string& path, FileRole role);
 

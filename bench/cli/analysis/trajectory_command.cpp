@@ -18,12 +18,13 @@
 #include "bench/cli/command_line.h"
 #include "bench/record/output_folder.h"
 #include "core/base/error.h"
+#include "datasets/bags/bag_geometry.h"
 #include "datasets/bags/trajectory_writer.h"
 #include "eval/io/matrix_files.h"
 #include "eval/io/text_reader.h"
 #include "eval/io/trajectory_file.h"
+#include "eval/metrics/rpe.h"
 #include "eval/trajectory/alignment.h"
-#include "eval/trajectory/association.h"
 #include "eval/trajectory/edit.h"
 
 namespace stillpoint::bench {
@@ -50,6 +51,7 @@ constexpr std::string_view kCsvHeader = "timestamp [s],tx [m],ty [m],tz [m],qx,q
 
 /// The file of "FILE" or "BAG:/TOPIC", and the topic.
 datasets::BagTopic target_of(const std::string& path) {
+  if (const std::optional<datasets::BagTopic> bag = datasets::parse_bag_topic(path)) return *bag;
   const std::size_t colon = path.find(":/");
   if (colon == std::string::npos) return {path, "/pose"};
   return {path.substr(0, colon), path.substr(colon + 1)};
@@ -242,9 +244,10 @@ int crop(const TrajectoryArguments& arguments) {
   if (arguments.end_s < arguments.start_s) throw InputError("--end", "is earlier than --start");
   eval::CovariantTrajectory path = load_with_covariances(arguments, arguments.input);
   const Timestamp zero = arguments.absolute ? Timestamp{0} : path.trajectory.poses.front().t;
-  const Timestamp begin = after(zero, arguments.start_s);
-  const Timestamp end =
-      std::isinf(arguments.end_s) ? path.trajectory.poses.back().t : after(zero, arguments.end_s);
+  const double rounding_s = arguments.absolute ? 5e-7 : 0.0;  // of a stamp of this century as a double
+  const Timestamp begin = after(zero, arguments.start_s - rounding_s);
+  const Timestamp end = std::isinf(arguments.end_s) ? path.trajectory.poses.back().t
+                                                    : after(zero, arguments.end_s + rounding_s);
   const std::string span = fmt::format("{} to {} s", eval::format_stamp(path.trajectory.poses.front().t),
                                        eval::format_stamp(path.trajectory.poses.back().t));
   eval::CovariantTrajectory part = eval::cropped(std::move(path), begin, end);
@@ -271,16 +274,17 @@ eval::Similarity world_change(const TrajectoryArguments& arguments, const Trajec
   }
   if (!arguments.world.empty() || arguments.scale != 1.0)
     throw InputError("--align-to", "states the world; omit --world and --scale");
-  constexpr double kMaxGap_s = 0.11;
   const Trajectory gt =
       read_pose_file(arguments.files, arguments.align_to, FileRole::kTruth).loaded.trajectory;
   eval::require_overlap(gt, path, 0.0, arguments.input);
-  const eval::PoseMatches matches(gt, path, eval::associate_interpolated(gt, path, kMaxGap_s));
+  const std::vector<eval::MatchedPose> matches = eval::strict_matches(gt, path);
   const auto kind = enum_of<eval::Alignment>("--alignment", arguments.alignment);
   const eval::AlignmentResult result = eval::align(matches, kind);
   if (!result.determined) {
-    throw InputError(arguments.input,
-                     fmt::format("the alignment is not determined by {} matched poses", matches.size()));
+    throw InputError(
+        arguments.input,
+        fmt::format("the alignment is not determined by {} matched poses; use --alignment first_pose",
+                    matches.size()));
   }
   return result.S_w_v;
 }
@@ -355,7 +359,7 @@ std::vector<Option> with_common_options(std::vector<Option> own, TrajectoryArgum
       {"--seq", "Sequence number in an OpenLORIS file", &a.files.sequence, {0, 1e9}},
       {"--covariance", "File with the covariances of the poses [further columns, or messages]",
        &a.files.covariance},
-      {"--force", "Replace existing files of the same kind", &a.output.force}};
+      {"--force", "Replace existing files of the same kind (KITTI: of any kind)", &a.output.force}};
   own.insert(own.end(), common.begin(), common.end());
   return own;
 }

@@ -49,11 +49,12 @@ std::string published(double value) {
 
 /// Whether a definition is among those that agree with the number as printed.
 bool is_found(const TwoTrajectories& both, double value, const std::string& protocol,
-              const std::string& options) {
+              const std::string& options, const std::string& metric = "ATE rmse m") {
   const std::vector<DefinedNumber> found =
       search_protocols(both.gt, both.est, parse_published(published(value)));
   return std::ranges::any_of(found, [&](const DefinedNumber& defined) {
-    return defined.agrees && defined.protocol == protocol && defined.options == options;
+    return defined.agrees && defined.protocol == protocol && defined.options == options &&
+           defined.metric == metric;
   });
 }
 
@@ -69,7 +70,7 @@ TEST(SearchProtocols, FindsTheIntervalAndTheStatisticOfANumber) {
   const TwoTrajectories both;
   const ProtocolOptions frames{.rpe_delta = 10.0, .rpe_unit = RpeUnit::kFrames};
   EXPECT_TRUE(is_found(both, evaluate("compat:evo", {both.gt, both.est, frames}).rpe_m->mean, "compat:evo",
-                       "--rpe-delta 10 --rpe-unit f"));
+                       "--rpe-delta 10 --rpe-unit f", "RPE over 10 f, mean m"));
 }
 
 TEST(SearchProtocols, ListsTheNearestWithoutAgreement) {

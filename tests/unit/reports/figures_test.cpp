@@ -195,6 +195,20 @@ TEST(Figures, StayWithinTheirBorders) {
   }
 }
 
+TEST(Figures, ShowEstimatesThatAreLongerThanTheTruth) {
+  CircleRuns circles;
+  circles.gt.poses.erase(circles.gt.poses.begin(), circles.gt.poses.begin() + 50);
+  circles.gt.poses.resize(circles.gt.poses.size() - 50);
+  for (const FigureKind kind : {FigureKind::kAxes, FigureKind::kRotation, FigureKind::kSpeed}) {
+    const Drawing drawing = figure(kind, circles.both(), {});
+    for (const Mark& mark : drawing.marks) {
+      const auto* const line = std::get_if<Polyline>(&mark);
+      if (line == nullptr) continue;
+      for (const Point2& p : line->points) EXPECT_TRUE(p.x >= 0.0 && p.x <= drawing.width);
+    }
+  }
+}
+
 TEST(Figures, HaveNumbersInTheLegend) {
   const CircleRuns circles;
   const std::string svg = svg_text(figure(FigureKind::kError, circles.both(), {}));
